@@ -1,0 +1,1 @@
+//! Tracking files to poses, cycles and fitted parameters.

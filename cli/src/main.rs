@@ -1,0 +1,3 @@
+//! The swimmer command: parses, calls, prints, draws.
+
+fn main() {}

@@ -1,0 +1,3 @@
+//! The thin RP2040 shell around gait-player.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! Optimal control of the three-link swimmer.

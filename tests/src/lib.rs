@@ -1,0 +1,1 @@
+//! Whole-system tests: the loop on the mock port, pseudo-terminals and the shipped binary.

@@ -1,0 +1,1 @@
+//! A robot without a robot: the brain in a virtual tank, watched by virtual cameras.

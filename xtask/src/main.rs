@@ -1,0 +1,3 @@
+//! The project's own chores: toolchain set-up, firmware build, tests, benches.
+
+fn main() {}
