@@ -1,0 +1,55 @@
+//! CRC-32C (Castagnoli), the one checksum of frames and tables: it finds every error of up to five bits at the lengths
+//! of a frame, where postcard and COBS alone accept every tenth corrupted frame.
+
+use crc::{CRC_32_ISCSI, Crc, Digest, Table};
+
+static CRC_32C: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISCSI);
+
+/// CRC-32C of `bytes`.
+pub fn crc32c(bytes: &[u8]) -> u32 {
+    CRC_32C.checksum(bytes)
+}
+
+/// CRC-32C of bytes that come in pieces.
+pub struct Checksum(Digest<'static, u32, Table<1>>);
+
+impl Checksum {
+    /// The checksum of nothing yet.
+    pub fn new() -> Self {
+        Self(CRC_32C.digest())
+    }
+
+    /// Appends `bytes`.
+    pub fn update(&mut self, bytes: &[u8]) {
+        self.0.update(bytes);
+    }
+
+    /// The CRC-32C of everything appended.
+    pub fn finish(self) -> u32 {
+        self.0.finalize()
+    }
+}
+
+impl Default for Checksum {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_check_value_of_the_catalogue() {
+        assert_eq!(crc32c(b"123456789"), 0xE306_9283);
+    }
+
+    #[test]
+    fn pieces_give_the_whole() {
+        let mut pieces = Checksum::new();
+        pieces.update(b"1234");
+        pieces.update(b"56789");
+        assert_eq!(pieces.finish(), crc32c(b"123456789"));
+    }
+}

@@ -1,0 +1,66 @@
+//! What the robot must know of itself: geometry and drag for the on-board pose, limits, the servo map.
+
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// One of the two joints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum Joint {
+    /// φ₁, between middle and front link.
+    Front,
+    /// φ₂, between middle and back link.
+    Back,
+}
+
+impl Joint {
+    /// 0 for φ₁, 1 for φ₂.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// How the tangential drag coefficient `c_t` is tied to viscosity: the three forms of the model, SI.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub enum TangentialDrag {
+    /// Common `c_t = 2πμ / value`; the value is ln(l/a).
+    LogAspect(f32),
+    /// Per link `c_t = 2πμ / ln(l / value)`; the value is the half thickness a in metres.
+    HalfThickness(f32),
+    /// Common `c_t = value · μ`.
+    OverViscosity(f32),
+}
+
+/// What the brain needs for the on-board pose and its limits. It may tighten the firmware's limits, never loosen them;
+/// a pair of limits that needs more than one second to neutral (`max_angle / max_rate > 1 s`) is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct Configuration {
+    /// Length of the middle link l₀, m.
+    pub middle_m: f32,
+    /// Length of the front link l₁, m.
+    pub front_m: f32,
+    /// Length of the back link l₂, m.
+    pub back_m: f32,
+    /// Ratio of normal to tangential drag χ = `c_n/c_t`.
+    pub chi: f32,
+    /// Tangential drag.
+    pub tangential_drag: TangentialDrag,
+    /// Radius of the sphere on the middle link, m; 0 for none.
+    pub sphere_radius_m: f32,
+    /// Largest |φ|, rad.
+    pub max_angle: f32,
+    /// Largest |dφ/dt|, rad/s.
+    pub max_rate: f32,
+}
+
+/// The map of one servo from joint angle to pulse: `pulse = centre ± (angle + trim) / slope`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct ServoSettings {
+    /// Pulse of the straight joint, ns.
+    pub centre_ns: u32,
+    /// Angle per pulse, rad/µs, positive.
+    pub slope_rad_per_us: f32,
+    /// The angle grows as the pulse gets shorter.
+    pub reversed: bool,
+    /// Added to every angle, in units of 1e-4 rad; set by [`crate::Request::Trim`].
+    pub trim: i16,
+}

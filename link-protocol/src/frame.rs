@@ -1,0 +1,159 @@
+//! The frame: header, body, checksum, in COBS between zeros. Encoding goes into the caller's buffer.
+
+use crate::{
+    HEADER, KIND_SIGNED, MAX_ENCODED, MAX_RAW, Message, PROTOCOL_CURRENT, TRAILER, crc32c,
+};
+
+/// What stands before every body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Header {
+    /// Protocol version of the body.
+    pub version: u8,
+    /// Session the frame belongs to.
+    pub session: u16,
+    /// Ties replies to requests; counts telemetry.
+    pub sequence: u16,
+}
+
+impl Header {
+    /// A header of the version spoken here.
+    pub fn new(session: u16, sequence: u16) -> Self {
+        Self {
+            version: PROTOCOL_CURRENT,
+            session,
+            sequence,
+        }
+    }
+}
+
+/// The kind byte of a frame, without [`KIND_SIGNED`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Kind {
+    /// [`crate::Hello`].
+    Hello = 1,
+    /// [`crate::HelloReply`].
+    HelloReply = 2,
+    /// [`crate::Request`].
+    Request = 3,
+    /// [`crate::Reply`].
+    Reply = 4,
+    /// [`crate::Telemetry`].
+    Telemetry = 5,
+    /// Empty.
+    KeepAlive = 6,
+    /// [`crate::Ping`].
+    Ping = 7,
+    /// [`crate::Pong`].
+    Pong = 8,
+}
+
+impl Kind {
+    /// The kind of this byte, if there is one.
+    pub fn from_byte(byte: u8) -> Option<Self> {
+        Some(match byte {
+            1 => Self::Hello,
+            2 => Self::HelloReply,
+            3 => Self::Request,
+            4 => Self::Reply,
+            5 => Self::Telemetry,
+            6 => Self::KeepAlive,
+            7 => Self::Ping,
+            8 => Self::Pong,
+            _ => return None,
+        })
+    }
+}
+
+/// What a signed frame carries between body and CRC: a counter that only grows, and a truncated keyed tag over header,
+/// body and counter. No version 1 message needs it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Signature {
+    /// Never repeats under one key; 48 bits.
+    pub counter: u64,
+    /// Truncated tag.
+    pub tag: [u8; 8],
+}
+
+impl Signature {
+    /// Bytes in the frame.
+    pub const LEN: usize = 14;
+
+    pub(crate) fn from_bytes(bytes: [u8; Self::LEN]) -> Self {
+        let [c0, c1, c2, c3, c4, c5, tag @ ..] = bytes;
+        Self {
+            counter: u64::from_le_bytes([c0, c1, c2, c3, c4, c5, 0, 0]),
+            tag,
+        }
+    }
+
+    pub(crate) fn to_bytes(self) -> [u8; Self::LEN] {
+        let mut bytes = [0; Self::LEN];
+        bytes[..6].copy_from_slice(&self.counter.to_le_bytes()[..6]);
+        bytes[6..].copy_from_slice(&self.tag);
+        bytes
+    }
+}
+
+/// Why a frame could not be encoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EncodeError {
+    /// The body is larger than a frame holds.
+    BodyTooLong,
+    /// The buffer is shorter than [`MAX_ENCODED`].
+    BufferTooShort,
+}
+
+/// Encodes `message` under `header` into `out`, burst start and delimiter included; returns the number of bytes.
+///
+/// # Errors
+/// `out` is shorter than [`MAX_ENCODED`]; no message of version 1 has a body that is too long.
+pub fn encode(header: Header, message: &Message, out: &mut [u8]) -> Result<usize, EncodeError> {
+    let mut body = [0; crate::MAX_BODY];
+    let body = message
+        .encode_body(&mut body)
+        .map_err(|_| EncodeError::BodyTooLong)?;
+    encode_body(header, message.kind() as u8, body, None, out)
+}
+
+/// Encodes any body, signed or not: the door for stored replies, signatures and tests.
+///
+/// # Errors
+/// `out` is shorter than [`MAX_ENCODED`], or the body with its signature is too long for a frame.
+pub fn encode_body(
+    header: Header,
+    kind: u8,
+    body: &[u8],
+    signature: Option<Signature>,
+    out: &mut [u8],
+) -> Result<usize, EncodeError> {
+    if out.len() < MAX_ENCODED {
+        return Err(EncodeError::BufferTooShort);
+    }
+    let signed = if signature.is_some() {
+        Signature::LEN
+    } else {
+        0
+    };
+    let covered = HEADER + body.len() + signed;
+    if covered + TRAILER > MAX_RAW {
+        return Err(EncodeError::BodyTooLong);
+    }
+    let mut raw = [0; MAX_RAW];
+    raw[0] = header.version;
+    raw[1..3].copy_from_slice(&header.session.to_le_bytes());
+    raw[3..5].copy_from_slice(&header.sequence.to_le_bytes());
+    raw[5] = kind & !KIND_SIGNED;
+    raw[HEADER..HEADER + body.len()].copy_from_slice(body);
+    if let Some(signature) = signature {
+        raw[5] |= KIND_SIGNED;
+        raw[HEADER + body.len()..covered].copy_from_slice(&signature.to_bytes());
+    }
+    let crc = crc32c(&raw[..covered]);
+    raw[covered..covered + TRAILER].copy_from_slice(&crc.to_le_bytes());
+    out[0] = 0;
+    let written = cobs::try_encode(&raw[..covered + TRAILER], &mut out[1..MAX_ENCODED - 1])
+        .map_err(|_| EncodeError::BufferTooShort)?;
+    out[1 + written] = 0;
+    Ok(written + 2)
+}

@@ -1,0 +1,303 @@
+//! Why the robot refuses: each reason with the numbers an operator needs to mend it. Variants are only appended.
+
+use crate::{Joint, StateName};
+use postcard_schema::Schema;
+use serde::{Deserialize, Serialize};
+
+/// Why a request was not done. Angles are in 1e-4 rad, rates in 1e-4 rad/s.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum Refusal {
+    /// The frame's session is not the open one: greet again.
+    StaleSession {
+        /// The session that is open.
+        open: u16,
+    },
+    /// A later request acted already.
+    Superseded {
+        /// Sequence number of the last request that acted.
+        last: u16,
+    },
+    /// The frame's protocol version is not understood.
+    Version {
+        /// Lowest version understood.
+        min: u8,
+        /// Version spoken.
+        current: u8,
+    },
+    /// The frame was whole but its body is no request of this version.
+    NotUnderstood,
+    /// Arm first.
+    NotArmed,
+    /// An e-stop is latched: arm with `clear_estop`.
+    EStopped,
+    /// Not in this state.
+    WrongState(StateName),
+    /// The battery is low, or was until less than 5 s ago.
+    BatteryLow {
+        /// Last measured, mV.
+        measured_mv: u16,
+        /// The limit, mV.
+        limit_mv: u16,
+    },
+    /// Three resets in 60 s: wait, then clear.
+    ResetLoop {
+        /// Seconds until it may be cleared.
+        wait_s: u16,
+    },
+    /// There is no table to play: upload one.
+    NoTable,
+    /// There is one slot, number 0.
+    NoSuchSlot(u8),
+    /// A table has 4 bytes a knot, 2 to 512 knots.
+    BadLength(u16),
+    /// No upload of that number is open: begin again.
+    NoUpload,
+    /// The chunk starts behind what is wanted, or reaches past the end.
+    ChunkOutOfRange {
+        /// The next offset wanted.
+        wanted: u16,
+    },
+    /// Not all bytes have come.
+    Incomplete {
+        /// The next offset wanted.
+        wanted: u16,
+    },
+    /// The uploaded bytes are not those that Begin announced: begin again.
+    CrcMismatch {
+        /// Announced.
+        expected: u32,
+        /// Received.
+        received: u32,
+    },
+    /// The gait, followed between its knots too, goes beyond the largest angle.
+    AngleLimit {
+        /// Which joint.
+        joint: Joint,
+        /// The knot before the place.
+        knot: u16,
+        /// Angle there, 1e-4 rad (saturated).
+        angle: i32,
+        /// The limit, 1e-4 rad.
+        limit: i32,
+    },
+    /// The gait asks for more speed than the servos are allowed at this period.
+    RateLimit {
+        /// Which joint.
+        joint: Joint,
+        /// The knot before the place.
+        knot: u16,
+        /// Shortest period that is allowed, µs.
+        min_period_us: u32,
+    },
+    /// The table does not come back to its first knot: it is no cycle.
+    NotClosed {
+        /// Which joint.
+        joint: Joint,
+        /// Step from the last knot to the first, 1e-4 rad.
+        step: i32,
+        /// Largest other step, 1e-4 rad.
+        largest: i32,
+    },
+    /// The side links come too close to each other.
+    LinksCross {
+        /// Where.
+        place: CrossingPlace,
+        /// φ₁ there, 1e-4 rad.
+        phi1: i16,
+        /// φ₂ there, 1e-4 rad.
+        phi2: i16,
+    },
+    /// A play without end cannot be detached.
+    DetachedEndless,
+    /// A committed table still waits for its cycle boundary.
+    SwapPending,
+    /// The numbers of the request are no lengths, drags, limits or pulses, or loosen the firmware's limits.
+    BadValue {
+        /// Index of the offending field, counted from 0 in the order of its structure.
+        field: u8,
+    },
+    /// Ramping to neutral at these limits takes longer than 1 s.
+    SlowToNeutral {
+        /// Duration, ms.
+        needs_ms: u32,
+    },
+    /// The robot is busy with an earlier request that is not answered yet.
+    Busy,
+}
+
+impl Refusal {
+    /// A number for each reason, fixed for ever: its place in this list.
+    pub fn number(&self) -> u8 {
+        match self {
+            Self::StaleSession { .. } => 0,
+            Self::Superseded { .. } => 1,
+            Self::Version { .. } => 2,
+            Self::NotUnderstood => 3,
+            Self::NotArmed => 4,
+            Self::EStopped => 5,
+            Self::WrongState(_) => 6,
+            Self::BatteryLow { .. } => 7,
+            Self::ResetLoop { .. } => 8,
+            Self::NoTable => 9,
+            Self::NoSuchSlot(_) => 10,
+            Self::BadLength(_) => 11,
+            Self::NoUpload => 12,
+            Self::ChunkOutOfRange { .. } => 13,
+            Self::Incomplete { .. } => 14,
+            Self::CrcMismatch { .. } => 15,
+            Self::AngleLimit { .. } => 16,
+            Self::RateLimit { .. } => 17,
+            Self::NotClosed { .. } => 18,
+            Self::LinksCross { .. } => 19,
+            Self::DetachedEndless => 20,
+            Self::SwapPending => 21,
+            Self::BadValue { .. } => 22,
+            Self::SlowToNeutral { .. } => 23,
+            Self::Busy => 24,
+        }
+    }
+}
+
+/// Where the side links come too close.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum CrossingPlace {
+    /// In the gait, after this knot.
+    Gait(u16),
+    /// On the way to the gait's first knot, through neutral too.
+    Ramp,
+}
+
+impl core::fmt::Display for Refusal {
+    #[allow(clippy::too_many_lines)] // one sentence a reason
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let rad = |units: i32| f64::from(units) * 1e-4;
+        match *self {
+            Self::StaleSession { open } => write!(
+                f,
+                "the robot's open session is {open}, not this one: connect again"
+            ),
+            Self::Superseded { last } => write!(
+                f,
+                "request {last} acted later than this one; this one did nothing"
+            ),
+            Self::Version { min, current } => write!(
+                f,
+                "the robot speaks protocol {min} to {current}: match firmware and program"
+            ),
+            Self::NotUnderstood => write!(
+                f,
+                "the robot does not know this request: match firmware and program"
+            ),
+            Self::NotArmed => write!(f, "the robot is not armed: arm it first"),
+            Self::EStopped => write!(
+                f,
+                "an e-stop is latched: arm with --clear-estop when it is safe"
+            ),
+            Self::WrongState(state) => {
+                write!(f, "the robot is {state:?} and does not do this then")
+            }
+            Self::BatteryLow {
+                measured_mv,
+                limit_mv,
+            } => {
+                write!(
+                    f,
+                    "battery at {measured_mv} mV, needs 5 s above {limit_mv} mV: charge it"
+                )
+            }
+            Self::ResetLoop { wait_s } => write!(
+                f,
+                "three resets within 60 s: wait {wait_s} s, look for the cause, then clear"
+            ),
+            Self::NoTable => write!(f, "the robot holds no gait: upload one"),
+            Self::NoSuchSlot(slot) => write!(f, "there is no gait slot {slot}, only 0"),
+            Self::BadLength(len) => write!(
+                f,
+                "a table of {len} bytes: it takes 4 a knot, 2 to 512 knots"
+            ),
+            Self::NoUpload => write!(f, "no such upload is open: begin again"),
+            Self::ChunkOutOfRange { wanted } => {
+                write!(f, "chunk out of range; byte {wanted} is wanted next")
+            }
+            Self::Incomplete { wanted } => {
+                write!(f, "the table is not complete: byte {wanted} is wanted next")
+            }
+            Self::CrcMismatch { expected, received } => {
+                write!(
+                    f,
+                    "table checksum {received:08x}, announced {expected:08x}: upload again"
+                )
+            }
+            Self::AngleLimit {
+                joint,
+                knot,
+                angle,
+                limit,
+            } => write!(
+                f,
+                "{joint:?} joint goes to {:.4} rad after knot {knot}, limit {:.4} rad: use a smaller gait",
+                rad(angle),
+                rad(limit)
+            ),
+            Self::RateLimit {
+                joint,
+                knot,
+                min_period_us,
+            } => write!(
+                f,
+                "{joint:?} joint is too fast after knot {knot}: the shortest period allowed is {:.3} s",
+                f64::from(min_period_us) * 1e-6
+            ),
+            Self::NotClosed {
+                joint,
+                step,
+                largest,
+            } => write!(
+                f,
+                "{joint:?} joint jumps {:.4} rad from the last knot to the first, {:.4} rad at most elsewhere: close the gait",
+                rad(step),
+                rad(largest)
+            ),
+            Self::LinksCross { place, phi1, phi2 } => {
+                let (phi1, phi2) = (rad(phi1.into()), rad(phi2.into()));
+                match place {
+                    CrossingPlace::Gait(knot) => {
+                        write!(
+                            f,
+                            "side links touch at ({phi1:.4}, {phi2:.4}) rad after knot {knot}: use another gait"
+                        )
+                    }
+                    CrossingPlace::Ramp => {
+                        write!(
+                            f,
+                            "side links would touch at ({phi1:.4}, {phi2:.4}) rad on the way to the gait: stop first"
+                        )
+                    }
+                }
+            }
+            Self::DetachedEndless => write!(
+                f,
+                "a play without end cannot be detached: give a number of cycles"
+            ),
+            Self::SwapPending => write!(
+                f,
+                "an earlier table still waits for its cycle boundary: try again later"
+            ),
+            Self::BadValue { field } => {
+                write!(f, "value number {field} of the request is out of range")
+            }
+            Self::SlowToNeutral { needs_ms } => {
+                write!(
+                    f,
+                    "ramping to neutral would take {needs_ms} ms, 1000 allowed: raise max_rate or lower max_angle"
+                )
+            }
+            Self::Busy => write!(
+                f,
+                "the robot is still busy with an earlier request: try again"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for Refusal {}
