@@ -1,0 +1,81 @@
+//! One trait for everything bytes can travel through, so that the session never knows what carries it.
+//!
+//! A port owns its clock. A serial port's clock is the wall; a virtual port's clock stands still until somebody reads and
+//! waits, so that an hour of link time is tested in a second and twice the same.
+
+mod faults;
+mod faulty;
+mod frames;
+mod injector;
+mod mock;
+#[cfg(unix)]
+mod pty;
+mod serial;
+mod tcp;
+mod traced;
+mod virtual_port;
+mod wire;
+
+use std::io;
+use std::time::Duration;
+
+pub use faults::{Faults, FaultsError, Outage};
+pub use faulty::{FaultPlan, FaultyPort};
+pub use injector::{FaultCounts, FaultInjector};
+pub use mock::MockPort;
+#[cfg(unix)]
+pub use pty::{PtyError, PtyPort};
+pub use serial::{OpenError, SerialPort};
+pub use tcp::TcpPort;
+pub use traced::{Direction, TracedFrame, TracedPort};
+pub use virtual_port::{Device, VirtualPort};
+pub use wire::{Wire, WireSpeed};
+
+/// A two-way stream of bytes with a clock of its own.
+pub trait Port: Send {
+    /// Reads what has arrived, waiting at most `timeout` for the first byte.
+    ///
+    /// Returns how many bytes were put into `buf`; `Ok(0)` says that the time passed without any. A virtual port moves its
+    /// clock on while it waits.
+    ///
+    /// # Errors
+    /// What the operating system says when the port is gone.
+    fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize>;
+
+    /// Sends all of `bytes`. May return before the last one has left.
+    ///
+    /// # Errors
+    /// What the operating system says when the port is gone.
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()>;
+
+    /// The time on this port's clock, since an arbitrary origin.
+    fn now(&self) -> Duration;
+}
+
+impl<P: Port + ?Sized> Port for Box<P> {
+    fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        (**self).read(buf, timeout)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        (**self).write(bytes)
+    }
+
+    fn now(&self) -> Duration {
+        (**self).now()
+    }
+}
+
+impl<P: Port + ?Sized> Port for &mut P {
+    fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        (**self).read(buf, timeout)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        (**self).write(bytes)
+    }
+
+    fn now(&self) -> Duration {
+        (**self).now()
+    }
+}

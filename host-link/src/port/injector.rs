@@ -1,0 +1,244 @@
+//! The faults of one direction as a pure queue: frames and times in, what is left of them and when out.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use super::faults::{Faults, Outage};
+use super::frames::FrameCutter;
+
+/// What an injector has done so far, in frames.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct FaultCounts {
+    /// Frames that went in.
+    pub frames: u64,
+    /// Frames that vanished by chance.
+    pub dropped: u64,
+    /// Frames with one inverted bit.
+    pub flipped: u64,
+    /// Frames that came out twice.
+    pub duplicated: u64,
+    /// Frames lost to a disconnection.
+    pub cut_off: u64,
+}
+
+/// Faults on one direction of a link.
+#[derive(Debug)]
+pub struct FaultInjector {
+    faults: Faults,
+    rng: ChaCha8Rng,
+    cutter: FrameCutter,
+    /// Frames under way and when they arrive, in order.
+    under_way: VecDeque<(Duration, Vec<u8>)>,
+    /// Arrived bytes that the clumping link still holds.
+    held: VecDeque<u8>,
+    held_since: Duration,
+    counts: FaultCounts,
+}
+
+impl FaultInjector {
+    /// A direction with the given faults. `rng` is the direction's own stream, so that neither disturbs the other.
+    pub fn new(faults: Faults, rng: ChaCha8Rng) -> Self {
+        Self {
+            faults,
+            rng,
+            cutter: FrameCutter::default(),
+            under_way: VecDeque::new(),
+            held: VecDeque::new(),
+            held_since: Duration::ZERO,
+            counts: FaultCounts::default(),
+        }
+    }
+
+    /// What has been done so far.
+    pub fn counts(&self) -> FaultCounts {
+        self.counts
+    }
+
+    /// Cuts the link for a while from `outage.from` on; what is under way then is lost too.
+    pub fn disconnect(&mut self, outage: Outage) {
+        self.faults.disconnect = Some(outage);
+    }
+
+    /// Takes bytes that were sent at `now`.
+    pub fn push(&mut self, now: Duration, bytes: &[u8]) {
+        let Self {
+            faults,
+            rng,
+            cutter,
+            under_way,
+            counts,
+            ..
+        } = self;
+        cutter.push(bytes, |frame| {
+            counts.frames += 1;
+            // Every frame draws the same numbers whatever becomes of it: a fault more does not shift all later ones.
+            let (drop, flip, twice): (f64, f64, f64) = (rng.random(), rng.random(), rng.random());
+            let bit = rng.random_range(0..frame.len() * 8);
+            if cut(faults, now) || cut(faults, now + faults.delay) {
+                counts.cut_off += 1;
+                return;
+            }
+            if drop < faults.drop {
+                counts.dropped += 1;
+                return;
+            }
+            if flip < faults.flip {
+                counts.flipped += 1;
+                frame[bit / 8] ^= 1 << (bit % 8);
+            }
+            let arrival = now + faults.delay;
+            if twice < faults.duplicate {
+                counts.duplicated += 1;
+                under_way.push_back((arrival, frame.clone()));
+            }
+            under_way.push_back((arrival, frame.clone()));
+        });
+    }
+
+    /// When [`pop`](Self::pop) will next have something, if nothing more goes in.
+    pub fn next_release(&self) -> Option<Duration> {
+        let arrival = self.under_way.front().map(|(at, _)| *at);
+        if self.faults.clump == 0 || self.held.is_empty() {
+            return arrival;
+        }
+        let patience = self.held_since + Faults::LONGEST_HOLD;
+        Some(arrival.map_or(patience, |at| at.min(patience)))
+    }
+
+    /// Appends to `out` the bytes that have come through by `now`.
+    pub fn pop(&mut self, now: Duration, out: &mut Vec<u8>) {
+        while let Some((at, _)) = self.under_way.front()
+            && *at <= now
+        {
+            let Some((at, frame)) = self.under_way.pop_front() else {
+                break;
+            };
+            if self.faults.clump == 0 {
+                out.extend_from_slice(&frame);
+                continue;
+            }
+            if self.held.is_empty() {
+                self.held_since = at;
+            }
+            self.held.extend(frame);
+            while self.held.len() >= self.faults.clump {
+                out.extend(self.held.drain(..self.faults.clump));
+                self.held_since = at;
+            }
+        }
+        if !self.held.is_empty() && now >= self.held_since + Faults::LONGEST_HOLD {
+            out.extend(self.held.drain(..));
+        }
+    }
+}
+
+fn cut(faults: &Faults, at: Duration) -> bool {
+    faults
+        .disconnect
+        .is_some_and(|outage| at >= outage.from && at < outage.from + outage.lasting)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    fn injector(text: &str) -> FaultInjector {
+        FaultInjector::new(text.parse().unwrap(), ChaCha8Rng::seed_from_u64(7))
+    }
+
+    fn frames(count: usize) -> Vec<u8> {
+        (0..count).flat_map(|_| [1, 2, 3, 4, 0]).collect()
+    }
+
+    #[test]
+    fn without_faults_bytes_pass_at_once_and_unchanged() {
+        let mut injector = injector("");
+        let sent = frames(100);
+        injector.push(MS, &sent);
+        let mut out = Vec::new();
+        injector.pop(MS, &mut out);
+        assert_eq!(out, sent);
+    }
+
+    #[test]
+    fn the_share_of_faults_is_the_chance() {
+        let mut injector = injector("drop=10%,flip=1%,duplicate=2%");
+        injector.push(MS, &frames(50_000));
+        let counts = injector.counts();
+        assert_eq!(counts.frames, 50_000);
+        // Five standard deviations of a binomial count.
+        assert!(
+            (counts.dropped as f64 - 5000.0).abs() < 5.0 * 67.1,
+            "{counts:?}"
+        );
+        assert!(
+            (counts.flipped as f64 - 450.0).abs() < 5.0 * 21.2,
+            "{counts:?}"
+        );
+        assert!(
+            (counts.duplicated as f64 - 900.0).abs() < 5.0 * 30.0,
+            "{counts:?}"
+        );
+    }
+
+    #[test]
+    fn a_flip_changes_exactly_one_bit() {
+        let mut injector = injector("flip=100%");
+        injector.push(MS, &[1, 2, 3, 4, 0]);
+        let mut out = Vec::new();
+        injector.pop(MS, &mut out);
+        let bits: u32 = out
+            .iter()
+            .zip([1u8, 2, 3, 4, 0])
+            .map(|(a, b)| (a ^ b).count_ones())
+            .sum();
+        assert_eq!((out.len(), bits), (5, 1));
+    }
+
+    #[test]
+    fn delay_holds_until_its_time() {
+        let mut injector = injector("delay=100");
+        injector.push(MS * 5, &frames(1));
+        let mut out = Vec::new();
+        injector.pop(MS * 104, &mut out);
+        assert!(out.is_empty());
+        assert_eq!(injector.next_release(), Some(MS * 105));
+        injector.pop(MS * 105, &mut out);
+        assert_eq!(out.len(), 5);
+    }
+
+    #[test]
+    fn clumps_come_whole_or_after_the_longest_hold() {
+        let mut injector = injector("clump=12");
+        let mut out = Vec::new();
+        injector.push(MS, &frames(2));
+        injector.pop(MS, &mut out);
+        assert!(out.is_empty());
+        injector.push(MS * 2, &frames(1));
+        injector.pop(MS * 2, &mut out);
+        assert_eq!(out.len(), 12);
+        injector.pop(MS * 1001, &mut out);
+        assert_eq!(out.len(), 12);
+        injector.pop(MS * 1002, &mut out);
+        assert_eq!(out.len(), 15);
+    }
+
+    #[test]
+    fn nothing_passes_while_disconnected() {
+        let mut injector = injector("delay=10,disconnect=100:50");
+        let mut out = Vec::new();
+        for at in [80, 95, 120, 149, 150] {
+            injector.push(MS * at, &frames(1));
+        }
+        injector.pop(MS * 1000, &mut out);
+        // Sent at 80 and 150; what was under way at 100 is lost.
+        assert_eq!(out.len(), 10);
+        assert_eq!(injector.counts().cut_off, 3);
+    }
+}

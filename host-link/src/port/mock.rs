@@ -1,0 +1,115 @@
+//! Two ports in memory that are each other's other end, on one clock that only waiting moves.
+
+use std::collections::VecDeque;
+use std::io;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use super::Port;
+
+#[derive(Debug, Default)]
+struct Shared {
+    now: Duration,
+    /// Bytes that lie ready for end 0 and end 1.
+    inbox: [VecDeque<u8>; 2],
+    closed: bool,
+}
+
+/// One end of an in-memory link. Bytes arrive at once; a read that finds none moves the clock by its whole timeout.
+#[derive(Debug)]
+pub struct MockPort {
+    shared: Arc<Mutex<Shared>>,
+    end: usize,
+}
+
+impl MockPort {
+    /// Two ends of one link, at time zero.
+    pub fn pair() -> (Self, Self) {
+        let shared = Arc::new(Mutex::new(Shared::default()));
+        let end = |end| Self {
+            shared: Arc::clone(&shared),
+            end,
+        };
+        (end(0), end(1))
+    }
+
+    /// Moves the clock of both ends on.
+    pub fn pass(&self, time: Duration) {
+        self.shared().now += time;
+    }
+
+    fn shared(&self) -> MutexGuard<'_, Shared> {
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Drop for MockPort {
+    fn drop(&mut self) {
+        self.shared().closed = true;
+    }
+}
+
+impl Port for MockPort {
+    fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        let mut shared = self.shared();
+        let end = self.end;
+        if shared.inbox[end].is_empty() {
+            if shared.closed {
+                return Err(io::Error::new(
+                    io::ErrorKind::BrokenPipe,
+                    "the other end of the mock link is gone",
+                ));
+            }
+            shared.now += timeout;
+            return Ok(0);
+        }
+        let mut count = 0;
+        for slot in buf {
+            let Some(byte) = shared.inbox[end].pop_front() else {
+                break;
+            };
+            *slot = byte;
+            count += 1;
+        }
+        Ok(count)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let mut shared = self.shared();
+        if shared.closed {
+            return Err(io::Error::new(
+                io::ErrorKind::BrokenPipe,
+                "the other end of the mock link is gone",
+            ));
+        }
+        shared.inbox[1 - self.end].extend(bytes);
+        Ok(())
+    }
+
+    fn now(&self) -> Duration {
+        self.shared().now
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_cross_and_waiting_moves_the_clock() {
+        let (mut near, mut far) = MockPort::pair();
+        near.write(b"abc").unwrap();
+        let mut buf = [0; 2];
+        assert_eq!(far.read(&mut buf, Duration::from_secs(1)).unwrap(), 2);
+        assert_eq!(&buf, b"ab");
+        assert_eq!(far.now(), Duration::ZERO);
+        assert_eq!(far.read(&mut buf, Duration::ZERO).unwrap(), 1);
+        assert_eq!(far.read(&mut buf, Duration::from_secs(1)).unwrap(), 0);
+        assert_eq!(near.now(), Duration::from_secs(1));
+        drop(far);
+        assert_eq!(
+            near.write(b"x").unwrap_err().kind(),
+            io::ErrorKind::BrokenPipe
+        );
+    }
+}

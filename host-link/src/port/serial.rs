@@ -1,0 +1,200 @@
+//! A real serial port: a cable, a Bluetooth module, or a pseudo-terminal opened by path.
+
+use std::io::{self, Read, Write};
+use std::time::{Duration, Instant};
+
+use serialport::{ClearBuffer, SerialPort as _};
+
+use super::Port;
+
+#[cfg(unix)]
+type Native = serialport::TTYPort;
+#[cfg(windows)]
+type Native = serialport::COMPort;
+
+/// Why a serial port could not be opened, and what to do about it.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// Another program holds it.
+    #[error(
+        "opening {path}: another program has the port open; close it (a terminal or a second `swimmer`) and try again"
+    )]
+    Busy {
+        /// The port's path.
+        path: String,
+    },
+    /// The user may not.
+    #[error(
+        "opening {path}: permission denied; the port belongs to the group `{group}`: add yourself with `sudo usermod -aG {group} $USER`, then log out and in again"
+    )]
+    NoPermission {
+        /// The port's path.
+        path: String,
+        /// Name of the group that owns it, or its number.
+        group: String,
+    },
+    /// Nothing there.
+    #[error(
+        "opening {path}: there is no such port; is the robot switched on and paired, and the path right?"
+    )]
+    Missing {
+        /// The port's path.
+        path: String,
+    },
+    /// Something else.
+    #[error("opening {path} as a serial port: {reason}; is this path a serial port?")]
+    Other {
+        /// The port's path.
+        path: String,
+        /// The operating system's words.
+        reason: String,
+    },
+}
+
+/// A serial port of the operating system, opened for this program alone, 8 data bits, no parity, 1 stop bit. Its clock
+/// starts when it is opened.
+#[derive(Debug)]
+pub struct SerialPort {
+    port: Native,
+    opened: Instant,
+}
+
+impl SerialPort {
+    /// Opens the port and throws away what lay in its input buffer.
+    ///
+    /// # Errors
+    /// [`OpenError`], one kind for each thing that an operator can mend.
+    pub fn open(path: &str, baud: u32) -> Result<Self, OpenError> {
+        let port = serialport::new(path, baud)
+            .timeout(Duration::from_millis(10))
+            .open_native()
+            .map_err(|error| explain(path, &error))?;
+        // Stale bytes would do no harm (they carry a foreign session); dropping them saves the decoder the work.
+        let _ = port.clear(ClearBuffer::Input);
+        Ok(Self {
+            port,
+            opened: Instant::now(),
+        })
+    }
+}
+
+fn explain(path: &str, error: &serialport::Error) -> OpenError {
+    let path = path.to_owned();
+    match error.kind() {
+        serialport::ErrorKind::NoDevice => OpenError::Busy { path },
+        serialport::ErrorKind::Io(io::ErrorKind::PermissionDenied) => OpenError::NoPermission {
+            group: owning_group(&path),
+            path,
+        },
+        serialport::ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::Missing { path },
+        _ => OpenError::Other {
+            path,
+            reason: error.to_string(),
+        },
+    }
+}
+
+/// Name of the group that owns a device, its number where the system knows no name.
+#[cfg(unix)]
+fn owning_group(path: &str) -> String {
+    use std::os::unix::fs::MetadataExt;
+    let Ok(metadata) = std::fs::metadata(path) else {
+        return "dialout".to_owned();
+    };
+    let number = metadata.gid().to_string();
+    let groups = std::fs::read_to_string("/etc/group").unwrap_or_default();
+    groups
+        .lines()
+        .map(|line| line.split(':').collect::<Vec<_>>())
+        .find(|fields| fields.get(2) == Some(&number.as_str()))
+        .and_then(|fields| fields.first().map(|name| (*name).to_owned()))
+        .unwrap_or(number)
+}
+
+#[cfg(not(unix))]
+fn owning_group(_path: &str) -> String {
+    "of its users".to_owned()
+}
+
+#[cfg(unix)]
+impl Drop for SerialPort {
+    fn drop(&mut self) {
+        // The exclusive mark outlives the open file on some terminals and would lock out the next client.
+        let _ = self.port.set_exclusive(false);
+    }
+}
+
+impl Port for SerialPort {
+    fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        if buf.is_empty() {
+            return Ok(0);
+        }
+        // The system counts whole milliseconds; rounding up keeps a caller with 0.3 ms to go from spinning.
+        let whole = Duration::from_millis(
+            u64::try_from(timeout.as_micros().div_ceil(1000)).unwrap_or(u64::MAX),
+        );
+        self.port.set_timeout(whole)?;
+        match self.port.read(buf) {
+            Ok(0) => Err(io::Error::new(
+                io::ErrorKind::UnexpectedEof,
+                "the serial port has gone away",
+            )),
+            Ok(count) => Ok(count),
+            Err(error)
+                if matches!(
+                    error.kind(),
+                    io::ErrorKind::TimedOut
+                        | io::ErrorKind::WouldBlock
+                        | io::ErrorKind::Interrupted
+                ) =>
+            {
+                Ok(0)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        // A port that takes no byte for this long is stuck, not busy: 128 bytes need 11 ms at 115 200 baud.
+        self.port.set_timeout(Duration::from_secs(1))?;
+        self.port.write_all(bytes)
+    }
+
+    fn now(&self) -> Duration {
+        self.opened.elapsed()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_port_says_so() {
+        let error = SerialPort::open("/dev/no-such-port-here", 115_200).unwrap_err();
+        assert!(matches!(error, OpenError::Missing { .. }), "{error:?}");
+        assert!(error.to_string().contains("switched on"));
+    }
+
+    #[test]
+    fn a_file_that_is_no_port_says_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plain.txt");
+        std::fs::write(&path, "x").unwrap();
+        let error = SerialPort::open(path.to_str().unwrap(), 115_200).unwrap_err();
+        assert!(matches!(error, OpenError::Other { .. }), "{error:?}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_group_of_a_port_has_a_name() {
+        // The root of the file system belongs to group 0, which is `root` or `wheel` where it is named at all.
+        assert!(["root", "wheel", "0"].contains(&owning_group("/").as_str()));
+        let denied = serialport::Error::new(
+            serialport::ErrorKind::Io(io::ErrorKind::PermissionDenied),
+            "denied",
+        );
+        let text = explain("/", &denied).to_string();
+        assert!(text.contains("belongs to the group"), "{text}");
+    }
+}

@@ -1,0 +1,127 @@
+//! Any port with a witness: each frame, both ways, with the time it passed.
+
+use std::io;
+use std::time::Duration;
+
+use super::Port;
+use super::frames::FrameCutter;
+
+/// Which way a frame went.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// From the host to the robot.
+    ToRobot,
+    /// From the robot to the host.
+    ToHost,
+}
+
+/// One frame that passed a [`TracedPort`] at the host's end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TracedFrame<'a> {
+    /// Time on the port's clock when the last byte passed.
+    pub at: Duration,
+    /// Which way it went.
+    pub direction: Direction,
+    /// The bytes as they crossed the wire, with the closing zero; corrupted ones too.
+    pub bytes: &'a [u8],
+}
+
+/// A port at the host's end that shows every frame to a sink, a link log for instance.
+pub struct TracedPort<P, S> {
+    port: P,
+    sink: S,
+    written: FrameCutter,
+    read: FrameCutter,
+}
+
+impl<P: Port, S: FnMut(TracedFrame<'_>) + Send> TracedPort<P, S> {
+    /// Wraps `port`; `sink` sees each frame before the caller does.
+    pub fn new(port: P, sink: S) -> Self {
+        Self {
+            port,
+            sink,
+            written: FrameCutter::default(),
+            read: FrameCutter::default(),
+        }
+    }
+
+    /// The port inside.
+    pub fn inner(&self) -> &P {
+        &self.port
+    }
+
+    /// The port inside.
+    pub fn inner_mut(&mut self) -> &mut P {
+        &mut self.port
+    }
+
+    /// Gives port and sink back.
+    pub fn into_parts(self) -> (P, S) {
+        (self.port, self.sink)
+    }
+}
+
+impl<P: Port, S: FnMut(TracedFrame<'_>) + Send> Port for TracedPort<P, S> {
+    fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        let count = self.port.read(buf, timeout)?;
+        let at = self.port.now();
+        let (cutter, sink) = (&mut self.read, &mut self.sink);
+        cutter.push(buf.get(..count).unwrap_or_default(), |bytes| {
+            sink(TracedFrame {
+                at,
+                direction: Direction::ToHost,
+                bytes,
+            });
+        });
+        Ok(count)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let at = self.port.now();
+        let (cutter, sink) = (&mut self.written, &mut self.sink);
+        cutter.push(bytes, |bytes| {
+            sink(TracedFrame {
+                at,
+                direction: Direction::ToRobot,
+                bytes,
+            });
+        });
+        self.port.write(bytes)
+    }
+
+    fn now(&self) -> Duration {
+        self.port.now()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::port::MockPort;
+
+    #[test]
+    fn every_frame_is_seen_once_with_its_time() {
+        let (near, mut far) = MockPort::pair();
+        let mut seen = Vec::new();
+        let mut port = TracedPort::new(near, |frame: TracedFrame<'_>| {
+            seen.push((frame.at.as_millis(), frame.direction, frame.bytes.to_vec()));
+        });
+        port.write(&[1, 0, 2]).unwrap();
+        port.inner().pass(Duration::from_millis(7));
+        port.write(&[0]).unwrap();
+        far.write(&[9, 0]).unwrap();
+        let mut one = [0; 1];
+        for _ in 0..2 {
+            port.read(&mut one, Duration::ZERO).unwrap();
+        }
+        drop(port);
+        assert_eq!(
+            seen,
+            vec![
+                (0, Direction::ToRobot, vec![1, 0]),
+                (7, Direction::ToRobot, vec![2, 0]),
+                (7, Direction::ToHost, vec![9, 0]),
+            ]
+        );
+    }
+}

@@ -1,0 +1,148 @@
+//! A port with a simulated device behind it: waiting on the port is what lets the device live.
+
+use std::io;
+use std::time::Duration;
+
+use super::Port;
+use super::wire::{Wire, WireSpeed};
+
+/// Something that lives in virtual time at the far end of a wire.
+pub trait Device: Send {
+    /// Lives on until `to`. Never goes backwards: an earlier time does nothing.
+    fn advance(&mut self, to: Duration);
+
+    /// Takes bytes that arrive at the time reached last.
+    fn receive(&mut self, bytes: &[u8]);
+
+    /// Appends to `out` what the device has to send.
+    fn transmit(&mut self, out: &mut Vec<u8>);
+}
+
+/// The host's end of a serial line to a [`Device`], in virtual time.
+#[derive(Debug)]
+pub struct VirtualPort<D> {
+    device: D,
+    now: Duration,
+    to_device: Wire,
+    to_host: Wire,
+    ready: Vec<u8>,
+}
+
+/// How finely device and wire take turns: a device that speaks between two turns is heard up to this much later.
+const TURN: Duration = Duration::from_millis(1);
+
+impl<D: Device> VirtualPort<D> {
+    /// A line of the given speed, both ways, to `device`, at time zero.
+    pub fn new(device: D, speed: WireSpeed) -> Self {
+        Self {
+            device,
+            now: Duration::ZERO,
+            to_device: Wire::new(speed),
+            to_host: Wire::new(speed),
+            ready: Vec::new(),
+        }
+    }
+
+    /// The device at the far end.
+    pub fn device(&self) -> &D {
+        &self.device
+    }
+
+    /// The device at the far end.
+    pub fn device_mut(&mut self) -> &mut D {
+        &mut self.device
+    }
+
+    /// Ends the line and gives the device back.
+    pub fn into_device(self) -> D {
+        self.device
+    }
+
+    /// Lets time pass without reading; what arrives meanwhile lies ready afterwards.
+    pub fn pass(&mut self, time: Duration) {
+        let end = self.now + time;
+        while self.now < end {
+            self.turn(end);
+        }
+    }
+
+    fn turn(&mut self, end: Duration) {
+        self.now = (self.now + TURN).min(end);
+        let mut bytes = Vec::new();
+        self.device.advance(self.now);
+        self.to_device.pop(self.now, &mut bytes);
+        if !bytes.is_empty() {
+            self.device.receive(&bytes);
+            bytes.clear();
+        }
+        self.device.transmit(&mut bytes);
+        if !bytes.is_empty() {
+            self.to_host.push(self.now, &bytes);
+        }
+        self.to_host.pop(self.now, &mut self.ready);
+    }
+}
+
+impl<D: Device> Port for VirtualPort<D> {
+    fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        let end = self.now + timeout;
+        while self.ready.is_empty() && self.now < end {
+            self.turn(end);
+        }
+        let count = buf.len().min(self.ready.len());
+        buf[..count].copy_from_slice(&self.ready[..count]);
+        self.ready.drain(..count);
+        Ok(count)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.to_device.push(self.now, bytes);
+        Ok(())
+    }
+
+    fn now(&self) -> Duration {
+        self.now
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sends back whatever comes.
+    #[derive(Default)]
+    struct Echo {
+        pending: Vec<u8>,
+        now: Duration,
+    }
+
+    impl Device for Echo {
+        fn advance(&mut self, to: Duration) {
+            self.now = to;
+        }
+
+        fn receive(&mut self, bytes: &[u8]) {
+            self.pending.extend_from_slice(bytes);
+        }
+
+        fn transmit(&mut self, out: &mut Vec<u8>) {
+            out.append(&mut self.pending);
+        }
+    }
+
+    #[test]
+    fn an_echo_takes_two_line_times_and_two_latencies() {
+        let mut port = VirtualPort::new(Echo::default(), WireSpeed::robot());
+        port.write(&[1; 100]).unwrap();
+        let mut buf = [0; 256];
+        let mut total = 0;
+        while total < 100 {
+            total += port.read(&mut buf, Duration::from_secs(1)).unwrap();
+        }
+        // The echo streams: one line time of 8.7 ms, two latencies of 5 ms, and turns of 1 ms.
+        let ms = port.now().as_millis();
+        assert!((18..=21).contains(&ms), "{ms} ms");
+        assert_eq!(port.read(&mut buf, Duration::from_secs(1)).unwrap(), 0);
+        assert_eq!(port.device().now, port.now());
+    }
+}
