@@ -1,0 +1,48 @@
+//! Which shapes a real swimmer cannot take because two of its links would lie across each other.
+//!
+//! The side links meet well inside |φ| < π: along φ₁ = φ₂ from arccos(−l₀/2l₁) on. Adjacent links share a joint and
+//! overlap only where a side link is folded flat onto the middle one, |φ| = π.
+
+use crate::{Links, Model, Scalar};
+use nalgebra::Vector2;
+
+impl<T: Scalar> Links<T> {
+    /// How far the side links overlap at shape Φ \[m\]: positive where they cross, negative where they do not,
+    /// continuous in between.
+    ///
+    /// The lines of the side links meet in a triangle over the middle link, with sides l₀ sin φ₂ / d and l₀ sin φ₁ / d,
+    /// d = −sin(φ₁ + φ₂) (law of sines). The links cross if both sides are positive and not longer than the links: four
+    /// inequalities, each multiplied by |d| here; the overlap is the tightest of them.
+    pub fn overlap(&self, phi: &Vector2<T>) -> T {
+        let (sin1, cos1) = phi.x.sin_cos();
+        let (sin2, cos2) = phi.y.sin_cos();
+        let d = -(sin1 * cos2 + cos1 * sin2);
+        let above = |side: T| {
+            let (s1, s2, d) = (
+                side * self.middle * sin1,
+                side * self.middle * sin2,
+                side * d,
+            );
+            s1.min(s2).min(self.front * d - s2).min(self.back * d - s1)
+        };
+        above(T::one()).max(above(-T::one()))
+    }
+
+    /// Whether two links cross at shape Φ: the side links each other, or one of them folded onto the middle link.
+    pub fn cross(&self, phi: &Vector2<T>) -> bool {
+        self.overlap(phi) > T::zero() || folded(phi.x) || folded(phi.y)
+    }
+}
+
+impl<T: Scalar> Model<T> {
+    /// Whether two links cross at shape Φ ([`Links::cross`]).
+    pub fn links_cross(&self, phi: &Vector2<T>) -> bool {
+        self.swimmer().links.cross(phi)
+    }
+}
+
+/// |φ| = π to rounding, whatever full turns it holds.
+fn folded<T: Scalar>(phi: T) -> bool {
+    let (sin, cos) = phi.sin_cos();
+    cos < T::zero() && sin.abs() <= T::EPSILON * phi.abs()
+}

@@ -1,0 +1,63 @@
+//! What the exact derivatives of A and W are handed out in, and the connection's curvature made from them.
+
+use crate::Scalar;
+use nalgebra::{Matrix2, Matrix3x2, Vector3};
+
+/// A, W and their first derivatives at one shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstDerivatives<T> {
+    /// A(Φ), rows (x, y, θ).
+    pub connection: Matrix3x2<T>,
+    /// W(Φ)/μ.
+    pub power: Matrix2<T>,
+    /// ∂A/∂φ₁, ∂A/∂φ₂.
+    pub d_connection: [Matrix3x2<T>; 2],
+    /// ∂W/∂φ₁, ∂W/∂φ₂, over μ.
+    pub d_power: [Matrix2<T>; 2],
+}
+
+/// A, W and their first and second derivatives at one shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SecondDerivatives<T> {
+    /// Values and first derivatives.
+    pub first: FirstDerivatives<T>,
+    /// ∂²A/∂φ₁², ∂²A/∂φ₁∂φ₂, ∂²A/∂φ₂².
+    pub d2_connection: [Matrix3x2<T>; 3],
+    /// ∂²W/∂φ₁², ∂²W/∂φ₁∂φ₂, ∂²W/∂φ₂², over μ.
+    pub d2_power: [Matrix2<T>; 3],
+}
+
+/// Bracket of two body velocities in se(2), the matrix commutator: (ω₁ J v₂ − ω₂ J v₁, 0) with J = (0 −1; 1 0).
+fn bracket<T: Scalar>(a: &Vector3<T>, b: &Vector3<T>) -> Vector3<T> {
+    Vector3::new(b.z * a.y - a.z * b.y, a.z * b.x - b.z * a.x, T::zero())
+}
+
+impl<T: Scalar> FirstDerivatives<T> {
+    /// Curvature of the connection, ∂₁A₂ − ∂₂A₁ + \[A₁, A₂\]: the body displacement of a tiny counter-clockwise loop
+    /// over its area. (The paper prints a minus before the bracket; with q̇ = D A Φ̇ it is a plus.)
+    pub fn curvature(&self) -> Vector3<T> {
+        let [d1, d2] = &self.d_connection;
+        let (a1, a2) = (
+            self.connection.column(0).into_owned(),
+            self.connection.column(1).into_owned(),
+        );
+        d1.column(1) - d2.column(0) + bracket(&a1, &a2)
+    }
+}
+
+impl<T: Scalar> SecondDerivatives<T> {
+    /// Derivatives of [`FirstDerivatives::curvature`] with respect to φ₁ and φ₂.
+    pub fn d_curvature(&self) -> [Vector3<T>; 2] {
+        let [d11, d12, d22] = &self.d2_connection;
+        let a: [Vector3<T>; 2] =
+            core::array::from_fn(|k| self.first.connection.column(k).into_owned());
+        let of_bracket = |i: usize| {
+            let d = &self.first.d_connection[i];
+            bracket(&d.column(0).into_owned(), &a[1]) + bracket(&a[0], &d.column(1).into_owned())
+        };
+        [
+            d11.column(1) - d12.column(0) + of_bracket(0),
+            d12.column(1) - d22.column(0) + of_bracket(1),
+        ]
+    }
+}

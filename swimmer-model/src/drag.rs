@@ -1,0 +1,39 @@
+//! How the tangential drag coefficient c_t is tied to the fluid's viscosity μ.
+//!
+//! Without a sphere only χ = c_n/c_t matters. With one, the ratio c_t/μ decides how large the sphere's drag is beside
+//! the links', and a fit of (r_s, χ) depends on the form chosen here.
+
+use crate::Scalar;
+
+/// Tangential resistance coefficient over viscosity, c_t/μ (dimensionless), in one of three forms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TangentialDrag<T> {
+    /// One value for all links from a common ln(l/a): c_t/μ = 2π / ln(l/a).
+    LogAspect(T),
+    /// Link by link from the half thickness a \[m\]: c_t/μ = 2π / ln(l_i/a).
+    HalfThickness(T),
+    /// c_t/μ given outright, for all links.
+    OverViscosity(T),
+}
+
+impl<T: Scalar> TangentialDrag<T> {
+    /// c_t/μ of a link of the given length \[m\].
+    pub fn over_viscosity(&self, length: T) -> T {
+        let two_pi = T::from_f64(core::f64::consts::TAU);
+        match *self {
+            Self::LogAspect(log_aspect) => two_pi / log_aspect,
+            Self::HalfThickness(half) => two_pi / (length / half).ln(),
+            Self::OverViscosity(value) => value,
+        }
+    }
+
+    /// The same form in another number type.
+    pub fn cast<U: Scalar>(&self) -> TangentialDrag<U> {
+        let to = |v: T| U::from_f64(v.to_f64());
+        match *self {
+            Self::LogAspect(v) => TangentialDrag::LogAspect(to(v)),
+            Self::HalfThickness(v) => TangentialDrag::HalfThickness(to(v)),
+            Self::OverViscosity(v) => TangentialDrag::OverViscosity(to(v)),
+        }
+    }
+}

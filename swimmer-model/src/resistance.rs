@@ -1,0 +1,212 @@
+//! The grand resistance matrix at θ = 0 as trigonometric polynomials.
+//!
+//! Seen from the middle link, a side link of length l at angle φ has the body/body block M, the body/joint block n and
+//! the joint/joint block u, all linear in five functions of φ (k_t = c_t l, k_n = χ c_t l, h = l₀/2, b = l/2):
+//!
+//! ```text
+//! p = k_t cos² + k_n sin²    r = (k_t − k_n) cos sin    e = k_n b sin
+//! q = k_t sin² + k_n cos²                               f = k_n b cos       u = k_n l²/3
+//!
+//!     ⎡ p   r   h r − e         ⎤        ⎡ −e      ⎤
+//! M = ⎢ ·   q   h q + f         ⎥    n = ⎢ f       ⎥
+//!     ⎣ ·   ·   h² q + 2h f + u ⎦        ⎣ h f + u ⎦
+//! ```
+//!
+//! Because p′ = −2r, q′ = 2r, r′ = p − q, e′ = f, f′ = −e and u′ = 0, a derivative of the block is the same block of
+//! differentiated coefficients: exact derivatives of any order cost no new formula. The back link is the front link
+//! seen in the mirror x → −x, that is with the body velocities (x, θ) negated.
+
+use crate::Scalar;
+use nalgebra::Vector3;
+
+/// A symmetric 3×3 matrix by its upper triangle, rows and columns (x, y, θ).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Symmetric3<T> {
+    pub(crate) xx: T,
+    pub(crate) xy: T,
+    pub(crate) xz: T,
+    pub(crate) yy: T,
+    pub(crate) yz: T,
+    pub(crate) zz: T,
+}
+
+impl<T: Scalar> Symmetric3<T> {
+    pub(crate) fn diagonal(xx: T, yy: T, zz: T) -> Self {
+        let zero = T::zero();
+        Self {
+            xx,
+            xy: zero,
+            xz: zero,
+            yy,
+            yz: zero,
+            zz,
+        }
+    }
+
+    pub(crate) fn plus(&self, o: &Self) -> Self {
+        Self {
+            xx: self.xx + o.xx,
+            xy: self.xy + o.xy,
+            xz: self.xz + o.xz,
+            yy: self.yy + o.yy,
+            yz: self.yz + o.yz,
+            zz: self.zz + o.zz,
+        }
+    }
+
+    #[inline]
+    pub(crate) fn times(&self, v: &Vector3<T>) -> Vector3<T> {
+        Vector3::new(
+            self.xx * v.x + self.xy * v.y + self.xz * v.z,
+            self.xy * v.x + self.yy * v.y + self.yz * v.z,
+            self.xz * v.x + self.yz * v.y + self.zz * v.z,
+        )
+    }
+
+    /// L D Lᵀ of a positive definite matrix: backward stable whatever the units of the rows.
+    #[inline]
+    pub(crate) fn factorise(&self) -> Factors3<T> {
+        let one = T::one();
+        let inv_x = one / self.xx;
+        let (yx, zx) = (self.xy * inv_x, self.xz * inv_x);
+        let inv_y = one / (self.yy - yx * self.xy);
+        let rest = self.yz - zx * self.xy;
+        let zy = rest * inv_y;
+        let inv_z = one / (self.zz - zx * self.xz - zy * rest);
+        Factors3 {
+            yx,
+            zx,
+            zy,
+            inv_x,
+            inv_y,
+            inv_z,
+        }
+    }
+}
+
+/// L (unit lower triangular, three entries) and D⁻¹ of a symmetric matrix.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Factors3<T> {
+    yx: T,
+    zx: T,
+    zy: T,
+    inv_x: T,
+    inv_y: T,
+    inv_z: T,
+}
+
+impl<T: Scalar> Factors3<T> {
+    /// −M⁻¹ v, the body velocity that balances the generalised force v.
+    #[inline]
+    pub(crate) fn balance(&self, v: &Vector3<T>) -> Vector3<T> {
+        let y = v.y - self.yx * v.x;
+        let z = v.z - self.zx * v.x - self.zy * y;
+        let z = -z * self.inv_z;
+        let y = -y * self.inv_y - self.zy * z;
+        let x = -v.x * self.inv_x - self.yx * y - self.zx * z;
+        Vector3::new(x, y, z)
+    }
+}
+
+/// A side link's constants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SideLink<T> {
+    tangential: T,
+    normal: T,
+    /// k_n l/2
+    lever: T,
+    /// u = k_n l²/3
+    hinge: T,
+    /// h = l₀/2
+    arm: T,
+    /// −1 for the back link: the mirror x → −x.
+    mirror: T,
+}
+
+/// The five functions p, q, r, e, f and the constant u of a side link at one angle, or a derivative of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Terms<T> {
+    p: T,
+    q: T,
+    r: T,
+    e: T,
+    f: T,
+    u: T,
+}
+
+/// Blocks M (body/body) and n (body/joint) of one side link, in the body frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Blocks<T> {
+    pub(crate) body: Symmetric3<T>,
+    pub(crate) joint: Vector3<T>,
+}
+
+impl<T: Scalar> Terms<T> {
+    /// d/dφ of all terms.
+    #[inline]
+    pub(crate) fn derivative(&self) -> Self {
+        let twice_r = self.r + self.r;
+        Self {
+            p: -twice_r,
+            q: twice_r,
+            r: self.p - self.q,
+            e: self.f,
+            f: -self.e,
+            u: T::zero(),
+        }
+    }
+}
+
+impl<T: Scalar> SideLink<T> {
+    /// `drag` is c_t/μ, `middle` is l₀, `mirror` is −1 for the back link and 1 for the front one.
+    pub(crate) fn new(drag: T, chi: T, length: T, middle: T, mirror: T) -> Self {
+        let tangential = drag * length;
+        let normal = chi * tangential;
+        let half = T::from_f64(0.5);
+        Self {
+            tangential,
+            normal,
+            lever: normal * length * half,
+            hinge: normal * length * length / T::from_f64(3.0),
+            arm: middle * half,
+            mirror,
+        }
+    }
+
+    /// u, the constant joint/joint block: the torque about the joint for a unit rate of the free link.
+    #[inline]
+    pub(crate) fn hinge(&self) -> T {
+        self.hinge
+    }
+
+    #[inline]
+    pub(crate) fn terms(&self, phi: T) -> Terms<T> {
+        let (sin, cos) = phi.sin_cos();
+        let (sin2, cos2) = (sin * sin, cos * cos);
+        Terms {
+            p: self.tangential * cos2 + self.normal * sin2,
+            q: self.tangential * sin2 + self.normal * cos2,
+            r: (self.tangential - self.normal) * cos * sin,
+            e: self.lever * sin,
+            f: self.lever * cos,
+            u: self.hinge,
+        }
+    }
+
+    #[inline]
+    pub(crate) fn blocks(&self, t: &Terms<T>) -> Blocks<T> {
+        let (h, s) = (self.arm, self.mirror);
+        let hf = h * t.f;
+        Blocks {
+            body: Symmetric3 {
+                xx: t.p,
+                xy: s * t.r,
+                xz: h * t.r - t.e,
+                yy: t.q,
+                yz: s * (h * t.q + t.f),
+                zz: h * (h * t.q) + (hf + hf) + t.u,
+            },
+            joint: Vector3::new(-s * t.e, t.f, s * (hf + t.u)),
+        }
+    }
+}

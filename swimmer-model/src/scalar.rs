@@ -1,0 +1,95 @@
+//! The one number type of the physics: `f32` on the chip, `f64` on the host.
+//!
+//! Transcendental functions go straight to `libm`, never to the platform's own library, so that host and chip compute
+//! the same digits. The trait is open: an automatic-differentiation number can stand in (the tests do exactly that).
+
+use core::ops::Neg;
+use num_traits::NumAssign;
+
+/// A real number that the model computes with.
+pub trait Scalar: nalgebra::Scalar + Copy + PartialOrd + NumAssign + Neg<Output = Self> {
+    /// Distance from 1 to the next larger number.
+    const EPSILON: Self;
+
+    /// The nearest number of this type.
+    fn from_f64(value: f64) -> Self;
+    /// The value as `f64` (exact for `f32` and `f64`).
+    fn to_f64(self) -> f64;
+    /// Sine and cosine of an angle in radians.
+    #[must_use]
+    fn sin_cos(self) -> (Self, Self);
+    /// Square root.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// Natural logarithm.
+    #[must_use]
+    fn ln(self) -> Self;
+    /// Angle of the point (`x`, `self`) in (−π, π].
+    #[must_use]
+    fn atan2(self, x: Self) -> Self;
+    /// Largest integer not above `self`.
+    #[must_use]
+    fn floor(self) -> Self;
+    /// Neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+
+    /// Magnitude.
+    #[must_use]
+    fn abs(self) -> Self {
+        if self < Self::zero() { -self } else { self }
+    }
+    /// The smaller of two numbers.
+    #[must_use]
+    fn min(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+    /// The larger of two numbers.
+    #[must_use]
+    fn max(self, other: Self) -> Self {
+        if other > self { other } else { self }
+    }
+}
+
+macro_rules! through_libm {
+    ($t:ty, $sincos:ident, $sqrt:ident, $ln:ident, $atan2:ident, $floor:ident) => {
+        impl Scalar for $t {
+            const EPSILON: Self = <$t>::EPSILON;
+
+            #[inline]
+            #[allow(clippy::cast_possible_truncation)] // rounding to the nearest is what is asked for
+            fn from_f64(value: f64) -> Self {
+                value as Self
+            }
+            #[inline]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                libm::$sincos(self)
+            }
+            #[inline]
+            fn sqrt(self) -> Self {
+                libm::$sqrt(self)
+            }
+            #[inline]
+            fn ln(self) -> Self {
+                libm::$ln(self)
+            }
+            #[inline]
+            fn atan2(self, x: Self) -> Self {
+                libm::$atan2(self, x)
+            }
+            #[inline]
+            fn floor(self) -> Self {
+                libm::$floor(self)
+            }
+            #[inline]
+            fn is_finite(self) -> bool {
+                <$t>::is_finite(self)
+            }
+        }
+    };
+}
+through_libm!(f32, sincosf, sqrtf, logf, atan2f, floorf);
+through_libm!(f64, sincos, sqrt, log, atan2, floor);

@@ -1,0 +1,79 @@
+//! Event location: the exact largest and smallest values of y and θ along a cycle.
+//!
+//! Within a panel the rate is a polynomial. Its zeros are bracketed between nodes; where it only dips towards zero, the
+//! bottom of the dip is located first, so that a pair of close zeros is not missed.
+
+use super::legendre::{N, NODES, Series};
+use crate::Scalar;
+
+/// Smallest and largest value met so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Range<T> {
+    min: T,
+    max: T,
+}
+
+impl<T: Scalar> Range<T> {
+    pub(super) fn of(value: T) -> Self {
+        Self {
+            min: value,
+            max: value,
+        }
+    }
+
+    pub(super) fn half_width(&self) -> T {
+        (self.max - self.min) * T::from_f64(0.5)
+    }
+
+    fn include(&mut self, value: T) {
+        self.min = self.min.min(value);
+        self.max = self.max.max(value);
+    }
+
+    /// Includes all values of start + half_width · ∫ rate ds on a panel.
+    pub(super) fn extend(&mut self, start: T, half_width: T, rate: &Series<T>) {
+        let value = |s: T| start + half_width * rate.integral(s);
+        self.include(start);
+        self.include(start + half_width * rate.whole_integral());
+        let place = |i: usize| match i {
+            0 => -T::one(),
+            i => NODES.get(i - 1).map_or(T::one(), |&s| T::from_f64(s)),
+        };
+        let mut left = place(0);
+        for i in 1..=N + 1 {
+            let right = place(i);
+            let (f, g) = (rate.value(left), rate.value(right));
+            if differ(f, g) {
+                self.include(value(zero(left, right, |s| rate.value(s))));
+            } else if differ(f, rate.derivative(left)) && !differ(g, rate.derivative(right)) {
+                let dip = zero(left, right, |s| rate.derivative(s));
+                if differ(f, rate.value(dip)) {
+                    self.include(value(zero(left, dip, |s| rate.value(s))));
+                    self.include(value(zero(dip, right, |s| rate.value(s))));
+                }
+            }
+            left = right;
+        }
+    }
+}
+
+/// Of opposite sign.
+fn differ<T: Scalar>(a: T, b: T) -> bool {
+    (a > T::zero() && b < T::zero()) || (a < T::zero() && b > T::zero())
+}
+
+/// A zero of `f` between two places where it differs in sign, by halving to the last bit.
+pub(super) fn zero<T: Scalar>(mut left: T, mut right: T, f: impl Fn(T) -> T) -> T {
+    let at_left = f(left);
+    loop {
+        let middle = left + (right - left) * T::from_f64(0.5);
+        if !(middle > left && middle < right) {
+            return middle;
+        }
+        if differ(at_left, f(middle)) {
+            right = middle;
+        } else {
+            left = middle;
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Polynomials on a panel: Gauss–Legendre nodes, Legendre series through values at the nodes, their exact integrals.
+
+use crate::Scalar;
+
+/// Nodes of a panel. A rule of N nodes integrates polynomials of degree 2N − 1 exactly.
+pub(super) const N: usize = 10;
+
+/// The positive roots of P₁₀ to six digits; Newton's method does the rest when the crate is compiled.
+const ROOTS: [f64; N / 2] = [0.148_874, 0.433_395, 0.679_410, 0.865_063, 0.973_907];
+
+/// P₀(x) … P_N(x).
+const fn legendre(x: f64) -> [f64; N + 1] {
+    let mut p = [1.0; N + 1];
+    p[1] = x;
+    let mut k = 1;
+    while k < N {
+        let order = k as f64;
+        p[k + 1] = ((2.0 * order + 1.0) * x * p[k] - order * p[k - 1]) / (order + 1.0);
+        k += 1;
+    }
+    p
+}
+
+/// P′_N(x).
+const fn slope(x: f64) -> f64 {
+    let p = legendre(x);
+    N as f64 * (p[N - 1] - x * p[N]) / (1.0 - x * x)
+}
+
+/// Nodes on [−1, 1], increasing.
+pub(super) const NODES: [f64; N] = {
+    let mut nodes = [0.0; N];
+    let mut i = 0;
+    while i < N / 2 {
+        let mut x = ROOTS[i];
+        let mut step = 0;
+        while step < 4 {
+            x -= legendre(x)[N] / slope(x);
+            step += 1;
+        }
+        nodes[N / 2 + i] = x;
+        nodes[N / 2 - 1 - i] = -x;
+        i += 1;
+    }
+    nodes
+};
+
+/// Row k turns values at the nodes into the coefficient of P_k.
+const PROJECT: [[f64; N]; N] = {
+    let mut rows = [[0.0; N]; N];
+    let mut j = 0;
+    while j < N {
+        let x = NODES[j];
+        let p = legendre(x);
+        let weight = 2.0 / ((1.0 - x * x) * slope(x) * slope(x));
+        let mut k = 0;
+        while k < N {
+            rows[k][j] = (k as f64 + 0.5) * weight * p[k];
+            k += 1;
+        }
+        j += 1;
+    }
+    rows
+};
+
+/// Row j holds the integrals of P₀ … P_{N−1} from −1 to node j.
+const INTEGRATE: [[f64; N]; N] = {
+    let mut rows = [[0.0; N]; N];
+    let mut j = 0;
+    while j < N {
+        let p = legendre(NODES[j]);
+        rows[j][0] = NODES[j] + 1.0;
+        let mut k = 1;
+        while k < N {
+            rows[j][k] = (p[k + 1] - p[k - 1]) / (2.0 * k as f64 + 1.0);
+            k += 1;
+        }
+        j += 1;
+    }
+    rows
+};
+
+/// A polynomial of degree N − 1 on [−1, 1] by its Legendre coefficients.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Series<T>([T; N]);
+
+impl<T: Scalar> Series<T> {
+    /// The polynomial that takes these values at the nodes.
+    #[inline]
+    pub(super) fn through(values: &[T; N]) -> Self {
+        Self(core::array::from_fn(|k| dot(&PROJECT[k], values)))
+    }
+
+    /// Its integrals from −1 to each node.
+    #[inline]
+    pub(super) fn integrals_at_nodes(&self) -> [T; N] {
+        core::array::from_fn(|j| dot(&INTEGRATE[j], &self.0))
+    }
+
+    /// Size of the last two coefficients: how well the polynomial resolves what it was drawn through.
+    pub(super) fn tail(&self) -> T {
+        self.0[N - 1].abs().max(self.0[N - 2].abs())
+    }
+
+    /// Integral over [−1, 1].
+    pub(super) fn whole_integral(&self) -> T {
+        self.0[0] + self.0[0]
+    }
+
+    /// Value at s.
+    pub(super) fn value(&self, s: T) -> T {
+        let p = polynomials(s);
+        (0..N).fold(T::zero(), |sum, k| sum + self.0[k] * p[k])
+    }
+
+    /// Derivative at s.
+    pub(super) fn derivative(&self, s: T) -> T {
+        // P′_{k+1} = P′_{k−1} + (2k + 1) P_k
+        let p = polynomials(s);
+        let (mut before, mut here) = (T::zero(), T::one());
+        let mut sum = self.0[1];
+        for k in 2..N {
+            let next = before + T::from_f64(2.0 * k as f64 - 1.0) * p[k - 1];
+            sum += self.0[k] * next;
+            (before, here) = (here, next);
+        }
+        sum
+    }
+
+    /// Integral from −1 to s.
+    pub(super) fn integral(&self, s: T) -> T {
+        let p = polynomials(s);
+        (1..N).fold(self.0[0] * (s + T::one()), |sum, k| {
+            sum + self.0[k] * (p[k + 1] - p[k - 1]) / T::from_f64(2.0 * k as f64 + 1.0)
+        })
+    }
+}
+
+#[inline]
+fn dot<T: Scalar>(row: &[f64; N], values: &[T; N]) -> T {
+    row.iter()
+        .zip(values)
+        .fold(T::zero(), |sum, (&a, &b)| sum + T::from_f64(a) * b)
+}
+
+fn polynomials<T: Scalar>(s: T) -> [T; N + 1] {
+    let mut p = [T::one(); N + 1];
+    p[1] = s;
+    for k in 1..N {
+        let order = k as f64;
+        let (a, b) = (
+            T::from_f64((2.0 * order + 1.0) / (order + 1.0)),
+            T::from_f64(order / (order + 1.0)),
+        );
+        p[k + 1] = a * s * p[k] - b * p[k - 1];
+    }
+    p
+}

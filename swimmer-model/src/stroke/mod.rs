@@ -1,0 +1,153 @@
+//! One cycle swum: displacement, rotation, energy and efficiency of a gait, and the path between.
+//!
+//! Because Φ(u) is given, θ is an integral of a known function and x, y are integrals once θ is known. So the cycle is
+//! cut into panels, each with a Gauss–Legendre rule whose polynomials are integrated exactly: no differential equation
+//! is stepped, panels end at corners, and the polynomials are the dense output. The pose starts at the origin with
+//! θ = 0: **x runs along the middle link's heading at the gait's first point.**
+
+mod crossing;
+mod extremes;
+mod legendre;
+mod panel;
+
+pub use crossing::{CrossingShare, crossing_share};
+pub use panel::{Panel, Panels};
+
+use crate::{Gait, Model, Pose, Scalar};
+use extremes::Range;
+use nalgebra::Vector2;
+
+/// How closely a cycle is integrated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Bound on the error of the velocities' polynomials over the swimmer's size and the gait's largest rate. Results
+    /// are mostly some orders better. Values below the rounding of the number type are raised to it.
+    pub relative: f64,
+}
+
+impl Tolerance {
+    /// A tolerance from its value.
+    pub const fn new(relative: f64) -> Self {
+        Self { relative }
+    }
+}
+
+impl Default for Tolerance {
+    /// 1e-12: as good as `f64` gets; `f32` takes its own rounding instead.
+    fn default() -> Self {
+        Self::new(1e-12)
+    }
+}
+
+/// What one cycle of a gait brings about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stroke<T> {
+    /// Net displacement (X, Y) \[m\] over one cycle; X along the middle link's heading at the gait's first point.
+    pub displacement: Vector2<T>,
+    /// Net rotation \[rad\] over one cycle.
+    pub rotation: T,
+    /// ΔY \[m\]: half of max − min of y over the cycle.
+    pub delta_y: T,
+    /// Δθ \[rad\]: half of max − min of θ over the cycle.
+    pub delta_theta: T,
+    /// ∫₀¹ P du over μ \[m³\], P = Φ′ᵀWΦ′: the energy of a cycle of period 1 run as parametrised.
+    pub energy: T,
+    /// ∫₀¹ √P du over √μ. Its square is the energy of a cycle of period 1 run at constant power, the least for this
+    /// curve.
+    pub power_length: T,
+    /// L \[m\] of the swimmer that swam.
+    pub total_length: T,
+    /// c_t/μ of its side links.
+    pub side_drag: T,
+}
+
+impl<T: Scalar> Stroke<T> {
+    /// Lighthill's efficiency ξ = c_t L V̄² / P̄ as parametrised (paper, definition of ξ), with V̄ = |net displacement|
+    /// per period. Zero for a gait that spends nothing.
+    pub fn efficiency(&self) -> T {
+        self.lighthill(self.energy)
+    }
+
+    /// ξ of the same curve run at constant power, the best any timing can make of it.
+    pub fn efficiency_constant_power(&self) -> T {
+        self.lighthill(self.power_length * self.power_length)
+    }
+
+    /// (X, Y) / L.
+    pub fn displacement_over_length(&self) -> Vector2<T> {
+        self.displacement / self.total_length
+    }
+
+    fn lighthill(&self, energy: T) -> T {
+        if energy > T::zero() {
+            self.side_drag * self.total_length * self.displacement.dot(&self.displacement) / energy
+        } else {
+            T::zero()
+        }
+    }
+}
+
+/// Swims one cycle.
+pub fn swim<T: Scalar, G: Gait<T> + ?Sized>(
+    model: &Model<T>,
+    gait: &G,
+    tolerance: &Tolerance,
+) -> Stroke<T> {
+    let (mut y, mut theta) = (Range::of(T::zero()), Range::of(T::zero()));
+    let (mut energy, mut power_length) = (T::zero(), T::zero());
+    let mut pose = Pose::identity();
+    for panel in Panels::new(model, gait, tolerance) {
+        panel.extend_ranges(&mut y, &mut theta);
+        energy += panel.energy();
+        power_length += panel.power_length();
+        pose = panel.end_pose();
+    }
+    Stroke {
+        displacement: pose.position(),
+        rotation: pose.theta,
+        delta_y: y.half_width(),
+        delta_theta: theta.half_width(),
+        energy,
+        power_length,
+        total_length: model.swimmer().total_length(),
+        side_drag: model.side_drag(),
+    }
+}
+
+/// One instant of a swum cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrajectoryPoint<T> {
+    /// Fraction of the cycle, 0 to 1.
+    pub u: T,
+    /// Joint angles \[rad\].
+    pub phi: Vector2<T>,
+    /// Pose of the middle link.
+    pub pose: Pose<T>,
+    /// ∫₀ᵘ P du over μ.
+    pub energy: T,
+}
+
+/// Swims one cycle and hands out `intervals + 1` instants evenly spaced in u, both ends included.
+pub fn trajectory<T: Scalar, G: Gait<T> + ?Sized>(
+    model: &Model<T>,
+    gait: &G,
+    tolerance: &Tolerance,
+    intervals: usize,
+    mut visit: impl FnMut(TrajectoryPoint<T>),
+) {
+    let place = |i: usize| T::from_f64(i as f64 / intervals.max(1) as f64);
+    let (mut next, mut spent) = (0, T::zero());
+    for panel in Panels::new(model, gait, tolerance) {
+        while next <= intervals && place(next) <= panel.end() {
+            let u = place(next);
+            visit(TrajectoryPoint {
+                u,
+                phi: gait.at(u).phi,
+                pose: panel.pose(u),
+                energy: spent + panel.energy_until(u),
+            });
+            next += 1;
+        }
+        spent += panel.energy();
+    }
+}

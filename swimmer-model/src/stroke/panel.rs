@@ -1,0 +1,250 @@
+//! Panels: the stretches of a cycle within which rates are one polynomial each, and the walk along them.
+
+use super::Tolerance;
+use super::extremes::Range;
+use super::legendre::{N, NODES, Series};
+use crate::{Gait, Model, Pose, Scalar};
+use nalgebra::Vector3;
+
+/// A stretch of a swum cycle with its dense output.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Panel<T> {
+    start: T,
+    half_width: T,
+    pose: Pose<T>,
+    /// dx/du, dy/du, dθ/du in the world's frame.
+    rates: [Series<T>; 3],
+    power: Series<T>,
+    root_power: Series<T>,
+}
+
+impl<T: Scalar> Panel<T> {
+    fn new<G: Gait<T> + ?Sized>(
+        model: &Model<T>,
+        gait: &G,
+        start: T,
+        width: T,
+        pose: Pose<T>,
+    ) -> Self {
+        let half_width = width * T::from_f64(0.5);
+        let mut body = [Vector3::zeros(); N];
+        let (mut turning, mut power) = ([T::zero(); N], [T::zero(); N]);
+        for j in 0..N {
+            let point = gait.at(start + half_width * T::from_f64(1.0 + NODES[j]));
+            let (a, w) = model.connection_and_power(&point.phi);
+            let rate = point.rate;
+            body[j] = a * rate;
+            turning[j] = body[j].z;
+            // Nonnegative by physics; rounding at a standstill must not make a NaN of its root.
+            power[j] = (w.m11 * rate.x * rate.x
+                + (w.m12 + w.m21) * rate.x * rate.y
+                + w.m22 * rate.y * rate.y)
+                .max(T::zero());
+        }
+        let turning = Series::through(&turning);
+        let turned = turning.integrals_at_nodes();
+        let (mut x, mut y) = ([T::zero(); N], [T::zero(); N]);
+        for j in 0..N {
+            let (sin, cos) = (pose.theta + half_width * turned[j]).sin_cos();
+            x[j] = cos * body[j].x - sin * body[j].y;
+            y[j] = sin * body[j].x + cos * body[j].y;
+        }
+        Self {
+            start,
+            half_width,
+            pose,
+            rates: [Series::through(&x), Series::through(&y), turning],
+            power: Series::through(&power),
+            root_power: Series::through(&power.map(T::sqrt)),
+        }
+    }
+
+    /// u at which the panel begins.
+    pub fn start(&self) -> T {
+        self.start
+    }
+
+    /// u at which the panel ends.
+    pub fn end(&self) -> T {
+        self.start + self.half_width + self.half_width
+    }
+
+    /// Pose where the panel begins.
+    pub fn start_pose(&self) -> Pose<T> {
+        self.pose
+    }
+
+    /// Pose where the panel ends.
+    pub fn end_pose(&self) -> Pose<T> {
+        self.moved(self.rates.map(|r| r.whole_integral()))
+    }
+
+    /// Pose at u within the panel.
+    pub fn pose(&self, u: T) -> Pose<T> {
+        let s = self.local(u);
+        self.moved(self.rates.map(|r| r.integral(s)))
+    }
+
+    /// (dx/du, dy/du, dθ/du) at u within the panel, in the frame of the gait's first point.
+    pub fn rate(&self, u: T) -> Vector3<T> {
+        let s = self.local(u);
+        Vector3::from(self.rates.map(|r| r.value(s)))
+    }
+
+    /// ∫P du over the panel, over μ.
+    pub fn energy(&self) -> T {
+        self.half_width * self.power.whole_integral()
+    }
+
+    /// ∫P du from the panel's beginning to u, over μ.
+    pub fn energy_until(&self, u: T) -> T {
+        self.half_width * self.power.integral(self.local(u))
+    }
+
+    /// ∫√P du over the panel.
+    pub fn power_length(&self) -> T {
+        self.half_width * self.root_power.whole_integral()
+    }
+
+    /// ∫√P du from the panel's beginning to u: proportional to time at constant power.
+    pub fn power_length_until(&self, u: T) -> T {
+        self.half_width * self.root_power.integral(self.local(u))
+    }
+
+    /// Widens the ranges of y and θ by this panel's.
+    pub(super) fn extend_ranges(&self, y: &mut Range<T>, theta: &mut Range<T>) {
+        y.extend(self.pose.y, self.half_width, &self.rates[1]);
+        theta.extend(self.pose.theta, self.half_width, &self.rates[2]);
+    }
+
+    fn moved(&self, integrals: [T; 3]) -> Pose<T> {
+        let [x, y, theta] = integrals.map(|i| i * self.half_width);
+        Pose::new(self.pose.x + x, self.pose.y + y, self.pose.theta + theta)
+    }
+
+    /// u as s in [−1, 1].
+    fn local(&self, u: T) -> T {
+        let one = T::one();
+        let s = if self.half_width > T::zero() {
+            (u - self.start) / self.half_width - one
+        } else {
+            -one
+        };
+        s.max(-one).min(one)
+    }
+
+    /// Largest unresolved part of the rates over what is allowed: at most 1 is good enough.
+    fn excess(&self, scale: &Scale<T>) -> T {
+        let [x, y, theta] = self.rates.map(|r| r.tail());
+        let motion = (x.max(y) / scale.length).max(theta) / scale.rate;
+        // A gait may pause, where √P has a kink: bound its integral instead.
+        let power = self.power.tail() / scale.power;
+        let root = self.half_width * self.root_power.tail() / scale.power.sqrt();
+        motion.max(power).max(root) / scale.tolerance
+    }
+}
+
+/// What counts as large for this swimmer and gait.
+#[derive(Clone, Copy, Debug)]
+struct Scale<T> {
+    length: T,
+    rate: T,
+    power: T,
+    tolerance: T,
+}
+
+/// Walks one cycle panel by panel, as wide as the tolerance allows.
+#[derive(Debug)]
+pub struct Panels<'a, T, G: ?Sized> {
+    model: &'a Model<T>,
+    gait: &'a G,
+    scale: Scale<T>,
+    piece: usize,
+    u: T,
+    width: T,
+    pose: Pose<T>,
+}
+
+/// Points at which a gait's largest rate is looked for.
+const RATE_SAMPLES: usize = 32;
+
+/// No panel is wider than this, so that no symmetry of a gait can fool the error estimate.
+const WIDEST: f64 = 0.25;
+
+impl<'a, T: Scalar, G: Gait<T> + ?Sized> Panels<'a, T, G> {
+    /// From the gait's first point, at the origin with θ = 0.
+    pub fn new(model: &'a Model<T>, gait: &'a G, tolerance: &Tolerance) -> Self {
+        let sample = |i: usize| {
+            gait.at(T::from_f64((i as f64 + 0.5) / RATE_SAMPLES as f64))
+                .speed()
+        };
+        let rate = (0..RATE_SAMPLES).map(sample).fold(T::zero(), T::max);
+        let rate = if rate > T::zero() { rate } else { T::one() };
+        let finest = T::from_f64(64.0) * T::EPSILON;
+        let scale = Scale {
+            length: model.swimmer().total_length(),
+            rate,
+            power: model.power_bound() * rate * rate,
+            tolerance: T::from_f64(tolerance.relative).max(finest),
+        };
+        let (u, width) = (T::zero(), T::from_f64(WIDEST));
+        Self {
+            model,
+            gait,
+            scale,
+            piece: 0,
+            u,
+            width,
+            pose: Pose::identity(),
+        }
+    }
+}
+
+impl<T: Scalar, G: Gait<T> + ?Sized> Iterator for Panels<'_, T, G> {
+    type Item = Panel<T>;
+
+    fn next(&mut self) -> Option<Panel<T>> {
+        let (two, half) = (T::from_f64(2.0), T::from_f64(0.5));
+        let pieces = self.gait.pieces().max(1);
+        let mut end = self.u;
+        while self.piece < pieces {
+            end = if self.piece + 1 == pieces {
+                T::one()
+            } else {
+                self.gait.piece_end(self.piece).min(T::one())
+            };
+            if end > self.u {
+                break;
+            }
+            self.piece += 1;
+        }
+        let rest = end - self.u;
+        if self.piece >= pieces || !(rest > T::zero()) {
+            return None;
+        }
+        // Equal shares of what is left of the piece, none wider than wished.
+        let wished = self.width.min(T::from_f64(WIDEST));
+        let mut width = rest;
+        while width > wished {
+            width *= half;
+        }
+        let narrowest = T::from_f64(1.0 / 1_048_576.0).max(T::from_f64(64.0) * T::EPSILON);
+        loop {
+            let panel = Panel::new(self.model, self.gait, self.u, width, self.pose);
+            let excess = panel.excess(&self.scale);
+            if excess > T::one() && width > narrowest {
+                width *= half;
+                continue;
+            }
+            // Twice as wide costs about 2⁹ in the last coefficients.
+            self.width = if excess < T::from_f64(1e-3) {
+                width * two
+            } else {
+                width
+            };
+            self.pose = panel.end_pose();
+            self.u = if width < rest { self.u + width } else { end };
+            return Some(panel);
+        }
+    }
+}
