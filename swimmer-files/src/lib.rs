@@ -1,1 +1,36 @@
 //! What people keep on disk, read and written once: swimmer, gait and campaign files, the link log.
+//!
+//! Every reader answers a mistake with [`FileError`], which names file, line and column; every writer puts a whole file in
+//! place at once (a temporary file beside it, then a rename), so that nothing half-written is ever found. Numbers make the
+//! round trip exactly.
+//!
+//! | on disk | here |
+//! |---|---|
+//! | swimmer file (TOML) or preset | [`SwimmerFile`], [`Fluid`], [`ServoFile`], [`SwimmerHash`] |
+//! | gait on the command line or in a campaign | [`GaitSpec`], [`AnyGait`] |
+//! | gait file (plain text) | [`GaitFile`], [`GaitArc`], [`ArcKind`], [`Bounds`], [`Objective`] |
+//! | campaign file (TOML) | [`Campaign`], [`CampaignRun`], [`Reflectors`] |
+//! | link log (MCAP) | [`LinkLogWriter`], [`LinkFrame`], [`read_link_log`] |
+
+mod angle;
+mod any_gait;
+mod atomic;
+mod campaign;
+mod gait_file;
+mod gait_spec;
+mod hash;
+mod link_log;
+mod place;
+mod swimmer_file;
+mod toml_text;
+
+pub use angle::{AngleError, parse_angle};
+pub use any_gait::AnyGait;
+pub use atomic::write_atomically;
+pub use campaign::{Campaign, CampaignRun, PointName, Reflector, Reflectors};
+pub use gait_file::{ArcKind, Bounds, GaitArc, GaitFile, Objective};
+pub use gait_spec::{GaitSpec, GaitSpecError};
+pub use hash::SwimmerHash;
+pub use link_log::{Direction, LinkFrame, LinkLogError, LinkLogWriter, read_link_log};
+pub use place::FileError;
+pub use swimmer_file::{Fluid, ServoFile, SwimmerFile};

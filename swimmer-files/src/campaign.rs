@@ -1,0 +1,204 @@
+//! The campaign file: the runs of one experiment, and where the reflectors sit. Paths in it are relative to it.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::place::read_text;
+use crate::{FileError, GaitSpec, SwimmerFile};
+
+/// A campaign, with its swimmer read and its paths resolved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Campaign {
+    /// The swimmer; its sphere radius and χ are only starting values of a fit.
+    pub swimmer: SwimmerFile,
+    /// The two reflectors on the middle link.
+    pub reflectors: Reflectors,
+    /// The runs, in the file's order.
+    pub runs: Vec<CampaignRun>,
+}
+
+/// The two reflectors on the middle link.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reflectors {
+    /// The front one.
+    pub front: Reflector,
+    /// The back one.
+    pub back: Reflector,
+}
+
+/// One reflector: what the tracking file calls it and where it sits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reflector {
+    /// Its name in the tracking file.
+    pub point: PointName,
+    /// Its place on the middle link \[m\]: along the link from its centre to the front, and to the left of it.
+    pub at: [f64; 2],
+}
+
+/// How a tracking file names a point.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum PointName {
+    /// A marker's name (`point = "Front"`).
+    Named(String),
+    /// Two columns of a plain table (`point = ["x1", "y1"]`).
+    Columns(String, String),
+    /// To be found from the tracks themselves (`point = "auto"`).
+    Auto,
+}
+
+/// One run: a track, the gait that was swum, its period.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CampaignRun {
+    /// The tracking file.
+    pub track: PathBuf,
+    /// The gait that was played.
+    pub gait: GaitSpec,
+    /// One cycle \[s\].
+    pub period_s: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawCampaign {
+    swimmer: Spanned<String>,
+    reflectors: RawReflectors,
+    #[serde(default)]
+    run: Vec<RawRun>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawReflectors {
+    front: RawReflector,
+    back: Spanned<RawReflector>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawReflector {
+    point: RawPoint,
+    at: Spanned<[f64; 2]>,
+}
+
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a point is a name, a pair of column names, or \"auto\""
+)]
+enum RawPoint {
+    Name(String),
+    Columns([String; 2]),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRun {
+    track: Spanned<String>,
+    gait: Spanned<String>,
+    period_s: Spanned<f64>,
+}
+
+impl Campaign {
+    /// Reads a campaign file and the swimmer that it names; tracks and gait files are not opened.
+    ///
+    /// # Errors
+    /// [`FileError`] with the place in this file, or in the swimmer file.
+    pub fn load(path: &Path) -> Result<Self, FileError> {
+        Self::parse(&read_text(path)?, path)
+    }
+
+    /// Reads a campaign's text; `path` says which folder its paths start from.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, FileError> {
+        let raw: RawCampaign = crate::toml_text::parse(text, path)?;
+        let folder = path.parent().unwrap_or_else(|| Path::new(""));
+        let error =
+            |offset: usize, problem: String| FileError::at_offset(path, text, offset, problem);
+        let swimmer =
+            SwimmerFile::find_from(raw.swimmer.get_ref(), folder).map_err(|cause| match cause {
+                FileError::Read { .. } => error(raw.swimmer.span().start, cause.to_string()),
+                other => other,
+            })?;
+        let back_place = raw.reflectors.back.span().start;
+        let reflectors = Reflectors {
+            front: reflector(raw.reflectors.front, &error)?,
+            back: reflector(raw.reflectors.back.into_inner(), &error)?,
+        };
+        let [front, back] = [reflectors.front.at, reflectors.back.at];
+        if (front[0] - back[0]).hypot(front[1] - back[1]) <= 0.0 {
+            return Err(error(
+                back_place,
+                "both reflectors sit at the same place, so they show no heading".to_owned(),
+            ));
+        }
+        if raw.run.is_empty() {
+            return Err(error(
+                text.len(),
+                "no [[run]]: a campaign needs at least one".to_owned(),
+            ));
+        }
+        let runs = raw
+            .run
+            .into_iter()
+            .map(|raw| run(raw, folder, &error))
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            swimmer,
+            reflectors,
+            runs,
+        })
+    }
+}
+
+fn reflector(
+    raw: RawReflector,
+    error: &impl Fn(usize, String) -> FileError,
+) -> Result<Reflector, FileError> {
+    let at = *raw.at.get_ref();
+    if !at.iter().all(|value| value.is_finite()) {
+        return Err(error(
+            raw.at.span().start,
+            format!("at = {at:?} must be two finite lengths in metres"),
+        ));
+    }
+    let point = match raw.point {
+        RawPoint::Name(name) if name == "auto" => PointName::Auto,
+        RawPoint::Name(name) => PointName::Named(name),
+        RawPoint::Columns([x, y]) => PointName::Columns(x, y),
+    };
+    Ok(Reflector { point, at })
+}
+
+fn run(
+    raw: RawRun,
+    folder: &Path,
+    error: &impl Fn(usize, String) -> FileError,
+) -> Result<CampaignRun, FileError> {
+    if raw.track.get_ref().is_empty() {
+        return Err(error(
+            raw.track.span().start,
+            "track is the path of a tracking file".to_owned(),
+        ));
+    }
+    let gait: GaitSpec = raw
+        .gait
+        .get_ref()
+        .parse()
+        .map_err(|cause| error(raw.gait.span().start, format!("gait: {cause}")))?;
+    let period_s = *raw.period_s.get_ref();
+    if !(period_s.is_finite() && period_s > 0.0) {
+        return Err(error(
+            raw.period_s.span().start,
+            format!("period_s = {period_s} must be a positive number of seconds"),
+        ));
+    }
+    Ok(CampaignRun {
+        track: folder.join(raw.track.into_inner()),
+        gait: gait.from_folder(folder),
+        period_s,
+    })
+}

@@ -1,0 +1,205 @@
+//! The gait file: one cycle of an optimised gait, with what it was optimised for, as plain text that any plotting program
+//! reads.
+//!
+//! The format is documented at the top of every file that [`GaitFile::to_text`] writes.
+
+mod read;
+mod write;
+
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
+
+use nalgebra::Vector2;
+
+use crate::place::read_text;
+use crate::{FileError, SwimmerHash, write_atomically};
+
+/// What a gait was optimised for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Objective {
+    /// Net displacement in x (paper section IV).
+    Displacement,
+    /// Lighthill's efficiency (paper section V).
+    Efficiency,
+    /// Net rotation.
+    Turning,
+    /// Net displacement across the heading, without net rotation.
+    Sideways,
+    /// Nothing that is known: a gait from elsewhere.
+    #[default]
+    Unspecified,
+}
+
+/// What an arc of an optimal gait runs along.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ArcKind {
+    /// Free, with the control from `Ḧ_u = 0` (paper, `u₂* = −(A/B) u₁*`).
+    Singular,
+    /// Along the upper bound `|φᵢ| = φ_max`.
+    Upper,
+    /// Along the lower bound `|φᵢ| = φ_min`.
+    Lower,
+    /// Along a side of the quarter-gait sector, `φ₂ = ±φ₁`.
+    Diagonal,
+    /// Free, with the control from `H_u = 0` (efficiency).
+    Regular,
+}
+
+/// Bounds on the joint angles that a gait was optimised under.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Bounds {
+    /// `|φᵢ| ≤ φ_max` \[rad\].
+    pub max_angle: Option<f64>,
+    /// `φ_min ≤ |φᵢ|` for the leading joint of each quarter \[rad\].
+    pub min_angle: Option<f64>,
+    /// Each quarter stays inside its sector, `φ₂ ≥ |φ₁|`.
+    pub sector: bool,
+    /// Links may not cross.
+    pub no_overlap: bool,
+}
+
+/// One arc of the cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GaitArc {
+    /// What it runs along.
+    pub kind: ArcKind,
+    /// Where it starts, as a fraction of the period.
+    pub from: f64,
+    /// Where it ends, as a fraction of the period.
+    pub to: f64,
+}
+
+/// A gait file's content.
+///
+/// `u` and `phi` are the samples of one cycle: `u` rises strictly from 0 to 1, and the last shape is the first one again.
+/// Each corner is one of the `u` below 1.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct GaitFile {
+    /// What the gait was optimised for.
+    pub objective: Objective,
+    /// Name of the swimmer it was made for, where known.
+    pub swimmer_name: Option<String>,
+    /// Fingerprint of the swimmer it was made for, where known.
+    pub swimmer_hash: Option<SwimmerHash>,
+    /// The bounds it was optimised under.
+    pub bounds: Bounds,
+    /// Its arcs in order, where known.
+    pub arcs: Vec<GaitArc>,
+    /// Fractions of the period at which the direction in the (φ₁, φ₂) plane jumps.
+    pub corners: Vec<f64>,
+    /// Fractions of the period.
+    pub u: Vec<f64>,
+    /// Joint angles \[rad\] at each `u`.
+    pub phi: Vec<Vector2<f64>>,
+}
+
+impl GaitFile {
+    /// The format version that this code writes; it reads this one and older.
+    pub const VERSION: u32 = 1;
+    /// Fewest samples of a gait file.
+    pub const FEWEST_SAMPLES: usize = 9;
+    /// The last shape may differ from the first by this much \[rad\].
+    pub const CLOSURE: f64 = 1e-9;
+
+    /// Reads a gait file.
+    ///
+    /// # Errors
+    /// [`FileError`] with line and column.
+    pub fn load(path: &Path) -> Result<Self, FileError> {
+        Self::parse(&read_text(path)?, path)
+    }
+
+    /// Reads a gait file's text; `path` is only for the errors.
+    ///
+    /// # Errors
+    /// [`FileError`] with line and column.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, FileError> {
+        read::gait_file(text, path)
+    }
+
+    /// The file's text, which reads back to the same numbers bit for bit.
+    pub fn to_text(&self) -> String {
+        write::gait_text(self)
+    }
+
+    /// Writes the file whole.
+    ///
+    /// # Errors
+    /// [`FileError::Write`]; what was there before stays.
+    pub fn save(&self, path: &Path) -> Result<(), FileError> {
+        write_atomically(path, self.to_text().as_bytes())
+    }
+}
+
+impl Objective {
+    const ALL: [Self; 5] = [
+        Self::Displacement,
+        Self::Efficiency,
+        Self::Turning,
+        Self::Sideways,
+        Self::Unspecified,
+    ];
+
+    /// The word in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Displacement => "displacement",
+            Self::Efficiency => "efficiency",
+            Self::Turning => "turning",
+            Self::Sideways => "sideways",
+            Self::Unspecified => "unspecified",
+        }
+    }
+}
+
+impl ArcKind {
+    const ALL: [Self; 5] = [
+        Self::Singular,
+        Self::Upper,
+        Self::Lower,
+        Self::Diagonal,
+        Self::Regular,
+    ];
+
+    /// The word in files and in JSON.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Singular => "singular",
+            Self::Upper => "upper",
+            Self::Lower => "lower",
+            Self::Diagonal => "diagonal",
+            Self::Regular => "regular",
+        }
+    }
+}
+
+macro_rules! word_in_text {
+    ($type:ty, $problem:literal) => {
+        impl fmt::Display for $type {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(self.word())
+            }
+        }
+
+        impl FromStr for $type {
+            type Err = &'static str;
+
+            fn from_str(text: &str) -> Result<Self, Self::Err> {
+                Self::ALL
+                    .into_iter()
+                    .find(|one| one.word() == text)
+                    .ok_or($problem)
+            }
+        }
+    };
+}
+
+word_in_text!(
+    Objective,
+    "an objective is one of displacement, efficiency, turning, sideways, unspecified"
+);
+word_in_text!(
+    ArcKind,
+    "an arc is one of singular, upper, lower, diagonal, regular"
+);

@@ -1,0 +1,208 @@
+//! The link log: every frame that crossed the serial link, both ways, in an MCAP file.
+//!
+//! MCAP is read by Foxglove, by the `mcap` Python package and by many others. Two topics, `/link/to_robot` and
+//! `/link/from_robot`; each message is JSON after the JSON schema `swimmer.LinkFrame` that the file carries: host time, robot
+//! time where the frame tells it, the decoded header and message where the frame is sound, and the raw bytes in hexadecimal,
+//! so that nothing depends on this program's decoder.
+
+mod frame;
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+pub use frame::{Direction, LinkFrame};
+use mcap::records::MessageHeader;
+
+use crate::FileError;
+use crate::atomic::beside;
+
+/// The JSON schema of each message, as the file carries it.
+const SCHEMA: &str = include_str!("link_log/schema.json");
+const SCHEMA_NAME: &str = "swimmer.LinkFrame";
+
+/// Why a link log could not be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum LinkLogError {
+    /// The file itself.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The MCAP container.
+    #[error("the link log {}: {source}", path.display())]
+    Container {
+        /// The log.
+        path: PathBuf,
+        /// What the container's reader or writer said.
+        source: mcap::McapError,
+    },
+    /// A message in it is not a link frame.
+    #[error("the link log {}, message {index}: {problem}", path.display())]
+    Message {
+        /// The log.
+        path: PathBuf,
+        /// Counted from 0 in the order of the file.
+        index: usize,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+/// Writes a link log. The file takes its name only when [`LinkLogWriter::finish`] succeeds; dropped before that, it is
+/// removed.
+pub struct LinkLogWriter {
+    writer: Option<mcap::Writer<BufWriter<File>>>,
+    temporary: PathBuf,
+    path: PathBuf,
+    channels: [u16; 2],
+    sequence: u32,
+}
+
+impl LinkLogWriter {
+    /// Starts a log.
+    ///
+    /// # Errors
+    /// When the file cannot be made in its folder.
+    pub fn create(path: &Path) -> Result<Self, LinkLogError> {
+        let write_error = |source| FileError::Write {
+            path: path.to_path_buf(),
+            source,
+        };
+        if let Some(folder) = path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty())
+        {
+            std::fs::create_dir_all(folder).map_err(write_error)?;
+        }
+        let temporary = beside(path, "partial");
+        let file = File::create(&temporary).map_err(write_error)?;
+        let start = || -> mcap::McapResult<_> {
+            let mut writer = mcap::WriteOptions::new()
+                .compression(None)
+                .profile("")
+                .library(concat!("swimmer-files ", env!("CARGO_PKG_VERSION")))
+                .create(BufWriter::new(file))?;
+            let schema = writer.add_schema(SCHEMA_NAME, "jsonschema", SCHEMA.as_bytes())?;
+            let empty = BTreeMap::new();
+            let channels = [
+                writer.add_channel(schema, Direction::ToRobot.topic(), "json", &empty)?,
+                writer.add_channel(schema, Direction::FromRobot.topic(), "json", &empty)?,
+            ];
+            Ok((writer, channels))
+        };
+        match start() {
+            Ok((writer, channels)) => Ok(Self {
+                writer: Some(writer),
+                temporary,
+                path: path.to_path_buf(),
+                channels,
+                sequence: 0,
+            }),
+            Err(source) => {
+                let _ = std::fs::remove_file(&temporary);
+                Err(LinkLogError::Container {
+                    path: path.to_path_buf(),
+                    source,
+                })
+            }
+        }
+    }
+
+    /// Adds a frame as it crossed the wire, sound or not.
+    ///
+    /// # Errors
+    /// When the disk refuses.
+    pub fn write(&mut self, frame: &LinkFrame) -> Result<(), LinkLogError> {
+        let [to_robot, from_robot] = self.channels;
+        let header = MessageHeader {
+            channel_id: match frame.direction {
+                Direction::ToRobot => to_robot,
+                Direction::FromRobot => from_robot,
+            },
+            sequence: self.sequence,
+            log_time: frame.host_time_ns,
+            publish_time: frame.host_time_ns,
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        let Some(writer) = &mut self.writer else {
+            return Ok(());
+        };
+        writer
+            .write_to_known_channel(&header, frame.to_json().to_string().as_bytes())
+            .map_err(|source| LinkLogError::Container {
+                path: self.path.clone(),
+                source,
+            })
+    }
+
+    /// Closes the log and gives it its name.
+    ///
+    /// # Errors
+    /// When the disk refuses; nothing stays behind then.
+    pub fn finish(mut self) -> Result<(), LinkLogError> {
+        let Some(mut writer) = self.writer.take() else {
+            return Ok(());
+        };
+        let container = |source| LinkLogError::Container {
+            path: self.path.clone(),
+            source,
+        };
+        let finished = writer.finish().map_err(container).and_then(|_| {
+            let write_error = |source| FileError::Write {
+                path: self.path.clone(),
+                source,
+            };
+            let file = writer
+                .into_inner()
+                .into_inner()
+                .map_err(|error| write_error(error.into_error()))?;
+            file.sync_all().map_err(write_error)?;
+            std::fs::rename(&self.temporary, &self.path).map_err(write_error)?;
+            Ok(())
+        });
+        if finished.is_err() {
+            let _ = std::fs::remove_file(&self.temporary);
+        }
+        finished
+    }
+}
+
+impl Drop for LinkLogWriter {
+    fn drop(&mut self) {
+        if self.writer.take().is_some() {
+            let _ = std::fs::remove_file(&self.temporary);
+        }
+    }
+}
+
+/// Reads a link log, frames in the order in which they were written.
+///
+/// # Errors
+/// When the file cannot be read, is no MCAP file, or holds a message that is not a link frame.
+pub fn read_link_log(path: &Path) -> Result<Vec<LinkFrame>, LinkLogError> {
+    let bytes = std::fs::read(path).map_err(|source| FileError::Read {
+        path: path.to_path_buf(),
+        source,
+    })?;
+    let container = |source| LinkLogError::Container {
+        path: path.to_path_buf(),
+        source,
+    };
+    let messages = mcap::MessageStream::new(&bytes).map_err(container)?;
+    let mut frames = Vec::new();
+    for (index, message) in messages.enumerate() {
+        let message = message.map_err(container)?;
+        let Some(direction) = Direction::of_topic(&message.channel.topic) else {
+            continue; // another program's topic in the same file
+        };
+        let frame = LinkFrame::from_json(direction, &message.data).map_err(|problem| {
+            LinkLogError::Message {
+                path: path.to_path_buf(),
+                index,
+                problem,
+            }
+        })?;
+        frames.push(frame);
+    }
+    Ok(frames)
+}

@@ -1,0 +1,112 @@
+//! Campaign files: the documented example, relative paths, a place for every mistake.
+
+use std::path::Path;
+
+use swimmer_files::{Campaign, FileError, GaitSpec, PointName, SwimmerFile};
+
+const EXAMPLE: &str = r#"swimmer = "robot-slender"        # or a file
+[reflectors]
+front = { point = "Front", at = [0.0355, 0.0] }
+back = { point = ["x2", "y2"], at = [-0.0355, 0.0] }
+[[run]]
+track = "eps030.csv"
+gait = "circle:30deg"
+period_s = 30.0
+[[run]]
+track = "tracks/b.csv"
+gait = "b.gait:cw"
+period_s = 24
+"#;
+
+fn read(text: &str) -> Result<Campaign, FileError> {
+    Campaign::parse(text, Path::new("tank/campaign.toml"))
+}
+
+#[test]
+fn the_documented_example() {
+    let campaign = read(EXAMPLE).unwrap();
+    assert_eq!(
+        campaign.swimmer,
+        SwimmerFile::preset("robot-slender").unwrap()
+    );
+    assert_eq!(
+        campaign.reflectors.front.point,
+        PointName::Named("Front".to_owned())
+    );
+    assert_eq!(
+        campaign.reflectors.back.point,
+        PointName::Columns("x2".to_owned(), "y2".to_owned())
+    );
+    assert_eq!(campaign.runs.len(), 2);
+    assert_eq!(campaign.runs[0].track, Path::new("tank/eps030.csv"));
+    assert_eq!(campaign.runs[0].gait, "circle:30deg".parse().unwrap());
+    assert_eq!(
+        campaign.runs[1].gait,
+        GaitSpec::File {
+            path: "tank/b.gait".into(),
+            reversed: true
+        }
+    );
+    assert!((campaign.runs[1].period_s - 24.0).abs() < f64::EPSILON);
+}
+
+#[test]
+fn a_swimmer_file_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut swimmer = SwimmerFile::preset("robot").unwrap();
+    swimmer.name = "ours".to_owned();
+    swimmer.save(&folder.path().join("our-robot.toml")).unwrap();
+    let path = folder.path().join("campaign.toml");
+    std::fs::write(&path, EXAMPLE.replace("robot-slender", "our-robot.toml")).unwrap();
+    assert_eq!(Campaign::load(&path).unwrap().swimmer, swimmer);
+    // A mistake in the swimmer file is reported there.
+    std::fs::write(folder.path().join("our-robot.toml"), "name = 1").unwrap();
+    assert!(
+        Campaign::load(&path)
+            .unwrap_err()
+            .to_string()
+            .contains("our-robot.toml:1:8")
+    );
+}
+
+#[test]
+fn mistakes_have_a_place() {
+    let cases = [
+        (
+            "\"robot-slender\"",
+            "\"missing.toml\"",
+            (1, 11),
+            "missing.toml",
+        ),
+        ("circle:30deg", "circle:30grad", (7, 8), "not an angle"),
+        ("period_s = 30.0", "period_s = 0", (8, 12), "positive"),
+        ("track = \"eps030.csv\"", "track = \"\"", (6, 9), "path"),
+        ("at = [0.0355, 0.0]", "at = [nan, 0.0]", (3, 33), "finite"),
+        ("at = [0.0355, 0.0]", "at = [0.0355]", (3, 33), "length"),
+        ("[-0.0355, 0.0]", "[0.0355, 0.0]", (4, 8), "same place"),
+        (
+            "gait = \"b.gait:cw\"",
+            "gate = \"b.gait:cw\"",
+            (11, 1),
+            "unknown field `gate`",
+        ),
+        (
+            "point = \"Front\"",
+            "point = 3",
+            (3, 19),
+            "pair of column names",
+        ),
+    ];
+    for (good, bad, place, message) in cases {
+        let error = read(&EXAMPLE.replacen(good, bad, 1)).expect_err(bad);
+        assert!(error.to_string().contains(message), "{bad}: {error}");
+        assert_eq!(error.place(), Some(place), "{bad}: {error}");
+    }
+    let no_runs = EXAMPLE.split("[[run]]").next().unwrap();
+    assert!(
+        read(no_runs)
+            .unwrap_err()
+            .to_string()
+            .contains("at least one")
+    );
+}

@@ -1,0 +1,193 @@
+//! Swimmer files: the documented example, exact round trips, and a place for every mistake.
+
+use std::path::Path;
+
+use proptest::prelude::*;
+use swimmer_files::{Fluid, ServoFile, SwimmerFile};
+use swimmer_model::{Links, Swimmer, TangentialDrag};
+
+const EXAMPLE: &str = r#"name = "our robot"
+[links]
+middle = 0.071            # m
+side = 0.137              # m, both side links
+[drag]
+chi = 3.598               # c_n / c_t
+c_t = { log_aspect = 4.543 }
+[sphere]
+radius = 0.0692           # m; leave the table out for none
+[fluid]                   # optional, for watts and newtons
+kinematic_viscosity = 0.06
+density = 976.0
+[servo]
+max_angle = 2.8           # rad
+max_rate = 3.5            # rad/s
+dead_band = 0.017         # rad
+slope_rad_per_us = 0.0274
+centre_us = 1500.0
+"#;
+
+fn read(text: &str) -> Result<SwimmerFile, swimmer_files::FileError> {
+    SwimmerFile::parse(text, Path::new("robot.toml"))
+}
+
+#[test]
+fn the_documented_example() {
+    let file = read(EXAMPLE).unwrap();
+    assert_eq!(file.name, "our robot");
+    assert_eq!(file.swimmer, Swimmer::robot());
+    assert_eq!(
+        file.fluid,
+        Some(Fluid {
+            kinematic_viscosity: 0.06,
+            density: 976.0
+        })
+    );
+    assert_eq!(file.servo, Some(ServoFile::default()));
+    assert_eq!(file.hash(), SwimmerFile::preset("robot").unwrap().hash());
+    assert!((file.fluid.unwrap().viscosity() - 58.56).abs() < 1e-12);
+}
+
+#[test]
+fn the_smallest_file_is_named_after_itself() {
+    let file =
+        read("[links]\nmiddle = 1\nside = 1\n[drag]\nchi = 2\nc_t = { over_viscosity = 1 }\n")
+            .unwrap();
+    assert_eq!(
+        file,
+        SwimmerFile {
+            name: "robot".to_owned(),
+            ..SwimmerFile::preset("purcell").unwrap()
+        }
+    );
+}
+
+/// Each mistake is made by replacing a piece of the example; the error must stand where the mistake is.
+#[test]
+fn mistakes_have_a_place() {
+    let cases = [
+        ("chi = 3.598", "chi = -1.0", (6, 7), "positive"),
+        ("chi = 3.598", "chi = nan", (6, 7), "positive"),
+        ("chi = 3.598", "chi = \"two\"", (6, 7), "expected f64"),
+        ("chi = 3.598", "xi = 3.598", (6, 1), "unknown field `xi`"),
+        (
+            "log_aspect = 4.543",
+            "log_aspect = 0.0",
+            (7, 22),
+            "positive",
+        ),
+        (
+            "log_aspect = 4.543",
+            "thickness = 4.543",
+            (7, 9),
+            "unknown variant `thickness`",
+        ),
+        ("middle = 0.071", "middle = 0,071", (3, 11), ""),
+        (
+            "radius = 0.0692",
+            "radius = -0.1",
+            (9, 10),
+            "zero or a positive",
+        ),
+        (
+            "side = 0.137",
+            "front = 0.137",
+            (2, 1),
+            "`front` and `back`",
+        ),
+        ("[fluid]", "[liquid]", (10, 2), "unknown field `liquid`"),
+        ("density = 976.0", "density = inf", (12, 11), "positive"),
+        (
+            "dead_band = 0.017",
+            "dead_band = -0.017",
+            (16, 13),
+            "zero or a positive",
+        ),
+        (
+            "log_aspect = 4.543",
+            "half_thickness = 0.071",
+            (7, 26),
+            "shortest link",
+        ),
+    ];
+    for (good, bad, place, message) in cases {
+        let text = EXAMPLE.replace(good, bad);
+        assert_ne!(text, EXAMPLE, "{good}");
+        let error = read(&text).expect_err(bad);
+        assert_eq!(error.place(), Some(place), "{bad}: {error}");
+        assert!(error.to_string().contains(message), "{bad}: {error}");
+        assert!(error.to_string().starts_with("robot.toml:"), "{error}");
+    }
+}
+
+#[test]
+fn neither_preset_nor_file() {
+    let error = SwimmerFile::find("robbot").unwrap_err().to_string();
+    assert!(
+        error.contains("robbot") && error.contains("purcell, robot, robot-slender"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_fit_is_saved_and_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fit/fitted.toml");
+    let fitted = read(EXAMPLE).unwrap().fitted(0.0689, 3.61);
+    fitted.save(&path).unwrap();
+    let back = SwimmerFile::load(&path).unwrap();
+    assert_eq!(back, fitted);
+    assert_eq!(back.name, "our robot, fitted");
+    assert_ne!(back.hash(), read(EXAMPLE).unwrap().hash());
+}
+
+fn any_length() -> impl Strategy<Value = f64> {
+    (1e-3..10.0).prop_map(|length: f64| length)
+}
+
+prop_compose! {
+    fn any_file()(
+        name in ".{0,20}",
+        middle in any_length(), front in any_length(), back in any_length(), alike in any::<bool>(),
+        chi in 1.0..10.0, form in 0..3, drag in 0.5..9.0, sphere in prop_oneof![Just(0.0), 1e-4..2.0],
+        fluid in proptest::option::of((1e-6..1.0, 1.0..2000.0)),
+        servo in proptest::option::of((0.1..3.0, 0.1..9.0, 0.0..0.3, 1e-3..0.1, 1000.0..2000.0)),
+    ) -> SwimmerFile {
+        SwimmerFile {
+            name,
+            swimmer: Swimmer {
+                links: Links { middle, front, back: if alike { front } else { back } },
+                chi,
+                tangential_drag: match form {
+                    0 => TangentialDrag::LogAspect(drag),
+                    1 => TangentialDrag::HalfThickness(drag * 1e-5),
+                    _ => TangentialDrag::OverViscosity(drag),
+                },
+                sphere_radius: sphere,
+            },
+            fluid: fluid.map(|(kinematic_viscosity, density)| Fluid { kinematic_viscosity, density }),
+            servo: servo.map(|(max_angle, max_rate, dead_band, slope_rad_per_us, centre_us)| ServoFile {
+                max_angle, max_rate, dead_band, slope_rad_per_us, centre_us,
+            }),
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn what_is_written_reads_back_exactly(file in any_file()) {
+        prop_assert_eq!(read(&file.to_toml()).unwrap(), file);
+    }
+
+    #[test]
+    fn no_text_panics(text in "(?s).{0,200}") {
+        let _ = read(&text);
+    }
+
+    /// Cuts and single-character damage to a good file: an error or a file, never a panic.
+    #[test]
+    fn damaged_files(at in 0..EXAMPLE.len(), with in any::<char>(), cut in any::<bool>()) {
+        let at = (0..=at).rev().find(|&at| EXAMPLE.is_char_boundary(at)).unwrap();
+        let text = if cut { EXAMPLE[..at].to_owned() } else { format!("{}{with}{}", &EXAMPLE[..at], &EXAMPLE[at + 1..]) };
+        let _ = read(&text);
+    }
+}
