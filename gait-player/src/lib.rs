@@ -1,2 +1,32 @@
-//! The robot's brain, free of any HAL.
+//! The robot's brain, free of any HAL: time and bytes in, pulses and bytes out. The same code runs on the chip, in the
+//! emulator, in the twin and in a unit test.
+//!
+//! A shell owns the hardware and drives a [`Brain`]:
+//!
+//! 1. at start: [`Brain::new`], then [`Brain::load`] with its [`storage::Storage`];
+//! 2. whenever bytes came: [`Brain::receive`];
+//! 3. every [`TICK_US`], in step with the servo period: [`Brain::tick`], whose [`Output`] is the only door out;
+//! 4. whenever the transmitter has room: [`Brain::transmit`];
+//! 5. when [`Output::storage_wanted`] says so: [`Brain::serve_storage`], one bounded step a call.
+//!
+//! Hosts share three truths with the robot: [`servo::ServoMap`], [`servo::plant`] (what a servo makes of pulses) and
+//! [`playback`] (which joint angles a table really gives).
 #![cfg_attr(not(test), no_std)]
+// Knots, ticks, microseconds and pulses are bounded where they enter; `as` from a float saturates and NaN becomes 0.
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+
+pub mod brain;
+pub mod clearance;
+pub mod limits;
+pub mod playback;
+pub mod ramp;
+pub mod servo;
+pub mod storage;
+pub mod table;
+
+pub use brain::{Boot, Brain, BrainConfig, Identity, Inputs, Output};
+pub use limits::Limits;
+pub use table::GaitTable;
+
+/// Duration of a tick, µs: the servo period.
+pub const TICK_US: u32 = 20_000;

@@ -1,0 +1,2 @@
+//! What a tick costs.
+fn main() {}

@@ -1,0 +1,116 @@
+//! Which joint angles a table really gives: the brain's own set-points and pulses at 50 Hz, through the servo plant. The
+//! twin moves by the very same parts, so predictions and fits that follow this path know what the tank sees.
+
+use crate::ramp::{NEUTRAL, Ramp};
+use crate::servo::{ServoMap, plant::PlantParameters, plant::ServoPlant};
+use crate::{GaitTable, Limits, TICK_US};
+
+/// What is played, by what.
+#[derive(Clone, Copy, Debug)]
+pub struct Playback<'a> {
+    /// The table.
+    pub table: &'a GaitTable,
+    /// Duration of a cycle, µs.
+    pub period_us: u32,
+    /// The servos' maps.
+    pub maps: [ServoMap; 2],
+    /// Limits in force (they shape the soft start).
+    pub limits: Limits,
+    /// The servos.
+    pub plant: PlantParameters,
+}
+
+/// A vertex of the path: between two of them both angles change at a constant rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlayedPoint {
+    /// Time since the reported cycle's start, s.
+    pub time_s: f64,
+    /// What the joints do, rad.
+    pub angles: [f64; 2],
+    /// What they are commanded, rad (held for a tick).
+    pub command: [f64; 2],
+}
+
+impl Playback<'_> {
+    /// Visits the path of one cycle (0 is the first), from its start to its end, both included. The play before it is
+    /// run too: soft start from neutral and earlier cycles. From cycle 1 on the servos are in their steady state for
+    /// any gait that is larger than their dead band.
+    pub fn cycle(&self, cycle: u32, mut visit: impl FnMut(PlayedPoint)) {
+        let tick = u64::from(TICK_US);
+        let mut servos = [ServoPlant::new(0.0); 2];
+        let ramp = Ramp::soft(NEUTRAL, self.table.knot_angles(0), false, &self.limits);
+        for at in (0..u64::from(ramp.duration_us())).step_by(TICK_US as usize) {
+            let command = self.command(ramp.at(at));
+            self.advance(&mut servos, command, tick as f64 * 1e-6);
+        }
+        let period = u64::from(self.period_us.max(1));
+        let (start, end) = (period * u64::from(cycle), period * (u64::from(cycle) + 1));
+        let mut now = 0;
+        while now < end {
+            let tick_start = now / tick * tick;
+            let phase = self
+                .table
+                .phase((tick_start % period) as u32, self.period_us);
+            let command = self.command(self.table.at(phase).angles);
+            // Up to the end of the tick, or to where the reported cycle starts or ends within it.
+            let border = if now < start { start } else { end };
+            let until = (tick_start + tick).min(border);
+            if now < start {
+                self.advance(&mut servos, command, (until - now) as f64 * 1e-6);
+            } else {
+                self.visit_tick(
+                    &mut servos,
+                    command,
+                    (now - start, until - start),
+                    &mut visit,
+                );
+            }
+            now = until;
+        }
+    }
+
+    /// Command angles of a set-point: through pulse and timer.
+    pub fn command(&self, setpoint: [f32; 2]) -> [f64; 2] {
+        core::array::from_fn(|joint| {
+            let map = &self.maps[joint];
+            self.plant.command(map, map.pulse_ns(setpoint[joint]))
+        })
+    }
+
+    fn advance(&self, servos: &mut [ServoPlant; 2], command: [f64; 2], seconds: f64) {
+        for (servo, command) in servos.iter_mut().zip(command) {
+            servo.advance(&self.plant, command, seconds);
+        }
+    }
+
+    /// Visits the start of a piece of a tick, each joint's stop within it, and its end.
+    fn visit_tick(
+        &self,
+        servos: &mut [ServoPlant; 2],
+        command: [f64; 2],
+        (from_us, until_us): (u64, u64),
+        visit: &mut impl FnMut(PlayedPoint),
+    ) {
+        let (from, until) = (from_us as f64 * 1e-6, until_us as f64 * 1e-6);
+        let mut point = |servos: &[ServoPlant; 2], time_s: f64| {
+            visit(PlayedPoint {
+                time_s,
+                angles: [servos[0].angle, servos[1].angle],
+                command,
+            });
+        };
+        point(servos, from);
+        let stops = [0, 1].map(|joint| servos[joint].time_to_rest(&self.plant, command[joint]));
+        let mut now = from;
+        for stop in [stops[0].min(stops[1]), stops[0].max(stops[1])] {
+            let at = from + stop;
+            if at > now && at < until {
+                self.advance(servos, command, at - now);
+                point(servos, at);
+                now = at;
+            }
+        }
+        self.advance(servos, command, until - now);
+        point(servos, until);
+    }
+}

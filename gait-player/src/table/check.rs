@@ -1,0 +1,1 @@
+//! Checks a table before it may play.
