@@ -1,3 +1,110 @@
-//! The project's own chores: toolchain set-up, firmware build, tests, benches.
+//! The project's own chores, so that no one has to remember a command line: `cargo xtask --help` lists them.
 
-fn main() {}
+mod check;
+mod debian;
+mod disk;
+mod failure;
+mod firmware;
+mod image;
+mod run;
+mod soak;
+mod steps;
+mod toolchain;
+mod uf2;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use failure::{Failure, Outcome};
+use firmware::Board;
+use toolchain::ChipToolchain;
+
+/// The project's own chores.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+enum Chore {
+    /// Installs what is needed, builds the firmware, and runs format, clippy, documentation and every test.
+    Test,
+    /// Finds the compiler for the RP2040, or makes one from Debian's packages.
+    Toolchain,
+    /// Builds the firmware's ELF and UF2 files and weighs them against the promised flash and RAM.
+    Firmware {
+        /// One board instead of all.
+        #[arg(long)]
+        board: Option<Board>,
+    },
+    /// Flashes the firmware through a debug probe and shows its log (probe-rs).
+    Flash {
+        #[arg(long, default_value = "nano-connect")]
+        board: Board,
+    },
+    /// Runs the tests that are too long for every change (those marked `#[ignore]`).
+    Soak {
+        /// Only tests with this in their names.
+        filter: Option<String>,
+    },
+}
+
+fn main() -> ExitCode {
+    match perform(Chore::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("\nerror: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn perform(chore: Chore) -> Outcome {
+    enter_the_root()?;
+    match chore {
+        Chore::Test => check::all(),
+        Chore::Toolchain => {
+            println!("{}", ChipToolchain::find_or_make()?.describe());
+            Ok(())
+        }
+        Chore::Firmware { board } => {
+            let toolchain = ChipToolchain::find_or_make()?;
+            let boards = board.map_or(Board::ALL.to_vec(), |board| vec![board]);
+            boards
+                .into_iter()
+                .try_for_each(|board| firmware::build(&toolchain, board))
+        }
+        Chore::Flash { board } => firmware::flash(&ChipToolchain::find_or_make()?, board),
+        Chore::Soak { filter } => soak::run_ignored(filter.as_deref()),
+    }
+}
+
+/// Cargo takes `.cargo/config.toml` from where it is called; every chore is called from the workspace's root.
+fn enter_the_root() -> Outcome {
+    let Some(manifest) = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from) else {
+        return Ok(()); // called by hand, without cargo: from the root, we trust
+    };
+    let root = manifest.parent().unwrap_or(&manifest).to_owned();
+    std::env::set_current_dir(&root).map_err(|why| {
+        Failure::new(
+            format!("entering {}", root.display()),
+            why,
+            "run it from the workspace's root",
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        <Chore as clap::CommandFactory>::command().debug_assert();
+    }
+
+    #[test]
+    fn boards_are_called_by_their_features() {
+        assert!(Chore::try_parse_from(["xtask", "firmware", "--board", "pico"]).is_ok());
+        assert!(Chore::try_parse_from(["xtask", "flash", "--board", "nano-connect"]).is_ok());
+        assert!(Chore::try_parse_from(["xtask", "flash", "--board", "uno"]).is_err());
+    }
+}

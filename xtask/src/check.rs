@@ -1,0 +1,84 @@
+//! `cargo xtask test`: everything that must hold before a change lands, in one go.
+
+use crate::debian;
+use crate::failure::Outcome;
+use crate::firmware::{self, Board};
+use crate::run::{cargo, command, run};
+use crate::steps::Steps;
+use crate::toolchain::ChipToolchain;
+
+/// Crates that also run on the chip.
+const ON_THE_CHIP: [&str; 6] = [
+    "-p",
+    "swimmer-model",
+    "-p",
+    "link-protocol",
+    "-p",
+    "gait-player",
+];
+
+/// Takes all steps, cheap ones first, and prints how long each took.
+///
+/// # Errors
+/// The first step that fails.
+pub(crate) fn all() -> Outcome {
+    let mut steps = Steps::default();
+    let outcome = take_all(&mut steps);
+    println!("\n{}", steps.summary());
+    outcome
+}
+
+fn take_all(steps: &mut Steps) -> Outcome {
+    let toolchain = steps.take("what is needed", what_is_needed)?;
+    steps.take("format", || {
+        run(
+            &mut cargo(["fmt", "--all", "--check"]),
+            "run `cargo fmt --all`",
+        )
+    })?;
+    steps.take("firmware: ELF, UF2, sizes", || {
+        Board::ALL
+            .into_iter()
+            .try_for_each(|board| firmware::build(&toolchain, board))
+    })?;
+    steps.take("no_std crates for the chip", || {
+        run(
+            toolchain.cargo("build").args(ON_THE_CHIP),
+            "these crates may use neither std nor alloc",
+        )
+    })?;
+    steps.take("clippy for the chip", || {
+        let mut clippy = toolchain.clippy();
+        clippy.args(ON_THE_CHIP).args(["-p", "firmware"]);
+        run(
+            clippy.args(toolchain.clippy_flags()),
+            "mend what clippy names above",
+        )
+    })?;
+    steps.take("clippy for the host", || {
+        run(
+            cargo(["clippy", "--workspace", "--all-targets"]).args(["--", "-D", "warnings"]),
+            "mend what clippy names above",
+        )
+    })?;
+    steps.take("documentation", || {
+        run(
+            cargo(["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-Dwarnings"),
+            "mend what rustdoc names above",
+        )
+    })?;
+    steps.take("tests and doctests", || {
+        run(
+            &mut cargo(["test", "--workspace", "--no-fail-fast"]),
+            "mend what the tests name above",
+        )
+    })
+}
+
+/// Finds or installs every tool; the second time it only finds them.
+fn what_is_needed() -> Outcome<ChipToolchain> {
+    debian::ensure_tool(command("cc").arg("--version"), &["gcc", "libc6-dev"])?;
+    let toolchain = ChipToolchain::find_or_make()?;
+    println!("{}", toolchain.describe());
+    Ok(toolchain)
+}

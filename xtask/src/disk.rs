@@ -1,0 +1,61 @@
+//! Files and folders, with errors that name them.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::failure::{Failure, Outcome};
+
+/// The failure of something done to a path.
+pub(crate) fn failed(doing: &str, path: &Path, why: io::Error) -> Failure {
+    Failure::new(
+        format!("{doing} {}", path.display()),
+        why,
+        "check that the path is right, writable, and on a disk with space left",
+    )
+}
+
+/// Makes a folder and its parents where they are missing.
+pub(crate) fn make_folder(path: &Path) -> Outcome {
+    fs::create_dir_all(path).map_err(|why| failed("making the folder", path, why))
+}
+
+/// Removes a folder with all in it; one that is not there is fine.
+pub(crate) fn remove_folder(path: &Path) -> Outcome {
+    match fs::remove_dir_all(path) {
+        Err(why) if why.kind() != io::ErrorKind::NotFound => Err(failed("removing", path, why)),
+        _ => Ok(()),
+    }
+}
+
+/// Writes a file, and makes its folder.
+pub(crate) fn write(path: &Path, content: impl AsRef<[u8]>) -> Outcome {
+    if let Some(folder) = path.parent() {
+        make_folder(folder)?;
+    }
+    fs::write(path, content).map_err(|why| failed("writing", path, why))
+}
+
+/// Reads a whole file.
+pub(crate) fn read_bytes(path: &Path) -> Outcome<Vec<u8>> {
+    fs::read(path).map_err(|why| failed("reading", path, why))
+}
+
+/// Copies one file.
+pub(crate) fn copy(from: &Path, to: &Path) -> Outcome {
+    fs::copy(from, to)
+        .map(drop)
+        .map_err(|why| failed("copying to", to, why))
+}
+
+/// Entries of a folder whose names fit, sorted.
+pub(crate) fn entries(folder: &Path, fits: impl Fn(&str) -> bool) -> Outcome<Vec<PathBuf>> {
+    let all = fs::read_dir(folder).map_err(|why| failed("listing", folder, why))?;
+    let mut paths: Vec<_> = all
+        .flatten()
+        .filter(|entry| entry.file_name().to_str().is_some_and(&fits))
+        .map(|entry| entry.path())
+        .collect();
+    paths.sort();
+    Ok(paths)
+}

@@ -1,0 +1,158 @@
+//! Runs other programs: shows the command line, passes output through, and turns a bad exit into a [`Failure`].
+
+use std::ffi::OsStr;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use crate::failure::{Failure, Outcome};
+
+/// Variables that `cargo run` set for xtask alone; a nested cargo must not take them for its own.
+const OF_THE_OUTER_CARGO: [&str; 2] = ["CARGO_PKG_", "CARGO_MANIFEST_"];
+
+/// A command for a child of xtask: rustup never downloads behind our back, and nothing of the outer `cargo run` leaks in.
+pub(crate) fn command(program: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new(program);
+    command.env("RUSTUP_AUTO_INSTALL", "0");
+    for (name, _) in std::env::vars_os() {
+        if name.to_str().is_some_and(|name| {
+            OF_THE_OUTER_CARGO
+                .iter()
+                .any(|prefix| name.starts_with(prefix))
+        }) {
+            command.env_remove(name);
+        }
+    }
+    command
+}
+
+/// The cargo that runs xtask (or the one in PATH), with these arguments.
+pub(crate) fn cargo<const N: usize>(arguments: [&str; N]) -> Command {
+    let mut cargo = command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.args(arguments);
+    cargo
+}
+
+/// Runs the command with its output passed through.
+///
+/// # Errors
+/// When it cannot be started or exits badly; `next` tells the reader what to do then.
+pub(crate) fn run(command: &mut Command, next: &str) -> Outcome {
+    let line = command_line(command);
+    eprintln!("$ {line}");
+    let doing = || format!("running `{line}`");
+    let status = command
+        .status()
+        .map_err(|why| Failure::new(doing(), why, next))?;
+    if status.success() {
+        Ok(())
+    } else {
+        Err(Failure::new(doing(), status, next))
+    }
+}
+
+/// Runs the command quietly and returns what it printed on stdout.
+///
+/// # Errors
+/// When it cannot be started or exits badly; its stderr is part of the reason.
+pub(crate) fn read(command: &mut Command, next: &str) -> Outcome<String> {
+    let line = command_line(command);
+    let doing = || format!("running `{line}`");
+    let output = command
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|why| Failure::new(doing(), why, next))?;
+    if output.status.success() {
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    } else {
+        let why = format!(
+            "{}: {}",
+            output.status,
+            String::from_utf8_lossy(&output.stderr).trim()
+        );
+        Err(Failure::new(doing(), why, next))
+    }
+}
+
+/// Whether the command can be started and exits well; prints nothing.
+pub(crate) fn works(command: &mut Command) -> bool {
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .is_ok_and(|status| status.success())
+}
+
+/// Cargo's output folder, whatever the user's configuration says.
+pub(crate) fn target_folder() -> Outcome<PathBuf> {
+    let next = "run `cargo metadata` by hand to see why";
+    let metadata = read(
+        &mut cargo(["metadata", "--no-deps", "--format-version", "1"]),
+        next,
+    )?;
+    let metadata: serde_json::Value = serde_json::from_str(&metadata)
+        .map_err(|why| Failure::new("reading `cargo metadata`", why, next))?;
+    metadata["target_directory"]
+        .as_str()
+        .map(PathBuf::from)
+        .ok_or_else(|| {
+            Failure::new(
+                "reading `cargo metadata`",
+                "no key `target_directory`",
+                next,
+            )
+        })
+}
+
+/// The command as one would type it, with the variables that were set for it (without the constant one).
+pub(crate) fn command_line(command: &Command) -> String {
+    let variables = command.get_envs().filter_map(|(name, value)| {
+        let (name, value) = (name.to_str()?, value?.to_str()?);
+        (name != "RUSTUP_AUTO_INSTALL").then(|| format!("{name}={}", quoted(value)))
+    });
+    let words = std::iter::once(command.get_program())
+        .chain(command.get_args())
+        .map(|word| quoted(&word.to_string_lossy()));
+    variables.chain(words).collect::<Vec<_>>().join(" ")
+}
+
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+@%^~".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_can_be_pasted_into_a_shell() {
+        let mut echo = command("echo");
+        echo.args(["two words", "it's", "plain"])
+            .env("FLAGS", "-D warnings");
+        assert_eq!(
+            command_line(&echo),
+            r"FLAGS='-D warnings' echo 'two words' 'it'\''s' plain"
+        );
+    }
+
+    #[test]
+    fn a_bad_exit_names_the_command_and_the_next_step() {
+        let failure = run(command("sh").args(["-c", "exit 3"]), "try again")
+            .unwrap_err()
+            .to_string();
+        assert!(failure.contains("sh -c 'exit 3'"), "{failure}");
+        assert!(failure.contains("exit status: 3"), "{failure}");
+        assert!(failure.ends_with("next: try again"), "{failure}");
+    }
+
+    #[test]
+    fn a_missing_program_is_a_failure_not_a_panic() {
+        assert!(read(&mut command("no-such-program-anywhere"), "install it").is_err());
+        assert!(!works(&mut command("no-such-program-anywhere")));
+    }
+}

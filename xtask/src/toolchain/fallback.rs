@@ -1,0 +1,371 @@
+//! The chip's compiler for a Debian machine whose rustup cannot fetch targets.
+//!
+//! Debian's security suite carries `rustc-web`, a current rustc with its sources. The packages are downloaded and
+//! unpacked into a folder of our own under the user's cache (nothing is installed, nothing shadowed), then `core` and
+//! `alloc` are built once for the chip. Half a minute, once. The linker is the `rust-lld` of the active toolchain.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+use super::{HostCompiler, TARGET, has_core, library_folder};
+use crate::debian;
+use crate::disk::{copy, entries, failed, make_folder, remove_folder, write};
+use crate::failure::{Failure, Outcome};
+use crate::run::{cargo, command, read, run, target_folder, works};
+
+/// Part of the folder's name: to be raised when the recipe below changes, so that old prefixes are made anew.
+const RECIPE: u32 = 1;
+/// The package whose version all others share.
+const COMPILER: &str = "rustc-web";
+
+/// The private prefix, made on the first call.
+///
+/// # Errors
+/// Off Debian, without package lists, or when a download or the build of `core` fails.
+pub(super) fn find_or_make(host: &HostCompiler) -> Outcome<PathBuf> {
+    if !debian::is_debian() {
+        return Err(Failure::new(
+            format!("looking for a compiler for {TARGET}"),
+            "the active Rust toolchain has no such target, and this is not Debian, where packages could stand in",
+            format!("run `rustup target add {TARGET}`, then repeat the command"),
+        ));
+    }
+    let folder = cache_folder()?;
+    make_folder(&folder)?;
+    let lock_path = folder.join("lock");
+    let lock = File::create(&lock_path).map_err(|why| failed("making", &lock_path, why))?;
+    lock.lock()
+        .map_err(|why| failed("locking", &lock_path, why))?; // released when the file is closed
+
+    if debian::candidate(COMPILER).is_none() {
+        debian::update()?;
+    }
+    if let Some(prefix) = newest_made(&folder, debian::candidate(COMPILER).as_deref())
+        && usable(&prefix)
+    {
+        return Ok(prefix);
+    }
+    debian::update()?; // a candidate of an old list may be gone from the mirror
+    let version = debian::candidate(COMPILER).ok_or_else(|| {
+        Failure::new(
+            format!("looking for a compiler for {TARGET}"),
+            format!("the active Rust toolchain has no such target, and the package lists know no {COMPILER}"),
+            format!("run `rustup target add {TARGET}`; or, as root, `apt-get update` with Debian's security suite enabled"),
+        )
+    })?;
+    let prefix = folder.join(prefix_name(&version));
+    make(&folder, &prefix, &version, host)?;
+    Ok(prefix)
+}
+
+/// Downloads, unpacks and builds beside the prefix, and moves it into place only when it is whole.
+fn make(folder: &Path, prefix: &Path, version: &str, host: &HostCompiler) -> Outcome {
+    let unfinished = folder.join("unfinished");
+    for stale in [&unfinished, prefix] {
+        remove_folder(stale)?;
+    }
+    let packages = unfinished.join("packages");
+    make_folder(&packages)?;
+    eprintln!(
+        "No {TARGET} in the active toolchain: unpacking Debian's {COMPILER} {version} under {}",
+        folder.display()
+    );
+    download(&packages, version)?;
+    unpack(&packages, &unfinished)?;
+    build_core(&unfinished, host)?;
+    write_wrappers(&unfinished, prefix, host)?;
+    // What was compiled against another copy of `core` cannot be linked with this one.
+    remove_folder(&target_folder()?.join(TARGET))?;
+    fs::rename(&unfinished, prefix).map_err(|why| failed("moving into place", prefix, why))?;
+    if usable(prefix) {
+        Ok(())
+    } else {
+        Err(Failure::new(
+            format!("trying the compiler in {}", prefix.display()),
+            "it, its clippy or its linker does not run",
+            "run `bin/rustc -vV` there to see why, remove the folder, and repeat the command",
+        ))
+    }
+}
+
+fn download(packages: &Path, version: &str) -> Outcome {
+    let next = "check the network, run `apt-get update` as root, and repeat the command";
+    let library = format!("libstd-rust-web-{}", minor_version(version));
+    let same_version = [
+        COMPILER,
+        &library,
+        "libstd-rust-web-dev",
+        "rust-web-src",
+        "rust-web-clippy",
+    ]
+    .map(|name| format!("{name}={version}"));
+    let mut fetch = command("apt-get");
+    fetch
+        .current_dir(packages)
+        .args(["download", "-qq", "-o", "APT::Sandbox::User=root"]);
+    run(fetch.args(same_version), next)?;
+    let library = deb_named(packages, &library)?;
+    let depends = read(
+        command("dpkg-deb").arg("-f").arg(&library).arg("Depends"),
+        next,
+    )?;
+    let llvm = llvm_package(&depends).ok_or_else(|| {
+        Failure::new(
+            format!("reading what {} needs", library.display()),
+            format!("no libllvm in `{depends}`"),
+            next,
+        )
+    })?;
+    let mut fetch = command("apt-get");
+    fetch
+        .current_dir(packages)
+        .args(["download", "-qq", "-o", "APT::Sandbox::User=root"]);
+    run(fetch.arg(llvm), next)
+}
+
+fn unpack(packages: &Path, prefix: &Path) -> Outcome {
+    for package in debs(packages)? {
+        run(
+            command("dpkg-deb").arg("-x").arg(&package).arg(prefix),
+            "check the free space of the disk, and repeat the command",
+        )?;
+    }
+    remove_folder(packages)
+}
+
+/// Builds `core`, `alloc` and `compiler_builtins` from the unpacked sources, with the crates vendored among them.
+fn build_core(prefix: &Path, host: &HostCompiler) -> Outcome {
+    let rust = prefix.join("usr/lib/rustlib/src/rust");
+    let project = prefix.join("core-for-the-chip");
+    write(&project.join("src/lib.rs"), "#![no_std]\n")?;
+    write(
+        &project.join("Cargo.toml"),
+        "[package]\nname = \"core-for-the-chip\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[workspace]\n\n\
+         [profile.release]\npanic = \"abort\"\ncodegen-units = 1\n",
+    )?;
+    write(
+        &project.join(".cargo/config.toml"),
+        format!(
+            "[source.crates-io]\nreplace-with = \"vendored\"\n\n[source.vendored]\ndirectory = '{}'\n",
+            rust.join("library/vendor").display()
+        ),
+    )?;
+    let mut build = cargo([
+        "build",
+        "--offline",
+        "--release",
+        "-Zbuild-std=core,alloc",
+        "--target",
+        TARGET,
+    ]);
+    build
+        .current_dir(&project)
+        .env("CARGO_TARGET_DIR", project.join("target"))
+        .env("RUSTC", prefix.join("usr/bin/rustc"))
+        .env("RUSTC_BOOTSTRAP", "1") // build-std is unstable; the result is an ordinary sysroot
+        .env(
+            "LD_LIBRARY_PATH",
+            prefix.join("usr/lib").join(multiarch(&host.triple)),
+        )
+        // No path of this machine in the panic messages of the firmware.
+        .env(
+            "RUSTFLAGS",
+            format!(
+                "-Cembed-bitcode=yes --remap-path-prefix={}=/rustc",
+                rust.display()
+            ),
+        )
+        .env_remove("RUSTC_WRAPPER")
+        .env_remove("RUSTC_WORKSPACE_WRAPPER");
+    run(
+        &mut build,
+        "remove the folder `unfinished` beside it, and repeat the command",
+    )?;
+
+    let libraries = library_folder(&prefix.join("usr"));
+    make_folder(&libraries)?;
+    let built = project.join("target").join(TARGET).join("release/deps");
+    for name in ["libcore-", "liballoc-", "libcompiler_builtins-"] {
+        let library = entries(&built, |file| {
+            file.starts_with(name) && has_ending(file, "rlib")
+        })?;
+        let library = library.first().ok_or_else(|| {
+            Failure::new(
+                format!("looking for {name}*.rlib in {}", built.display()),
+                "it was not built",
+                "repeat the command",
+            )
+        })?;
+        let place = libraries.join(library.file_name().unwrap_or_default());
+        copy(library, &place)?;
+    }
+    for done_with in [
+        project,
+        prefix.join("usr/share"),
+        prefix.join("usr/src"),
+        rust,
+    ] {
+        remove_folder(&done_with)?;
+    }
+    Ok(())
+}
+
+/// Scripts under the names that cargo looks for; cargo wants the compiler to be called `rustc`.
+fn write_wrappers(unfinished: &Path, prefix: &Path, host: &HostCompiler) -> Outcome {
+    let libraries = prefix.join("usr/lib").join(multiarch(&host.triple));
+    for name in ["rustc", "clippy-driver"] {
+        write_script(
+            &unfinished.join("bin").join(name),
+            &format!(
+                "LD_LIBRARY_PATH=\"{}${{LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}}\" exec \"{}\" \"$@\"",
+                libraries.display(),
+                prefix.join("usr/bin").join(name).display()
+            ),
+        )?;
+    }
+    let tools = Path::new("lib/rustlib")
+        .join(&host.triple)
+        .join("bin/rust-lld");
+    write_script(
+        &unfinished.join("usr").join(&tools),
+        &format!("exec \"{}\" \"$@\"", host.sysroot.join(&tools).display()),
+    )
+}
+
+fn write_script(path: &Path, body: &str) -> Outcome {
+    write(path, format!("#!/bin/sh\n{body}\n"))?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        fs::set_permissions(path, fs::Permissions::from_mode(0o755))
+            .map_err(|why| failed("making executable", path, why))?;
+    }
+    Ok(())
+}
+
+/// Whether compiler, clippy, library and linker are there and run.
+fn usable(prefix: &Path) -> bool {
+    let rustlib = prefix.join("usr/lib/rustlib");
+    let linker = entries(&rustlib, |name| name.contains("-linux-"))
+        .unwrap_or_default()
+        .into_iter()
+        .map(|triple| triple.join("bin/rust-lld"))
+        .find(|path| path.exists());
+    has_core(&prefix.join("usr"))
+        && works(command(prefix.join("bin/rustc")).arg("--version"))
+        && works(command(prefix.join("bin/clippy-driver")).arg("--version"))
+        && linker.is_some_and(|linker| works(command(linker).args(["-flavor", "gnu", "--version"])))
+}
+
+/// The prefix of the candidate version; without package lists, whichever was made by this recipe.
+fn newest_made(folder: &Path, candidate: Option<&str>) -> Option<PathBuf> {
+    let fits = |name: &str| match candidate {
+        Some(version) => name == prefix_name(version),
+        None => name.ends_with(&prefix_name("")),
+    };
+    entries(folder, fits).ok()?.pop()
+}
+
+fn prefix_name(version: &str) -> String {
+    format!("{version}-recipe-{RECIPE}")
+}
+
+/// `1.96.0+dfsg1-1~deb12u2` → `1.96`, as Debian names its library package.
+fn minor_version(version: &str) -> String {
+    version.split('.').take(2).collect::<Vec<_>>().join(".")
+}
+
+/// The first `libllvmN` among dependencies.
+fn llvm_package(depends: &str) -> Option<&str> {
+    depends
+        .split([',', ' ', '|'])
+        .map(|word| word.split(':').next().unwrap_or(word))
+        .find(|word| {
+            word.strip_prefix("libllvm")
+                .is_some_and(|number| number.starts_with(|c: char| c.is_ascii_digit()))
+        })
+}
+
+/// Debian's name for the triple's library folder.
+fn multiarch(triple: &str) -> String {
+    let processor = triple.split('-').next().unwrap_or(triple);
+    format!("{processor}-linux-gnu")
+}
+
+fn cache_folder() -> Outcome<PathBuf> {
+    let cache = std::env::var_os("XDG_CACHE_HOME")
+        .filter(|path| !path.is_empty())
+        .map(PathBuf::from)
+        .or_else(|| std::env::home_dir().map(|home| home.join(".cache")))
+        .ok_or_else(|| {
+            Failure::new(
+                "looking for the user's cache folder",
+                "neither XDG_CACHE_HOME nor HOME is set",
+                "set HOME",
+            )
+        })?;
+    Ok(cache.join("swimmer-chip-toolchain"))
+}
+
+fn debs(folder: &Path) -> Outcome<Vec<PathBuf>> {
+    entries(folder, |name| has_ending(name, "deb"))
+}
+
+fn has_ending(name: &str, ending: &str) -> bool {
+    Path::new(name)
+        .extension()
+        .is_some_and(|found| found == ending)
+}
+
+fn deb_named(folder: &Path, package: &str) -> Outcome<PathBuf> {
+    entries(folder, |name| name.starts_with(&format!("{package}_")))?
+        .pop()
+        .ok_or_else(|| {
+            Failure::new(
+                format!("looking for {package}_*.deb in {}", folder.display()),
+                "apt-get did not leave it there",
+                "repeat the command",
+            )
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_follow_the_version() {
+        assert_eq!(minor_version("1.96.0+dfsg1-1~deb12u2"), "1.96");
+        assert_eq!(prefix_name("1.96.0"), "1.96.0-recipe-1");
+        assert_eq!(multiarch("aarch64-unknown-linux-gnu"), "aarch64-linux-gnu");
+    }
+
+    #[test]
+    fn finds_llvm_among_dependencies() {
+        assert_eq!(
+            llvm_package("libc6 (>= 2.36), libgcc-s1 (>= 4.2), libllvm22 (>= 1:22.1.8), zlib1g"),
+            Some("libllvm22")
+        );
+        assert_eq!(llvm_package("libc6 (>= 2.36), libllvm-tools"), None);
+    }
+
+    #[test]
+    fn a_new_candidate_does_not_find_the_old_prefix() {
+        let folder = tempfile::tempdir().unwrap();
+        let old = folder.path().join(prefix_name("1.96.0"));
+        fs::create_dir(&old).unwrap();
+        fs::create_dir(folder.path().join("unfinished")).unwrap();
+        assert_eq!(
+            newest_made(folder.path(), Some("1.96.0")),
+            Some(old.clone())
+        );
+        assert_eq!(newest_made(folder.path(), Some("1.97.0")), None);
+        assert_eq!(newest_made(folder.path(), None), Some(old));
+    }
+
+    #[test]
+    fn an_empty_prefix_is_not_usable() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(!usable(folder.path()));
+    }
+}
