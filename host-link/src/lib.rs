@@ -1,8 +1,12 @@
 //! The host end of the wire: ports (serial, pseudo-terminal, TCP, in memory, with faults, with a witness), the session, and
-//! a blocking robot over any of them.
+//! a blocking [`Robot`] over any of them.
 //!
-//! A state machine without I/O (the session) decides; the shell  moves its bytes.
+//! A state machine without I/O ([`session::Session`]) decides; the shell ([`Robot`]) moves its bytes.
 
 pub mod port;
+pub mod robot;
+pub mod session;
 
 pub use port::Port;
+pub use robot::Robot;
+pub use session::LinkError;

@@ -14,8 +14,8 @@ pub trait Device: Send {
     /// Takes bytes that arrive at the time reached last.
     fn receive(&mut self, bytes: &[u8]);
 
-    /// Appends to `out` what the device has to send.
-    fn transmit(&mut self, out: &mut Vec<u8>);
+    /// Appends to `out` at most `room` bytes of what the device has to send.
+    fn transmit(&mut self, room: usize, out: &mut Vec<u8>);
 }
 
 /// The host's end of a serial line to a [`Device`], in virtual time.
@@ -75,7 +75,9 @@ impl<D: Device> VirtualPort<D> {
             self.device.receive(&bytes);
             bytes.clear();
         }
-        self.device.transmit(&mut bytes);
+        // A transmitter takes no more than the line carries until the next turn.
+        let room = self.to_host.room(self.now + TURN);
+        self.device.transmit(room, &mut bytes);
         if !bytes.is_empty() {
             self.to_host.push(self.now, &bytes);
         }
@@ -125,8 +127,9 @@ mod tests {
             self.pending.extend_from_slice(bytes);
         }
 
-        fn transmit(&mut self, out: &mut Vec<u8>) {
-            out.append(&mut self.pending);
+        fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
+            let count = room.min(self.pending.len());
+            out.extend(self.pending.drain(..count));
         }
     }
 

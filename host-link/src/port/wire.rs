@@ -57,6 +57,13 @@ impl Wire {
         }
     }
 
+    /// Bytes that the line can have begun to carry by `until`, besides those already on it.
+    pub fn room(&self, until: Duration) -> usize {
+        let free = until.saturating_sub(self.free_at).as_nanos();
+        usize::try_from(free.div_ceil(self.speed.byte_time().as_nanos().max(1)))
+            .unwrap_or(usize::MAX)
+    }
+
     /// When the next byte arrives.
     pub fn next_arrival(&self) -> Option<Duration> {
         self.under_way.front().map(|(at, _)| *at)

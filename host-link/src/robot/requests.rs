@@ -1,0 +1,212 @@
+//! One method for each request: the numbers of the program turned into those of the wire, the answer's kind checked.
+
+use std::time::Duration;
+
+use link_protocol::{
+    ANGLE_UNIT_RAD, Arm, Configuration, Counters, Joint, Play, Reply, Request, ServoSettings,
+    Status, TableInfo,
+};
+
+use super::Robot;
+use crate::port::Port;
+use crate::session::LinkError;
+
+impl<P: Port> Robot<P> {
+    /// What the robot is doing.
+    ///
+    /// # Errors
+    /// The link's.
+    pub fn status(&mut self) -> Result<Status, LinkError> {
+        let doing = "asking for the status";
+        match self.ask(Request::Status, doing)? {
+            Reply::Status(status) => Ok(status),
+            reply => Err(wrong(doing, &reply)),
+        }
+    }
+
+    /// What the robot received, refused and dropped.
+    ///
+    /// # Errors
+    /// The link's.
+    pub fn counters(&mut self) -> Result<Counters, LinkError> {
+        let doing = "asking for the robot's counters";
+        match self.ask(Request::Counters, doing)? {
+            Reply::Counters(counters) => Ok(counters),
+            reply => Err(wrong(doing, &reply)),
+        }
+    }
+
+    /// The configuration in force.
+    ///
+    /// # Errors
+    /// The link's.
+    pub fn configuration(&mut self) -> Result<Configuration, LinkError> {
+        let doing = "asking for the configuration";
+        match self.ask(Request::Configuration, doing)? {
+            Reply::Configuration(configuration) => Ok(configuration),
+            reply => Err(wrong(doing, &reply)),
+        }
+    }
+
+    /// Sets geometry, drag and limits; only while the robot is stopped.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] for numbers that make no swimmer or loosen the firmware's limits, and the link's.
+    pub fn configure(&mut self, configuration: Configuration) -> Result<(), LinkError> {
+        self.order(Request::Configure(configuration), "configuring the robot")
+    }
+
+    /// The map of one servo.
+    ///
+    /// # Errors
+    /// The link's.
+    pub fn servo(&mut self, joint: Joint) -> Result<ServoSettings, LinkError> {
+        let doing = "asking for a servo's settings";
+        match self.ask(Request::Servo(joint), doing)? {
+            Reply::Servo(settings) => Ok(settings),
+            reply => Err(wrong(doing, &reply)),
+        }
+    }
+
+    /// Sets the map of one servo; only while the robot is stopped.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] for pulses outside the window, and the link's.
+    pub fn set_servo(&mut self, joint: Joint, settings: ServoSettings) -> Result<(), LinkError> {
+        self.order(Request::SetServo { joint, settings }, "setting up a servo")
+    }
+
+    /// Sets the whole trim of one servo, radians; not while it moves.
+    ///
+    /// # Errors
+    /// [`LinkError::OutOfRange`], [`LinkError::Refused`], and the link's.
+    pub fn trim(&mut self, joint: Joint, radians: f64) -> Result<(), LinkError> {
+        let doing = "trimming a servo";
+        let unit = f64::from(ANGLE_UNIT_RAD);
+        let largest = f64::from(i16::MAX) * unit;
+        let within = radians.abs() <= largest;
+        if !within {
+            return Err(LinkError::OutOfRange {
+                doing,
+                quantity: "a trim in radians",
+                value: radians,
+                low: -largest,
+                high: largest,
+            });
+        }
+        #[allow(clippy::cast_possible_truncation)] // checked above
+        let trim = (radians / unit).round() as i16;
+        self.order(Request::Trim { joint, trim }, doing)
+    }
+
+    /// Turns pulses on, at the last commanded angles; the servos may jump there.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] when an e-stop is latched and not cleared, when the battery is low or after three resets; and
+    /// the link's.
+    pub fn arm(&mut self, clear_estop: bool) -> Result<(), LinkError> {
+        self.order(Request::Arm(Arm { clear_estop }), "arming")
+    }
+
+    /// Starts to play the active table: `cycles` cycles (0: without end) of `period` each. Returns when the robot has begun.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] when it is not armed, holds no table or the table is too fast at this period; and the link's.
+    pub fn play(&mut self, cycles: u32, period: Duration, detached: bool) -> Result<(), LinkError> {
+        let doing = "starting to play";
+        let Some(period_us) = u32::try_from(period.as_micros()).ok().filter(|&us| us > 0) else {
+            return Err(LinkError::OutOfRange {
+                doing,
+                quantity: "a period in seconds",
+                value: period.as_secs_f64(),
+                low: 1e-6,
+                high: f64::from(u32::MAX) * 1e-6,
+            });
+        };
+        let play = Play {
+            cycles,
+            period_us,
+            detached,
+        };
+        self.order(Request::Play(play), doing)
+    }
+
+    /// Holds the pose within a play. Detached: for at most 60 s without a link, then the robot stops.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] when nothing plays, and the link's.
+    pub fn pause(&mut self, detached: bool) -> Result<(), LinkError> {
+        self.order(Request::Pause { detached }, "pausing")
+    }
+
+    /// Goes on after a pause.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] when nothing is paused, and the link's.
+    pub fn resume(&mut self) -> Result<(), LinkError> {
+        self.order(Request::Resume, "resuming")
+    }
+
+    /// Ramps to neutral and drops the pulses, from every state.
+    ///
+    /// # Errors
+    /// The link's.
+    pub fn stop(&mut self) -> Result<(), LinkError> {
+        self.order(Request::Stop, "stopping")
+    }
+
+    /// Drops the pulses at once, latched until armed with `clear_estop`.
+    ///
+    /// # Errors
+    /// The link's.
+    pub fn estop(&mut self) -> Result<(), LinkError> {
+        self.order(Request::EStop, "e-stopping")
+    }
+
+    /// Allows arming again after three resets in 60 s.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] before 60 s of uptime, and the link's.
+    pub fn clear_resets(&mut self) -> Result<(), LinkError> {
+        self.order(Request::ClearResets, "clearing the latch of resets")
+    }
+
+    /// The message of the crash before the last start; empty where there is none.
+    ///
+    /// # Errors
+    /// The link's.
+    pub fn crash_message(&mut self) -> Result<String, LinkError> {
+        let doing = "asking for the crash message";
+        match self.ask(Request::CrashMessage, doing)? {
+            Reply::CrashMessage(text) => Ok(text.as_str().to_owned()),
+            reply => Err(wrong(doing, &reply)),
+        }
+    }
+
+    /// The active table, named by its checksum.
+    ///
+    /// # Errors
+    /// The link's.
+    pub fn table(&mut self) -> Result<Option<TableInfo>, LinkError> {
+        let doing = "asking for the table";
+        match self.ask(Request::Table, doing)? {
+            Reply::Table(table) => Ok(table),
+            reply => Err(wrong(doing, &reply)),
+        }
+    }
+
+    /// A request that is answered by Done and nothing else.
+    fn order(&mut self, request: Request, doing: &'static str) -> Result<(), LinkError> {
+        match self.ask(request, doing)? {
+            Reply::Done => Ok(()),
+            reply => Err(wrong(doing, &reply)),
+        }
+    }
+}
+
+fn wrong(doing: &'static str, reply: &Reply) -> LinkError {
+    LinkError::WrongReply {
+        doing,
+        reply: format!("{reply:?}"),
+    }
+}

@@ -1,0 +1,466 @@
+//! The host's side of the link as a state machine without I/O: bytes and times in, bytes, events and the next deadline out.
+//!
+//! ```text
+//!             connect                 HelloReply, versions meet
+//!  Closed ──────────────► Greeting ─────────────────────────────► Open ──┐ requests, upload, keep-alive
+//!    ▲                     │   ▲                                   │     │ every 50 ms, telemetry
+//!    │   no answer,        │   └──── upload goes on ───────────────┤ ◄───┘
+//!    └── other version ────┘                StaleSession           │
+//!    ▲                                                             │
+//!    └───────────────── StaleSession without an upload ────────────┘
+//! ```
+//!
+//! Glossary. *Request*: asked of the robot, acts at most once, one at a time under way, in the order asked. *Ticket*: names
+//! a request until its event comes; every ticket ends in exactly one event. *Upload*: a table as Begin, a window of chunks,
+//! Commit. *Lease*: the robot stops when it hears nothing for half a second; keep-alives feed it.
+//!
+//! Stop and e-stop end every unanswered request and the upload (their tickets fail with [`LinkError::Dropped`]), go out at
+//! once, ahead of chunks, and even without an open session.
+
+mod clock_fit;
+mod counters;
+mod drive;
+mod error;
+mod receive;
+mod round_trip;
+mod upload;
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use link_protocol::{
+    Begin, Decoder, Header, HelloReply, MAX_ENCODED, Message, Reply, Request, TableInfo, Telemetry,
+    crc32c, encode,
+};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+pub use clock_fit::ClockFit;
+pub use counters::LinkCounters;
+pub use error::{LinkError, cause_in_words};
+pub(crate) use receive::firmware_name;
+pub use upload::{UploadPhase, UploadProgress};
+
+use clock_fit::ClockSamples;
+use round_trip::RoundTrip;
+use upload::Window;
+
+/// Tries before a request that an operator waits for is given up.
+pub const TRIES: u32 = 5;
+/// Silence after which an upload is given up.
+pub const LONGEST_SILENCE: Duration = Duration::from_secs(5);
+/// Longest time without a frame to the robot while a session is open.
+pub const KEEP_ALIVE: Duration = Duration::from_millis(50);
+
+/// What a session must be told before it starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SessionConfig {
+    /// Where its nonces come from; two programs that start at the same moment must not have the same.
+    pub seed: u64,
+    /// Bytes per second that the slowest part of the way carries: chunks are not sent faster, so that a stop never waits
+    /// behind more than one.
+    pub bytes_per_second: f64,
+}
+
+impl SessionConfig {
+    /// A session over the robot's 115 200 baud.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            seed,
+            bytes_per_second: 11_520.0,
+        }
+    }
+}
+
+/// Names something asked until its event comes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Ticket(u64);
+
+/// What a session tells its shell.
+#[derive(Debug)]
+pub enum Event {
+    /// A session is open. `restarted`: the robot has booted since the session before.
+    Connected {
+        /// The ticket of [`Session::connect`].
+        ticket: Ticket,
+        /// The robot has restarted since the last session.
+        restarted: bool,
+    },
+    /// The robot answered a request.
+    Answered {
+        /// The ticket of [`Session::request`].
+        ticket: Ticket,
+        /// Its answer; never a refusal.
+        reply: Reply,
+    },
+    /// An upload is the active table, or will be at the next cycle boundary.
+    Uploaded {
+        /// The ticket of [`Session::upload`].
+        ticket: Ticket,
+        /// What the robot holds now.
+        table: TableInfo,
+    },
+    /// More of an upload has arrived.
+    Progress {
+        /// The ticket of [`Session::upload`].
+        ticket: Ticket,
+        /// How much.
+        progress: UploadProgress,
+    },
+    /// Something asked did not happen.
+    Failed {
+        /// Its ticket.
+        ticket: Ticket,
+        /// Why.
+        error: LinkError,
+    },
+    /// The robot told about itself.
+    Telemetry {
+        /// What it said.
+        telemetry: Telemetry,
+        /// When it arrived, on the host's clock.
+        at: Duration,
+    },
+}
+
+#[derive(Debug)]
+struct Greeting {
+    /// `None`: the session greets by itself for an upload.
+    ticket: Option<Ticket>,
+    nonce: u32,
+    sequence: u16,
+    tries: u32,
+    first_sent: Duration,
+    next_try: Duration,
+}
+
+#[derive(Debug)]
+#[allow(clippy::large_enum_variant)] // there is one of it
+enum Link {
+    Closed,
+    Greeting(Greeting),
+    Open(HelloReply),
+}
+
+/// Who waits for a request under way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Owner {
+    Ticket(Ticket),
+    Upload,
+}
+
+#[derive(Debug)]
+struct Pending {
+    owner: Owner,
+    request: Request,
+    sequence: u16,
+    tries: u32,
+    first_sent: Duration,
+    last_sent: Duration,
+    next_try: Duration,
+}
+
+#[derive(Debug)]
+struct Upload {
+    ticket: Ticket,
+    begin: Begin,
+    table: Vec<u8>,
+    started: Duration,
+    deadline: Duration,
+    phase: UploadPhase,
+    /// Begin or Commit has yet to be sent.
+    due: bool,
+    /// Sequence number of its Begin.
+    number: u16,
+    window: Window,
+    /// Times it had to begin anew.
+    renewed: u32,
+}
+
+/// A session with one robot.
+#[derive(Debug)]
+pub struct Session {
+    config: SessionConfig,
+    rng: ChaCha8Rng,
+    decoder: Decoder,
+    outgoing: Vec<u8>,
+    link: Link,
+    /// The session number of the last open session: a stop goes out under it.
+    number: u16,
+    sequence: u16,
+    next_ticket: u64,
+    queue: VecDeque<(Ticket, Request)>,
+    pending: Option<Pending>,
+    upload: Option<Upload>,
+    trip: RoundTrip,
+    clock: ClockSamples,
+    last_sent: Duration,
+    last_heard: Duration,
+    next_ping: Duration,
+    pings: u32,
+    /// When the line has carried the chunks handed out so far.
+    line_free: Duration,
+    last_robot_us: Option<u64>,
+    boot_nonce: Option<u32>,
+    counters: LinkCounters,
+    events: VecDeque<Event>,
+}
+
+impl Session {
+    /// A session that has not greeted yet.
+    pub fn new(config: SessionConfig) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
+        let sequence = rng.random();
+        Self {
+            config,
+            rng,
+            decoder: Decoder::new(),
+            outgoing: Vec::new(),
+            link: Link::Closed,
+            number: 0,
+            sequence,
+            next_ticket: 0,
+            queue: VecDeque::new(),
+            pending: None,
+            upload: None,
+            trip: RoundTrip::default(),
+            clock: ClockSamples::default(),
+            last_sent: Duration::ZERO,
+            last_heard: Duration::ZERO,
+            next_ping: Duration::ZERO,
+            pings: 0,
+            line_free: Duration::ZERO,
+            last_robot_us: None,
+            boot_nonce: None,
+            counters: LinkCounters::default(),
+            events: VecDeque::new(),
+        }
+    }
+
+    /// Greets the robot. Ends in [`Event::Connected`] or [`Event::Failed`]. An upload under way goes on afterwards; a
+    /// request under way fails, since the robot answers it in no new session.
+    pub fn connect(&mut self, now: Duration) -> Ticket {
+        let ticket = self.ticket();
+        self.abandon_greeting();
+        if let Some(pending) = self.pending.take()
+            && let Owner::Ticket(owner) = pending.owner
+        {
+            let doing = describe(&pending.request);
+            self.fail(owner, LinkError::Dropped { doing });
+        }
+        self.greet(Some(ticket), now);
+        ticket
+    }
+
+    /// Asks something of the robot. Ends in [`Event::Answered`] or [`Event::Failed`].
+    pub fn request(&mut self, now: Duration, request: Request) -> Ticket {
+        let ticket = self.ticket();
+        if matches!(request, Request::Stop | Request::EStop) {
+            self.drop_unanswered();
+            self.outgoing.clear();
+            self.put_under_way(Owner::Ticket(ticket), request, now);
+        } else if matches!(self.link, Link::Closed) {
+            let doing = describe(&request);
+            self.fail(ticket, LinkError::NotConnected { doing });
+        } else {
+            self.queue.push_back((ticket, request));
+            self.poll(now);
+        }
+        ticket
+    }
+
+    /// Sends a gait table of at most 2048 bytes to slot `slot`. Ends in [`Event::Uploaded`] or [`Event::Failed`], by
+    /// `deadline` (a time of the host's clock) at the latest. An upload under way fails.
+    pub fn upload(&mut self, now: Duration, slot: u8, table: &[u8], deadline: Duration) -> Ticket {
+        let ticket = self.ticket();
+        let doing = "uploading the gait";
+        let len = match u16::try_from(table.len()) {
+            Ok(len) if table.len() <= link_protocol::MAX_TABLE => len,
+            _ => {
+                self.fail(
+                    ticket,
+                    LinkError::OutOfRange {
+                        doing,
+                        quantity: "a table length in bytes",
+                        value: table.len() as f64,
+                        low: 0.0,
+                        high: link_protocol::MAX_TABLE as f64,
+                    },
+                );
+                return ticket;
+            }
+        };
+        if matches!(self.link, Link::Closed) {
+            self.fail(ticket, LinkError::NotConnected { doing });
+            return ticket;
+        }
+        self.end_upload(LinkError::Dropped { doing });
+        let begin = Begin {
+            slot,
+            len,
+            crc32: crc32c(table),
+        };
+        self.upload = Some(Upload {
+            ticket,
+            begin,
+            table: table.to_vec(),
+            started: now,
+            deadline,
+            phase: UploadPhase::Begin,
+            due: true,
+            number: 0,
+            window: Window::new(table.len(), 0),
+            renewed: 0,
+        });
+        self.last_heard = now;
+        self.poll(now);
+        ticket
+    }
+
+    /// Breaks the upload off, without an event. The robot keeps what has arrived and the table it plays.
+    pub fn cancel_upload(&mut self) {
+        self.upload = None;
+        self.pending
+            .take_if(|pending| pending.owner == Owner::Upload);
+    }
+
+    /// Gives the bytes that are to be sent now, in order.
+    pub fn take_outgoing(&mut self) -> Vec<u8> {
+        std::mem::take(&mut self.outgoing)
+    }
+
+    /// The next thing that happened, oldest first.
+    pub fn next_event(&mut self) -> Option<Event> {
+        self.events.pop_front()
+    }
+
+    /// The robot's greeting, while a session is open.
+    pub fn hello(&self) -> Option<&HelloReply> {
+        match &self.link {
+            Link::Open(hello) => Some(hello),
+            Link::Closed | Link::Greeting(_) => None,
+        }
+    }
+
+    /// The robot's clock on the host's; `None` before the first ping came back.
+    pub fn clock(&self) -> Option<ClockFit> {
+        self.clock.fit()
+    }
+
+    /// Everything counted so far.
+    pub fn counters(&self) -> LinkCounters {
+        LinkCounters {
+            received: self.decoder.counters(),
+            round_trip: self.trip.smoothed(),
+            ..self.counters
+        }
+    }
+
+    /// When a valid frame of the open session last came.
+    pub fn last_heard(&self) -> Duration {
+        self.last_heard
+    }
+
+    fn ticket(&mut self) -> Ticket {
+        self.next_ticket += 1;
+        Ticket(self.next_ticket)
+    }
+
+    fn next_sequence(&mut self) -> u16 {
+        self.sequence = self.sequence.wrapping_add(1);
+        self.sequence
+    }
+
+    /// Encodes a message into the outgoing bytes; returns its length on the wire.
+    fn send(&mut self, sequence: u16, message: &Message, now: Duration) -> usize {
+        let mut frame = [0; MAX_ENCODED];
+        // Every message of the protocol fits a frame; one that did not would be lost and asked again.
+        let Ok(len) = encode(Header::new(self.number, sequence), message, &mut frame) else {
+            return 0;
+        };
+        self.outgoing
+            .extend_from_slice(frame.get(..len).unwrap_or_default());
+        self.counters.frames_sent += 1;
+        self.counters.bytes_sent += len as u64;
+        self.last_sent = now;
+        len
+    }
+
+    fn fail(&mut self, ticket: Ticket, error: LinkError) {
+        self.counters.given_up += 1;
+        self.events.push_back(Event::Failed { ticket, error });
+    }
+
+    fn end_upload(&mut self, error: LinkError) {
+        if let Some(upload) = self.upload.take() {
+            self.fail(upload.ticket, error);
+        }
+        if self
+            .pending
+            .as_ref()
+            .is_some_and(|pending| pending.owner == Owner::Upload)
+        {
+            self.pending = None;
+        }
+    }
+
+    /// A stop: everything unanswered fails.
+    fn drop_unanswered(&mut self) {
+        self.end_upload(LinkError::Dropped {
+            doing: "uploading the gait",
+        });
+        let under_way = self
+            .pending
+            .take()
+            .map(|pending| (pending.owner, pending.request));
+        let queued = std::mem::take(&mut self.queue);
+        let queued = queued
+            .into_iter()
+            .map(|(ticket, request)| (Owner::Ticket(ticket), request));
+        for (owner, request) in under_way.into_iter().chain(queued) {
+            if let Owner::Ticket(ticket) = owner {
+                let doing = describe(&request);
+                self.fail(ticket, LinkError::Dropped { doing });
+            }
+        }
+    }
+
+    /// A newer greeting takes the place of one under way.
+    fn abandon_greeting(&mut self) {
+        if let Link::Greeting(Greeting {
+            ticket: Some(ticket),
+            ..
+        }) = std::mem::replace(&mut self.link, Link::Closed)
+        {
+            self.fail(
+                ticket,
+                LinkError::Dropped {
+                    doing: "connecting",
+                },
+            );
+        }
+    }
+}
+
+/// What a request does, to complete "while …".
+fn describe(request: &Request) -> &'static str {
+    match request {
+        Request::Status => "asking for the status",
+        Request::Counters => "asking for the robot's counters",
+        Request::Configuration => "asking for the configuration",
+        Request::Configure(_) => "configuring the robot",
+        Request::Servo(_) => "asking for a servo's settings",
+        Request::SetServo { .. } => "setting up a servo",
+        Request::Trim { .. } => "trimming a servo",
+        Request::Begin(_) | Request::Chunk(_) | Request::Commit { .. } => "uploading the gait",
+        Request::Arm(_) => "arming",
+        Request::Play(_) => "starting to play",
+        Request::Pause { .. } => "pausing",
+        Request::Resume => "resuming",
+        Request::Stop => "stopping",
+        Request::EStop => "e-stopping",
+        Request::ClearResets => "clearing the latch of resets",
+        Request::CrashMessage => "asking for the crash message",
+        Request::Table => "asking for the table",
+    }
+}

@@ -1,0 +1,352 @@
+//! What time makes a session do: retransmit, give up, send the next piece, keep the lease fed.
+
+use std::time::Duration;
+
+use link_protocol::{
+    Chunk, Hello, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Ping, Request, SCHEMA_KEY,
+};
+use rand::RngExt;
+
+use super::error::LinkError;
+use super::upload::UploadPhase;
+use super::{
+    Event, Greeting, KEEP_ALIVE, LONGEST_SILENCE, Link, Owner, Pending, Session, TRIES, Ticket,
+    UploadProgress, describe,
+};
+
+/// Longest wait between two sendings of a stop.
+const STOP_WAIT: Duration = Duration::from_millis(200);
+/// Shortest time for which a stop is tried.
+const STOP_PATIENCE: Duration = Duration::from_secs(3);
+/// Pings that follow each other at the keep-alive's pace after a connect, for a first clock fit.
+const QUICK_PINGS: u32 = 8;
+/// Time between pings later.
+const PING_EVERY: Duration = Duration::from_secs(1);
+/// Times an upload may begin anew because the robot lost it.
+const RENEWALS: u32 = 8;
+/// Bytes on the wire of the longest chunk's frame.
+const CHUNK_COST: usize = 126;
+
+impl Session {
+    /// Does what is due at `now`. Call it after [`receive`](Self::receive) and when
+    /// [`next_deadline`](Self::next_deadline) has come; then send [`take_outgoing`](Self::take_outgoing).
+    pub fn poll(&mut self, now: Duration) {
+        self.drive_greeting(now);
+        self.drive_pending(now);
+        self.drive_upload(now);
+        self.feed_lease(now);
+    }
+
+    /// When [`poll`](Self::poll) has something to do next, if no bytes come before.
+    pub fn next_deadline(&self) -> Option<Duration> {
+        let mut deadlines = Vec::with_capacity(8);
+        let open = match &self.link {
+            Link::Greeting(greeting) => {
+                deadlines.push(greeting.next_try);
+                false
+            }
+            Link::Open(_) => {
+                deadlines.push(self.last_sent + KEEP_ALIVE);
+                true
+            }
+            Link::Closed => false,
+        };
+        if let Some(pending) = &self.pending {
+            deadlines.push(pending.next_try);
+        }
+        if let Some(upload) = &self.upload {
+            deadlines.push(upload.deadline);
+            deadlines.push(self.last_heard + LONGEST_SILENCE);
+            if open && upload.phase == UploadPhase::Chunks {
+                if let Some(sent) = upload.window.oldest() {
+                    deadlines.push(sent + self.trip.wait(upload.window.timeouts + 1));
+                }
+                if upload.window.next_piece().is_some() && self.window_has_room() {
+                    deadlines.push(self.line_free);
+                }
+            }
+        }
+        deadlines.into_iter().min()
+    }
+
+    /// Sends a first greeting under a new nonce.
+    pub(super) fn greet(&mut self, ticket: Option<Ticket>, now: Duration) {
+        let nonce = self.rng.random();
+        let sequence = self.next_sequence();
+        self.link = Link::Greeting(Greeting {
+            ticket,
+            nonce,
+            sequence,
+            tries: 0,
+            first_sent: now,
+            next_try: now,
+        });
+        self.drive_greeting(now);
+    }
+
+    /// Sends a request for the first time and keeps it until it is answered.
+    pub(super) fn put_under_way(&mut self, owner: Owner, request: Request, now: Duration) -> u16 {
+        let sequence = self.next_sequence();
+        self.pending = Some(Pending {
+            owner,
+            request,
+            sequence,
+            tries: 0,
+            first_sent: now,
+            last_sent: now,
+            next_try: now,
+        });
+        self.drive_pending(now);
+        sequence
+    }
+
+    fn drive_greeting(&mut self, now: Duration) {
+        let Link::Greeting(greeting) = &mut self.link else {
+            return;
+        };
+        if now < greeting.next_try {
+            return;
+        }
+        let patient = greeting.ticket.is_none() && self.upload.is_some();
+        if greeting.tries >= TRIES && !patient {
+            let (ticket, tries) = (greeting.ticket, greeting.tries);
+            let waited = now.saturating_sub(greeting.first_sent);
+            self.link = Link::Closed;
+            if let Some(ticket) = ticket {
+                let counters = Box::new(self.counters());
+                self.fail(
+                    ticket,
+                    LinkError::NoAnswer {
+                        doing: "connecting",
+                        tries,
+                        waited,
+                        counters,
+                    },
+                );
+            }
+            self.fail_queue();
+            return;
+        }
+        greeting.tries += 1;
+        greeting.next_try = now + self.trip.wait(greeting.tries);
+        let (sequence, nonce, again) = (greeting.sequence, greeting.nonce, greeting.tries > 1);
+        self.counters.retransmissions += u64::from(again);
+        let hello = Message::Hello(Hello {
+            protocol_min: PROTOCOL_MIN,
+            protocol_current: PROTOCOL_CURRENT,
+            schema_key: SCHEMA_KEY,
+            host_nonce: nonce,
+        });
+        self.send(sequence, &hello, now);
+    }
+
+    /// Nothing that waits in the queue can be sent any more.
+    pub(super) fn fail_queue(&mut self) {
+        for (ticket, request) in std::mem::take(&mut self.queue) {
+            let doing = describe(&request);
+            self.fail(ticket, LinkError::NotConnected { doing });
+        }
+        self.end_upload(LinkError::NotConnected {
+            doing: "uploading the gait",
+        });
+    }
+
+    fn drive_pending(&mut self, now: Duration) {
+        let open = matches!(self.link, Link::Open(_));
+        if self.pending.is_none() && open {
+            self.next_under_way(now);
+            return;
+        }
+        let Some(pending) = &mut self.pending else {
+            return;
+        };
+        let stop = matches!(pending.request, Request::Stop | Request::EStop);
+        if now < pending.next_try || !(open || stop) {
+            return;
+        }
+        let waited = now.saturating_sub(pending.first_sent);
+        let given_up = match pending.owner {
+            Owner::Upload => false,
+            Owner::Ticket(_) => pending.tries >= TRIES && (!stop || waited >= STOP_PATIENCE),
+        };
+        if given_up {
+            let tries = pending.tries;
+            let doing = describe(&pending.request);
+            let owner = pending.owner;
+            self.pending = None;
+            let counters = Box::new(self.counters());
+            if let Owner::Ticket(ticket) = owner {
+                self.fail(
+                    ticket,
+                    LinkError::NoAnswer {
+                        doing,
+                        tries,
+                        waited,
+                        counters,
+                    },
+                );
+            }
+            return;
+        }
+        pending.tries += 1;
+        pending.last_sent = now;
+        let wait = self.trip.wait(pending.tries);
+        pending.next_try = now + if stop { wait.min(STOP_WAIT) } else { wait };
+        self.counters.retransmissions += u64::from(pending.tries > 1);
+        let (sequence, message) = (pending.sequence, Message::Request(pending.request.clone()));
+        self.send(sequence, &message, now);
+    }
+
+    /// Begin or Commit of an upload first, then what waits longest.
+    fn next_under_way(&mut self, now: Duration) {
+        if let Some(upload) = &mut self.upload
+            && upload.due
+        {
+            upload.due = false;
+            let request = match upload.phase {
+                UploadPhase::Begin => Request::Begin(upload.begin),
+                UploadPhase::Chunks | UploadPhase::Commit => Request::Commit {
+                    upload: upload.number,
+                },
+            };
+            self.put_under_way(Owner::Upload, request, now);
+        } else if let Some((ticket, request)) = self.queue.pop_front() {
+            self.put_under_way(Owner::Ticket(ticket), request, now);
+        }
+    }
+
+    fn drive_upload(&mut self, now: Duration) {
+        let Some(upload) = &mut self.upload else {
+            return;
+        };
+        let doing = "uploading the gait";
+        if now >= upload.deadline {
+            let (waited, done, total) = (
+                upload.deadline.saturating_sub(upload.started),
+                upload.window.wanted(),
+                upload.table.len(),
+            );
+            let counters = Box::new(self.counters());
+            self.end_upload(LinkError::Deadline {
+                doing,
+                waited,
+                done,
+                total,
+                counters,
+            });
+            return;
+        }
+        let silent = now.saturating_sub(self.last_heard);
+        if silent >= LONGEST_SILENCE {
+            let counters = Box::new(self.counters());
+            self.end_upload(LinkError::Silent {
+                doing,
+                silent,
+                counters,
+            });
+            return;
+        }
+        if upload.phase != UploadPhase::Chunks || !matches!(self.link, Link::Open(_)) {
+            return;
+        }
+        if let Some(sent) = upload.window.oldest()
+            && now >= sent + self.trip.wait(upload.window.timeouts + 1)
+        {
+            upload.window.timeouts += 1;
+            upload.window.go_back();
+        }
+        self.send_pieces(now);
+    }
+
+    /// Fills the window at the pace of the line.
+    fn send_pieces(&mut self, now: Duration) {
+        while self.line_free <= now && self.window_has_room() {
+            let Some(upload) = &self.upload else {
+                return;
+            };
+            let Some(piece) = upload.window.next_piece() else {
+                return;
+            };
+            let data = upload.table.get(piece.clone()).unwrap_or_default();
+            let (Ok(data), Ok(offset)) =
+                (heapless::Vec::from_slice(data), u16::try_from(piece.start))
+            else {
+                return;
+            };
+            let chunk = Message::Request(Request::Chunk(Chunk {
+                upload: upload.number,
+                offset,
+                data,
+            }));
+            let sequence = self.next_sequence();
+            let cost = self.send(sequence, &chunk, now);
+            self.line_free = self.line_free.max(now)
+                + Duration::from_secs_f64(cost as f64 / self.config.bytes_per_second.max(1.0));
+            if let Some(upload) = &mut self.upload {
+                self.counters.retransmissions += u64::from(upload.window.sent(sequence, cost, now));
+            }
+        }
+    }
+
+    /// Another chunk fits what the robot's buffer may hold.
+    fn window_has_room(&self) -> bool {
+        let (Link::Open(hello), Some(upload)) = (&self.link, &self.upload) else {
+            return false;
+        };
+        let room = usize::from(hello.limits.upload_window.min(hello.buffer));
+        let in_flight = upload.window.in_flight();
+        // One piece at a time always fits, or a robot that advertises nothing could never be fed.
+        in_flight == 0 || in_flight + CHUNK_COST <= room
+    }
+
+    fn feed_lease(&mut self, now: Duration) {
+        if !matches!(self.link, Link::Open(_)) || now < self.last_sent + KEEP_ALIVE {
+            return;
+        }
+        self.counters.keep_alives += 1;
+        let sequence = self.next_sequence();
+        if now >= self.next_ping || self.pings < QUICK_PINGS {
+            self.pings += 1;
+            self.next_ping = now + PING_EVERY;
+            let host_us = u64::try_from(now.as_micros()).unwrap_or(u64::MAX);
+            self.send(sequence, &Message::Ping(Ping { host_us }), now);
+        } else {
+            self.send(sequence, &Message::KeepAlive, now);
+        }
+    }
+
+    /// The robot has lost the upload: begin anew, from where it says, but not for ever.
+    pub(super) fn renew_upload(&mut self, error: LinkError) {
+        let Some(upload) = &mut self.upload else {
+            return;
+        };
+        upload.renewed += 1;
+        if upload.renewed > RENEWALS {
+            self.end_upload(error);
+            return;
+        }
+        upload.phase = UploadPhase::Begin;
+        upload.due = true;
+        upload.window.go_back();
+        if self
+            .pending
+            .as_ref()
+            .is_some_and(|pending| pending.owner == Owner::Upload)
+        {
+            self.pending = None;
+        }
+    }
+
+    pub(super) fn report_progress(&mut self) {
+        if let Some(upload) = &self.upload {
+            self.events.push_back(Event::Progress {
+                ticket: upload.ticket,
+                progress: UploadProgress {
+                    phase: upload.phase,
+                    done: upload.window.wanted(),
+                    total: upload.table.len(),
+                },
+            });
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! How a session fails, in sentences with numbers and advice.
+
+use std::io;
+use std::time::Duration;
+
+use link_protocol::{Flags, Refusal, StateName, StopCause};
+
+use super::counters::LinkCounters;
+
+/// Why something asked of the robot did not happen. `doing` completes "while …".
+#[derive(Debug, thiserror::Error)]
+pub enum LinkError {
+    /// The port itself failed.
+    #[error("while {doing}: the port failed: {source}; check cable or pairing and connect again")]
+    Port {
+        /// What was being done.
+        doing: &'static str,
+        /// The system's words.
+        source: io::Error,
+    },
+    /// Nothing at all came back.
+    #[error(
+        "while {doing}: no answer after {tries} tries in {} ms ({counters}){}",
+        waited.as_millis(),
+        no_answer_advice(counters)
+    )]
+    NoAnswer {
+        /// What was being done.
+        doing: &'static str,
+        /// Times it was sent.
+        tries: u32,
+        /// Time from the first sending to giving up.
+        waited: Duration,
+        /// What crossed the link.
+        counters: Box<LinkCounters>,
+    },
+    /// The link fell silent during something that retries for as long as the robot is heard.
+    #[error(
+        "while {doing}: nothing valid heard for {} ms ({counters}); bring the robot nearer or reconnect, then try again: an upload goes on where it was",
+        silent.as_millis()
+    )]
+    Silent {
+        /// What was being done.
+        doing: &'static str,
+        /// How long nothing was heard.
+        silent: Duration,
+        /// What crossed the link.
+        counters: Box<LinkCounters>,
+    },
+    /// The deadline passed although the link works.
+    #[error("while {doing}: not done after {} ms ({done} of {total} bytes arrived; {counters}); try again: it goes on where it was", waited.as_millis())]
+    Deadline {
+        /// What was being done.
+        doing: &'static str,
+        /// The time that was given.
+        waited: Duration,
+        /// Bytes that arrived.
+        done: usize,
+        /// Bytes in all.
+        total: usize,
+        /// What crossed the link.
+        counters: Box<LinkCounters>,
+    },
+    /// The robot said no.
+    #[error("while {doing}: the robot refuses: {refusal}")]
+    Refused {
+        /// What was being done.
+        doing: &'static str,
+        /// Its reason.
+        refusal: Refusal,
+    },
+    /// The versions of the protocol do not meet.
+    #[error(
+        "the robot's firmware {firmware} speaks versions {robot_min} to {robot_current} of the protocol, this program {host_min} to {host_current}: {}",
+        if robot_current < host_min { "update the robot's firmware" } else { "update this program" }
+    )]
+    Version {
+        /// Lowest version the robot understands.
+        robot_min: u8,
+        /// Version the robot speaks.
+        robot_current: u8,
+        /// Lowest version this program understands.
+        host_min: u8,
+        /// Version this program speaks.
+        host_current: u8,
+        /// The robot's firmware.
+        firmware: String,
+    },
+    /// Same version, other messages: one end is a build from between two releases.
+    #[error(
+        "the robot's firmware {firmware} and this program both speak version {version} of the protocol but disagree on its messages (keys {robot_key:016x} and {host_key:016x}): build both from the same commit"
+    )]
+    Schema {
+        /// The version both speak.
+        version: u8,
+        /// The robot's schema key.
+        robot_key: u64,
+        /// This program's schema key.
+        host_key: u64,
+        /// The robot's firmware.
+        firmware: String,
+    },
+    /// The robot no longer knows this session.
+    #[error(
+        "while {doing}: the robot has opened another session ({open}): it restarted, or another program took it over; look at its status and connect again"
+    )]
+    SessionLost {
+        /// What was being done.
+        doing: &'static str,
+        /// The session that is open now.
+        open: u16,
+    },
+    /// A stop was sent before this was answered.
+    #[error(
+        "while {doing}: dropped because a stop was sent; whether the robot did it, its status tells"
+    )]
+    Dropped {
+        /// What was being done.
+        doing: &'static str,
+    },
+    /// Nobody has connected, or the connection failed.
+    #[error("while {doing}: no session with the robot; connect first")]
+    NotConnected {
+        /// What was being done.
+        doing: &'static str,
+    },
+    /// The answer is none to the question.
+    #[error(
+        "while {doing}: the robot's answer is none to this request ({reply}); match firmware and program"
+    )]
+    WrongReply {
+        /// What was being done.
+        doing: &'static str,
+        /// What came.
+        reply: String,
+    },
+    /// A number that does not fit the wire.
+    #[error("while {doing}: {quantity} of {value} is outside {low} … {high}")]
+    OutOfRange {
+        /// What was being done.
+        doing: &'static str,
+        /// Which quantity, with its unit.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+        /// Lowest possible.
+        low: f64,
+        /// Highest possible.
+        high: f64,
+    },
+    /// The robot stopped before the end of the play.
+    #[error(
+        "the robot stopped after {cycle} of {cycles} cycles: {}{}",
+        cause_in_words(*cause),
+        if flags.contains(Flags::BATTERY_LOW) { " (battery low)" } else { "" }
+    )]
+    StoppedEarly {
+        /// Why.
+        cause: StopCause,
+        /// Its state now.
+        state: StateName,
+        /// Cycles done.
+        cycle: u32,
+        /// Cycles asked for.
+        cycles: u32,
+        /// What else holds.
+        flags: Flags,
+    },
+    /// The caller broke off.
+    #[error("while {doing}: broken off by the operator")]
+    Interrupted {
+        /// What was being done.
+        doing: &'static str,
+    },
+}
+
+fn no_answer_advice(counters: &LinkCounters) -> &'static str {
+    match (counters.bytes_received, counters.received.ok) {
+        (0, _) => "; is the robot on and paired, and is this its port?",
+        (_, 0) => "; bytes come but none make sense: is the baud rate right?",
+        _ => "; the link is bad: bring the robot nearer and try again",
+    }
+}
+
+/// A cause of stopping as a clause.
+pub fn cause_in_words(cause: StopCause) -> &'static str {
+    match cause {
+        StopCause::Boot => "it restarted",
+        StopCause::Finished => "the play ended",
+        StopCause::Requested => "a stop was requested",
+        StopCause::PauseExpired => "the pause reached its limit",
+        StopCause::LinkLost => "it lost the link",
+        StopCause::BatteryLow => "its battery is low: charge it",
+        StopCause::EStop => "an e-stop was requested",
+    }
+}

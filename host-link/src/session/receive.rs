@@ -1,0 +1,320 @@
+//! What a session makes of the bytes that come: greetings, answers, telemetry, the time.
+
+use std::time::Duration;
+
+use link_protocol::{
+    FirmwareVersion, HelloReply, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Received, Refusal, Reply,
+    Request, SCHEMA_KEY,
+};
+
+use super::error::LinkError;
+use super::upload::{Answer, UploadPhase, Window};
+use super::{Event, Link, Owner, Pending, Session, describe};
+
+impl Session {
+    /// Takes bytes that arrived at `now`, in any split, and then does what is due.
+    pub fn receive(&mut self, now: Duration, bytes: &[u8]) {
+        self.counters.bytes_received += bytes.len() as u64;
+        for &byte in bytes {
+            if let Some(received) = self.decoder.push(byte) {
+                self.take(received, now);
+            }
+        }
+        self.poll(now);
+    }
+
+    fn take(&mut self, received: Received, now: Duration) {
+        let header = received.header;
+        let Ok(message) = received.message else {
+            return;
+        };
+        let ours = matches!(self.link, Link::Open(_)) && header.session == self.number;
+        match message {
+            Message::HelloReply(reply) => self.greeted(reply, now),
+            Message::Reply(reply) => {
+                let answers = self
+                    .pending
+                    .as_ref()
+                    .is_some_and(|pending| pending.sequence == header.sequence);
+                // A stop is answered whatever the session, and so is a request of a session that is no more.
+                let stop = answers && self.stop_under_way();
+                let stale = matches!(reply, Reply::Refused(Refusal::StaleSession { .. }));
+                if ours || stop || stale {
+                    self.last_heard = now;
+                    self.answered(header.sequence, reply, now);
+                } else {
+                    self.counters.foreign += 1;
+                }
+            }
+            _ if !ours => self.counters.foreign += 1,
+            Message::Telemetry(telemetry) => {
+                self.last_heard = now;
+                if self
+                    .last_robot_us
+                    .is_some_and(|last| telemetry.robot_us <= last)
+                {
+                    self.counters.late_telemetry += 1;
+                    return;
+                }
+                self.last_robot_us = Some(telemetry.robot_us);
+                self.counters.telemetry += 1;
+                self.events
+                    .push_back(Event::Telemetry { telemetry, at: now });
+            }
+            Message::Pong(pong) => {
+                self.last_heard = now;
+                if let Some(trip) = self.clock.push(&pong, now) {
+                    self.trip.sample(trip);
+                }
+            }
+            // Only hosts send these: an echo.
+            Message::Hello(_) | Message::Request(_) | Message::KeepAlive | Message::Ping(_) => {
+                self.counters.foreign += 1;
+            }
+        }
+    }
+
+    fn stop_under_way(&self) -> bool {
+        self.pending
+            .as_ref()
+            .is_some_and(|pending| matches!(pending.request, Request::Stop | Request::EStop))
+    }
+
+    fn greeted(&mut self, reply: HelloReply, now: Duration) {
+        let Link::Greeting(greeting) = &self.link else {
+            return;
+        };
+        if reply.host_nonce != greeting.nonce {
+            self.counters.foreign += 1;
+            return;
+        }
+        let ticket = greeting.ticket;
+        if greeting.tries == 1 {
+            self.trip.sample(now.saturating_sub(greeting.first_sent));
+        }
+        self.last_heard = now;
+        if let Err(error) = versions_meet(&reply) {
+            self.link = Link::Closed;
+            if let Some(ticket) = ticket {
+                self.fail(ticket, error);
+            }
+            self.fail_queue();
+            return;
+        }
+        let restarted = self
+            .boot_nonce
+            .is_some_and(|nonce| nonce != reply.boot_nonce);
+        if restarted {
+            self.clock.clear();
+        }
+        self.boot_nonce = Some(reply.boot_nonce);
+        self.number = reply.session;
+        self.last_robot_us = None;
+        self.pings = 0;
+        self.counters.sessions += 1;
+        self.link = Link::Open(reply);
+        if let Some(ticket) = ticket {
+            self.events
+                .push_back(Event::Connected { ticket, restarted });
+        }
+        if self.upload.is_some() {
+            let doing = "uploading the gait";
+            self.renew_upload(LinkError::NotConnected { doing });
+        }
+    }
+
+    fn answered(&mut self, sequence: u16, reply: Reply, now: Duration) {
+        if let Some(pending) = self.pending.take_if(|pending| pending.sequence == sequence) {
+            if pending.tries == 1 && !matches!(pending.request, Request::Commit { .. }) {
+                self.trip.sample(now.saturating_sub(pending.first_sent));
+            }
+            match (reply, pending.owner) {
+                (Reply::Working, _) => {
+                    // Heard, and at it: the tries start anew.
+                    let next_try = now + self.trip.wait(2);
+                    self.pending = Some(Pending {
+                        tries: 0,
+                        next_try,
+                        ..pending
+                    });
+                }
+                (Reply::Refused(Refusal::StaleSession { open }), owner) => {
+                    self.session_lost(owner, &pending.request, open, now);
+                }
+                (reply, Owner::Upload) => self.upload_answered(&pending.request, reply),
+                (Reply::Refused(refusal), Owner::Ticket(ticket)) => {
+                    let doing = describe(&pending.request);
+                    self.fail(ticket, LinkError::Refused { doing, refusal });
+                }
+                (reply, Owner::Ticket(ticket)) => {
+                    self.events.push_back(Event::Answered { ticket, reply });
+                }
+            }
+        } else {
+            self.piece_answered(sequence, &reply, now);
+        }
+    }
+
+    /// The robot restarted or was taken over. An upload greets again; whatever else was asked did not happen in this session.
+    fn session_lost(&mut self, owner: Owner, request: &Request, open: u16, now: Duration) {
+        let doing = describe(request);
+        if self.upload.is_some() {
+            self.renew_upload(LinkError::SessionLost { doing, open });
+        }
+        if let Owner::Ticket(ticket) = owner {
+            self.fail(ticket, LinkError::SessionLost { doing, open });
+        }
+        if self.upload.is_some() {
+            self.greet(None, now);
+        } else {
+            self.link = Link::Closed;
+            self.fail_queue();
+        }
+    }
+
+    /// An answer to Begin or Commit.
+    fn upload_answered(&mut self, request: &Request, reply: Reply) {
+        let Some(upload) = &mut self.upload else {
+            return;
+        };
+        let doing = "uploading the gait";
+        match (request, reply) {
+            (
+                Request::Begin(_),
+                Reply::Wanted {
+                    upload: number,
+                    offset,
+                },
+            ) => {
+                upload.number = number;
+                upload.window = Window::new(upload.table.len(), offset.into());
+                self.chunks_or_commit();
+            }
+            (Request::Commit { .. }, Reply::Table(Some(table))) => {
+                let ticket = upload.ticket;
+                self.upload = None;
+                self.events.push_back(Event::Uploaded { ticket, table });
+            }
+            (Request::Commit { .. }, Reply::Refused(Refusal::Incomplete { wanted })) => {
+                upload.window = Window::new(upload.table.len(), wanted.into());
+                self.chunks_or_commit();
+            }
+            (Request::Commit { .. }, Reply::Refused(refusal @ Refusal::NoUpload)) => {
+                self.renew_upload(LinkError::Refused { doing, refusal });
+            }
+            (_, Reply::Refused(refusal)) => self.end_upload(LinkError::Refused { doing, refusal }),
+            (_, reply) => {
+                let reply = format!("{reply:?}");
+                self.end_upload(LinkError::WrongReply { doing, reply });
+            }
+        }
+    }
+
+    fn chunks_or_commit(&mut self) {
+        if let Some(upload) = &mut self.upload {
+            let complete = upload.window.complete();
+            upload.phase = if complete {
+                UploadPhase::Commit
+            } else {
+                UploadPhase::Chunks
+            };
+            upload.due = complete;
+        }
+        self.report_progress();
+    }
+
+    /// An answer to a chunk, or to nothing any more.
+    fn piece_answered(&mut self, sequence: u16, reply: &Reply, now: Duration) {
+        let Some(upload) = self
+            .upload
+            .as_mut()
+            .filter(|upload| upload.window.knows(sequence))
+        else {
+            self.counters.unmatched += 1;
+            return;
+        };
+        let doing = "uploading the gait";
+        let before = upload.window.wanted();
+        let (wanted, gap) = match reply {
+            Reply::Wanted {
+                upload: number,
+                offset,
+            } if *number == upload.number => (*offset, false),
+            Reply::Refused(Refusal::ChunkOutOfRange { wanted }) => (*wanted, true),
+            Reply::Refused(Refusal::StaleSession { open }) => {
+                let open = *open;
+                self.renew_upload(LinkError::SessionLost { doing, open });
+                if self.upload.is_some() {
+                    self.greet(None, now);
+                }
+                return;
+            }
+            Reply::Refused(refusal @ Refusal::NoUpload) => {
+                let refusal = *refusal;
+                self.renew_upload(LinkError::Refused { doing, refusal });
+                return;
+            }
+            // Its turn comes again with the time-out.
+            Reply::Working | Reply::Refused(Refusal::Busy) => return,
+            Reply::Refused(refusal) => {
+                let refusal = *refusal;
+                self.end_upload(LinkError::Refused { doing, refusal });
+                return;
+            }
+            reply => {
+                let reply = format!("{reply:?}");
+                self.end_upload(LinkError::WrongReply { doing, reply });
+                return;
+            }
+        };
+        if let Answer::Noted(Some(trip)) = upload.window.answered(sequence, wanted.into(), gap, now)
+        {
+            self.trip.sample(trip);
+        }
+        if upload.window.complete() || upload.window.wanted() > before {
+            self.chunks_or_commit();
+        }
+    }
+}
+
+fn versions_meet(reply: &HelloReply) -> Result<(), LinkError> {
+    let firmware = firmware_name(&reply.firmware);
+    if reply.protocol_current < PROTOCOL_MIN || reply.protocol_min > PROTOCOL_CURRENT {
+        return Err(LinkError::Version {
+            robot_min: reply.protocol_min,
+            robot_current: reply.protocol_current,
+            host_min: PROTOCOL_MIN,
+            host_current: PROTOCOL_CURRENT,
+            firmware,
+        });
+    }
+    if reply.protocol_current == PROTOCOL_CURRENT && reply.schema_key != SCHEMA_KEY {
+        return Err(LinkError::Schema {
+            version: PROTOCOL_CURRENT,
+            robot_key: u64::from_be_bytes(reply.schema_key),
+            host_key: u64::from_be_bytes(SCHEMA_KEY),
+            firmware,
+        });
+    }
+    Ok(())
+}
+
+/// `1.2.3 (0123abcd)`.
+pub(crate) fn firmware_name(firmware: &FirmwareVersion) -> String {
+    let FirmwareVersion {
+        major,
+        minor,
+        patch,
+        commit,
+    } = firmware;
+    let commit: String = commit
+        .iter()
+        .map(|&byte| char::from(byte))
+        .filter(char::is_ascii_hexdigit)
+        .collect();
+    if commit.is_empty() {
+        format!("{major}.{minor}.{patch}")
+    } else {
+        format!("{major}.{minor}.{patch} ({commit})")
+    }
+}

@@ -1,0 +1,71 @@
+//! How long an answer takes, smoothed, and from it how long to wait before asking again.
+
+use std::time::Duration;
+
+/// Shortest wait before a retransmission.
+pub(crate) const SHORTEST: Duration = Duration::from_millis(80);
+/// Longest wait before a retransmission.
+pub(crate) const LONGEST: Duration = Duration::from_secs(3);
+/// Wait before the first answer has been timed.
+const FIRST: Duration = Duration::from_millis(200);
+
+/// The smoothed round trip of a link.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct RoundTrip {
+    smoothed: Option<Duration>,
+}
+
+impl RoundTrip {
+    /// Takes the round trip of a frame that was sent once only: a repeat's answer could belong to either sending.
+    pub(crate) fn sample(&mut self, round_trip: Duration) {
+        self.smoothed = Some(match self.smoothed {
+            Some(smoothed) => (smoothed * 7 + round_trip) / 8,
+            None => round_trip,
+        });
+    }
+
+    /// The smoothed round trip, once there is one.
+    pub(crate) fn smoothed(&self) -> Option<Duration> {
+        self.smoothed
+    }
+
+    /// The wait after sending number `tries` (from 1): twice the smoothed round trip, doubled for each repeat, since a
+    /// link that clumps may answer all of them at once.
+    pub(crate) fn wait(&self, tries: u32) -> Duration {
+        let first = self.smoothed.map_or(FIRST, |smoothed| smoothed * 2);
+        let doubled = first
+            .max(SHORTEST)
+            .saturating_mul(1 << tries.saturating_sub(1).min(10));
+        doubled.clamp(SHORTEST, LONGEST)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: Duration = Duration::from_millis(1);
+
+    #[test]
+    fn waits_are_twice_the_round_trip_within_80_ms_and_3_s() {
+        let mut trip = RoundTrip::default();
+        assert_eq!(trip.wait(1), FIRST);
+        trip.sample(MS * 10);
+        assert_eq!(trip.wait(1), SHORTEST);
+        let mut slow = RoundTrip::default();
+        slow.sample(MS * 300);
+        assert_eq!(slow.wait(1), MS * 600);
+        assert_eq!(slow.wait(2), MS * 1200);
+        assert_eq!(slow.wait(3), MS * 2400);
+        assert_eq!(slow.wait(4), LONGEST);
+        assert_eq!(slow.wait(u32::MAX), LONGEST);
+    }
+
+    #[test]
+    fn smoothing_follows_slowly() {
+        let mut trip = RoundTrip::default();
+        trip.sample(MS * 80);
+        trip.sample(MS * 160);
+        assert_eq!(trip.smoothed(), Some(MS * 90));
+    }
+}
