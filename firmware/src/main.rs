@@ -1,3 +1,46 @@
-//! The thin RP2040 shell around gait-player.
+//! The thin RP2040 shell around `gait-player`. It moves bytes and time between the chip and the [`Brain`]
+//! (`gait_player::Brain`) and decides nothing.
+//!
+//! ```text
+//!  thread executor                        interrupt executor (SWI_IRQ_1), above the thread, below the UART
+//!  ┌────────────────┐   RECEIVED  ┌──────────────────────────────────────────────┐
+//!  │ uart::receive  │ ──────────► │ control, at every 20 ms tick and when bytes  │ ──► servos (PWM slice)
+//!  │ uart::send     │ ◄────────── │ came: Brain::receive, tick, transmit         │ ──► LED, watchdog
+//!  │ battery::sample│   TO_SEND   │ only while stopped: Brain::serve_storage     │ ◄─► storage (flash)
+//!  │ watchdog::beat │             └──────────────────────────────────────────────┘
+//!  └────────────────┘
+//! ```
+//!
+//! One file for each peripheral; `board.rs` has the pins, `control.rs` the loop.
 
-fn main() {}
+#![cfg_attr(target_os = "none", no_std, no_main)]
+// `usize` has the chip's 32 bits.
+#![allow(clippy::cast_possible_truncation)]
+
+#[cfg(target_os = "none")]
+mod battery;
+#[cfg(target_os = "none")]
+mod board;
+#[cfg(target_os = "none")]
+mod boot;
+#[cfg(target_os = "none")]
+mod control;
+#[cfg(target_os = "none")]
+mod led;
+#[cfg(target_os = "none")]
+mod servos;
+#[cfg(target_os = "none")]
+mod start;
+#[cfg(target_os = "none")]
+mod storage;
+#[cfg(target_os = "none")]
+mod uart;
+#[cfg(target_os = "none")]
+mod watchdog;
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    eprintln!(
+        "The firmware runs on the RP2040 only: `cargo xtask firmware` builds it, `cargo xtask flash` flashes it."
+    );
+}

@@ -1,0 +1,58 @@
+//! The servo pack's voltage, held at its minimum between two control ticks: a sag of a millisecond must not be missed.
+
+use embassy_rp::Peri;
+use embassy_rp::adc::{Adc, Blocking, Channel, Config};
+use embassy_rp::gpio::Pull;
+use embassy_rp::peripherals::{ADC, PIN_26};
+use embassy_time::{Duration, Ticker};
+use portable_atomic::{AtomicU16, Ordering};
+
+/// How many times the pack's voltage is above the pin's, in thousandths (4700 = a 37 kΩ / 10 kΩ divider). `None`: no
+/// divider is soldered, the pin is not read and the battery is reported as not measured.
+const DIVIDER_MILLI: Option<u32> = divider(option_env!("SWIMMER_BATTERY_DIVIDER_MILLI"));
+/// ADC reference [mV]: the boards' 3.3 V rail.
+const REFERENCE_MV: u32 = 3300;
+/// A reading that never occurs: the ADC has 12 bits.
+const NONE: u16 = u16::MAX;
+/// Samples a second: twenty a control tick, each 2 µs of the CPU.
+const RATE_HZ: u64 = 1000;
+
+static LOWEST: AtomicU16 = AtomicU16::new(NONE);
+
+/// Samples the pin for ever and holds the minimum.
+#[embassy_executor::task]
+pub(crate) async fn sample(adc: Peri<'static, ADC>, pin: Peri<'static, PIN_26>) {
+    if DIVIDER_MILLI.is_none() {
+        return;
+    }
+    let mut adc: Adc<'static, Blocking> = Adc::new_blocking(adc, Config::default());
+    let mut channel = Channel::new_pin(pin, Pull::None);
+    let mut ticker = Ticker::every(Duration::from_hz(RATE_HZ));
+    loop {
+        ticker.next().await;
+        if let Ok(reading) = adc.blocking_read(&mut channel) {
+            LOWEST.fetch_min(reading, Ordering::Relaxed);
+        }
+    }
+}
+
+/// Lowest pack voltage [mV] since the last call; `None` without a divider or before the first sample.
+pub(crate) fn lowest_mv() -> Option<u16> {
+    let reading = LOWEST.swap(NONE, Ordering::Relaxed);
+    if reading == NONE {
+        return None;
+    }
+    let pin_uv = u32::from(reading) * (REFERENCE_MV * 1000 / 4096);
+    u16::try_from(u64::from(pin_uv) * u64::from(DIVIDER_MILLI?) / 1_000_000).ok()
+}
+
+/// Reads the build-time setting; anything but a number of 1000 or more stops the build.
+const fn divider(setting: Option<&str>) -> Option<u32> {
+    let Some(text) = setting else { return None };
+    match u32::from_str_radix(text, 10) {
+        Ok(milli) if milli >= 1000 => Some(milli),
+        _ => panic!(
+            "SWIMMER_BATTERY_DIVIDER_MILLI must be a whole number of thousandths, 1000 or more"
+        ),
+    }
+}

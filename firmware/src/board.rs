@@ -1,0 +1,67 @@
+//! Which pin does what, on both boards (one truth; the wiring table of the README is this file in words).
+
+use embassy_rp::Peri;
+use embassy_rp::Peripherals;
+use embassy_rp::gpio::AnyPin;
+use embassy_rp::peripherals::{
+    ADC, FLASH, PIN_0, PIN_1, PIN_16, PIN_17, PIN_26, PWM_SLICE0, UART0, WATCHDOG,
+};
+
+#[cfg(all(feature = "nano-connect", feature = "pico"))]
+compile_error!(
+    "one board at a time: build the Pico with `--no-default-features --features pico`, or `cargo xtask firmware --board pico`"
+);
+#[cfg(not(any(feature = "nano-connect", feature = "pico")))]
+compile_error!("no board chosen: add `--features nano-connect` or `--features pico`");
+
+/// What the boards share and where they differ (LED and STATE pin only).
+pub(crate) struct Board {
+    /// The serial link to the HC-05: UART0.
+    pub(crate) uart: Peri<'static, UART0>,
+    /// TX to the HC-05's RXD: GPIO0 (Nano D1, Pico GP0).
+    pub(crate) link_tx: Peri<'static, PIN_0>,
+    /// RX from the HC-05's TXD: GPIO1 (Nano D0, Pico GP1).
+    pub(crate) link_rx: Peri<'static, PIN_1>,
+    /// The HC-05's STATE, high while connected: Nano D2 = GPIO25, Pico GP22.
+    pub(crate) link_state: Peri<'static, AnyPin>,
+    /// Both servos on one slice, so that they switch in the same period.
+    pub(crate) servo_slice: Peri<'static, PWM_SLICE0>,
+    /// Front joint φ₁: GPIO16, channel A (Nano D4, Pico GP16).
+    pub(crate) servo_front: Peri<'static, PIN_16>,
+    /// Back joint φ₂: GPIO17, channel B (Nano D5, Pico GP17).
+    pub(crate) servo_back: Peri<'static, PIN_17>,
+    /// On-board LED: Nano D13 = GPIO6, Pico GP25.
+    pub(crate) led: Peri<'static, AnyPin>,
+    /// Analogue-to-digital converter of the battery pin.
+    pub(crate) adc: Peri<'static, ADC>,
+    /// Battery through a divider: GPIO26 (Nano A0, Pico GP26).
+    pub(crate) battery: Peri<'static, PIN_26>,
+    /// Gait slots and settings.
+    pub(crate) flash: Peri<'static, FLASH>,
+    /// The watchdog, with its scratch registers.
+    pub(crate) watchdog: Peri<'static, WATCHDOG>,
+}
+
+impl Board {
+    /// Sorts the chip's peripherals by what they do on this board.
+    pub(crate) fn new(p: Peripherals) -> Self {
+        #[cfg(feature = "nano-connect")]
+        let (link_state, led) = (p.PIN_25.into(), p.PIN_6.into());
+        #[cfg(not(feature = "nano-connect"))]
+        let (link_state, led) = (p.PIN_22.into(), p.PIN_25.into());
+        Self {
+            uart: p.UART0,
+            link_tx: p.PIN_0,
+            link_rx: p.PIN_1,
+            link_state,
+            servo_slice: p.PWM_SLICE0,
+            servo_front: p.PIN_16,
+            servo_back: p.PIN_17,
+            led,
+            adc: p.ADC,
+            battery: p.PIN_26,
+            flash: p.FLASH,
+            watchdog: p.WATCHDOG,
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! From reset to running tasks: takes the chip apart, wakes the brain, starts control above everything else.
+
+use defmt::{info, unwrap};
+use defmt_rtt as _;
+use embassy_executor::{InterruptExecutor, Spawner};
+use embassy_rp::interrupt;
+use embassy_rp::interrupt::{InterruptExt, Priority};
+use gait_player::Brain;
+use panic_probe as _;
+use static_cell::StaticCell;
+
+use crate::board::Board;
+use crate::control::{Control, control};
+use crate::led::Led;
+use crate::servos::Servos;
+use crate::storage::FlashStorage;
+use crate::watchdog::Watchdog;
+use crate::{battery, boot, uart, watchdog};
+
+/// Runs `control` from an interrupt, so that no other task can hold it up.
+static ABOVE_THE_THREAD: InterruptExecutor = InterruptExecutor::new();
+
+#[interrupt]
+fn SWI_IRQ_1() {
+    // SAFETY: called from the very interrupt that the executor was started with, and from nowhere else.
+    #[allow(unsafe_code)]
+    unsafe {
+        ABOVE_THE_THREAD.on_interrupt();
+    }
+}
+
+#[embassy_executor::main]
+async fn main(spawner: Spawner) {
+    let board = Board::new(embassy_rp::init(embassy_rp::config::Config::default()));
+    // First of all the pins that could move something: outputs low, counter stopped.
+    let servos = Servos::new(board.servo_slice, board.servo_front, board.servo_back);
+    let mut watchdog = Watchdog::new(board.watchdog);
+    watchdog.start();
+
+    static BRAIN: StaticCell<Brain> = StaticCell::new();
+    let brain = BRAIN.init_with(|| Brain::new(boot::brain_config(&mut watchdog)));
+    let mut storage = FlashStorage::new(board.flash);
+    if let Err(error) = brain.load(&mut storage) {
+        defmt::warn!("loading gait and settings: {}; going on without", error);
+    }
+    info!(
+        "swimmer firmware {}, commit {}",
+        env!("CARGO_PKG_VERSION"),
+        env!("SWIMMER_COMMIT")
+    );
+
+    let link_state = uart::start(
+        spawner,
+        board.uart,
+        board.link_tx,
+        board.link_rx,
+        board.link_state,
+    );
+    spawner.spawn(unwrap!(battery::sample(board.adc, board.battery)));
+    spawner.spawn(unwrap!(watchdog::beat()));
+
+    // Priority 0, where the UART and the timer are, stays above: bytes are not lost while a tick is computed.
+    interrupt::SWI_IRQ_1.set_priority(Priority::P1);
+    ABOVE_THE_THREAD
+        .start(interrupt::SWI_IRQ_1)
+        .spawn(unwrap!(control(Control {
+            brain,
+            servos,
+            led: Led::new(board.led),
+            watchdog,
+            storage,
+            link_state,
+        })));
+}
