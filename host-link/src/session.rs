@@ -21,16 +21,17 @@ mod clock_fit;
 mod counters;
 mod drive;
 mod error;
+mod event;
 mod receive;
 mod round_trip;
+mod under_way;
 mod upload;
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
 use link_protocol::{
-    Begin, Decoder, Header, HelloReply, MAX_ENCODED, Message, Reply, Request, TableInfo, Telemetry,
-    crc32c, encode,
+    Begin, Decoder, Header, HelloReply, MAX_ENCODED, Message, Request, crc32c, encode,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -38,11 +39,13 @@ use rand_chacha::ChaCha8Rng;
 pub use clock_fit::ClockFit;
 pub use counters::LinkCounters;
 pub use error::{LinkError, cause_in_words};
+pub use event::{Event, Ticket};
 pub(crate) use receive::firmware_name;
 pub use upload::{UploadPhase, UploadProgress};
 
 use clock_fit::ClockSamples;
 use round_trip::RoundTrip;
+use under_way::{Greeting, Link, Owner, Pending, Upload, describe};
 use upload::Window;
 
 /// Tries before a request that an operator waits for is given up.
@@ -70,111 +73,6 @@ impl SessionConfig {
             bytes_per_second: 11_520.0,
         }
     }
-}
-
-/// Names something asked until its event comes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Ticket(u64);
-
-/// What a session tells its shell.
-#[derive(Debug)]
-pub enum Event {
-    /// A session is open. `restarted`: the robot has booted since the session before.
-    Connected {
-        /// The ticket of [`Session::connect`].
-        ticket: Ticket,
-        /// The robot has restarted since the last session.
-        restarted: bool,
-    },
-    /// The robot answered a request.
-    Answered {
-        /// The ticket of [`Session::request`].
-        ticket: Ticket,
-        /// Its answer; never a refusal.
-        reply: Reply,
-    },
-    /// An upload is the active table, or will be at the next cycle boundary.
-    Uploaded {
-        /// The ticket of [`Session::upload`].
-        ticket: Ticket,
-        /// What the robot holds now.
-        table: TableInfo,
-    },
-    /// More of an upload has arrived.
-    Progress {
-        /// The ticket of [`Session::upload`].
-        ticket: Ticket,
-        /// How much.
-        progress: UploadProgress,
-    },
-    /// Something asked did not happen.
-    Failed {
-        /// Its ticket.
-        ticket: Ticket,
-        /// Why.
-        error: LinkError,
-    },
-    /// The robot told about itself.
-    Telemetry {
-        /// What it said.
-        telemetry: Telemetry,
-        /// When it arrived, on the host's clock.
-        at: Duration,
-    },
-}
-
-#[derive(Debug)]
-struct Greeting {
-    /// `None`: the session greets by itself for an upload.
-    ticket: Option<Ticket>,
-    nonce: u32,
-    sequence: u16,
-    tries: u32,
-    first_sent: Duration,
-    next_try: Duration,
-}
-
-#[derive(Debug)]
-#[allow(clippy::large_enum_variant)] // there is one of it
-enum Link {
-    Closed,
-    Greeting(Greeting),
-    Open(HelloReply),
-}
-
-/// Who waits for a request under way.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Owner {
-    Ticket(Ticket),
-    Upload,
-}
-
-#[derive(Debug)]
-struct Pending {
-    owner: Owner,
-    request: Request,
-    sequence: u16,
-    tries: u32,
-    first_sent: Duration,
-    last_sent: Duration,
-    next_try: Duration,
-}
-
-#[derive(Debug)]
-struct Upload {
-    ticket: Ticket,
-    begin: Begin,
-    table: Vec<u8>,
-    started: Duration,
-    deadline: Duration,
-    phase: UploadPhase,
-    /// Begin or Commit has yet to be sent.
-    due: bool,
-    /// Sequence number of its Begin.
-    number: u16,
-    window: Window,
-    /// Times it had to begin anew.
-    renewed: u32,
 }
 
 /// A session with one robot.
@@ -439,28 +337,5 @@ impl Session {
                 },
             );
         }
-    }
-}
-
-/// What a request does, to complete "while …".
-fn describe(request: &Request) -> &'static str {
-    match request {
-        Request::Status => "asking for the status",
-        Request::Counters => "asking for the robot's counters",
-        Request::Configuration => "asking for the configuration",
-        Request::Configure(_) => "configuring the robot",
-        Request::Servo(_) => "asking for a servo's settings",
-        Request::SetServo { .. } => "setting up a servo",
-        Request::Trim { .. } => "trimming a servo",
-        Request::Begin(_) | Request::Chunk(_) | Request::Commit { .. } => "uploading the gait",
-        Request::Arm(_) => "arming",
-        Request::Play(_) => "starting to play",
-        Request::Pause { .. } => "pausing",
-        Request::Resume => "resuming",
-        Request::Stop => "stopping",
-        Request::EStop => "e-stopping",
-        Request::ClearResets => "clearing the latch of resets",
-        Request::CrashMessage => "asking for the crash message",
-        Request::Table => "asking for the table",
     }
 }

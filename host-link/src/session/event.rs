@@ -1,0 +1,59 @@
+//! What a session tells its shell.
+
+use std::time::Duration;
+
+use link_protocol::{Reply, TableInfo, Telemetry};
+
+use super::error::LinkError;
+use super::upload::UploadProgress;
+
+/// Names something asked until its event comes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Ticket(pub(super) u64);
+
+/// What a session tells its shell.
+#[derive(Debug)]
+pub enum Event {
+    /// A session is open. `restarted`: the robot has booted since the session before.
+    Connected {
+        /// The ticket of [`Session::connect`].
+        ticket: Ticket,
+        /// The robot has restarted since the last session.
+        restarted: bool,
+    },
+    /// The robot answered a request.
+    Answered {
+        /// The ticket of [`Session::request`].
+        ticket: Ticket,
+        /// Its answer; never a refusal.
+        reply: Reply,
+    },
+    /// An upload is the active table, or will be at the next cycle boundary.
+    Uploaded {
+        /// The ticket of [`Session::upload`].
+        ticket: Ticket,
+        /// What the robot holds now.
+        table: TableInfo,
+    },
+    /// More of an upload has arrived.
+    Progress {
+        /// The ticket of [`Session::upload`].
+        ticket: Ticket,
+        /// How much.
+        progress: UploadProgress,
+    },
+    /// Something asked did not happen.
+    Failed {
+        /// Its ticket.
+        ticket: Ticket,
+        /// Why.
+        error: LinkError,
+    },
+    /// The robot told about itself.
+    Telemetry {
+        /// What it said.
+        telemetry: Telemetry,
+        /// When it arrived, on the host's clock.
+        at: Duration,
+    },
+}

@@ -1,0 +1,56 @@
+//! The twin in real time, behind ports that programs open: a pseudo-terminal, TCP, or both.
+
+use std::io;
+use std::time::Duration;
+
+use host_link::Port;
+use host_link::port::Device;
+
+use crate::Twin;
+
+/// How long one turn waits for bytes, over all ports together: what a request waits at most before the brain sees it.
+const TURN: Duration = Duration::from_millis(2);
+/// Bytes a turn may send: about four times what a line at 115 200 baud carries meanwhile.
+const ROOM: usize = 96;
+
+/// Lives with the ports' clock until `go_on` says no: it is asked every few milliseconds. What comes from any port reaches
+/// the brain; what the brain sends goes to all of them.
+///
+/// The twin's clock follows that of the first port, from wherever the twin is now. Without ports it returns at once.
+///
+/// # Errors
+/// A port that failed for good; clients that come and go are no failure.
+pub fn serve(
+    twin: &mut Twin,
+    ports: &mut [&mut dyn Port],
+    mut go_on: impl FnMut(&Twin) -> bool,
+) -> io::Result<()> {
+    let Some(first) = ports.first() else {
+        return Ok(());
+    };
+    let (origin, twin_origin) = (first.now(), twin.now());
+    let wait = TURN / u32::try_from(ports.len()).unwrap_or(u32::MAX);
+    let mut buf = [0; 512];
+    let mut out = Vec::new();
+    while go_on(twin) {
+        for index in 0..ports.len() {
+            let Some(port) = ports.get_mut(index) else {
+                break;
+            };
+            let count = port.read(&mut buf, wait)?;
+            let now = ports.first().map_or(origin, |port| Port::now(*port));
+            twin.advance(twin_origin + now.saturating_sub(origin));
+            if let Some(bytes) = buf.get(..count).filter(|bytes| !bytes.is_empty()) {
+                twin.receive(bytes);
+            }
+        }
+        out.clear();
+        twin.transmit(ROOM, &mut out);
+        if !out.is_empty() {
+            for port in &mut *ports {
+                port.write(&out)?;
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,98 @@
+//! Two servos between pulses and joint angles: the brain's own map read backwards, and the plant all predictions share.
+
+use gait_player::servo::ServoMap;
+use gait_player::servo::plant::{PlantParameters, ServoPlant};
+use nalgebra::Vector2;
+
+/// Both shafts, at rest straight at first.
+#[derive(Debug, Clone)]
+pub struct Servos {
+    maps: [ServoMap; 2],
+    plant: PlantParameters,
+    shafts: [ServoPlant; 2],
+    /// What the last pulses command, rad; `None`: no pulses, no torque: the gears hold.
+    command: Option<[f64; 2]>,
+}
+
+impl Servos {
+    /// Servos at angle 0 without pulses.
+    pub fn new(maps: [ServoMap; 2], plant: PlantParameters) -> Self {
+        Self {
+            maps,
+            plant,
+            shafts: [ServoPlant::new(0.0); 2],
+            command: None,
+        }
+    }
+
+    /// Where the shafts are, rad.
+    pub fn angles(&self) -> [f64; 2] {
+        self.shafts.map(|shaft| shaft.angle)
+    }
+
+    /// New pulses, ns, or none.
+    pub fn set_pulses(&mut self, pulses_ns: Option<[u32; 2]>) {
+        self.command = pulses_ns.map(|pulses| {
+            std::array::from_fn(|joint| self.plant.command(&self.maps[joint], pulses[joint]))
+        });
+    }
+
+    /// Lets `seconds` pass. `visit` sees each vertex of the path: between two of them both angles change evenly.
+    pub fn advance(&mut self, seconds: f64, mut visit: impl FnMut(Vector2<f64>)) {
+        let Some(command) = self.command else {
+            return;
+        };
+        let rests: [f64; 2] = std::array::from_fn(|joint| {
+            self.shafts[joint].time_to_rest(&self.plant, command[joint])
+        });
+        let mut now = 0.0;
+        for vertex in [rests[0].min(rests[1]), rests[0].max(rests[1]), seconds] {
+            if vertex > now && vertex <= seconds {
+                for (shaft, command) in self.shafts.iter_mut().zip(command) {
+                    shaft.advance(&self.plant, command, vertex - now);
+                }
+                now = vertex;
+                visit(Vector2::from(self.angles()));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_path_has_a_vertex_where_a_shaft_comes_to_rest() {
+        let plant = PlantParameters {
+            max_rate: 2.0,
+            dead_band: 0.0,
+            pulse_step_ns: 0,
+        };
+        let map = ServoMap::ROBOT;
+        let mut servos = Servos::new([map; 2], plant);
+        servos.set_pulses(Some([map.pulse_ns(0.01), map.pulse_ns(-1.0)]));
+        let mut path = Vec::new();
+        servos.advance(0.02, |phi| path.push(phi));
+        assert_eq!(path.len(), 2);
+        assert!(
+            (path[0] - Vector2::new(0.01, -0.01)).norm() < 2e-5,
+            "{path:?}"
+        );
+        assert!(
+            (path[1] - Vector2::new(0.01, -0.04)).norm() < 2e-5,
+            "{path:?}"
+        );
+    }
+
+    #[test]
+    fn without_pulses_the_gears_hold() {
+        let map = ServoMap::ROBOT;
+        let mut servos = Servos::new([map; 2], PlantParameters::IDEAL);
+        servos.set_pulses(Some([map.pulse_ns(0.5); 2]));
+        servos.advance(0.02, |_| {});
+        servos.set_pulses(None);
+        servos.advance(1.0, |_| unreachable!("nothing moves"));
+        assert!((servos.angles()[0] - 0.5).abs() < 2e-5);
+    }
+}

@@ -1,0 +1,145 @@
+//! The tank: joint angles move, and the swimmer moves by the model's connection, ġ = g A(Φ) Φ̇.
+
+use nalgebra::{Vector2, Vector3};
+use swimmer_model::{InvalidSwimmer, Model, Pose, Swimmer};
+
+/// Longest piece of a joint path that is taken in one step, rad. The rule is of fourth order: at 0.02 rad a step's error is
+/// of the order of 1e-9 of the swimmer's length.
+const LONGEST_PIECE: f64 = 0.02;
+
+/// A swimmer in still, very viscous fluid.
+#[derive(Debug, Clone)]
+pub struct Tank {
+    model: Model<f64>,
+    phi: Vector2<f64>,
+    pose: Pose<f64>,
+}
+
+impl Tank {
+    /// Puts a swimmer with straight joints into the tank.
+    ///
+    /// # Errors
+    /// The lengths and drags make no swimmer.
+    pub fn new(swimmer: &Swimmer<f64>, pose: Pose<f64>) -> Result<Self, InvalidSwimmer> {
+        Ok(Self {
+            model: Model::new(swimmer)?,
+            phi: Vector2::zeros(),
+            pose,
+        })
+    }
+
+    /// Where the middle link is, m and rad, in the tank's frame.
+    pub fn pose(&self) -> Pose<f64> {
+        self.pose
+    }
+
+    /// The joint angles Φ, rad.
+    pub fn phi(&self) -> Vector2<f64> {
+        self.phi
+    }
+
+    /// Moves the joints on a straight line to `phi`. How fast does not matter to a swimmer without inertia.
+    ///
+    /// Fourth-order Magnus steps with two Gauss points: exact in SE(2) up to the connection's curvature along the piece.
+    pub fn move_joints(&mut self, phi: Vector2<f64>) {
+        let way = phi - self.phi;
+        let pieces = (way.norm() / LONGEST_PIECE).ceil();
+        if !(pieces >= 1.0 && pieces.is_finite()) {
+            return;
+        }
+        let step = way / pieces;
+        let gauss = 3.0_f64.sqrt() / 6.0;
+        let start = self.phi;
+        let mut piece = 0.0;
+        while piece < pieces {
+            let middle = start + step * (piece + 0.5);
+            let [first, second] =
+                [-gauss, gauss].map(|at| self.model.local_connection(&(middle + step * at)) * step);
+            self.pose = self.pose * Pose::exp(&magnus(&first, &second));
+            piece += 1.0;
+        }
+        self.phi = phi;
+    }
+}
+
+/// The twist whose exponential solves ġ = g X(s) over one step, from X at the two Gauss points.
+fn magnus(first: &Vector3<f64>, second: &Vector3<f64>) -> Vector3<f64> {
+    let mean = (first + second) * 0.5;
+    // The bracket of se(2): [X, Y] = (ω_X J v_Y − ω_Y J v_X, 0), J a quarter turn.
+    let bracket = Vector3::new(
+        -first.z * second.y + second.z * first.y,
+        first.z * second.x - second.z * first.x,
+        0.0,
+    );
+    mean + bracket * (3.0_f64.sqrt() / 12.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use swimmer_model::{Circle, Gait, Tolerance, swim};
+
+    /// A polygon with many corners against the model's own integration of the circle: the corners' chords cut off
+    /// (2π/n)²/6 of the area.
+    #[test]
+    fn a_fine_polygon_swims_like_the_circle() {
+        for swimmer in [Swimmer::purcell(), Swimmer::robot()] {
+            let circle = Circle { amplitude: 1.2 };
+            let stroke = swim(
+                &Model::new(&swimmer).unwrap(),
+                &circle,
+                &Tolerance::default(),
+            );
+            let mut tank = Tank::new(&swimmer, Pose::identity()).unwrap();
+            tank.move_joints(circle.at(0.0).phi);
+            let start = tank.pose();
+            let corners = 20_000_u32;
+            for corner in 1..=corners {
+                tank.move_joints(circle.at(f64::from(corner) / f64::from(corners)).phi);
+            }
+            let moved = start.inverse() * tank.pose();
+            let error =
+                (moved.position() - stroke.displacement).norm() / stroke.displacement.norm();
+            assert!(error < 5e-8, "relative error {error:e}");
+            assert!((moved.theta - stroke.rotation).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn the_step_is_of_fourth_order_and_ours_is_fine_enough() {
+        let swimmer = Swimmer::robot();
+        let end = Vector2::new(1.4, -0.9);
+        let run = |pieces: u32| {
+            let mut tank = Tank::new(&swimmer, Pose::identity()).unwrap();
+            for piece in 1..=pieces {
+                tank.move_joints(end * f64::from(piece) / f64::from(pieces));
+            }
+            tank.pose()
+        };
+        let (whole, fine) = (run(1), run(2000));
+        let error = (whole.position() - fine.position())
+            .norm()
+            .max((whole.theta - fine.theta).abs());
+        assert!(error < 1e-9, "{error:e}");
+    }
+
+    #[test]
+    fn there_and_back_is_nowhere() {
+        let mut tank = Tank::new(&Swimmer::purcell(), Pose::new(0.3, 0.2, 1.0)).unwrap();
+        tank.move_joints(Vector2::new(1.0, 0.4));
+        tank.move_joints(Vector2::zeros());
+        let pose = tank.pose();
+        assert!(
+            (pose.x - 0.3).abs() < 1e-12
+                && (pose.y - 0.2).abs() < 1e-12
+                && (pose.theta - 1.0).abs() < 1e-12
+        );
+    }
+
+    #[test]
+    fn nonsense_does_not_move_it() {
+        let mut tank = Tank::new(&Swimmer::purcell(), Pose::identity()).unwrap();
+        tank.move_joints(Vector2::new(f64::NAN, 0.0));
+        assert!(tank.pose().x.abs() < 1e-300);
+    }
+}
