@@ -1,0 +1,167 @@
+//! A robot that follows a script: it decodes what a session sends, and the test answers by hand.
+
+use std::time::Duration;
+
+use host_link::session::{Event, Session, SessionConfig, Ticket};
+use link_protocol::{
+    Board, Decoder, FirmwareVersion, Header, Hello, HelloReply, MAX_ENCODED, Message,
+    PROTOCOL_CURRENT, PROTOCOL_MIN, Reply, Request, ResetReason, RobotLimits, SCHEMA_KEY, encode,
+};
+
+pub(crate) const MS: Duration = Duration::from_millis(1);
+pub(crate) const SESSION: u16 = 7;
+
+/// What a session sent: when, under which header, what.
+pub(crate) type Sent = (Duration, Header, Message);
+
+pub(crate) struct Script {
+    pub(crate) session: Session,
+    pub(crate) now: Duration,
+    decoder: Decoder,
+    pub(crate) sent: Vec<Sent>,
+    pub(crate) events: Vec<Event>,
+}
+
+impl Script {
+    pub(crate) fn new() -> Self {
+        Self {
+            session: Session::new(SessionConfig::new(1)),
+            now: Duration::ZERO,
+            decoder: Decoder::new(),
+            sent: Vec::new(),
+            events: Vec::new(),
+        }
+    }
+
+    /// A session that is open after a round trip of `trip`.
+    pub(crate) fn open(trip: Duration) -> Self {
+        let mut script = Self::new();
+        script.session.connect(script.now);
+        script.collect();
+        script.run_to(trip);
+        script.greet(|_| {});
+        assert!(matches!(script.events.pop(), Some(Event::Connected { .. })));
+        script.sent.clear();
+        script
+    }
+
+    /// Takes what the session has to send and to tell.
+    pub(crate) fn collect(&mut self) {
+        for byte in self.session.take_outgoing() {
+            if let Some(received) = self.decoder.push(byte) {
+                self.sent
+                    .push((self.now, received.header, received.message.unwrap()));
+            }
+        }
+        while let Some(event) = self.session.next_event() {
+            self.events.push(event);
+        }
+    }
+
+    /// Lets the session live until `end`, deadline by deadline.
+    pub(crate) fn run_to(&mut self, end: Duration) {
+        loop {
+            self.session.poll(self.now);
+            self.collect();
+            let next = self.session.next_deadline().map_or(end, |at| at.min(end));
+            if self.now >= end {
+                return;
+            }
+            assert!(
+                next > self.now || next == end,
+                "a deadline that stands still at {next:?}"
+            );
+            self.now = next.max(self.now);
+        }
+    }
+
+    /// The robot says something.
+    pub(crate) fn say(&mut self, session: u16, sequence: u16, message: &Message) {
+        let mut frame = [0; MAX_ENCODED];
+        let len = encode(Header::new(session, sequence), message, &mut frame).unwrap();
+        self.session.receive(self.now, &frame[..len]);
+        self.collect();
+    }
+
+    /// Answers the request sent last.
+    pub(crate) fn reply(&mut self, reply: Reply) {
+        let sequence = self.last_request().1;
+        self.say(SESSION, sequence, &Message::Reply(reply));
+    }
+
+    /// Answers the last greeting, changed by `change`.
+    pub(crate) fn greet(&mut self, change: impl FnOnce(&mut HelloReply)) {
+        let (sequence, hello) = self
+            .sent
+            .iter()
+            .rev()
+            .find_map(|(_, header, message)| match message {
+                Message::Hello(hello) => Some((header.sequence, *hello)),
+                _ => None,
+            })
+            .unwrap();
+        let mut reply = hello_reply(&hello);
+        change(&mut reply);
+        self.say(reply.session, sequence, &Message::HelloReply(reply));
+    }
+
+    /// The request sent last: when, number, what.
+    pub(crate) fn last_request(&self) -> (Duration, u16, Request) {
+        self.requests().pop().unwrap()
+    }
+
+    /// All requests sent.
+    pub(crate) fn requests(&self) -> Vec<(Duration, u16, Request)> {
+        self.sent
+            .iter()
+            .filter_map(|(at, header, message)| match message {
+                Message::Request(request) => Some((*at, header.sequence, request.clone())),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// How a ticket ended: `Ok` for an answer, `Err` with the error's text.
+    pub(crate) fn outcome(&self, wanted: Ticket) -> Option<Result<(), String>> {
+        self.events.iter().find_map(|event| match event {
+            Event::Answered { ticket, .. }
+            | Event::Connected { ticket, .. }
+            | Event::Uploaded { ticket, .. }
+                if *ticket == wanted =>
+            {
+                Some(Ok(()))
+            }
+            Event::Failed { ticket, error } if *ticket == wanted => Some(Err(error.to_string())),
+            _ => None,
+        })
+    }
+}
+
+fn hello_reply(hello: &Hello) -> HelloReply {
+    HelloReply {
+        host_nonce: hello.host_nonce,
+        protocol_min: PROTOCOL_MIN,
+        protocol_current: PROTOCOL_CURRENT,
+        schema_key: SCHEMA_KEY,
+        firmware: FirmwareVersion {
+            major: 1,
+            minor: 2,
+            patch: 3,
+            commit: *b"0123abcd",
+        },
+        board: Board::Pico,
+        reset_reason: ResetReason::PowerOn,
+        crash_message: false,
+        session: SESSION,
+        boot_nonce: 99,
+        limits: RobotLimits {
+            max_angle: 2.8,
+            max_rate: 3.5,
+            pulse_min_ns: 1_300_000,
+            pulse_max_ns: 1_700_000,
+            max_knots: 512,
+            upload_window: 1024,
+        },
+        buffer: 2048,
+    }
+}
