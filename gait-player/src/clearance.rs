@@ -70,3 +70,120 @@ fn point_distance_squared(p: Point, [a, b]: [Point; 2]) -> f32 {
     let away = [to[0] - t * along[0], to[1] - t * along[1]];
     away[0] * away[0] + away[1] * away[1]
 }
+
+/// A straight way in the plane of shapes, looked at in pieces: each clearance vouches for the way that it allows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WayCheck {
+    from: [f32; 2],
+    to: [f32; 2],
+    done: f32,
+}
+
+/// What a [`WayCheck`] knows so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Way {
+    /// Not everything yet.
+    Unknown,
+    /// The way is clear.
+    Clear,
+    /// The side links come too close here.
+    Crosses([f32; 2]),
+}
+
+/// A way starts and ends in shapes that gaits may have, so it keeps a little less than their margin.
+const WAY_MARGIN: f32 = 0.5;
+/// Smallest share of a way that is gone on.
+const SMALLEST_SHARE: f32 = 0.02;
+
+impl WayCheck {
+    /// The way between two shapes.
+    pub fn new(from: [f32; 2], to: [f32; 2]) -> Self {
+        Self {
+            from,
+            to,
+            done: 0.0,
+        }
+    }
+
+    /// Evaluates the clearance once.
+    pub fn advance(&mut self, links: &Links<f32>) -> Way {
+        let at = self.done.min(1.0);
+        let shape = [0, 1].map(|joint| self.from[joint] + at * (self.to[joint] - self.from[joint]));
+        let reach = clearance(links, shape) - WAY_MARGIN * margin(links);
+        if reach < 0.0 || reach.is_nan() {
+            return Way::Crosses(shape);
+        }
+        if at >= 1.0 {
+            return Way::Clear;
+        }
+        let whole = motion(
+            links,
+            [self.to[0] - self.from[0], self.to[1] - self.from[1]],
+        );
+        self.done = if whole > 0.0 {
+            (at + (reach / whole).max(SMALLEST_SHARE)).min(1.0)
+        } else {
+            1.0
+        };
+        Way::Unknown
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector2;
+    use proptest::prelude::*;
+    use swimmer_model::Swimmer;
+
+    proptest! {
+        /// The model's own test of crossing is the witness: no distance where links cross, some where they do not.
+        #[test]
+        fn it_agrees_with_the_models_crossing(a in -3.1_f32..3.1, b in -3.1_f32..3.1, robot in any::<bool>()) {
+            let swimmer: Swimmer<f32> = if robot { Swimmer::robot() } else { Swimmer::purcell() };
+            let gap = clearance(&swimmer.links, [a, b]);
+            let overlap = swimmer.links.overlap(&Vector2::new(a, b));
+            if overlap > 1e-5 {
+                prop_assert!(gap == 0.0, "{}", gap);
+            } else if overlap < -1e-5 {
+                prop_assert!(gap > 0.0);
+            }
+        }
+
+        #[test]
+        fn no_turn_changes_it_by_more_than_the_motion(
+            a in -3.1_f32..3.1, b in -3.1_f32..3.1, da in -0.3_f32..0.3, db in -0.3_f32..0.3
+        ) {
+            let links = Swimmer::robot().links;
+            let change = clearance(&links, [a, b]) - clearance(&links, [a + da, b + db]);
+            prop_assert!(change.abs() <= motion(&links, [da, db]) + 1e-6, "{}", change);
+        }
+    }
+
+    fn check(from: [f32; 2], to: [f32; 2]) -> Way {
+        let mut check = WayCheck::new(from, to);
+        let links = Swimmer::purcell().links;
+        let steps = (0..60).map(|_| check.advance(&links));
+        steps
+            .into_iter()
+            .find(|way| *way != Way::Unknown)
+            .unwrap_or(Way::Unknown)
+    }
+
+    #[test]
+    fn ways_are_followed_to_their_end() {
+        assert_eq!(check([0.0; 2], [1.3, 1.3]), Way::Clear);
+        assert_eq!(check([0.7; 2], [0.7; 2]), Way::Clear);
+        assert!(matches!(check([0.0; 2], [2.1, 2.1]), Way::Crosses(_)));
+        // Around the crossing region's corner: clear at both ends, not between.
+        assert!(matches!(check([2.8, 1.6], [1.6, 2.8]), Way::Crosses(_)));
+        assert!(matches!(check([f32::NAN, 0.0], [0.0; 2]), Way::Crosses(_)));
+    }
+
+    #[test]
+    fn a_folded_link_is_no_clear_shape() {
+        let links = Swimmer::robot().links;
+        assert!(clearance(&links, [core::f32::consts::PI, 0.5]) < 1e-6);
+        assert!((clearance(&links, [0.0, 0.0]) - 0.071).abs() < 1e-6);
+    }
+}

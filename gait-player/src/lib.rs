@@ -16,10 +16,13 @@
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 pub mod brain;
+mod clamp;
 pub mod clearance;
 pub mod limits;
+mod odometer;
 pub mod playback;
 pub mod ramp;
+mod route;
 pub mod servo;
 pub mod storage;
 pub mod table;

@@ -134,6 +134,27 @@ impl GaitTable {
         Ok(table)
     }
 
+    /// A table of so many knots, all zero, to be filled by [`Self::put`].
+    pub(crate) fn clear(&mut self, knots: u16) {
+        self.bytes = [0; MAX_TABLE];
+        self.len = knots.min(MAX_KNOTS as u16);
+    }
+
+    /// Overwrites bytes; what reaches past the end is left out.
+    pub(crate) fn put(&mut self, offset: usize, bytes: &[u8]) {
+        let len = self.knots() * KNOT_BYTES;
+        for (place, byte) in self.bytes[..len].iter_mut().skip(offset).zip(bytes) {
+            *place = *byte;
+        }
+    }
+
+    /// Room for the bytes of a table of so many knots, to be filled from storage.
+    pub(crate) fn buffer(&mut self, knots: u16) -> &mut [u8] {
+        self.clear(knots);
+        let len = self.knots() * KNOT_BYTES;
+        &mut self.bytes[..len]
+    }
+
     /// The wire's bytes.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes[..self.knots() * KNOT_BYTES]

@@ -1,1 +1,267 @@
-//! Checks a table before it may play.
+//! Checks a table before it may play: the interpolant, not only the knots. The work comes in pieces, because a chip
+//! without floating point has two milliseconds a tick: a checker is fed units of work until it knows the [`Facts`].
+
+use super::{Cubic, GaitTable};
+use crate::Limits;
+use crate::clearance::{clearance, margin, motion};
+use libm::{fabsf, sqrtf};
+use link_protocol::{ANGLE_UNIT_RAD, CrossingPlace, Joint, Refusal};
+use swimmer_model::Links;
+
+/// How far the interpolant may swing beyond the largest angle, 1e-4 rad: at a corner of a gait that lies on its bound it
+/// does so by a share of one step. The clamp before the servos cuts it off.
+const ANGLE_SLACK: f32 = 50.0;
+/// What rounding to 1e-4 rad adds to a rate: slopes may exceed the limit by this share.
+const RATE_SLACK: f32 = 1.005;
+/// A closing step may be this many times the largest other one (plus rounding): gaits are not sampled uniformly in arc.
+const CLOSING_FACTOR: f32 = 2.0;
+const CLOSING_SLACK: f32 = 20.0;
+/// Units of work of one evaluation of the clearance; an interval's angles and slopes are one unit.
+const CLEARANCE_WORK: u32 = 10;
+/// Pieces of an interval in which the clearance is looked at again.
+const PIECES: usize = 4;
+
+/// The place in a table where something is largest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Largest {
+    /// Which joint.
+    pub joint: Joint,
+    /// The knot before the place.
+    pub knot: u16,
+    /// The value there; 1e-4 rad, or 1e-4 rad an interval.
+    pub value: f32,
+}
+
+/// What is known of a table once it is checked; limits and period are held against it later.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facts {
+    knots: u16,
+    angle: Largest,
+    slope: Largest,
+    open: Option<Refusal>,
+    crossing: Option<Refusal>,
+}
+
+impl Facts {
+    /// Whether the table may be active: closed, clear of crossings, within the largest angle.
+    ///
+    /// # Errors
+    /// The first reason why not.
+    pub fn allow(&self, limits: &Limits) -> Result<(), Refusal> {
+        if let Some(refusal) = self.open.or(self.crossing) {
+            return Err(refusal);
+        }
+        let limit = limits.max_angle / ANGLE_UNIT_RAD;
+        if fabsf(self.angle.value) > limit + ANGLE_SLACK {
+            let Largest { joint, knot, value } = self.angle;
+            return Err(Refusal::AngleLimit {
+                joint,
+                knot,
+                angle: value as i32,
+                limit: limit as i32,
+            });
+        }
+        Ok(())
+    }
+
+    /// Shortest period at which no joint is faster than allowed, µs.
+    pub fn min_period_us(&self, limits: &Limits) -> u32 {
+        let seconds = fabsf(self.slope.value) * ANGLE_UNIT_RAD * f32::from(self.knots)
+            / (limits.max_rate * RATE_SLACK);
+        libm::ceilf(seconds * 1e6) as u32
+    }
+
+    /// Whether the table may play at this period.
+    ///
+    /// # Errors
+    /// Where it is too fast.
+    pub fn allow_period(&self, limits: &Limits, period_us: u32) -> Result<(), Refusal> {
+        let min_period_us = self.min_period_us(limits);
+        if period_us < min_period_us {
+            let Largest { joint, knot, .. } = self.slope;
+            return Err(Refusal::RateLimit {
+                joint,
+                knot,
+                min_period_us,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// A check in progress.
+#[derive(Clone, Debug)]
+pub struct Checker {
+    next: usize,
+    angle: Largest,
+    slope: Largest,
+    steps: [f32; 2],
+    crossing: Option<Refusal>,
+    /// Way that the links may still move before the last clearance vouches for nothing, m.
+    reach: f32,
+}
+
+const NOTHING: Largest = Largest {
+    joint: Joint::Front,
+    knot: 0,
+    value: 0.0,
+};
+
+impl Checker {
+    /// A check at its start.
+    pub const fn new() -> Self {
+        Self {
+            next: 0,
+            angle: NOTHING,
+            slope: NOTHING,
+            steps: [0.0; 2],
+            crossing: None,
+            reach: 0.0,
+        }
+    }
+
+    /// Does `work` units of work (a few more at most); the facts once all is done.
+    pub fn advance(&mut self, table: &GaitTable, links: &Links<f32>, work: u32) -> Option<Facts> {
+        let mut left = work.max(1);
+        while self.next < table.knots() {
+            if left == 0 {
+                return None;
+            }
+            left = left.saturating_sub(1 + self.interval(table, links));
+            self.next += 1;
+        }
+        let knots = table.knots() as u16;
+        Some(Facts {
+            knots,
+            angle: self.angle,
+            slope: self.slope,
+            open: self.closing(table),
+            crossing: self.crossing,
+        })
+    }
+
+    /// Checks one interval; returns the work beyond its own unit.
+    fn interval(&mut self, table: &GaitTable, links: &Links<f32>) -> u32 {
+        let knot = self.next as u16;
+        let cubics = table.interval(self.next);
+        for (joint, cubic) in [Joint::Front, Joint::Back].into_iter().zip(&cubics) {
+            let largest = cubic.largest_value(fabsf(self.angle.value));
+            raise(&mut self.angle, joint, knot, largest);
+            raise(&mut self.slope, joint, knot, cubic.largest_slope());
+            if self.next + 1 < table.knots() {
+                let rise = fabsf(cubic.value(1.0) - cubic.a);
+                self.steps[joint.index()] = self.steps[joint.index()].max(rise);
+            }
+        }
+        if self.crossing.is_some() {
+            return 0;
+        }
+        let way = motion(
+            links,
+            [0, 1].map(|joint| cubics[joint].way() * ANGLE_UNIT_RAD),
+        );
+        let mut work = 0;
+        let mut piece = 0;
+        let mut left = way;
+        // As long as the last clearance does not vouch for the rest of the interval, look again, piece by piece.
+        while self.reach < left && piece < PIECES {
+            let t = piece as f32 / PIECES as f32;
+            let angles = [0, 1].map(|joint| cubics[joint].value(t) * ANGLE_UNIT_RAD);
+            self.reach = clearance(links, angles) - margin(links);
+            work += CLEARANCE_WORK;
+            if self.reach < 0.0 {
+                let [phi1, phi2] = angles.map(|angle| (angle / ANGLE_UNIT_RAD) as i16);
+                self.crossing = Some(Refusal::LinksCross {
+                    place: CrossingPlace::Gait(knot),
+                    phi1,
+                    phi2,
+                });
+                return work;
+            }
+            piece += 1;
+            if self.reach < left {
+                left = way * (1.0 - piece as f32 / PIECES as f32);
+            }
+        }
+        self.reach = (self.reach - left).max(0.0);
+        work
+    }
+
+    fn closing(&self, table: &GaitTable) -> Option<Refusal> {
+        let (first, last) = (table.knot(0), table.knot(table.knots().saturating_sub(1)));
+        [Joint::Front, Joint::Back].into_iter().find_map(|joint| {
+            let step = i32::from(first[joint.index()]) - i32::from(last[joint.index()]);
+            let largest = self.steps[joint.index()];
+            let open = fabsf(step as f32) > CLOSING_FACTOR * largest + CLOSING_SLACK;
+            open.then_some(Refusal::NotClosed {
+                joint,
+                step,
+                largest: largest as i32,
+            })
+        })
+    }
+}
+
+impl Default for Checker {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+fn raise(largest: &mut Largest, joint: Joint, knot: u16, value: f32) {
+    if fabsf(value) > fabsf(largest.value) {
+        *largest = Largest { joint, knot, value };
+    }
+}
+
+impl Cubic {
+    /// The value of largest magnitude for t in \[0, 1\]; any smaller one where none is above `known`.
+    fn largest_value(&self, known: f32) -> f32 {
+        let end = self.value(1.0);
+        let largest = larger(self.a, end);
+        // The curve lies within the hull of its control points.
+        let hull = larger(
+            larger(
+                self.a + self.b / 3.0,
+                self.a + (2.0 * self.b + self.c) / 3.0,
+            ),
+            largest,
+        );
+        if fabsf(hull) <= known.max(fabsf(largest)) {
+            return largest;
+        }
+        // Zeros of the slope b + 2ct + 3dt², in the form that has no cancellation.
+        let root = sqrtf((self.c * self.c - 3.0 * self.b * self.d).max(0.0));
+        let q = -(self.c + if self.c < 0.0 { -root } else { root });
+        let at = |t: f32| {
+            if (0.0..=1.0).contains(&t) {
+                self.value(t)
+            } else {
+                end
+            }
+        };
+        larger(largest, larger(at(q / (3.0 * self.d)), at(self.b / q)))
+    }
+
+    /// The slope of largest magnitude for t in \[0, 1\].
+    fn largest_slope(&self) -> f32 {
+        let ends = larger(self.b, self.slope(1.0));
+        let vertex = -self.c / (3.0 * self.d);
+        if (0.0..=1.0).contains(&vertex) {
+            larger(ends, self.slope(vertex))
+        } else {
+            ends
+        }
+    }
+
+    /// No shorter than the way the angle goes, back and forth: the length of the control polygon.
+    fn way(&self) -> f32 {
+        fabsf(self.b) / 3.0
+            + fabsf(self.b + self.c) / 3.0
+            + fabsf(self.b + 2.0 * self.c + 3.0 * self.d) / 3.0
+    }
+}
+
+fn larger(a: f32, b: f32) -> f32 {
+    if fabsf(b) > fabsf(a) { b } else { a }
+}

@@ -1,0 +1,168 @@
+//! From tick to tick: where the joints should be, and what ends.
+
+use super::Brain;
+use super::state::{Progress, State};
+use super::work::Work;
+use crate::TICK_US;
+use crate::ramp::{NEUTRAL, Ramp};
+use link_protocol::StopCause;
+
+/// Pulses stay on so long at neutral.
+const SETTLE_US: u64 = 500_000;
+/// A detached pause holds its pose so long.
+const DETACHED_PAUSE_US: u64 = 60_000_000;
+
+impl Brain {
+    /// Failsafes: what must end, ends here; the more severe cause wins.
+    pub(super) fn watch(&mut self, now_us: u64) {
+        if let State::Paused {
+            since_us,
+            detached: true,
+            ..
+        } = self.state
+            && now_us.saturating_sub(since_us) >= DETACHED_PAUSE_US
+        {
+            self.stop(StopCause::PauseExpired);
+        }
+        if self.state.powered() && !self.state.detached() && self.session.silent(now_us) {
+            self.stop(StopCause::LinkLost);
+        }
+        if self.battery_stops && self.state.powered() {
+            self.stop(StopCause::BatteryLow);
+        }
+    }
+
+    /// Ramps to neutral from where the servos are; latched. Where it stops already, the more severe cause is kept.
+    pub(super) fn stop(&mut self, cause: StopCause) {
+        self.drop_work();
+        match self.state {
+            State::Stopped | State::EStopped => {}
+            State::Stopping { .. } | State::Settling { .. } => {
+                if cause as u8 > self.cause as u8 {
+                    self.cause = cause;
+                }
+            }
+            State::Holding { .. }
+            | State::Starting { .. }
+            | State::Playing { .. }
+            | State::Paused { .. } => {
+                let ramp = Ramp::to_neutral(self.commanded, &self.limits);
+                self.leave_play(State::Stopping {
+                    ramp,
+                    since: self.tick,
+                });
+                self.cause = cause;
+            }
+        }
+    }
+
+    /// No pulses from the next tick on; latched.
+    pub(super) fn estop(&mut self) {
+        self.drop_work();
+        self.leave_play(State::EStopped);
+        self.cause = StopCause::EStop;
+        self.resets.estop = true;
+    }
+
+    /// A request that still waits for its check will not act any more.
+    fn drop_work(&mut self) {
+        self.work = Work::Idle;
+    }
+
+    /// A table that waited for the end of a cycle need not wait any longer.
+    fn leave_play(&mut self, state: State) {
+        self.state = state;
+        if let Some(swap) = self.tables.swap() {
+            self.tables.activate_staging(swap.facts);
+            self.persist.table_changed();
+        }
+    }
+
+    /// Where the joints should be in this tick; `None`: no pulses.
+    pub(super) fn advance_motion(&mut self, tick: u64, last: u64) -> Option<[f32; 2]> {
+        let since_start = |since: u64| tick.saturating_sub(since) * u64::from(TICK_US);
+        match self.state {
+            State::Stopped | State::EStopped => None,
+            State::Holding { pose } | State::Paused { pose, .. } => Some(pose),
+            State::Starting { ramp, since, play } => {
+                let elapsed_us = since_start(since);
+                if elapsed_us < u64::from(ramp.duration_us()) {
+                    return Some(ramp.at(elapsed_us));
+                }
+                self.state = State::Playing { since: tick, play };
+                Some(self.advance_play_by(play, 0, 0))
+            }
+            State::Playing { since, play } => {
+                let before = last.saturating_sub(since) * u64::from(TICK_US);
+                Some(self.advance_play_by(play, before, since_start(since)))
+            }
+            State::Stopping { ramp, since } => {
+                let elapsed_us = since_start(since);
+                if elapsed_us >= u64::from(ramp.duration_us()) {
+                    self.state = State::Settling { since: tick };
+                }
+                Some(ramp.at(elapsed_us))
+            }
+            State::Settling { since } => {
+                if since_start(since) < SETTLE_US {
+                    return Some(NEUTRAL);
+                }
+                self.state = State::Stopped;
+                None
+            }
+        }
+    }
+
+    /// The table's angles after `elapsed_us` more than `play` had come to; `before_us` in the tick before.
+    fn advance_play_by(&mut self, play: Progress, before_us: u64, elapsed_us: u64) -> [f32; 2] {
+        let before = Progress {
+            elapsed_us: play.elapsed_us + before_us,
+            ..play
+        };
+        let mut now = Progress {
+            elapsed_us: play.elapsed_us + elapsed_us,
+            ..play
+        };
+        let Some(table) = self.tables.active() else {
+            // A play without a table cannot begin.
+            self.stop(StopCause::Requested);
+            return self.commanded;
+        };
+        if now.finished() {
+            let end = table.knot_angles(0);
+            now.elapsed_us = now.period_us() * u64::from(now.request.cycles);
+            self.last_play = Some(now);
+            let ramp = Ramp::to_neutral(end, &self.limits);
+            self.leave_play(State::Stopping {
+                ramp,
+                since: self.tick,
+            });
+            self.cause = StopCause::Finished;
+            return end;
+        }
+        if let Some(swap) = self.tables.swap()
+            && now.cycles_done() > before.cycles_done()
+        {
+            self.tables.activate_staging(swap.facts);
+            self.persist.table_changed();
+            let first = self
+                .tables
+                .active()
+                .map_or(NEUTRAL, |table| table.knot_angles(0));
+            let ramp = Ramp::soft(self.commanded, first, swap.via_neutral, &self.limits);
+            now.elapsed_us = now.period_us() * now.cycles_done();
+            self.last_play = Some(now);
+            self.state = State::Starting {
+                ramp,
+                since: self.tick,
+                play: now,
+            };
+            return self.commanded;
+        }
+        let angles = table
+            .at(table.phase(now.in_cycle_us(), now.request.period_us))
+            .angles;
+        self.last_play = Some(now);
+        angles
+    }
+}

@@ -1,0 +1,149 @@
+//! What the brain tells: status, telemetry, LED.
+
+use super::Brain;
+use super::state::State;
+use crate::TICK_US;
+use link_protocol::{
+    ANGLE_UNIT_RAD, Counters, Flags, Header, HelloReply, MAX_KNOTS, Message, PROTOCOL_CURRENT,
+    PROTOCOL_MIN, RobotLimits, SCHEMA_KEY, StateName, Status, TableInfo, Telemetry,
+};
+
+/// Telemetry goes out every so many ticks: 25 times a second.
+const TELEMETRY_TICKS: u64 = 2;
+/// Bytes of chunks that may be in flight.
+const UPLOAD_WINDOW: u16 = 1024;
+/// The LED is lit so long at a cycle's start.
+const FLASH_US: u32 = 100_000;
+
+impl Brain {
+    pub(super) fn hello_reply(&self, host_nonce: u32, session: u16) -> HelloReply {
+        HelloReply {
+            host_nonce,
+            protocol_min: PROTOCOL_MIN,
+            protocol_current: PROTOCOL_CURRENT,
+            schema_key: SCHEMA_KEY,
+            firmware: self.identity.firmware,
+            board: self.identity.board,
+            reset_reason: self.boot.reset_reason,
+            crash_message: !self.boot.crash_message.is_empty(),
+            session,
+            boot_nonce: self.boot.nonce,
+            limits: RobotLimits {
+                max_angle: self.limits.max_angle,
+                max_rate: self.limits.max_rate,
+                pulse_min_ns: self.limits.pulse_min_ns,
+                pulse_max_ns: self.limits.pulse_max_ns,
+                max_knots: MAX_KNOTS as u16,
+                upload_window: UPLOAD_WINDOW,
+            },
+            buffer: self.buffer,
+        }
+    }
+
+    pub(super) fn status(&self, now_us: u64) -> Status {
+        let (cycle, cycles, phase) = self.cycle();
+        Status {
+            robot_us: now_us,
+            state: self.state.name(),
+            cause: self.cause,
+            flags: self.flags(now_us),
+            cycle,
+            cycles,
+            period_us: self.last_play.map_or(0, |play| play.request.period_us),
+            phase,
+            setpoint: self.setpoint_units(),
+            battery_mv: self.battery.mv(),
+            table: self.table_info(),
+            upload: self.tables.uploaded(),
+        }
+    }
+
+    pub(super) fn table_info(&self) -> Option<TableInfo> {
+        self.tables.info(self.persist.table_stored(), |facts| {
+            facts.min_period_us(&self.limits)
+        })
+    }
+
+    pub(super) fn counters(&self) -> Counters {
+        Counters {
+            frames: self.decoder.counters(),
+            dropped: self.outbox.dropped(),
+            ..self.counted
+        }
+    }
+
+    fn flags(&self, now_us: u64) -> Flags {
+        Flags::default()
+            .with(Flags::BATTERY_LOW, self.battery.low())
+            .with(Flags::RESET_LOOP, self.resets.wait_s().is_some())
+            .with(Flags::LINK_SILENT, self.session.silent(now_us))
+            .with(Flags::DETACHED, self.state.detached())
+            .with(Flags::SWAP_PENDING, self.tables.swap().is_some())
+            .with(Flags::UNSAVED, self.persist.unsaved())
+            .with(Flags::CYCLE_FLASH, self.cycle_flash())
+            .with(Flags::STORAGE_FAILED, self.persist.failed())
+    }
+
+    /// Cycles done, cycles asked for, fraction of the cycle in 2⁻¹⁶.
+    fn cycle(&self) -> (u32, u32, u16) {
+        self.last_play.map_or((0, 0, 0), |play| {
+            let phase = (u64::from(play.in_cycle_us()) << 16) / play.period_us();
+            (play.cycles_done() as u32, play.request.cycles, phase as u16)
+        })
+    }
+
+    fn setpoint_units(&self) -> [i16; 2] {
+        self.commanded
+            .map(|angle| libm::roundf(angle / ANGLE_UNIT_RAD) as i16)
+    }
+
+    /// Sends telemetry where it is due and somebody listens.
+    pub(super) fn send_telemetry(&mut self, now_us: u64) {
+        if self.session.number() == 0 || !self.tick.is_multiple_of(TELEMETRY_TICKS) {
+            return;
+        }
+        let (cycle, cycles, phase) = self.cycle();
+        let frames = self.decoder.counters();
+        let telemetry = Telemetry {
+            robot_us: now_us,
+            state: self.state.name(),
+            cause: self.cause,
+            flags: self.flags(now_us),
+            cycle,
+            cycles,
+            phase,
+            setpoint: self.setpoint_units(),
+            pulse_ns: self.output.pulses_ns.unwrap_or_default(),
+            battery_mv: self.battery.mv(),
+            pose: self.odometer.pose(),
+            frames_ok: frames.ok as u16,
+            frames_bad: frames.bad() as u16,
+        };
+        let header = Header::new(self.session.number(), self.telemetry_sequence);
+        self.telemetry_sequence = self.telemetry_sequence.wrapping_add(1);
+        self.outbox
+            .send_telemetry(header, &Message::Telemetry(telemetry));
+    }
+
+    pub(super) fn cycle_flash(&self) -> bool {
+        matches!(self.state, State::Playing { .. })
+            && self
+                .last_play
+                .is_some_and(|play| play.in_cycle_us() < FLASH_US)
+    }
+
+    /// The LED: cycle flashes while playing; else on while pulses are on, fast in e-stop, two blinks a second with a
+    /// low battery, one blink every two seconds when stopped.
+    pub(super) fn led(&self) -> bool {
+        let ms = self.tick * u64::from(TICK_US) / 1000;
+        match self.state.name() {
+            StateName::Playing => self.cycle_flash(),
+            StateName::EStopped => ms % 200 < 100,
+            StateName::Stopped if self.battery.low() => {
+                ms % 1000 < 100 || (200..300).contains(&(ms % 1000))
+            }
+            StateName::Stopped => ms % 2000 < 60,
+            _ => true,
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! What outlives a reset: a latched e-stop and how long ago the last resets were, in one word that the shell keeps in a
+//! register which a reset spares and a power cut clears (promises R6 and R8).
+//!
+//! ```text
+//!  31   24 23       17 16           10 9      2    1       0
+//! | 0xA5  | last, s   | before it, s  | free   | locked | e-stop |
+//! ```
+//! Seconds since the last reset that was a fault, and since the one before it; 127: none, or longer ago.
+
+use link_protocol::ResetReason;
+
+const MAGIC: u32 = 0xA5;
+const NONE: u32 = 127;
+/// Three resets within this many seconds lock arming; so long the robot must be up before that may be cleared.
+const WINDOW_S: u32 = 60;
+
+/// What outlives a reset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Resets {
+    /// The e-stop is latched.
+    pub(crate) estop: bool,
+    /// Arming is refused.
+    locked: bool,
+    /// Ages of the last two faulty resets at the start, s.
+    ages: [u32; 2],
+    uptime_s: u32,
+}
+
+impl Resets {
+    /// Reads the word that was kept, at a start for this reason.
+    pub(crate) fn at_start(kept: u32, reason: ResetReason) -> Self {
+        if reason == ResetReason::PowerOn || kept >> 24 != MAGIC {
+            let fault = matches!(reason, ResetReason::Watchdog | ResetReason::Crash);
+            let ages = [if fault { 0 } else { NONE }, NONE];
+            return Self {
+                estop: false,
+                locked: false,
+                ages,
+                uptime_s: 0,
+            };
+        }
+        let (estop, locked) = (kept & 1 != 0, kept & 2 != 0);
+        let ages = [kept >> 17 & NONE, kept >> 10 & NONE];
+        match reason {
+            ResetReason::Watchdog | ResetReason::Crash => Self {
+                estop,
+                locked: locked || ages[1] <= WINDOW_S,
+                ages: [0, ages[0]],
+                uptime_s: 0,
+            },
+            ResetReason::Pin | ResetReason::PowerOn => Self {
+                estop,
+                locked,
+                ages,
+                uptime_s: 0,
+            },
+        }
+    }
+
+    /// Takes the time since the start.
+    pub(crate) fn up_for(&mut self, now_us: u64) {
+        self.uptime_s = (now_us / 1_000_000).min(u64::from(u16::MAX)) as u32;
+    }
+
+    /// Seconds until [`Self::clear`] may be asked for; `None` where nothing is locked.
+    pub(crate) fn wait_s(&self) -> Option<u16> {
+        self.locked
+            .then(|| WINDOW_S.saturating_sub(self.uptime_s) as u16)
+    }
+
+    /// Unlocks.
+    pub(crate) fn clear(&mut self) {
+        self.locked = false;
+    }
+
+    /// The word to keep.
+    pub(crate) fn word(&self) -> u32 {
+        let age = |at_start: u32| {
+            if at_start == NONE {
+                NONE
+            } else {
+                (at_start + self.uptime_s).min(NONE)
+            }
+        };
+        MAGIC << 24
+            | age(self.ages[0]) << 17
+            | age(self.ages[1]) << 10
+            | u32::from(self.locked) << 1
+            | u32::from(self.estop)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ResetReason::{Crash, Pin, PowerOn, Watchdog};
+
+    fn run(resets: Resets, seconds: u64) -> u32 {
+        let mut resets = resets;
+        resets.up_for(seconds * 1_000_000);
+        resets.word()
+    }
+
+    #[test]
+    fn three_resets_in_sixty_seconds_lock() {
+        let first = Resets::at_start(run(Resets::at_start(0, PowerOn), 500), Watchdog);
+        assert_eq!(first.wait_s(), None);
+        let second = Resets::at_start(run(first, 29), Crash);
+        assert_eq!(second.wait_s(), None);
+        let mut third = Resets::at_start(run(second, 31), Watchdog);
+        assert_eq!(third.wait_s(), Some(60));
+        third.up_for(18_999_999);
+        assert_eq!(third.wait_s(), Some(42));
+        third.up_for(3_600_000_000);
+        assert_eq!(third.wait_s(), Some(0));
+        third.clear();
+        assert_eq!(third.wait_s(), None);
+        // One second later it would not have been.
+        assert_eq!(Resets::at_start(run(second, 32), Watchdog).wait_s(), None);
+    }
+
+    #[test]
+    fn a_lock_and_an_estop_outlive_resets_but_no_power_cut() {
+        let kept = Resets {
+            estop: true,
+            locked: true,
+            ages: [0, 5],
+            uptime_s: 9,
+        }
+        .word();
+        for reason in [Watchdog, Crash, Pin] {
+            let after = Resets::at_start(kept, reason);
+            assert!(after.estop && after.wait_s().is_some(), "{reason:?}");
+        }
+        let after = Resets::at_start(kept, PowerOn);
+        assert!(!after.estop && after.wait_s().is_none());
+        assert!(!Resets::at_start(!kept, Watchdog).estop);
+    }
+
+    #[test]
+    fn ages_saturate() {
+        let long_ago = run(Resets::at_start(0, Watchdog), 1_000_000);
+        assert_eq!(Resets::at_start(long_ago, Watchdog).ages, [0, NONE]);
+    }
+}

@@ -1,0 +1,235 @@
+//! Two tables in memory: the active one, which plays, and the other, which an upload fills and a swap makes active.
+
+use crate::GaitTable;
+use crate::table::check::{Checker, Facts};
+use crate::table::{KNOT_BYTES, MIN_KNOTS};
+use link_protocol::{Begin, Chunk, MAX_TABLE, Refusal, TableInfo};
+
+/// The tables and the upload.
+pub(crate) struct Tables {
+    pair: [GaitTable; 2],
+    active: Option<Active>,
+    upload: Option<Upload>,
+    swap: Option<Swap>,
+}
+
+/// What is known of the active table.
+struct Active {
+    index: usize,
+    crc32: u32,
+    /// `None` until it is checked for the present geometry.
+    facts: Option<Facts>,
+    checker: Checker,
+}
+
+#[derive(Clone, Copy)]
+struct Upload {
+    number: u16,
+    len: u16,
+    crc32: u32,
+    /// Bytes held, from the first on.
+    wanted: u16,
+}
+
+/// A checked table that waits for the end of a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Swap {
+    pub(crate) facts: Facts,
+    pub(crate) via_neutral: bool,
+}
+
+impl Tables {
+    pub(crate) const fn new() -> Self {
+        Self {
+            pair: [const { GaitTable::empty() }; 2],
+            active: None,
+            upload: None,
+            swap: None,
+        }
+    }
+
+    /// Both buffers, for loading from storage.
+    pub(crate) fn buffers(&mut self) -> &mut [GaitTable; 2] {
+        &mut self.pair
+    }
+
+    /// Makes a loaded buffer the active table; it is checked before it plays.
+    pub(crate) fn activate_loaded(&mut self, index: usize) {
+        let crc32 = self.pair[index % 2].crc32();
+        self.active = Some(Active {
+            index: index % 2,
+            crc32,
+            facts: None,
+            checker: Checker::new(),
+        });
+    }
+
+    pub(crate) fn active(&self) -> Option<&GaitTable> {
+        self.active.as_ref().map(|active| &self.pair[active.index])
+    }
+
+    /// Facts of the active table; `None` until it is checked.
+    pub(crate) fn facts(&self) -> Option<Facts> {
+        self.active.as_ref().and_then(|active| active.facts)
+    }
+
+    /// The geometry changed: what was found about crossings is void.
+    pub(crate) fn forget_facts(&mut self) {
+        if let Some(active) = &mut self.active {
+            active.facts = None;
+            active.checker = Checker::new();
+        }
+    }
+
+    /// The active table waits for a check; does some of it.
+    pub(crate) fn check_active(&mut self, links: &swimmer_model::Links<f32>, work: u32) {
+        if let Some(active) = &mut self.active
+            && active.facts.is_none()
+        {
+            active.facts = active
+                .checker
+                .advance(&self.pair[active.index], links, work);
+        }
+    }
+
+    fn staging_index(&self) -> usize {
+        self.active.as_ref().map_or(0, |active| 1 - active.index)
+    }
+
+    /// The table that an upload fills.
+    pub(crate) fn staging(&self) -> &GaitTable {
+        &self.pair[self.staging_index()]
+    }
+
+    pub(crate) fn swap(&self) -> Option<Swap> {
+        self.swap
+    }
+
+    /// The staging table is checked and waits for the end of a cycle.
+    pub(crate) fn wait_for_swap(&mut self, swap: Swap) {
+        self.swap = Some(swap);
+        self.upload = None;
+    }
+
+    /// Makes the staging table the active one.
+    pub(crate) fn activate_staging(&mut self, facts: Facts) {
+        let index = self.staging_index();
+        let crc32 = self.pair[index].crc32();
+        self.active = Some(Active {
+            index,
+            crc32,
+            facts: Some(facts),
+            checker: Checker::new(),
+        });
+        self.upload = None;
+        self.swap = None;
+    }
+
+    /// Names a table.
+    pub(crate) fn info(
+        &self,
+        stored: bool,
+        min_period_us: impl Fn(&Facts) -> u32,
+    ) -> Option<TableInfo> {
+        self.active.as_ref().map(|active| TableInfo {
+            knots: self.pair[active.index].knots() as u16,
+            crc32: active.crc32,
+            stored,
+            min_period_us: active.facts.as_ref().map_or(0, min_period_us),
+        })
+    }
+
+    /// Bytes held of the open upload.
+    pub(crate) fn uploaded(&self) -> Option<u16> {
+        self.upload.map(|upload| upload.wanted)
+    }
+
+    /// Opens an upload under a number, or resumes the one that holds the same bytes; returns the next wanted offset.
+    pub(crate) fn begin(&mut self, number: u16, begin: Begin) -> Result<u16, Refusal> {
+        let Begin { slot, len, crc32 } = begin;
+        if slot != 0 {
+            return Err(Refusal::NoSuchSlot(slot));
+        }
+        let bytes = usize::from(len);
+        if !bytes.is_multiple_of(KNOT_BYTES)
+            || !(MIN_KNOTS * KNOT_BYTES..=MAX_TABLE).contains(&bytes)
+        {
+            return Err(Refusal::BadLength(len));
+        }
+        if self.swap.is_some() {
+            return Err(Refusal::SwapPending);
+        }
+        let mut wanted = match self.upload {
+            Some(open) if (open.len, open.crc32) == (len, crc32) => open.wanted,
+            _ => 0,
+        };
+        let staging = self.staging_index();
+        if wanted == 0 {
+            self.pair[staging].clear(len / KNOT_BYTES as u16);
+            // The same table again, perhaps because the reply to its commit was lost: all its bytes are here.
+            if let Some(active) = &self.active
+                && active.crc32 == crc32
+                && self.pair[active.index].bytes().len() == bytes
+            {
+                self.pair[staging] = self.pair[active.index].clone();
+                wanted = len;
+            }
+        }
+        self.upload = Some(Upload {
+            number,
+            len,
+            crc32,
+            wanted,
+        });
+        Ok(wanted)
+    }
+
+    /// Takes a piece; returns the next wanted offset.
+    pub(crate) fn chunk(&mut self, chunk: &Chunk) -> Result<u16, Refusal> {
+        let staging = self.staging_index();
+        let upload = self
+            .upload
+            .as_mut()
+            .filter(|upload| upload.number == chunk.upload)
+            .ok_or(Refusal::NoUpload)?;
+        let wanted = upload.wanted;
+        let end = usize::from(chunk.offset) + chunk.data.len();
+        if end > usize::from(upload.len) {
+            return Err(Refusal::ChunkOutOfRange { wanted });
+        }
+        // What is held stays; a piece behind a gap waits to be sent again.
+        if let Some(held) = wanted.checked_sub(chunk.offset)
+            && let Some(new) = chunk.data.get(usize::from(held)..)
+        {
+            self.pair[staging].put(usize::from(wanted), new);
+            upload.wanted = end as u16;
+        }
+        Ok(upload.wanted)
+    }
+
+    /// All bytes have come and are those that were announced.
+    pub(crate) fn complete(&self, number: u16) -> Result<(), Refusal> {
+        let upload = self
+            .upload
+            .filter(|upload| upload.number == number)
+            .ok_or(Refusal::NoUpload)?;
+        if upload.wanted < upload.len {
+            return Err(Refusal::Incomplete {
+                wanted: upload.wanted,
+            });
+        }
+        let received = self.staging().crc32();
+        if received != upload.crc32 {
+            return Err(Refusal::CrcMismatch {
+                expected: upload.crc32,
+                received,
+            });
+        }
+        Ok(())
+    }
+
+    /// Drops the upload: what it holds is not what was announced.
+    pub(crate) fn abandon(&mut self) {
+        self.upload = None;
+    }
+}

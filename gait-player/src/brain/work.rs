@@ -1,0 +1,206 @@
+//! Work that takes longer than a tick may: checking a table or a way. It is done in pieces, and the request that asked
+//! for it is answered at its end.
+
+use super::{Brain, Swap};
+use crate::ramp::Ramp;
+use crate::route::{Decision, Route};
+use crate::table::check::{Checker, Facts};
+use link_protocol::{CrossingPlace, Header, Play, Refusal, Reply};
+
+use super::state::{Progress, State};
+
+/// Units of work a tick while pulses are on: about 1 ms of the chip.
+const POWERED_WORK: u32 = 24;
+/// Units while they are off.
+const IDLE_WORK: u32 = 200;
+/// Units of one look at a way.
+const LOOK_WORK: u32 = 10;
+
+/// What is being worked on.
+#[derive(Clone, Debug)]
+pub(crate) enum Work {
+    /// Nothing.
+    Idle,
+    /// A commit's table.
+    Commit { reply_to: Header, checker: Checker },
+    /// A commit's way from the first knot of the playing table to that of the new one.
+    Swap {
+        reply_to: Header,
+        facts: Facts,
+        route: Route,
+    },
+    /// A play's table, then its way from where the servos are.
+    Play {
+        reply_to: Header,
+        play: Play,
+        route: Option<Route>,
+    },
+}
+
+impl Brain {
+    /// Does a tick's worth of work.
+    pub(super) fn advance_work(&mut self) {
+        let mut left = if self.state.powered() {
+            POWERED_WORK
+        } else {
+            IDLE_WORK
+        };
+        let links = self.model.swimmer().links;
+        match core::mem::replace(&mut self.work, Work::Idle) {
+            Work::Idle => self.tables.check_active(&links, left),
+            Work::Commit {
+                reply_to,
+                mut checker,
+            } => match checker.advance(self.tables.staging(), &links, left) {
+                None => self.work = Work::Commit { reply_to, checker },
+                Some(facts) => self.table_checked(reply_to, facts),
+            },
+            Work::Swap {
+                reply_to,
+                facts,
+                mut route,
+            } => {
+                while left >= LOOK_WORK {
+                    left -= LOOK_WORK;
+                    match route.advance(&links) {
+                        Decision::Unknown => {}
+                        decision => return self.swap_decided(reply_to, facts, decision),
+                    }
+                }
+                self.work = Work::Swap {
+                    reply_to,
+                    facts,
+                    route,
+                };
+            }
+            Work::Play {
+                reply_to,
+                play,
+                route,
+            } => {
+                if let Some(facts) = self.tables.facts() {
+                    return self.advance_play(reply_to, play, route, facts, left);
+                }
+                self.tables.check_active(&links, left);
+                self.work = Work::Play {
+                    reply_to,
+                    play,
+                    route,
+                };
+            }
+        }
+    }
+
+    fn table_checked(&mut self, reply_to: Header, facts: Facts) {
+        let allowed = facts
+            .allow(&self.limits)
+            .and_then(|()| match self.state.play() {
+                Some(play) => facts.allow_period(&self.limits, play.request.period_us),
+                None => Ok(()),
+            });
+        match (allowed, self.state.play(), self.tables.active()) {
+            (Err(refusal), _, _) => {
+                self.tables.abandon();
+                self.finish(reply_to, Reply::Refused(refusal));
+            }
+            (Ok(()), Some(_), Some(active)) => {
+                let route = Route::new(active.knot_angles(0), self.tables.staging().knot_angles(0));
+                self.work = Work::Swap {
+                    reply_to,
+                    facts,
+                    route,
+                };
+            }
+            (Ok(()), _, _) => self.activate(reply_to, facts),
+        }
+    }
+
+    fn swap_decided(&mut self, reply_to: Header, facts: Facts, decision: Decision) {
+        if self.state.play().is_none() {
+            return self.activate(reply_to, facts);
+        }
+        match decision {
+            Decision::Crosses(shape) => {
+                self.tables.abandon();
+                self.finish(reply_to, Reply::Refused(on_the_way(shape)));
+            }
+            decision => {
+                let via_neutral = decision == Decision::ViaNeutral;
+                self.tables.wait_for_swap(Swap { facts, via_neutral });
+                let info = link_protocol::TableInfo {
+                    knots: self.tables.staging().knots() as u16,
+                    crc32: self.tables.staging().crc32(),
+                    stored: false,
+                    min_period_us: facts.min_period_us(&self.limits),
+                };
+                self.finish(reply_to, Reply::Table(Some(info)));
+            }
+        }
+    }
+
+    fn activate(&mut self, reply_to: Header, facts: Facts) {
+        self.tables.activate_staging(facts);
+        self.persist.table_changed();
+        let info = self.table_info();
+        self.finish(reply_to, Reply::Table(info));
+    }
+
+    fn advance_play(
+        &mut self,
+        reply_to: Header,
+        play: Play,
+        route: Option<Route>,
+        facts: Facts,
+        work: u32,
+    ) {
+        let allowed = facts
+            .allow(&self.limits)
+            .and_then(|()| facts.allow_period(&self.limits, play.period_us));
+        if let Err(refusal) = allowed {
+            return self.finish(reply_to, Reply::Refused(refusal));
+        }
+        let (State::Holding { pose }, Some(table)) = (self.state, self.tables.active()) else {
+            return self.finish(reply_to, Reply::Refused(Refusal::NotArmed));
+        };
+        let first = table.knot_angles(0);
+        let mut route = route.unwrap_or(Route::new(pose, first));
+        let mut left = work;
+        while left >= LOOK_WORK {
+            left -= LOOK_WORK;
+            let via_neutral = match route.advance(&self.model.swimmer().links) {
+                Decision::Unknown => continue,
+                Decision::Crosses(shape) => {
+                    return self.finish(reply_to, Reply::Refused(on_the_way(shape)));
+                }
+                Decision::Straight => false,
+                Decision::ViaNeutral => true,
+            };
+            let ramp = Ramp::soft(self.commanded, first, via_neutral, &self.limits);
+            let progress = Progress {
+                request: play,
+                elapsed_us: 0,
+            };
+            self.last_play = Some(progress);
+            self.state = State::Starting {
+                ramp,
+                since: self.tick,
+                play: progress,
+            };
+            return self.finish(reply_to, Reply::Done);
+        }
+        self.work = Work::Play {
+            reply_to,
+            play,
+            route: Some(route),
+        };
+    }
+}
+
+fn on_the_way(shape: [f32; 2]) -> Refusal {
+    let [phi1, phi2] = shape.map(|angle| (angle / link_protocol::ANGLE_UNIT_RAD) as i16);
+    Refusal::LinksCross {
+        place: CrossingPlace::Ramp,
+        phi1,
+        phi2,
+    }
+}

@@ -1,0 +1,136 @@
+//! The last check before the servos, and the only place where limits on angle, rate and pulse are enforced: whatever
+//! happened before, no pulse outside the window leaves, and no step above the slew limit while pulses are on.
+
+use crate::Limits;
+use crate::servo::ServoMap;
+
+/// Remembers the last pulses, so that the next ones are not too far away.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clamp {
+    last: Option<[u32; 2]>,
+}
+
+/// What may be done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Clamped {
+    /// Pulses, ns.
+    pub(crate) pulses_ns: [u32; 2],
+    /// The angles these pulses command, where they are not those that were wanted.
+    pub(crate) cut: Option<[f32; 2]>,
+}
+
+impl Clamp {
+    pub(crate) const fn new() -> Self {
+        Self { last: None }
+    }
+
+    /// Pulses are off: the next ones may be anywhere in the window.
+    pub(crate) fn off(&mut self) {
+        self.last = None;
+    }
+
+    /// The pulses for wanted angles \[rad\].
+    pub(crate) fn apply(
+        &mut self,
+        wanted: [f32; 2],
+        maps: &[ServoMap; 2],
+        limits: &Limits,
+    ) -> Clamped {
+        let (mut pulses_ns, mut angles, mut cut) = ([0; 2], wanted, false);
+        for joint in 0..2 {
+            let map = &maps[joint];
+            // `max` and `min` drop a NaN: it ends at a limit, and the slew limit below keeps it slow.
+            let angle = wanted[joint].max(-limits.max_angle).min(limits.max_angle);
+            let ideal = map.pulse_ns(angle);
+            let mut pulse = ideal;
+            if let Some(last) = self.last {
+                let step = map.step_ns(limits.max_step());
+                pulse = pulse.clamp(
+                    last[joint].saturating_sub(step),
+                    last[joint].saturating_add(step),
+                );
+            }
+            // Last of all, so that nothing overrides it. A window that is none holds the pulse at its lower end.
+            pulse = pulse.min(limits.pulse_max_ns).max(limits.pulse_min_ns);
+            if pulse != ideal || (angle - wanted[joint]).abs() > 0.0 || wanted[joint].is_nan() {
+                cut = true;
+                angles[joint] = map.angle(pulse);
+            }
+            pulses_ns[joint] = pulse;
+        }
+        self.last = Some(pulses_ns);
+        Clamped {
+            pulses_ns,
+            cut: cut.then_some(angles),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn any_angle() -> impl Strategy<Value = f32> {
+        prop_oneof![
+            any::<f32>(),
+            -3.5_f32..3.5,
+            Just(f32::NAN),
+            Just(f32::INFINITY),
+            Just(f32::NEG_INFINITY)
+        ]
+    }
+
+    proptest! {
+        /// R4, at its source.
+        #[test]
+        fn no_pulse_outside_the_window_and_no_step_above_the_limit(
+            wanted in prop::collection::vec([any_angle(), any_angle()], 1..50),
+            centre_ns in any::<u32>(), slope_rad_per_us in 0.001_f32..1.0, trim in -0.5_f32..0.5, reversed in any::<bool>(),
+        ) {
+            let maps = [ServoMap { centre_ns, slope_rad_per_us, reversed, trim }, ServoMap::ROBOT];
+            let limits = Limits::ROBOT;
+            let mut clamp = Clamp::new();
+            let mut last: Option<[u32; 2]> = None;
+            for wanted in wanted {
+                let pulses = clamp.apply(wanted, &maps, &limits).pulses_ns;
+                for joint in 0..2 {
+                    prop_assert!((limits.pulse_min_ns..=limits.pulse_max_ns).contains(&pulses[joint]));
+                    if let Some(last) = last {
+                        prop_assert!(pulses[joint].abs_diff(last[joint]) <= maps[joint].step_ns(limits.max_step()));
+                    }
+                }
+                last = Some(pulses);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_allowed_passes_unchanged() {
+        let mut clamp = Clamp::new();
+        let maps = [ServoMap::ROBOT; 2];
+        let clamped = clamp.apply([2.0, -2.8], &maps, &Limits::ROBOT);
+        assert_eq!(clamped.cut, None);
+        assert_eq!(
+            clamped.pulses_ns,
+            [maps[0].pulse_ns(2.0), maps[1].pulse_ns(-2.8)]
+        );
+        assert_eq!(clamp.apply([2.07, -2.73], &maps, &Limits::ROBOT).cut, None);
+        let cut = clamp
+            .apply([2.3, -2.73], &maps, &Limits::ROBOT)
+            .cut
+            .unwrap();
+        assert!(
+            (cut[0] - 2.14).abs() < 1e-4 && (cut[1] + 2.73).abs() < 1e-6,
+            "{cut:?}"
+        );
+        clamp.off();
+        assert_eq!(clamp.apply([-2.0, 2.0], &maps, &Limits::ROBOT).cut, None);
+        assert!(
+            clamp
+                .apply([-2.0, 2.9], &maps, &Limits::ROBOT)
+                .cut
+                .is_some()
+        );
+    }
+}
