@@ -75,6 +75,7 @@ impl<T: Scalar> Mul for Pose<T> {
     type Output = Self;
 
     /// Composition: `self`, then `other` as seen from it.
+    #[allow(clippy::suspicious_arithmetic_impl)] // headings add
     fn mul(self, other: Self) -> Self {
         let p = self.transform(&other.position());
         Self::new(p.x, p.y, self.theta + other.theta)

@@ -73,7 +73,7 @@ pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
 /// ∫|Φ′| du.
 fn arc_length<T: Scalar, G: Gait<T> + ?Sized>(gait: &G, from: T, to: T) -> T {
     let half = (to - from) * T::from_f64(0.5);
-    if !(half > T::zero()) {
+    if half <= T::zero() {
         return T::zero();
     }
     let speeds: [T; N] =

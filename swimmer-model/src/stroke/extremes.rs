@@ -62,18 +62,41 @@ fn differ<T: Scalar>(a: T, b: T) -> bool {
     (a > T::zero() && b < T::zero()) || (a < T::zero() && b > T::zero())
 }
 
-/// A zero of `f` between two places where it differs in sign, by halving to the last bit.
+/// A zero of `f` between two places where it differs in sign, to rounding, by the Illinois variant of the false
+/// position: an end that stays twice has its value halved, so that both ends close in.
 pub(super) fn zero<T: Scalar>(mut left: T, mut right: T, f: impl Fn(T) -> T) -> T {
-    let at_left = f(left);
-    loop {
-        let middle = left + (right - left) * T::from_f64(0.5);
-        if !(middle > left && middle < right) {
-            return middle;
+    let half = T::from_f64(0.5);
+    let (mut at_left, mut at_right) = (f(left), f(right));
+    let mut place = left;
+    let mut moved_left = None;
+    for _ in 0..100 {
+        let last = place;
+        place = (left * at_right - right * at_left) / (at_right - at_left);
+        if !(place > left && place < right) {
+            // Rounding: no number is left between the ends.
+            return left + (right - left) * half;
         }
-        if differ(at_left, f(middle)) {
-            right = middle;
+        let value = f(place);
+        if value == T::zero() || (place - last).abs() <= T::EPSILON {
+            break;
+        }
+        let moves_left = !differ(at_left, value);
+        if moves_left {
+            (left, at_left) = (place, value);
+            at_right *= if moved_left == Some(true) {
+                half
+            } else {
+                T::one()
+            };
         } else {
-            left = middle;
+            (right, at_right) = (place, value);
+            at_left *= if moved_left == Some(false) {
+                half
+            } else {
+                T::one()
+            };
         }
+        moved_left = Some(moves_left);
     }
+    place
 }

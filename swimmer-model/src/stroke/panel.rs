@@ -153,16 +153,25 @@ struct Scale<T> {
     tolerance: T,
 }
 
-/// Walks one cycle panel by panel, as wide as the tolerance allows.
+/// Walks one cycle panel by panel: every smooth piece of the gait is halved, and its halves again, until each part is
+/// resolved to the tolerance.
+///
+/// The work is bounded: a curve that no reasonable number of panels resolves (noise, say) is finished coarsely.
 #[derive(Debug)]
 pub struct Panels<'a, T, G: ?Sized> {
     model: &'a Model<T>,
     gait: &'a G,
     scale: Scale<T>,
-    piece: usize,
-    u: T,
-    width: T,
     pose: Pose<T>,
+    /// Number of the piece after this one.
+    next_piece: usize,
+    /// This piece, from u to u.
+    piece: (T, T),
+    /// The next panel is part `index` of 2^`level` equal parts of the piece.
+    level: u32,
+    index: u32,
+    /// Halvings that may still be spent.
+    halvings: u32,
 }
 
 /// Points at which a gait's largest rate is looked for.
@@ -170,6 +179,15 @@ const RATE_SAMPLES: usize = 32;
 
 /// No panel is wider than this, so that no symmetry of a gait can fool the error estimate.
 const WIDEST: f64 = 0.25;
+
+/// No panel is narrowed below this: a kink that a gait does not declare is passed at this width.
+const NARROWEST: f64 = 1.0 / 1_048_576.0;
+
+/// Halvings for a whole cycle; a smooth gait takes some tens, an undeclared corner twenty.
+const HALVINGS: u32 = 5000;
+
+/// From this level on a wider panel is tried after every pair, else only where it promises to do.
+const DEEP: u32 = 8;
 
 impl<'a, T: Scalar, G: Gait<T> + ?Sized> Panels<'a, T, G> {
     /// From the gait's first point, at the origin with θ = 0.
@@ -180,22 +198,59 @@ impl<'a, T: Scalar, G: Gait<T> + ?Sized> Panels<'a, T, G> {
         };
         let rate = (0..RATE_SAMPLES).map(sample).fold(T::zero(), T::max);
         let rate = if rate > T::zero() { rate } else { T::one() };
-        let finest = T::from_f64(64.0) * T::EPSILON;
+        // Rounding of u alone moves the shape by the rate times ε.
+        let rounding = T::from_f64(16.0) * T::EPSILON * (T::from_f64(4.0) + rate);
         let scale = Scale {
             length: model.swimmer().total_length(),
             rate,
             power: model.power_bound() * rate * rate,
-            tolerance: T::from_f64(tolerance.relative).max(finest),
+            tolerance: T::from_f64(tolerance.relative).max(rounding),
         };
-        let (u, width) = (T::zero(), T::from_f64(WIDEST));
+        let (pose, piece) = (Pose::identity(), (T::zero(), T::zero()));
         Self {
             model,
             gait,
             scale,
-            piece: 0,
-            u,
-            width,
-            pose: Pose::identity(),
+            pose,
+            next_piece: 0,
+            piece,
+            level: 0,
+            index: 1,
+            halvings: HALVINGS,
+        }
+    }
+
+    /// Goes on to the next piece of the gait; none at the end of the cycle.
+    fn enter_next_piece(&mut self) -> Option<()> {
+        let pieces = self.gait.pieces().max(1);
+        let start = self.piece.1;
+        while self.next_piece < pieces {
+            self.next_piece += 1;
+            let last = self.next_piece == pieces;
+            let end = if last {
+                T::one()
+            } else {
+                self.gait.piece_end(self.next_piece - 1).min(T::one())
+            };
+            if end > start {
+                (self.piece, self.level, self.index) = ((start, end), 0, 0);
+                while self.part(1) - start > T::from_f64(WIDEST) {
+                    self.level += 1;
+                }
+                return Some(());
+            }
+        }
+        None
+    }
+
+    /// u at which part `index` of the piece begins.
+    fn part(&self, index: u32) -> T {
+        let (start, end) = self.piece;
+        let parts = 1_u32 << self.level;
+        if index == parts {
+            end
+        } else {
+            start + (end - start) * T::from_f64(f64::from(index) / f64::from(parts))
         }
     }
 }
@@ -204,46 +259,31 @@ impl<T: Scalar, G: Gait<T> + ?Sized> Iterator for Panels<'_, T, G> {
     type Item = Panel<T>;
 
     fn next(&mut self) -> Option<Panel<T>> {
-        let (two, half) = (T::from_f64(2.0), T::from_f64(0.5));
-        let pieces = self.gait.pieces().max(1);
-        let mut end = self.u;
-        while self.piece < pieces {
-            end = if self.piece + 1 == pieces {
-                T::one()
-            } else {
-                self.gait.piece_end(self.piece).min(T::one())
-            };
-            if end > self.u {
-                break;
-            }
-            self.piece += 1;
+        if self.index >> self.level > 0 {
+            self.enter_next_piece()?;
         }
-        let rest = end - self.u;
-        if self.piece >= pieces || !(rest > T::zero()) {
-            return None;
-        }
-        // Equal shares of what is left of the piece, none wider than wished.
-        let wished = self.width.min(T::from_f64(WIDEST));
-        let mut width = rest;
-        while width > wished {
-            width *= half;
-        }
-        let narrowest = T::from_f64(1.0 / 1_048_576.0).max(T::from_f64(64.0) * T::EPSILON);
+        let narrowest = T::from_f64(NARROWEST).max(T::from_f64(1024.0) * T::EPSILON);
         loop {
-            let panel = Panel::new(self.model, self.gait, self.u, width, self.pose);
+            let start = self.part(self.index);
+            let width = self.part(self.index + 1) - start;
+            let panel = Panel::new(self.model, self.gait, start, width, self.pose);
             let excess = panel.excess(&self.scale);
-            if excess > T::one() && width > narrowest {
-                width *= half;
+            if excess > T::one() && width > narrowest && self.halvings > 0 {
+                (self.level, self.index) = (self.level + 1, 2 * self.index);
+                self.halvings -= 1;
                 continue;
             }
-            // Twice as wide costs about 2⁹ in the last coefficients.
-            self.width = if excess < T::from_f64(1e-3) {
-                width * two
-            } else {
-                width
-            };
             self.pose = panel.end_pose();
-            self.u = if width < rest { self.u + width } else { end };
+            self.index += 1;
+            // Twice as wide costs about 2⁹ in the last coefficients.
+            let promising = excess < T::from_f64(1e-3) || self.level > DEEP || self.halvings == 0;
+            if promising
+                && self.index.is_multiple_of(2)
+                && width < T::from_f64(WIDEST / 2.0 * 1.01)
+                && self.level > 0
+            {
+                (self.level, self.index) = (self.level - 1, self.index / 2);
+            }
             return Some(panel);
         }
     }

@@ -1,17 +1,11 @@
 //! The numbers of the paper's conventions, to their last digit.
 
+use crate::near;
 use nalgebra::Vector2;
 use swimmer_model::reference::{
     BEST_CIRCLE, BEST_SQUARE, BestAmplitude, SECOND_CIRCLE, SHAPES, SHAPES_TOLERANCE,
 };
 use swimmer_model::{Circle, Gait, Model, Square, Swimmer, Tolerance, swim};
-
-fn near(name: &str, value: f64, expected: f64, tolerance: f64) {
-    assert!(
-        (value - expected).abs() <= tolerance,
-        "{name}: {value:.12} is not {expected:.12} within {tolerance:e}"
-    );
-}
 
 fn purcell() -> Model<f64> {
     Model::new(&Swimmer::purcell()).unwrap()
@@ -51,14 +45,14 @@ fn stationary<G: Gait<f64>>(gait: impl Fn(f64) -> G + Copy, guess: f64) -> f64 {
     let (mut low, mut high) = (guess - 0.05, guess + 0.05);
     let sign = slope(low);
     while high - low > 1e-10 {
-        let middle = (low + high) / 2.0;
+        let middle = f64::midpoint(low, high);
         if slope(middle) * sign > 0.0 {
             low = middle;
         } else {
             high = middle;
         }
     }
-    (low + high) / 2.0
+    f64::midpoint(low, high)
 }
 
 fn check<G: Gait<f64>>(name: &str, gait: impl Fn(f64) -> G + Copy, best: &BestAmplitude) {
