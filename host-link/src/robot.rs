@@ -18,6 +18,9 @@ use crate::session::{
 /// How often a caller is asked whether to go on while nothing happens.
 const BEAT: Duration = Duration::from_millis(20);
 
+/// A virtual clock moves only while somebody waits.
+const SHORTEST_WAIT: Duration = Duration::from_micros(100);
+
 /// Sees every piece of telemetry and when it arrived, on the port's clock.
 pub type Observer = Box<dyn FnMut(&Telemetry, Duration) + Send>;
 
@@ -162,6 +165,17 @@ impl<P: Port> Robot<P> {
     /// The port.
     pub fn port_mut(&mut self) -> &mut P {
         &mut self.port
+    }
+
+    /// Puts another port around or in place of the present one, with the session as it is: a trace, say.
+    pub fn map_port<Q: Port>(self, wrap: impl FnOnce(P) -> Q) -> Robot<Q> {
+        Robot {
+            port: wrap(self.port),
+            session: self.session,
+            hello: self.hello,
+            latest: self.latest,
+            observer: self.observer,
+        }
     }
 
     /// Leaves the robot as it is and gives the port back. Unless it plays detached, the robot stops when its lease ends.
@@ -324,7 +338,7 @@ fn step<P: Port>(
             .map_or(until, |deadline| deadline.min(until));
         let mut buf = [0; 512];
         let count = port
-            .read(&mut buf, wake.saturating_sub(now))
+            .read(&mut buf, wake.saturating_sub(now).max(SHORTEST_WAIT))
             .map_err(fail)?;
         if count > 0 {
             session.receive(port.now(), buf.get(..count).unwrap_or(&buf));

@@ -98,6 +98,10 @@ pub struct Session {
     pings: u32,
     /// When the line has carried the chunks handed out so far.
     line_free: Duration,
+    /// Nothing new is put under way before: the robot is busy.
+    hold_until: Duration,
+    /// Answers in a row that it is.
+    busy: u32,
     last_robot_us: Option<u64>,
     boot_nonce: Option<u32>,
     counters: LinkCounters,
@@ -128,6 +132,8 @@ impl Session {
             next_ping: Duration::ZERO,
             pings: 0,
             line_free: Duration::ZERO,
+            hold_until: Duration::ZERO,
+            busy: 0,
             last_robot_us: None,
             boot_nonce: None,
             counters: LinkCounters::default(),

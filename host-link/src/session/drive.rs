@@ -51,8 +51,10 @@ impl Session {
             }
             Link::Closed => false,
         };
-        if let Some(pending) = &self.pending {
-            deadlines.push(pending.next_try);
+        match &self.pending {
+            Some(pending) => deadlines.push(pending.next_try),
+            None if self.busy > 0 && open => deadlines.push(self.hold_until),
+            None => {}
         }
         if let Some(upload) = &self.upload {
             deadlines.push(upload.deadline);
@@ -199,6 +201,9 @@ impl Session {
 
     /// Begin or Commit of an upload first, then what waits longest.
     fn next_under_way(&mut self, now: Duration) {
+        if now < self.hold_until {
+            return;
+        }
         if let Some(upload) = &mut self.upload
             && upload.due
         {
@@ -212,6 +217,8 @@ impl Session {
             self.put_under_way(Owner::Upload, request, now);
         } else if let Some((ticket, request)) = self.queue.pop_front() {
             self.put_under_way(Owner::Ticket(ticket), request, now);
+        } else {
+            self.busy = 0;
         }
     }
 

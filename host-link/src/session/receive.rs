@@ -8,8 +8,13 @@ use link_protocol::{
 };
 
 use super::error::LinkError;
-use super::upload::{Answer, UploadPhase, Window};
+use super::upload::{UploadPhase, Window};
 use super::{Event, Link, Owner, Pending, Session, describe};
+
+/// Wait before a robot that is busy is asked again.
+const BUSY_WAIT: Duration = Duration::from_millis(100);
+/// Times in a row that a robot may be busy: checking a table takes up to a second.
+const BUSY_TRIES: u32 = 50;
 
 impl Session {
     /// Takes bytes that arrived at `now`, in any split, and then does what is due.
@@ -128,6 +133,9 @@ impl Session {
             if pending.tries == 1 && !matches!(pending.request, Request::Commit { .. }) {
                 self.trip.sample(now.saturating_sub(pending.first_sent));
             }
+            if !matches!(reply, Reply::Refused(Refusal::Busy)) {
+                self.busy = 0;
+            }
             match (reply, pending.owner) {
                 (Reply::Working, _) => {
                     // Heard, and at it: the tries start anew.
@@ -141,6 +149,9 @@ impl Session {
                 (Reply::Refused(Refusal::StaleSession { open }), owner) => {
                     self.session_lost(owner, &pending.request, open, now);
                 }
+                (Reply::Refused(Refusal::Busy), owner) if self.busy < BUSY_TRIES => {
+                    self.ask_later(owner, pending.request, now);
+                }
                 (reply, Owner::Upload) => self.upload_answered(&pending.request, reply),
                 (Reply::Refused(refusal), Owner::Ticket(ticket)) => {
                     let doing = describe(&pending.request);
@@ -152,6 +163,20 @@ impl Session {
             }
         } else {
             self.piece_answered(sequence, &reply, now);
+        }
+    }
+
+    /// The robot is still at an earlier request: this one did not act, and is asked again under a new number.
+    fn ask_later(&mut self, owner: Owner, request: Request, now: Duration) {
+        self.busy += 1;
+        self.hold_until = now + BUSY_WAIT;
+        match owner {
+            Owner::Ticket(ticket) => self.queue.push_front((ticket, request)),
+            Owner::Upload => {
+                if let Some(upload) = &mut self.upload {
+                    upload.due = true;
+                }
+            }
         }
     }
 
@@ -228,20 +253,22 @@ impl Session {
         let Some(upload) = self
             .upload
             .as_mut()
-            .filter(|upload| upload.window.knows(sequence))
+            .filter(|upload| upload.phase == UploadPhase::Chunks)
         else {
             self.counters.unmatched += 1;
             return;
         };
         let doing = "uploading the gait";
+        let known = upload.window.knows(sequence);
         let before = upload.window.wanted();
-        let (wanted, gap) = match reply {
+        let wanted = match reply {
+            // A late answer counts too: its number says that it is this upload's.
             Reply::Wanted {
                 upload: number,
                 offset,
-            } if *number == upload.number => (*offset, false),
-            Reply::Refused(Refusal::ChunkOutOfRange { wanted }) => (*wanted, true),
-            Reply::Refused(Refusal::StaleSession { open }) => {
+            } if *number == upload.number => *offset,
+            Reply::Refused(Refusal::ChunkOutOfRange { wanted }) if known => *wanted,
+            Reply::Refused(Refusal::StaleSession { open }) if known => {
                 let open = *open;
                 self.renew_upload(LinkError::SessionLost { doing, open });
                 if self.upload.is_some() {
@@ -249,29 +276,27 @@ impl Session {
                 }
                 return;
             }
-            Reply::Refused(refusal @ Refusal::NoUpload) => {
+            Reply::Refused(refusal @ Refusal::NoUpload) if known => {
                 let refusal = *refusal;
                 self.renew_upload(LinkError::Refused { doing, refusal });
                 return;
             }
             // Its turn comes again with the time-out.
-            Reply::Working | Reply::Refused(Refusal::Busy) => return,
-            Reply::Refused(refusal) => {
+            Reply::Working | Reply::Refused(Refusal::Busy) if known => return,
+            Reply::Refused(refusal) if known => {
                 let refusal = *refusal;
                 self.end_upload(LinkError::Refused { doing, refusal });
                 return;
             }
-            reply => {
-                let reply = format!("{reply:?}");
-                self.end_upload(LinkError::WrongReply { doing, reply });
+            _ => {
+                self.counters.unmatched += 1;
                 return;
             }
         };
-        if let Answer::Noted(Some(trip)) = upload.window.answered(sequence, wanted.into(), gap, now)
-        {
+        if let Some(trip) = upload.window.answered(sequence, wanted.into(), now) {
             self.trip.sample(trip);
         }
-        if upload.window.complete() || upload.window.wanted() > before {
+        if upload.window.wanted() > before {
             self.chunks_or_commit();
         }
     }

@@ -1,7 +1,7 @@
 //! An upload as a window over a table: which piece goes next, what an answer proves, when to go back.
 //!
-//! The robot takes pieces in order, so its one number, the next wanted offset, tells everything. A piece that reaches past
-//! a lost one is refused with that number, which is the signal to go back at once and not to wait for a time-out.
+//! The robot takes pieces in order, so its one number, the next wanted offset, tells everything. A piece behind a lost one
+//! is answered with that number too, which is the signal to go back at once and not to wait for a time-out.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -33,6 +33,8 @@ pub struct UploadProgress {
 #[derive(Debug, Clone, Copy)]
 struct InFlight {
     sequence: u16,
+    /// Offset of the piece.
+    start: usize,
     /// Offset behind the piece.
     end: usize,
     /// Bytes on the wire.
@@ -40,15 +42,6 @@ struct InFlight {
     sent: Duration,
     /// Sent for the first time: its answer times the round trip.
     fresh: bool,
-}
-
-/// What an answer to a piece meant.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Answer {
-    /// It was to no piece in flight.
-    Unknown,
-    /// Taken note of; the round trip where it can be told.
-    Noted(Option<Duration>),
 }
 
 /// The window over one table.
@@ -105,6 +98,7 @@ impl Window {
         let fresh = self.next >= self.furthest;
         self.in_flight.push_back(InFlight {
             sequence,
+            start: self.next,
             end,
             cost,
             sent: now,
@@ -122,39 +116,32 @@ impl Window {
             .any(|piece| piece.sequence == sequence)
     }
 
-    /// The robot answered piece `sequence` with its wanted offset; `gap` where it refused the piece for what is missing
-    /// before it.
+    /// The robot answered piece `sequence` with its wanted offset. Where that lies before the piece, one before was lost. A
+    /// late answer to a piece already written off still proves what has arrived. Returns the round trip where it can be told.
     pub(crate) fn answered(
         &mut self,
         sequence: u16,
         wanted: usize,
-        gap: bool,
         now: Duration,
-    ) -> Answer {
-        let Some(place) = self
-            .in_flight
-            .iter()
-            .position(|piece| piece.sequence == sequence)
-        else {
-            return Answer::Unknown;
-        };
-        let trip = self
-            .in_flight
-            .get(place)
-            .filter(|piece| piece.fresh)
-            .map(|piece| now.saturating_sub(piece.sent));
+    ) -> Option<Duration> {
         if wanted > self.wanted {
             self.wanted = wanted.min(self.total);
             self.timeouts = 0;
         }
+        let place = self
+            .in_flight
+            .iter()
+            .position(|piece| piece.sequence == sequence);
         // Pieces sent before this one were answered before it or will not be: the link keeps order.
-        self.in_flight.drain(..=place);
+        let answered = place.and_then(|place| self.in_flight.drain(..=place).next_back());
         self.in_flight.retain(|piece| piece.end > self.wanted);
-        if gap {
+        if answered.is_some_and(|piece| self.wanted < piece.start) {
             self.go_back();
         }
         self.next = self.next.max(self.wanted);
-        Answer::Noted(trip)
+        answered
+            .filter(|piece| piece.fresh)
+            .map(|piece| now.saturating_sub(piece.sent))
     }
 
     /// Starts again from the wanted offset. What is in flight is written off, so its late answers mean nothing.
@@ -189,13 +176,11 @@ mod tests {
         send_all(&mut window, 10);
         assert_eq!(window.in_flight(), 3 * 124);
         // The first answer was lost; the second covers it.
-        assert!(matches!(
-            window.answered(11, 208, false, NOW),
-            Answer::Noted(Some(_))
-        ));
+        assert_eq!(window.answered(11, 208, NOW), Some(Duration::ZERO));
         assert_eq!(window.in_flight(), 124);
-        assert_eq!(window.answered(10, 104, false, NOW), Answer::Unknown);
-        window.answered(12, 300, false, NOW);
+        assert_eq!(window.answered(10, 104, NOW), None);
+        assert_eq!(window.wanted(), 208);
+        window.answered(12, 300, NOW);
         assert!(window.complete());
     }
 
@@ -203,21 +188,28 @@ mod tests {
     fn a_gap_goes_back_once() {
         let mut window = Window::new(500, 0);
         send_all(&mut window, 0);
-        window.answered(0, 104, false, NOW);
-        // Piece 1 is lost: 2, 3 and 4 are refused.
-        window.answered(2, 104, true, NOW);
+        window.answered(0, 104, NOW);
+        // Piece 1 is lost: 2, 3 and 4 come behind a gap.
+        window.answered(2, 104, NOW);
         assert_eq!(window.next_piece(), Some(104..208));
         let next = send_all(&mut window, 5);
         assert_eq!(next, 9);
-        assert_eq!(
-            window.answered(3, 104, true, NOW),
-            Answer::Unknown,
-            "belongs to the pieces written off"
-        );
+        // An answer to the pieces written off goes back no second time.
+        assert_eq!(window.answered(3, 104, NOW), None);
         assert_eq!(window.next_piece(), None);
         // A repeat's answer times nothing.
-        assert_eq!(window.answered(8, 500, false, NOW), Answer::Noted(None));
+        assert_eq!(window.answered(8, 500, NOW), None);
         assert!(window.complete());
+    }
+
+    #[test]
+    fn a_late_answer_saves_sending_again() {
+        let mut window = Window::new(500, 0);
+        send_all(&mut window, 0);
+        window.go_back();
+        assert_eq!(window.next_piece(), Some(0..104));
+        window.answered(2, 312, NOW);
+        assert_eq!(window.next_piece(), Some(312..416));
     }
 
     #[test]

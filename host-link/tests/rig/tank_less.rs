@@ -1,0 +1,187 @@
+//! The real brain behind a virtual wire, without servos or a tank: what the link does, and nothing else.
+
+use std::convert::Infallible;
+use std::time::Duration;
+
+use gait_player::storage::{MAX_SETTINGS, PAGE, SLOT_PAGES, SLOTS, Storage};
+use gait_player::{Boot, Brain, BrainConfig, GaitTable, Identity, Inputs, Limits, Output, TICK_US};
+use host_link::port::{Device, FaultPlan, Faults, FaultyPort, VirtualPort, WireSpeed};
+use link_protocol::{
+    Board, Configuration, FirmwareVersion, MAX_ENCODED, Message, Request, ResetReason,
+    ServoSettings, TangentialDrag,
+};
+
+/// A brain and its clock.
+pub(crate) struct Robot {
+    brain: Brain,
+    flash: Flash,
+    now_us: u64,
+    next_tick_us: u64,
+    pub(crate) output: Option<Output>,
+    /// When pulses were last on.
+    pub(crate) powered: Duration,
+    /// When the first and the last piece of an upload came.
+    pub(crate) pieces: (Duration, Duration),
+    decoder: link_protocol::Decoder,
+}
+
+struct Flash {
+    slots: [[u8; PAGE * SLOT_PAGES]; SLOTS],
+    settings: Option<Vec<u8>>,
+}
+
+impl Robot {
+    pub(crate) fn new(nonce: u32) -> Self {
+        let servo = ServoSettings {
+            centre_ns: 1_500_000,
+            slope_rad_per_us: 0.0274,
+            reversed: false,
+            trim: 0,
+        };
+        let mut flash = Flash {
+            slots: [[0xFF; PAGE * SLOT_PAGES]; SLOTS],
+            settings: None,
+        };
+        let mut brain = Brain::new(BrainConfig {
+            identity: Identity {
+                firmware: FirmwareVersion {
+                    major: 0,
+                    minor: 1,
+                    patch: 0,
+                    commit: [0; 8],
+                },
+                board: Board::Twin,
+            },
+            limits: Limits::ROBOT,
+            configuration: configuration(2.8),
+            servos: [servo; 2],
+            buffer: 2048,
+            boot: Boot {
+                reset_reason: ResetReason::PowerOn,
+                nonce,
+                session_seed: 100,
+                kept: 0,
+                crash_message: heapless::String::new(),
+            },
+        });
+        let Ok(()) = brain.load(&mut flash);
+        Self {
+            brain,
+            flash,
+            now_us: 0,
+            next_tick_us: 0,
+            output: None,
+            powered: Duration::ZERO,
+            pieces: (Duration::ZERO, Duration::ZERO),
+            decoder: link_protocol::Decoder::new(),
+        }
+    }
+}
+
+/// The paper's robot, slender, within `max_angle`.
+pub(crate) fn configuration(max_angle: f32) -> Configuration {
+    Configuration {
+        middle_m: 0.071,
+        front_m: 0.137,
+        back_m: 0.137,
+        chi: 2.0,
+        tangential_drag: TangentialDrag::LogAspect(4.543),
+        sphere_radius_m: 0.0,
+        max_angle,
+        max_rate: 3.5,
+    }
+}
+
+/// A circle of the largest table: 2 kB.
+pub(crate) fn circle(amplitude: f64) -> GaitTable {
+    GaitTable::from_fn(512, |u| {
+        let (sin, cos) = (std::f64::consts::TAU * (u + 0.125)).sin_cos();
+        [amplitude * cos, amplitude * sin]
+    })
+    .unwrap()
+}
+
+/// The host's end of a line with faults to a fresh robot.
+pub(crate) fn faulty(faults: Faults, seed: u64) -> FaultyPort<VirtualPort<Robot>> {
+    let line = VirtualPort::new(Robot::new(5), WireSpeed::robot());
+    FaultyPort::new(line, FaultPlan::at_host(faults), seed)
+}
+
+impl Device for Robot {
+    fn advance(&mut self, to: Duration) {
+        let to_us = u64::try_from(to.as_micros()).unwrap();
+        while self.next_tick_us <= to_us {
+            self.now_us = self.next_tick_us;
+            let inputs = Inputs {
+                battery_mv: None,
+                link_up: true,
+            };
+            let output = self.brain.tick(self.now_us, &inputs);
+            if output.pulses_ns.is_some() {
+                self.powered = Duration::from_micros(self.now_us);
+            }
+            if output.storage_wanted {
+                let Ok(()) = self.brain.serve_storage(self.now_us, &mut self.flash);
+            }
+            self.output = Some(output);
+            self.next_tick_us += u64::from(TICK_US);
+        }
+        self.now_us = self.now_us.max(to_us);
+    }
+
+    fn receive(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            if let Some(received) = self.decoder.push(byte)
+                && let Ok(Message::Request(Request::Chunk(chunk))) = received.message
+            {
+                let now = Duration::from_micros(self.now_us);
+                self.pieces.1 = now;
+                if chunk.offset == 0 {
+                    self.pieces.0 = now;
+                }
+            }
+        }
+        self.brain.receive(self.now_us, bytes);
+    }
+
+    fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
+        let mut bytes = [0; MAX_ENCODED];
+        let room = room.min(bytes.len());
+        let count = self.brain.transmit(&mut bytes[..room]);
+        out.extend_from_slice(&bytes[..count]);
+    }
+}
+
+impl Storage for Flash {
+    type Error = Infallible;
+
+    fn read(&mut self, slot: usize, offset: usize, bytes: &mut [u8]) -> Result<(), Infallible> {
+        bytes.copy_from_slice(&self.slots[slot][offset..offset + bytes.len()]);
+        Ok(())
+    }
+
+    fn erase(&mut self, slot: usize) -> Result<(), Infallible> {
+        self.slots[slot].fill(0xFF);
+        Ok(())
+    }
+
+    fn program(&mut self, slot: usize, page: usize, bytes: &[u8; PAGE]) -> Result<(), Infallible> {
+        self.slots[slot][page * PAGE..][..PAGE].copy_from_slice(bytes);
+        Ok(())
+    }
+
+    fn load_settings(
+        &mut self,
+        bytes: &mut [u8; MAX_SETTINGS],
+    ) -> Result<Option<usize>, Infallible> {
+        Ok(self.settings.as_ref().map(|settings| {
+            bytes[..settings.len()].copy_from_slice(settings);
+            settings.len()
+        }))
+    }
+
+    fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Infallible> {
+        self.settings = Some(bytes.to_vec());
+        Ok(())
+    }
+}
