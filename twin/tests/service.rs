@@ -1,0 +1,126 @@
+//! The twin in real time, opened by path as a program would, and its memory over a power cut.
+#![cfg(unix)]
+
+#[path = "rig/play.rs"]
+mod play;
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use host_link::port::{FaultPlan, FaultyPort, PtyPort, SerialPort, TcpPort};
+use host_link::{LinkError, Port, Robot};
+use link_protocol::StateName;
+use play::{circle, robot, table};
+use twin::{Twin, TwinConfig, TwinPort, WireSpeed, serve};
+
+/// Ends the service even where the host's part panics.
+struct End<'a>(&'a AtomicBool);
+impl Drop for End<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Runs `host` while a twin is served behind a pseudo-terminal and a TCP port with the given faults.
+fn with_twin(faults: &str, host: impl FnOnce(&str, std::net::SocketAddr)) -> Twin {
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("robot");
+    let pty = PtyPort::open(Some(&link)).unwrap();
+    let tcp = TcpPort::listen("127.0.0.1:0").unwrap();
+    let address = tcp.local_addr().unwrap();
+    let plan = FaultPlan::at_robot(faults.parse().unwrap());
+    let (mut pty, mut tcp) = (FaultyPort::new(pty, plan, 1), FaultyPort::new(tcp, plan, 2));
+    let mut twin = Twin::new(TwinConfig::new(&robot(), 3)).unwrap();
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let served = scope.spawn(|| {
+            let mut ports: [&mut dyn Port; 2] = [&mut pty, &mut tcp];
+            serve(&mut twin, &mut ports, |_| !done.load(Ordering::Relaxed)).unwrap();
+        });
+        let end = End(&done);
+        host(link.to_str().unwrap(), address);
+        drop(end);
+        served.join().unwrap();
+    });
+    twin
+}
+
+#[test]
+fn programs_open_upload_play_stop_close_and_open_again() {
+    let gait = table(512, &circle(1.0));
+    let twin = with_twin("drop=5%,flip=1%", |path, _| {
+        let mut robot = Robot::connect(SerialPort::open(path, 115_200).unwrap(), 1).unwrap();
+        let info = robot
+            .upload(gait.bytes(), Duration::from_mins(1), |_| {
+                ControlFlow::Continue(())
+            })
+            .unwrap();
+        assert_eq!(info.crc32, gait.crc32());
+        robot.arm(false).unwrap();
+        robot.play(0, Duration::from_secs(8), false).unwrap();
+        robot
+            .listen(Duration::from_millis(300), |_| ControlFlow::Continue(()))
+            .unwrap();
+        assert!(matches!(
+            robot.telemetry().unwrap().state,
+            StateName::Starting | StateName::Playing
+        ));
+        robot.stop().unwrap();
+        drop(robot);
+        // The link is free again; another program finds the robot at rest, or on its way there.
+        let mut again = Robot::connect(SerialPort::open(path, 115_200).unwrap(), 2).unwrap();
+        let status = again.status().unwrap();
+        assert!(matches!(
+            status.state,
+            StateName::Stopping | StateName::Settling | StateName::Stopped
+        ));
+        assert_eq!(status.table.unwrap().crc32, gait.crc32());
+    });
+    assert!(twin.now() > Duration::from_millis(300));
+}
+
+#[test]
+fn tcp_serves_the_same_robot() {
+    with_twin("", |path, address| {
+        let mut near = Robot::connect(SerialPort::open(path, 115_200).unwrap(), 1).unwrap();
+        near.trim(link_protocol::Joint::Back, 0.01).unwrap();
+        let mut far = Robot::connect(TcpPort::connect(address).unwrap(), 2).unwrap();
+        assert_eq!(far.servo(link_protocol::Joint::Back).unwrap().trim, 100);
+        // The first session is over, and says so.
+        assert!(matches!(near.status(), Err(LinkError::SessionLost { .. })));
+    });
+}
+
+#[test]
+fn a_table_survives_a_power_cut_with_its_flash() {
+    let gait = table(128, &circle(0.9));
+    let mut robot = Robot::connect(
+        TwinPort::new(
+            Twin::new(TwinConfig::new(&robot(), 3)).unwrap(),
+            WireSpeed::robot(),
+        ),
+        1,
+    )
+    .unwrap();
+    robot
+        .upload(gait.bytes(), Duration::from_mins(1), |_| {
+            ControlFlow::Continue(())
+        })
+        .unwrap();
+    robot
+        .listen(Duration::from_secs(3), |_| ControlFlow::Continue(()))
+        .unwrap();
+    assert!(robot.table().unwrap().unwrap().stored);
+    let twin = robot.into_port().into_device();
+    assert!(!twin.flash().is_erased());
+    let mut config = twin.config().clone();
+    config.flash = twin.flash().clone();
+    config.seed += 1;
+    let mut robot = Robot::connect(
+        TwinPort::new(Twin::new(config).unwrap(), WireSpeed::robot()),
+        1,
+    )
+    .unwrap();
+    assert_eq!(robot.table().unwrap().unwrap().crc32, gait.crc32());
+}
