@@ -24,7 +24,13 @@ impl Brain {
         {
             self.stop(StopCause::PauseExpired);
         }
-        if self.state.powered() && !self.state.detached() && self.session.silent(now_us) {
+        // A robot that stops already needs nobody to hear from.
+        let stopping = matches!(self.state, State::Stopping { .. } | State::Settling { .. });
+        if self.state.powered()
+            && !stopping
+            && !self.state.detached()
+            && self.session.silent(now_us)
+        {
             self.stop(StopCause::LinkLost);
         }
         if self.battery_stops && self.state.powered() {

@@ -1,0 +1,254 @@
+//! Promise R9, second half: a power cut at any byte of a store leaves the old table or the new one, never a mix; and
+//! settings and tables come back after a restart.
+#![allow(missing_docs)]
+mod bench;
+
+use bench::*;
+use gait_player::storage::{MAX_SETTINGS, PAGE, SLOT_PAGES, SLOTS, Storage};
+use gait_player::{Brain, GaitTable};
+use link_protocol::*;
+
+/// NOR flash that loses power after so many bytes: what it was at is done up to there, nothing after.
+#[derive(Clone)]
+struct Flash {
+    slots: [Vec<u8>; SLOTS],
+    settings: Option<Vec<u8>>,
+    /// Bytes until the power is cut.
+    left: usize,
+    spent: usize,
+}
+
+#[derive(Debug, PartialEq)]
+struct PowerCut;
+
+impl Flash {
+    fn new() -> Self {
+        let slot = vec![0xFF; SLOT_PAGES * PAGE];
+        Self {
+            slots: [slot.clone(), slot],
+            settings: None,
+            left: usize::MAX,
+            spent: 0,
+        }
+    }
+
+    fn spend(&mut self) -> Result<(), PowerCut> {
+        self.left = self.left.checked_sub(1).ok_or(PowerCut)?;
+        self.spent += 1;
+        Ok(())
+    }
+}
+
+impl Storage for Flash {
+    type Error = PowerCut;
+
+    fn read(&mut self, slot: usize, offset: usize, bytes: &mut [u8]) -> Result<(), PowerCut> {
+        bytes.copy_from_slice(&self.slots[slot][offset..offset + bytes.len()]);
+        Ok(())
+    }
+
+    fn erase(&mut self, slot: usize) -> Result<(), PowerCut> {
+        for at in 0..SLOT_PAGES * PAGE {
+            self.spend()?;
+            self.slots[slot][at] = 0xFF;
+        }
+        Ok(())
+    }
+
+    fn program(&mut self, slot: usize, page: usize, bytes: &[u8; PAGE]) -> Result<(), PowerCut> {
+        for (at, byte) in bytes.iter().enumerate() {
+            self.spend()?;
+            let place = &mut self.slots[slot][page * PAGE + at];
+            assert_eq!(*place, 0xFF, "programmed without an erase");
+            *place = *byte;
+        }
+        Ok(())
+    }
+
+    fn load_settings(&mut self, bytes: &mut [u8; MAX_SETTINGS]) -> Result<Option<usize>, PowerCut> {
+        Ok(self.settings.as_ref().map(|settings| {
+            bytes[..settings.len()].copy_from_slice(settings);
+            settings.len()
+        }))
+    }
+
+    fn save_settings(&mut self, bytes: &[u8]) -> Result<(), PowerCut> {
+        // Old or new: the record's own store sees to that.
+        self.spend()?;
+        self.settings = Some(bytes.to_vec());
+        Ok(())
+    }
+}
+
+fn boot(flash: &mut Flash) -> Bench {
+    let mut brain = Brain::new(config());
+    brain.load(flash).unwrap();
+    let mut bench = Bench::around(brain);
+    bench.greet(1);
+    bench
+}
+
+/// Serves the storage until nothing is left to do or the power is cut.
+fn serve(bench: &mut Bench, flash: &mut Flash) -> Result<(), PowerCut> {
+    bench.tick();
+    while bench.output.storage_wanted {
+        bench.brain.serve_storage(bench.now_us, flash)?;
+        bench.tick();
+    }
+    Ok(())
+}
+
+fn stored(bench: &mut Bench) -> Option<(u32, bool)> {
+    bench
+        .status()
+        .table
+        .map(|table| (table.crc32, table.stored))
+}
+
+#[test]
+fn a_table_comes_back_after_a_restart_and_plays() {
+    let mut flash = Flash::new();
+    let mut bench = boot(&mut flash);
+    assert_eq!(stored(&mut bench), None);
+    for amplitude in [1.0, 1.1, 1.2, 0.9] {
+        let table = circle(amplitude);
+        bench.upload(&table);
+        assert_eq!(stored(&mut bench), Some((table.crc32(), false)));
+        assert!(bench.status().flags.contains(Flags::UNSAVED));
+        serve(&mut bench, &mut flash).unwrap();
+        assert_eq!(stored(&mut bench), Some((table.crc32(), true)));
+        bench = boot(&mut flash);
+        assert_eq!(stored(&mut bench), Some((table.crc32(), true)));
+    }
+    bench.done(ARM);
+    bench.done(play(1, 5_000_000));
+    bench.until(StateName::Playing, 2 * SECOND);
+}
+
+#[test]
+fn settings_come_back_after_a_restart() {
+    let mut flash = Flash::new();
+    let mut bench = boot(&mut flash);
+    bench.done(Request::Trim {
+        joint: Joint::Back,
+        trim: -120,
+    });
+    let Reply::Configuration(mut configuration) = bench.ask(Request::Configuration) else {
+        panic!()
+    };
+    configuration.max_angle = 2.0;
+    configuration.chi = 2.5;
+    bench.done(Request::Configure(configuration));
+    serve(&mut bench, &mut flash).unwrap();
+    let mut bench = boot(&mut flash);
+    assert_eq!(
+        bench.ask(Request::Configuration),
+        Reply::Configuration(configuration)
+    );
+    let Reply::Servo(servo) = bench.ask(Request::Servo(Joint::Back)) else {
+        panic!()
+    };
+    assert_eq!(servo.trim, -120);
+    assert!((bench.greet(3).limits.max_angle - 2.0).abs() < 1e-6);
+}
+
+#[test]
+fn r9_a_power_cut_at_any_byte_leaves_the_old_table_or_the_new_one() {
+    let (old, new) = (
+        circle(1.2),
+        GaitTable::from_fn(100, |u| [0.3 * (std::f64::consts::TAU * u).sin(), 0.1]).unwrap(),
+    );
+    let mut flash = Flash::new();
+    let mut bench = boot(&mut flash);
+    // Both slots in use, so that an older table is being overwritten.
+    for table in [&new, &old] {
+        bench.upload(table);
+        serve(&mut bench, &mut flash).unwrap();
+    }
+    let before = flash.clone();
+    let mut whole = before.clone();
+    whole.spent = 0;
+    let mut bench = boot(&mut whole);
+    bench.upload(&circle(0.7));
+    serve(&mut bench, &mut whole).unwrap();
+    let bytes = whole.spent;
+    let mut seen = [0; 2];
+    for cut in 0..=bytes {
+        let mut flash = Flash {
+            left: cut,
+            ..before.clone()
+        };
+        let mut bench = boot(&mut flash);
+        bench.upload(&circle(0.7));
+        assert_eq!(serve(&mut bench, &mut flash).is_ok(), cut == bytes);
+        flash.left = usize::MAX;
+        let mut after = boot(&mut flash);
+        let (crc32, stored) = stored(&mut after).unwrap();
+        assert!(stored);
+        let is_new = crc32 == circle(0.7).crc32();
+        assert!(is_new || crc32 == old.crc32(), "a mix after {cut} bytes");
+        seen[usize::from(is_new)] += 1;
+        assert_eq!(after.status().state, StateName::Stopped);
+        // And the next upload is stored as if nothing had been.
+        if cut % 512 == 0 {
+            after.upload(&new);
+            serve(&mut after, &mut flash).unwrap();
+            assert_eq!(boot(&mut flash).status().table.unwrap().crc32, new.crc32());
+        }
+    }
+    println!(
+        "R9: power cut after each of {bytes} bytes: {} times the old table, {} times the new, no mix",
+        seen[0], seen[1]
+    );
+    assert!(seen[0] > 2_000 && seen[1] >= 1);
+}
+
+#[test]
+fn nothing_is_stored_unless_stopped_and_a_failure_is_retried_a_second_later() {
+    let mut flash = Flash::new();
+    let mut bench = boot(&mut flash);
+    bench.upload(&circle(1.2));
+    bench.done(ARM);
+    assert!(!bench.tick().storage_wanted);
+    bench.brain.serve_storage(bench.now_us, &mut flash).unwrap();
+    assert_eq!(flash.spent, 0);
+    bench.done(Request::Stop);
+    bench.until(StateName::Stopped, SECOND);
+    assert!(bench.tick().storage_wanted);
+    // An arm in the middle wins; the table is stored afterwards.
+    bench.brain.serve_storage(bench.now_us, &mut flash).unwrap();
+    assert!(flash.spent > 0);
+    bench.done(ARM);
+    bench.tick();
+    bench.done(Request::Stop);
+    bench.until(StateName::Stopped, SECOND);
+    flash.left = 10;
+    assert_eq!(serve(&mut bench, &mut flash), Err(PowerCut));
+    flash.left = usize::MAX;
+    bench.tick();
+    assert!(!bench.output.storage_wanted && bench.status().flags.contains(Flags::STORAGE_FAILED));
+    bench.run(SECOND);
+    serve(&mut bench, &mut flash).unwrap();
+    assert!(!bench.status().flags.contains(Flags::STORAGE_FAILED));
+    assert_eq!(
+        boot(&mut flash).status().table.unwrap().crc32,
+        circle(1.2).crc32()
+    );
+}
+
+#[test]
+fn a_table_committed_in_the_middle_of_a_store_is_the_one_that_is_stored() {
+    let mut flash = Flash::new();
+    let mut bench = boot(&mut flash);
+    bench.upload(&circle(1.2));
+    for _ in 0..4 {
+        bench.tick();
+        bench.brain.serve_storage(bench.now_us, &mut flash).unwrap();
+    }
+    bench.upload(&circle(0.4));
+    serve(&mut bench, &mut flash).unwrap();
+    assert_eq!(
+        boot(&mut flash).status().table.unwrap().crc32,
+        circle(0.4).crc32()
+    );
+}
