@@ -1,34 +1,27 @@
-//! What the brain is told at the start: who it is, what this robot allows, and how it came up.
+//! What the brain is told at the start: who it is and how it came up.
 
 use embassy_rp::clocks::RoscRng;
 use embassy_rp::pac::VREG_AND_CHIP_RESET;
 use embassy_rp::watchdog::ResetReason as WatchdogReset;
-use gait_player::servo::ServoMap;
-use gait_player::{Boot, BrainConfig, Identity, Limits};
-use link_protocol::{
-    Board, Configuration, FirmwareVersion, ResetReason, ServoSettings, TangentialDrag,
-};
-use swimmer_model::Swimmer;
+use gait_player::{Boot, BrainConfig, Identity};
+use link_protocol::{Board, FirmwareVersion, ResetReason};
 
 use crate::uart::RECEIVE_BUFFER;
 use crate::watchdog::Watchdog;
 
 /// Everything [`gait_player::Brain::new`] asks for.
 pub(crate) fn brain_config(watchdog: &mut Watchdog) -> BrainConfig {
-    BrainConfig {
-        identity: Identity {
-            firmware: VERSION,
-            board: if cfg!(feature = "pico") {
-                Board::Pico
-            } else {
-                Board::NanoRp2040Connect
-            },
+    let identity = Identity {
+        firmware: VERSION,
+        board: if cfg!(feature = "pico") {
+            Board::Pico
+        } else {
+            Board::NanoRp2040Connect
         },
-        limits: Limits::ROBOT,
-        configuration: configuration(),
-        servos: [SERVO; 2],
+    };
+    BrainConfig {
         buffer: RECEIVE_BUFFER as u16,
-        boot: boot(watchdog),
+        ..BrainConfig::robot(identity, boot(watchdog))
     }
 }
 
@@ -38,37 +31,6 @@ const VERSION: FirmwareVersion = FirmwareVersion {
     patch: digits(env!("CARGO_PKG_VERSION_PATCH")),
     commit: commit(env!("SWIMMER_COMMIT")),
 };
-
-/// The servos as built, until others are set.
-const SERVO: ServoSettings = ServoSettings {
-    centre_ns: ServoMap::ROBOT.centre_ns,
-    slope_rad_per_us: ServoMap::ROBOT.slope_rad_per_us,
-    reversed: ServoMap::ROBOT.reversed,
-    trim: 0,
-};
-
-/// The swimmer as built, until another is set.
-fn configuration() -> Configuration {
-    let swimmer: Swimmer<f32> = Swimmer::robot();
-    Configuration {
-        middle_m: swimmer.links.middle,
-        front_m: swimmer.links.front,
-        back_m: swimmer.links.back,
-        chi: swimmer.chi,
-        tangential_drag: match swimmer.tangential_drag {
-            swimmer_model::TangentialDrag::LogAspect(value) => TangentialDrag::LogAspect(value),
-            swimmer_model::TangentialDrag::HalfThickness(value) => {
-                TangentialDrag::HalfThickness(value)
-            }
-            swimmer_model::TangentialDrag::OverViscosity(value) => {
-                TangentialDrag::OverViscosity(value)
-            }
-        },
-        sphere_radius_m: swimmer.sphere_radius,
-        max_angle: Limits::ROBOT.max_angle,
-        max_rate: Limits::ROBOT.max_rate,
-    }
-}
 
 fn boot(watchdog: &mut Watchdog) -> Boot {
     let reset_reason = match watchdog.reset_reason() {

@@ -76,8 +76,13 @@ impl Control {
             if count == 0 {
                 return;
             }
-            // There is room: this task is the only writer.
-            let _ = TO_SEND.try_write(&bytes[..count]);
+            // There is room, for this task is the only writer; but one write ends where the pipe's ring wraps.
+            let mut rest = &bytes[..count];
+            while let Ok(written) = TO_SEND.try_write(rest)
+                && written < rest.len()
+            {
+                rest = &rest[written..];
+            }
         }
     }
 }

@@ -16,15 +16,17 @@ use static_cell::StaticCell;
 
 /// What the HC-05 is set to with `AT+UART=115200,0,0`.
 const BAUD: u32 = 115_200;
+/// The receiver's ring, and as much again in the pipe behind it.
+const RECEIVE_RING: usize = 1024;
 /// Bytes that may wait for the brain: what Hello advertises, and what the host keeps in flight at most.
-pub(crate) const RECEIVE_BUFFER: usize = 1024;
+pub(crate) const RECEIVE_BUFFER: usize = 2 * RECEIVE_RING;
 /// Bytes that may wait for the UART, a few frames.
 const SEND_BUFFER: usize = 512;
 /// The transmitter's ring. Short, because what is in it still leaves after the connection is gone.
 const SEND_RING: usize = 32;
 
 /// Bytes from the link, for the control task.
-pub(crate) static RECEIVED: Pipe<CriticalSectionRawMutex, RECEIVE_BUFFER> = Pipe::new();
+pub(crate) static RECEIVED: Pipe<CriticalSectionRawMutex, RECEIVE_RING> = Pipe::new();
 /// Bytes for the link, from the control task.
 pub(crate) static TO_SEND: Pipe<CriticalSectionRawMutex, SEND_BUFFER> = Pipe::new();
 
@@ -42,12 +44,12 @@ pub(crate) fn start(
     state: Peri<'static, AnyPin>,
 ) -> &'static Input<'static> {
     static SEND: StaticCell<[u8; SEND_RING]> = StaticCell::new();
-    static RECEIVE: StaticCell<[u8; RECEIVE_BUFFER]> = StaticCell::new();
+    static RECEIVE: StaticCell<[u8; RECEIVE_RING]> = StaticCell::new();
     static STATE: StaticCell<Input<'static>> = StaticCell::new();
 
     let mut config = Config::default();
     config.baudrate = BAUD;
-    let (send_ring, receive_ring) = (SEND.init([0; SEND_RING]), RECEIVE.init([0; RECEIVE_BUFFER]));
+    let (send_ring, receive_ring) = (SEND.init([0; SEND_RING]), RECEIVE.init([0; RECEIVE_RING]));
     let (tx, rx) =
         BufferedUart::new(uart, tx, rx, Interrupts, send_ring, receive_ring, config).split();
     let state: &'static Input<'static> = STATE.init(Input::new(state, Pull::Down));

@@ -3,7 +3,7 @@
 use crate::debian;
 use crate::failure::Outcome;
 use crate::firmware::{self, Board};
-use crate::run::{cargo, command, run};
+use crate::run::{cargo, command, read, run};
 use crate::steps::Steps;
 use crate::toolchain::ChipToolchain;
 
@@ -78,6 +78,13 @@ fn take_all(steps: &mut Steps) -> Outcome {
 /// Finds or installs every tool; the second time it only finds them.
 fn what_is_needed() -> Outcome<ChipToolchain> {
     debian::ensure_tool(command("cc").arg("--version"), &["gcc", "libc6-dev"])?;
+    for component in ["fmt", "clippy"] {
+        let next = "run `rustup component add rustfmt clippy`, and repeat the command";
+        println!(
+            "{}",
+            read(&mut cargo([component, "--version"]), next)?.trim()
+        );
+    }
     let toolchain = ChipToolchain::find_or_make()?;
     println!("{}", toolchain.describe());
     Ok(toolchain)

@@ -1,5 +1,6 @@
 //! The project's own chores, so that no one has to remember a command line: `cargo xtask --help` lists them.
 
+mod bench;
 mod check;
 mod debian;
 mod disk;
@@ -40,6 +41,12 @@ enum Chore {
         #[arg(long, default_value = "nano-connect")]
         board: Board,
     },
+    /// Runs our benches, then the Python peers beside them, and prints the ratios.
+    Bench {
+        /// Folder of the peers' Python modules (`model.py`, `gaits.py`); it is copied, not written to.
+        #[arg(default_value = "../shared/bench")]
+        peers: PathBuf,
+    },
     /// Runs the tests that are too long for every change (those marked `#[ignore]`).
     Soak {
         /// Only tests with this in their names.
@@ -73,6 +80,7 @@ fn perform(chore: Chore) -> Outcome {
                 .try_for_each(|board| firmware::build(&toolchain, board))
         }
         Chore::Flash { board } => firmware::flash(&ChipToolchain::find_or_make()?, board),
+        Chore::Bench { peers } => bench::run_all(&peers),
         Chore::Soak { filter } => soak::run_ignored(filter.as_deref()),
     }
 }

@@ -1,0 +1,214 @@
+//! `cargo xtask bench`: our benches, then the Python peers on the same machine in the same run, one thread, and the ratios.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::debian;
+use crate::disk::{copy, entries, make_folder, read_bytes, write};
+use crate::failure::{Failure, Outcome};
+use crate::run::{cargo, command, read, run, target_folder, works};
+
+/// What times the peers; it runs beside a copy of their modules.
+const PEERS: &str = include_str!("bench/peers.py");
+/// The newest at the time of writing, pinned so that ratios can be compared over time.
+const PACKAGES: [&str; 3] = ["numpy==2.4.6", "scipy==1.17.1", "casadi==3.8.2"];
+/// Libraries under `NumPy` that would take all processors.
+const ONE_THREAD: [&str; 3] = ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"];
+
+/// A peer's figure beside ours.
+struct Comparison {
+    what: &'static str,
+    /// Our bench, as criterion names its folder.
+    ours: &'static str,
+    /// Name in the peers' JSON, and how to call it.
+    peers: &'static [(&'static str, &'static str)],
+}
+
+const COMPARISONS: [Comparison; 2] = [
+    Comparison {
+        what: "A and W at one shape",
+        ours: "f64/connection and power",
+        peers: &[
+            ("numpy_one", "NumPy, one shape a call"),
+            ("casadi_one", "CasADi, one shape a call"),
+            ("numpy_batch", "NumPy, 10 000 shapes a call, per shape"),
+            ("casadi_batch", "CasADi, 10 000 shapes a call, per shape"),
+        ],
+    },
+    Comparison {
+        what: "one cycle of the best circle (ours: all of it, to 1e-10)",
+        ours: "f64/stroke of the best circle",
+        peers: &[("quarter_cycle", "gaits.py, a quarter of it by symmetry")],
+    },
+];
+
+/// Runs the benches and, where they can be had, the peers of `folder`.
+///
+/// # Errors
+/// When our own benches fail. A peer that cannot be run is reported and left out.
+pub(crate) fn run_all(folder: &Path) -> Outcome {
+    run(
+        &mut cargo(["bench", "--workspace", "--bench", "*"]),
+        "mend what the benches name above",
+    )?;
+    let target = target_folder()?;
+    match peers_times(folder, &target.join("peers")) {
+        Ok(times) => print_comparisons(&target, &times),
+        Err(failure) => {
+            println!("\n!!!! NOT COMPARED with the Python peers !!!!\n{failure}");
+            Ok(())
+        }
+    }
+}
+
+/// Copies the peers, makes their virtual environment where it is missing, and times them.
+fn peers_times(folder: &Path, place: &Path) -> Outcome<Value> {
+    make_folder(place)?;
+    for module in entries(folder, |name| {
+        Path::new(name)
+            .extension()
+            .is_some_and(|ending| ending == "py")
+    })? {
+        copy(&module, &place.join(module.file_name().unwrap_or_default()))?;
+    }
+    write(&place.join("peers.py"), PEERS)?;
+    let python = environment(place)?;
+    let mut times = command(python);
+    times.current_dir(place).arg("peers.py");
+    for name in ONE_THREAD {
+        times.env(name, "1");
+    }
+    let next = "run it by hand to see why";
+    let times = read(&mut times, next)?;
+    serde_json::from_str(&times)
+        .map_err(|why| Failure::new("reading what peers.py printed", why, next))
+}
+
+/// The Python of a virtual environment with the peers' packages.
+fn environment(place: &Path) -> Outcome<PathBuf> {
+    let python = place.join("venv/bin/python");
+    if !works(command(&python).args(["-c", "import numpy, scipy"])) {
+        debian::ensure_tool(
+            command("python3").args(["-c", "import venv, ensurepip"]),
+            &["python3", "python3-venv"],
+        )?;
+        run(
+            command("python3")
+                .args(["-m", "venv"])
+                .arg(place.join("venv")),
+            "check `python3 -m venv --help`",
+        )?;
+    }
+    for package in PACKAGES {
+        let module = package.split('=').next().unwrap_or(package);
+        if works(command(&python).args(["-c", &format!("import {module}")])) {
+            continue;
+        }
+        let next = "check the network and the package index of pip, and repeat the command";
+        let installed = run(
+            command(&python).args(["-m", "pip", "install", "--quiet", package]),
+            next,
+        );
+        match installed {
+            Err(failure) if module == "casadi" => {
+                println!("\n!!!! CasADi NOT COMPARED !!!!\n{failure}");
+            }
+            outcome => outcome?,
+        }
+    }
+    Ok(python)
+}
+
+fn print_comparisons(target: &Path, times: &Value) -> Outcome {
+    println!("\nBeside the Python peers, same run, one thread:");
+    for comparison in COMPARISONS {
+        let ours = our_time(target, comparison.ours)?;
+        println!(
+            "\n{}\n  {:>12}           swimmer-model",
+            comparison.what,
+            duration(ours)
+        );
+        for (key, name) in comparison.peers {
+            match times[*key].as_f64() {
+                Some(theirs) => println!(
+                    "  {:>12} {:>8} {name}",
+                    duration(theirs),
+                    ratio(theirs / ours)
+                ),
+                None => println!("  {:>12} {:>8} {name}", "skipped", ""),
+            }
+        }
+    }
+    if let Some(displacement) = times["displacement_over_length"].as_f64() {
+        println!("\ngaits.py finds X/L = {displacement:.10} for that circle.");
+    }
+    Ok(())
+}
+
+/// Seconds of one call: the median that criterion left in its folder.
+fn our_time(target: &Path, bench: &str) -> Outcome<f64> {
+    let path = target
+        .join("criterion")
+        .join(bench)
+        .join("new/estimates.json");
+    let next = "check that the bench still has this name";
+    let estimates: Value = serde_json::from_slice(&read_bytes(&path)?)
+        .map_err(|why| Failure::new(format!("reading {}", path.display()), why, next))?;
+    estimates["median"]["point_estimate"]
+        .as_f64()
+        .map(|nanoseconds| nanoseconds * 1e-9)
+        .ok_or_else(|| {
+            Failure::new(
+                format!("reading {}", path.display()),
+                "it has no median",
+                next,
+            )
+        })
+}
+
+fn duration(seconds: f64) -> String {
+    let (value, unit) = match seconds {
+        s if s < 1e-6 => (s * 1e9, "ns"),
+        s if s < 1e-3 => (s * 1e6, "us"),
+        s if s < 1.0 => (s * 1e3, "ms"),
+        s => (s, "s"),
+    };
+    format!("{value:.2} {unit}")
+}
+
+fn ratio(times: f64) -> String {
+    if times < 10.0 {
+        format!("x {times:.2}")
+    } else {
+        format!("x {times:.0}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_and_ratios_are_short() {
+        assert_eq!(duration(1.234e-7), "123.40 ns");
+        assert_eq!(duration(0.0456), "45.60 ms");
+        assert_eq!(ratio(1.234), "x 1.23");
+        assert_eq!(ratio(987.6), "x 988");
+    }
+
+    #[test]
+    fn reads_the_median_that_criterion_left() {
+        let target = tempfile::tempdir().unwrap();
+        let file = target
+            .path()
+            .join("criterion/f64/some bench/new/estimates.json");
+        write(
+            &file,
+            r#"{"median":{"point_estimate":250.0},"mean":{"point_estimate":300.0}}"#,
+        )
+        .unwrap();
+        assert!((our_time(target.path(), "f64/some bench").unwrap() - 250e-9).abs() < 1e-15);
+        assert!(our_time(target.path(), "f64/another").is_err());
+    }
+}
