@@ -25,6 +25,9 @@ const SHORTEST_WAIT: Duration = Duration::from_micros(100);
 pub type Observer = Box<dyn FnMut(&Telemetry, Duration) + Send>;
 
 /// A robot behind a port.
+///
+/// The robot stops by itself when it hears nothing for half a second, so that between requests somebody must
+/// [`listen`](Robot::listen): every method here keeps the lease fed while it waits, and none does between calls.
 pub struct Robot<P> {
     port: P,
     session: Session,

@@ -311,6 +311,93 @@ fn a_stop_works_without_a_greeting() {
     );
 }
 
+/// Whatever is asked in whatever order over whatever line: each ticket ends in exactly one event.
+#[test]
+fn every_ticket_ends_exactly_once() {
+    use host_link::session::{Event, Session, SessionConfig};
+    use link_protocol::{Arm, Joint, Play, Request};
+    use rand::{RngExt, SeedableRng};
+    let mut ended_well = 0;
+    for seed in 0..150 {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+        let faults = [
+            "",
+            "drop=20%,flip=2%,duplicate=5%,clump=230",
+            "drop=60%,delay=300",
+            "disconnect=2000:7000",
+        ][usize::try_from(seed).unwrap() % 4];
+        let mut line = faulty(faults.parse().unwrap(), seed);
+        let mut session = Session::new(SessionConfig::new(seed));
+        let mut ends = std::collections::BTreeMap::new();
+        let mut next_ask = Duration::ZERO;
+        let mut buf = [0; 256];
+        // Until all have ended and ten seconds more; a queue of requests on the worst line takes minutes.
+        let mut last_open = Duration::ZERO;
+        while line.now() < (last_open + MS * 10_000).max(MS * 22_000) && line.now() < MS * 300_000 {
+            let now = line.now();
+            if now >= next_ask && now < MS * 12_000 {
+                next_ask = now + MS * rng.random_range(1..400);
+                let play = Play {
+                    cycles: 1,
+                    period_us: 6_000_000,
+                    detached: false,
+                };
+                let ticket = match rng.random_range(0..12) {
+                    0 | 1 => session.connect(now),
+                    2 => session.upload(
+                        now,
+                        0,
+                        circle(0.8).bytes(),
+                        now + MS * rng.random_range(1..20_000),
+                    ),
+                    3 => session.request(now, Request::Stop),
+                    4 => session.request(now, Request::Arm(Arm { clear_estop: true })),
+                    5 => session.request(now, Request::Play(play)),
+                    6 => session.request(
+                        now,
+                        Request::Trim {
+                            joint: Joint::Back,
+                            trim: 5,
+                        },
+                    ),
+                    _ => session.request(now, Request::Status),
+                };
+                ends.insert(ticket, 0);
+            }
+            if ends.values().any(|&count| count == 0) {
+                last_open = now;
+            }
+            session.poll(now);
+            line.write(&session.take_outgoing()).unwrap();
+            while let Some(event) = session.next_event() {
+                match event {
+                    Event::Connected { ticket, .. }
+                    | Event::Answered { ticket, .. }
+                    | Event::Uploaded { ticket, .. } => {
+                        ended_well += 1;
+                        *ends.get_mut(&ticket).unwrap() += 1;
+                    }
+                    Event::Failed { ticket, .. } => *ends.get_mut(&ticket).unwrap() += 1,
+                    Event::Progress { .. } | Event::Telemetry { .. } => {}
+                }
+            }
+            let wake = session
+                .next_deadline()
+                .unwrap_or(now + MS * 20)
+                .min(now + MS * 20);
+            let count = line
+                .read(&mut buf, wake.saturating_sub(now).max(MS))
+                .unwrap();
+            session.receive(line.now(), &buf[..count]);
+        }
+        assert!(
+            ends.values().all(|&count| count == 1),
+            "seed {seed}, {faults}: {ends:?}"
+        );
+    }
+    assert!(ended_well > 1000, "{ended_well}");
+}
+
 /// R9 of the robot's promises.
 #[test]
 fn r9_a_2_kb_table_in_under_a_minute_for_100_seeds() {

@@ -114,3 +114,30 @@ fn stale_links_are_replaced_and_other_files_are_not() {
         Err(PtyError::Link { .. })
     ));
 }
+
+/// A client that locks the terminal and is killed leaves its lock behind. Only a user who is not root notices: for root
+/// locks do not count.
+#[test]
+fn a_lock_left_behind_does_not_lock_out_the_next_client() {
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("robot");
+    let mut robot = PtyPort::open(Some(&link)).unwrap();
+    for round in 0..3u8 {
+        let mut client = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .open(&link)
+            .unwrap();
+        rustix::termios::ioctl_tiocexcl(&client).unwrap();
+        client.write_all(&[round]).unwrap();
+        assert_eq!(read_exactly(&mut robot, 1), [round]);
+        drop(client);
+        assert_eq!(
+            robot.read(&mut [0; 8], Duration::from_millis(10)).unwrap(),
+            0
+        );
+        assert_eq!(fs::read_link(&link).unwrap(), robot.path());
+    }
+    drop(robot);
+    assert!(fs::symlink_metadata(&link).is_err());
+}

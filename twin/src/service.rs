@@ -13,10 +13,15 @@ const TURN: Duration = Duration::from_millis(2);
 /// Bytes a turn may send: about four times what a line at 115 200 baud carries meanwhile.
 const ROOM: usize = 96;
 
+/// Most that the twin's clock moves in one turn. On a machine that stalls the twin stalls too, like any simulation, and does
+/// not find its lease run out with the host's bytes still unread.
+const LONGEST_STEP: Duration = Duration::from_millis(100);
+
 /// Lives with the ports' clock until `go_on` says no: it is asked every few milliseconds. What comes from any port reaches
 /// the brain; what the brain sends goes to all of them.
 ///
-/// The twin's clock follows that of the first port, from wherever the twin is now. Without ports it returns at once.
+/// The twin's clock follows that of the first port, from wherever the twin is now, but for stalls of the machine. Without
+/// ports it returns at once.
 ///
 /// # Errors
 /// A port that failed for good; clients that come and go are no failure.
@@ -28,7 +33,7 @@ pub fn serve(
     let Some(first) = ports.first() else {
         return Ok(());
     };
-    let (origin, twin_origin) = (first.now(), twin.now());
+    let mut last = first.now();
     let wait = TURN / u32::try_from(ports.len()).unwrap_or(u32::MAX);
     let mut buf = [0; 512];
     let mut out = Vec::new();
@@ -38,8 +43,9 @@ pub fn serve(
                 break;
             };
             let count = port.read(&mut buf, wait)?;
-            let now = ports.first().map_or(origin, |port| Port::now(*port));
-            twin.advance(twin_origin + now.saturating_sub(origin));
+            let now = ports.first().map_or(last, |port| Port::now(*port));
+            twin.advance(twin.now() + now.saturating_sub(last).min(LONGEST_STEP));
+            last = now;
             if let Some(bytes) = buf.get(..count).filter(|bytes| !bytes.is_empty()) {
                 twin.receive(bytes);
             }

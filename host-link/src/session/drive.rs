@@ -126,7 +126,7 @@ impl Session {
                     },
                 );
             }
-            self.fail_queue();
+            self.fail_waiting();
             return;
         }
         greeting.tries += 1;
@@ -142,11 +142,21 @@ impl Session {
         self.send(sequence, &hello, now);
     }
 
-    /// Nothing that waits in the queue can be sent any more.
-    pub(super) fn fail_queue(&mut self) {
-        for (ticket, request) in std::mem::take(&mut self.queue) {
-            let doing = describe(&request);
-            self.fail(ticket, LinkError::NotConnected { doing });
+    /// There is no session: whatever waits ends here, but for a stop, which needs none.
+    pub(super) fn fail_waiting(&mut self) {
+        let under_way = self
+            .pending
+            .take_if(|pending| !matches!(pending.request, Request::Stop | Request::EStop))
+            .map(|pending| (pending.owner, pending.request));
+        let queued = std::mem::take(&mut self.queue);
+        let queued = queued
+            .into_iter()
+            .map(|(ticket, request)| (Owner::Ticket(ticket), request));
+        for (owner, request) in under_way.into_iter().chain(queued) {
+            if let Owner::Ticket(ticket) = owner {
+                let doing = describe(&request);
+                self.fail(ticket, LinkError::NotConnected { doing });
+            }
         }
         self.end_upload(LinkError::NotConnected {
             doing: "uploading the gait",

@@ -103,7 +103,7 @@ impl Session {
             if let Some(ticket) = ticket {
                 self.fail(ticket, error);
             }
-            self.fail_queue();
+            self.fail_waiting();
             return;
         }
         let restarted = self
@@ -113,6 +113,9 @@ impl Session {
             self.clock.clear();
         }
         self.boot_nonce = Some(reply.boot_nonce);
+        if reply.session != self.number {
+            self.disown_pending(reply.session);
+        }
         self.number = reply.session;
         self.last_robot_us = None;
         self.pings = 0;
@@ -125,6 +128,19 @@ impl Session {
         if self.upload.is_some() {
             let doing = "uploading the gait";
             self.renew_upload(LinkError::NotConnected { doing });
+        }
+    }
+
+    /// A request sent in an earlier session may have acted there: in this one it must not act again.
+    fn disown_pending(&mut self, open: u16) {
+        let sent_before = |pending: &mut Pending| {
+            pending.tries > 0 && !matches!(pending.request, Request::Stop | Request::EStop)
+        };
+        if let Some(pending) = self.pending.take_if(sent_before)
+            && let Owner::Ticket(ticket) = pending.owner
+        {
+            let doing = describe(&pending.request);
+            self.fail(ticket, LinkError::SessionLost { doing, open });
         }
     }
 
@@ -193,7 +209,7 @@ impl Session {
             self.greet(None, now);
         } else {
             self.link = Link::Closed;
-            self.fail_queue();
+            self.fail_waiting();
         }
     }
 
