@@ -73,8 +73,8 @@ pub(super) fn zero<T: Scalar>(mut left: T, mut right: T, f: impl Fn(T) -> T) -> 
         let last = place;
         place = (left * at_right - right * at_left) / (at_right - at_left);
         if !(place > left && place < right) {
-            // Rounding: no number is left between the ends.
-            return left + (right - left) * half;
+            // The zero lies at an end to rounding.
+            return place.max(left).min(right);
         }
         let value = f(place);
         if value == T::zero() || (place - last).abs() <= T::EPSILON {

@@ -3,10 +3,12 @@
 use crate::Scalar;
 
 /// Nodes of a panel. A rule of N nodes integrates polynomials of degree 2N − 1 exactly.
-pub(super) const N: usize = 10;
+pub(super) const N: usize = 12;
 
-/// The positive roots of P₁₀ to six digits; Newton's method does the rest when the crate is compiled.
-const ROOTS: [f64; N / 2] = [0.148_874, 0.433_395, 0.679_410, 0.865_063, 0.973_907];
+/// The positive roots of P₁₂ to six digits; Newton's method does the rest when the crate is compiled.
+const ROOTS: [f64; N / 2] = [
+    0.125_233, 0.367_831, 0.587_318, 0.769_903, 0.904_117, 0.981_561,
+];
 
 /// P₀(x) … P_N(x).
 const fn legendre(x: f64) -> [f64; N + 1] {

@@ -20,8 +20,9 @@ use nalgebra::Vector2;
 /// How closely a cycle is integrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Bound on the error of the velocities' polynomials over the swimmer's size and the gait's largest rate. Results
-    /// are mostly some orders better. Values below the rounding of the number type are raised to it.
+    /// Bound on the estimated error of the dense output on each panel: of positions over L, of headings in radians, both
+    /// over the gait's size in radians; of energies over those of the body held fast. Values for the whole cycle are
+    /// mostly some orders better. A bound below the rounding of the number type is raised to it.
     pub relative: f64,
 }
 

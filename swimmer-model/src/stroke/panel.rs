@@ -133,22 +133,27 @@ impl<T: Scalar> Panel<T> {
         s.max(-one).min(one)
     }
 
-    /// Largest unresolved part of the rates over what is allowed: at most 1 is good enough.
+    /// Error estimate of the dense output over what is allowed: at most 1 is good enough.
+    ///
+    /// What is left out of a rate is about as large as its last coefficients; its integral is N times smaller.
     fn excess(&self, scale: &Scale<T>) -> T {
         let [x, y, theta] = self.rates.map(|r| r.tail());
-        let motion = (x.max(y) / scale.length).max(theta) / scale.rate;
-        // A gait may pause, where √P has a kink: bound its integral instead.
-        let power = self.power.tail() / scale.power;
-        let root = self.half_width * self.root_power.tail() / scale.power.sqrt();
-        motion.max(power).max(root) / scale.tolerance
+        let motion = (x.max(y) / scale.length).max(theta) / scale.size;
+        let energy = self.power.tail() / scale.power;
+        let power_length = self.root_power.tail() / scale.power.sqrt();
+        let tail = motion.max(energy).max(power_length);
+        tail * self.half_width / (T::from_f64(N as f64) * scale.tolerance)
     }
 }
 
 /// What counts as large for this swimmer and gait.
 #[derive(Clone, Copy, Debug)]
 struct Scale<T> {
+    /// L.
     length: T,
-    rate: T,
+    /// Size of the gait in the plane of joint angles.
+    size: T,
+    /// Power of the gait run evenly with the body held fast.
     power: T,
     tolerance: T,
 }
@@ -199,10 +204,10 @@ impl<'a, T: Scalar, G: Gait<T> + ?Sized> Panels<'a, T, G> {
         let rate = (0..RATE_SAMPLES).map(sample).fold(T::zero(), T::max);
         let rate = if rate > T::zero() { rate } else { T::one() };
         // Rounding of u alone moves the shape by the rate times ε.
-        let rounding = T::from_f64(16.0) * T::EPSILON * (T::from_f64(4.0) + rate);
+        let rounding = T::from_f64(2.0) * T::EPSILON * (T::from_f64(4.0) + rate);
         let scale = Scale {
             length: model.swimmer().total_length(),
-            rate,
+            size: rate / T::from_f64(core::f64::consts::TAU),
             power: model.power_bound() * rate * rate,
             tolerance: T::from_f64(tolerance.relative).max(rounding),
         };
@@ -275,7 +280,7 @@ impl<T: Scalar, G: Gait<T> + ?Sized> Iterator for Panels<'_, T, G> {
             }
             self.pose = panel.end_pose();
             self.index += 1;
-            // Twice as wide costs about 2⁹ in the last coefficients.
+            // Twice as wide costs about 2¹¹ in the last coefficients.
             let promising = excess < T::from_f64(1e-3) || self.level > DEEP || self.halvings == 0;
             if promising
                 && self.index.is_multiple_of(2)
