@@ -195,6 +195,32 @@ impl Twin {
         }))
     }
 
+    /// Lives until `to` on the twin's clock, from event to event: ticks every 20 ms, frames every 10 ms while recording, and
+    /// the end. An earlier time does nothing.
+    pub fn advance(&mut self, to: Duration) {
+        let to_us = u64::try_from(to.as_micros()).unwrap_or(u64::MAX);
+        loop {
+            let frame = self
+                .cameras
+                .as_ref()
+                .map_or(u64::MAX, |cameras| cameras.next_frame_us);
+            let event = frame.min(self.next_tick_us);
+            if event > to_us {
+                break;
+            }
+            self.now_until(event);
+            if frame == event {
+                self.expose();
+            }
+            if self.next_tick_us == event {
+                self.tick();
+            }
+        }
+        if to_us > self.now_us {
+            self.now_until(to_us);
+        }
+    }
+
     fn now_until(&mut self, until_us: u64) {
         let seconds = until_us.saturating_sub(self.now_us) as f64 * 1e-6;
         let tank = &mut self.tank;
@@ -240,29 +266,8 @@ impl Twin {
 }
 
 impl Device for Twin {
-    /// Lives from event to event: ticks every 20 ms, frames every 10 ms while recording, and the end.
     fn advance(&mut self, to: Duration) {
-        let to_us = u64::try_from(to.as_micros()).unwrap_or(u64::MAX);
-        loop {
-            let frame = self
-                .cameras
-                .as_ref()
-                .map_or(u64::MAX, |cameras| cameras.next_frame_us);
-            let event = frame.min(self.next_tick_us);
-            if event > to_us {
-                break;
-            }
-            self.now_until(event);
-            if frame == event {
-                self.expose();
-            }
-            if self.next_tick_us == event {
-                self.tick();
-            }
-        }
-        if to_us > self.now_us {
-            self.now_until(to_us);
-        }
+        Self::advance(self, to);
     }
 
     fn receive(&mut self, bytes: &[u8]) {

@@ -135,7 +135,6 @@ fn the_same_seed_gives_the_same_bytes_and_another_seed_others() {
 
 #[test]
 fn two_recordings_of_one_twin_are_two_files() {
-    use host_link::port::Device;
     let folder = tempfile::tempdir().unwrap();
     let mut twin = twin::Twin::new(TwinConfig::new(&robot(), 7)).unwrap();
     let mut seconds = 0;

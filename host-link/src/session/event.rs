@@ -16,28 +16,28 @@ pub struct Ticket(pub(super) u64);
 pub enum Event {
     /// A session is open. `restarted`: the robot has booted since the session before.
     Connected {
-        /// The ticket of [`Session::connect`].
+        /// The ticket of [`super::Session::connect`].
         ticket: Ticket,
         /// The robot has restarted since the last session.
         restarted: bool,
     },
     /// The robot answered a request.
     Answered {
-        /// The ticket of [`Session::request`].
+        /// The ticket of [`super::Session::request`].
         ticket: Ticket,
         /// Its answer; never a refusal.
         reply: Reply,
     },
     /// An upload is the active table, or will be at the next cycle boundary.
     Uploaded {
-        /// The ticket of [`Session::upload`].
+        /// The ticket of [`super::Session::upload`].
         ticket: Ticket,
         /// What the robot holds now.
         table: TableInfo,
     },
     /// More of an upload has arrived.
     Progress {
-        /// The ticket of [`Session::upload`].
+        /// The ticket of [`super::Session::upload`].
         ticket: Ticket,
         /// How much.
         progress: UploadProgress,
