@@ -217,7 +217,7 @@ impl Brain {
     pub fn tick(&mut self, now_us: u64, inputs: &Inputs) -> Output {
         let tick_us = u64::from(TICK_US);
         let origin_us = *self.origin_us.get_or_insert(now_us.saturating_sub(tick_us));
-        let tick = (now_us.saturating_sub(origin_us) + tick_us / 2) / tick_us;
+        let tick = now_us.saturating_sub(origin_us).saturating_add(tick_us / 2) / tick_us;
         if tick <= self.tick {
             return self.output;
         }

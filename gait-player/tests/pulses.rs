@@ -103,17 +103,16 @@ struct WildStorage {
 
 impl WildStorage {
     fn new(mut random: ChaCha8Rng) -> Self {
-        let settings = match random.random_range(0..3) {
-            0 => (0..random.random_range(0..MAX_SETTINGS))
+        let settings = if random.random_ratio(1, 3) {
+            (0..random.random_range(0..MAX_SETTINGS))
                 .map(|_| random.random())
-                .collect(),
-            _ => {
-                let record = (
-                    configuration(&mut random),
-                    [servo(&mut random), servo(&mut random)],
-                );
-                postcard::to_slice(&record, &mut [0; 200]).unwrap().to_vec()
-            }
+                .collect()
+        } else {
+            let record = (
+                configuration(&mut random),
+                [servo(&mut random), servo(&mut random)],
+            );
+            postcard::to_slice(&record, &mut [0; 200]).unwrap().to_vec()
         };
         Self { random, settings }
     }
@@ -244,7 +243,7 @@ fn wild_run(seed: u64) -> u64 {
     let limits = config.limits;
     let mut brain = Brain::new(config);
     let mut storage = WildStorage::new(ChaCha8Rng::seed_from_u64(seed ^ 0xF1A5));
-    drop(brain.load(&mut storage));
+    let _ = brain.load(&mut storage);
     let mut bench = Bench::around(brain);
     bench.keep_alive = random.random_ratio(9, 10);
     bench.greet(1);
@@ -309,7 +308,7 @@ fn wild_run(seed: u64) -> u64 {
             let output = bench.tick();
             witness.see(&output, &limits);
             if output.storage_wanted {
-                drop(bench.brain.serve_storage(bench.now_us, &mut storage));
+                let _ = bench.brain.serve_storage(bench.now_us, &mut storage);
             }
         }
     }
@@ -333,6 +332,32 @@ fn r4_no_pulse_outside_the_window_and_no_step_above_the_slew_limit() {
 fn r4_for_a_hundred_thousand_runs() {
     let powered: u64 = (2_000..102_000).map(wild_run).sum();
     println!("R4: 100000 runs, {powered} ticks with pulses on");
+}
+
+#[test]
+fn r4_whatever_the_clock_does() {
+    let mut random = ChaCha8Rng::seed_from_u64(4);
+    for _ in 0..200 {
+        let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
+        let mut witness = Witness::new();
+        for _ in 0..100 {
+            bench.now_us = match random.random_range(0..40) {
+                0 => bench
+                    .now_us
+                    .saturating_add(random.random::<u64>() >> random.random_range(0..64)),
+                1 => bench.now_us.saturating_sub(random.random_range(0..SECOND)),
+                _ => bench.now_us.saturating_add(random.random_range(0..40_000)),
+            };
+            if random.random() {
+                let sequence = random.random();
+                let request = request(&mut random, 3);
+                bench.send_request(sequence, request);
+            }
+            bench.send(Header::new(bench.session, 0), &Message::KeepAlive);
+            let output = bench.brain.tick(bench.now_us, &bench.inputs);
+            witness.see(&output, &Limits::ROBOT);
+        }
+    }
 }
 
 #[test]

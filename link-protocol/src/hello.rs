@@ -34,7 +34,9 @@ pub struct HelloReply {
     pub board: Board,
     /// Why the robot last started.
     pub reset_reason: ResetReason,
-    /// A message of a crash before that start waits for [`crate::Request::CrashMessage`].
+    /// A message of a crash before that start waits for [`crate::Request::CrashMessage`]. On the wire it is the lowest
+    /// bit of a byte whose other bits are spare: sent as 0, ignored here.
+    #[serde(with = "lowest_bit")]
     pub crash_message: bool,
     /// The session this greeting opened; every later frame carries it.
     pub session: u16,
@@ -44,6 +46,22 @@ pub struct HelloReply {
     pub limits: RobotLimits,
     /// Bytes the robot's receive buffer holds: the most that may be in flight.
     pub buffer: u16,
+}
+
+/// A flag in a byte that leaves room for seven more, in a message that may never grow.
+mod lowest_bit {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    #[allow(clippy::trivially_copy_pass_by_ref)] // serde's signature
+    pub(super) fn serialize<S: Serializer>(flag: &bool, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u8(u8::from(*flag))
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<bool, D::Error> {
+        Ok(u8::deserialize(deserializer)? & 1 != 0)
+    }
 }
 
 /// Version and commit of the firmware.

@@ -228,6 +228,20 @@ fn a_greeting_is_read_in_any_version() {
 }
 
 #[test]
+fn spare_bits_of_the_frozen_greeting_are_ignored() {
+    let (_, reply) = samples::messages().remove(1);
+    let mut body = [0; MAX_BODY];
+    let body = reply.encode_body(&mut body).unwrap();
+    // Nonce 5, versions 2, key 8, firmware 3 + 8, board and reset reason 2: then the flags.
+    assert_eq!(body[28], 1);
+    body[28] = 0xFF;
+    assert_eq!(
+        Message::decode_body(1, Kind::HelloReply as u8, body),
+        Ok(reply)
+    );
+}
+
+#[test]
 fn a_signed_frame_too_short_for_its_signature_is_no_message() {
     // Without the encoder, which cannot make such a frame.
     let mut raw = vec![1, 1, 0, 2, 0, 6 | KIND_SIGNED, 9, 9, 9];

@@ -122,11 +122,11 @@ impl Brain {
     /// The table's angles after `elapsed_us` more than `play` had come to; `before_us` in the tick before.
     fn advance_play_by(&mut self, play: Progress, before_us: u64, elapsed_us: u64) -> [f32; 2] {
         let before = Progress {
-            elapsed_us: play.elapsed_us + before_us,
+            elapsed_us: play.elapsed_us.saturating_add(before_us),
             ..play
         };
         let mut now = Progress {
-            elapsed_us: play.elapsed_us + elapsed_us,
+            elapsed_us: play.elapsed_us.saturating_add(elapsed_us),
             ..play
         };
         let Some(table) = self.tables.active() else {
