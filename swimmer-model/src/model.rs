@@ -17,10 +17,10 @@ pub struct Model<T> {
 
 /// Everything at one shape that A, W and their derivatives share.
 struct Balance<T> {
+    /// Sines and cosines of φ₁, φ₂.
+    turns: [(T, T); 2],
     terms: [Terms<T>; 2],
     factors: Factors3<T>,
-    /// Columns of N.
-    joint: [Vector3<T>; 2],
     /// Columns of A.
     a: [Vector3<T>; 2],
 }
@@ -126,28 +126,39 @@ impl<T: Scalar> Model<T> {
 
     #[inline]
     fn balance(&self, phi: &Vector2<T>) -> Balance<T> {
-        let terms = [self.sides[0].terms(phi.x), self.sides[1].terms(phi.y)];
+        let turns = [phi.x.sin_cos(), phi.y.sin_cos()];
+        let terms = [self.sides[0].terms(turns[0]), self.sides[1].terms(turns[1])];
         let [front, back] = [
             self.sides[0].blocks(&terms[0]),
             self.sides[1].blocks(&terms[1]),
         ];
         let factors = self.middle.plus(&front.body).plus(&back.body).factorise();
-        let joint = [front.joint, back.joint];
+        let a = [front.joint, back.joint].map(|n| factors.balance(&n));
         Balance {
+            turns,
             terms,
             factors,
-            joint,
-            a: joint.map(|n| factors.balance(&n)),
+            a,
         }
     }
 
+    /// W = U + NᵀA as what it stands for: the sum of every link's power. Sums of squares keep W positive, and keep its
+    /// small direction exact to rounding where U + NᵀA would leave a difference of large numbers.
     #[inline]
     fn power(&self, balance: &Balance<T>) -> Matrix2<T> {
-        let Balance { joint, a, .. } = balance;
-        let mut w = symmetric(|k, l| joint[k].dot(&a[l]));
-        w.m11 += self.sides[0].hinge();
-        w.m22 += self.sides[1].hinge();
-        w
+        let Balance { turns, a, .. } = balance;
+        let (zero, one) = (T::zero(), T::one());
+        let slips: [[Vector3<T>; 2]; 2] = core::array::from_fn(|i| {
+            core::array::from_fn(|k| {
+                self.sides[i].slips(turns[i], &a[k], if i == k { one } else { zero })
+            })
+        });
+        symmetric(|k, l| {
+            let middle = self.middle.xx * a[k].x * a[l].x
+                + self.middle.yy * a[k].y * a[l].y
+                + self.middle.zz * a[k].z * a[l].z;
+            middle + slips[0][k].dot(&slips[0][l]) + slips[1][k].dot(&slips[1][l])
+        })
     }
 
     #[inline]

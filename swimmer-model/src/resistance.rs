@@ -119,6 +119,10 @@ pub(crate) struct SideLink<T> {
     hinge: T,
     /// h = l₀/2
     arm: T,
+    /// b = l/2
+    half: T,
+    /// Roots of k_t, k_n and k_n l²/12.
+    roots: Vector3<T>,
     /// −1 for the back link: the mirror x → −x.
     mirror: T,
 }
@@ -169,8 +173,28 @@ impl<T: Scalar> SideLink<T> {
             lever: normal * length * half,
             hinge: normal * length * length / T::from_f64(3.0),
             arm: middle * half,
+            half: length * half,
+            roots: Vector3::new(
+                tangential.sqrt(),
+                normal.sqrt(),
+                length * (normal / T::from_f64(12.0)).sqrt(),
+            ),
             mirror,
         }
+    }
+
+    /// How fast the link slips along itself, across itself at its centre, and turns, each times the root of its
+    /// resistance, for the body velocity `body` and the joint rate `rate`. The squares add up to its power.
+    #[inline]
+    pub(crate) fn slips(&self, (sin, cos): (T, T), body: &Vector3<T>, rate: T) -> Vector3<T> {
+        let (x, y, turn) = (self.mirror * body.x, body.y, self.mirror * body.z);
+        // Velocity of the joint, in the frame mirrored for the back link.
+        let (x, y, turn) = (x, y + self.arm * turn, turn + rate);
+        Vector3::new(
+            self.roots.x * (cos * x + sin * y),
+            self.roots.y * (cos * y - sin * x + self.half * turn),
+            self.roots.z * turn,
+        )
     }
 
     /// u, the constant joint/joint block: the torque about the joint for a unit rate of the free link.
@@ -180,8 +204,7 @@ impl<T: Scalar> SideLink<T> {
     }
 
     #[inline]
-    pub(crate) fn terms(&self, phi: T) -> Terms<T> {
-        let (sin, cos) = phi.sin_cos();
+    pub(crate) fn terms(&self, (sin, cos): (T, T)) -> Terms<T> {
         let (sin2, cos2) = (sin * sin, cos * cos);
         Terms {
             p: self.tangential * cos2 + self.normal * sin2,

@@ -140,9 +140,10 @@ impl<T: Scalar> Panel<T> {
         let [x, y, theta] = self.rates.map(|r| r.tail());
         let motion = (x.max(y) / scale.length).max(theta) / scale.size;
         let energy = self.power.tail() / scale.power;
+        // Where a gait nearly stands still √P has nearly a kink, and no such gain.
         let power_length = self.root_power.tail() / scale.power.sqrt();
-        let tail = motion.max(energy).max(power_length);
-        tail * self.half_width / (T::from_f64(N as f64) * scale.tolerance)
+        let integral = (motion.max(energy) / T::from_f64(N as f64)).max(power_length);
+        integral * self.half_width / scale.tolerance
     }
 }
 
