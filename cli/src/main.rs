@@ -1,3 +1,56 @@
-//! The swimmer command: parses, calls, prints, draws.
+//! The `swimmer` command: parses, calls, prints, draws. No physics and no protocol live here.
 
-fn main() {}
+mod arguments;
+mod commands;
+mod failure;
+mod interrupt;
+mod link_log;
+mod output;
+mod progress;
+mod quantity;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use clap::error::ErrorKind;
+
+use crate::arguments::Arguments;
+use crate::output::Output;
+
+fn main() -> ExitCode {
+    match Arguments::try_parse() {
+        Ok(arguments) => {
+            let output = Output {
+                json: arguments.json,
+            };
+            match commands::run(arguments.command, output) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(failure) => {
+                    output.failure(&failure);
+                    failure.exit_code()
+                }
+            }
+        }
+        Err(error) => bad_usage(&error),
+    }
+}
+
+/// Help and version go to standard output with status 0; anything else is bad usage, status 2.
+fn bad_usage(error: &clap::Error) -> ExitCode {
+    let _ = error.print();
+    if matches!(
+        error.kind(),
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
+    ) {
+        return ExitCode::SUCCESS;
+    }
+    // Nothing was parsed, so whether a script is asking can only be seen in the words themselves.
+    if std::env::args_os().any(|word| word == "--json") {
+        let text = error.render().to_string();
+        let reason = text.lines().next().unwrap_or_default();
+        output::write_all(&output::error_document(
+            reason.strip_prefix("error: ").unwrap_or(reason),
+        ));
+    }
+    ExitCode::from(2)
+}

@@ -1,0 +1,226 @@
+//! `swimmer optimize`: finds an optimal gait and, with `-o`, writes it.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use gait_optimizer::{
+    Certificate, DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement,
+};
+use serde::Serialize;
+use swimmer_files::Bounds;
+
+use crate::arguments::{load_swimmer, positive_angle};
+use crate::failure::{Failure, Outcome};
+use crate::output::Output;
+use crate::quantity::{self, Rows};
+
+/// Find an optimal gait
+#[derive(Debug, clap::Subcommand)]
+pub(crate) enum Optimize {
+    /// The most displacement per cycle
+    Displacement(Displacement),
+}
+
+/// Find the gait of most displacement per cycle by the maximum principle, with its certificate
+///
+/// Signed, per full cycle, for the gait run counter-clockwise: with no bound or --max-angle alone the local optimum with
+/// X > 0; with --min-angle or --sector the one with X < 0; --sign asks for the other.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Displacement {
+    /// purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
+    /// No joint may turn further than this, either way
+    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
+    max_angle: Option<f64>,
+    /// The leading joint of each quarter must turn at least this far
+    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
+    min_angle: Option<f64>,
+    /// Each quarter stays in its sector, φ₂ ≥ |φ₁|
+    #[arg(long)]
+    sector: bool,
+    /// Links may not cross
+    #[arg(long)]
+    no_overlap: bool,
+    /// The sign of X: + or -
+    #[arg(long, value_name = "SIGN", value_parser = sign, allow_hyphen_values = true)]
+    sign: Option<Heading>,
+    /// Write the gait, at constant power, as a gait file
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+impl Optimize {
+    /// Finds the gait that was asked for.
+    pub(crate) fn run(self, output: Output) -> Outcome {
+        match self {
+            Self::Displacement(arguments) => arguments.run(output),
+        }
+    }
+}
+
+impl Displacement {
+    fn run(self, output: Output) -> Outcome {
+        let file = load_swimmer(&self.swimmer)?;
+        let begun = Instant::now();
+        let gait = displacement(&DisplacementProblem {
+            bounds: Bounds {
+                max_angle: self.max_angle,
+                min_angle: self.min_angle,
+                sector: self.sector,
+                no_overlap: self.no_overlap,
+            },
+            heading: self.sign,
+            ..DisplacementProblem::new(file.swimmer)
+        })?;
+        let seconds = begun.elapsed().as_secs_f64();
+        if let Some(path) = &self.output {
+            gait.gait_file(&file.name).save(path)?;
+        }
+        output.answer(&Found::new(&file.name, &gait, seconds, self.output));
+        Ok(())
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Found {
+    #[serde(skip)]
+    name: String,
+    displacement_over_length: f64,
+    displacement_m: f64,
+    start_angle_rad: f64,
+    end_angle_rad: f64,
+    /// Of the quarter, in order.
+    arcs: Vec<Arc>,
+    /// Share of the cycle in which links cross.
+    links_cross: f64,
+    certificate: Evidence,
+    /// From the parsed swimmer to the certified gait.
+    seconds: f64,
+    /// The gait file that was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gait: Option<PathBuf>,
+}
+
+#[derive(Debug, Serialize)]
+struct Arc {
+    kind: &'static str,
+    from: [f64; 2],
+    to: [f64; 2],
+}
+
+/// The necessary conditions, each with its number.
+#[derive(Debug, Serialize)]
+pub(crate) struct Evidence {
+    pass: bool,
+    checks: Vec<Check>,
+}
+
+#[derive(Debug, Serialize)]
+struct Check {
+    name: &'static str,
+    value: f64,
+    tolerance: f64,
+    pass: bool,
+}
+
+impl From<&Certificate> for Evidence {
+    fn from(certificate: &Certificate) -> Self {
+        let check = |check: &gait_optimizer::Check| Check {
+            name: check.name,
+            value: check.value,
+            tolerance: check.tolerance,
+            pass: check.pass,
+        };
+        Self {
+            pass: certificate.pass(),
+            checks: certificate.checks().iter().map(check).collect(),
+        }
+    }
+}
+
+impl Found {
+    fn new(name: &str, gait: &OptimalGait, seconds: f64, file: Option<PathBuf>) -> Self {
+        let arc = |arc: &gait_optimizer::Arc| Arc {
+            kind: arc.kind.word(),
+            from: arc.from,
+            to: arc.to,
+        };
+        Self {
+            name: name.to_owned(),
+            displacement_over_length: gait.displacement_over_length,
+            displacement_m: gait.displacement,
+            start_angle_rad: gait.start_angle,
+            end_angle_rad: gait.end_angle,
+            arcs: gait.arcs.iter().map(arc).collect(),
+            links_cross: gait.links_cross,
+            certificate: (&gait.certificate).into(),
+            seconds,
+            gait: file,
+        }
+    }
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows = Rows::default();
+        let (displacement, over_length) = (
+            quantity::length(self.displacement_m),
+            self.displacement_over_length,
+        );
+        rows.row(
+            "displacement X",
+            format!("{displacement} per cycle   X/L = {over_length:.10}"),
+        )
+        .row(
+            "starts at",
+            format!("φ₁ = φ₂ = {}", quantity::angle(self.start_angle_rad)),
+        )
+        .row(
+            "quarter ends at",
+            format!("φ₂ = −φ₁ = {}", quantity::angle(self.end_angle_rad)),
+        );
+        for arc in &self.arcs {
+            let shape = |[one, two]: [f64; 2]| {
+                format!("({}, {})", quantity::angle(one), quantity::angle(two))
+            };
+            rows.row(
+                format!("{} arc", arc.kind),
+                format!("{} to {}", shape(arc.from), shape(arc.to)),
+            );
+        }
+        rows.row("links cross", quantity::crossing(self.links_cross));
+        let checks = self.certificate.checks.len();
+        let verdict = if self.certificate.pass {
+            "hold"
+        } else {
+            "do not all hold"
+        };
+        rows.row("certificate", format!("{checks} conditions {verdict}"));
+        if let Some(path) = &self.gait {
+            rows.row("written to", path.display().to_string());
+        }
+        write!(f, "{}, most displacement\n{rows}", self.name)
+    }
+}
+
+fn sign(text: &str) -> Result<Heading, String> {
+    match text {
+        "+" => Ok(Heading::Forwards),
+        "-" => Ok(Heading::Backwards),
+        _ => Err("write + or -".to_owned()),
+    }
+}
+
+impl From<DisplacementError> for Failure {
+    /// A problem that makes no sense is bad input; one without an optimum was tried.
+    fn from(error: DisplacementError) -> Self {
+        match error {
+            DisplacementError::Swimmer(_)
+            | DisplacementError::Asymmetric { .. }
+            | DisplacementError::Bound { .. } => Self::bad_input(&error),
+            _ => Self::tried(&error),
+        }
+    }
+}

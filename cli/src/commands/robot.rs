@@ -1,0 +1,207 @@
+//! `swimmer robot`: talks to a robot over a port, or to a fresh twin for the length of the command.
+
+mod answers;
+mod configure;
+mod listening;
+mod motion;
+mod port;
+mod upload;
+
+use std::path::PathBuf;
+
+use host_link::LinkError;
+use swimmer_files::GaitSpec;
+
+use self::answers::{Doing, Info};
+use self::port::{Pace, connect};
+use crate::arguments::{angle, gait, positive_angle, seconds};
+use crate::failure::{Failure, Outcome};
+use crate::output::Output;
+
+/// Talk to a robot over a serial port, or to a twin
+///
+/// PORT is a serial port, the link of `swimmer twin --pty`, tcp:HOST:PORT of `swimmer twin --tcp`, or `twin`: a fresh
+/// robot in a virtual tank for the length of this command. A fresh twin runs as fast as it can where the command ends by
+/// itself, and in real time where it waits for the operator (arm, pause, watch, log, play without --cycles).
+#[derive(Debug, clap::Args)]
+#[command(subcommand_value_name = "ACTION", subcommand_help_heading = "Actions")]
+pub(crate) struct Robot {
+    /// Serial port, pseudo-terminal, tcp:HOST:PORT, or `twin`
+    #[arg(long, value_name = "PORT", global = true)]
+    port: Option<String>,
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Action {
+    /// Say who is there: board, firmware, protocol, limits
+    Info,
+    /// Say what the robot is doing
+    Status,
+    /// Tell the robot its lengths and drag, and tighten its limits; stored on the robot
+    Configure(Configure),
+    /// Send a gait to the robot
+    Upload(Upload),
+    /// Power the servos and hold the link until Ctrl-C (= stop)
+    Arm(Arm),
+    /// Play the active gait: arm, start softly, wait for the end of the last cycle
+    Play(Play),
+    /// Hold the pose, and the link until Ctrl-C (= stop)
+    Pause(Pause),
+    /// Go on from a pause
+    Resume,
+    /// Ramp to neutral and switch the pulses off; works in every state
+    Stop,
+    /// Switch the pulses off at once; only `arm --clear-estop` ends it
+    Estop,
+    /// Show or set the trim of the servos; stored on the robot
+    Trim(Trim),
+    /// Print what the robot does, a line each second, until Ctrl-C
+    Watch(Watch),
+    /// Write every frame on the wire, both ways, as MCAP, until Ctrl-C
+    Log(Log),
+}
+
+#[derive(Debug, clap::Args)]
+struct Configure {
+    /// purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
+    /// Largest joint angle; may tighten the robot's own limit, never loosen it
+    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
+    max_angle: Option<f64>,
+    /// Largest joint rate per second, as 3.5 or 200deg; may tighten the robot's own limit, never loosen it
+    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
+    max_rate: Option<f64>,
+}
+
+#[derive(Debug, clap::Args)]
+struct Upload {
+    /// circle:AMPLITUDE, square:AMPLITUDE or a gait file; add :cw to reverse it
+    #[arg(value_name = "GAIT", value_parser = gait)]
+    gait: GaitSpec,
+    #[command(flatten)]
+    owner: Owner,
+}
+
+/// Whose gait it is.
+#[derive(Debug, clap::Args)]
+struct Owner {
+    /// The swimmer that this robot is, where no preset describes it: a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: Option<String>,
+    /// Upload although the gait file was made for another swimmer
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Debug, clap::Args)]
+struct Arm {
+    /// Also end a latched emergency stop
+    #[arg(long)]
+    clear_estop: bool,
+}
+
+#[derive(Debug, clap::Args)]
+struct Play {
+    /// Upload this gait first
+    #[arg(long, value_name = "GAIT", value_parser = gait)]
+    gait: Option<GaitSpec>,
+    #[command(flatten)]
+    owner: Owner,
+    /// End after so many cycles; left out, the robot plays until Ctrl-C
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    cycles: Option<u32>,
+    /// Seconds a cycle takes
+    #[arg(long, value_name = "SECONDS", default_value = "30", value_parser = seconds)]
+    period: f64,
+    /// Return once the robot plays; it plays on to its end without the link
+    #[arg(long, requires = "cycles")]
+    detach: bool,
+}
+
+#[derive(Debug, clap::Args)]
+struct Pause {
+    /// Return at once; the robot holds the pose for at most 60 s, then stops
+    #[arg(long)]
+    detach: bool,
+}
+
+#[derive(Debug, clap::Args)]
+struct Trim {
+    /// Trim of the front joint, φ₁
+    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
+    front: Option<f64>,
+    /// Trim of the back joint, φ₂
+    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
+    back: Option<f64>,
+}
+
+#[derive(Debug, clap::Args)]
+struct Watch {
+    /// End after so many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    seconds: Option<f64>,
+}
+
+#[derive(Debug, clap::Args)]
+struct Log {
+    /// Where to write; nothing may be there yet
+    #[arg(value_name = "FILE.mcap")]
+    file: PathBuf,
+    /// End after so many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    seconds: Option<f64>,
+}
+
+impl Robot {
+    /// Does what was asked of the robot.
+    pub(crate) fn run(self, output: Output) -> Outcome {
+        let port = self.port.as_deref();
+        match &self.action {
+            Action::Info => info(port, output),
+            Action::Status => status(port, output),
+            Action::Configure(arguments) => configure::configure(port, arguments, output),
+            Action::Upload(arguments) => upload::run(port, arguments, output),
+            Action::Arm(arguments) => motion::arm(port, arguments, output),
+            Action::Play(arguments) => motion::play(port, arguments, output),
+            Action::Pause(arguments) => motion::pause(port, arguments, output),
+            Action::Resume => motion::resume(port, output),
+            Action::Stop => motion::stop(port, false, output),
+            Action::Estop => motion::stop(port, true, output),
+            Action::Trim(arguments) => configure::trim(port, arguments, output),
+            Action::Watch(arguments) => listening::watch(port, arguments, output),
+            Action::Log(arguments) => listening::log(port, arguments, output),
+        }
+    }
+}
+
+fn info(port: Option<&str>, output: Output) -> Outcome {
+    let mut robot = connect(port, Pace::AsFastAsPossible)?;
+    let (configuration, table, counters) =
+        (robot.configuration()?, robot.table()?, robot.counters()?);
+    output.answer(&Info::new(
+        robot.info(),
+        &configuration,
+        table.as_ref(),
+        &counters,
+    ));
+    Ok(())
+}
+
+fn status(port: Option<&str>, output: Output) -> Outcome {
+    let mut robot = connect(port, Pace::AsFastAsPossible)?;
+    output.answer(&Doing::new(&robot.status()?));
+    Ok(())
+}
+
+impl From<LinkError> for Failure {
+    /// Whatever the link or the robot says no to was tried; a number that no frame can carry was never sent.
+    fn from(error: LinkError) -> Self {
+        match error {
+            LinkError::OutOfRange { .. } => Self::bad_input(&error),
+            _ => Self::tried(&error),
+        }
+    }
+}

@@ -1,0 +1,417 @@
+//! What the robot says of itself, as JSON keys and as lines for people.
+
+use std::fmt;
+
+use link_protocol::{
+    Board, Configuration, Counters, Flags, HelloReply, ResetReason, StateName, Status, StopCause,
+    TableInfo, TangentialDrag, Telemetry,
+};
+use serde::Serialize;
+
+use crate::quantity::{self, Rows};
+
+/// A request that needs no other answer than that it was done.
+#[derive(Debug, Serialize)]
+pub(super) struct Done {
+    /// What the robot is doing now.
+    pub(super) state: &'static str,
+    #[serde(skip)]
+    pub(super) sentence: String,
+}
+
+impl fmt::Display for Done {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.sentence)
+    }
+}
+
+/// Who is there.
+#[derive(Debug, Serialize)]
+pub(super) struct Info {
+    board: &'static str,
+    firmware: String,
+    commit: Option<String>,
+    protocol: [u8; 2],
+    schema_key: String,
+    reset_reason: &'static str,
+    session: u16,
+    limits: Limits,
+    configuration: Body,
+    gait: Option<Gait>,
+    counters: Traffic,
+}
+
+#[derive(Debug, Serialize)]
+struct Limits {
+    max_angle_rad: f32,
+    max_rate_rad_s: f32,
+    pulse_us: [f64; 2],
+    knots: u16,
+}
+
+#[derive(Debug, Serialize)]
+struct Body {
+    middle_m: f32,
+    front_m: f32,
+    back_m: f32,
+    chi: f32,
+    c_t: String,
+    sphere_radius_m: f32,
+}
+
+#[derive(Debug, Serialize)]
+struct Traffic {
+    frames_ok: u32,
+    frames_bad: u32,
+    acted: u32,
+    replayed: u32,
+    superseded: u32,
+    stale: u32,
+    refused: u32,
+    dropped: u32,
+    late_ticks: u32,
+    clamped: u32,
+}
+
+impl Info {
+    pub(super) fn new(
+        hello: &HelloReply,
+        configuration: &Configuration,
+        table: Option<&TableInfo>,
+        counters: &Counters,
+    ) -> Self {
+        let version = hello.firmware;
+        let commit = String::from_utf8_lossy(&version.commit)
+            .trim_end_matches('\0')
+            .to_owned();
+        Self {
+            board: board(hello.board),
+            firmware: format!("{}.{}.{}", version.major, version.minor, version.patch),
+            commit: (!commit.is_empty() && commit != "00000000").then_some(commit),
+            protocol: [hello.protocol_min, hello.protocol_current],
+            schema_key: format!("{:016x}", u64::from_be_bytes(hello.schema_key)),
+            reset_reason: match hello.reset_reason {
+                ResetReason::PowerOn => "power on",
+                ResetReason::Watchdog => "watchdog",
+                ResetReason::Crash => "crash",
+                ResetReason::Pin => "reset pin",
+            },
+            session: hello.session,
+            limits: Limits {
+                max_angle_rad: hello.limits.max_angle,
+                max_rate_rad_s: hello.limits.max_rate,
+                pulse_us: [
+                    f64::from(hello.limits.pulse_min_ns) * 1e-3,
+                    f64::from(hello.limits.pulse_max_ns) * 1e-3,
+                ],
+                knots: hello.limits.max_knots,
+            },
+            configuration: Body {
+                middle_m: configuration.middle_m,
+                front_m: configuration.front_m,
+                back_m: configuration.back_m,
+                chi: configuration.chi,
+                c_t: match configuration.tangential_drag {
+                    TangentialDrag::LogAspect(value) => format!("2πμ / {value}"),
+                    TangentialDrag::HalfThickness(value) => {
+                        format!("per link, half thickness {value} m")
+                    }
+                    TangentialDrag::OverViscosity(value) => format!("{value} μ"),
+                },
+                sphere_radius_m: configuration.sphere_radius_m,
+            },
+            gait: table.map(Gait::new),
+            counters: Traffic {
+                frames_ok: counters.frames.ok,
+                frames_bad: counters.frames.bad(),
+                acted: counters.acted,
+                replayed: counters.replayed,
+                superseded: counters.superseded,
+                stale: counters.stale,
+                refused: counters.refused,
+                dropped: counters.dropped,
+                late_ticks: counters.late_ticks,
+                clamped: counters.clamped,
+            },
+        }
+    }
+}
+
+impl fmt::Display for Info {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let body = &self.configuration;
+        let commit = self
+            .commit
+            .as_deref()
+            .map_or(String::new(), |commit| format!(", commit {commit}"));
+        let mut rows = Rows::default();
+        rows.row("board", self.board)
+            .row(
+                "firmware",
+                format!(
+                    "{}{commit}, protocol {} to {}",
+                    self.firmware, self.protocol[0], self.protocol[1]
+                ),
+            )
+            .row("started by", self.reset_reason)
+            .row(
+                "limits",
+                format!(
+                    "{} and {}/s, pulses {} to {} µs, {} knots",
+                    quantity::angle(f64::from(self.limits.max_angle_rad)),
+                    quantity::angle(f64::from(self.limits.max_rate_rad_s)),
+                    self.limits.pulse_us[0],
+                    self.limits.pulse_us[1],
+                    self.limits.knots,
+                ),
+            )
+            .row(
+                "links",
+                format!(
+                    "{} / {} / {} mm",
+                    millimetres(body.front_m),
+                    millimetres(body.middle_m),
+                    millimetres(body.back_m)
+                ),
+            )
+            .row(
+                "drag",
+                format!(
+                    "χ = {}, c_t = {}, sphere {} mm",
+                    body.chi,
+                    body.c_t,
+                    millimetres(body.sphere_radius_m)
+                ),
+            )
+            .row("gait", gait_line(self.gait.as_ref()))
+            .row(
+                "frames",
+                format!(
+                    "{} good, {} bad",
+                    self.counters.frames_ok, self.counters.frames_bad
+                ),
+            );
+        write!(f, "{rows}")
+    }
+}
+
+fn millimetres(metres: f32) -> f64 {
+    (f64::from(metres) * 1e5).round() / 1e2
+}
+
+/// The table that is active, by its evidence.
+#[derive(Debug, Serialize)]
+pub(super) struct Gait {
+    pub(super) knots: u16,
+    pub(super) crc32: String,
+    pub(super) stored: bool,
+    pub(super) min_period_s: f64,
+}
+
+impl Gait {
+    pub(super) fn new(table: &TableInfo) -> Self {
+        Self {
+            knots: table.knots,
+            crc32: format!("{:08x}", table.crc32),
+            stored: table.stored,
+            min_period_s: f64::from(table.min_period_us) * 1e-6,
+        }
+    }
+}
+
+fn gait_line(gait: Option<&Gait>) -> String {
+    gait.map_or_else(
+        || "none".to_owned(),
+        |gait| {
+            let stored = if gait.stored {
+                "stored"
+            } else {
+                "not stored yet"
+            };
+            format!(
+                "{} knots, CRC {}, {stored}, period at least {:.2} s",
+                gait.knots, gait.crc32, gait.min_period_s
+            )
+        },
+    )
+}
+
+/// What the robot is doing.
+#[derive(Debug, Serialize)]
+pub(super) struct Doing {
+    pub(super) state: &'static str,
+    cause: &'static str,
+    flags: Vec<&'static str>,
+    cycle: u32,
+    /// `null`: without end.
+    cycles: Option<u32>,
+    phase: f64,
+    period_s: Option<f64>,
+    setpoint_rad: [f64; 2],
+    /// `null`: not measured.
+    battery_v: Option<f64>,
+    gait: Option<Gait>,
+    robot_time_s: f64,
+}
+
+impl Doing {
+    pub(super) fn new(status: &Status) -> Self {
+        Self {
+            state: state(status.state),
+            cause: cause(status.cause),
+            flags: flags(status.flags),
+            cycle: status.cycle,
+            cycles: (status.cycles > 0).then_some(status.cycles),
+            phase: f64::from(status.phase) / 65_536.0,
+            period_s: (status.period_us > 0).then(|| f64::from(status.period_us) * 1e-6),
+            setpoint_rad: status
+                .setpoint
+                .map(|units| f64::from(units) * f64::from(link_protocol::ANGLE_UNIT_RAD)),
+            battery_v: status
+                .battery_mv
+                .map(|millivolts| f64::from(millivolts) * 1e-3),
+            gait: status.table.as_ref().map(Gait::new),
+            robot_time_s: std::time::Duration::from_micros(status.robot_us).as_secs_f64(),
+        }
+    }
+}
+
+impl fmt::Display for Doing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows = Rows::default();
+        rows.row("state", format!("{} ({})", self.state, self.cause));
+        if !self.flags.is_empty() {
+            rows.row("flags", self.flags.join(", "));
+        }
+        if let Some(period) = self.period_s {
+            let of = self
+                .cycles
+                .map_or_else(|| "without end".to_owned(), |cycles| format!("of {cycles}"));
+            rows.row(
+                "cycle",
+                format!(
+                    "{:.2} {of}, {period} s each",
+                    f64::from(self.cycle) + self.phase
+                ),
+            );
+        }
+        rows.row(
+            "set-point",
+            format!(
+                "{}, {}",
+                quantity::angle(self.setpoint_rad[0]),
+                quantity::angle(self.setpoint_rad[1])
+            ),
+        )
+        .row("battery", battery(self.battery_v))
+        .row("gait", gait_line(self.gait.as_ref()))
+        .row("up for", format!("{:.1} s", self.robot_time_s));
+        write!(f, "{rows}")
+    }
+}
+
+fn battery(volts: Option<f64>) -> String {
+    volts.map_or_else(
+        || "not measured".to_owned(),
+        |volts| format!("{volts:.2} V"),
+    )
+}
+
+/// One line of telemetry.
+pub(super) fn telemetry_line(telemetry: &Telemetry) -> String {
+    let degrees =
+        |units: i16| (f64::from(units) * f64::from(link_protocol::ANGLE_UNIT_RAD)).to_degrees();
+    format!(
+        "{:9.2} s  {:<9} cycle {:8.2}  φ {:+7.1}° {:+7.1}°  x {:+8.2} mm  y {:+7.2} mm  θ {:+6.1}°  {}  {} bad frames",
+        std::time::Duration::from_micros(telemetry.robot_us).as_secs_f64(),
+        state(telemetry.state),
+        f64::from(telemetry.cycle) + f64::from(telemetry.phase) / 65_536.0,
+        degrees(telemetry.setpoint[0]),
+        degrees(telemetry.setpoint[1]),
+        f64::from(telemetry.pose.x) * 1e3,
+        f64::from(telemetry.pose.y) * 1e3,
+        f64::from(telemetry.pose.theta).to_degrees(),
+        battery(
+            telemetry
+                .battery_mv
+                .map(|millivolts| f64::from(millivolts) * 1e-3)
+        ),
+        telemetry.frames_bad,
+    )
+}
+
+pub(super) fn state(state: StateName) -> &'static str {
+    match state {
+        StateName::Stopped => "stopped",
+        StateName::EStopped => "e-stopped",
+        StateName::Holding => "holding",
+        StateName::Starting => "starting",
+        StateName::Playing => "playing",
+        StateName::Paused => "paused",
+        StateName::Stopping => "stopping",
+        StateName::Settling => "settling",
+    }
+}
+
+pub(super) fn cause(cause: StopCause) -> &'static str {
+    match cause {
+        StopCause::Boot => "boot",
+        StopCause::Finished => "finished",
+        StopCause::Requested => "requested",
+        StopCause::PauseExpired => "pause expired",
+        StopCause::LinkLost => "link lost",
+        StopCause::BatteryLow => "battery low",
+        StopCause::EStop => "e-stop",
+    }
+}
+
+fn board(board: Board) -> &'static str {
+    match board {
+        Board::Twin => "twin",
+        Board::NanoRp2040Connect => "Arduino Nano RP2040 Connect",
+        Board::Pico => "Raspberry Pi Pico",
+    }
+}
+
+fn flags(flags: Flags) -> Vec<&'static str> {
+    [
+        (Flags::BATTERY_LOW, "battery low"),
+        (Flags::RESET_LOOP, "reset loop"),
+        (Flags::LINK_SILENT, "link silent"),
+        (Flags::DETACHED, "detached"),
+        (Flags::SWAP_PENDING, "swap pending"),
+        (Flags::UNSAVED, "unsaved"),
+        (Flags::STORAGE_FAILED, "storage failed"),
+    ]
+    .into_iter()
+    .filter_map(|(flag, name)| flags.contains(flag).then_some(name))
+    .collect()
+}
+
+/// The trim of both servos.
+#[derive(Debug, Serialize)]
+pub(super) struct Trims {
+    front_rad: f64,
+    back_rad: f64,
+}
+
+impl Trims {
+    pub(super) fn new(front: i16, back: i16) -> Self {
+        let radians = |units: i16| f64::from(units) * f64::from(link_protocol::ANGLE_UNIT_RAD);
+        Self {
+            front_rad: radians(front),
+            back_rad: radians(back),
+        }
+    }
+}
+
+impl fmt::Display for Trims {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "  trim  front {}, back {}",
+            quantity::angle(self.front_rad),
+            quantity::angle(self.back_rad)
+        )
+    }
+}

@@ -1,0 +1,96 @@
+//! `swimmer robot configure` and `trim`: what the robot must know of its body and its servos.
+
+use std::fmt;
+
+use link_protocol::{Configuration, Joint};
+use serde::Serialize;
+use swimmer_files::ServoFile;
+use swimmer_model::Swimmer;
+use twin::configuration;
+
+use super::answers::Trims;
+use super::port::{Pace, connect};
+use super::{Configure, Trim};
+use crate::arguments::load_swimmer;
+use crate::failure::Outcome;
+use crate::output::Output;
+use crate::quantity;
+
+#[derive(Debug, Serialize)]
+struct Configured {
+    swimmer: String,
+    max_angle_rad: f32,
+    max_rate_rad_s: f32,
+}
+
+impl fmt::Display for Configured {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "The robot is configured as `{}`, joints within {} and {}/s.",
+            self.swimmer,
+            quantity::angle(f64::from(self.max_angle_rad)),
+            quantity::angle(f64::from(self.max_rate_rad_s))
+        )
+    }
+}
+
+/// `swimmer robot configure`: limits come from the command line, else from the file's [servo] table, else stay.
+pub(super) fn configure(port: Option<&str>, arguments: &Configure, output: Output) -> Outcome {
+    let file = load_swimmer(&arguments.swimmer)?;
+    let mut robot = connect(port, Pace::AsFastAsPossible)?;
+    let present = robot.configuration()?;
+    let servo = file.servo;
+    #[allow(clippy::cast_possible_truncation)] // the wire's precision
+    let limit = |typed: Option<f64>, in_file: Option<f64>, now: f32| {
+        typed.or(in_file).map_or(now, |value| value as f32)
+    };
+    let wanted = Configuration {
+        max_angle: limit(
+            arguments.max_angle,
+            servo.map(|servo| servo.max_angle),
+            present.max_angle,
+        ),
+        max_rate: limit(
+            arguments.max_rate,
+            servo.map(|servo| servo.max_rate),
+            present.max_rate,
+        ),
+        ..configuration(&file.swimmer, &ServoFile::default())
+    };
+    robot.configure(wanted)?;
+    output.answer(&Configured {
+        swimmer: file.name,
+        max_angle_rad: wanted.max_angle,
+        max_rate_rad_s: wanted.max_rate,
+    });
+    Ok(())
+}
+
+/// `swimmer robot trim`: sets what was named, then shows both.
+pub(super) fn trim(port: Option<&str>, arguments: &Trim, output: Output) -> Outcome {
+    let mut robot = connect(port, Pace::AsFastAsPossible)?;
+    for (joint, angle) in [
+        (Joint::Front, arguments.front),
+        (Joint::Back, arguments.back),
+    ] {
+        if let Some(angle) = angle {
+            robot.trim(joint, angle)?;
+        }
+    }
+    output.answer(&Trims::new(
+        robot.servo(Joint::Front)?.trim,
+        robot.servo(Joint::Back)?.trim,
+    ));
+    Ok(())
+}
+
+/// Whether the robot's configuration is this swimmer's body, to the wire's precision; its limits do not matter.
+pub(super) fn is_configured_as(present: &Configuration, swimmer: &Swimmer<f64>) -> bool {
+    let told = configuration(swimmer, &ServoFile::default());
+    Configuration {
+        max_angle: present.max_angle,
+        max_rate: present.max_rate,
+        ..told
+    } == *present
+}

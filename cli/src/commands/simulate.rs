@@ -1,0 +1,138 @@
+//! `swimmer simulate`: swims a gait in the model.
+
+use std::fmt::{self, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use swimmer_files::{AnyGait, GaitSpec, write_atomically};
+use swimmer_model::{Model, Pose, Tolerance, crossing_share, swim, trajectory};
+
+use crate::arguments::{gait, load_gait, load_swimmer, model};
+use crate::failure::Outcome;
+use crate::output::Output;
+use crate::quantity::{self, Rows};
+
+/// Swim a gait in the model and print what one cycle brings
+#[derive(Debug, clap::Args)]
+pub(crate) struct Simulate {
+    /// purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
+    /// circle:AMPLITUDE, square:AMPLITUDE or a gait file; add :cw to reverse it
+    #[arg(long, value_name = "GAIT", value_parser = gait)]
+    gait: GaitSpec,
+    /// How many cycles the trajectory has; the printed values are always those of the first
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    cycles: u32,
+    /// Write the path of the middle link as a table: cycle, u, joint angles, pose
+    #[arg(long, value_name = "FILE.csv")]
+    trajectory: Option<PathBuf>,
+}
+
+/// One cycle, the first.
+#[derive(Debug, Serialize)]
+struct Swum {
+    #[serde(skip)]
+    title: String,
+    /// Share of the cycle in which links cross.
+    links_cross: f64,
+    displacement_over_length: f64,
+    displacement_m: f64,
+    lateral_over_length: f64,
+    rotation_rad: f64,
+    delta_y_over_length: f64,
+    delta_theta_rad: f64,
+    /// As parametrised.
+    efficiency: f64,
+    efficiency_constant_power: f64,
+}
+
+impl fmt::Display for Swum {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows = Rows::default();
+        rows.row(
+            "displacement X",
+            format!(
+                "{}   X/L = {:.10}",
+                quantity::length(self.displacement_m),
+                self.displacement_over_length
+            ),
+        )
+        .row(
+            "lateral",
+            format!("Y/L = {:.10}", self.lateral_over_length + 0.0),
+        )
+        .row("rotation", quantity::angle(self.rotation_rad))
+        .row("sway ΔY", format!("ΔY/L = {:.8}", self.delta_y_over_length))
+        .row("yaw Δθ", quantity::angle(self.delta_theta_rad))
+        .row(
+            "efficiency ξ",
+            format!(
+                "{:.8} as parametrised, {:.8} at constant power",
+                self.efficiency, self.efficiency_constant_power
+            ),
+        )
+        .row("links cross", quantity::crossing(self.links_cross));
+        write!(f, "{}\n{rows}", self.title)
+    }
+}
+
+/// Points of a cycle in the trajectory file.
+const POINTS_A_CYCLE: usize = 500;
+
+impl Simulate {
+    /// Swims the gait and answers.
+    pub(crate) fn run(self, output: Output) -> Outcome {
+        let file = load_swimmer(&self.swimmer)?;
+        let gait = load_gait(&self.gait)?;
+        let model = model(&file)?;
+        let stroke = swim(&model, &gait, &Tolerance::default());
+        let over_length = stroke.displacement_over_length();
+        let swum = Swum {
+            title: format!("{}, {}", file.name, quantity::gait(&self.gait)),
+            links_cross: crossing_share(&file.swimmer.links, &gait).of_cycle,
+            displacement_over_length: over_length.x,
+            displacement_m: stroke.displacement.x,
+            lateral_over_length: over_length.y,
+            rotation_rad: stroke.rotation,
+            delta_y_over_length: stroke.delta_y / stroke.total_length,
+            delta_theta_rad: stroke.delta_theta,
+            efficiency: stroke.efficiency(),
+            efficiency_constant_power: stroke.efficiency_constant_power(),
+        };
+        if let Some(path) = &self.trajectory {
+            write_trajectory(path, &model, &gait, self.cycles)?;
+        }
+        output.answer(&swum);
+        Ok(())
+    }
+}
+
+/// One line for each instant; the pose starts at the origin along x and goes on from cycle to cycle.
+fn write_trajectory(path: &Path, model: &Model<f64>, gait: &AnyGait, cycles: u32) -> Outcome {
+    let mut text = String::from("cycle,u,phi1_rad,phi2_rad,x_m,y_m,theta_rad\n");
+    let mut start = Pose::identity();
+    for cycle in 0..cycles {
+        let mut end = start;
+        trajectory(
+            model,
+            gait,
+            &Tolerance::default(),
+            POINTS_A_CYCLE,
+            |point| {
+                end = start * point.pose;
+                // The last instant of a cycle is the first of the next.
+                if point.u < 1.0 || cycle + 1 == cycles {
+                    let (phi, u) = (point.phi, point.u);
+                    let _ = writeln!(
+                        text,
+                        "{cycle},{u:?},{:?},{:?},{:?},{:?},{:?}",
+                        phi.x, phi.y, end.x, end.y, end.theta
+                    );
+                }
+            },
+        );
+        start = end;
+    }
+    Ok(write_atomically(path, text.as_bytes())?)
+}

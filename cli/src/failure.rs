@@ -1,0 +1,83 @@
+//! The two ways a command can go wrong, and the exit status each of them has.
+
+use std::process::ExitCode;
+
+/// Why a command did not do its job; the text says what was being done, to what, and what to do next.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    /// It was tried and did not work: no convergence, the robot refused, no answer. Exit status 1.
+    #[error("{0}")]
+    Tried(String),
+    /// What was typed, or a file that was named, cannot be used. Exit status 2.
+    #[error("{0}")]
+    BadInput(String),
+}
+
+/// The result of every command.
+pub(crate) type Outcome<T = ()> = Result<T, Failure>;
+
+impl Failure {
+    /// A job that was tried and failed, with every cause that the error names.
+    pub(crate) fn tried(error: &dyn std::error::Error) -> Self {
+        Self::Tried(with_causes(error))
+    }
+
+    /// Input that cannot be used, with every cause that the error names.
+    pub(crate) fn bad_input(error: &dyn std::error::Error) -> Self {
+        Self::BadInput(with_causes(error))
+    }
+
+    /// The exit status that scripts see.
+    pub(crate) fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Tried(_) => ExitCode::from(1),
+            Self::BadInput(_) => ExitCode::from(2),
+        }
+    }
+}
+
+/// The error and its causes in one line; a cause that its parent already quotes is not said twice.
+fn with_causes(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut next = error.source();
+    while let Some(cause) = next {
+        let cause_text = cause.to_string();
+        if !text.contains(&cause_text) {
+            text.push_str(": ");
+            text.push_str(&cause_text);
+        }
+        next = cause.source();
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, thiserror::Error)]
+    #[error("cannot read track.csv")]
+    struct Outer {
+        source: std::io::Error,
+    }
+
+    #[derive(Debug, thiserror::Error)]
+    #[error("cannot read track.csv: {source}")]
+    struct Quoting {
+        source: std::io::Error,
+    }
+
+    #[test]
+    fn causes_are_told_once() {
+        let cause = || std::io::Error::other("disk on fire");
+        let expected = "cannot read track.csv: disk on fire";
+        assert_eq!(
+            Failure::tried(&Outer { source: cause() }).to_string(),
+            expected
+        );
+        assert_eq!(
+            Failure::bad_input(&Quoting { source: cause() }).to_string(),
+            expected
+        );
+    }
+}

@@ -1,0 +1,69 @@
+//! The one place that writes to standard output: plain lines for people, one JSON document for scripts.
+
+use std::fmt;
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+use crate::failure::Failure;
+
+/// Where and how a command answers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Output {
+    /// One JSON document on standard output instead of lines for people.
+    pub(crate) json: bool,
+}
+
+/// What a command found: its fields are the JSON keys, its `Display` is what people read.
+pub(crate) trait Answer: Serialize + fmt::Display {}
+
+impl<T: Serialize + fmt::Display> Answer for T {}
+
+impl Output {
+    /// Prints the answer of a command, once, at its end.
+    pub(crate) fn answer(self, answer: &impl Answer) {
+        let text = if self.json {
+            document(answer)
+        } else {
+            format!("{answer}\n")
+        };
+        write_all(&text);
+    }
+
+    /// A line for people while the command runs: standard output, or standard error when that is kept for JSON.
+    pub(crate) fn line(self, text: &str) {
+        if self.json {
+            eprintln!("{text}");
+        } else {
+            write_all(&format!("{text}\n"));
+        }
+    }
+
+    /// Says why the command failed: on standard error for people, and as `{"error": …}` for scripts.
+    pub(crate) fn failure(self, failure: &Failure) {
+        eprintln!("error: {failure}");
+        if self.json {
+            write_all(&error_document(&failure.to_string()));
+        }
+    }
+}
+
+/// The JSON document that stands for a failure.
+pub(crate) fn error_document(reason: &str) -> String {
+    document(&serde_json::json!({ "error": reason }))
+}
+
+fn document(value: &impl Serialize) -> String {
+    // Answers hold numbers, texts and lists of them, which always have a JSON form; NaN becomes null.
+    let text = serde_json::to_string_pretty(value)
+        .unwrap_or_else(|error| format!("{{\"error\": \"the answer has no JSON form: {error}\"}}"));
+    text + "\n"
+}
+
+/// A reader that has gone away (`swimmer … | head`) is no reason to fail.
+pub(crate) fn write_all(text: &str) {
+    let mut stdout = io::stdout().lock();
+    let _ = stdout
+        .write_all(text.as_bytes())
+        .and_then(|()| stdout.flush());
+}

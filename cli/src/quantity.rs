@@ -1,0 +1,149 @@
+//! Numbers as people read them: a sensible unit and no more digits than mean something.
+
+use std::fmt;
+
+use swimmer_files::GaitSpec;
+
+/// A length in metres, printed in millimetres below one metre.
+pub(crate) fn length(metres: f64) -> String {
+    if metres.abs() < 1.0 {
+        format!("{:.3} mm", metres * 1e3)
+    } else {
+        format!("{metres:.6} m")
+    }
+}
+
+/// A gait as people name it: a round number of degrees is said so.
+pub(crate) fn gait(gait: &GaitSpec) -> String {
+    let (word, amplitude, clockwise) = match gait {
+        GaitSpec::Circle {
+            amplitude,
+            clockwise,
+        } => ("circle", *amplitude, *clockwise),
+        GaitSpec::Square {
+            amplitude,
+            clockwise,
+        } => ("square", *amplitude, *clockwise),
+        GaitSpec::File { .. } => return gait.to_string(),
+    };
+    let tenths = (amplitude.to_degrees() * 10.0).round();
+    if ((tenths / 10.0).to_radians() - amplitude).abs() > 1e-12 {
+        return gait.to_string();
+    }
+    format!(
+        "{word}:{}deg{}",
+        tenths / 10.0,
+        if clockwise { ":cw" } else { "" }
+    )
+}
+
+/// An angle in radians, printed in degrees.
+pub(crate) fn angle(radians: f64) -> String {
+    // Adding zero turns a rounded -0.000 into 0.000.
+    format!("{:.3}°", (radians.to_degrees() * 1e3).round() / 1e3 + 0.0)
+}
+
+/// Where links cross, as a share of the cycle.
+pub(crate) fn crossing(of_cycle: f64) -> String {
+    if of_cycle > 0.0 {
+        format!("on {:.1} % of the cycle", of_cycle * 100.0)
+    } else {
+        "never".to_owned()
+    }
+}
+
+/// Lines of `label  value`, the values in one column.
+#[derive(Debug, Default)]
+pub(crate) struct Rows(Vec<(String, String)>);
+
+impl Rows {
+    /// Adds a line.
+    pub(crate) fn row(&mut self, label: impl Into<String>, value: impl Into<String>) -> &mut Self {
+        self.0.push((label.into(), value.into()));
+        self
+    }
+}
+
+impl fmt::Display for Rows {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let width = self
+            .0
+            .iter()
+            .map(|(label, _)| label.chars().count())
+            .max()
+            .unwrap_or(0);
+        for (index, (label, value)) in self.0.iter().enumerate() {
+            let end = if index + 1 == self.0.len() { "" } else { "\n" };
+            write!(f, "  {label:width$}  {value}{end}")?;
+        }
+        Ok(())
+    }
+}
+
+/// A table with a heading line; every column as wide as its widest cell, all but the first to the right.
+#[derive(Debug)]
+pub(crate) struct Table(Vec<Vec<String>>);
+
+impl Table {
+    /// A table with this heading.
+    pub(crate) fn new<const N: usize>(heading: [&str; N]) -> Self {
+        Self(vec![heading.iter().map(ToString::to_string).collect()])
+    }
+
+    /// Adds a line.
+    pub(crate) fn line<const N: usize>(&mut self, cells: [String; N]) {
+        self.0.push(cells.into());
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let columns = self.0.iter().map(Vec::len).max().unwrap_or(0);
+        let width = |column: usize| {
+            self.0
+                .iter()
+                .filter_map(|line| line.get(column))
+                .map(|cell| cell.chars().count())
+                .max()
+                .unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..columns).map(width).collect();
+        for (index, line) in self.0.iter().enumerate() {
+            let mut text = String::from(" ");
+            for (column, cell) in line.iter().enumerate() {
+                let width = widths.get(column).copied().unwrap_or(0);
+                let padded = if column == 0 {
+                    format!(" {cell:<width$}")
+                } else {
+                    format!("  {cell:>width$}")
+                };
+                text.push_str(&padded);
+            }
+            let end = if index + 1 == self.0.len() { "" } else { "\n" };
+            write!(f, "{}{end}", text.trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_follow_the_size() {
+        assert_eq!(length(0.012_345_6), "12.346 mm");
+        assert_eq!(length(-3.0), "-3.000000 m");
+        assert_eq!(angle(-1e-9), "0.000°");
+    }
+
+    #[test]
+    fn columns_line_up() {
+        let mut rows = Rows::default();
+        rows.row("χ", "3.6").row("radius", "69 mm");
+        assert_eq!(rows.to_string(), "  χ       3.6\n  radius  69 mm");
+        let mut table = Table::new(["point", "gaps"]);
+        table.line(["Front".to_owned(), "12".to_owned()]);
+        assert_eq!(table.to_string(), "  point  gaps\n  Front    12");
+    }
+}

@@ -1,0 +1,77 @@
+//! Runs the `swimmer` binary and reads what it says.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// What a run of the binary left behind.
+pub(crate) struct Ran {
+    pub(crate) status: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl Ran {
+    /// The one JSON document on standard output.
+    pub(crate) fn json(&self) -> Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|error| {
+            panic!("standard output is not one JSON document ({error}): {self}")
+        })
+    }
+
+    /// The same run, which must have ended with this exit status.
+    #[track_caller]
+    pub(crate) fn with_status(self, status: i32) -> Self {
+        assert_eq!(self.status, status, "{self}");
+        self
+    }
+}
+
+impl std::fmt::Display for Ran {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "exit status {}\nstdout:\n{}\nstderr:\n{}",
+            self.status, self.stdout, self.stderr
+        )
+    }
+}
+
+impl From<Output> for Ran {
+    fn from(output: Output) -> Self {
+        Self {
+            status: output.status.code().unwrap_or(-1),
+            stdout: String::from_utf8(output.stdout).expect("UTF-8 on standard output"),
+            stderr: String::from_utf8(output.stderr).expect("UTF-8 on standard error"),
+        }
+    }
+}
+
+/// The binary with these words, in this folder.
+pub(crate) fn command(folder: &Path, words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_swimmer"));
+    command.current_dir(folder).args(words);
+    command
+}
+
+/// Runs the binary to its end.
+pub(crate) fn swimmer_in(folder: &Path, words: &[&str]) -> Ran {
+    command(folder, words)
+        .output()
+        .expect("the binary starts")
+        .into()
+}
+
+/// Runs the binary to its end where it needs no folder.
+pub(crate) fn swimmer(words: &[&str]) -> Ran {
+    swimmer_in(&std::env::temp_dir(), words)
+}
+
+/// A number in a JSON document.
+#[track_caller]
+pub(crate) fn number(document: &Value, key: &str) -> f64 {
+    document[key]
+        .as_f64()
+        .unwrap_or_else(|| panic!("no number under {key} in {document:#}"))
+}

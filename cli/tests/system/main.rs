@@ -1,0 +1,9 @@
+//! The shipped binary as its users run it. These tests live beside the binary because only here does Cargo build it
+//! afresh and say where it is (`CARGO_BIN_EXE_swimmer`), so that no stale binary is ever tested.
+
+mod binary;
+mod numbers;
+mod output_discipline;
+#[cfg(unix)]
+mod pseudo_terminal;
+mod tracks;

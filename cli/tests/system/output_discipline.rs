@@ -1,0 +1,113 @@
+//! What scripts rely on: one JSON document, the exit status, nothing half-written.
+
+use crate::binary::{swimmer, swimmer_in};
+
+#[test]
+fn bad_usage_and_bad_input_exit_with_two() {
+    for words in [
+        &["simulate"][..],
+        &["simulate", "--swimmer", "robot", "--gait", "circle:70turns"],
+        &[
+            "simulate",
+            "--swimmer",
+            "no-such-file.toml",
+            "--gait",
+            "circle:70deg",
+        ],
+        &["simulate", "--swimmer", "robot", "--gait", "no-such.gait"],
+        &[
+            "optimize",
+            "displacement",
+            "--swimmer",
+            "robot",
+            "--max-angle",
+            "-1",
+        ],
+        &["robot", "info"],
+        &["robot", "play", "--port", "twin", "--detach"],
+        &["twin"],
+        &["tracks", "no-such-track.csv"],
+        &["dance"],
+    ] {
+        let ran = swimmer(words).with_status(2);
+        assert!(
+            ran.stdout.is_empty() && !ran.stderr.is_empty(),
+            "{words:?}: {ran}"
+        );
+        let json = [words, &["--json"]].concat();
+        let ran = swimmer(&json).with_status(2);
+        assert!(ran.json()["error"].is_string(), "{words:?}: {ran}");
+    }
+}
+
+#[test]
+fn json_may_stand_anywhere_after_the_subcommand() {
+    let ways = [
+        [
+            "simulate",
+            "--json",
+            "--swimmer",
+            "robot",
+            "--gait",
+            "circle:1",
+        ],
+        [
+            "simulate",
+            "--swimmer",
+            "robot",
+            "--json",
+            "--gait",
+            "circle:1",
+        ],
+        [
+            "simulate",
+            "--swimmer",
+            "robot",
+            "--gait",
+            "circle:1",
+            "--json",
+        ],
+    ];
+    let answers: Vec<_> = ways
+        .iter()
+        .map(|words| swimmer(words).with_status(0).json())
+        .collect();
+    assert!(answers.iter().all(|answer| *answer == answers[0]));
+}
+
+#[test]
+fn what_fails_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let left = || std::fs::read_dir(folder.path()).unwrap().count();
+    swimmer_in(
+        folder.path(),
+        &["robot", "upload", "square:3.1", "--port", "twin"],
+    )
+    .with_status(1);
+    swimmer_in(
+        folder.path(),
+        &[
+            "simulate",
+            "--swimmer",
+            "robot",
+            "--gait",
+            "x.gait",
+            "--trajectory",
+            "t.csv",
+        ],
+    )
+    .with_status(2);
+    swimmer_in(
+        folder.path(),
+        &[
+            "optimize",
+            "displacement",
+            "--swimmer",
+            "x.toml",
+            "-o",
+            "y.gait",
+        ],
+    )
+    .with_status(2);
+    assert_eq!(left(), 0);
+}

@@ -1,0 +1,139 @@
+//! `swimmer tracks` on the real files of the shared collection, and on broken ones.
+
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use crate::binary::{number, swimmer, swimmer_in};
+
+/// What must be said of each file: the format, and for those that are read rate, unit and frames.
+struct Expected {
+    file: &'static str,
+    format: &'static str,
+    read: Option<(f64, &'static str, u64)>,
+}
+
+/// The figures of the collection's manifest.
+const COLLECTION: [Expected; 12] = [
+    Expected {
+        file: "motive_v1.23_ernesto_rb_markers.csv",
+        format: "motive-1.23",
+        read: Some((120.0, "m", 499)),
+    },
+    Expected {
+        file: "motive_v1.23_pathviewr_feb20_trunc.csv",
+        format: "motive-1.23",
+        read: Some((100.0, "m", 100)),
+    },
+    Expected {
+        file: "motive_v1.23_pathviewr_rb100.csv",
+        format: "motive-1.23",
+        read: Some((100.0, "m", 934)),
+    },
+    Expected {
+        file: "motive_v1.24_slow5_EXCERPT.csv",
+        format: "motive-1.24",
+        read: Some((120.0, "cm", 8)),
+    },
+    Expected {
+        file: "tt_v1.0_olin.csv",
+        format: "trackingtools-1.0",
+        read: None,
+    },
+    Expected {
+        file: "motive_v1.1_olin.csv",
+        format: "motive-1.1",
+        read: None,
+    },
+    Expected {
+        file: "motive_v1.1_tensegrity_unlabeled13.csv",
+        format: "motive-1.1",
+        read: None,
+    },
+    Expected {
+        file: "tracker6_multi_brocku.txt",
+        format: "tracker",
+        read: None,
+    },
+    Expected {
+        file: "tracker_single_brocku.txt",
+        format: "tracker",
+        read: None,
+    },
+    Expected {
+        file: "tracker_wide_arnoldjames_EXCERPT.csv",
+        format: "tracker",
+        read: None,
+    },
+    Expected {
+        file: "qtm_Measurement1_TRIMMED.tsv",
+        format: "qtm",
+        read: None,
+    },
+    Expected {
+        file: "trc_README_example.trc",
+        format: "trc",
+        read: None,
+    },
+];
+
+#[test]
+fn every_real_file_is_read_or_named() {
+    let collection = PathBuf::from(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../shared/optitrack"
+    ));
+    if !collection.is_dir() {
+        eprintln!(
+            "\n*** SKIPPED: no collection of real tracking files at {} ***\n",
+            collection.display()
+        );
+        return;
+    }
+    for expected in COLLECTION {
+        let path = collection.join(expected.file);
+        if !path.is_file() {
+            eprintln!("\n*** SKIPPED: {} is missing ***\n", path.display());
+            continue;
+        }
+        let ran = swimmer(&["tracks", path.to_str().unwrap(), "--json"]);
+        if let Some((rate, unit, frames)) = expected.read {
+            let held = ran.with_status(0).json();
+            assert_eq!(held["format"], expected.format, "{held:#}");
+            assert!((number(&held, "rate_hz") - rate).abs() < 1e-9, "{held:#}");
+            assert_eq!(held["unit"], unit, "{held:#}");
+            assert_eq!(held["frames"], frames, "{held:#}");
+            assert!(!held["points"].as_array().unwrap().is_empty(), "{held:#}");
+        } else {
+            let ran = ran.with_status(2);
+            assert!(
+                ran.stderr.contains(expected.format),
+                "{}: {ran}",
+                expected.file
+            );
+            assert!(ran.json()["error"].is_string(), "{ran}");
+        }
+    }
+}
+
+#[test]
+fn a_broken_file_has_a_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "t,x1,y1,x2,y2\n0,1,2,3,4\n0.01,1,two,3,4\n";
+    std::fs::write(folder.path().join("broken.csv"), text).unwrap();
+    let ran = swimmer_in(folder.path(), &["tracks", "broken.csv", "--json"]).with_status(2);
+    assert!(
+        ran.stderr.contains("broken.csv:3:8"),
+        "line 3, column 8 holds `two`: {ran}"
+    );
+    assert!(matches!(ran.json()["error"], Value::String(_)), "{ran}");
+}
+
+#[test]
+fn an_unclosed_quote_has_a_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "Format Version,1.23,Take Name,\"tank,Export Frame Rate,100\n\nFrame,Time\n";
+    std::fs::write(folder.path().join("quote.csv"), text).unwrap();
+    let ran = swimmer_in(folder.path(), &["tracks", "quote.csv"]).with_status(2);
+    assert!(ran.stderr.contains("quote.csv:1:"), "{ran}");
+}
