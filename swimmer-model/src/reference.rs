@@ -92,7 +92,3 @@ pub const BEST_SQUARE: BestAmplitude = BestAmplitude {
     displacement_over_length: 0.078_260_826_4,
     displacement_tolerance: 5e-11,
 };
-
-/// x-component of the curvature of Purcell's connection at the straight shape, over L, carried into
-/// minimum-perturbation coordinates: the height function `H_x(0)`.
-pub const PURCELL_HEIGHT_AT_ORIGIN: f64 = 0.020_576_131_7;
