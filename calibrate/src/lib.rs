@@ -1,14 +1,33 @@
 //! Tracking files to poses, cycles and fitted parameters.
 //!
 //! ```text
-//! bytes ──read_tracks──► TrackFile ──follow──► PoseTrack ──cycles──► CycleStatistics ──fit──► r_s, χ, intervals
-//!          (tracks)                 (reflectors)          (cycles)                     (fit)
+//! bytes ──read_tracks──► TrackFile ──poses──► PoseTrack ──► Cycles ──► Fit: r_s, χ, intervals, residuals
+//!          (tracks)                 (poses)             (cycles)    (fit)
 //! ```
-//! Lengths are metres, angles radians, times seconds. Nothing here opens a file, except [`CampaignData::load`], which reads
-//! what the campaign names.
+//! Lengths are metres, angles radians, times seconds. Nothing here opens a file, except [`CampaignData::load`] and
+//! [`load_run`], which read what the caller names. [`predict`] is the model's side of the fit, for anyone who wants to know
+//! beforehand what the cameras will see.
 
+// Formulas in the docs read like the paper's: c_t, r_s.
+#![allow(clippy::doc_markdown)]
+
+mod campaign;
+pub mod cycles;
+pub mod fit;
+pub mod poses;
+mod prediction;
 pub mod tracks;
 
+pub use campaign::{
+    CalibrateError, CampaignData, CampaignFit, RunData, RunResult, calibrate_campaign,
+    calibrate_run, load_run, table_options,
+};
+pub use cycles::{Cycle, CycleError, CycleWarning, Cycles, LeftOut, Statistics};
+pub use fit::{Fit, FitError, FitOptions, FitWarning, Intervals, RunResidual, c_t_form};
+pub use poses::{
+    PoseError, PoseOptions, PoseSample, PoseTrack, PoseWarning, poses, usual_reflectors,
+};
+pub use prediction::{PredictedCycle, PredictionError, joint_path, predict};
 pub use tracks::{
     PointKind, TableOptions, TrackError, TrackFile, TrackFormat, TrackPoint, TrackProblem,
     TrackWarning, Unit, read_tracks, read_tracks_with,

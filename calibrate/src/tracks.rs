@@ -139,7 +139,7 @@ pub struct TrackPoint {
 }
 
 impl TrackPoint {
-    fn new(name: String, kind: PointKind, id: String, columns: Vec<String>) -> Self {
+    pub(crate) fn new(name: String, kind: PointKind, id: String, columns: Vec<String>) -> Self {
         Self {
             name,
             kind,

@@ -1,0 +1,384 @@
+//! One experiment from its tracks to its drag: every run to cycles, all runs to one fit.
+
+use std::path::{Path, PathBuf};
+
+use swimmer_files::{AnyGait, Campaign, FileError, PointName, Reflectors, SwimmerFile};
+use swimmer_model::{InvalidSwimmer, Swimmer};
+
+use crate::cycles::{Clock, CycleError, Cycles, Projection};
+use crate::fit::{self, Fit, FitError, FitOptions, Observation};
+use crate::poses::{self, PoseError, PoseOptions, PoseTrack};
+use crate::prediction::{JointPath, PredictionError};
+use crate::tracks::{TableOptions, TrackError, TrackFile, read_tracks_with};
+
+/// One run, read.
+#[derive(Debug, Clone)]
+pub struct RunData {
+    /// The tracking file's path, for messages.
+    pub file: PathBuf,
+    /// What it holds.
+    pub track: TrackFile,
+    /// The gait that was played.
+    pub gait: AnyGait,
+    /// The gait as it was named.
+    pub gait_name: String,
+    /// One cycle as commanded \[s\].
+    pub period_s: f64,
+}
+
+/// Everything that a campaign names, read.
+#[derive(Debug, Clone)]
+pub struct CampaignData {
+    /// The runs, in the campaign's order.
+    pub runs: Vec<RunData>,
+}
+
+impl CampaignData {
+    /// Reads tracks and gait files: the one place of this crate that opens files, and only those that the campaign names.
+    ///
+    /// # Errors
+    /// [`CalibrateError`] for the first file that cannot be read.
+    pub fn load(campaign: &Campaign) -> Result<Self, CalibrateError> {
+        let read = |run: &swimmer_files::CampaignRun| {
+            let bytes = std::fs::read(&run.track).map_err(|cause| CalibrateError::Open {
+                file: run.track.clone(),
+                cause: cause.to_string(),
+            })?;
+            Ok(RunData {
+                track: read_tracks_with(&bytes, &run.track, &table_options(&campaign.reflectors))?,
+                file: run.track.clone(),
+                gait: run.gait.load()?,
+                gait_name: run.gait.to_string(),
+                period_s: run.period_s,
+            })
+        };
+        Ok(Self {
+            runs: campaign
+                .runs
+                .iter()
+                .map(read)
+                .collect::<Result<_, CalibrateError>>()?,
+        })
+    }
+}
+
+/// What the reflectors say about the columns of a plain table.
+pub fn table_options(reflectors: &Reflectors) -> TableOptions {
+    let pair = |point: &PointName| match point {
+        PointName::Columns(x, y) => Some([x.clone(), y.clone()]),
+        PointName::Named(_) | PointName::Auto => None,
+    };
+    TableOptions {
+        pairs: [&reflectors.front, &reflectors.back]
+            .into_iter()
+            .filter_map(|r| pair(&r.point))
+            .collect(),
+        ..TableOptions::default()
+    }
+}
+
+/// Why there is no calibration.
+#[derive(Debug, thiserror::Error)]
+pub enum CalibrateError {
+    /// A tracking file cannot be opened.
+    #[error("cannot read {}: {cause}", file.display())]
+    Open {
+        /// The file.
+        file: PathBuf,
+        /// The system's reason.
+        cause: String,
+    },
+    /// A tracking file is broken, or in a format that is not read.
+    #[error(transparent)]
+    Track(#[from] TrackError),
+    /// A gait file is wrong.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A track gave no poses.
+    #[error("{}: {cause}", file.display())]
+    Poses {
+        /// The tracking file.
+        file: PathBuf,
+        /// Why.
+        cause: PoseError,
+    },
+    /// A track gave no cycles.
+    #[error("{}: {cause}", file.display())]
+    Cycles {
+        /// The tracking file.
+        file: PathBuf,
+        /// Why.
+        cause: CycleError,
+    },
+    /// A gait could not have been played.
+    #[error("{}: {cause}", file.display())]
+    Prediction {
+        /// The tracking file of the run.
+        file: PathBuf,
+        /// Why.
+        cause: PredictionError,
+    },
+    /// Nothing was fitted.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+}
+
+impl CalibrateError {
+    /// Whether the input is to blame (bad usage, exit 2) rather than the outcome (exit 1).
+    pub fn is_bad_input(&self) -> bool {
+        match self {
+            Self::Open { .. } | Self::Track(_) | Self::File(_) | Self::Prediction { .. } => true,
+            Self::Poses { cause, .. } => {
+                matches!(cause, PoseError::NoPoint { .. } | PoseError::SamePlace)
+            }
+            Self::Fit(cause) => matches!(cause, FitError::Level { .. } | FitError::Swimmer(_)),
+            Self::Cycles { .. } => false,
+        }
+    }
+}
+
+impl From<InvalidSwimmer> for CalibrateError {
+    fn from(cause: InvalidSwimmer) -> Self {
+        Self::Fit(FitError::Swimmer(cause))
+    }
+}
+
+/// One run's outcome.
+#[derive(Debug, Clone)]
+pub struct RunResult {
+    /// The tracking file.
+    pub file: PathBuf,
+    /// The gait as it was named.
+    pub gait: String,
+    /// The poses.
+    pub poses: PoseTrack,
+    /// The cycles: X, Y, rotation, ΔY, Δθ with deviations, the refined period.
+    pub cycles: Cycles,
+    /// What reader, poses and cycles had to say.
+    pub warnings: Vec<String>,
+}
+
+/// A campaign's outcome.
+#[derive(Debug, Clone)]
+pub struct CampaignFit {
+    /// The runs, in the campaign's order.
+    pub runs: Vec<RunResult>,
+    /// The fit.
+    pub fit: Fit,
+    /// The swimmer with the fitted parameters, ready to be saved.
+    pub swimmer: SwimmerFile,
+}
+
+/// A run on its way: everything that does not change when the model does.
+struct Run<'a> {
+    data: &'a RunData,
+    poses: PoseTrack,
+    clock: Clock,
+    path: JointPath,
+}
+
+impl<'a> Run<'a> {
+    fn begin(
+        data: &'a RunData,
+        reflectors: &Reflectors,
+        swimmer: &SwimmerFile,
+    ) -> Result<Self, CalibrateError> {
+        let file = || data.file.clone();
+        let poses =
+            poses::poses(&data.track, reflectors, &PoseOptions::default()).map_err(|cause| {
+                CalibrateError::Poses {
+                    file: file(),
+                    cause,
+                }
+            })?;
+        let clock = Clock::find(&poses, data.period_s).map_err(|cause| CalibrateError::Cycles {
+            file: file(),
+            cause,
+        })?;
+        let path =
+            JointPath::new(&data.gait, swimmer.servo.as_ref(), data.period_s).map_err(|cause| {
+                CalibrateError::Prediction {
+                    file: file(),
+                    cause,
+                }
+            })?;
+        Ok(Self {
+            data,
+            poses,
+            clock,
+            path,
+        })
+    }
+
+    /// A cycle's start by this model's heading, as a fraction of the period.
+    fn start(
+        &self,
+        swimmer: &Swimmer<f64>,
+        projection: &Projection,
+    ) -> Result<f64, CalibrateError> {
+        let (_, heading) = self.path.predict(swimmer, projection)?;
+        self.clock
+            .start(&heading)
+            .map_err(|cause| CalibrateError::Cycles {
+                file: self.data.file.clone(),
+                cause,
+            })
+    }
+
+    fn cycles(&self, start_s: f64) -> Result<Cycles, CalibrateError> {
+        self.clock
+            .cycles(&self.poses, start_s)
+            .map_err(|cause| CalibrateError::Cycles {
+                file: self.data.file.clone(),
+                cause,
+            })
+    }
+
+    /// Where no label tells front from back, the direction of travel does: X has the model's sign.
+    fn settle_order(
+        &mut self,
+        cycles: Cycles,
+        start_s: f64,
+        swimmer: &Swimmer<f64>,
+        reflectors: &Reflectors,
+        projection: &Projection,
+    ) -> Result<Cycles, CalibrateError> {
+        let predicted = self.path.predict(swimmer, projection)?.0.x_m;
+        if self.poses.order_known || predicted * cycles.x.mean >= 0.0 {
+            return Ok(cycles);
+        }
+        self.poses.turn_round(reflectors);
+        self.cycles(start_s)
+    }
+
+    fn finish(self, cycles: Cycles) -> RunResult {
+        let reader = self.data.track.warnings.iter().map(ToString::to_string);
+        let poses = self.poses.warnings.iter().map(ToString::to_string);
+        let own = cycles.warnings.iter().map(ToString::to_string);
+        let mut warnings: Vec<String> = reader.chain(poses).chain(own).collect();
+        if !self.poses.order_known {
+            warnings.push("no label tells the front reflector from the back one; the direction of travel was taken for forwards".to_owned());
+        }
+        RunResult {
+            file: self.data.file.clone(),
+            gait: self.data.gait_name.clone(),
+            cycles,
+            poses: self.poses,
+            warnings,
+        }
+    }
+}
+
+/// The cycles of a single run.
+///
+/// # Errors
+/// [`CalibrateError`]: no poses, no cycles, or a gait that the swimmer's servos cannot play.
+pub fn calibrate_run(
+    run: &RunData,
+    reflectors: &Reflectors,
+    swimmer: &SwimmerFile,
+) -> Result<RunResult, CalibrateError> {
+    let projection = Projection::new();
+    let mut begun = Run::begin(run, reflectors, swimmer)?;
+    let start_s = begun.start(&swimmer.swimmer, &projection)?;
+    let cycles = begun.cycles(start_s)?;
+    let cycles = begun.settle_order(cycles, start_s, &swimmer.swimmer, reflectors, &projection)?;
+    Ok(begun.finish(cycles))
+}
+
+/// Rounds of fit and phase: the phase of a gait without the paper's symmetries hangs on the drag, a little.
+const ROUNDS: usize = 4;
+/// Phases that differ by less are the same, as a fraction of the period.
+const SAME_PHASE: f64 = 1e-5;
+
+/// All runs of a campaign and the fit of r_s and χ. The campaign's swimmer gives lengths, servos, the c_t form and a start.
+///
+/// # Errors
+/// [`CalibrateError`]: the first run that fails, or a fit that does.
+pub fn calibrate_campaign(
+    campaign: &Campaign,
+    data: &CampaignData,
+    options: FitOptions,
+) -> Result<CampaignFit, CalibrateError> {
+    let projection = Projection::new();
+    let reflectors = &campaign.reflectors;
+    let begin = |run| Run::begin(run, reflectors, &campaign.swimmer);
+    let mut runs: Vec<Run<'_>> = data.runs.iter().map(begin).collect::<Result<_, _>>()?;
+    let gaits: Vec<AnyGait> = data.runs.iter().map(|run| run.gait.clone()).collect();
+    let mut swimmer = campaign.swimmer.swimmer;
+    let mut starts = starts(&runs, &swimmer, &projection)?;
+    let mut round = 0;
+    loop {
+        round += 1;
+        let mut cycles = Vec::with_capacity(runs.len());
+        for (run, start_s) in runs.iter_mut().zip(&starts) {
+            let found = run.cycles(*start_s)?;
+            cycles.push(run.settle_order(found, *start_s, &swimmer, reflectors, &projection)?);
+        }
+        let observations: Vec<Observation> = runs
+            .iter()
+            .zip(&cycles)
+            .map(|(run, cycles)| Observation::new(run.path.clone(), cycles))
+            .collect();
+        fit::check_signs(&swimmer, &observations)?;
+        let fit = fit::fit(&swimmer, &observations, &gaits, options.level)?;
+        swimmer = Swimmer {
+            sphere_radius: fit.sphere_radius,
+            chi: fit.chi,
+            ..swimmer
+        };
+        let next = self::starts(&runs, &swimmer, &projection)?;
+        let moved = |(run, (a, b)): (&Run<'_>, (&f64, &f64))| {
+            let cycles = (b - a) / run.clock.period_s();
+            (cycles - cycles.round()).abs() > SAME_PHASE
+        };
+        let settled = !runs.iter().zip(starts.iter().zip(&next)).any(moved);
+        if settled || round == ROUNDS {
+            let fitted = campaign.swimmer.fitted(fit.sphere_radius, fit.chi);
+            let runs = runs
+                .into_iter()
+                .zip(cycles)
+                .map(|(run, cycles)| run.finish(cycles))
+                .collect();
+            return Ok(CampaignFit {
+                runs,
+                fit,
+                swimmer: fitted,
+            });
+        }
+        starts = next;
+    }
+}
+
+fn starts(
+    runs: &[Run<'_>],
+    swimmer: &Swimmer<f64>,
+    projection: &Projection,
+) -> Result<Vec<f64>, CalibrateError> {
+    runs.iter()
+        .map(|run| run.start(swimmer, projection))
+        .collect()
+}
+
+/// Reads one tracking file for [`calibrate_run`]; as [`CampaignData::load`], an edge to the file system.
+///
+/// # Errors
+/// [`CalibrateError`] when it cannot be opened or read.
+pub fn load_run(
+    file: &Path,
+    gait: &swimmer_files::GaitSpec,
+    period_s: f64,
+) -> Result<RunData, CalibrateError> {
+    let bytes = std::fs::read(file).map_err(|cause| CalibrateError::Open {
+        file: file.to_owned(),
+        cause: cause.to_string(),
+    })?;
+    let track = read_tracks_with(&bytes, file, &TableOptions::default())?;
+    Ok(RunData {
+        file: file.to_owned(),
+        track,
+        gait: gait.load()?,
+        gait_name: gait.to_string(),
+        period_s,
+    })
+}

@@ -1,0 +1,346 @@
+//! From poses to cycles: X, Y and rotation of each, ΔY and Δθ, their means and deviations.
+//!
+//! * The stretch in which the robot swam is found from its motion; the first whole cycle in it is start-up and dropped, so are
+//!   partial cycles at both ends, cycles with more than a tenth of their samples missing, and cycles unlike the others (the
+//!   robot stopped or was pushed).
+//! * The period is the commanded one, refined within ±2 % where the data speak clearly for another.
+//! * A cycle starts at the gait's first point, where φ₁ = φ₂ > 0. The cameras do not see the joints, so the start is where
+//!   the heading's harmonics match those of the model swimming the same gait; for the gaits of the paper that does not
+//!   depend on the drag, by symmetry.
+//! * X and Y are the step of SE(2) from one cycle to the next in the frame of the cycle's first heading. ΔY and Δθ are half
+//!   of max − min of the cycle's harmonic curve.
+
+mod clock;
+mod curve;
+mod statistics;
+
+use std::fmt;
+
+use swimmer_model::Pose;
+
+use crate::poses::{PoseSample, PoseTrack};
+use clock::Bin;
+pub(crate) use curve::{Curve, Harmonics, Projection};
+pub use statistics::Statistics;
+
+/// More cycles than any recording has.
+const MOST_CYCLES: u32 = 20_000;
+/// Share of a cycle's samples that may be missing.
+const MOST_MISSING: f64 = 0.1;
+/// A cycle is unlike the others when its residual is this many times their median.
+const UNLIKE: f64 = 3.0;
+
+/// Why a track gave no cycles.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CycleError {
+    /// The robot never moves.
+    #[error("the robot does not move in this track")]
+    NoMotion,
+    /// Not one whole cycle.
+    #[error(
+        "the robot moves for {active_s:.2} s, from {from_s:.2} s on, and no cycle of {period_s:.3} s in it is whole and clean \
+         ({left_out} left out); check period_s, or record longer"
+    )]
+    NoCycle {
+        /// From when it moves \[s\].
+        from_s: f64,
+        /// How long it moves \[s\].
+        active_s: f64,
+        /// The period \[s\].
+        period_s: f64,
+        /// Cycles that were left out.
+        left_out: usize,
+    },
+    /// The heading does not swing, so nothing tells where a cycle starts.
+    #[error(
+        "the heading does not swing with the period of {period_s:.3} s; check period_s and the gait"
+    )]
+    NoPhase {
+        /// The period \[s\].
+        period_s: f64,
+    },
+}
+
+/// What to know about a run's cycles.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CycleWarning {
+    /// The period differs from the commanded one by more than 0.5 %.
+    Period {
+        /// As commanded \[s\].
+        commanded_s: f64,
+        /// As found \[s\].
+        found_s: f64,
+    },
+    /// No period within ±2 % of the commanded one is best.
+    PeriodNotFound {
+        /// As commanded \[s\].
+        commanded_s: f64,
+    },
+    /// Only one cycle: X is its drift, and there is no deviation.
+    OneCycle,
+    /// The start-up cycle could not be dropped, because it is the only one.
+    StartUpKept,
+}
+
+impl fmt::Display for CycleWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Period {
+                commanded_s,
+                found_s,
+            } => write!(
+                f,
+                "the period is {found_s:.4} s, not {commanded_s} s as commanded ({:+.2} %): the clocks drift, or the command was another",
+                100.0 * (found_s / commanded_s - 1.0)
+            ),
+            Self::PeriodNotFound { commanded_s } => write!(
+                f,
+                "no period within 2 % of {commanded_s} s fits best; {commanded_s} s was used; check period_s"
+            ),
+            Self::OneCycle => f.write_str(
+                "there is only one clean cycle: X is taken from its drift, without a deviation",
+            ),
+            Self::StartUpKept => {
+                f.write_str("the only cycle is the first, which may hold the start-up")
+            }
+        }
+    }
+}
+
+/// Why a whole cycle was left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LeftOut {
+    /// The first one.
+    StartUp,
+    /// Too many samples are missing: the share.
+    Missing(f64),
+    /// Its poses are unlike the other cycles': residual \[m\].
+    Unlike(f64),
+}
+
+/// One cycle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cycle {
+    /// When it starts \[s\].
+    pub start_s: f64,
+    /// (X, Y) \[m\] and rotation \[rad\] to the next cycle, in the frame of this one's first heading; `None` where the next
+    /// cycle was left out.
+    pub step: Option<Pose<f64>>,
+    /// ΔY \[m\].
+    pub delta_y: f64,
+    /// Δθ \[rad\].
+    pub delta_theta: f64,
+    /// Share of its samples that are missing.
+    pub missing: f64,
+    /// Root mean square distance of the positions from the harmonic curve \[m\].
+    pub residual_m: f64,
+}
+
+/// The cycles of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cycles {
+    /// The period \[s\], refined.
+    pub period_s: f64,
+    /// The cycles that count.
+    pub cycles: Vec<Cycle>,
+    /// Those that do not: when they start, and why.
+    pub left_out: Vec<(f64, LeftOut)>,
+    /// X \[m\].
+    pub x: Statistics,
+    /// Y \[m\].
+    pub y: Statistics,
+    /// Net rotation \[rad\].
+    pub rotation: Statistics,
+    /// ΔY \[m\].
+    pub delta_y: Statistics,
+    /// Δθ \[rad\].
+    pub delta_theta: Statistics,
+    /// What to know.
+    pub warnings: Vec<CycleWarning>,
+}
+
+/// What does not depend on where a cycle starts: found once a run.
+#[derive(Debug, Clone)]
+pub(crate) struct Clock {
+    period_s: f64,
+    active_s: (f64, f64),
+    steady: Vec<Bin>,
+    warnings: Vec<CycleWarning>,
+}
+
+impl Clock {
+    pub(crate) fn find(track: &PoseTrack, commanded_s: f64) -> Result<Self, CycleError> {
+        let bins = clock::bins(track, commanded_s);
+        let active_s = clock::active(&bins, track.report.distance_m).ok_or(CycleError::NoMotion)?;
+        let within = |from: f64| {
+            bins.iter()
+                .flatten()
+                .copied()
+                .filter(|bin| bin.time_s >= from && bin.time_s <= active_s.1)
+                .collect::<Vec<Bin>>()
+        };
+        let after_start = within(active_s.0 + commanded_s);
+        let long = active_s.1 - active_s.0 > 2.0 * commanded_s;
+        let steady = if long {
+            after_start
+        } else {
+            within(active_s.0)
+        };
+        let mut warnings = Vec::new();
+        let period = clock::refine_period(&steady, commanded_s);
+        if period.at_border {
+            warnings.push(CycleWarning::PeriodNotFound { commanded_s });
+        }
+        if (period.seconds / commanded_s - 1.0).abs() > 0.005 {
+            warnings.push(CycleWarning::Period {
+                commanded_s,
+                found_s: period.seconds,
+            });
+        }
+        Ok(Self {
+            period_s: period.seconds,
+            active_s,
+            steady,
+            warnings,
+        })
+    }
+
+    /// A start of a cycle \[s\], matched with the model's heading.
+    pub(crate) fn start(&self, model: &Harmonics) -> Result<f64, CycleError> {
+        let none = CycleError::NoPhase {
+            period_s: self.period_s,
+        };
+        let swings = model.iter().flatten().any(|value| value.abs() > 1e-9);
+        clock::cycle_start(&self.steady, self.period_s, model)
+            .filter(|start| swings && start.is_finite())
+            .ok_or(none)
+    }
+
+    pub(crate) fn period_s(&self) -> f64 {
+        self.period_s
+    }
+
+    /// The cycles from a known start of one of them.
+    pub(crate) fn cycles(&self, track: &PoseTrack, start_s: f64) -> Result<Cycles, CycleError> {
+        let period = self.period_s;
+        let slack = 0.02 * period;
+        let (from, to) = self.active_s;
+        let first = ((from - start_s - slack) / period).ceil();
+        let mut drawn: Vec<(f64, f64, Curve, f64)> = Vec::new();
+        let mut left_out = Vec::new();
+        let mut warnings = self.warnings.clone();
+        let starts: Vec<f64> = (0..MOST_CYCLES)
+            .map(|k| start_s + (first + f64::from(k)) * period)
+            .take_while(|s| s + period <= to + slack)
+            .collect();
+        if starts.len() == 1 {
+            warnings.push(CycleWarning::StartUpKept);
+        }
+        for (index, start) in starts.iter().copied().enumerate() {
+            if index == 0 && starts.len() > 1 {
+                left_out.push((start, LeftOut::StartUp));
+                continue;
+            }
+            let samples = window(track, start, period);
+            let missing = (1.0 - samples.len() as f64 / (period * track.rate_hz)).max(0.0);
+            let curve = Curve::fit(
+                samples
+                    .iter()
+                    .map(|s| ((s.time_s - start) / period, s.pose)),
+            );
+            match curve.filter(|_| missing <= MOST_MISSING) {
+                Some((curve, residual)) => drawn.push((start, missing, curve, residual)),
+                None => left_out.push((start, LeftOut::Missing(missing))),
+            }
+        }
+        drop_unlike(&mut drawn, &mut left_out);
+        let Some((.., lone, _)) = drawn.first() else {
+            let (from_s, active_s) = (from, to - from);
+            return Err(CycleError::NoCycle {
+                from_s,
+                active_s,
+                period_s: period,
+                left_out: left_out.len(),
+            });
+        };
+        let lone = lone.own_step();
+        let cycles: Vec<Cycle> = drawn
+            .iter()
+            .enumerate()
+            .map(|(i, entry)| cycle(entry, drawn.get(i + 1), period))
+            .collect();
+        let mut steps: Vec<Pose<f64>> = cycles.iter().filter_map(|cycle| cycle.step).collect();
+        if steps.is_empty() {
+            warnings.push(CycleWarning::OneCycle);
+            steps.push(lone);
+        }
+        left_out.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(Cycles {
+            period_s: period,
+            x: Statistics::of(steps.iter().map(|step| step.x)),
+            y: Statistics::of(steps.iter().map(|step| step.y)),
+            rotation: Statistics::of(steps.iter().map(|step| step.theta)),
+            delta_y: Statistics::of(cycles.iter().map(|cycle| cycle.delta_y)),
+            delta_theta: Statistics::of(cycles.iter().map(|cycle| cycle.delta_theta)),
+            cycles,
+            left_out,
+            warnings,
+        })
+    }
+}
+
+/// Samples that were seen in \[start, start + period).
+fn window(track: &PoseTrack, start: f64, period: f64) -> Vec<PoseSample> {
+    let from = track
+        .samples
+        .partition_point(|sample| sample.time_s < start);
+    let until = track
+        .samples
+        .partition_point(|sample| sample.time_s < start + period);
+    track
+        .samples
+        .get(from..until)
+        .unwrap_or(&[])
+        .iter()
+        .filter(|sample| !sample.filled)
+        .copied()
+        .collect()
+}
+
+fn drop_unlike(drawn: &mut Vec<(f64, f64, Curve, f64)>, left_out: &mut Vec<(f64, LeftOut)>) {
+    let mut residuals: Vec<f64> = drawn.iter().map(|(.., residual)| *residual).collect();
+    residuals.sort_by(f64::total_cmp);
+    // Of two, the lower one is the measure: the last cycle is the one that goes wrong.
+    let Some(median) = residuals
+        .get((residuals.len().saturating_sub(1)) / 2)
+        .copied()
+    else {
+        return;
+    };
+    // Below a micrometre all residuals are rounding.
+    let limit = UNLIKE * median.max(1e-6);
+    drawn.retain(|(start, .., residual)| {
+        let keep = *residual <= limit;
+        if !keep {
+            left_out.push((*start, LeftOut::Unlike(*residual)));
+        }
+        keep
+    });
+}
+
+fn cycle(
+    (start_s, missing, curve, residual_m): &(f64, f64, Curve, f64),
+    next: Option<&(f64, f64, Curve, f64)>,
+    period: f64,
+) -> Cycle {
+    let follows = next.filter(|(next_start, ..)| next_start - start_s < 1.5 * period);
+    let (delta_y, delta_theta) = curve.amplitudes();
+    Cycle {
+        start_s: *start_s,
+        step: follows.map(|(_, _, next, _)| curve.step_to(next)),
+        delta_y,
+        delta_theta,
+        missing: *missing,
+        residual_m: *residual_m,
+    }
+}

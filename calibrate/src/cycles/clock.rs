@@ -1,0 +1,270 @@
+//! When did the robot swim, how long was its cycle, and where in the cycle was it? From the poses alone: the cameras' clock
+//! and the robot's are not the same.
+
+// Indices come from bounded, positive numbers.
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+
+use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::curve::{HARMONICS, Harmonics};
+use crate::poses::{PoseSample, PoseTrack};
+
+/// Averages over a hundredth of a cycle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bin {
+    pub(super) time_s: f64,
+    x: f64,
+    y: f64,
+    pub(super) theta: f64,
+}
+
+/// Bins of a cycle.
+const BINS: f64 = 100.0;
+/// Twenty thousand cycles: what comes later is no recording, but a slip in the times.
+const MOST_BINS: f64 = 2e6;
+/// The largest search for the period, either way.
+pub(super) const PERIOD_RANGE: f64 = 0.02;
+/// Harmonics of θ by which the period is found.
+const PERIOD_HARMONICS: usize = 4;
+
+/// Averages of what was seen; `None` where nothing was.
+pub(super) fn bins(track: &PoseTrack, period_s: f64) -> Vec<Option<Bin>> {
+    let Some(first) = track.seen().next() else {
+        return Vec::new();
+    };
+    let width = period_s / BINS;
+    let mut sums: Vec<(f64, Bin)> = Vec::new();
+    for PoseSample { time_s, pose, .. } in track.seen() {
+        let index = ((time_s - first.time_s) / width).min(MOST_BINS) as usize;
+        if index >= sums.len() {
+            sums.resize(
+                index + 1,
+                (
+                    0.0,
+                    Bin {
+                        time_s: 0.0,
+                        x: 0.0,
+                        y: 0.0,
+                        theta: 0.0,
+                    },
+                ),
+            );
+        }
+        if let Some((count, bin)) = sums.get_mut(index) {
+            *count += 1.0;
+            let sum = |a: f64, b: f64| a + b;
+            *bin = Bin {
+                time_s: sum(bin.time_s, *time_s),
+                x: sum(bin.x, pose.x),
+                y: sum(bin.y, pose.y),
+                theta: sum(bin.theta, pose.theta),
+            };
+        }
+    }
+    let mean = |(n, b): (f64, Bin)| {
+        (n > 0.0).then(|| Bin {
+            time_s: b.time_s / n,
+            x: b.x / n,
+            y: b.y / n,
+            theta: b.theta / n,
+        })
+    };
+    sums.into_iter().map(mean).collect()
+}
+
+/// From when to when the robot swam: the longest stretch of motion without a rest of a quarter of a cycle. `lever` \[m\] weighs
+/// rotation against translation.
+pub(super) fn active(bins: &[Option<Bin>], lever: f64) -> Option<(f64, f64)> {
+    let at = |i: usize| bins.get(i).copied().flatten();
+    let motion = |i: usize| {
+        let (a, b) = (at(i.saturating_sub(2))?, at(i + 2)?);
+        Some((b.x - a.x).hypot(b.y - a.y) + lever * (b.theta - a.theta).abs())
+    };
+    let motions: Vec<Option<f64>> = (0..bins.len()).map(motion).collect();
+    let mut sorted: Vec<f64> = motions.iter().copied().flatten().collect();
+    sorted.sort_by(f64::total_cmp);
+    let threshold = 0.1 * sorted.get(sorted.len() * 9 / 10)?;
+    let rest = (BINS / 4.0) as usize;
+    let mut best: Option<(usize, usize)> = None;
+    let mut run: Option<(usize, usize)> = None;
+    for (i, _) in motions
+        .iter()
+        .enumerate()
+        .filter(|(_, m)| m.is_some_and(|m| m > threshold))
+    {
+        run = Some(match run {
+            Some((start, end)) if i - end <= rest => (start, i),
+            _ => (i, i),
+        });
+        if let Some((start, end)) = run
+            && best.is_none_or(|(a, b)| end - start > b - a)
+        {
+            best = run;
+        }
+    }
+    let (start, end) = best?;
+    Some((at(start)?.time_s, at(end)?.time_s))
+}
+
+/// The period \[s\], refined, and whether the search ended at its border.
+pub(super) struct Period {
+    pub(super) seconds: f64,
+    pub(super) at_border: bool,
+}
+
+/// Refines the commanded period by the explained variance of mean, drift and harmonics of θ. The commanded one stands unless
+/// another is better by more than chance.
+pub(super) fn refine_period(bins: &[Bin], commanded_s: f64) -> Period {
+    let keep = Period {
+        seconds: commanded_s,
+        at_border: false,
+    };
+    let span = bins.last().map_or(0.0, |b| b.time_s) - bins.first().map_or(0.0, |b| b.time_s);
+    if span < 1.9 * commanded_s {
+        return keep;
+    }
+    let unexplained = |scale: f64| {
+        harmonic_fit(bins, commanded_s * scale, 0.0, PERIOD_HARMONICS)
+            .map_or(f64::INFINITY, |(_, rest)| rest)
+    };
+    // The peak is 1/cycles wide; look several times within it.
+    let cycles = span / commanded_s;
+    let looks = ((8.0 * PERIOD_RANGE * cycles).ceil() as usize).clamp(8, 400);
+    let scale = |i: usize| 1.0 + PERIOD_RANGE * (2.0 * i as f64 / looks as f64 - 1.0);
+    let values: Vec<f64> = (0..=looks).map(|i| unexplained(scale(i))).collect();
+    let best = (0..=looks)
+        .min_by(|a, b| values[*a].total_cmp(&values[*b]))
+        .unwrap_or(looks / 2);
+    if best == 0 || best == looks {
+        return Period {
+            at_border: true,
+            ..keep
+        };
+    }
+    let (found, least) = golden(scale(best - 1), scale(best + 1), unexplained);
+    let noise = least / (bins.len().saturating_sub(2 + 2 * PERIOD_HARMONICS).max(1)) as f64;
+    if unexplained(1.0) - least < 9.0 * noise {
+        keep
+    } else {
+        Period {
+            seconds: commanded_s * found,
+            at_border: false,
+        }
+    }
+}
+
+/// Minimum of a function of one hump in an interval.
+fn golden(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> (f64, f64) {
+    let ratio = 0.618_033_988_749_894_9;
+    let (mut c, mut d) = (b - ratio * (b - a), a + ratio * (b - a));
+    let (mut fc, mut fd) = (f(c), f(d));
+    for _ in 0..40 {
+        if fc < fd {
+            (b, d, fd) = (d, c, fc);
+            c = b - ratio * (b - a);
+            fc = f(c);
+        } else {
+            (a, c, fc) = (c, d, fd);
+            d = a + ratio * (b - a);
+            fd = f(d);
+        }
+    }
+    if fc < fd { (c, fc) } else { (d, fd) }
+}
+
+/// θ's harmonics about `zero_s` by least squares, and the unexplained sum of squares.
+fn harmonic_fit(
+    bins: &[Bin],
+    period_s: f64,
+    zero_s: f64,
+    harmonics: usize,
+) -> Option<(Vec<[f64; 2]>, f64)> {
+    let terms = 2 + 2 * harmonics;
+    let middle = bins.get(bins.len() / 2)?;
+    let span = (bins.last()?.time_s - bins.first()?.time_s).max(period_s);
+    let mut gram = DMatrix::<f64>::zeros(terms, terms);
+    let mut right = DVector::<f64>::zeros(terms);
+    let mut total = 0.0;
+    let mut row = vec![0.0; terms];
+    for bin in bins {
+        let (sin, cos) = (TAU * (bin.time_s - zero_s) / period_s).sin_cos();
+        let (mut c, mut s) = (1.0, 0.0);
+        row[0] = 1.0;
+        row[1] = (bin.time_s - middle.time_s) / span;
+        for h in 0..harmonics {
+            (c, s) = (c * cos - s * sin, s * cos + c * sin);
+            (row[2 + 2 * h], row[3 + 2 * h]) = (c, s);
+        }
+        let value = bin.theta - middle.theta;
+        for i in 0..terms {
+            for j in 0..=i {
+                gram[(i, j)] += row[i] * row[j];
+            }
+            right[i] += row[i] * value;
+        }
+        total += value * value;
+    }
+    let solution = gram.cholesky()?.solve(&right);
+    let rest = (total - solution.dot(&right)).max(0.0);
+    Some((
+        (0..harmonics)
+            .map(|h| [solution[2 + 2 * h], solution[3 + 2 * h]])
+            .collect(),
+        rest,
+    ))
+}
+
+/// A time at which a cycle starts, by matching θ with the model's: the shift at which all harmonics of both agree best
+/// (for one harmonic: the difference of phases).
+pub(super) fn cycle_start(bins: &[Bin], period_s: f64, model: &Harmonics) -> Option<f64> {
+    let zero_s = bins.first()?.time_s;
+    let (measured, _) = harmonic_fit(bins, period_s, zero_s, HARMONICS)?;
+    // θ(t) = Σ c cos hω(t − zero) + s sin …; the model runs from its start: shift ψ = ω (start − zero).
+    // Overlap Σ Re(conj(M) C e^{ihψ}) with C = c − is.
+    let products: Vec<(f64, f64)> = measured
+        .iter()
+        .zip(model)
+        .map(|(m, r)| (r[0] * m[0] + r[1] * m[1], r[1] * m[0] - r[0] * m[1]))
+        .collect();
+    let overlap = |psi: f64| {
+        sum(&products, psi, |_, (re, im), (sin, cos)| {
+            re * cos - im * sin
+        })
+    };
+    let slope = |psi: f64| {
+        sum(&products, psi, |h, (re, im), (sin, cos)| {
+            -h * (re * sin + im * cos)
+        })
+    };
+    let bend = |psi: f64| {
+        sum(&products, psi, |h, (re, im), (sin, cos)| {
+            -h * h * (re * cos - im * sin)
+        })
+    };
+    let looks = 720;
+    let place = |i: i32| TAU * f64::from(i) / f64::from(looks);
+    let mut psi =
+        place((0..looks).max_by(|a, b| overlap(place(*a)).total_cmp(&overlap(place(*b))))?);
+    for _ in 0..8 {
+        let curvature = bend(psi);
+        if curvature >= 0.0 {
+            break;
+        }
+        psi -= (slope(psi) / curvature).clamp(-TAU / 360.0, TAU / 360.0);
+    }
+    Some(zero_s + psi / TAU * period_s)
+}
+
+fn sum(
+    products: &[(f64, f64)],
+    psi: f64,
+    term: impl Fn(f64, (f64, f64), (f64, f64)) -> f64,
+) -> f64 {
+    let terms = products
+        .iter()
+        .zip(1..)
+        .map(|(product, h)| term(f64::from(h), *product, (f64::from(h) * psi).sin_cos()));
+    terms.sum()
+}

@@ -1,0 +1,60 @@
+//! Mean, deviation and standard error over cycles.
+
+/// Statistics of one quantity over the cycles of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Statistics {
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation from cycle to cycle; 0 for a single one.
+    pub sd: f64,
+    /// Standard error of the mean. Neighbouring steps share a cycle, so that noise of the cameras makes them vary against
+    /// each other; the lag-1 correlation is taken into account from five values on.
+    pub se: f64,
+    /// Lag-1 correlation; 0 below five values.
+    pub lag1: f64,
+    /// How many values.
+    pub count: usize,
+}
+
+impl Statistics {
+    pub(super) fn of(values: impl Iterator<Item = f64>) -> Self {
+        let values: Vec<f64> = values.collect();
+        let n = values.len().max(1) as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+        let variance = if n > 1.0 { squares / (n - 1.0) } else { 0.0 };
+        let products: f64 = values
+            .windows(2)
+            .map(|w| w.iter().map(|v| v - mean).product::<f64>())
+            .sum();
+        let lag1 = if values.len() >= 5 && squares > 0.0 {
+            products / squares
+        } else {
+            0.0
+        };
+        let inflation = (1.0 + 2.0 * lag1 * (1.0 - 1.0 / n)).max(1.0 / n);
+        Self {
+            mean,
+            sd: variance.sqrt(),
+            se: (variance / n * inflation).sqrt(),
+            lag1,
+            count: values.len(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Statistics;
+
+    #[test]
+    fn plain_and_correlated_values() {
+        let plain = Statistics::of([1.0, 2.0, 3.0].into_iter());
+        assert_eq!((plain.mean, plain.sd, plain.count), (2.0, 1.0, 3));
+        assert!((plain.se - 1.0 / 3f64.sqrt()).abs() < 1e-15);
+        let alternating = Statistics::of([1.0, 2.0, 1.0, 2.0, 1.0, 2.0].into_iter());
+        assert!(alternating.lag1 < -0.7 && alternating.se < alternating.sd / 4.0);
+        let one = Statistics::of([4.0].into_iter());
+        assert_eq!((one.mean, one.sd, one.se), (4.0, 0.0, 0.0));
+    }
+}

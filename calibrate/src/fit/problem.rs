@@ -1,0 +1,135 @@
+//! The weighted residuals as Levenberg–Marquardt wants them.
+
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use nalgebra::{Dyn, OMatrix, OVector, U2, Vector2, storage::Owned};
+use swimmer_model::Swimmer;
+
+use super::{Observation, WEIGHTS};
+use crate::cycles::Projection;
+
+/// Runs, and the swimmer whose r_s and χ are sought.
+#[derive(Clone, Copy)]
+pub(super) struct Problem<'a> {
+    pub(super) start: &'a Swimmer<f64>,
+    pub(super) runs: &'a [Observation],
+    /// Square root of the weight over the largest measured value, for X, ΔY, Δθ.
+    pub(super) factors: [f64; 3],
+    pub(super) projection: &'a Projection,
+    p: Vector2<f64>,
+}
+
+/// Step of the differences in (√(r_s/L), ln χ).
+const STEP: f64 = 1e-3;
+
+/// The swimmer at parameters (√(r_s/L), ln χ).
+pub(super) fn natural(start: &Swimmer<f64>, [p, k]: [f64; 2]) -> Swimmer<f64> {
+    Swimmer {
+        sphere_radius: start.total_length() * p * p,
+        chi: k.exp(),
+        ..*start
+    }
+}
+
+impl<'a> Problem<'a> {
+    pub(super) fn new(
+        start: &'a Swimmer<f64>,
+        runs: &'a [Observation],
+        scales: [f64; 3],
+        projection: &'a Projection,
+    ) -> Self {
+        let factors = [0, 1, 2].map(|i| WEIGHTS[i].sqrt() / scales[i]);
+        Self {
+            start,
+            runs,
+            factors,
+            projection,
+            p: Vector2::zeros(),
+        }
+    }
+
+    /// Weighted residuals, three a run; `None` where the swimmer cannot swim.
+    pub(super) fn residuals(&self, swimmer: &Swimmer<f64>) -> Option<Vec<f64>> {
+        let mut out = Vec::with_capacity(3 * self.runs.len());
+        for run in self.runs {
+            let cycle = run.path.predict(swimmer, self.projection).ok()?.0;
+            let simulated = [cycle.x_m, cycle.delta_y_m, cycle.delta_theta_rad];
+            for ((simulated, (measured, _)), factor) in
+                simulated.iter().zip(run.measured).zip(self.factors)
+            {
+                out.push((simulated - measured) * factor);
+            }
+        }
+        out.iter().all(|r| r.is_finite()).then_some(out)
+    }
+
+    fn at(&self, p: [f64; 2]) -> Option<Vec<f64>> {
+        self.residuals(&natural(self.start, p))
+    }
+
+    /// The squared criterion.
+    pub(super) fn cost(&self, p: [f64; 2]) -> Option<f64> {
+        Some(self.at(p)?.iter().map(|r| r * r).sum())
+    }
+
+    /// From a start to the nearest minimum.
+    pub(super) fn minimise(&self, p: [f64; 2]) -> Option<[f64; 2]> {
+        let problem = Self {
+            p: Vector2::from(p),
+            ..*self
+        };
+        let solver = LevenbergMarquardt::new().with_tol(1e-12).with_patience(40);
+        let (problem, report) = solver.minimize(problem);
+        let end: [f64; 2] = problem.p.into();
+        let usable = !report.termination.was_usage_issue() && report.objective_function.is_finite();
+        (usable && end.iter().all(|v| v.is_finite())).then_some([end[0].abs(), end[1]])
+    }
+}
+
+impl LeastSquaresProblem<f64, Dyn, U2> for Problem<'_> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, U2>;
+    type ParameterStorage = Owned<f64, U2>;
+
+    fn set_params(&mut self, p: &Vector2<f64>) {
+        self.p = *p;
+    }
+
+    fn params(&self) -> Vector2<f64> {
+        self.p
+    }
+
+    fn residuals(&self) -> Option<OVector<f64, Dyn>> {
+        self.at(self.p.into()).map(OVector::<f64, Dyn>::from_vec)
+    }
+
+    fn jacobian(&self) -> Option<OMatrix<f64, Dyn, U2>> {
+        let column = |i: usize| {
+            let at = |steps: f64| {
+                let mut p: [f64; 2] = self.p.into();
+                p[i] += steps * STEP;
+                self.at(p)
+            };
+            difference(&at(-2.0)?, &at(-1.0)?, &at(1.0)?, &at(2.0)?, STEP)
+        };
+        let (a, b) = (column(0)?, column(1)?);
+        Some(OMatrix::<f64, Dyn, U2>::from_columns(&[a, b]))
+    }
+}
+
+/// The derivative from values one and two steps to either side: fourth order.
+pub(super) fn difference(
+    m2: &[f64],
+    m1: &[f64],
+    p1: &[f64],
+    p2: &[f64],
+    step: f64,
+) -> Option<OVector<f64, Dyn>> {
+    let values = m2.iter().zip(m1).zip(p1.iter().zip(p2));
+    let column: Vec<f64> = values
+        .map(|((m2, m1), (p1, p2))| (8.0 * (p1 - m1) - (p2 - m2)) / (12.0 * step))
+        .collect();
+    column
+        .iter()
+        .all(|v| v.is_finite())
+        .then(|| OVector::<f64, Dyn>::from_vec(column))
+}

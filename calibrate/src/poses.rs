@@ -1,0 +1,328 @@
+//! From tracked points to poses of the middle link.
+//!
+//! 1. [`follow`] picks the two reflectors in every row out of all measured points: labels are only hints, the distance
+//!    between the reflectors and constant-velocity prediction decide.
+//! 2. [`Plane`] is fitted to all of their positions and gives the tank's x and y.
+//! 3. Two points in the plane and their places on the link give the link's centre and heading.
+//!
+//! Gaps of at most [`PoseOptions::longest_fill_s`] are bridged by straight lines and marked. Bridged poses are there to be
+//! drawn: no estimate uses them, since least squares needs no evenly spaced samples.
+
+mod follow;
+mod plane;
+
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+use nalgebra::{Vector2, Vector3};
+use swimmer_files::{PointName, Reflectors};
+use swimmer_model::{Pose, Swimmer};
+
+use crate::TrackFile;
+pub use follow::FollowReport;
+pub use plane::Plane;
+
+/// Limits of the way from points to poses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseOptions {
+    /// Gaps up to this long are bridged \[s\].
+    pub longest_fill_s: f64,
+    /// How far the reflectors' distance may be from its mean to be taken for the pair, as a share of it.
+    pub distance_tolerance: f64,
+}
+
+impl Default for PoseOptions {
+    /// 0.1 s; a tenth of the distance.
+    fn default() -> Self {
+        Self {
+            longest_fill_s: 0.1,
+            distance_tolerance: 0.1,
+        }
+    }
+}
+
+/// Why a track gave no poses.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PoseError {
+    /// A reflector's point is not in the file.
+    #[error(
+        "the {reflector} reflector is called `{wanted}`, but the points in the track are {points}; change `point` in the campaign"
+    )]
+    NoPoint {
+        /// `front` or `back`.
+        reflector: &'static str,
+        /// The name that was asked for.
+        wanted: String,
+        /// The names that are there.
+        points: String,
+    },
+    /// Both reflectors are at the same place on the link.
+    #[error("both reflectors sit at the same place of the link, so they show no heading")]
+    SamePlace,
+    /// No two points ever have the right distance.
+    #[error(
+        "no two points are {expected_m:.5} m apart (within {tolerance_m:.5} m) in any of {frames} frames{hint}; check `at` of both \
+         reflectors, the unit and the points' names"
+    )]
+    NoPair {
+        /// Distance by `at` of the campaign \[m\].
+        expected_m: f64,
+        /// Tolerance \[m\].
+        tolerance_m: f64,
+        /// Rows that were searched.
+        frames: usize,
+        /// What the named points do instead.
+        hint: String,
+    },
+    /// The named points have another distance than `at` says.
+    #[error(
+        "the reflectors are {measured_m:.5} m apart in the track but {expected_m:.5} m by `at`; if the track is in other units, a \
+         scale of {scale:.6} makes them agree"
+    )]
+    Distance {
+        /// Median distance in the track \[m\].
+        measured_m: f64,
+        /// Distance by `at` \[m\].
+        expected_m: f64,
+        /// Expected over measured.
+        scale: f64,
+    },
+}
+
+/// What made the poses less than perfect.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PoseWarning {
+    /// The reflectors' distance differs from what `at` says by more than 2 %.
+    Distance {
+        /// Mean in the track \[m\].
+        measured_m: f64,
+        /// By `at` \[m\].
+        expected_m: f64,
+    },
+    /// Points leave the plane by more than 2 % of the reflectors' distance or 5 mm.
+    OutOfPlane {
+        /// Root mean square distance from the plane \[m\].
+        rms_m: f64,
+    },
+    /// The points lie nearly on a line, so the plane is an axis plane of the file rather than a fitted one.
+    PlaneAssumed,
+    /// After a gap nobody could tell front from back; the rows before or after it are left out.
+    AmbiguousGaps {
+        /// Segments that were left out.
+        segments: usize,
+        /// Rows in them.
+        rows: usize,
+    },
+}
+
+impl fmt::Display for PoseWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Distance {
+                measured_m,
+                expected_m,
+            } => write!(
+                f,
+                "the reflectors are {measured_m:.5} m apart in the track, {expected_m:.5} m by `at`: lengths may be off by {:.1} %",
+                100.0 * (measured_m / expected_m - 1.0)
+            ),
+            Self::OutOfPlane { rms_m } => {
+                write!(
+                    f,
+                    "the reflectors leave their plane by {:.2} mm (rms); the camera may be tilted",
+                    1e3 * rms_m
+                )
+            }
+            Self::PlaneAssumed => f.write_str(
+                "the reflectors moved along a line only: the plane is the file's own, not fitted",
+            ),
+            Self::AmbiguousGaps { segments, rows } => write!(
+                f,
+                "{segments} stretches ({rows} rows) come after gaps too long to tell front from back; they are left out"
+            ),
+        }
+    }
+}
+
+/// One pose in time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseSample {
+    /// Time \[s\].
+    pub time_s: f64,
+    /// Centre of the middle link \[m\] and its heading, unwrapped.
+    pub pose: Pose<f64>,
+    /// Bridged rather than seen.
+    pub filled: bool,
+}
+
+/// The middle link's poses through a run.
+#[derive(Debug, Clone)]
+pub struct PoseTrack {
+    /// In time; rows without a pose are not there.
+    pub samples: Vec<PoseSample>,
+    /// Rows of the file.
+    pub frames: usize,
+    /// Rows a second.
+    pub rate_hz: f64,
+    /// The plane, and how the file's axes map to x and y.
+    pub plane: Plane,
+    /// How the reflectors were followed.
+    pub report: FollowReport,
+    /// Whether front and back were told apart by labels; if not, only the direction of travel can tell.
+    pub order_known: bool,
+    /// What to know about them.
+    pub warnings: Vec<PoseWarning>,
+}
+
+impl PoseTrack {
+    /// The samples that were seen.
+    pub fn seen(&self) -> impl Iterator<Item = &PoseSample> {
+        self.samples.iter().filter(|sample| !sample.filled)
+    }
+
+    /// Exchanges front and back. `reflectors` are those that the track was made with.
+    pub(crate) fn turn_round(&mut self, reflectors: &Reflectors) {
+        let (front, back) = (reflectors.front.at, reflectors.back.at);
+        for sample in &mut self.samples {
+            // The points where they are, with each other's places on the link.
+            let points = [front, back].map(|at| sample.pose.transform(&Vector2::from(at)));
+            let theta = sample.pose.theta;
+            sample.pose = pose_of(&points[1], &points[0], front, back);
+            sample.pose.theta = theta + (sample.pose.theta - theta).rem_euclid(TAU);
+        }
+    }
+}
+
+/// The reflectors that a file and a swimmer suggest when nobody says: points called `Front` and `Back` if they are there,
+/// whatever two points keep the right distance if not; at the ends of the middle link.
+pub fn usual_reflectors(track: &TrackFile, swimmer: &Swimmer<f64>) -> Reflectors {
+    let reach = swimmer.links.middle / 2.0;
+    let named = |name: &str| {
+        track
+            .points
+            .iter()
+            .any(|point| follow::is_called(point, name))
+    };
+    let both = named("Front") && named("Back");
+    let reflector = |name: &str, at| swimmer_files::Reflector {
+        point: if both {
+            PointName::Named(name.to_owned())
+        } else {
+            PointName::Auto
+        },
+        at,
+    };
+    Reflectors {
+        front: reflector("Front", [reach, 0.0]),
+        back: reflector("Back", [-reach, 0.0]),
+    }
+}
+
+/// The middle link's poses of a track.
+///
+/// # Errors
+/// [`PoseError`]: a reflector that is not in the file, or no pair of points with the right distance.
+pub fn poses(
+    track: &TrackFile,
+    reflectors: &Reflectors,
+    options: &PoseOptions,
+) -> Result<PoseTrack, PoseError> {
+    let followed = follow::follow(track, reflectors, options)?;
+    let points: Vec<Vector3<f64>> = followed
+        .rows
+        .iter()
+        .flat_map(|row| [row.front, row.back])
+        .collect();
+    let distance = followed.report.distance_m;
+    let plane = Plane::fit(&points);
+    let mut warnings = Vec::new();
+    if (distance / followed.expected_m - 1.0).abs() > 0.02 {
+        warnings.push(PoseWarning::Distance {
+            measured_m: distance,
+            expected_m: followed.expected_m,
+        });
+    }
+    if plane.rms_m > (0.02 * distance).min(0.005) {
+        warnings.push(PoseWarning::OutOfPlane { rms_m: plane.rms_m });
+    }
+    if !plane.fitted {
+        warnings.push(PoseWarning::PlaneAssumed);
+    }
+    if followed.lost_segments > 0 {
+        warnings.push(PoseWarning::AmbiguousGaps {
+            segments: followed.lost_segments,
+            rows: followed.lost_rows,
+        });
+    }
+    let mut samples: Vec<PoseSample> = Vec::with_capacity(followed.rows.len());
+    let (mut previous_row, mut heading) = (None, None);
+    for row in &followed.rows {
+        let (front, back) = (plane.project(&row.front), plane.project(&row.back));
+        let mut pose = pose_of(&front, &back, reflectors.front.at, reflectors.back.at);
+        if let Some(last) = heading {
+            pose.theta = last + wrapped(pose.theta - last);
+        }
+        heading = Some(pose.theta);
+        let time_s = track.times.get(row.index).copied().unwrap_or(0.0);
+        if let (Some(before), Some(previous)) = (samples.last().copied(), previous_row)
+            && time_s - before.time_s <= options.longest_fill_s + 1.5 / track.rate_hz
+        {
+            let gap = track.times.get(previous + 1..row.index).unwrap_or(&[]);
+            samples.extend(
+                gap.iter()
+                    .map(|time| between(&before, time_s, &pose, *time)),
+            );
+        }
+        samples.push(PoseSample {
+            time_s,
+            pose,
+            filled: false,
+        });
+        previous_row = Some(row.index);
+    }
+    Ok(PoseTrack {
+        samples,
+        frames: track.frames(),
+        rate_hz: track.rate_hz,
+        plane,
+        report: followed.report,
+        order_known: followed.order_known,
+        warnings,
+    })
+}
+
+fn between(before: &PoseSample, after_s: f64, after: &Pose<f64>, time_s: f64) -> PoseSample {
+    let share = (time_s - before.time_s) / (after_s - before.time_s);
+    let mix = |a: f64, b: f64| a + share * (b - a);
+    let from = before.pose;
+    let pose = Pose::new(
+        mix(from.x, after.x),
+        mix(from.y, after.y),
+        mix(from.theta, after.theta),
+    );
+    PoseSample {
+        time_s,
+        pose,
+        filled: true,
+    }
+}
+
+/// The link's pose from two points in the plane and their places on the link.
+fn pose_of(
+    front: &Vector2<f64>,
+    back: &Vector2<f64>,
+    at_front: [f64; 2],
+    at_back: [f64; 2],
+) -> Pose<f64> {
+    let (at_front, at_back) = (Vector2::from(at_front), Vector2::from(at_back));
+    let angle = |v: Vector2<f64>| v.y.atan2(v.x);
+    let theta = wrapped(angle(front - back) - angle(at_front - at_back));
+    let middle = (front + back) / 2.0;
+    let turned = Pose::new(0.0, 0.0, theta).transform(&((at_front + at_back) / 2.0));
+    Pose::new(middle.x - turned.x, middle.y - turned.y, theta)
+}
+
+/// An angle in \[−π, π).
+pub(crate) fn wrapped(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(TAU) - PI
+}

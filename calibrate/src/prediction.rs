@@ -1,0 +1,334 @@
+//! What a cycle ought to look like: the model swims the gait that was played, and the result goes through the same estimator
+//! as a measured cycle.
+//!
+//! With ideal servos that is the gait itself, swum by [`swimmer_model::trajectory`]. With a `[servo]` table it is the path
+//! that the joints really take ([`gait_player::playback`]: table of 512 knots in 1e-4 rad, pulses at 50 Hz, dead band, rate
+//! limit) in the second cycle, when the servos have forgotten where they came from. That path depends on the gait, the period
+//! and the servos, but not on the drag: it is computed once a run.
+
+// Periods and pulses are bounded by what was checked; f32 is what the robot itself uses.
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+
+use gait_player::playback::Playback;
+use gait_player::servo::ServoMap;
+use gait_player::servo::plant::PlantParameters;
+use gait_player::table::TableError;
+use gait_player::{GaitTable, Limits};
+use nalgebra::Vector2;
+use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
+use swimmer_model::{Gait, InvalidSwimmer, Model, Pose, Swimmer, Tolerance, trajectory};
+
+use crate::cycles::{Curve, Harmonics, Projection};
+
+/// Knots of the table that a robot is given.
+const KNOTS: usize = 512;
+
+/// Why a cycle cannot be predicted.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PredictionError {
+    /// The parameters describe no swimmer.
+    #[error("{0}")]
+    Swimmer(#[from] InvalidSwimmer),
+    /// The gait fits in no table.
+    #[error("the robot could not have played this gait: {0}")]
+    Table(#[from] TableError),
+    /// The gait leaves the servos' range.
+    #[error(
+        "the gait reaches {angle:.4} rad, beyond the servos' largest angle of {max_angle} rad in the swimmer file, so the robot \
+         could not have played it"
+    )]
+    Range {
+        /// The gait's largest angle \[rad\].
+        angle: f64,
+        /// The servos' \[rad\].
+        max_angle: f64,
+    },
+    /// The period is no time.
+    #[error("a period of {period_s} s is not playable; give 0.1 s to 4000 s")]
+    Period {
+        /// The period \[s\].
+        period_s: f64,
+    },
+}
+
+/// A predicted cycle, in the frame of its first heading.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PredictedCycle {
+    /// X \[m\].
+    pub x_m: f64,
+    /// Y \[m\].
+    pub y_m: f64,
+    /// Net rotation \[rad\].
+    pub rotation_rad: f64,
+    /// ΔY \[m\].
+    pub delta_y_m: f64,
+    /// Δθ \[rad\].
+    pub delta_theta_rad: f64,
+}
+
+/// Predicts one cycle in steady state, with the servos of the file if it has any.
+///
+/// # Errors
+/// [`PredictionError`]: no swimmer, or a gait that the servos cannot play.
+pub fn predict(
+    file: &SwimmerFile,
+    gait: &AnyGait,
+    period_s: f64,
+) -> Result<PredictedCycle, PredictionError> {
+    let path = JointPath::new(gait, file.servo.as_ref(), period_s)?;
+    Ok(path.predict(&file.swimmer, &Projection::new())?.0)
+}
+
+/// The joint angles of one cycle in steady state \[rad\], at the vertices of the played path or at 512 points of an ideal one.
+///
+/// # Errors
+/// As [`predict`].
+pub fn joint_path(
+    gait: &AnyGait,
+    servo: Option<&ServoFile>,
+    period_s: f64,
+) -> Result<Vec<[f64; 2]>, PredictionError> {
+    Ok(match JointPath::new(gait, servo, period_s)? {
+        JointPath::Played(vertices) => vertices.iter().map(|(_, phi)| [phi.x, phi.y]).collect(),
+        JointPath::Ideal(gait) => (0..=KNOTS)
+            .map(|i| gait.at(i as f64 / KNOTS as f64).phi.into())
+            .collect(),
+    })
+}
+
+/// The way of the joints through one cycle.
+#[derive(Debug, Clone)]
+pub(crate) enum JointPath {
+    /// The gait itself.
+    Ideal(AnyGait),
+    /// Vertices (u, Φ) between which both angles change evenly.
+    Played(Vec<(f64, Vector2<f64>)>),
+}
+
+impl JointPath {
+    pub(crate) fn new(
+        gait: &AnyGait,
+        servo: Option<&ServoFile>,
+        period_s: f64,
+    ) -> Result<Self, PredictionError> {
+        match servo {
+            None => Ok(Self::Ideal(gait.clone())),
+            Some(servo) => played(gait, servo, period_s).map(Self::Played),
+        }
+    }
+
+    /// The predicted cycle and its heading's harmonics.
+    pub(crate) fn predict(
+        &self,
+        swimmer: &Swimmer<f64>,
+        projection: &Projection,
+    ) -> Result<(PredictedCycle, Harmonics), InvalidSwimmer> {
+        let model = Model::new(swimmer)?;
+        let (poses, end) = match self {
+            Self::Ideal(gait) => swum(&model, gait),
+            Self::Played(vertices) => swum_along(&model, vertices),
+        };
+        let curve = projection.curve(&poses);
+        let next: Vec<Pose<f64>> = poses.iter().map(|pose| end * *pose).collect();
+        Ok((
+            cycle(&curve, &projection.curve(&next)),
+            curve.heading_harmonics(),
+        ))
+    }
+}
+
+fn cycle(curve: &Curve, next: &Curve) -> PredictedCycle {
+    let step = curve.step_to(next);
+    let (delta_y_m, delta_theta_rad) = curve.amplitudes();
+    PredictedCycle {
+        x_m: step.x,
+        y_m: step.y,
+        rotation_rad: step.theta,
+        delta_y_m,
+        delta_theta_rad,
+    }
+}
+
+/// Poses at the projection's places, and at the cycle's end.
+fn swum(model: &Model<f64>, gait: &AnyGait) -> (Vec<Pose<f64>>, Pose<f64>) {
+    let count = Projection::places().count();
+    let mut poses = Vec::with_capacity(count);
+    let mut end = Pose::identity();
+    let mut index = 0;
+    // Odd points of a grid twice as fine are the middles of its stretches.
+    trajectory(model, gait, &Tolerance::new(1e-10), 2 * count, |point| {
+        if index % 2 == 1 {
+            poses.push(point.pose);
+        }
+        end = point.pose;
+        index += 1;
+    });
+    (poses, end)
+}
+
+/// The same along straight pieces: each is short, so the connection in its middle serves for all of it (second order; the
+/// longest piece is a tick's motion).
+fn swum_along(model: &Model<f64>, vertices: &[(f64, Vector2<f64>)]) -> (Vec<Pose<f64>>, Pose<f64>) {
+    let mut poses = Vec::new();
+    let mut pose = Pose::identity();
+    let mut places = Projection::places().peekable();
+    for pair in vertices.windows(2) {
+        let [(from, phi), (until, next)] = pair else {
+            continue;
+        };
+        let change = next - phi;
+        let twist = if change == Vector2::zeros() {
+            nalgebra::Vector3::zeros()
+        } else {
+            model.local_connection(&((phi + next) / 2.0)) * change
+        };
+        while let Some(u) = places.next_if(|u| u < until) {
+            poses.push(pose * Pose::exp(&(twist * ((u - from) / (until - from)))));
+        }
+        pose = pose * Pose::exp(&twist);
+    }
+    poses.extend(places.map(|_| pose));
+    (poses, pose)
+}
+
+fn played(
+    gait: &AnyGait,
+    servo: &ServoFile,
+    period_s: f64,
+) -> Result<Vec<(f64, Vector2<f64>)>, PredictionError> {
+    if !(0.1..=4000.0).contains(&period_s) {
+        return Err(PredictionError::Period { period_s });
+    }
+    let table = GaitTable::from_fn(KNOTS, |u| gait.at(u).phi.into())?;
+    let angle = (0..KNOTS)
+        .map(|knot| gait.at(knot as f64 / KNOTS as f64).phi.amax())
+        .fold(0.0, f64::max);
+    // The table's own rounding is no trespass.
+    if angle > servo.max_angle + 1e-4 {
+        return Err(PredictionError::Range {
+            angle,
+            max_angle: servo.max_angle,
+        });
+    }
+    let single = |value: f64| value as f32;
+    let map = ServoMap {
+        centre_ns: (servo.centre_us * 1000.0).round() as u32,
+        slope_rad_per_us: single(servo.slope_rad_per_us),
+        ..ServoMap::ROBOT
+    };
+    let playback = Playback {
+        table: &table,
+        period_us: (period_s * 1e6).round() as u32,
+        maps: [map; 2],
+        limits: Limits {
+            max_angle: single(servo.max_angle),
+            max_rate: single(servo.max_rate),
+            ..Limits::ROBOT
+        },
+        plant: PlantParameters {
+            max_rate: servo.max_rate,
+            dead_band: servo.dead_band,
+            pulse_step_ns: 0,
+        },
+    };
+    let mut vertices: Vec<(f64, Vector2<f64>)> = Vec::new();
+    playback.cycle(1, |point| {
+        let (u, phi) = (point.time_s / period_s, Vector2::from(point.angles));
+        // Ticks in which nothing moves, and the ends that neighbouring ticks share, add nothing.
+        if vertices
+            .last()
+            .is_none_or(|(last, at)| u > *last || phi != *at)
+        {
+            vertices.push((u, phi));
+        }
+    });
+    Ok(vertices)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use swimmer_model::swim;
+
+    fn file(servo: Option<ServoFile>) -> SwimmerFile {
+        SwimmerFile {
+            servo,
+            ..SwimmerFile::preset("robot").unwrap()
+        }
+    }
+
+    #[test]
+    fn an_ideal_prediction_is_the_stroke() {
+        for gait in [AnyGait::circle(1.2), AnyGait::circle(0.5).reversed_if(true)] {
+            let cycle = predict(&file(None), &gait, 30.0).unwrap();
+            let stroke = swim(
+                &Model::new(&Swimmer::robot()).unwrap(),
+                &gait,
+                &Tolerance::default(),
+            );
+            assert!(
+                (cycle.x_m - stroke.displacement.x).abs() < 1e-6 * stroke.displacement.x.abs(),
+                "{cycle:?} {stroke:?}"
+            );
+            assert!((cycle.y_m - stroke.displacement.y).abs() < 1e-8);
+            assert!((cycle.delta_y_m / stroke.delta_y - 1.0).abs() < 2e-3);
+            assert!((cycle.delta_theta_rad / stroke.delta_theta - 1.0).abs() < 2e-3);
+        }
+    }
+
+    #[test]
+    fn good_servos_play_the_gait_itself() {
+        let servo = ServoFile {
+            dead_band: 0.0,
+            max_rate: 1e6,
+            ..ServoFile::default()
+        };
+        let gait = AnyGait::circle(1.0);
+        let (ideal, played) = (
+            predict(&file(None), &gait, 30.0).unwrap(),
+            predict(&file(Some(servo)), &gait, 30.0).unwrap(),
+        );
+        assert!(
+            (played.x_m / ideal.x_m - 1.0).abs() < 2e-3,
+            "{played:?} {ideal:?}"
+        );
+        assert!((played.delta_theta_rad / ideal.delta_theta_rad - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_dead_band_makes_the_gait_smaller() {
+        let servo = ServoFile {
+            dead_band: 0.1,
+            ..ServoFile::default()
+        };
+        let gait = AnyGait::circle(1.0);
+        let (wide, narrow) = (
+            predict(&file(None), &gait, 30.0).unwrap(),
+            predict(&file(Some(servo)), &gait, 30.0).unwrap(),
+        );
+        assert!(narrow.x_m < 0.92 * wide.x_m, "{narrow:?} {wide:?}");
+        let path = joint_path(&gait, Some(&servo), 30.0).unwrap();
+        let reach = path.iter().flatten().copied().fold(0.0, f64::max);
+        assert!((reach - 0.9).abs() < 2e-3, "{reach}");
+    }
+
+    #[test]
+    fn what_servos_cannot_play() {
+        let small = ServoFile {
+            max_angle: 1.0,
+            ..ServoFile::default()
+        };
+        assert!(matches!(
+            predict(&file(Some(small)), &AnyGait::circle(1.2), 30.0),
+            Err(PredictionError::Range { .. })
+        ));
+        assert!(matches!(
+            predict(&file(Some(small)), &AnyGait::circle(0.5), 1e9),
+            Err(PredictionError::Period { .. })
+        ));
+        assert!(matches!(
+            predict(&file(Some(small)), &AnyGait::circle(4.0), 30.0),
+            Err(PredictionError::Table(_))
+        ));
+    }
+}
