@@ -100,3 +100,17 @@ pub(super) fn zero<T: Scalar>(mut left: T, mut right: T, f: impl Fn(T) -> T) -> 
     }
     place
 }
+
+#[cfg(test)]
+mod tests {
+    use super::zero;
+
+    #[test]
+    fn zeros_are_found_to_rounding_also_at_an_end() {
+        assert!((zero(0.0, 2.0, |s: f64| s * s * s - 2.0) - 2.0_f64.cbrt()).abs() < 1e-15);
+        assert!((zero(-1.0, 0.9, |s: f64| s.exp() - 1.0)).abs() < 1e-15);
+        // The nearest number to the zero is the end itself.
+        assert!((zero(1.0, 2.0, |s: f64| (s - 1.0) - 1e-20) - 1.0).abs() < 1e-15);
+        assert!((zero(1.0, 2.0, |s: f64| (s - 2.0) + 1e-20) - 2.0).abs() < 1e-15);
+    }
+}
