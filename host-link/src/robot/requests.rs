@@ -198,7 +198,11 @@ impl<P: Port> Robot<P> {
     /// A request that is answered by Done and nothing else.
     fn order(&mut self, request: Request, doing: &'static str) -> Result<(), LinkError> {
         match self.ask(request, doing)? {
-            Reply::Done => Ok(()),
+            Reply::Done => {
+                // What the robot told before it obeyed tells nothing of what it does now.
+                self.latest = None;
+                Ok(())
+            }
             reply => Err(wrong(doing, &reply)),
         }
     }

@@ -1,14 +1,17 @@
 //! The real brain behind a virtual wire, without servos or a tank: what the link does, and nothing else.
+#![allow(dead_code)] // each test uses its part
 
 use std::convert::Infallible;
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use gait_player::storage::{MAX_SETTINGS, PAGE, SLOT_PAGES, SLOTS, Storage};
 use gait_player::{Boot, Brain, BrainConfig, GaitTable, Identity, Inputs, Limits, Output, TICK_US};
 use host_link::port::{Device, FaultPlan, Faults, FaultyPort, VirtualPort, WireSpeed};
+use host_link::{LinkError, Robot as HostRobot};
 use link_protocol::{
     Board, Configuration, FirmwareVersion, MAX_ENCODED, Message, Request, ResetReason,
-    ServoSettings, TangentialDrag,
+    ServoSettings, TableInfo, TangentialDrag,
 };
 
 /// A brain and its clock.
@@ -99,6 +102,25 @@ pub(crate) fn circle(amplitude: f64) -> GaitTable {
         [amplitude * cos, amplitude * sin]
     })
     .unwrap()
+}
+
+pub(crate) type Line = FaultyPort<VirtualPort<Robot>>;
+
+/// Connects however bad the line: where five greetings were lost, an operator would try again as well.
+pub(crate) fn connect(faults: &str, seed: u64) -> HostRobot<Line> {
+    for attempt in 0..6 {
+        let line = faulty(faults.parse().unwrap(), seed + 1000 * attempt);
+        match HostRobot::connect(line, seed) {
+            Ok(robot) => return robot,
+            Err(LinkError::NoAnswer { .. }) => {}
+            Err(error) => panic!("seed {seed}: {error}"),
+        }
+    }
+    panic!("seed {seed}: six greetings of five tries each in vain");
+}
+
+pub(crate) fn upload(robot: &mut HostRobot<Line>, table: &[u8]) -> Result<TableInfo, LinkError> {
+    robot.upload(table, Duration::from_mins(1), |_| ControlFlow::Continue(()))
 }
 
 /// The host's end of a line with faults to a fresh robot.
