@@ -248,3 +248,38 @@ fn too_large_a_gait_names_joint_and_angle() {
     };
     assert!((angle.abs() - 29_000).abs() < 3, "{angle}");
 }
+
+/// The corners of the paper's gait (b), robot, |φ| ≤ 2.8, joined by straight lines: where its upper bound begins the
+/// side links come within 4.4 mm of each other. It is no crossing, and must be allowed; three degrees further it is too close.
+#[test]
+fn the_papers_bounded_gait_passes_between_its_links() {
+    let gait = |entry: f64| {
+        let quarter = [
+            [1.4018, 1.4018],
+            [entry, 2.8],
+            [-1.4377, 2.8],
+            [-0.4323, 0.4323],
+        ];
+        let back = [quarter[2], quarter[1], quarter[0]].map(|[phi1, phi2]| [-phi2, -phi1]);
+        let half: Vec<[f64; 2]> = quarter.into_iter().chain(back).collect();
+        let corners: Vec<[f64; 2]> = half
+            .iter()
+            .copied()
+            .chain(half[1..].iter().map(|[phi1, phi2]| [-phi1, -phi2]))
+            .collect();
+        let edges = (corners.len() - 1) as f64;
+        GaitTable::from_fn(512, |u| {
+            let edge = (u * edges) as usize;
+            let share = u * edges - edge as f64;
+            let (from, to) = (corners[edge], corners[edge + 1]);
+            [0, 1].map(|joint| from[joint] + share * (to[joint] - from[joint]))
+        })
+        .unwrap()
+    };
+    assert_eq!(facts(&gait(0.6095), &robot()).allow(&Limits::ROBOT), Ok(()));
+    let refused = facts(&gait(0.66), &robot()).allow(&Limits::ROBOT);
+    assert!(
+        matches!(refused, Err(Refusal::LinksCross { .. })),
+        "{refused:?}"
+    );
+}
