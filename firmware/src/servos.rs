@@ -16,8 +16,9 @@ const DIVIDER: u8 = 40;
 const COUNT_NS: u32 = 320;
 /// 62 500 counts of 320 ns are 20 ms exactly.
 const TOP: u16 = 62_499;
-/// Counts between the control tick and the wrap that latches what it wrote (4 ms: twice the CPU time of a tick).
-const LEAD: u16 = 12_500;
+/// Counts between the control tick and the wrap that latches what it wrote: 12 ms, so that a tick may take six times
+/// its promised 2 ms of CPU before a set-point comes a period late.
+const LEAD: u16 = 37_500;
 
 /// The PWM slice of both servos.
 pub(crate) struct Servos {
@@ -36,7 +37,7 @@ impl Servos {
         }
     }
 
-    /// Starts the counter, to be called at a control tick: from then on every wrap comes 4 ms after a tick, and as
+    /// Starts the counter, to be called at a control tick: from then on every wrap comes 12 ms after a tick, and as
     /// counter and ticks share one crystal they never drift apart.
     pub(crate) fn start(&mut self) {
         self.slice.set_counter(TOP - LEAD);

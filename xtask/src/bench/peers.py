@@ -54,8 +54,8 @@ def main():
         "numpy_batch": seconds(lambda: connection_power(phi1, phi2, swimmer)) / POINTS,
         "casadi_one": casadi_one,
         "casadi_batch": casadi_batch,
-        "quarter_cycle": seconds(lambda: integrate_path(path, breaks, swimmer)),
-        "displacement_over_length": 4 * float(integrate_path(path, breaks, swimmer)["dx"]),
+        "quarter_cycle": seconds(lambda: integrate_path(path, swimmer, breaks)),
+        "displacement_over_length": 4 * float(integrate_path(path, swimmer, breaks)["dx"]),
     }))
 
 
