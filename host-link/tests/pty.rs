@@ -141,3 +141,29 @@ fn a_lock_left_behind_does_not_lock_out_the_next_client() {
     drop(robot);
     assert!(fs::symlink_metadata(&link).is_err());
 }
+
+/// A twin that was killed leaves its link, and the system may give the terminal's number to another program.
+#[test]
+fn a_link_older_than_its_terminal_is_stale() {
+    use rustix::fs::{AtFlags, CWD, Timespec, Timestamps, utimensat};
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("robot");
+    let other = PtyPort::open(None).unwrap();
+    std::os::unix::fs::symlink(other.path(), &link).unwrap();
+    assert!(matches!(
+        PtyPort::open(Some(&link)),
+        Err(PtyError::InUse { .. })
+    ));
+    let long_ago = Timespec {
+        tv_sec: 1_000_000_000,
+        tv_nsec: 0,
+    };
+    let times = Timestamps {
+        last_access: long_ago,
+        last_modification: long_ago,
+    };
+    utimensat(CWD, &link, &times, AtFlags::SYMLINK_NOFOLLOW).unwrap();
+    let robot = PtyPort::open(Some(&link)).unwrap();
+    assert_eq!(fs::read_link(&link).unwrap(), robot.path());
+    assert_ne!(robot.path(), other.path());
+}

@@ -8,6 +8,7 @@ use std::fs;
 use std::io;
 use std::os::fd::OwnedFd;
 use std::os::unix::ffi::OsStringExt;
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -68,7 +69,8 @@ pub struct PtyPort {
 const LOOK: Duration = Duration::from_millis(5);
 
 impl PtyPort {
-    /// Makes a pseudo-terminal; `link`, if any, becomes a symbolic link to it. A dangling link is replaced.
+    /// Makes a pseudo-terminal; `link`, if any, becomes a symbolic link to it. A stale link, one whose terminal is
+    /// gone, is replaced.
     ///
     /// # Errors
     /// [`PtyError`].
@@ -194,6 +196,7 @@ fn raw_terminal() -> rustix::io::Result<(OwnedFd, PathBuf)> {
     Ok((terminal, path))
 }
 
+/// Nothing stands at `link`, or a link that an earlier twin left behind.
 fn check_vacant(link: &Path) -> Result<(), PtyError> {
     let Ok(metadata) = fs::symlink_metadata(link) else {
         return Ok(());
@@ -201,13 +204,21 @@ fn check_vacant(link: &Path) -> Result<(), PtyError> {
     if !metadata.file_type().is_symlink() {
         return Err(PtyError::Occupied(link.to_path_buf()));
     }
-    match fs::metadata(link) {
-        Ok(_) => Err(PtyError::InUse {
-            link: link.to_path_buf(),
-            target: fs::read_link(link).unwrap_or_default(),
-        }),
-        Err(_) => Ok(()),
+    let Ok(terminal) = fs::metadata(link) else {
+        return Ok(());
+    };
+    let target = fs::read_link(link).unwrap_or_default();
+    // A link is made after its terminal. Where the terminal is younger, the one it was made for is gone and the system
+    // has given its number to another program since.
+    let linked = (metadata.mtime(), metadata.mtime_nsec());
+    let born = (terminal.ctime(), terminal.ctime_nsec());
+    if target.starts_with("/dev/pts") && born > linked {
+        return Ok(());
     }
+    Err(PtyError::InUse {
+        link: link.to_path_buf(),
+        target,
+    })
 }
 
 impl Drop for PtyPort {
