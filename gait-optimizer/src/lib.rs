@@ -1,1 +1,28 @@
-//! Optimal control of the three-link swimmer.
+//! Optimal control of the three-link swimmer: give it a swimmer, and it returns the best gaits, with their proof.
+//!
+//! [`displacement()`] finds the gaits of most net displacement by Pontryagin's maximum principle (paper, section IV): arcs on
+//! which the control is singular, arcs along bounds of the joint angles, and the order of both, with no initial guess.
+//! Each result is an [`OptimalGait`] and carries its [`Certificate`]: the necessary conditions, each with its number.
+//!
+//! How the rooms of this crate lie:
+//!
+//! | module | what lives there |
+//! |---|---|
+//! | `displacement` | the problem, the search for the quarter gait, the result |
+//! | `displacement::height` | the switching function F of the paper, its gradient, the singular control |
+//! | `displacement::region` | the bounds as a convex polygon of joint angles |
+//! | `displacement::flow` | one quarter gait: arc after arc, event after event |
+//! | `cycle` | from a quarter to the full cycle, at constant power |
+//! | `certificate` | checks, and those that any closed curve can be asked |
+//! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
+
+mod certificate;
+mod cycle;
+mod displacement;
+mod optimal_gait;
+mod runge_kutta;
+
+pub use certificate::{Certificate, Check};
+pub use displacement::{DisplacementError, DisplacementProblem, Fates, Heading, displacement};
+pub use optimal_gait::{Arc, OptimalGait};
+pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};

@@ -1,0 +1,158 @@
+//! The proof that a gait carries: necessary conditions of an optimum, each with its number and tolerance.
+
+mod closed_curve;
+
+use swimmer_model::{Model, Tolerance, swim};
+
+use crate::cycle::{Cycle, QuarterTrace};
+use crate::displacement::region::Region;
+use closed_curve::{crossings, turning_number};
+
+/// One condition.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Check {
+    /// Which condition.
+    pub name: &'static str,
+    /// What was found.
+    pub value: f64,
+    /// What it is held against: from above, or from below for the checks whose name ends in `_least`.
+    pub tolerance: f64,
+    /// Whether it holds.
+    pub pass: bool,
+}
+
+impl Check {
+    /// The value may be at most the tolerance. NaN fails.
+    fn at_most(name: &'static str, value: f64, tolerance: f64) -> Self {
+        Self {
+            name,
+            value,
+            tolerance,
+            pass: value <= tolerance,
+        }
+    }
+
+    /// The value must be at least the tolerance. NaN fails.
+    fn at_least(name: &'static str, value: f64, tolerance: f64) -> Self {
+        Self {
+            name,
+            value,
+            tolerance,
+            pass: value >= tolerance,
+        }
+    }
+}
+
+/// All conditions that a gait was held against.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Certificate {
+    checks: Vec<Check>,
+}
+
+impl Certificate {
+    /// The conditions, one by one.
+    pub fn checks(&self) -> &[Check] {
+        &self.checks
+    }
+
+    /// Whether all hold.
+    pub fn pass(&self) -> bool {
+        self.checks.iter().all(|check| check.pass)
+    }
+
+    /// The failed conditions with their values, for an error message.
+    pub fn failures(&self) -> String {
+        let failed = self.checks.iter().filter(|check| !check.pass);
+        let words: Vec<_> = failed
+            .map(|check| {
+                format!(
+                    "{} = {:.3e} (against {:.1e})",
+                    check.name, check.value, check.tolerance
+                )
+            })
+            .collect();
+        words.join(", ")
+    }
+
+    /// The conditions of paper section IV for a quarter gait, and those of the full cycle. Lengths are over L.
+    pub(crate) fn of_displacement(
+        model: &Model<f64>,
+        region: &Region,
+        trace: &QuarterTrace,
+        cycle: &Cycle,
+        displacement_over_length: f64,
+        neighbour_gain: Option<f64>,
+    ) -> Self {
+        let evidence = &trace.evidence;
+        let mut checks = vec![
+            Check::at_most("off_symmetry_lines_rad", evidence.off_symmetry_lines, 1e-9),
+            Check::at_most("retraced_rad", evidence.retraced, 1e-8),
+            Check::at_most("final_lambda4", evidence.final_lambda4, 1e-9),
+            Check::at_most("start_transversality", evidence.start_transversality, 1e-9),
+            Check::at_most("end_transversality", evidence.end_transversality, 1e-9),
+            Check::at_most("h_u", evidence.h_u, 1e-9),
+            Check::at_most("off_singular_condition_rad", evidence.off_zero, 1e-8),
+        ];
+        checks.extend(
+            evidence
+                .legendre_clebsch
+                .map(|least| Check::at_least("legendre_clebsch_least", least, 1e-6)),
+        );
+        checks.extend(
+            evidence
+                .multiplier
+                .map(|least| Check::at_least("bound_multiplier_least", least, -1e-9)),
+        );
+        if !region.edges().is_empty() {
+            checks.push(Check::at_most(
+                "bound_overstepped_rad",
+                evidence.overstepped,
+                1e-10,
+            ));
+        }
+        checks.extend(neighbour_gain.map(|gain| Check::at_most("neighbour_gain", gain, 0.0)));
+        let turning = turning_number(&cycle.phi);
+        checks.push(Check::at_most(
+            "turning_number_off_one",
+            (turning - 1.0).abs(),
+            1e-9,
+        ));
+        // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
+        let curve = if region.has_diagonals() {
+            &trace.phi
+        } else {
+            &cycle.phi
+        };
+        checks.push(Check::at_most(
+            "self_crossings",
+            crossings(curve) as f64,
+            0.0,
+        ));
+        checks.extend(swum_again(model, cycle, displacement_over_length));
+        Self { checks }
+    }
+}
+
+/// The samples swum by the model's own cycle integration, which shares no code with the arcs.
+fn swum_again(model: &Model<f64>, cycle: &Cycle, displacement_over_length: f64) -> [Check; 3] {
+    let (x, y, rotation) = match cycle.gait() {
+        Ok(gait) => {
+            let stroke = swim(model, &gait, &Tolerance::new(1e-12));
+            (
+                stroke.displacement.x,
+                stroke.displacement.y,
+                stroke.rotation,
+            )
+        }
+        Err(_) => (f64::NAN, f64::NAN, f64::NAN),
+    };
+    [
+        Check::at_most(
+            "displacement_swum_again",
+            (x - displacement_over_length).abs(),
+            1e-8,
+        ),
+        Check::at_most("net_lateral", y.abs(), 1e-8),
+        Check::at_most("net_rotation_rad", rotation.abs(), 1e-8),
+    ]
+}

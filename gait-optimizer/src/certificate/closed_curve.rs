@@ -1,0 +1,95 @@
+//! Is a closed polygon simple, and does it turn once?
+
+use nalgebra::Vector2;
+
+/// How often a closed polygon (last point = first) turns round, counter-clockwise positive.
+pub(crate) fn turning_number(points: &[Vector2<f64>]) -> f64 {
+    let sides: Vec<Vector2<f64>> = points
+        .windows(2)
+        .filter_map(|pair| Some(pair.get(1)? - pair.first()?))
+        .filter(|side| side.norm() > 0.0)
+        .collect();
+    let turns = sides
+        .iter()
+        .zip(sides.iter().cycle().skip(1))
+        .map(|(a, b)| a.perp(b).atan2(a.dot(b)));
+    turns.sum::<f64>() / std::f64::consts::TAU
+}
+
+/// How many pairs of sides of a polygon cross; where it is closed its last point is the first.
+pub(crate) fn crossings(points: &[Vector2<f64>]) -> usize {
+    let sides: Vec<[Vector2<f64>; 2]> = points
+        .windows(2)
+        .filter_map(|pair| Some([*pair.first()?, *pair.get(1)?]))
+        .collect();
+    // Sorted by their left ends, a side can only cross those that start before it ends.
+    let mut order: Vec<(f64, f64, usize)> = sides
+        .iter()
+        .enumerate()
+        .map(|(i, [a, b])| (a.x.min(b.x), a.x.max(b.x), i))
+        .collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut count = 0;
+    for (at, &(_, right, i)) in order.iter().enumerate() {
+        for &(left, _, j) in order.iter().skip(at + 1) {
+            if left > right {
+                break;
+            }
+            let apart = i.abs_diff(j);
+            if apart > 1
+                && apart + 1 < sides.len()
+                && matches!((sides.get(i), sides.get(j)), (Some(a), Some(b)) if cross(a, b))
+            {
+                count += 1;
+            }
+        }
+    }
+    count
+}
+
+/// Whether two segments cross properly.
+fn cross([a, b]: &[Vector2<f64>; 2], [c, d]: &[Vector2<f64>; 2]) -> bool {
+    let side = |p: &Vector2<f64>, q: &Vector2<f64>, r: &Vector2<f64>| (q - p).perp(&(r - p));
+    let (c_side, d_side) = (side(a, b, c), side(a, b, d));
+    let (a_side, b_side) = (side(c, d, a), side(c, d, b));
+    c_side * d_side < 0.0 && a_side * b_side < 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn closed(curve: impl Fn(f64) -> [f64; 2]) -> Vec<Vector2<f64>> {
+        let mut points: Vec<_> = (0..100)
+            .map(|k| curve(f64::from(k) / 100.0 * std::f64::consts::TAU))
+            .map(Vector2::from)
+            .collect();
+        points.push(points[0]);
+        points
+    }
+
+    #[test]
+    fn a_circle_is_simple_and_turns_once() {
+        let circle = closed(|t| [t.cos(), t.sin()]);
+        assert_eq!(crossings(&circle), 0);
+        assert!((turning_number(&circle) - 1.0).abs() < 1e-12);
+        let clockwise = closed(|t| [t.cos(), -t.sin()]);
+        assert!((turning_number(&clockwise) + 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_figure_of_eight_and_a_curl_are_not() {
+        let eight = closed(|t| [t.sin(), (2.0 * t + 0.1).sin()]);
+        assert!(crossings(&eight) >= 1);
+        assert!(turning_number(&eight).abs() < 1e-9);
+        // A limaçon with an inner loop.
+        let curl = closed(|t| {
+            [
+                (0.5 + (t + 0.01).cos()) * t.cos(),
+                (0.5 + (t + 0.01).cos()) * t.sin(),
+            ]
+        });
+        assert_eq!(crossings(&curl), 1);
+        assert!((turning_number(&curl) - 2.0).abs() < 1e-9);
+    }
+}

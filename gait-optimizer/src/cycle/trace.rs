@@ -1,0 +1,258 @@
+//! A quarter gait traced once more, sampled at equal power and with the costates λ₁, λ₂ integrated along: the evidence.
+
+use nalgebra::Vector2;
+use swimmer_files::ArcKind;
+
+use crate::Arc;
+use crate::displacement::flow::{Leg, Motion};
+use crate::displacement::height::{Extremal, pose_rates, shape};
+use crate::displacement::region::Region;
+use crate::runge_kutta::{Point, StepControl, System, advance};
+
+/// Traced state: φ₁, φ₂, x, y, θ, λ₁, λ₂ over the power length.
+type Traced = [f64; 7];
+
+/// Numbers gathered along the trace, for the certificate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Evidence {
+    /// Largest `|H_u|`, over L.
+    pub(crate) h_u: f64,
+    /// Largest distance of a singular arc from the zero of the height \[rad\].
+    pub(crate) off_zero: f64,
+    /// Smallest multiplier on a bound, over the largest |height| there; none without such arcs.
+    pub(crate) multiplier: Option<f64>,
+    /// Smallest slope of the height across a singular arc; none without such arcs.
+    pub(crate) legendre_clebsch: Option<f64>,
+    /// Largest overstepping of a bound \[rad\].
+    pub(crate) overstepped: f64,
+    /// |λ₁ + λ₂| at the start.
+    pub(crate) start_transversality: f64,
+    /// |λ₁ − λ₂| at the end.
+    pub(crate) end_transversality: f64,
+    /// |λ₄| at the end.
+    pub(crate) final_lambda4: f64,
+    /// |φ₁ − φ₂| at the start and |φ₁ + φ₂| at the end, the larger.
+    pub(crate) off_symmetry_lines: f64,
+    /// Largest jump between the arcs of the search and of the trace \[rad\].
+    pub(crate) retraced: f64,
+}
+
+/// A quarter gait, sampled.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct QuarterTrace {
+    pub(crate) phi: Vec<Vector2<f64>>,
+    /// ∫√P from the start to each sample.
+    pub(crate) power_length: Vec<f64>,
+    /// Samples inside the quarter where the direction jumps.
+    pub(crate) corners: Vec<usize>,
+    /// Arcs with their first and last sample.
+    pub(crate) kinds: Vec<(ArcKind, usize, usize)>,
+    pub(crate) first_direction: Vector2<f64>,
+    pub(crate) last_direction: Vector2<f64>,
+    pub(crate) evidence: Evidence,
+}
+
+const CONTROL: StepControl = StepControl {
+    tolerance: 1e-13,
+    longest: f64::INFINITY,
+};
+/// Fewest samples of an arc: the interpolation takes five on the same side of a corner.
+const FEWEST: usize = 6;
+
+/// The dynamics of state and costates with the power length as independent variable.
+struct Equations<'a> {
+    extremal: Extremal<'a>,
+    motion: Motion,
+    /// Outward normal of the bound that the arc runs along.
+    normal: Option<Vector2<f64>>,
+}
+
+impl System<7> for Equations<'_> {
+    fn rate(&self, z: &Traced) -> Traced {
+        let (phi, pose) = (shape(z), [z[2], z[3], z[4]]);
+        let slopes = self.extremal.slopes(&phi, &pose);
+        let direction = self.direction(&phi, &pose);
+        let [x, y, theta, speed] = pose_rates(&slopes.connection, &slopes.power, z[4], &direction);
+        // λ̇ᵢ = −∂H/∂φᵢ on a free arc; along a bound the multiplier pushes along its normal and keeps H_u at zero.
+        let mut costate = -(slopes.by_angle.transpose() * direction);
+        if let Some(normal) = self.normal {
+            let right = Vector2::new(direction.y, -direction.x);
+            costate += normal * (slopes.height * right.dot(&normal));
+        }
+        [direction.x, direction.y, x, y, theta, costate.x, costate.y].map(|rate| rate / speed)
+    }
+}
+
+impl Equations<'_> {
+    fn direction(&self, phi: &Vector2<f64>, pose: &[f64; 3]) -> Vector2<f64> {
+        match self.motion {
+            Motion::Singular => self
+                .extremal
+                .height_and_gradient(phi, pose)
+                .0
+                .singular_direction(),
+            Motion::Along { direction, .. } => direction,
+        }
+    }
+}
+
+impl QuarterTrace {
+    /// Traces the arcs of a quarter. None where an integration fails, or there are no arcs.
+    pub(crate) fn new(
+        extremal: Extremal<'_>,
+        region: &Region,
+        legs: &[Leg],
+        samples: usize,
+    ) -> Option<Self> {
+        let (first, last) = (legs.first()?, legs.last()?);
+        let total = last.to[5] - first.from[5];
+        let mut here = start(&extremal, first);
+        let mut trace = Self {
+            phi: vec![shape(&here)],
+            power_length: vec![0.0],
+            corners: Vec::new(),
+            kinds: Vec::new(),
+            first_direction: Vector2::zeros(),
+            last_direction: Vector2::zeros(),
+            evidence: Evidence::start(&here),
+        };
+        for leg in legs {
+            let equations = Equations {
+                extremal,
+                motion: leg.motion,
+                normal: normal(region, leg.motion),
+            };
+            let leg_length = leg.to[5] - leg.from[5];
+            let intervals = (FEWEST..samples)
+                .find(|&count| count as f64 * total >= samples as f64 * leg_length)
+                .unwrap_or(samples.max(FEWEST));
+            let direction = equations.direction(&shape(&here), &[here[2], here[3], here[4]]);
+            trace.meet(direction);
+            let from = trace.phi.len() - 1;
+            for interval in 0..intervals {
+                trace.evidence.look(&equations, region, &here);
+                let point = Point::new(&equations, here);
+                here = advance(&equations, point, leg_length / intervals as f64, CONTROL)?.z;
+                let along = leg.from[5] - first.from[5]
+                    + leg_length * (interval + 1) as f64 / intervals as f64;
+                trace.phi.push(shape(&here));
+                trace.power_length.push(along);
+            }
+            trace.evidence.look(&equations, region, &here);
+            let gap = (shape(&here) - shape(&leg.to)).norm();
+            trace.evidence.retraced = trace.evidence.retraced.max(gap);
+            trace
+                .kinds
+                .push((kind(region, leg.motion), from, trace.phi.len() - 1));
+            trace.last_direction = equations.direction(&shape(&here), &[here[2], here[3], here[4]]);
+        }
+        trace.evidence.end(&extremal, &here);
+        Some(trace)
+    }
+
+    /// A new arc sets out in this direction: is there a corner?
+    fn meet(&mut self, direction: Vector2<f64>) {
+        if self.kinds.is_empty() {
+            self.first_direction = direction;
+        } else if (direction - self.last_direction).norm() > super::SMOOTH {
+            self.corners.push(self.phi.len() - 1);
+        }
+    }
+
+    pub(crate) fn start(&self) -> Vector2<f64> {
+        self.phi.first().copied().unwrap_or_default()
+    }
+
+    pub(crate) fn end(&self) -> Vector2<f64> {
+        self.phi.last().copied().unwrap_or_default()
+    }
+
+    /// The arcs with their joint angles.
+    pub(crate) fn arcs(&self) -> Vec<Arc> {
+        let at = |i: usize| self.phi.get(i).map_or([f64::NAN; 2], |phi| [phi.x, phi.y]);
+        self.kinds
+            .iter()
+            .map(|&(kind, from, to)| Arc {
+                kind,
+                from: at(from),
+                to: at(to),
+            })
+            .collect()
+    }
+}
+
+/// The first state, with the costates that `H_u = 0` asks for.
+fn start(extremal: &Extremal<'_>, leg: &Leg) -> Traced {
+    let z = leg.from;
+    let momentum = extremal.slopes(&shape(&z), &[z[2], z[3], z[4]]).momentum;
+    [z[0], z[1], z[2], z[3], z[4], -momentum.x, -momentum.y]
+}
+
+fn normal(region: &Region, motion: Motion) -> Option<Vector2<f64>> {
+    match motion {
+        Motion::Singular => None,
+        Motion::Along { edge, .. } => region.edge(edge).map(|edge| edge.normal),
+    }
+}
+
+fn kind(region: &Region, motion: Motion) -> ArcKind {
+    match motion {
+        Motion::Singular => ArcKind::Singular,
+        Motion::Along { edge, .. } => region
+            .edge(edge)
+            .map_or(ArcKind::Singular, |edge| edge.kind),
+    }
+}
+
+impl Evidence {
+    fn start(z: &Traced) -> Self {
+        Self {
+            h_u: 0.0,
+            off_zero: 0.0,
+            multiplier: None,
+            legendre_clebsch: None,
+            overstepped: f64::NEG_INFINITY,
+            start_transversality: (z[5] + z[6]).abs(),
+            end_transversality: f64::NAN,
+            final_lambda4: f64::NAN,
+            off_symmetry_lines: (z[0] - z[1]).abs(),
+            retraced: 0.0,
+        }
+    }
+
+    /// Takes in one sample of an arc.
+    fn look(&mut self, equations: &Equations<'_>, region: &Region, z: &Traced) {
+        let (phi, pose) = (shape(z), [z[2], z[3], z[4]]);
+        let extremal = &equations.extremal;
+        let h_u = extremal.slopes(&phi, &pose).momentum + Vector2::new(z[5], z[6]);
+        self.h_u = self.h_u.max(h_u.norm());
+        self.overstepped = self.overstepped.max(region.overstepped(&phi));
+        let (height, ..) = extremal.height_and_gradient(&phi, &pose);
+        let slope = height.gradient.norm();
+        if let (Some(normal), Motion::Along { direction, .. }) =
+            (equations.normal, equations.motion)
+        {
+            let side = Vector2::new(direction.y, -direction.x).dot(&normal);
+            let multiplier = side * height.value;
+            self.multiplier = Some(
+                self.multiplier
+                    .map_or(multiplier, |least| least.min(multiplier)),
+            );
+        } else {
+            self.off_zero = self.off_zero.max(height.value.abs() / slope);
+            // Slope towards the left of the motion.
+            let direction = equations.direction(&phi, &pose);
+            let left = height
+                .gradient
+                .dot(&Vector2::new(-direction.y, direction.x));
+            self.legendre_clebsch =
+                Some(self.legendre_clebsch.map_or(left, |least| least.min(left)));
+        }
+    }
+
+    fn end(&mut self, extremal: &Extremal<'_>, z: &Traced) {
+        self.end_transversality = (z[5] - z[6]).abs();
+        self.final_lambda4 = (z[3] - extremal.final_y).abs();
+        self.off_symmetry_lines = self.off_symmetry_lines.max((z[0] + z[1]).abs());
+    }
+}

@@ -1,0 +1,256 @@
+//! Gaits of most net displacement, by Pontryagin's maximum principle (paper, section IV).
+
+mod error;
+pub(crate) mod flow;
+pub(crate) mod height;
+pub(crate) mod region;
+mod search;
+
+use std::fmt;
+
+pub use error::{DisplacementError, Fates};
+use nalgebra::Vector2;
+use region::Region;
+use search::{Candidate, Search, Trunk};
+use swimmer_files::{ArcKind, Bounds, Objective};
+use swimmer_model::{Links, Model, Swimmer, TangentialDrag};
+
+use crate::cycle::{Cycle, QuarterTrace};
+use crate::{Certificate, OptimalGait};
+
+/// Which way a counter-clockwise gait shall carry the swimmer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Heading {
+    /// X > 0, along the heading at φ₁ = φ₂ > 0.
+    Forwards,
+    /// X < 0.
+    Backwards,
+}
+
+impl Heading {
+    fn sign(self) -> f64 {
+        match self {
+            Self::Forwards => 1.0,
+            Self::Backwards => -1.0,
+        }
+    }
+}
+
+impl fmt::Display for Heading {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Forwards => "forward (X > 0)",
+            Self::Backwards => "backward (X < 0)",
+        })
+    }
+}
+
+/// A displacement problem: whose gait, within which bounds, which way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DisplacementProblem {
+    /// The swimmer; its side links must be alike.
+    pub swimmer: Swimmer<f64>,
+    /// Bounds on the joint angles.
+    pub bounds: Bounds,
+    /// Which optimum; none for the paper's: forwards with no bound or an upper one, backwards otherwise.
+    pub heading: Option<Heading>,
+    /// Samples of the quarter gait; the cycle has four times as many.
+    pub quarter_samples: usize,
+}
+
+impl DisplacementProblem {
+    /// The problem without bounds.
+    pub fn new(swimmer: Swimmer<f64>) -> Self {
+        Self {
+            swimmer,
+            bounds: Bounds::default(),
+            heading: None,
+            quarter_samples: 256,
+        }
+    }
+
+    /// With |φᵢ| ≤ `max_angle` \[rad\].
+    #[must_use]
+    pub fn with_max_angle(mut self, max_angle: f64) -> Self {
+        self.bounds.max_angle = Some(max_angle);
+        self
+    }
+
+    fn heading(&self) -> Heading {
+        self.heading
+            .unwrap_or(if self.bounds.min_angle.is_some() || self.bounds.sector {
+                Heading::Backwards
+            } else {
+                Heading::Forwards
+            })
+    }
+
+    fn validate(&self) -> Result<(), DisplacementError> {
+        let Links { front, back, .. } = self.swimmer.links;
+        if (front - back).abs() > 1e-12 * front.abs() {
+            return Err(DisplacementError::Asymmetric { front, back });
+        }
+        let bound = |name, value, problem| {
+            Err(DisplacementError::Bound {
+                name,
+                value,
+                problem,
+            })
+        };
+        if let Some(max) = self.bounds.max_angle
+            && !(max > 0.0 && max <= Region::HORIZON)
+        {
+            return bound(
+                "max_angle",
+                max,
+                "an upper bound must be above 0 and at most one turn, 6.283 rad",
+            );
+        }
+        if let Some(min) = self.bounds.min_angle {
+            if !(min > 0.0 && min < Region::HORIZON) {
+                return bound(
+                    "min_angle",
+                    min,
+                    "a lower bound must be above 0 and below one turn",
+                );
+            }
+            if self.bounds.max_angle.is_some_and(|max| min >= max) {
+                return bound(
+                    "min_angle",
+                    min,
+                    "the lower bound must be below the upper one",
+                );
+            }
+        }
+        if self.bounds.no_overlap {
+            return Err(DisplacementError::NotYet { name: "no_overlap" });
+        }
+        Ok(())
+    }
+}
+
+/// The gait of most net displacement in the class of closed curves with the paper's two symmetries that are made of singular
+/// arcs and arcs along the bounds.
+///
+/// Displacement optima are weak, local in shape: small reverse loops would add to X, so the certificate also asks for a
+/// simple curve. With several optima the one with the largest |X| is returned.
+///
+/// # Errors
+/// [`DisplacementError`]: what is wrong with the problem, or why it has no optimum.
+pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, DisplacementError> {
+    problem.validate()?;
+    let model = Model::new(&of_unit_length(&problem.swimmer))?;
+    let region = Region::new(&problem.bounds);
+    let heading = problem.heading();
+    let search = Search {
+        model: &model,
+        region: &region,
+        sign: heading.sign(),
+    };
+    let (mut candidates, fates) = search.candidates(&trunks(&problem.bounds, &region));
+    candidates.retain(|candidate| heading.sign() * candidate.quarter.end[2] > 0.0);
+    candidates.sort_by(|a, b| b.quarter.end[2].abs().total_cmp(&a.quarter.end[2].abs()));
+    let mut refused = None;
+    for candidate in &candidates {
+        let Some(gait) = certified(problem, &model, &region, heading, candidate) else {
+            continue;
+        };
+        if gait.certificate.pass() {
+            return Ok(gait);
+        }
+        refused.get_or_insert(gait);
+    }
+    Err(match refused {
+        Some(gait) => DisplacementError::NotCertified {
+            displacement_over_length: gait.displacement_over_length,
+            failed: gait.certificate.failures(),
+        },
+        None if problem.bounds == Bounds::default() => {
+            DisplacementError::NoUnboundedOptimum { fates }
+        }
+        None => DisplacementError::NoOptimum { heading, fates },
+    })
+}
+
+/// The same swimmer measured in its own length: L = 1.
+fn of_unit_length(swimmer: &Swimmer<f64>) -> Swimmer<f64> {
+    let length = swimmer.total_length();
+    Swimmer {
+        links: Links {
+            middle: swimmer.links.middle / length,
+            front: swimmer.links.front / length,
+            back: swimmer.links.back / length,
+        },
+        tangential_drag: match swimmer.tangential_drag {
+            TangentialDrag::HalfThickness(thickness) => {
+                TangentialDrag::HalfThickness(thickness / length)
+            }
+            same => same,
+        },
+        sphere_radius: swimmer.sphere_radius / length,
+        ..*swimmer
+    }
+}
+
+/// Where singular arcs may begin under these bounds.
+fn trunks(bounds: &Bounds, region: &Region) -> Vec<Trunk> {
+    let low = bounds.min_angle.unwrap_or(0.0);
+    let high = bounds.max_angle.unwrap_or(std::f64::consts::PI);
+    let mut trunks = vec![Trunk::StartLine {
+        low,
+        high: high.min(std::f64::consts::PI),
+    }];
+    // The bounds φ₂ ≤ φ_max and φ₂ ≥ φ_min, both run towards φ₁ = −φ₂.
+    for (edge, bound) in region.edges().iter().enumerate() {
+        let corner = bound.offset.abs();
+        if bound.normal.x == 0.0 && matches!(bound.kind, ArcKind::Upper | ArcKind::Lower) {
+            trunks.push(Trunk::Bound {
+                edge,
+                corner,
+                direction: Vector2::new(-1.0, 0.0),
+                length: 2.0 * corner,
+            });
+        }
+    }
+    trunks
+}
+
+/// A candidate as a full cycle with its certificate; none where it cannot even be traced again.
+fn certified(
+    problem: &DisplacementProblem,
+    model: &Model<f64>,
+    region: &Region,
+    heading: Heading,
+    candidate: &Candidate,
+) -> Option<OptimalGait> {
+    let extremal = height::Extremal {
+        model,
+        sign: heading.sign(),
+        final_y: candidate.final_y,
+    };
+    let legs: Vec<_> = search::lasting(candidate.quarter.legs()).copied().collect();
+    let trace = QuarterTrace::new(extremal, region, &legs, problem.quarter_samples)?;
+    let cycle = Cycle::of_quarter(&trace);
+    let displacement_over_length = 4.0 * candidate.quarter.end[2];
+    let certificate = Certificate::of_displacement(
+        model,
+        region,
+        &trace,
+        &cycle,
+        displacement_over_length,
+        candidate.neighbour_gain,
+    );
+    Some(OptimalGait {
+        objective: Objective::Displacement,
+        swimmer: problem.swimmer,
+        bounds: problem.bounds,
+        displacement_over_length,
+        displacement: displacement_over_length * problem.swimmer.total_length(),
+        start_angle: trace.start().x,
+        end_angle: trace.end().y,
+        arcs: trace.arcs(),
+        links_cross: cycle.links_cross(model),
+        cycle,
+        certificate,
+    })
+}

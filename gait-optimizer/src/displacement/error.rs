@@ -1,0 +1,110 @@
+//! Why there is no displacement gait to return.
+
+use std::fmt;
+
+use swimmer_model::InvalidSwimmer;
+
+use super::Heading;
+
+/// What became of the extremals that the search sent out.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Fates {
+    /// How many were sent out.
+    pub sent: usize,
+    /// Reached φ₁ = −φ₂.
+    pub ended: usize,
+    /// The smallest |λ₄| (over L) with which one reached φ₁ = −φ₂; an optimum has 0.
+    pub nearest: Option<f64>,
+    /// Came back to φ₁ = φ₂, where their mirror images would cross them.
+    pub came_back: usize,
+    /// Left the horizon of the search.
+    pub left_horizon: usize,
+    /// The Legendre–Clebsch condition would lead them out of the quarter at once.
+    pub wrong_way: usize,
+    /// Never ended, or the singular control broke down.
+    pub lost: usize,
+}
+
+impl fmt::Display for Fates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "of {} extremals, {} reach phi1 = -phi2",
+            self.sent, self.ended
+        )?;
+        if let Some(nearest) = self.nearest {
+            write!(
+                f,
+                " (but miss lambda4 = 0 there by at least {nearest:.2e} L)"
+            )?;
+        }
+        write!(
+            f,
+            ", {} come back to phi1 = phi2, {} leave the angles searched, {} start out of the quarter, {} get lost",
+            self.came_back, self.left_horizon, self.wrong_way, self.lost
+        )
+    }
+}
+
+/// Why there is no displacement gait to return.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DisplacementError {
+    /// The swimmer's parameters are out of range.
+    #[error("cannot optimise this swimmer: {0}")]
+    Swimmer(#[from] InvalidSwimmer),
+    /// The quarter gait rests on front and back links being alike.
+    #[error(
+        "the side links differ (front {front} m, back {back} m): a gait with the paper's two symmetries needs them alike"
+    )]
+    Asymmetric {
+        /// l₁ \[m\].
+        front: f64,
+        /// l₂ \[m\].
+        back: f64,
+    },
+    /// A bound makes no sense.
+    #[error("{name} = {value} rad: {problem}")]
+    Bound {
+        /// Which.
+        name: &'static str,
+        /// Its value \[rad\].
+        value: f64,
+        /// What is wrong.
+        problem: &'static str,
+    },
+    /// A bound that this objective does not know yet.
+    #[error("displacement gaits under the bound `{name}` are not computed yet; leave it out")]
+    NotYet {
+        /// Which.
+        name: &'static str,
+    },
+    /// Without bounds on the angles there is no optimum.
+    #[error(
+        "no optimum without a bound on the joint angles: no zero-level curve of the height function leads from \
+         phi1 = phi2 to phi1 = -phi2 and ends with lambda4 = 0 ({fates}); give an upper bound (a gait can then run along it)"
+    )]
+    NoUnboundedOptimum {
+        /// What the search saw.
+        fates: Fates,
+    },
+    /// Under these bounds there is no optimum with this sign of X.
+    #[error(
+        "no {heading} optimum under these bounds ({fates}); try other bounds or the other direction"
+    )]
+    NoOptimum {
+        /// Direction asked for.
+        heading: Heading,
+        /// What the search saw.
+        fates: Fates,
+    },
+    /// Extremals were found, but the best of them fails its certificate.
+    #[error(
+        "the best extremal found (X/L = {displacement_over_length}) is no optimum: it fails {failed}"
+    )]
+    NotCertified {
+        /// Its net displacement over L.
+        displacement_over_length: f64,
+        /// The checks that it fails, with their values.
+        failed: String,
+    },
+}

@@ -1,0 +1,92 @@
+//! What ends an arc, and where within a step: looked for on the cubic through value and slope at both ends of the step, so
+//! that two crossings within one step are seen.
+
+/// What may end an arc. Each has a value that falls through zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Event {
+    /// Margin to an edge.
+    Edge(usize),
+    /// φ₁ + φ₂.
+    End,
+    /// φ₂ − φ₁.
+    Start,
+    /// What is left to the horizon.
+    Horizon,
+    /// The multiplier of the edge that the arc runs along.
+    Multiplier,
+}
+
+/// Events have at most this many sources: six edges and four others.
+pub(super) const MOST_EVENTS: usize = 10;
+/// Each watched event with its value and slope at one end of a step.
+pub(super) type Watched = [Option<(Event, f64, f64)>; MOST_EVENTS];
+
+/// Events this close along a step \[rad\] happen together: finer than the first guess of where they are.
+const SAME_PLACE: f64 = 1e-6;
+
+/// The first event whose value falls through zero within a step, and where.
+pub(super) fn first_event(before: &Watched, after: &Watched, length: f64) -> Option<(Event, f64)> {
+    let crossings = before.iter().zip(after).filter_map(|pair| match pair {
+        (Some((event, v0, s0)), Some((_, v1, s1))) => {
+            falls([*v0, *v1], [*s0, *s1], length).map(|at| (*event, at))
+        }
+        _ => None,
+    });
+    let earliest = crossings.clone().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    // In a corner of the region on φ₁ = −φ₂ both bounds and the end are met at once: it is the end.
+    let end = crossings
+        .into_iter()
+        .find(|(event, _)| *event == Event::End);
+    end.filter(|(_, at)| at - earliest.1 < SAME_PLACE)
+        .or(Some(earliest))
+}
+
+/// Where the cubic with these values and slopes at both ends first falls through zero.
+fn falls(value: [f64; 2], slope: [f64; 2], length: f64) -> Option<f64> {
+    const LOOKS: u32 = 8;
+    let cubic = |s: f64| {
+        let rest = 1.0 - s;
+        let (off0, off1) = (
+            length * slope[0] - (value[1] - value[0]),
+            length * slope[1] - (value[1] - value[0]),
+        );
+        value[0] * rest + value[1] * s + (off0 * rest - off1 * s) * (s * rest)
+    };
+    let mut low = 0.0;
+    for look in 1..=LOOKS {
+        let mut high = f64::from(look) / f64::from(LOOKS);
+        if cubic(high) < 0.0 {
+            for _ in 0..20 {
+                let middle = 0.5 * (low + high);
+                if cubic(middle) < 0.0 {
+                    high = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            return Some(high * length);
+        }
+        low = high;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_double_crossing_within_a_step_is_seen() {
+        // (s − 0.3)(s − 0.6), falling at 0.3 and rising at 0.6.
+        let at = falls([0.18, 0.28], [-0.9, 1.1], 1.0).unwrap();
+        assert!((at - 0.3).abs() < 1e-5, "{at}");
+        assert!(
+            falls([0.0, 1.0], [1.0, 1.0], 1.0).is_none(),
+            "rising from zero is no exit"
+        );
+        assert!(
+            falls([-1e-16, 1.0], [1.0, 1.0], 1.0).is_none(),
+            "nor from a rounded zero"
+        );
+    }
+}

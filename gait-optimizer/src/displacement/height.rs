@@ -1,0 +1,229 @@
+//! The switching function of the displacement problem, its gradient, and the control that keeps it at zero.
+//!
+//! With the multipliers λ₃ = ±1 (x forwards or backwards) and `λ₄ = λ₃ (y − y_f)`, the paper's
+//! `F = F₁ λ₃ + F₂ λ₄` is minus the curvature of the connection, turned by θ and weighed by the multipliers. Its negative,
+//! the [`Extremal::height`], is what a counter-clockwise loop gains by enclosing a little more on its left: the height
+//! function of the geometric picture, exact along this extremal. It holds on bounds too, and unlike `λ₄ = −F₁/F₂` it is
+//! regular on φ₁ = −φ₂.
+
+use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
+use swimmer_model::Model;
+
+/// State along a quarter gait: φ₁, φ₂, x, y, θ (lengths over L) and the power length ∫√P over the arc.
+pub(crate) type State = [f64; 6];
+
+/// Joint angles of a state.
+pub(crate) fn shape(z: &[f64]) -> Vector2<f64> {
+    match z {
+        [phi1, phi2, ..] => Vector2::new(*phi1, *phi2),
+        _ => Vector2::zeros(),
+    }
+}
+
+/// One choice of the problem's multipliers: all extremals with this λ₃ and this final y.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Extremal<'a> {
+    /// The swimmer with L = 1.
+    pub(crate) model: &'a Model<f64>,
+    /// λ₃: 1 to go forwards (X > 0), −1 to go backwards.
+    pub(crate) sign: f64,
+    /// `y_f` over L, in `λ₄ = λ₃ (y − y_f)`.
+    pub(crate) final_y: f64,
+}
+
+/// The height and how it changes along the two joint angles, with the pose carried along.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Height {
+    pub(crate) value: f64,
+    pub(crate) gradient: Vector2<f64>,
+}
+
+/// What the costate equations need at one state.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slopes {
+    /// λ₃ g + λ₄ f and λ₃ h + λ₄ q: minus λ₁ and λ₂ where `H_u = 0`.
+    pub(crate) momentum: Vector2<f64>,
+    /// Their partial derivatives in φ₁ (first column) and φ₂ (second column), θ, y held.
+    pub(crate) by_angle: Matrix2<f64>,
+    pub(crate) connection: Matrix3x2<f64>,
+    pub(crate) power: Matrix2<f64>,
+    /// The height.
+    pub(crate) height: f64,
+}
+
+impl Extremal<'_> {
+    fn lambda4(&self, z: &[f64; 3]) -> f64 {
+        self.sign * (z[1] - self.final_y)
+    }
+
+    /// The height −F at a state.
+    #[cfg(test)]
+    pub(crate) fn height(&self, phi: &Vector2<f64>, pose: &[f64; 3]) -> f64 {
+        let curvature = self.model.first_derivatives(phi).curvature();
+        self.turned(&curvature, pose)
+    }
+
+    /// The height −F and its derivative along each joint: total, that is with the θ and y that this joint's motion brings.
+    /// (The paper's A and B in `Ḟ = A u₁ + B u₂` are minus this gradient over λ₃.)
+    pub(crate) fn height_and_gradient(
+        &self,
+        phi: &Vector2<f64>,
+        pose: &[f64; 3],
+    ) -> (Height, Matrix3x2<f64>, Matrix2<f64>) {
+        let second = self.model.second_derivatives(phi);
+        let connection = second.first.connection;
+        let curvature = second.first.curvature();
+        let [along1, along2] = second.d_curvature();
+        let (sin, cos) = pose[2].sin_cos();
+        let by_theta = self.sign * (-sin * curvature.x - cos * curvature.y);
+        let slope = |along: &Vector3<f64>, joint: usize| {
+            let column = connection.column(joint);
+            let y_rate = sin * column.x + cos * column.y;
+            self.turned(along, pose) + by_theta * column.z + self.sign * curvature.z * y_rate
+        };
+        let gradient = Vector2::new(slope(&along1, 0), slope(&along2, 1));
+        let height = Height {
+            value: self.turned(&curvature, pose),
+            gradient,
+        };
+        (height, connection, second.first.power)
+    }
+
+    /// Row x of the turned curvature times λ₃, plus row θ times λ₄.
+    fn turned(&self, curvature: &Vector3<f64>, pose: &[f64; 3]) -> f64 {
+        let (sin, cos) = pose[2].sin_cos();
+        self.sign * (cos * curvature.x - sin * curvature.y) + self.lambda4(pose) * curvature.z
+    }
+
+    /// The final y for which the height vanishes at a state; none where every λ₄ or none makes it vanish.
+    pub(crate) fn final_y_of_zero(
+        model: &Model<f64>,
+        phi: &Vector2<f64>,
+        pose: &[f64; 3],
+    ) -> Option<f64> {
+        let curvature = model.first_derivatives(phi).curvature();
+        let (sin, cos) = pose[2].sin_cos();
+        let final_y = pose[1] + (cos * curvature.x - sin * curvature.y) / curvature.z;
+        final_y.is_finite().then_some(final_y)
+    }
+
+    /// Everything that the costate equations need.
+    pub(crate) fn slopes(&self, phi: &Vector2<f64>, pose: &[f64; 3]) -> Slopes {
+        let first = self.model.first_derivatives(phi);
+        let (sin, cos) = pose[2].sin_cos();
+        let lambda4 = self.lambda4(pose);
+        let weigh = |a: &Matrix3x2<f64>| {
+            let column = |j: usize| {
+                let c = a.column(j);
+                self.sign * (cos * c.x - sin * c.y) + lambda4 * c.z
+            };
+            Vector2::new(column(0), column(1))
+        };
+        Slopes {
+            momentum: weigh(&first.connection),
+            by_angle: Matrix2::from_columns(&[
+                weigh(&first.d_connection[0]),
+                weigh(&first.d_connection[1]),
+            ]),
+            height: self.turned(&first.curvature(), pose),
+            connection: first.connection,
+            power: first.power,
+        }
+    }
+}
+
+impl Height {
+    /// Direction of the singular arc: along the zero of the height, with the gain on the left, as the generalised
+    /// Legendre–Clebsch condition asks.
+    pub(crate) fn singular_direction(&self) -> Vector2<f64> {
+        Vector2::new(self.gradient.y, -self.gradient.x) / self.gradient.norm()
+    }
+}
+
+/// Rates of x, y, θ and of the power length for a direction in the plane of joint angles.
+pub(crate) fn pose_rates(
+    connection: &Matrix3x2<f64>,
+    power: &Matrix2<f64>,
+    theta: f64,
+    direction: &Vector2<f64>,
+) -> [f64; 4] {
+    let body = connection * direction;
+    let (sin, cos) = theta.sin_cos();
+    let speed = direction.dot(&(power * direction)).max(0.0).sqrt();
+    [
+        cos * body.x - sin * body.y,
+        sin * body.x + cos * body.y,
+        body.z,
+        speed,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use swimmer_model::Swimmer;
+
+    /// The gradient is the height's change along a short stretch of the dynamics.
+    #[test]
+    fn the_gradient_is_the_derivative_along_each_joint() {
+        let model = Model::new(&Swimmer::<f64>::purcell()).unwrap();
+        let extremal = Extremal {
+            model: &model,
+            sign: -1.0,
+            final_y: 0.13,
+        };
+        let (phi, pose) = (Vector2::new(0.7, 1.9), [0.2, -0.1, 0.4]);
+        let (height, ..) = extremal.height_and_gradient(&phi, &pose);
+        assert!((height.value - extremal.height(&phi, &pose)).abs() < 1e-15);
+        for joint in 0..2 {
+            let mut direction = Vector2::zeros();
+            direction[joint] = 1.0;
+            let moved = |h: f64| {
+                // Midpoint rule: second order, and so is the central difference.
+                let half = |phi: &Vector2<f64>, pose: &[f64; 3], from: &[f64; 3], h: f64| {
+                    let (a, w) = model.connection_and_power(phi);
+                    let rates = pose_rates(&a, &w, pose[2], &direction);
+                    [
+                        from[0] + h * rates[0],
+                        from[1] + h * rates[1],
+                        from[2] + h * rates[2],
+                    ]
+                };
+                let middle = half(&phi, &pose, &pose, h / 2.0);
+                let end = half(&(phi + direction * (h / 2.0)), &middle, &pose, h);
+                extremal.height(&(phi + direction * h), &end)
+            };
+            let h = 1e-4;
+            let numeric = (moved(h) - moved(-h)) / (2.0 * h);
+            assert!(
+                (numeric - height.gradient[joint]).abs() < 1e-7,
+                "{numeric} {}",
+                height.gradient[joint]
+            );
+        }
+    }
+
+    /// The height is minus the paper's F, written out there in g, h, f, q with λ₃ = 1.
+    #[test]
+    fn the_height_is_minus_the_papers_switching_function() {
+        let model = Model::new(&Swimmer::<f64>::robot()).unwrap();
+        let extremal = Extremal {
+            model: &model,
+            sign: 1.0,
+            final_y: 0.03,
+        };
+        let (phi, pose) = (Vector2::new(-0.4, 2.1), [0.0, 0.05, -0.6]);
+        let d = model.first_derivatives(&phi);
+        let (sin, cos) = f64::sin_cos(-0.6);
+        let (a, [a1, a2]) = (d.connection, d.d_connection);
+        let (f, q) = (a[(2, 0)], a[(2, 1)]);
+        let g_theta = -sin * a[(0, 0)] - cos * a[(1, 0)];
+        let h_theta = -sin * a[(0, 1)] - cos * a[(1, 1)];
+        let g_2 = cos * a2[(0, 0)] - sin * a2[(1, 0)];
+        let h_1 = cos * a1[(0, 1)] - sin * a1[(1, 1)];
+        let f1 = g_2 + g_theta * q - h_1 - h_theta * f;
+        let f2 = a2[(2, 0)] - a1[(2, 1)];
+        let printed = f1 + f2 * (0.05 - 0.03);
+        assert!((extremal.height(&phi, &pose) + printed).abs() < 1e-15 * (1.0 + printed.abs()));
+    }
+}

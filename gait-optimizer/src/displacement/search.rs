@@ -1,0 +1,356 @@
+//! The search for the start: every extremal leaves the same one-parameter family, and is kept where λ₄ ends at zero.
+//!
+//! A singular arc can begin in two places: on φ₁ = φ₂ at some angle, or at the end of an arc that ran along a bound from the
+//! corner where that bound meets φ₁ = φ₂. Such a line of places is a [`Trunk`]. At each place the height vanishes for just
+//! one `y_f`, so the place fixes the whole extremal, and a scan over the trunk with a scalar root search on
+//! `λ₄(t_f) = 0` finds every quarter gait without a guess. One more candidate never leaves the bound at all.
+
+use nalgebra::Vector2;
+use swimmer_model::Model;
+
+use super::Fates;
+use super::flow::{Drive, Fate, Leg, Motion, Quarter, follow};
+use super::height::{Extremal, State, shape};
+use super::region::Region;
+use crate::runge_kutta::{Point, StepControl, advance};
+
+/// Where singular arcs may begin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Trunk {
+    /// φ₁ = φ₂ = p.
+    StartLine { low: f64, high: f64 },
+    /// A bound, from `corner` on φ₁ = φ₂; p is the way along it.
+    Bound {
+        edge: usize,
+        corner: f64,
+        direction: Vector2<f64>,
+        length: f64,
+    },
+}
+
+/// An extremal that meets all end conditions.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Candidate {
+    pub(crate) quarter: Quarter,
+    pub(crate) final_y: f64,
+    /// Largest gain in λ₃ x over extremals beside this one; negative at a maximum. None where it has no neighbours.
+    pub(crate) neighbour_gain: Option<f64>,
+}
+
+/// The shooting problem.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Search<'a> {
+    /// The swimmer with L = 1.
+    pub(crate) model: &'a Model<f64>,
+    pub(crate) region: &'a Region,
+    /// λ₃.
+    pub(crate) sign: f64,
+}
+
+/// Places looked at on each trunk, and how near to a fold the search looks.
+const LOOKS: usize = 40;
+const COARSE: StepControl = StepControl {
+    tolerance: 1e-6,
+    longest: 0.5,
+};
+const FINE: StepControl = StepControl {
+    tolerance: 1e-13,
+    longest: 0.3,
+};
+/// Halvings of an interval of which only one end has an extremal that ends.
+const HALVINGS: usize = 5;
+/// How far the neighbours are that a candidate is compared with \[rad\].
+const BESIDE: f64 = 1e-3;
+
+/// What a place on a trunk leads to.
+#[derive(Debug, Clone, Copy)]
+enum Look {
+    Miss { p: f64, lambda4: f64 },
+    Nothing,
+}
+
+impl<'a> Search<'a> {
+    /// All candidates, in the order of the trunks, and what became of the rest.
+    pub(crate) fn candidates(&self, trunks: &[Trunk]) -> (Vec<Candidate>, Fates) {
+        let mut fates = Fates::default();
+        let mut found = Vec::new();
+        for trunk in trunks {
+            self.scan(trunk, &mut fates, &mut found);
+            found.extend(self.never_leaving(trunk));
+        }
+        (found, fates)
+    }
+
+    fn scan(&self, trunk: &Trunk, fates: &mut Fates, found: &mut Vec<Candidate>) {
+        let (low, high) = trunk.range();
+        let place = |look: usize| low + (high - low) * (look as f64 + 0.5) / LOOKS as f64;
+        let mut before = Look::Nothing;
+        let mut last_p = low;
+        for look in 0..LOOKS {
+            let p = place(look);
+            let here = self.look(trunk, p, fates);
+            match (before, here) {
+                (Look::Miss { p: p0, lambda4: r0 }, Look::Miss { lambda4: r1, .. }) => {
+                    self.between(trunk, (p0, r0), (p, r1), found);
+                }
+                (Look::Miss { p: p0, lambda4 }, Look::Nothing) => {
+                    self.towards_the_fold(trunk, (p0, lambda4), p, found);
+                }
+                (Look::Nothing, Look::Miss { lambda4, .. }) => {
+                    self.towards_the_fold(trunk, (p, lambda4), last_p, found);
+                }
+                (Look::Nothing, Look::Nothing) => {}
+            }
+            before = here;
+            last_p = p;
+        }
+    }
+
+    /// One extremal of the scan.
+    fn look(&self, trunk: &Trunk, p: f64, fates: &mut Fates) -> Look {
+        fates.sent += 1;
+        let Some((quarter, final_y)) = self.shoot(trunk, p, COARSE) else {
+            fates.wrong_way += 1;
+            return Look::Nothing;
+        };
+        match quarter.fate {
+            Fate::Ended => {
+                fates.ended += 1;
+                let lambda4 = quarter.end[3] - final_y;
+                fates.nearest = Some(
+                    fates
+                        .nearest
+                        .map_or(lambda4.abs(), |nearest| nearest.min(lambda4.abs())),
+                );
+                return Look::Miss { p, lambda4 };
+            }
+            Fate::CameBack => fates.came_back += 1,
+            Fate::LeftHorizon => fates.left_horizon += 1,
+            Fate::Stalled | Fate::TooManyArcs => fates.lost += 1,
+        }
+        Look::Nothing
+    }
+
+    /// Between an extremal that ends and one that does not: looks closer at the last ones that end.
+    fn towards_the_fold(
+        &self,
+        trunk: &Trunk,
+        ended: (f64, f64),
+        beyond: f64,
+        found: &mut Vec<Candidate>,
+    ) {
+        let (mut ended, mut beyond) = (ended, beyond);
+        for _ in 0..HALVINGS {
+            let p = 0.5 * (ended.0 + beyond);
+            match self.miss(trunk, p, COARSE) {
+                Some(lambda4) => {
+                    self.between(trunk, ended, (p, lambda4), found);
+                    ended = (p, lambda4);
+                }
+                None => beyond = p,
+            }
+        }
+    }
+
+    /// A root between two places, where `λ₄(t_f)` changes sign there.
+    fn between(&self, trunk: &Trunk, a: (f64, f64), b: (f64, f64), found: &mut Vec<Candidate>) {
+        if a.1.signum() * b.1.signum() < 0.0
+            && let Some(p) = self.root(trunk, a, b)
+        {
+            found.extend(self.candidate(trunk, p));
+        }
+    }
+
+    /// Regula falsi (Illinois) on `λ₄(t_f)`, at the fine tolerance. None at a jump.
+    fn root(&self, trunk: &Trunk, a: (f64, f64), b: (f64, f64)) -> Option<f64> {
+        let (mut a, mut b) = (a, b);
+        let mut best = if a.1.abs() < b.1.abs() { a } else { b };
+        for step in 0..60 {
+            let secant = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
+            let p = if step % 6 == 5 || !secant.is_finite() {
+                0.5 * (a.0 + b.0)
+            } else {
+                secant
+            };
+            // The bracket came from the coarse scan: the first fine values may fall on the same side.
+            let lambda4 = self.miss(trunk, p, FINE)?;
+            if lambda4.abs() < best.1.abs() {
+                best = (p, lambda4);
+            }
+            if lambda4.abs() < 1e-15 || (b.0 - a.0).abs() < 1e-15 * (1.0 + p.abs()) {
+                break;
+            }
+            let settled = (p - a.0).abs().min((p - b.0).abs()) < 1e-15;
+            if lambda4.signum() * b.1.signum() < 0.0 {
+                a = b;
+            } else {
+                a.1 *= 0.5;
+            }
+            b = (p, lambda4);
+            if settled {
+                break;
+            }
+        }
+        (best.1.abs() < 1e-10).then_some(best.0)
+    }
+
+    /// The candidate that leaves a trunk at p.
+    fn candidate(&self, trunk: &Trunk, p: f64) -> Option<Candidate> {
+        let (quarter, final_y) = self.shoot(trunk, p, FINE)?;
+        let whole = match trunk {
+            Trunk::StartLine { .. } => quarter,
+            // Again from the corner: the multiplier itself must fall to zero at p.
+            Trunk::Bound { .. } => {
+                let extremal = self.extremal(final_y);
+                let whole = follow(
+                    extremal,
+                    self.region,
+                    trunk.corner_state(),
+                    trunk.motion()?,
+                    FINE,
+                );
+                let at = whole
+                    .legs()
+                    .first()
+                    .map_or(f64::NAN, |leg| (shape(&leg.to) - shape(&leg.from)).norm());
+                ((at - p).abs() < 1e-6).then_some(whole)?
+            }
+        };
+        let gain = |beside: f64| {
+            let (neighbour, _) = self.shoot(trunk, beside, FINE)?;
+            (neighbour.fate == Fate::Ended).then(|| self.sign * (neighbour.end[2] - quarter.end[2]))
+        };
+        let neighbour_gain = match (gain(p - BESIDE), gain(p + BESIDE)) {
+            (Some(a), Some(b)) => Some(a.max(b)),
+            (one, other) => one.or(other),
+        };
+        (whole.fate == Fate::Ended).then_some(Candidate {
+            quarter: whole,
+            final_y,
+            neighbour_gain,
+        })
+    }
+
+    /// The extremal that runs along the bound, and from there along the next, to the very end.
+    fn never_leaving(&self, trunk: &Trunk) -> Option<Candidate> {
+        let motion = trunk.motion()?;
+        let mut here = trunk.corner_state();
+        let Motion::Along { edge, direction } = motion else {
+            return None;
+        };
+        // Straight to φ₁ = −φ₂, whatever the multiplier: this fixes y_f.
+        let way = -(here[0] + here[1]) / (direction.x + direction.y);
+        let length = match trunk {
+            Trunk::Bound { length, .. }
+                if way.is_finite() && way > 0.0 && way <= *length + 1e-9 =>
+            {
+                way
+            }
+            _ => return None,
+        };
+        let drive = Drive {
+            extremal: self.extremal(0.0),
+            motion: Motion::Along { edge, direction },
+        };
+        here = advance(&drive, Point::new(&drive, here), length, FINE)?.z;
+        let final_y = here[3];
+        let quarter = follow(
+            self.extremal(final_y),
+            self.region,
+            trunk.corner_state(),
+            motion,
+            FINE,
+        );
+        let stayed = quarter
+            .legs()
+            .iter()
+            .all(|leg| leg.motion != Motion::Singular);
+        (quarter.fate == Fate::Ended && stayed && (quarter.end[3] - final_y).abs() < 1e-10)
+            .then_some(Candidate {
+                quarter,
+                final_y,
+                neighbour_gain: None,
+            })
+    }
+
+    /// `λ₄(t_f)` over λ₃ of the extremal that leaves a trunk at p, where that extremal ends.
+    fn miss(&self, trunk: &Trunk, p: f64, control: StepControl) -> Option<f64> {
+        let (quarter, final_y) = self.shoot(trunk, p, control)?;
+        (quarter.fate == Fate::Ended).then(|| quarter.end[3] - final_y)
+    }
+
+    /// The quarter that becomes singular at place p of a trunk, with its `y_f`. None where the singular control would leave
+    /// the region, or no `y_f` makes the height vanish.
+    fn shoot(&self, trunk: &Trunk, p: f64, control: StepControl) -> Option<(Quarter, f64)> {
+        let start = self.place(trunk, p, control)?;
+        let (phi, pose) = (shape(&start), [start[2], start[3], start[4]]);
+        let final_y = Extremal::final_y_of_zero(self.model, &phi, &pose)?;
+        let extremal = self.extremal(final_y);
+        let (height, ..) = extremal.height_and_gradient(&phi, &pose);
+        let direction = height.singular_direction();
+        let inwards = match trunk {
+            Trunk::StartLine { .. } => direction.y - direction.x,
+            Trunk::Bound { edge, .. } => -self.region.edge(*edge)?.normal.dot(&direction),
+        };
+        (inwards > 0.0).then(|| {
+            (
+                follow(extremal, self.region, start, Motion::Singular, control),
+                final_y,
+            )
+        })
+    }
+
+    fn place(&self, trunk: &Trunk, p: f64, control: StepControl) -> Option<State> {
+        match trunk {
+            Trunk::StartLine { .. } => Some([p, p, 0.0, 0.0, 0.0, 0.0]),
+            Trunk::Bound { .. } => {
+                let drive = Drive {
+                    extremal: self.extremal(0.0),
+                    motion: trunk.motion()?,
+                };
+                Some(advance(&drive, Point::new(&drive, trunk.corner_state()), p, control)?.z)
+            }
+        }
+    }
+
+    fn extremal(&self, final_y: f64) -> Extremal<'a> {
+        Extremal {
+            model: self.model,
+            sign: self.sign,
+            final_y,
+        }
+    }
+}
+
+impl Trunk {
+    fn range(&self) -> (f64, f64) {
+        match self {
+            Self::StartLine { low, high } => (*low, *high),
+            Self::Bound { length, .. } => (0.0, *length),
+        }
+    }
+
+    fn motion(&self) -> Option<Motion> {
+        match self {
+            Self::StartLine { .. } => None,
+            Self::Bound {
+                edge, direction, ..
+            } => Some(Motion::Along {
+                edge: *edge,
+                direction: *direction,
+            }),
+        }
+    }
+
+    fn corner_state(&self) -> State {
+        match self {
+            Self::StartLine { .. } => [0.0; 6],
+            Self::Bound { corner, .. } => [*corner, *corner, 0.0, 0.0, 0.0, 0.0],
+        }
+    }
+}
+
+/// Legs that have a length.
+pub(crate) fn lasting(legs: &[Leg]) -> impl Iterator<Item = &Leg> {
+    legs.iter().filter(|leg| leg.to[5] > leg.from[5])
+}
