@@ -6,7 +6,7 @@ use clap::{Parser, Subcommand};
 use swimmer_files::{AnyGait, GaitSpec, SwimmerFile, parse_angle};
 use swimmer_model::Model;
 
-use crate::commands::{optimize, robot, simulate, tracks, twin};
+use crate::commands::{calibrate, demo, optimize, robot, simulate, tracks, twin};
 use crate::failure::{Failure, Outcome};
 
 /// Optimal gaits for Purcell's three-link swimmer and its robot: model, optimise, play, track, fit.
@@ -34,6 +34,8 @@ pub(crate) struct Arguments {
 /// What `swimmer` can do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Run the whole loop on a virtual robot: circles, tracks, fit, optimised gait, comparison, report
+    Demo(demo::Demo),
     /// Swim a gait in the model
     Simulate(simulate::Simulate),
     /// Find an optimal gait
@@ -43,6 +45,8 @@ pub(crate) enum Command {
     Robot(robot::Robot),
     /// Be a robot in a virtual tank, with virtual cameras
     Twin(twin::Twin),
+    /// Turn tracks into poses, cycles and fitted drag parameters
+    Calibrate(calibrate::Calibrate),
     /// Say what a tracking file holds
     Tracks(tracks::Tracks),
 }

@@ -5,9 +5,11 @@ mod commands;
 mod failure;
 mod interrupt;
 mod link_log;
+mod new_folder;
 mod output;
 mod progress;
 mod quantity;
+mod report;
 
 use std::process::ExitCode;
 

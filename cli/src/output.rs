@@ -53,7 +53,8 @@ pub(crate) fn error_document(reason: &str) -> String {
     document(&serde_json::json!({ "error": reason }))
 }
 
-fn document(value: &impl Serialize) -> String {
+/// The JSON document of an answer.
+pub(crate) fn document(value: &impl Serialize) -> String {
     // Answers hold numbers, texts and lists of them, which always have a JSON form; NaN becomes null.
     let text = serde_json::to_string_pretty(value)
         .unwrap_or_else(|error| format!("{{\"error\": \"the answer has no JSON form: {error}\"}}"));

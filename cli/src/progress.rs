@@ -42,6 +42,11 @@ impl Progress {
         self.0.set_message(what.into());
     }
 
+    /// One step is done.
+    pub(crate) fn step(&self) {
+        self.0.inc(1);
+    }
+
     /// So much is done.
     pub(crate) fn at(&self, position: u64) {
         self.0.set_position(position);

@@ -52,6 +52,17 @@ pub(crate) fn crossing(of_cycle: f64) -> String {
     }
 }
 
+/// How far `value` is from `reference`, signed, in per cent; absolute where the reference is zero.
+pub(crate) fn relative(value: f64, reference: f64) -> Option<f64> {
+    (reference != 0.0).then(|| value / reference - 1.0)
+}
+
+/// A signed relative deviation in per cent.
+pub(crate) fn deviation(of_one: f64) -> String {
+    // Adding zero turns a rounded -0.00 into 0.00.
+    format!("{:+.2} %", (of_one * 1e4).round() / 1e2 + 0.0)
+}
+
 /// Lines of `label  value`, the values in one column.
 #[derive(Debug, Default)]
 pub(crate) struct Rows(Vec<(String, String)>);
@@ -135,6 +146,7 @@ mod tests {
         assert_eq!(length(0.012_345_6), "12.346 mm");
         assert_eq!(length(-3.0), "-3.000000 m");
         assert_eq!(angle(-1e-9), "0.000°");
+        assert_eq!(deviation(-0.0123), "-1.23 %");
     }
 
     #[test]

@@ -14,6 +14,7 @@ use swimmer_files::GaitSpec;
 
 use self::answers::{Doing, Info};
 use self::port::{Pace, connect};
+pub(crate) use self::upload::table_of;
 use crate::arguments::{angle, gait, positive_angle, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;

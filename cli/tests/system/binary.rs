@@ -75,3 +75,13 @@ pub(crate) fn number(document: &Value, key: &str) -> f64 {
         .as_f64()
         .unwrap_or_else(|| panic!("no number under {key} in {document:#}"))
 }
+
+/// Ctrl-C, as the terminal sends it.
+#[cfg(unix)]
+pub(crate) fn interrupt(child: &std::process::Child) {
+    let status = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .expect("kill starts");
+    assert!(status.success());
+}

@@ -26,6 +26,7 @@ fn bad_usage_and_bad_input_exit_with_two() {
         &["robot", "info"],
         &["robot", "play", "--port", "twin", "--detach"],
         &["twin"],
+        &["calibrate", "no-such-campaign.toml"],
         &["tracks", "no-such-track.csv"],
         &["dance"],
     ] {
@@ -110,4 +111,8 @@ fn what_fails_leaves_nothing_behind() {
     )
     .with_status(2);
     assert_eq!(left(), 0);
+    std::fs::write(folder.path().join("mine.txt"), "keep me").unwrap();
+    let ran = swimmer_in(folder.path(), &["demo", "-o", "."]).with_status(2);
+    assert!(ran.stderr.contains("not empty"), "{ran}");
+    assert_eq!(left(), 1);
 }

@@ -5,7 +5,7 @@ use std::process::{Child, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::binary::{command, number, swimmer_in};
+use crate::binary::{command, interrupt, number, swimmer_in};
 
 /// A `swimmer twin` process; interrupted and waited for at the end, so that none outlives its test.
 struct TwinProcess {
@@ -50,15 +50,6 @@ impl Drop for TwinProcess {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
-}
-
-/// Ctrl-C, as the terminal sends it.
-fn interrupt(child: &Child) {
-    let status = std::process::Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(status.success());
 }
 
 fn upload_play_and_stop(faults: &[&str]) {

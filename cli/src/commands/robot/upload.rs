@@ -154,7 +154,7 @@ impl Prepared {
 }
 
 /// The gait as the robot holds it: as many knots as fit, so that the interpolation adds nothing.
-fn table_of(gait: &AnyGait) -> Result<GaitTable, gait_player::table::TableError> {
+pub(crate) fn table_of(gait: &AnyGait) -> Result<GaitTable, gait_player::table::TableError> {
     GaitTable::from_fn(MAX_KNOTS, |u| {
         let phi = gait.at(u).phi;
         [phi.x, phi.y]

@@ -1,0 +1,285 @@
+//! `swimmer demo`: once round the whole loop on a virtual robot, and a report of it.
+
+mod answer;
+mod laboratory;
+mod picture;
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use calibrate::{PredictedCycle, predict};
+use gait_optimizer::{DisplacementProblem, OptimalGait, displacement};
+use host_link::LinkError;
+use link_protocol::Refusal;
+use swimmer_files::{AnyGait, GaitSpec, ServoFile, SwimmerFile, write_atomically};
+use swimmer_model::Swimmer;
+
+use self::answer::DemoAnswer;
+use self::laboratory::Laboratory;
+use super::calibrate::{FittedCampaign, RunCycles, fit_campaign, single_run};
+use super::robot::table_of;
+use crate::arguments::load_swimmer;
+use crate::failure::{Failure, Outcome};
+use crate::interrupt::Interrupt;
+use crate::new_folder::NewFolder;
+use crate::output::Output;
+use crate::progress::Progress;
+use crate::report;
+
+/// Run the whole loop on a virtual robot and leave a report
+///
+/// Circles of 30° to 110° are uploaded over the link, swum and tracked. The drag is fitted from the tracks alone, starting
+/// from χ = 2 and no sphere; a gait is optimised with the fitted model, uploaded, swum and compared with the prediction.
+/// Only the tank knows the truth.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Demo {
+    /// Where to leave the results; left out: demo-out, or the first free of demo-out-2, demo-out-3, …
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Seed of tank and cameras
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// The truth in the tank: purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER", default_value = "robot")]
+    swimmer: String,
+    /// What carries the robot's brain
+    #[arg(long, value_name = "ROBOT", default_value = "twin", value_parser = ["twin"])]
+    robot: String,
+}
+
+/// Amplitudes of the circles, degrees.
+const CIRCLES: std::ops::RangeInclusive<u32> = 30..=110;
+const CIRCLE_STEP: usize = 10;
+/// Cycles of each play; the first is start-up and does not count.
+const CYCLES: u32 = 8;
+/// The paper's period, s. Slower where a gait needs it.
+const PERIOD_S: f64 = 30.0;
+/// The bound on the joints is tightened by this until the robot accepts the gait, rad …
+const BOUND_STEP: f64 = 0.02;
+/// … at most down to this, rad.
+const LEAST_BOUND: f64 = 1.0;
+
+/// Names in the folder.
+const START: &str = "start.toml";
+const CAMPAIGN: &str = "campaign.toml";
+const FITTED: &str = "fitted.toml";
+const BEST: &str = "best.gait";
+const BEST_TRACK: &str = "best.csv";
+const LINK_LOG: &str = "link.mcap";
+const REPORT: &str = "report.html";
+
+impl Demo {
+    /// Goes round the loop and answers.
+    pub(crate) fn run(self, output: Output) -> Outcome {
+        let truth = load_swimmer(&self.swimmer)?;
+        let folder = match &self.output {
+            Some(place) => NewFolder::start(place)?,
+            None => NewFolder::start_free("demo-out")?,
+        };
+        let interrupt = Interrupt::install()?;
+        let round = Round::new(truth, self.seed, folder.draft(), interrupt)?.go()?;
+        let page = report::page(&picture::report(&round)?)?;
+        write_atomically(&folder.draft().join(REPORT), page.as_bytes())?;
+        let place = folder.place().to_owned();
+        folder.publish()?;
+        output.answer(&DemoAnswer::new(&round, &place));
+        Ok(())
+    }
+}
+
+/// What is known at the start of the round.
+struct Round<'a> {
+    truth: SwimmerFile,
+    servo: ServoFile,
+    start: SwimmerFile,
+    seed: u64,
+    draft: &'a Path,
+    laboratory: Laboratory,
+    progress: Progress,
+}
+
+/// What the round found.
+struct Finished {
+    truth: SwimmerFile,
+    start: SwimmerFile,
+    fitted: SwimmerFile,
+    seed: u64,
+    fit: FittedCampaign,
+    best: OptimalGait,
+    best_gait: AnyGait,
+    /// The bound under which the robot accepted the gait, and the one that its servos would allow, rad.
+    bounds: (f64, f64),
+    period_s: f64,
+    predicted: PredictedCycle,
+    swum: RunCycles,
+}
+
+impl<'a> Round<'a> {
+    fn new(truth: SwimmerFile, seed: u64, draft: &'a Path, interrupt: Interrupt) -> Outcome<Self> {
+        let servo = truth.servo.unwrap_or_default();
+        let start = SwimmerFile {
+            name: format!("{}, drag not known yet", truth.name),
+            swimmer: Swimmer {
+                chi: 2.0,
+                sphere_radius: 0.0,
+                ..truth.swimmer
+            },
+            servo: Some(servo),
+            ..truth.clone()
+        };
+        start.save(&draft.join(START))?;
+        let circles = circles(servo.max_angle).count() as u64;
+        let progress = Progress::of_steps(circles + 4);
+        let laboratory = Laboratory::open(&truth, seed, &draft.join(LINK_LOG), interrupt)?;
+        Ok(Self {
+            truth,
+            servo,
+            start,
+            seed,
+            draft,
+            laboratory,
+            progress,
+        })
+    }
+
+    fn go(mut self) -> Outcome<Finished> {
+        self.laboratory.configure(&self.start, &self.servo)?;
+        self.swim_circles()?;
+        self.doing("fitting r_s and χ");
+        let fit = fit_campaign(&self.draft.join(CAMPAIGN), 0.95)?;
+        let fitted = SwimmerFile {
+            name: format!("{}, fitted", self.truth.name),
+            ..fit.found.swimmer.clone()
+        };
+        fitted.save(&self.draft.join(FITTED))?;
+        self.laboratory.configure(&fitted, &self.servo)?;
+        self.doing("optimising a gait with the fitted model");
+        let (best, best_gait, bound, period_s) = self.upload_best(&fitted)?;
+        best.gait_file(&fitted.name).save(&self.draft.join(BEST))?;
+        self.doing("swimming the optimised gait");
+        let track = self.draft.join(BEST_TRACK);
+        self.laboratory
+            .swim(CYCLES, Duration::from_secs_f64(period_s), &track)?;
+        self.doing("comparing");
+        let predicted =
+            predict(&fitted, &best_gait, period_s).map_err(|error| Failure::tried(&error))?;
+        let swum = single_run(
+            &track,
+            &GaitSpec::File {
+                path: self.draft.join(BEST),
+                reversed: false,
+            },
+            period_s,
+            &fitted,
+        )?;
+        self.laboratory.close()?;
+        Ok(Finished {
+            truth: self.truth,
+            start: self.start,
+            fitted,
+            seed: self.seed,
+            fit,
+            best,
+            best_gait,
+            bounds: (bound, self.servo.max_angle),
+            period_s,
+            predicted,
+            swum,
+        })
+    }
+
+    fn doing(&self, what: &str) {
+        self.progress.doing(what);
+        self.progress.step();
+    }
+
+    /// Uploads, swims and tracks the circles, and writes the campaign that names them.
+    fn swim_circles(&mut self) -> Outcome {
+        let reach = self.truth.swimmer.links.middle / 2.0;
+        let mut campaign = format!(
+            "swimmer = \"{START}\"  # its r_s and chi are only starting values\n\n[reflectors]\n\
+             front = {{ point = \"Front\", at = [{reach:?}, 0.0] }}\nback = {{ point = \"Back\", at = [{:?}, 0.0] }}\n",
+            -reach
+        );
+        for degrees in circles(self.servo.max_angle) {
+            self.doing(&format!("swimming circle:{degrees}deg"));
+            let gait = AnyGait::circle(f64::from(degrees).to_radians());
+            let period_s = self.upload(&gait)?;
+            let track = format!("circle-{degrees:03}.csv");
+            self.laboratory.swim(
+                CYCLES,
+                Duration::from_secs_f64(period_s),
+                &self.draft.join(&track),
+            )?;
+            let _ = write!(
+                campaign,
+                "\n[[run]]\ntrack = \"{track}\"\ngait = \"circle:{degrees}deg\"\nperiod_s = {period_s:?}\n"
+            );
+        }
+        Ok(write_atomically(
+            &self.draft.join(CAMPAIGN),
+            campaign.as_bytes(),
+        )?)
+    }
+
+    /// Uploads a gait and says at which period it will be played, s.
+    fn upload(&mut self, gait: &AnyGait) -> Result<f64, UploadFailure> {
+        let table = table_of(gait).map_err(|error| UploadFailure::Other(Failure::tried(&error)))?;
+        let info = self
+            .laboratory
+            .upload(&table)
+            .map_err(|error| match error {
+                LinkError::Refused {
+                    refusal: Refusal::LinksCross { .. } | Refusal::AngleLimit { .. },
+                    ..
+                } => UploadFailure::Shape(error),
+                error => UploadFailure::Other(error.into()),
+            })?;
+        let shortest_s = f64::from(info.min_period_us) * 1e-6;
+        Ok(PERIOD_S.max((1.1 * shortest_s).ceil()))
+    }
+
+    /// The gait of most displacement within the servos' range that the robot accepts: where links would come too close
+    /// or a corner swings over, the bound on the joints is tightened.
+    fn upload_best(&mut self, fitted: &SwimmerFile) -> Outcome<(OptimalGait, AnyGait, f64, f64)> {
+        let mut bound = self.servo.max_angle;
+        loop {
+            let best =
+                displacement(&DisplacementProblem::new(fitted.swimmer).with_max_angle(bound))?;
+            let gait = best.gait().map_err(|error| {
+                Failure::Tried(format!("the optimised gait cannot be swum: {error}"))
+            })?;
+            match self.upload(&gait) {
+                Ok(period_s) => return Ok((best, gait, bound, period_s)),
+                Err(UploadFailure::Shape(_)) if bound - BOUND_STEP > LEAST_BOUND => {
+                    bound -= BOUND_STEP;
+                }
+                Err(failure) => return Err(failure.into()),
+            }
+        }
+    }
+}
+
+/// Why an upload did not go through.
+enum UploadFailure {
+    /// The robot will not take these shapes.
+    Shape(LinkError),
+    Other(Failure),
+}
+
+impl From<UploadFailure> for Failure {
+    fn from(failure: UploadFailure) -> Self {
+        match failure {
+            UploadFailure::Shape(error) => error.into(),
+            UploadFailure::Other(failure) => failure,
+        }
+    }
+}
+
+/// The circles that the servos can do, degrees.
+fn circles(max_angle: f64) -> impl Iterator<Item = u32> {
+    CIRCLES
+        .step_by(CIRCLE_STEP)
+        .filter(move |degrees| f64::from(*degrees).to_radians() <= max_angle)
+}

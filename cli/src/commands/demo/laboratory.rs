@@ -1,0 +1,149 @@
+//! The laboratory of the demo: a robot behind a link, its tank, and cameras that write a track of every play.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use gait_player::GaitTable;
+use host_link::port::{TracedFrame, TracedPort};
+use host_link::{LinkError, Robot};
+use link_protocol::{StateName, TableInfo};
+use swimmer_files::{LinkLogError, LinkLogWriter, ServoFile, SwimmerFile};
+use twin::{TwinPort, WireSpeed, configuration};
+
+use crate::commands::twin::virtual_robot;
+use crate::failure::{Failure, Outcome};
+use crate::interrupt::Interrupt;
+use crate::link_log::link_frame;
+
+type Sink = Box<dyn FnMut(TracedFrame<'_>) + Send>;
+
+/// An upload takes less than a second; this is for a robot that never answers.
+const PATIENCE: Duration = Duration::from_mins(1);
+/// Longest time from the last cycle's end to pulses off.
+const TO_REST: Duration = Duration::from_secs(5);
+
+/// A robot in a virtual tank with cameras over it, reached only through its link; every frame on the link is logged.
+pub(super) struct Laboratory {
+    robot: Robot<TracedPort<TwinPort, Sink>>,
+    log: Arc<Mutex<Log>>,
+    interrupt: Interrupt,
+}
+
+struct Log {
+    writer: Option<LinkLogWriter>,
+    failed: Option<LinkLogError>,
+}
+
+impl Laboratory {
+    /// Switches the robot on and greets it. `truth` is what the tank knows and nobody else.
+    pub(super) fn open(
+        truth: &SwimmerFile,
+        seed: u64,
+        log: &Path,
+        interrupt: Interrupt,
+    ) -> Outcome<Self> {
+        let log = Arc::new(Mutex::new(Log {
+            writer: Some(LinkLogWriter::create(log)?),
+            failed: None,
+        }));
+        let sink: Sink = {
+            let log = Arc::clone(&log);
+            Box::new(move |frame| {
+                log.lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .add(&frame);
+            })
+        };
+        let port = TracedPort::new(
+            TwinPort::new(virtual_robot(truth, seed)?, WireSpeed::robot()),
+            sink,
+        );
+        let robot = Robot::connect(port, seed)?;
+        Ok(Self {
+            robot,
+            log,
+            interrupt,
+        })
+    }
+
+    /// Tells the robot its body, for the pose that it predicts on board.
+    pub(super) fn configure(&mut self, body: &SwimmerFile, servo: &ServoFile) -> Outcome {
+        Ok(self.robot.configure(configuration(&body.swimmer, servo))?)
+    }
+
+    /// Sends a table; the robot checks it.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] where the robot must not play it.
+    pub(super) fn upload(&mut self, table: &GaitTable) -> Result<TableInfo, LinkError> {
+        let interrupt = &self.interrupt;
+        self.robot
+            .upload(table.bytes(), PATIENCE, |_| go_on(interrupt))
+    }
+
+    /// Plays the table while the cameras record, and writes the track.
+    pub(super) fn swim(&mut self, cycles: u32, period: Duration, track: &Path) -> Outcome {
+        self.robot
+            .port_mut()
+            .inner_mut()
+            .device_mut()
+            .start_recording(track)?;
+        let interrupt = self.interrupt.clone();
+        let robot = &mut self.robot;
+        let played = robot
+            .arm(false)
+            .and_then(|()| robot.play(cycles, period, false))
+            .and_then(|()| robot.wait_until_finished(|_| go_on(&interrupt)));
+        match played {
+            Ok(_) => {}
+            Err(LinkError::Interrupted { .. }) => {
+                return Err(Failure::Tried(
+                    "Ctrl-C: the robot was stopped, nothing was kept".into(),
+                ));
+            }
+            Err(error) => return Err(error.into()),
+        }
+        robot
+            .port_mut()
+            .inner_mut()
+            .device_mut()
+            .finish_recording()?;
+        // The robot ramps to neutral; only then does it take orders again.
+        robot.listen(TO_REST, |telemetry| match telemetry {
+            Some(telemetry) if telemetry.state == StateName::Stopped => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        })?;
+        Ok(())
+    }
+
+    /// Lets the robot go and closes the link log.
+    pub(super) fn close(self) -> Outcome {
+        drop(self.robot);
+        let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(error) = log.failed.take() {
+            return Err(error.into());
+        }
+        match log.writer.take() {
+            Some(writer) => Ok(writer.finish()?),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Log {
+    fn add(&mut self, frame: &TracedFrame<'_>) {
+        if let (None, Some(writer)) = (&self.failed, &mut self.writer) {
+            self.failed = writer.write(&link_frame(frame)).err();
+        }
+    }
+}
+
+fn go_on(interrupt: &Interrupt) -> ControlFlow<()> {
+    if interrupt.requested() {
+        ControlFlow::Break(())
+    } else {
+        ControlFlow::Continue(())
+    }
+}

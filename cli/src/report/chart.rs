@@ -1,0 +1,326 @@
+//! One chart in the house style, as inline SVG: thin axes, few ticks, the paper's colours.
+
+use std::ops::Range;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use crate::failure::{Failure, Outcome};
+
+/// Plotters rounds to whole pixels; drawing this many times larger and shrinking in the page keeps curves smooth.
+const SCALE: i32 = 8;
+
+/// Text, axes and the fitted model.
+pub(crate) const INK: RGBColor = RGBColor(0x1d, 0x24, 0x2c);
+/// What was measured.
+pub(crate) const MEASURED: RGBColor = RGBColor(0x1f, 0x6f, 0xb2);
+/// The slender model without a sphere.
+pub(crate) const SLENDER: RGBColor = RGBColor(0x3a, 0x9d, 0x5d);
+/// What the fitted model predicts.
+pub(crate) const PREDICTED: RGBColor = RGBColor(0xd3, 0x5b, 0x1e);
+/// Arcs on a bound, as a broad band under what was played.
+pub(crate) const BOUND: RGBColor = RGBColor(0xd8, 0xb9, 0xe6);
+/// Singular arcs, as a broad band.
+pub(crate) const SINGULAR: RGBColor = RGBColor(0xc3, 0xcd, 0xd6);
+/// A broad band of what was measured, to draw a prediction upon.
+pub(crate) const MEASURED_BAND: RGBColor = RGBColor(0x9d, 0xc6, 0xe8);
+const FAINT: RGBColor = RGBColor(0xe3, 0xe7, 0xeb);
+const AXIS: RGBColor = RGBColor(0x9a, 0xa5, 0xb1);
+
+/// A point of a series, in the units of the axes.
+pub(crate) type Point = (f64, f64);
+
+/// Something drawn on a chart.
+#[derive(Debug, Clone)]
+pub(crate) enum Series {
+    /// A curve; `width` in pixels of the page.
+    Line {
+        points: Vec<Point>,
+        color: RGBColor,
+        width: f64,
+    },
+    /// A curve of dashes.
+    Dashes {
+        points: Vec<Point>,
+        color: RGBColor,
+        width: f64,
+    },
+    /// Filled discs; `radius` in pixels of the page.
+    Dots {
+        points: Vec<Point>,
+        color: RGBColor,
+        radius: f64,
+    },
+    /// Discs with a vertical bar of ± the third number.
+    Bars {
+        points: Vec<(f64, f64, f64)>,
+        color: RGBColor,
+    },
+    /// A short word beside a point.
+    Word {
+        at: Point,
+        text: String,
+        color: RGBColor,
+    },
+}
+
+/// What a chart shows and between which axes.
+#[derive(Debug, Clone)]
+pub(crate) struct Chart {
+    /// Under the horizontal axis, with its unit.
+    pub(crate) x_label: String,
+    /// Beside the vertical axis, with its unit.
+    pub(crate) y_label: String,
+    /// Width and height in pixels of the page.
+    pub(crate) size: (i32, i32),
+    /// One unit is as long up as it is across.
+    pub(crate) equal_axes: bool,
+    /// Drawn in this order.
+    pub(crate) series: Vec<Series>,
+}
+
+impl Chart {
+    /// Draws the chart.
+    ///
+    /// # Errors
+    /// [`Failure::Tried`] when the drawing library gives up.
+    pub(crate) fn svg(&self) -> Outcome<String> {
+        let mut text = String::new();
+        {
+            let size = (self.size.0 * SCALE, self.size.1 * SCALE);
+            let area =
+                SVGBackend::with_string(&mut text, (size.0.unsigned_abs(), size.1.unsigned_abs()));
+            let area = area.into_drawing_area();
+            self.draw(&area).map_err(|reason| {
+                Failure::Tried(format!(
+                    "cannot draw the chart of {} over {}: {reason}",
+                    self.y_label, self.x_label
+                ))
+            })?;
+        }
+        Ok(text)
+    }
+
+    fn draw(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), String> {
+        let said = |error: &dyn std::fmt::Display| error.to_string();
+        let label_width = 58 * SCALE;
+        let label_height = 42 * SCALE;
+        let (top, right) = (10 * SCALE, 14 * SCALE);
+        let inside = (
+            self.size.0 * SCALE - label_width - right,
+            self.size.1 * SCALE - label_height - top,
+        );
+        let (x_range, y_range) = self.ranges(inside);
+        let mut chart = ChartBuilder::on(area)
+            .margin_top(top)
+            .margin_right(right)
+            .x_label_area_size(label_height)
+            .y_label_area_size(label_width)
+            .build_cartesian_2d(x_range.clone(), y_range.clone())
+            .map_err(|error| said(&error))?;
+        let text = |size: i32| ("sans-serif", size * SCALE).into_font().color(&INK);
+        chart
+            .configure_mesh()
+            .x_labels(7)
+            .y_labels(6)
+            .x_label_formatter(&label_format(&x_range, 7))
+            .y_label_formatter(&label_format(&y_range, 6))
+            .max_light_lines(0)
+            .bold_line_style(ShapeStyle {
+                color: FAINT.into(),
+                filled: false,
+                stroke_width: SCALE.unsigned_abs(),
+            })
+            .axis_style(ShapeStyle {
+                color: AXIS.into(),
+                filled: false,
+                stroke_width: SCALE.unsigned_abs(),
+            })
+            .set_all_tick_mark_size(4 * SCALE)
+            .label_style(text(16))
+            .axis_desc_style(text(17))
+            .x_desc(self.x_label.as_str())
+            .y_desc(self.y_label.as_str())
+            .draw()
+            .map_err(|error| said(&error))?;
+        for series in &self.series {
+            match series {
+                Series::Line {
+                    points,
+                    color,
+                    width,
+                } => {
+                    chart
+                        .draw_series(LineSeries::new(
+                            points.iter().copied(),
+                            stroke(*color, *width),
+                        ))
+                        .map_err(|error| said(&error))?;
+                }
+                Series::Dashes {
+                    points,
+                    color,
+                    width,
+                } => {
+                    let dashes = DashedLineSeries::new(
+                        points.iter().copied(),
+                        5 * SCALE,
+                        4 * SCALE,
+                        stroke(*color, *width),
+                    );
+                    chart.draw_series(dashes).map_err(|error| said(&error))?;
+                }
+                Series::Dots {
+                    points,
+                    color,
+                    radius,
+                } => {
+                    let discs = points
+                        .iter()
+                        .map(|point| Circle::new(*point, pixels(*radius), color.filled()));
+                    chart.draw_series(discs).map_err(|error| said(&error))?;
+                }
+                Series::Bars { points, color } => {
+                    let bars = points.iter().map(|&(x, y, half)| {
+                        PathElement::new([(x, y - half), (x, y + half)], stroke(*color, 1.5))
+                    });
+                    chart.draw_series(bars).map_err(|error| said(&error))?;
+                    let discs = points
+                        .iter()
+                        .map(|&(x, y, _)| Circle::new((x, y), pixels(3.6), color.filled()));
+                    chart.draw_series(discs).map_err(|error| said(&error))?;
+                }
+                Series::Word { at, text, color } => {
+                    let style = ("sans-serif", 15 * SCALE).into_font().color(color);
+                    let word = EmptyElement::at(*at)
+                        + Text::new(text.clone(), (6 * SCALE, -8 * SCALE), style);
+                    chart
+                        .draw_series(std::iter::once(word))
+                        .map_err(|error| said(&error))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The axes' ranges: all points with some air, and with equal units where asked.
+    fn ranges(&self, inside: (i32, i32)) -> (Range<f64>, Range<f64>) {
+        let points: Vec<Point> = self.series.iter().flat_map(Series::extent).collect();
+        let mut x = with_air(points.iter().map(|point| point.0));
+        let mut y = with_air(points.iter().map(|point| point.1));
+        if self.equal_axes {
+            let (width, height) = (f64::from(inside.0), f64::from(inside.1));
+            let unit = ((x.end - x.start) / width).max((y.end - y.start) / height);
+            x = widened(&x, unit * width);
+            y = widened(&y, unit * height);
+        }
+        (x, y)
+    }
+}
+
+impl Series {
+    fn extent(&self) -> Vec<Point> {
+        match self {
+            Self::Line { points, .. } | Self::Dashes { points, .. } | Self::Dots { points, .. } => {
+                points.clone()
+            }
+            Self::Bars { points, .. } => points
+                .iter()
+                .flat_map(|&(x, y, half)| [(x, y - half), (x, y + half)])
+                .collect(),
+            Self::Word { at, .. } => vec![*at],
+        }
+    }
+}
+
+fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
+    color.stroke_width(pixels(width).unsigned_abs())
+}
+
+#[allow(clippy::cast_possible_truncation)] // A few hundred at most.
+fn pixels(page_pixels: f64) -> i32 {
+    (page_pixels * f64::from(SCALE)).round() as i32
+}
+
+fn with_air(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let (low, high) = values
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+    if low > high {
+        return 0.0..1.0;
+    }
+    let air = if high > low {
+        0.05 * (high - low)
+    } else {
+        high.abs().max(1.0) * 0.1
+    };
+    low - air..high + air
+}
+
+fn widened(range: &Range<f64>, length: f64) -> Range<f64> {
+    let middle = f64::midpoint(range.start, range.end);
+    middle - 0.5 * length..middle + 0.5 * length
+}
+
+/// Just enough decimals to tell neighbouring ticks apart.
+fn label_format(range: &Range<f64>, ticks: u8) -> impl Fn(&f64) -> String {
+    let step = (range.end - range.start) / f64::from(ticks);
+    let decimals = if step > 0.0 {
+        (-step.log10()).ceil().clamp(0.0, 6.0)
+    } else {
+        0.0
+    };
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // Between 0 and 6.
+    let decimals = decimals as usize;
+    move |value: &f64| {
+        let zero = value.abs() < 1e-9 * step.abs().max(f64::MIN_POSITIVE);
+        format!("{:.decimals$}", if zero { 0.0 } else { *value }).replace('-', "\u{2212}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chart(points: Vec<Point>) -> Chart {
+        Chart {
+            x_label: "x [mm]".into(),
+            y_label: "y [mm]".into(),
+            size: (400, 300),
+            equal_axes: true,
+            series: vec![Series::Line {
+                points,
+                color: INK,
+                width: 1.5,
+            }],
+        }
+    }
+
+    #[test]
+    fn ranges_hold_every_point_and_keep_units_equal() {
+        let (x, y) = chart(vec![(0.0, 0.0), (10.0, 1.0)]).ranges((300, 200));
+        assert!(x.start < 0.0 && x.end > 10.0 && y.start < 0.0 && y.end > 1.0);
+        assert!(((x.end - x.start) / 300.0 - (y.end - y.start) / 200.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn nothing_to_draw_is_still_a_chart() {
+        for points in [vec![], vec![(f64::NAN, 1.0)], vec![(2.0, 2.0)]] {
+            let svg = chart(points).svg().unwrap();
+            assert!(
+                svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"),
+                "{svg}"
+            );
+        }
+    }
+
+    #[test]
+    fn labels_tell_ticks_apart() {
+        let format = label_format(&(0.0..0.7), 7);
+        assert_eq!(format(&0.1), "0.1");
+        assert_eq!(format(&-0.1), "\u{2212}0.1");
+        assert_eq!(label_format(&(0.0..700.0), 7)(&100.0), "100");
+    }
+}

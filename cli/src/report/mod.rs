@@ -1,0 +1,115 @@
+//! The one-page report of a round through the whole loop: what was measured, fitted, predicted and tracked.
+
+mod chart;
+mod figures;
+mod page;
+
+pub(crate) use page::page;
+
+/// Everything that the report shows, in SI units; the page turns them into millimetres and degrees.
+#[derive(Debug, Clone)]
+pub(crate) struct Report {
+    /// Name of the swimmer in the tank.
+    pub(crate) swimmer: String,
+    /// Seed of cameras and link.
+    pub(crate) seed: u64,
+    /// How long a cycle took, in seconds.
+    pub(crate) period_s: f64,
+    /// Sphere radius and χ.
+    pub(crate) parameters: Vec<Parameter>,
+    /// Level of their intervals, as 0.95.
+    pub(crate) level: f64,
+    /// The paper's weighted error of the fit.
+    pub(crate) rmse: f64,
+    /// Which form of tangential drag the fit rests on.
+    pub(crate) c_t_form: String,
+    /// The circles that the fit saw.
+    pub(crate) circles: Vec<MeasuredCircle>,
+    /// Circles of many amplitudes swum by the fitted model.
+    pub(crate) fitted_curve: Vec<ModelCircle>,
+    /// The same by the model that the fit started from.
+    pub(crate) start_curve: Vec<ModelCircle>,
+    /// The reflectors' middle during one run, cleaned.
+    pub(crate) track: Track,
+    /// The optimised gait.
+    pub(crate) gait: GaitPicture,
+    /// The optimised gait as the cameras saw it swum.
+    pub(crate) swum: Track,
+    /// The same as the fitted model predicts it.
+    pub(crate) predicted: Track,
+    /// Predicted displacement of one cycle of the optimised gait, m.
+    pub(crate) displacement_predicted_m: f64,
+    /// Tracked displacement of one cycle, m, with its deviation between cycles.
+    pub(crate) displacement_tracked_m: (f64, f64),
+    /// The bound on the joints under which the robot took the gait, and the one of its servos, rad.
+    pub(crate) bounds: (f64, f64),
+    /// What lies in the folder beside the report: file name and what it holds.
+    pub(crate) files: Vec<(String, String)>,
+}
+
+/// One fitted parameter.
+#[derive(Debug, Clone)]
+pub(crate) struct Parameter {
+    /// Name as in the paper.
+    pub(crate) name: String,
+    /// `mm` or nothing; the values are already in it.
+    pub(crate) unit: &'static str,
+    /// Where the fit started.
+    pub(crate) start: f64,
+    /// What it found.
+    pub(crate) fitted: f64,
+    /// Its interval.
+    pub(crate) interval: [f64; 2],
+    /// What the tank knows.
+    pub(crate) truth: f64,
+}
+
+/// What the cameras saw of one circle, means over its cycles and their deviations.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MeasuredCircle {
+    /// Amplitude, rad.
+    pub(crate) amplitude: f64,
+    /// Cycles used.
+    pub(crate) cycles: usize,
+    /// X and its deviation, m.
+    pub(crate) x: (f64, f64),
+    /// ΔY and its deviation, m.
+    pub(crate) delta_y: (f64, f64),
+    /// Δθ and its deviation, rad.
+    pub(crate) delta_theta: (f64, f64),
+}
+
+/// One circle swum by a model.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ModelCircle {
+    /// Amplitude, rad.
+    pub(crate) amplitude: f64,
+    /// X, m.
+    pub(crate) x: f64,
+    /// ΔY, m.
+    pub(crate) delta_y: f64,
+    /// Δθ, rad.
+    pub(crate) delta_theta: f64,
+}
+
+/// Poses of the middle link over time; x along the heading at the symmetric shape.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Track {
+    /// What was played.
+    pub(crate) label: String,
+    /// Seconds, x and y in metres, heading in radians.
+    pub(crate) poses: Vec<[f64; 4]>,
+}
+
+/// A gait in the plane of the joint angles.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct GaitPicture {
+    /// The whole cycle, arc by arc: kind and shapes.
+    pub(crate) arcs: Vec<(String, Vec<[f64; 2]>)>,
+    /// The knots that were uploaded, thinned.
+    pub(crate) set_points: Vec<[f64; 2]>,
+    /// What the joints really make of them.
+    pub(crate) played: Vec<[f64; 2]>,
+    /// The bound on the joints, rad.
+    pub(crate) bound: f64,
+}

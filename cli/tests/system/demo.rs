@@ -1,0 +1,116 @@
+//! The whole loop through the binary: what it must recover, and what it must leave behind.
+
+use std::path::Path;
+
+use crate::binary::{number, swimmer_in};
+
+/// Runs the demo and holds it to its promise: both parameters and the prediction within 3 %.
+fn demo(folder: &Path, words: &[&str], truth: (f64, f64)) -> serde_json::Value {
+    let ran =
+        swimmer_in(folder, &[&["demo", "-o", "out", "--json"], words].concat()).with_status(0);
+    let found = ran.json();
+    let fit = &found["fit"];
+    let (radius, chi) = (number(fit, "sphere_radius_m"), number(fit, "chi"));
+    let (predicted, tracked) = (
+        number(&found, "displacement_predicted_m"),
+        number(&found, "displacement_tracked_m"),
+    );
+    eprintln!("{words:?}: r_s {radius}, χ {chi}, predicted {predicted} m, tracked {tracked} m");
+    assert!(
+        (radius - truth.0).abs() <= 0.03 * truth.0,
+        "r_s = {radius} m instead of {} m",
+        truth.0
+    );
+    assert!(
+        (chi - truth.1).abs() <= 0.03 * truth.1,
+        "χ = {chi} instead of {}",
+        truth.1
+    );
+    assert!(
+        (predicted / tracked - 1.0).abs() <= 0.03,
+        "predicted {predicted} m, tracked {tracked} m"
+    );
+    assert!(predicted > 0.0);
+    found
+}
+
+#[test]
+fn the_papers_robot_and_what_the_demo_leaves_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = demo(folder.path(), &[], (0.0692, 3.598));
+    let out = folder.path().join("out");
+    let report = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report.starts_with("<!doctype html>") && report.matches("<svg").count() >= 6);
+    assert!(
+        !report.contains("http://") || !report.contains("src="),
+        "the report needs nothing from outside"
+    );
+    assert_eq!(found["report"], "out/report.html");
+    for file in ["campaign.toml", "fitted.toml", "start.toml", "link.mcap"] {
+        assert!(out.join(file).is_file(), "{file} is missing");
+    }
+    assert!(Path::new(found["gait"].as_str().unwrap()).is_relative());
+    assert_eq!(
+        std::fs::read_dir(folder.path()).unwrap().count(),
+        1,
+        "nothing beside the folder"
+    );
+
+    // The campaign reproduces the fit.
+    let again = swimmer_in(&out, &["calibrate", "campaign.toml", "--json"])
+        .with_status(0)
+        .json();
+    for key in ["sphere_radius_m", "chi", "rmse"] {
+        let (one, two) = (number(&found["fit"], key), number(&again, key));
+        assert!(
+            (one - two).abs() <= 1e-9 * one.abs(),
+            "{key}: {one} in the demo, {two} from its campaign"
+        );
+    }
+}
+
+#[test]
+fn another_seed_and_another_swimmer() {
+    let folder = tempfile::tempdir().unwrap();
+    demo(folder.path(), &["--seed", "20"], (0.0692, 3.598));
+    std::fs::remove_dir_all(folder.path().join("out")).unwrap();
+    let other = "name = \"small float\"\n[links]\nmiddle = 0.10\nside = 0.12\n[drag]\nchi = 2.6\n\
+                 c_t = { half_thickness = 0.0025 }\n[sphere]\nradius = 0.035\n\
+                 [servo]\nmax_angle = 2.4\nmax_rate = 3.0\ndead_band = 0.01\nslope_rad_per_us = 0.0274\ncentre_us = 1500.0\n";
+    std::fs::write(folder.path().join("other.toml"), other).unwrap();
+    demo(folder.path(), &["--swimmer", "other.toml"], (0.035, 2.6));
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = crate::binary::command(folder.path(), &["demo", "-o", "out"])
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let patience = std::time::Instant::now() + std::time::Duration::from_secs(20);
+    // A track under way shows that the loop is.
+    let begun = || {
+        let drafts = std::fs::read_dir(folder.path()).unwrap().flatten();
+        drafts
+            .flat_map(|draft| {
+                std::fs::read_dir(draft.path())
+                    .into_iter()
+                    .flatten()
+                    .flatten()
+            })
+            .any(|file| file.file_name().to_string_lossy().contains("circle-"))
+    };
+    while !begun() {
+        assert!(
+            std::time::Instant::now() < patience,
+            "the demo began nothing"
+        );
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    crate::binary::interrupt(&child);
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
