@@ -107,9 +107,9 @@ impl TwinConfig {
         Brain::new(BrainConfig {
             identity: Identity {
                 firmware: FirmwareVersion {
-                    major: 0,
-                    minor: 1,
-                    patch: 0,
+                    major: env!("CARGO_PKG_VERSION_MAJOR").parse().unwrap_or(0),
+                    minor: env!("CARGO_PKG_VERSION_MINOR").parse().unwrap_or(0),
+                    patch: env!("CARGO_PKG_VERSION_PATCH").parse().unwrap_or(0),
                     commit: [0; 8],
                 },
                 board: Board::Twin,

@@ -39,36 +39,35 @@ impl Session {
 
     /// When [`poll`](Self::poll) has something to do next, if no bytes come before.
     pub fn next_deadline(&self) -> Option<Duration> {
-        let mut deadlines = Vec::with_capacity(8);
-        let open = match &self.link {
-            Link::Greeting(greeting) => {
-                deadlines.push(greeting.next_try);
-                false
-            }
-            Link::Open(_) => {
-                deadlines.push(self.last_sent + KEEP_ALIVE);
-                true
-            }
-            Link::Closed => false,
+        let (greeting, lease, open) = match &self.link {
+            Link::Greeting(greeting) => (Some(greeting.next_try), None, false),
+            Link::Open(_) => (None, Some(self.last_sent + KEEP_ALIVE), true),
+            Link::Closed => (None, None, false),
         };
-        match &self.pending {
-            Some(pending) => deadlines.push(pending.next_try),
-            None if self.busy > 0 && open => deadlines.push(self.hold_until),
-            None => {}
-        }
-        if let Some(upload) = &self.upload {
-            deadlines.push(upload.deadline);
-            deadlines.push(self.last_heard + LONGEST_SILENCE);
-            if open && upload.phase == UploadPhase::Chunks {
-                if let Some(sent) = upload.window.oldest() {
-                    deadlines.push(sent + self.trip.wait(upload.window.timeouts + 1));
-                }
-                if upload.window.next_piece().is_some() && self.window_has_room() {
-                    deadlines.push(self.line_free);
-                }
+        let request = match &self.pending {
+            Some(pending) => Some(pending.next_try),
+            None if self.busy > 0 && open => Some(self.hold_until),
+            None => None,
+        };
+        let upload = self
+            .upload
+            .as_ref()
+            .map(|upload| upload.deadline.min(self.last_heard + LONGEST_SILENCE));
+        let (repeat, piece) = match &self.upload {
+            Some(upload) if open && upload.phase == UploadPhase::Chunks => {
+                let repeat = upload
+                    .window
+                    .oldest()
+                    .map(|sent| sent + self.trip.wait(upload.window.timeouts + 1));
+                let sendable = upload.window.next_piece().is_some() && self.window_has_room();
+                (repeat, sendable.then_some(self.line_free))
             }
-        }
-        deadlines.into_iter().min()
+            _ => (None, None),
+        };
+        [greeting, lease, request, upload, repeat, piece]
+            .into_iter()
+            .flatten()
+            .min()
     }
 
     /// Sends a first greeting under a new nonce.
