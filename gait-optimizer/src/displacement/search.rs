@@ -50,9 +50,11 @@ pub(crate) struct Search<'a> {
 /// Places looked at on each trunk, and how near to a fold the search looks.
 const LOOKS: usize = 40;
 const COARSE: StepControl = StepControl {
-    tolerance: 1e-6,
-    longest: 0.5,
+    tolerance: 1e-4,
+    longest: 0.7,
 };
+/// |λ₄| over L from which on the fine tolerance takes over.
+const NEAR: f64 = 1e-3;
 const FINE: StepControl = StepControl {
     tolerance: 1e-13,
     longest: 0.3,
@@ -161,37 +163,48 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Regula falsi (Illinois) on `λ₄(t_f)`, at the fine tolerance. None at a jump.
+    /// The root of `λ₄(t_f)` in a bracket of the coarse scan: regula falsi (Illinois) at the coarse tolerance, which the
+    /// bracket holds for, then secants at the fine one. None at a jump.
     fn root(&self, trunk: &Trunk, a: (f64, f64), b: (f64, f64)) -> Option<f64> {
         let (mut a, mut b) = (a, b);
-        let mut best = if a.1.abs() < b.1.abs() { a } else { b };
-        for step in 0..60 {
+        for step in 0..40 {
             let secant = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
             let p = if step % 6 == 5 || !secant.is_finite() {
                 0.5 * (a.0 + b.0)
             } else {
                 secant
             };
-            // The bracket came from the coarse scan: the first fine values may fall on the same side.
-            let lambda4 = self.miss(trunk, p, FINE)?;
-            if lambda4.abs() < best.1.abs() {
-                best = (p, lambda4);
-            }
-            if lambda4.abs() < 1e-15 || (b.0 - a.0).abs() < 1e-15 * (1.0 + p.abs()) {
-                break;
-            }
-            let settled = (p - a.0).abs().min((p - b.0).abs()) < 1e-15;
+            let lambda4 = self.miss(trunk, p, COARSE)?;
             if lambda4.signum() * b.1.signum() < 0.0 {
                 a = b;
             } else {
                 a.1 *= 0.5;
             }
             b = (p, lambda4);
-            if settled {
-                break;
+            if lambda4.abs() < NEAR {
+                return self.polished(trunk, p);
             }
         }
-        (best.1.abs() < 1e-10).then_some(best.0)
+        None
+    }
+
+    /// Secant method at the fine tolerance from a place near a root.
+    fn polished(&self, trunk: &Trunk, near: f64) -> Option<f64> {
+        let mut before = (near, self.miss(trunk, near, FINE)?);
+        let mut here = near + 1e-5;
+        for _ in 0..12 {
+            let lambda4 = self.miss(trunk, here, FINE)?;
+            let next = here - lambda4 * (here - before.0) / (lambda4 - before.1);
+            if lambda4.abs() < 1e-14 || !next.is_finite() {
+                return (lambda4.abs() < 1e-10).then_some(here);
+            }
+            if (next - near).abs() > 0.05 {
+                return None;
+            }
+            before = (here, lambda4);
+            here = next;
+        }
+        (before.1.abs() < 1e-10).then_some(before.0)
     }
 
     /// The candidate that leaves a trunk at p.
