@@ -172,11 +172,13 @@ impl Clock {
     pub(crate) fn find(track: &PoseTrack, commanded_s: f64) -> Result<Self, CycleError> {
         let bins = clock::bins(track, commanded_s);
         let active_s = clock::active(&bins, track.report.distance_m).ok_or(CycleError::NoMotion)?;
+        // Motion is looked for over four hundredths of a cycle: the last of them may be rest.
+        let until = active_s.1 - 0.04 * commanded_s;
         let within = |from: f64| {
             bins.iter()
                 .flatten()
                 .copied()
-                .filter(|bin| bin.time_s >= from && bin.time_s <= active_s.1)
+                .filter(|bin| bin.time_s >= from && bin.time_s <= until)
                 .collect::<Vec<Bin>>()
         };
         let after_start = within(active_s.0 + commanded_s);

@@ -1,6 +1,6 @@
 //! From tracked points to poses of the middle link.
 //!
-//! 1. [`follow`] picks the two reflectors in every row out of all measured points: labels are only hints, the distance
+//! 1. Following picks the two reflectors in every row out of all measured points: labels are only hints, the distance
 //!    between the reflectors and constant-velocity prediction decide.
 //! 2. [`Plane`] is fitted to all of their positions and gives the tank's x and y.
 //! 3. Two points in the plane and their places on the link give the link's centre and heading.

@@ -270,7 +270,11 @@ mod tests {
                 (cycle.x_m - stroke.displacement.x).abs() < 1e-6 * stroke.displacement.x.abs(),
                 "{cycle:?} {stroke:?}"
             );
-            assert!((cycle.y_m - stroke.displacement.y).abs() < 1e-8);
+            // The first heading is the harmonic curve's: Y is off by X times what five harmonics miss of it.
+            assert!(
+                (cycle.y_m - stroke.displacement.y).abs() < 1e-4 * stroke.displacement.x.abs(),
+                "{cycle:?}"
+            );
             assert!((cycle.delta_y_m / stroke.delta_y - 1.0).abs() < 2e-3);
             assert!((cycle.delta_theta_rad / stroke.delta_theta - 1.0).abs() < 2e-3);
         }

@@ -85,7 +85,9 @@ pub(super) fn active(bins: &[Option<Bin>], lever: f64) -> Option<(f64, f64)> {
     let motions: Vec<Option<f64>> = (0..bins.len()).map(motion).collect();
     let mut sorted: Vec<f64> = motions.iter().copied().flatten().collect();
     sorted.sort_by(f64::total_cmp);
-    let threshold = 0.1 * sorted.get(sorted.len() * 9 / 10)?;
+    let quick = *sorted.get(sorted.len() * 9 / 10)?;
+    // A tenth of quick motion, or three times what noise feigns, where that is more.
+    let threshold = (3.0 * feigned(bins, lever)).clamp(0.1 * quick, 0.4 * quick);
     let rest = (BINS / 4.0) as usize;
     let mut best: Option<(usize, usize)> = None;
     let mut run: Option<(usize, usize)> = None;
@@ -106,6 +108,28 @@ pub(super) fn active(bins: &[Option<Bin>], lever: f64) -> Option<(f64, f64)> {
     }
     let (start, end) = best?;
     Some((at(start)?.time_s, at(end)?.time_s))
+}
+
+/// The motion that noise feigns between two bins \[m\], from second differences, which smooth motion does not show in.
+fn feigned(bins: &[Option<Bin>], lever: f64) -> f64 {
+    let deviation = |value: fn(&Bin) -> f64| {
+        let triples = bins.windows(3).filter_map(|w| match w {
+            [Some(a), Some(b), Some(c)] => Some((value(a) - 2.0 * value(b) + value(c)).abs()),
+            _ => None,
+        });
+        let mut differences: Vec<f64> = triples.collect();
+        differences.sort_by(f64::total_cmp);
+        // Median of a normal variable's size over its deviation, and six variances in a second difference.
+        differences
+            .get(differences.len() / 2)
+            .map_or(0.0, |median| median / 0.6745 / 6f64.sqrt())
+    };
+    let (x, y, theta) = (
+        deviation(|b| b.x),
+        deviation(|b| b.y),
+        deviation(|b| b.theta),
+    );
+    2f64.sqrt() * (x.hypot(y) + lever * theta)
 }
 
 /// The period \[s\], refined, and whether the search ended at its border.

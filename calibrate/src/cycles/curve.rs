@@ -7,8 +7,9 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_model::Pose;
 
-/// Harmonics of a cycle.
-pub(crate) const HARMONICS: usize = 8;
+/// Harmonics of a cycle: enough for the shapes of strokes, few enough that noise of 1 mm in 200 samples widens a range of 20 mm
+/// by less than 0.5 %.
+pub(crate) const HARMONICS: usize = 5;
 /// Mean, drift, and cosine and sine of each harmonic.
 const TERMS: usize = 2 + 2 * HARMONICS;
 /// Samples of a predicted cycle.

@@ -39,6 +39,8 @@ pub(super) struct Row {
     pub(super) back: Vector3<f64>,
     /// Labels agree (`true`), contradict, or say nothing.
     labels: Option<bool>,
+    /// How far both were from their predicted places \[m\].
+    miss: Option<f64>,
 }
 
 pub(super) struct Followed {
@@ -54,8 +56,11 @@ pub(super) struct Followed {
 const SMOOTHING_S: f64 = 0.2;
 /// Longest gap before a speed is known \[s\].
 const FIRST_GAP_S: f64 = 1.0;
-/// How far a reflector may be from its predicted place, over the distance of both: less than half.
-const REACH: f64 = 0.45;
+/// How far both reflectors together may be from their predicted places, over their distance, before it is known how far
+/// they usually are; and never further than this in the end, or they could be exchanged.
+const REACH: (f64, f64) = (0.1, 0.45);
+/// Limits of the second pass over the medians of the first: six standard deviations of a distance, ten of a prediction.
+const TIGHTER: (f64, f64) = (9.0, 8.0);
 /// More candidates than this in a row are cut off: no recording has them, and the search is quadratic.
 const MOST_CANDIDATES: usize = 64;
 
@@ -132,6 +137,7 @@ struct Search<'a> {
     backs: Vec<usize>,
     distance: f64,
     tolerance: f64,
+    reach: f64,
 }
 
 /// A candidate of a row: which point, and where.
@@ -149,6 +155,20 @@ impl Search<'_> {
 
     fn fits(&self, a: &Vector3<f64>, b: &Vector3<f64>) -> bool {
         ((a - b).norm() - self.distance).abs() < self.tolerance
+    }
+
+    /// Limits from the distances and the misses of predictions that were met.
+    fn tighten(&mut self, rows: &[Row]) {
+        let distances = rows.iter().map(|row| (row.front - row.back).norm());
+        let Some(distance) = median(distances.clone()) else {
+            return;
+        };
+        let deviation = median(distances.map(|d| (d - distance).abs())).unwrap_or(0.0);
+        let miss = median(rows.iter().filter_map(|row| row.miss)).unwrap_or(0.0);
+        self.distance = distance;
+        self.tolerance =
+            (TIGHTER.0 * deviation).clamp(2e-3 * distance, self.tolerance.max(2e-3 * distance));
+        self.reach = (TIGHTER.1 * miss).clamp(5e-3 * distance, REACH.0 * distance);
     }
 
     /// Whether the labels of a chosen pair agree with the choice.
@@ -234,7 +254,10 @@ pub(super) fn follow(
     if !(expected_m.is_finite() && expected_m > 0.0) {
         return Err(PoseError::SamePlace);
     }
-    let search = prepare(track, reflectors, expected_m, options)?;
+    let mut search = prepare(track, reflectors, expected_m, options)?;
+    // First with wide limits, then with limits that fit this recording's noise: a ghost must not pass for a lost reflector.
+    let (rows, _) = walk(&search);
+    search.tighten(&rows);
     let (rows, starts) = walk(&search);
     if rows.is_empty() {
         return Err(PoseError::NoPair {
@@ -283,6 +306,7 @@ fn prepare<'a>(
         backs,
         distance: expected_m,
         tolerance,
+        reach: REACH.0 * expected_m,
     };
     if !search.fronts.is_empty() && !search.backs.is_empty() {
         if let Some(measured_m) = labelled_distance(&search) {
@@ -309,9 +333,13 @@ fn labelled_distance(search: &Search<'_>) -> Option<f64> {
             .find_map(|i| search.track.points.get(*i)?.position(row))
     };
     let distance = |row| Some((first(&search.fronts, row)? - first(&search.backs, row)?).norm());
-    let mut distances: Vec<f64> = (0..search.track.frames()).filter_map(distance).collect();
-    let middle = distances.len() / 2;
-    (!distances.is_empty()).then(|| *distances.select_nth_unstable_by(middle, f64::total_cmp).1)
+    median((0..search.track.frames()).filter_map(distance))
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// Without names: the two points that are most often the right distance apart serve as labels, in either order.
@@ -364,18 +392,31 @@ fn walk(search: &Search<'_>) -> (Vec<Row>, Vec<usize>) {
             FIRST_GAP_S
         };
         state = state.filter(|(then, ..)| time - then <= longest.max(2.5 / search.track.rate_hz));
-        let reach = (REACH * search.distance).powi(2);
         let found = match &state {
             None => search.begin(&candidates),
             Some((then, front, back)) => {
+                // Beyond the usual step from frame to frame, what a turn at top speed could add.
+                let speed = if top_speed > 0.0 {
+                    top_speed
+                } else {
+                    search.distance / FIRST_GAP_S
+                };
+                let blind = (time - then - 1.5 / search.track.rate_hz).max(0.0);
+                let reach = (search.reach + 2.0 * speed * blind).min(REACH.1 * search.distance);
                 let (front, back) = (front.after(time - then), back.after(time - then));
                 search.best(&candidates, |f, b| {
-                    let (df, db) = ((f.1 - front).norm_squared(), (b.1 - back).norm_squared());
-                    (df < reach && db < reach).then_some(df + db)
+                    let miss = (f.1 - front).norm_squared() + (b.1 - back).norm_squared();
+                    (miss < reach * reach).then_some(miss)
                 })
             }
         };
         let Some((front, back)) = found else { continue };
+        let miss = state.as_ref().map(|(then, f, b)| {
+            let dt = time - then;
+            (front.1 - f.after(dt))
+                .norm()
+                .hypot((back.1 - b.after(dt)).norm())
+        });
         state = Some(match state {
             None => {
                 starts.push(rows.len());
@@ -396,6 +437,7 @@ fn walk(search: &Search<'_>) -> (Vec<Row>, Vec<usize>) {
             front: front.1,
             back: back.1,
             labels: search.labels(front.0, back.0),
+            miss,
         });
     }
     (rows, starts)

@@ -1,0 +1,377 @@
+//! Poses and cycles from recordings with noise, drop-outs, exchanged labels and ghosts, against the truth that made them.
+
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+
+mod tank;
+
+use calibrate::{
+    CalibrateError, CycleError, CycleWarning, LeftOut, PoseError, PoseOptions, calibrate_run, poses,
+};
+use nalgebra::Vector2;
+use swimmer_files::{AnyGait, PointName};
+use swimmer_model::{Model, Pose, Swimmer, Tolerance, swim};
+use tank::{Tank, known};
+
+fn robot(amplitude: f64) -> Tank {
+    Tank::new(Swimmer::robot(), AnyGait::circle(amplitude))
+}
+
+fn file() -> swimmer_files::SwimmerFile {
+    known(&Swimmer::robot(), None)
+}
+
+/// Largest position and heading error of poses that were seen or bridged.
+fn errors(tank: &Tank, track: &calibrate::PoseTrack) -> (f64, f64) {
+    let truth = tank.poses();
+    let mut worst = (0.0_f64, 0.0_f64);
+    for sample in &track.samples {
+        let pose: &Pose<f64> = &truth[(sample.time_s * tank.rate_hz).round() as usize];
+        let turn = (sample.pose.theta - pose.theta + 1.0).rem_euclid(std::f64::consts::TAU) - 1.0;
+        worst = (
+            worst
+                .0
+                .max((sample.pose.position() - pose.position()).norm()),
+            worst.1.max(turn.abs()),
+        );
+    }
+    worst
+}
+
+#[test]
+fn poses_are_recovered_through_noise_ghosts_and_exchanged_labels() {
+    let swaps = vec![(700, 40), (1500, 900), (4000, 3)];
+    let gaps = vec![(900, 8), (2600, 25)];
+    let tank = Tank {
+        swaps,
+        gaps,
+        dropout: 0.02,
+        ..robot(1.2)
+    };
+    let run = tank.run();
+    let track = poses(&run.track, &tank.named(), &PoseOptions::default()).unwrap();
+    let (place, heading) = errors(&tank, &track);
+    // Five standard deviations: 0.3 mm each, heading √2 · 0.3/71.
+    assert!(
+        place < 5.0 * 3e-4 && heading < 5.0 * 6e-3,
+        "{place} {heading}"
+    );
+    assert_eq!((track.report.swaps_repaired, track.report.segments), (3, 1));
+    assert!(track.report.ghosts_rejected > 500 && track.order_known);
+    assert!(
+        (track.report.distance_m - 0.071).abs() < 1e-4
+            && (track.report.distance_sd_m / 4.2e-4 - 1.0).abs() < 0.1
+    );
+    assert!(track.warnings.is_empty(), "{:?}", track.warnings);
+    assert_eq!(track.plane.map, "(x, y) = (Z, X), normal Y");
+    // Short gaps are bridged and marked, the long one is not.
+    let filled: Vec<f64> = track
+        .samples
+        .iter()
+        .filter(|s| s.filled)
+        .map(|s| s.time_s)
+        .collect();
+    let bridged = |from: f64, to: f64| {
+        filled
+            .iter()
+            .filter(|t| **t > from - 0.005 && **t < to - 0.005)
+            .count()
+    };
+    assert_eq!((bridged(9.0, 9.08), bridged(26.0, 26.25)), (8, 0));
+    assert_eq!(track.seen().count(), track.report.followed);
+}
+
+#[test]
+fn labels_wrong_for_most_of_the_time_win_and_that_is_said_nowhere_else() {
+    // Labels are the only thing that tells the ends apart: where they are wrong throughout, so is the heading, by half a turn.
+    let tank = Tank {
+        swaps: vec![(0, 100_000)],
+        ..robot(1.2)
+    };
+    let track = poses(&tank.run().track, &tank.named(), &PoseOptions::default()).unwrap();
+    let first = track.samples[0].pose.theta;
+    assert!(
+        ((first - 0.8).abs() - std::f64::consts::PI).abs() < 0.05,
+        "{first}"
+    );
+}
+
+#[test]
+fn reflectors_without_names_are_found() {
+    for text in [robot(1.2).motive(), robot(1.2).table()] {
+        let tank = robot(1.2);
+        let run = tank.run_of(&text);
+        let result = calibrate_run(&run, &tank.auto(), &file()).unwrap();
+        let (place, heading) = errors(&tank, &result.poses);
+        assert!(
+            place < 5.0 * 3e-4 && heading < 5.0 * 6e-3,
+            "{place} {heading}"
+        );
+        assert!(!result.poses.order_known && result.cycles.x.mean > 0.0);
+    }
+}
+
+#[test]
+fn an_ambiguous_gap_needs_labels() {
+    // Three seconds, in which the robot could have turned round.
+    let tank = Tank {
+        gaps: vec![(2500, 700)],
+        ghosts: false,
+        ..robot(1.2)
+    };
+    let run = tank.run();
+    let track = poses(&run.track, &tank.named(), &PoseOptions::default()).unwrap();
+    assert_eq!(track.report.segments, 2);
+    assert!(errors(&tank, &track).1 < 0.04);
+}
+
+#[test]
+fn cycles_agree_with_the_stroke() {
+    for amplitude in [0.5, 1.2, 1.9] {
+        let tank = robot(amplitude);
+        let result = calibrate_run(&tank.run(), &tank.named(), &file()).unwrap();
+        let stroke = swim(
+            &Model::new(&tank.swimmer).unwrap(),
+            &tank.gait,
+            &Tolerance::default(),
+        );
+        let cycles = &result.cycles;
+        assert_eq!((cycles.cycles.len(), cycles.x.count), (4, 3));
+        assert!(
+            matches!(cycles.left_out[..], [(_, LeftOut::StartUp)]),
+            "{:?}",
+            cycles.left_out
+        );
+        // 0.3 mm over 1000 samples a cycle: 10 µm for a mean of two; ends of a harmonic curve and the phase add some.
+        assert!(
+            (cycles.x.mean - stroke.displacement.x).abs() < 3e-5,
+            "{} {}",
+            cycles.x.mean,
+            stroke.displacement.x
+        );
+        assert!((cycles.y.mean - stroke.displacement.y).abs() < 6e-5);
+        assert!(
+            (cycles.delta_y.mean / stroke.delta_y - 1.0).abs() < 0.01,
+            "{} {}",
+            cycles.delta_y.mean,
+            stroke.delta_y
+        );
+        assert!((cycles.delta_theta.mean / stroke.delta_theta - 1.0).abs() < 0.01);
+        assert!(cycles.rotation.mean.abs() < 1e-3);
+        assert!(
+            (cycles.period_s / 10.0 - 1.0).abs() < 1e-3,
+            "{amplitude}: {}",
+            cycles.period_s
+        );
+        assert!(result.warnings.is_empty(), "{:?}", result.warnings);
+    }
+}
+
+#[test]
+fn noise_does_not_widen_the_amplitude() {
+    // 200 samples a cycle and 1 mm of noise: the range of the samples is 3 mm too wide for a range of 41 mm.
+    let mut sum = [0.0; 2];
+    for seed in 0..20 {
+        let tank = Tank {
+            period_s: 2.0,
+            noise: 1e-3,
+            cycles: 8,
+            dropout: 0.0,
+            seed,
+            ..robot(1.2)
+        };
+        let result = calibrate_run(&tank.run(), &tank.named(), &file()).unwrap();
+        let raw = |cycle: &calibrate::Cycle| {
+            let heading = 0.8 + tank.poses()[0].theta * 0.0;
+            let across = result
+                .poses
+                .seen()
+                .filter(|s| s.time_s >= cycle.start_s && s.time_s < cycle.start_s + 2.0);
+            let y: Vec<f64> = across
+                .map(|s| s.pose.y * heading.cos() - s.pose.x * heading.sin())
+                .collect();
+            (y.iter().copied().fold(f64::MIN, f64::max)
+                - y.iter().copied().fold(f64::MAX, f64::min))
+                / 2.0
+        };
+        let cycles = &result.cycles.cycles;
+        sum[0] += result.cycles.delta_y.mean / 20.0;
+        sum[1] += cycles.iter().map(raw).sum::<f64>() / cycles.len() as f64 / 20.0;
+    }
+    let tank = robot(1.2);
+    let truth = swim(
+        &Model::new(&tank.swimmer).unwrap(),
+        &tank.gait,
+        &Tolerance::default(),
+    )
+    .delta_y;
+    println!(
+        "ΔY true {truth:.6}, harmonic {:.6}, raw {:.6}",
+        sum[0], sum[1]
+    );
+    assert!((sum[0] / truth - 1.0).abs() < 0.005, "{} {truth}", sum[0]);
+    assert!(sum[1] - truth > 5e-4, "{} {truth}", sum[1]);
+}
+
+#[test]
+fn the_period_is_refined() {
+    let tank = robot(1.2);
+    let mut run = tank.run();
+    run.period_s = 10.08;
+    let result = calibrate_run(&run, &tank.named(), &file()).unwrap();
+    assert!(
+        (result.cycles.period_s - 10.0).abs() < 2e-3,
+        "{}",
+        result.cycles.period_s
+    );
+    assert!(matches!(
+        result.cycles.warnings[..],
+        [CycleWarning::Period { .. }]
+    ));
+    run.period_s = 10.5;
+    let result = calibrate_run(&run, &tank.named(), &file()).unwrap();
+    assert!(
+        result
+            .cycles
+            .warnings
+            .iter()
+            .any(|w| matches!(w, CycleWarning::PeriodNotFound { .. }))
+    );
+}
+
+#[test]
+fn cycles_with_too_little_in_them_are_left_out() {
+    // Two seconds of ten are missing in the third cycle (it begins at 1.3 + 1.5 + 20 s), in stretches that can be followed.
+    let gaps = (0..20).map(|i| (2400 + 30 * i, 10)).collect();
+    let tank = Tank {
+        gaps,
+        ghosts: false,
+        ..robot(1.2)
+    };
+    let cycles = calibrate_run(&tank.run(), &tank.named(), &file())
+        .unwrap()
+        .cycles;
+    assert_eq!(cycles.cycles.len(), 3);
+    let missing: Vec<f64> = cycles
+        .left_out
+        .iter()
+        .filter_map(|(_, why)| {
+            if let LeftOut::Missing(share) = why {
+                Some(*share)
+            } else {
+                None
+            }
+        })
+        .collect();
+    assert!(
+        matches!(missing[..], [share] if (share - 0.2).abs() < 0.02),
+        "{:?}",
+        cycles.left_out
+    );
+    // A step across the hole is no step.
+    assert_eq!(cycles.x.count, 1);
+}
+
+#[test]
+fn what_gives_no_cycles_says_why() {
+    let tank = robot(1.2);
+    let still = Tank {
+        cycles: 0,
+        rest_s: 20.0,
+        noise: 0.0,
+        ghosts: false,
+        ..robot(1e-9)
+    };
+    let error = calibrate_run(&still.run(), &still.named(), &file()).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            CalibrateError::Cycles {
+                cause: CycleError::NoMotion
+                    | CycleError::NoCycle { .. }
+                    | CycleError::NoPhase { .. },
+                ..
+            }
+        ),
+        "{error}"
+    );
+    let short = Tank {
+        cycles: 1,
+        period_s: 10.0,
+        ..robot(1.2)
+    };
+    let mut run = short.run();
+    run.period_s = 30.0;
+    let error = calibrate_run(&run, &short.named(), &file()).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            CalibrateError::Cycles {
+                cause: CycleError::NoCycle { .. },
+                ..
+            }
+        ),
+        "{error}"
+    );
+
+    let missing = tank.reflectors(PointName::Named("Nose".into()), PointName::Auto);
+    let error = calibrate_run(&tank.run(), &missing, &file()).unwrap_err();
+    assert!(
+        error.is_bad_input()
+            && error.to_string().contains("`Nose`")
+            && error.to_string().contains("Front, Back"),
+        "{error}"
+    );
+    let mut wrong = tank.named();
+    wrong.front.at = [0.0555, 0.0];
+    let error = calibrate_run(&tank.run(), &wrong, &file()).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            CalibrateError::Poses {
+                cause: PoseError::Distance { .. },
+                ..
+            }
+        ),
+        "{error}"
+    );
+}
+
+#[test]
+fn reflectors_may_sit_anywhere_on_the_link() {
+    // The same points, told to be a quarter of the way along and aside: the pose is that of another body, rigidly shifted.
+    let tank = Tank {
+        noise: 0.0,
+        dropout: 0.0,
+        ghosts: false,
+        ..robot(0.9)
+    };
+    let mut shifted = tank.named();
+    let by = Vector2::new(0.01, -0.02);
+    shifted.front.at = [0.0355 + by.x, by.y];
+    shifted.back.at = [-0.0355 + by.x, by.y];
+    let (a, b) = (
+        poses(&tank.run().track, &tank.named(), &PoseOptions::default()).unwrap(),
+        poses(&tank.run().track, &shifted, &PoseOptions::default()).unwrap(),
+    );
+    for (a, b) in a.samples.iter().zip(&b.samples) {
+        assert!((b.pose.transform(&by) - a.pose.position()).norm() < 1e-12);
+    }
+}
+
+#[test]
+fn one_cycle_is_enough_for_an_answer_with_a_warning() {
+    let tank = Tank {
+        cycles: 2,
+        ..robot(1.2)
+    };
+    let cycles = calibrate_run(&tank.run(), &tank.named(), &file())
+        .unwrap()
+        .cycles;
+    assert_eq!(cycles.warnings, [CycleWarning::OneCycle]);
+    let stroke = swim(
+        &Model::new(&tank.swimmer).unwrap(),
+        &tank.gait,
+        &Tolerance::default(),
+    );
+    assert!((cycles.x.mean - stroke.displacement.x).abs() < 2e-4 && cycles.x.sd <= 0.0);
+}
