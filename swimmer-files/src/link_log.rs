@@ -6,6 +6,7 @@
 //! so that nothing depends on this program's decoder.
 
 mod frame;
+mod read;
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -14,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 pub use frame::{Direction, LinkFrame};
 use mcap::records::MessageHeader;
+pub use read::read_link_log;
 
 use crate::FileError;
 use crate::atomic::beside;
@@ -78,7 +80,7 @@ impl LinkLogWriter {
         let file = File::create(&temporary).map_err(write_error)?;
         let start = || -> mcap::McapResult<_> {
             let mut writer = mcap::WriteOptions::new()
-                .compression(None)
+                .compression(Some(mcap::Compression::Lz4))
                 .profile("")
                 .library(concat!("swimmer-files ", env!("CARGO_PKG_VERSION")))
                 .create(BufWriter::new(file))?;
@@ -173,36 +175,4 @@ impl Drop for LinkLogWriter {
             let _ = std::fs::remove_file(&self.temporary);
         }
     }
-}
-
-/// Reads a link log, frames in the order in which they were written.
-///
-/// # Errors
-/// When the file cannot be read, is no MCAP file, or holds a message that is not a link frame.
-pub fn read_link_log(path: &Path) -> Result<Vec<LinkFrame>, LinkLogError> {
-    let bytes = std::fs::read(path).map_err(|source| FileError::Read {
-        path: path.to_path_buf(),
-        source,
-    })?;
-    let container = |source| LinkLogError::Container {
-        path: path.to_path_buf(),
-        source,
-    };
-    let messages = mcap::MessageStream::new(&bytes).map_err(container)?;
-    let mut frames = Vec::new();
-    for (index, message) in messages.enumerate() {
-        let message = message.map_err(container)?;
-        let Some(direction) = Direction::of_topic(&message.channel.topic) else {
-            continue; // another program's topic in the same file
-        };
-        let frame = LinkFrame::from_json(direction, &message.data).map_err(|problem| {
-            LinkLogError::Message {
-                path: path.to_path_buf(),
-                index,
-                problem,
-            }
-        })?;
-        frames.push(frame);
-    }
-    Ok(frames)
 }
