@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use crate::debian;
-use crate::disk::{copy, entries, make_folder, read_bytes, write};
+use crate::disk::{entries, make_folder, read_bytes, write};
 use crate::failure::{Failure, Outcome};
 use crate::run::{cargo, command, read, run, target_folder, works};
 
@@ -70,7 +70,11 @@ fn peers_times(folder: &Path, place: &Path) -> Outcome<Value> {
             .extension()
             .is_some_and(|ending| ending == "py")
     })? {
-        copy(&module, &place.join(module.file_name().unwrap_or_default()))?;
+        // Not `fs::copy`: it would copy a write protection, too, and the next run could not replace the file.
+        write(
+            &place.join(module.file_name().unwrap_or_default()),
+            read_bytes(&module)?,
+        )?;
     }
     write(&place.join("peers.py"), PEERS)?;
     let python = environment(place)?;
