@@ -1,5 +1,5 @@
-//! The thin RP2040 shell around `gait-player`. It moves bytes and time between the chip and the [`Brain`]
-//! (`gait_player::Brain`) and decides nothing.
+//! The thin RP2040 shell around `gait-player`. It moves bytes and time between the chip and `gait_player::Brain`, and
+//! decides nothing.
 //!
 //! ```text
 //!  thread executor                        interrupt executor (SWI_IRQ_1), above the thread, below the UART

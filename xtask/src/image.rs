@@ -8,9 +8,9 @@ use object::{Endianness, Object, ObjectSymbol};
 
 use crate::failure::{Failure, Outcome};
 
-/// Most flash that the firmware may take [bytes].
+/// Most flash that the firmware may take, in bytes.
 pub(crate) const FLASH_CAP: u32 = 128 * 1024;
-/// Most RAM, stack and variables together [bytes].
+/// Most RAM, stack and variables together, in bytes.
 pub(crate) const RAM_CAP: u32 = 64 * 1024;
 /// Where the RP2040 shows its flash.
 const FLASH: std::ops::Range<u32> = 0x1000_0000..0x1100_0000;
