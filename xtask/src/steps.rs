@@ -2,43 +2,75 @@
 
 use std::time::{Duration, Instant};
 
-use crate::failure::Outcome;
+use crate::failure::{Failure, Outcome};
 
 /// Steps taken so far.
 #[derive(Default)]
 pub(crate) struct Steps {
-    taken: Vec<(String, Duration)>,
+    taken: Vec<Step>,
+}
+
+struct Step {
+    name: String,
+    wall: Duration,
+    failure: Option<Failure>,
 }
 
 impl Steps {
-    /// Takes one step; a step that fails ends the chore.
-    ///
-    /// # Errors
-    /// The step's own.
-    pub(crate) fn take<T>(&mut self, name: &str, step: impl FnOnce() -> Outcome<T>) -> Outcome<T> {
+    /// Takes one step; where it fails there is nothing to go on with for those that need its result.
+    pub(crate) fn take<T>(&mut self, name: &str, step: impl FnOnce() -> Outcome<T>) -> Option<T> {
         println!("\n==== {name} ====");
         let start = Instant::now();
         let outcome = step();
         let wall = start.elapsed();
         let verdict = if outcome.is_ok() { "ok" } else { "FAILED" };
         println!("==== {name}: {verdict} after {} ====", clock(wall));
-        self.taken.push((name.to_owned(), wall));
-        outcome
+        let (result, failure) = match outcome {
+            Ok(result) => (Some(result), None),
+            Err(failure) => (None, Some(failure)),
+        };
+        self.taken.push(Step {
+            name: name.to_owned(),
+            wall,
+            failure,
+        });
+        result
     }
 
     /// One line a step.
     pub(crate) fn summary(&self) -> String {
-        let total = self.taken.iter().map(|(_, wall)| *wall).sum();
         let mut lines = String::new();
-        for (name, wall) in self
-            .taken
-            .iter()
-            .map(|(name, wall)| (name.as_str(), *wall))
-            .chain([("all steps", total)])
-        {
-            lines.push_str(&line(name, wall));
+        for step in &self.taken {
+            let mark = if step.failure.is_some() {
+                "  FAILED"
+            } else {
+                ""
+            };
+            lines.push_str(&line(&format!("{}{mark}", step.name), step.wall));
         }
-        lines
+        lines + &line("all steps", self.taken.iter().map(|step| step.wall).sum())
+    }
+
+    /// Fails where a step failed, with all that failed.
+    ///
+    /// # Errors
+    /// The failures of all steps.
+    pub(crate) fn verdict(self) -> Outcome {
+        let count = self.taken.len();
+        let failures: Vec<_> = self
+            .taken
+            .into_iter()
+            .filter_map(|step| step.failure)
+            .collect();
+        if failures.is_empty() {
+            return Ok(());
+        }
+        let why: Vec<_> = failures.iter().map(ToString::to_string).collect();
+        Err(Failure::new(
+            format!("testing: {} of {count} steps failed", failures.len()),
+            format!("\n\n{}\n", why.join("\n\n")),
+            "repeat the command when they are mended",
+        ))
     }
 }
 
@@ -59,7 +91,6 @@ fn clock(wall: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::failure::Failure;
 
     #[test]
     fn the_clock_is_read_by_people() {
@@ -68,19 +99,28 @@ mod tests {
     }
 
     #[test]
-    fn the_summary_names_each_step_and_the_whole() {
+    fn the_summary_names_each_step_and_the_verdict_each_failure() {
         let mut steps = Steps::default();
-        assert_eq!(steps.take("one", || Ok(1)).unwrap(), 1);
-        assert!(
-            steps
-                .take::<()>("two", || Err(Failure::new("a", "b", "c")))
-                .is_err()
+        assert_eq!(steps.take("one", || Ok(1)), Some(1));
+        assert_eq!(
+            steps.take::<()>("two", || Err(Failure::new("a", "b", "c"))),
+            None
         );
         let summary = steps.summary();
         let names: Vec<_> = summary
             .lines()
-            .map(|line| line.trim_start().split("  ").last().unwrap())
+            .filter_map(|line| line.split("s  ").nth(1))
             .collect();
-        assert_eq!(names, ["one", "two", "all steps"]);
+        assert_eq!(names, ["one", "two  FAILED", "all steps"]);
+        let verdict = steps.verdict().unwrap_err().to_string();
+        assert!(verdict.contains("1 of 2 steps failed"), "{verdict}");
+        assert!(verdict.contains("a: b"), "{verdict}");
+    }
+
+    #[test]
+    fn all_well_is_well() {
+        let mut steps = Steps::default();
+        steps.take("one", || Ok(()));
+        assert!(steps.verdict().is_ok());
     }
 }
