@@ -1,0 +1,66 @@
+//! Reads a link log record by record, with a bound on each record's size: a damaged length must not become an allocation.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use mcap::records::Record;
+use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
+
+use super::{Direction, LinkFrame, LinkLogError};
+use crate::FileError;
+
+/// Larger than any chunk that a writer makes by default, small enough to allocate.
+const LARGEST_RECORD: usize = 64 << 20;
+
+/// Reads a link log, frames in the order in which they were written.
+///
+/// # Errors
+/// When the file cannot be read, is no MCAP file, or holds a message that is not a link frame.
+pub fn read_link_log(path: &Path) -> Result<Vec<LinkFrame>, LinkLogError> {
+    let bytes = std::fs::read(path).map_err(|source| FileError::Read {
+        path: path.to_path_buf(),
+        source,
+    })?;
+    let container = |source| LinkLogError::Container {
+        path: path.to_path_buf(),
+        source,
+    };
+    let options = LinearReaderOptions::default().with_record_length_limit(LARGEST_RECORD);
+    let mut reader = LinearReader::new_with_options(options);
+    let mut rest = bytes.as_slice();
+    let mut directions = HashMap::new();
+    let mut frames = Vec::new();
+    while let Some(event) = reader.next_event() {
+        let (opcode, data) = match event.map_err(container)? {
+            LinearReadEvent::ReadRequest(wanted) => {
+                let (piece, after) = rest.split_at(wanted.min(rest.len()));
+                reader.insert(piece.len()).copy_from_slice(piece);
+                reader.notify_read(piece.len());
+                rest = after;
+                continue;
+            }
+            LinearReadEvent::Record { data, opcode } => (opcode, data),
+        };
+        match mcap::parse_record(opcode, data).map_err(container)? {
+            Record::Channel(channel) => {
+                // Another program's topic in the same file is passed over.
+                directions.insert(channel.id, Direction::of_topic(&channel.topic));
+            }
+            Record::Message { header, data } => {
+                let Some(&Some(direction)) = directions.get(&header.channel_id) else {
+                    continue;
+                };
+                let frame = LinkFrame::from_json(direction, &data).map_err(|problem| {
+                    LinkLogError::Message {
+                        path: path.to_path_buf(),
+                        index: frames.len(),
+                        problem,
+                    }
+                })?;
+                frames.push(frame);
+            }
+            _ => {}
+        }
+    }
+    Ok(frames)
+}
