@@ -31,23 +31,16 @@ pub(crate) struct Arguments {
     pub(crate) command: Command,
 }
 
-/// What `swimmer` can do.
+/// What `swimmer` can do; the help of each command stands at its arguments.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Run the whole loop on a virtual robot: circles, tracks, fit, optimised gait, comparison, report
     Demo(demo::Demo),
-    /// Swim a gait in the model
     Simulate(simulate::Simulate),
-    /// Find an optimal gait
     #[command(subcommand)]
     Optimize(optimize::Optimize),
-    /// Talk to a robot over a serial port, or to a twin
     Robot(robot::Robot),
-    /// Be a robot in a virtual tank, with virtual cameras
     Twin(twin::Twin),
-    /// Turn tracks into poses, cycles and fitted drag parameters
     Calibrate(calibrate::Calibrate),
-    /// Say what a tracking file holds
     Tracks(tracks::Tracks),
 }
 

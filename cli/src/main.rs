@@ -49,9 +49,15 @@ fn bad_usage(error: &clap::Error) -> ExitCode {
     // Nothing was parsed, so whether a script is asking can only be seen in the words themselves.
     if std::env::args_os().any(|word| word == "--json") {
         let text = error.render().to_string();
-        let reason = text.lines().next().unwrap_or_default();
+        // The first paragraph is the reason, the rest is about usage.
+        let reason: Vec<&str> = text
+            .lines()
+            .map(str::trim)
+            .take_while(|line| !line.is_empty())
+            .collect();
+        let reason = reason.join(" ");
         output::write_all(&output::error_document(
-            reason.strip_prefix("error: ").unwrap_or(reason),
+            reason.trim_start_matches("error: "),
         ));
     }
     ExitCode::from(2)

@@ -18,7 +18,6 @@ use crate::quantity::{self, Rows};
 /// Find an optimal gait
 #[derive(Debug, clap::Subcommand)]
 pub(crate) enum Optimize {
-    /// The most displacement per cycle
     Displacement(Displacement),
 }
 

@@ -19,9 +19,10 @@ use crate::output::Output;
 /// The swimmer file is the truth that only the tank knows. Servos have the file's [servo] table, or a rate limit of
 /// 3.5 rad/s and a dead band of 0.017 rad.
 #[derive(Debug, clap::Args)]
+#[command(group = clap::ArgGroup::new("door").args(["pty", "tcp"]).required(true).multiple(true))]
 pub(crate) struct Twin {
     /// Make this symbolic link to a pseudo-terminal that any program can open as the robot's port
-    #[arg(long, value_name = "LINK", required_unless_present = "tcp")]
+    #[arg(long, value_name = "LINK")]
     pty: Option<PathBuf>,
     /// Listen here for the robot's bytes over TCP, as 127.0.0.1:7000
     #[arg(long, value_name = "ADDR")]

@@ -1,5 +1,6 @@
 //! The shipped binary on both sides of a real pseudo-terminal: `swimmer twin --pty` there, `swimmer robot` here.
 
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::thread::sleep;
@@ -158,5 +159,118 @@ fn a_stale_link_is_replaced_and_a_file_is_not() {
     assert_eq!(
         std::fs::read_to_string(folder.path().join("robot")).unwrap(),
         "precious"
+    );
+}
+
+#[test]
+fn pause_resume_and_estop() {
+    let folder = tempfile::tempdir().unwrap();
+    let _twin = TwinProcess::start(folder.path(), &[]);
+    let words =
+        |words: &[&'static str]| [&["robot"], words, &["--port", "robot", "--json"]].concat();
+    let robot = |asked: &[&'static str]| swimmer_in(folder.path(), &words(asked));
+    let holding = |asked: &[&'static str]| {
+        command(folder.path(), &words(asked))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap()
+    };
+    let state = || {
+        robot(&["status"]).with_status(0).json()["state"]
+            .as_str()
+            .unwrap()
+            .to_owned()
+    };
+
+    robot(&[
+        "play",
+        "--gait",
+        "circle:30deg",
+        "--cycles",
+        "60",
+        "--period",
+        "2",
+        "--detach",
+    ])
+    .with_status(0);
+    sleep(Duration::from_secs(2));
+    robot(&["pause", "--detach"]).with_status(0);
+    assert_eq!(state(), "paused");
+    let mut resumed = holding(&["resume"]);
+    sleep(Duration::from_secs(1));
+    interrupt(&resumed);
+    assert_eq!(
+        resumed.wait().unwrap().code(),
+        Some(1),
+        "a play that was cut short has failed"
+    );
+    assert_eq!(state(), "stopped");
+
+    robot(&["estop"]).with_status(0);
+    assert_eq!(state(), "e-stopped");
+    let refused = robot(&["play", "--cycles", "1"]).with_status(1);
+    assert!(refused.stderr.contains("--clear-estop"), "{refused}");
+    assert_eq!(state(), "e-stopped");
+    let mut armed = holding(&["arm", "--clear-estop"]);
+    sleep(Duration::from_secs(1));
+    interrupt(&armed);
+    assert_eq!(
+        armed.wait().unwrap().code(),
+        Some(0),
+        "Ctrl-C is how arming ends"
+    );
+    assert_eq!(state(), "stopped");
+}
+
+/// The whole loop in real time and over TCP: what the cameras of `swimmer twin` write, `swimmer calibrate` reads.
+#[test]
+fn a_run_over_tcp_is_tracked() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["twin", "--tcp", "127.0.0.1:0", "--track", "run.csv"];
+    let mut twin = command(folder.path(), &words)
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    BufReader::new(twin.stdout.as_mut().unwrap())
+        .read_line(&mut line)
+        .unwrap();
+    let port = line
+        .split_whitespace()
+        .find(|word| word.starts_with("tcp:"))
+        .unwrap()
+        .trim_end_matches(';')
+        .to_owned();
+    let play = [
+        "robot",
+        "play",
+        "--gait",
+        "circle:70deg",
+        "--cycles",
+        "4",
+        "--period",
+        "3",
+        "--port",
+        &port,
+    ];
+    let played = swimmer_in(folder.path(), &play);
+    interrupt(&twin);
+    assert_eq!(twin.wait().unwrap().code(), Some(0));
+    played.with_status(0);
+
+    let circle = ["--gait", "circle:70deg", "--swimmer", "robot", "--json"];
+    let calibrate = [&["calibrate", "run.csv", "--period", "3"], &circle[..]].concat();
+    let runs = swimmer_in(folder.path(), &calibrate).with_status(0).json();
+    let simulated = swimmer_in(folder.path(), &[&["simulate"], &circle[..]].concat())
+        .with_status(0)
+        .json();
+    let (tracked, ideal) = (
+        number(&runs["runs"][0], "x_m"),
+        number(&simulated, "displacement_m"),
+    );
+    assert!(
+        (tracked / ideal - 1.0).abs() < 0.1,
+        "{tracked} m tracked, {ideal} m without servos between"
     );
 }
