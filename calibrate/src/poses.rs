@@ -61,7 +61,7 @@ pub enum PoseError {
     SamePlace,
     /// No two points ever have the right distance.
     #[error(
-        "no two points are {expected_m:.5} m apart (within {tolerance_m:.5} m) in any of {frames} frames{hint}; check `at` of both \
+        "no two points are {expected_m:.5} m apart (within {tolerance_m:.5} m) in any of {frames} frames; check `at` of both \
          reflectors, the unit and the points' names"
     )]
     NoPair {
@@ -71,8 +71,6 @@ pub enum PoseError {
         tolerance_m: f64,
         /// Rows that were searched.
         frames: usize,
-        /// What the named points do instead.
-        hint: String,
     },
     /// The named points have another distance than `at` says.
     #[error(

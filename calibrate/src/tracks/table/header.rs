@@ -1,0 +1,349 @@
+//! The header of a plain table: which column is the time, which are points, and in what unit.
+
+use std::path::Path;
+
+use super::TableOptions;
+use crate::tracks::detect::TableLayout;
+use crate::tracks::lines::{Cell, Line, split};
+use crate::tracks::number::{Number, number};
+use crate::tracks::{PointKind, TrackError, TrackPoint, TrackProblem, Unit};
+
+/// Where the time comes from.
+pub(super) enum Clock {
+    Time {
+        column: usize,
+        seconds: f64,
+        frame: Option<usize>,
+    },
+    Frame {
+        column: usize,
+        rate_hz: f64,
+    },
+}
+
+impl Clock {
+    pub(super) fn read(
+        &self,
+        cells: &[Cell<'_>],
+        line: &Line<'_>,
+        file: &Path,
+        comma: bool,
+        row: usize,
+    ) -> Result<(u64, f64), TrackError> {
+        let cell = |column: usize| {
+            cells
+                .get(column)
+                .copied()
+                .unwrap_or(Cell { raw: "", at: 0 })
+        };
+        let frame = |column| {
+            let cell = cell(column);
+            let wrong = || {
+                line.error(
+                    file,
+                    cell.at,
+                    TrackProblem::NotAFrameNumber {
+                        text: cell.text().into_owned(),
+                    },
+                )
+            };
+            cell.raw.parse::<u64>().map_err(|_| wrong())
+        };
+        match self {
+            Self::Frame { column, rate_hz } => {
+                let frame = frame(*column)?;
+                Ok((frame, frame as f64 / rate_hz))
+            }
+            Self::Time {
+                column,
+                seconds,
+                frame: frame_column,
+            } => {
+                let cell = cell(*column);
+                let Number::Finite(time) = number(cell.raw, comma) else {
+                    let (text, name) = (cell.text().into_owned(), "time".to_owned());
+                    return Err(line.error(
+                        file,
+                        cell.at,
+                        TrackProblem::NotANumber { text, cell: name },
+                    ));
+                };
+                Ok((frame_column.map_or(Ok(row as u64), frame)?, time * seconds))
+            }
+        }
+    }
+}
+
+pub(super) struct Header {
+    pub(super) width: usize,
+    pub(super) clock: Clock,
+    pub(super) unit: Unit,
+    pub(super) points: Vec<TrackPoint>,
+    /// Two or three columns for each point.
+    pub(super) columns: Vec<Vec<usize>>,
+}
+
+/// A column's name, taken apart.
+struct Name<'a> {
+    whole: String,
+    /// Without unit, as typed.
+    bare: &'a str,
+    unit: Option<&'a str>,
+}
+
+impl Header {
+    pub(super) fn read(
+        line: Line<'_>,
+        file: &Path,
+        layout: &TableLayout,
+        options: &TableOptions,
+    ) -> Result<Self, TrackError> {
+        let text = line.text.trim_start_matches([' ', '#', '%']);
+        let shift = line.text.len() - text.len();
+        let trimmed = Line { text, ..line };
+        let mut cells = Vec::new();
+        split(&trimmed, layout.delimiter, file, &mut cells)?;
+        // A delimiter at the end of the header makes no column.
+        while cells.last().is_some_and(|cell| cell.raw.is_empty()) {
+            cells.pop();
+        }
+        let names: Vec<Name<'_>> = cells.iter().map(name).collect();
+        let error = |column: usize, problem| {
+            line.error(
+                file,
+                cells.get(column).map_or(0, |cell| cell.at + shift),
+                problem,
+            )
+        };
+        let clock = clock(&names, options).ok_or_else(|| error(0, TrackProblem::NoTime))?;
+        let mut groups = Vec::new();
+        for pair in &options.pairs {
+            let find = |wanted: &String| {
+                let found = names.iter().position(|name| name.whole == *wanted);
+                let columns = || {
+                    names
+                        .iter()
+                        .map(|name| name.whole.as_str())
+                        .collect::<Vec<_>>()
+                        .join(", ")
+                };
+                found.ok_or_else(|| {
+                    error(
+                        0,
+                        TrackProblem::NoColumn {
+                            name: wanted.clone(),
+                            columns: columns(),
+                        },
+                    )
+                })
+            };
+            groups.push((
+                pair.join(","),
+                pair.iter().map(find).collect::<Result<Vec<_>, _>>()?,
+            ));
+        }
+        for (name, axes) in stems(&names, &error)? {
+            match axes {
+                [Some(x), Some(y), z] => {
+                    let columns: Vec<usize> = [x, y].into_iter().chain(z).collect();
+                    if !groups
+                        .iter()
+                        .any(|(_, taken)| taken.iter().eq(columns.iter().take(2)))
+                    {
+                        groups.push((name, columns));
+                    }
+                }
+                [Some(x), None, _] => {
+                    return Err(error(
+                        x,
+                        TrackProblem::MissingAxis {
+                            point: name,
+                            axis: 'y',
+                        },
+                    ));
+                }
+                [None, Some(y), _] => {
+                    return Err(error(
+                        y,
+                        TrackProblem::MissingAxis {
+                            point: name,
+                            axis: 'x',
+                        },
+                    ));
+                }
+                // Anything may end in z.
+                [None, None, _] => {}
+            }
+        }
+        if groups.is_empty() {
+            return Err(error(0, TrackProblem::NoPoints));
+        }
+        let unit = unit(&names, &groups, options, &error)?;
+        let whole = |column: &usize| {
+            names
+                .get(*column)
+                .map_or_else(String::new, |name| name.whole.clone())
+        };
+        let point = |(name, columns): &(String, Vec<usize>)| {
+            TrackPoint::new(
+                name.clone(),
+                PointKind::Marker,
+                String::new(),
+                columns.iter().map(whole).collect(),
+            )
+        };
+        Ok(Self {
+            width: cells.len(),
+            clock,
+            unit,
+            points: groups.iter().map(point).collect(),
+            columns: groups.into_iter().map(|(_, columns)| columns).collect(),
+        })
+    }
+}
+
+fn name<'a>(cell: &Cell<'a>) -> Name<'a> {
+    let raw = cell.raw;
+    let cut = raw
+        .strip_suffix([']', ')'])
+        .and_then(|rest| rest.rsplit_once(['[', '(']));
+    let cut = cut.or_else(|| {
+        let (bare, unit) = raw.rsplit_once('_')?;
+        matches!(
+            unit,
+            "m" | "mm" | "cm" | "px" | "pixel" | "pixels" | "s" | "ms" | "seconds"
+        )
+        .then_some((bare, unit))
+    });
+    let (bare, unit) = cut.map_or((raw, None), |(bare, unit)| (bare.trim_end(), Some(unit)));
+    Name {
+        whole: cell.text().into_owned(),
+        bare,
+        unit,
+    }
+}
+
+fn clock(names: &[Name<'_>], options: &TableOptions) -> Option<Clock> {
+    let find = |words: &[&str]| {
+        names.iter().position(|name| {
+            words
+                .iter()
+                .any(|word| name.bare.eq_ignore_ascii_case(word))
+        })
+    };
+    let frame = find(&["frame", "frame#", "frames"]);
+    if let Some(column) = find(&["t", "time", "seconds", "timestamp", "time_stamp"]) {
+        let milliseconds = names
+            .get(column)
+            .is_some_and(|name| name.unit == Some("ms"));
+        return Some(Clock::Time {
+            column,
+            seconds: if milliseconds { 1e-3 } else { 1.0 },
+            frame,
+        });
+    }
+    let rate_hz = options
+        .rate_hz
+        .filter(|rate| *rate > 0.0 && rate.is_finite())?;
+    frame.map(|column| Clock::Frame { column, rate_hz })
+}
+
+type Stems = Vec<(String, [Option<usize>; 3])>;
+
+/// Columns that share a name but for the axis letter, in the order of the file.
+fn stems(
+    names: &[Name<'_>],
+    error: &impl Fn(usize, TrackProblem) -> TrackError,
+) -> Result<Stems, TrackError> {
+    let mut found: Stems = Vec::new();
+    for (index, name) in names.iter().enumerate() {
+        let Some((axis, stem)) = axis_and_stem(name.bare) else {
+            continue;
+        };
+        let known = found.iter().position(|(known, _)| known == stem);
+        let entry = known.unwrap_or_else(|| {
+            found.push((stem.to_owned(), [None; 3]));
+            found.len() - 1
+        });
+        let slot = found
+            .get_mut(entry)
+            .and_then(|(_, axes)| axes.get_mut(axis));
+        if slot.is_some_and(|slot| slot.replace(index).is_some()) {
+            return Err(error(
+                index,
+                TrackProblem::TwiceTheSameColumn {
+                    name: name.whole.clone(),
+                },
+            ));
+        }
+    }
+    for (stem, _) in found.iter_mut().filter(|(stem, _)| stem.is_empty()) {
+        "x,y".clone_into(stem);
+    }
+    Ok(found)
+}
+
+/// `x1` → (0, `1`), `front_y` → (1, `front`), `Back X` → (0, `Back`). A letter inside a word (`box`) is no axis.
+fn axis_and_stem(bare: &str) -> Option<(usize, &str)> {
+    let axis = |letter: char| "xyz".find(letter.to_ascii_lowercase());
+    let separators = [' ', '_', '.', '-', ':'];
+    let mut chars = bare.chars();
+    if let Some(index) = chars.next().and_then(axis) {
+        let rest = chars.as_str();
+        if rest.is_empty()
+            || rest.starts_with(separators)
+            || rest.starts_with(|c: char| c.is_ascii_digit())
+        {
+            return Some((index, rest.trim_start_matches(separators)));
+        }
+    }
+    let mut chars = bare.chars();
+    let index = chars.next_back().and_then(axis)?;
+    let rest = chars.as_str();
+    let ends = rest.ends_with(separators) || rest.ends_with(|c: char| c.is_ascii_digit());
+    ends.then(|| (index, rest.trim_end_matches(separators)))
+}
+
+/// One unit for all columns with positions.
+fn unit(
+    names: &[Name<'_>],
+    groups: &[(String, Vec<usize>)],
+    options: &TableOptions,
+    error: &impl Fn(usize, TrackProblem) -> TrackError,
+) -> Result<Unit, TrackError> {
+    if let Some(metres) = options
+        .metres_per_unit
+        .filter(|metres| metres.is_finite() && *metres > 0.0)
+    {
+        return Ok(Unit::Scaled(metres));
+    }
+    let mut unit = None;
+    for index in groups
+        .iter()
+        .flat_map(|(_, columns)| columns.iter().copied())
+    {
+        let Some(name) = names.get(index) else {
+            continue;
+        };
+        let named = match name.unit {
+            None => Unit::Metre,
+            Some(text) if text.starts_with("px") || text.starts_with("pixel") => {
+                let (column, unit) = (name.whole.clone(), text.to_owned());
+                return Err(error(index, TrackProblem::ScaleNeeded { column, unit }));
+            }
+            Some(text) => Unit::from_name(text).ok_or_else(|| {
+                error(
+                    index,
+                    TrackProblem::UnknownUnit {
+                        text: text.to_owned(),
+                    },
+                )
+            })?,
+        };
+        if *unit.get_or_insert(named) != named {
+            let text = format!("{named} beside another unit");
+            return Err(error(index, TrackProblem::UnknownUnit { text }));
+        }
+    }
+    Ok(unit.unwrap_or(Unit::Metre))
+}
