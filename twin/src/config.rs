@@ -45,8 +45,8 @@ impl TwinConfig {
     /// A twin of the swimmer of a file, with the servos of its `[servo]` table or, without one, those of
     /// [`ServoFile::default`].
     ///
-    /// The brain knows the links' lengths, as anyone with a ruler does; of the drag it believes χ = 2 and no sphere, with the
-    /// file's form of `c_t`, until it is configured.
+    /// The brain is configured for that swimmer, as a robot is that its laboratory has set up: a gait made for the file can be
+    /// uploaded at once. Who plays a laboratory that does not know the drag yet configures it otherwise, over the link.
     pub fn new(file: &SwimmerFile, seed: u64) -> Self {
         Self::from_parts(file.swimmer, &file.servo.unwrap_or_default(), seed)
     }
@@ -75,14 +75,7 @@ impl TwinConfig {
                 pulse_step_ns: 0,
             },
             limits,
-            belief: configuration(
-                &Swimmer {
-                    chi: 2.0,
-                    sphere_radius: 0.0,
-                    ..swimmer
-                },
-                servo,
-            ),
+            belief: configuration(&swimmer, servo),
             swimmer,
             servos: [settings; 2],
             battery_mv: 5_200,

@@ -163,8 +163,7 @@ fn a_slow_servo_cuts_corners_as_predicted() {
 #[test]
 fn the_pose_on_board_is_the_truth_where_the_brain_knows_it() {
     let file = robot();
-    let mut config = TwinConfig::new(&file, 9).with_ideal_servos();
-    config.belief = twin::configuration(&file.swimmer, &file.servo.unwrap_or_default());
+    let config = TwinConfig::new(&file, 9).with_ideal_servos();
     let played = play(config, &table(512, &circle(1.2)), 2, 12.0);
     let truth = played.cycle_starts[0].pose.inverse() * played.end;
     let told = played.telemetry.last().unwrap().pose;
