@@ -375,3 +375,15 @@ fn one_cycle_is_enough_for_an_answer_with_a_warning() {
     );
     assert!((cycles.x.mean - stroke.displacement.x).abs() < 2e-4 && cycles.x.sd <= 0.0);
 }
+
+#[test]
+fn a_recording_that_ends_with_the_play_keeps_its_last_cycle() {
+    let tank = Tank {
+        rest_s: 0.05,
+        ..robot(1.2)
+    };
+    let cycles = calibrate_run(&tank.run(), &tank.named(), &file())
+        .unwrap()
+        .cycles;
+    assert_eq!((cycles.cycles.len(), cycles.left_out.len()), (4, 1));
+}

@@ -107,6 +107,12 @@ pub(super) fn active(bins: &[Option<Bin>], lever: f64) -> Option<(f64, f64)> {
         }
     }
     let (start, end) = best?;
+    // Motion up to the last bin that has neighbours on both sides goes on to the end of the recording.
+    let end = if end + 3 >= bins.len() {
+        bins.iter().rposition(Option::is_some)?
+    } else {
+        end
+    };
     Some((at(start)?.time_s, at(end)?.time_s))
 }
 
