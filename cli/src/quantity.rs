@@ -52,6 +52,15 @@ pub(crate) fn crossing(of_cycle: f64) -> String {
     }
 }
 
+/// A number without a unit that may be very small.
+pub(crate) fn small(value: f64) -> String {
+    if value.abs() >= 0.001 {
+        format!("{value:.4}")
+    } else {
+        format!("{value:.1e}")
+    }
+}
+
 /// How far `value` is from `reference`, signed, in per cent; absolute where the reference is zero.
 pub(crate) fn relative(value: f64, reference: f64) -> Option<f64> {
     (reference != 0.0).then(|| value / reference - 1.0)

@@ -125,7 +125,10 @@ impl fmt::Display for FitAnswer {
                 self.chi
             ),
         )
-        .row("RMSE", format!("{:.4} (the paper's weights)", self.rmse))
+        .row(
+            "RMSE",
+            format!("{} (the paper's weights)", quantity::small(self.rmse)),
+        )
         .row("form of c_t", &self.c_t_form);
         write!(f, "{}\n\n{rows}", table(&self.runs))?;
         notes(f, &self.warnings)

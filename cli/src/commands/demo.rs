@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use calibrate::{PredictedCycle, predict};
-use gait_optimizer::{DisplacementProblem, OptimalGait, displacement};
+use gait_optimizer::{DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement};
 use host_link::LinkError;
 use link_protocol::Refusal;
 use swimmer_files::{AnyGait, GaitSpec, ServoFile, SwimmerFile, write_atomically};
@@ -224,8 +224,8 @@ impl<'a> Round<'a> {
     }
 
     /// Uploads a gait and says at which period it will be played, s.
-    fn upload(&mut self, gait: &AnyGait) -> Result<f64, UploadFailure> {
-        let table = table_of(gait).map_err(|error| UploadFailure::Other(Failure::tried(&error)))?;
+    fn upload(&mut self, gait: &AnyGait) -> Result<f64, Refused> {
+        let table = table_of(gait).map_err(|error| Refused::Everywhere(Failure::tried(&error)))?;
         let info = self
             .laboratory
             .upload(&table)
@@ -233,47 +233,66 @@ impl<'a> Round<'a> {
                 LinkError::Refused {
                     refusal: Refusal::LinksCross { .. } | Refusal::AngleLimit { .. },
                     ..
-                } => UploadFailure::Shape(error),
-                error => UploadFailure::Other(error.into()),
+                } => Refused::Here(error.into()),
+                error => Refused::Everywhere(error.into()),
             })?;
         let shortest_s = f64::from(info.min_period_us) * 1e-6;
         Ok(PERIOD_S.max((1.1 * shortest_s).ceil()))
     }
 
-    /// The gait of most displacement within the servos' range that the robot accepts: where links would come too close
-    /// or a corner swings over, the bound on the joints is tightened.
+    /// The gait of most displacement within the servos' range that the robot accepts: where there is none, or links would
+    /// come too close, the bound on the joints is tightened. A swimmer that no gait carries forwards swims backwards.
     fn upload_best(&mut self, fitted: &SwimmerFile) -> Outcome<(OptimalGait, AnyGait, f64, f64)> {
+        let mut heading = Heading::Forwards;
         let mut bound = self.servo.max_angle;
         loop {
-            let best =
-                displacement(&DisplacementProblem::new(fitted.swimmer).with_max_angle(bound))?;
-            let gait = best.gait().map_err(|error| {
-                Failure::Tried(format!("the optimised gait cannot be swum: {error}"))
-            })?;
-            match self.upload(&gait) {
-                Ok(period_s) => return Ok((best, gait, bound, period_s)),
-                Err(UploadFailure::Shape(_)) if bound - BOUND_STEP > LEAST_BOUND => {
-                    bound -= BOUND_STEP;
+            match self.try_bound(fitted, bound, heading) {
+                Ok((best, gait, period_s)) => return Ok((best, gait, bound, period_s)),
+                Err(Refused::Here(_)) if bound - BOUND_STEP > LEAST_BOUND => bound -= BOUND_STEP,
+                Err(Refused::Here(_)) if heading == Heading::Forwards => {
+                    (heading, bound) = (Heading::Backwards, self.servo.max_angle);
                 }
-                Err(failure) => return Err(failure.into()),
+                Err(Refused::Here(failure) | Refused::Everywhere(failure)) => return Err(failure),
             }
         }
     }
+
+    fn try_bound(
+        &mut self,
+        fitted: &SwimmerFile,
+        bound: f64,
+        heading: Heading,
+    ) -> Result<(OptimalGait, AnyGait, f64), Refused> {
+        let problem = DisplacementProblem {
+            heading: Some(heading),
+            ..DisplacementProblem::new(fitted.swimmer).with_max_angle(bound)
+        };
+        let best = displacement(&problem).map_err(|error| match error {
+            DisplacementError::NoOptimum { .. } | DisplacementError::NotCertified { .. } => {
+                Refused::Here(error.into())
+            }
+            error => Refused::Everywhere(error.into()),
+        })?;
+        let gait = best.gait().map_err(|error| {
+            Refused::Everywhere(Failure::Tried(format!(
+                "the optimised gait cannot be swum: {error}"
+            )))
+        })?;
+        let period_s = self.upload(&gait)?;
+        Ok((best, gait, period_s))
+    }
 }
 
-/// Why an upload did not go through.
-enum UploadFailure {
-    /// The robot will not take these shapes.
-    Shape(LinkError),
-    Other(Failure),
+/// Why there is no gait on the robot.
+enum Refused {
+    /// Not with these shapes; others may do.
+    Here(Failure),
+    Everywhere(Failure),
 }
 
-impl From<UploadFailure> for Failure {
-    fn from(failure: UploadFailure) -> Self {
-        match failure {
-            UploadFailure::Shape(error) => error.into(),
-            UploadFailure::Other(failure) => failure,
-        }
+impl From<Refused> for Failure {
+    fn from((Refused::Here(failure) | Refused::Everywhere(failure)): Refused) -> Self {
+        failure
     }
 }
 

@@ -103,7 +103,7 @@ impl Chart {
 
     fn draw(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), String> {
         let said = |error: &dyn std::fmt::Display| error.to_string();
-        let label_width = 58 * SCALE;
+        let label_width = 64 * SCALE;
         let label_height = 42 * SCALE;
         let (top, right) = (10 * SCALE, 14 * SCALE);
         let inside = (

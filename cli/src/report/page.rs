@@ -75,7 +75,7 @@ fn bound(report: &Report) -> String {
     let (bound, servos) = report.bounds;
     if bound < servos {
         format!(
-            "The bound is {bound:.2} rad: at the servos’ {servos:.2} rad the robot refuses, because its links would come too close."
+            "The bound is {bound:.2} rad: nearer the servos’ {servos:.2} rad no optimum exists or links come too close."
         )
     } else {
         format!("The bound is the servos’ {bound:.2} rad.")
@@ -133,8 +133,8 @@ fn cards(html: &mut String, report: &Report) {
     }
     let _ = write!(
         html,
-        "</tbody></table><p class=note>RMSE {:.4} (paper’s weights) with {}.</p>",
-        report.rmse,
+        "</tbody></table><p class=note>RMSE {} (paper’s weights) with {}.</p>",
+        minus(&quantity::small(report.rmse)),
         escaped(&report.c_t_form)
     );
     let (tracked, deviation) = report.displacement_tracked_m;

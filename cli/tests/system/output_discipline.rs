@@ -116,3 +116,36 @@ fn what_fails_leaves_nothing_behind() {
     assert!(ran.stderr.contains("not empty"), "{ran}");
     assert_eq!(left(), 1);
 }
+
+#[test]
+fn a_gait_made_for_another_swimmer_needs_force() {
+    let folder = tempfile::tempdir().unwrap();
+    let robot = |words: &[&str]| {
+        swimmer_in(
+            folder.path(),
+            &[&["robot"], words, &["--port", "twin", "--json"]].concat(),
+        )
+    };
+    for swimmer in ["robot", "purcell"] {
+        let file = format!("{swimmer}.gait");
+        let words = [
+            "optimize",
+            "displacement",
+            "--swimmer",
+            swimmer,
+            "--max-angle",
+            "100deg",
+            "-o",
+            &file,
+        ];
+        swimmer_in(folder.path(), &words).with_status(0);
+    }
+    robot(&["upload", "robot.gait"]).with_status(0);
+    let refused = robot(&["upload", "purcell.gait"]).with_status(1);
+    assert!(
+        refused.stderr.contains("made for `purcell`") && refused.stderr.contains("--force"),
+        "{refused}"
+    );
+    robot(&["play", "--gait", "purcell.gait", "--cycles", "1"]).with_status(1);
+    robot(&["upload", "purcell.gait", "--force"]).with_status(0);
+}
