@@ -2,6 +2,7 @@
 
 mod answers;
 mod configure;
+mod info;
 mod listening;
 mod motion;
 mod port;
@@ -12,7 +13,7 @@ use std::path::PathBuf;
 use host_link::LinkError;
 use swimmer_files::GaitSpec;
 
-use self::answers::{Doing, Info};
+use self::answers::Doing;
 use self::port::{Pace, connect};
 pub(crate) use self::upload::table_of;
 use crate::arguments::{angle, gait, positive_angle, seconds};
@@ -161,7 +162,7 @@ impl Robot {
     pub(crate) fn run(self, output: Output) -> Outcome {
         let port = self.port.as_deref();
         match &self.action {
-            Action::Info => info(port, output),
+            Action::Info => info::run(port, output),
             Action::Status => status(port, output),
             Action::Configure(arguments) => configure::configure(port, arguments, output),
             Action::Upload(arguments) => upload::run(port, arguments, output),
@@ -176,19 +177,6 @@ impl Robot {
             Action::Log(arguments) => listening::log(port, arguments, output),
         }
     }
-}
-
-fn info(port: Option<&str>, output: Output) -> Outcome {
-    let mut robot = connect(port, Pace::AsFastAsPossible)?;
-    let (configuration, table, counters) =
-        (robot.configuration()?, robot.table()?, robot.counters()?);
-    output.answer(&Info::new(
-        robot.info(),
-        &configuration,
-        table.as_ref(),
-        &counters,
-    ));
-    Ok(())
 }
 
 fn status(port: Option<&str>, output: Output) -> Outcome {

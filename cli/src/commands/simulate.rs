@@ -60,7 +60,10 @@ impl fmt::Display for Swum {
         )
         .row(
             "lateral",
-            format!("Y/L = {:.10}", self.lateral_over_length + 0.0),
+            format!(
+                "Y/L = {:.10}",
+                (self.lateral_over_length * 1e10).round() / 1e10 + 0.0
+            ),
         )
         .row("rotation", quantity::angle(self.rotation_rad))
         .row("sway ΔY", format!("ΔY/L = {:.8}", self.delta_y_over_length))

@@ -16,7 +16,7 @@ use crate::output::Output;
 
 /// Be a robot in a virtual tank, in real time, until Ctrl-C
 ///
-/// The swimmer file is the truth that only the tank knows. Servos have the file's [servo] table, or a rate limit of
+/// The swimmer file is the truth that only the tank knows. Servos are those of the file, or have a rate limit of
 /// 3.5 rad/s and a dead band of 0.017 rad.
 #[derive(Debug, clap::Args)]
 #[command(group = clap::ArgGroup::new("door").args(["pty", "tcp"]).required(true).multiple(true))]

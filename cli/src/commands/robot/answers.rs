@@ -2,10 +2,7 @@
 
 use std::fmt;
 
-use link_protocol::{
-    Board, Configuration, Counters, Flags, HelloReply, ResetReason, StateName, Status, StopCause,
-    TableInfo, TangentialDrag, Telemetry,
-};
+use link_protocol::{Flags, StateName, Status, StopCause, TableInfo, Telemetry};
 use serde::Serialize;
 
 use crate::quantity::{self, Rows};
@@ -23,180 +20,6 @@ impl fmt::Display for Done {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.sentence)
     }
-}
-
-/// Who is there.
-#[derive(Debug, Serialize)]
-pub(super) struct Info {
-    board: &'static str,
-    firmware: String,
-    commit: Option<String>,
-    protocol: [u8; 2],
-    schema_key: String,
-    reset_reason: &'static str,
-    session: u16,
-    limits: Limits,
-    configuration: Body,
-    gait: Option<Gait>,
-    counters: Traffic,
-}
-
-#[derive(Debug, Serialize)]
-struct Limits {
-    max_angle_rad: f32,
-    max_rate_rad_s: f32,
-    pulse_us: [f64; 2],
-    knots: u16,
-}
-
-#[derive(Debug, Serialize)]
-struct Body {
-    middle_m: f32,
-    front_m: f32,
-    back_m: f32,
-    chi: f32,
-    c_t: String,
-    sphere_radius_m: f32,
-}
-
-#[derive(Debug, Serialize)]
-struct Traffic {
-    frames_ok: u32,
-    frames_bad: u32,
-    acted: u32,
-    replayed: u32,
-    superseded: u32,
-    stale: u32,
-    refused: u32,
-    dropped: u32,
-    late_ticks: u32,
-    clamped: u32,
-}
-
-impl Info {
-    pub(super) fn new(
-        hello: &HelloReply,
-        configuration: &Configuration,
-        table: Option<&TableInfo>,
-        counters: &Counters,
-    ) -> Self {
-        let version = hello.firmware;
-        let commit = String::from_utf8_lossy(&version.commit)
-            .trim_end_matches('\0')
-            .to_owned();
-        Self {
-            board: board(hello.board),
-            firmware: format!("{}.{}.{}", version.major, version.minor, version.patch),
-            commit: (!commit.is_empty() && commit != "00000000").then_some(commit),
-            protocol: [hello.protocol_min, hello.protocol_current],
-            schema_key: format!("{:016x}", u64::from_be_bytes(hello.schema_key)),
-            reset_reason: match hello.reset_reason {
-                ResetReason::PowerOn => "power on",
-                ResetReason::Watchdog => "watchdog",
-                ResetReason::Crash => "crash",
-                ResetReason::Pin => "reset pin",
-            },
-            session: hello.session,
-            limits: Limits {
-                max_angle_rad: hello.limits.max_angle,
-                max_rate_rad_s: hello.limits.max_rate,
-                pulse_us: [
-                    f64::from(hello.limits.pulse_min_ns) * 1e-3,
-                    f64::from(hello.limits.pulse_max_ns) * 1e-3,
-                ],
-                knots: hello.limits.max_knots,
-            },
-            configuration: Body {
-                middle_m: configuration.middle_m,
-                front_m: configuration.front_m,
-                back_m: configuration.back_m,
-                chi: configuration.chi,
-                c_t: match configuration.tangential_drag {
-                    TangentialDrag::LogAspect(value) => format!("2πμ / {value}"),
-                    TangentialDrag::HalfThickness(value) => {
-                        format!("per link, half thickness {value} m")
-                    }
-                    TangentialDrag::OverViscosity(value) => format!("{value} μ"),
-                },
-                sphere_radius_m: configuration.sphere_radius_m,
-            },
-            gait: table.map(Gait::new),
-            counters: Traffic {
-                frames_ok: counters.frames.ok,
-                frames_bad: counters.frames.bad(),
-                acted: counters.acted,
-                replayed: counters.replayed,
-                superseded: counters.superseded,
-                stale: counters.stale,
-                refused: counters.refused,
-                dropped: counters.dropped,
-                late_ticks: counters.late_ticks,
-                clamped: counters.clamped,
-            },
-        }
-    }
-}
-
-impl fmt::Display for Info {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let body = &self.configuration;
-        let commit = self
-            .commit
-            .as_deref()
-            .map_or(String::new(), |commit| format!(", commit {commit}"));
-        let mut rows = Rows::default();
-        rows.row("board", self.board)
-            .row(
-                "firmware",
-                format!(
-                    "{}{commit}, protocol {} to {}",
-                    self.firmware, self.protocol[0], self.protocol[1]
-                ),
-            )
-            .row("started by", self.reset_reason)
-            .row(
-                "limits",
-                format!(
-                    "{} and {}/s, pulses {} to {} µs, {} knots",
-                    quantity::angle(f64::from(self.limits.max_angle_rad)),
-                    quantity::angle(f64::from(self.limits.max_rate_rad_s)),
-                    self.limits.pulse_us[0],
-                    self.limits.pulse_us[1],
-                    self.limits.knots,
-                ),
-            )
-            .row(
-                "links",
-                format!(
-                    "{} / {} / {} mm",
-                    millimetres(body.front_m),
-                    millimetres(body.middle_m),
-                    millimetres(body.back_m)
-                ),
-            )
-            .row(
-                "drag",
-                format!(
-                    "χ = {}, c_t = {}, sphere {} mm",
-                    body.chi,
-                    body.c_t,
-                    millimetres(body.sphere_radius_m)
-                ),
-            )
-            .row("gait", gait_line(self.gait.as_ref()))
-            .row(
-                "frames",
-                format!(
-                    "{} good, {} bad",
-                    self.counters.frames_ok, self.counters.frames_bad
-                ),
-            );
-        write!(f, "{rows}")
-    }
-}
-
-fn millimetres(metres: f32) -> f64 {
-    (f64::from(metres) * 1e5).round() / 1e2
 }
 
 /// The table that is active, by its evidence.
@@ -219,7 +42,7 @@ impl Gait {
     }
 }
 
-fn gait_line(gait: Option<&Gait>) -> String {
+pub(super) fn gait_line(gait: Option<&Gait>) -> String {
     gait.map_or_else(
         || "none".to_owned(),
         |gait| {
@@ -362,14 +185,6 @@ pub(super) fn cause(cause: StopCause) -> &'static str {
         StopCause::LinkLost => "link lost",
         StopCause::BatteryLow => "battery low",
         StopCause::EStop => "e-stop",
-    }
-}
-
-fn board(board: Board) -> &'static str {
-    match board {
-        Board::Twin => "twin",
-        Board::NanoRp2040Connect => "Arduino Nano RP2040 Connect",
-        Board::Pico => "Raspberry Pi Pico",
     }
 }
 

@@ -35,7 +35,7 @@ impl fmt::Display for Configured {
     }
 }
 
-/// `swimmer robot configure`: limits come from the command line, else from the file's [servo] table, else stay.
+/// `swimmer robot configure`: limits come from the command line, else from the file's `[servo]` table, else stay.
 pub(super) fn configure(port: Option<&str>, arguments: &Configure, output: Output) -> Outcome {
     let file = load_swimmer(&arguments.swimmer)?;
     let mut robot = connect(port, Pace::AsFastAsPossible)?;
