@@ -1,7 +1,7 @@
 //! The paper's fit (eq. RMSE): r_s and χ that minimise √Σ(w_x q_x + w_y q_y + w_θ q_θ) over runs, with
 //! q = ((simulated − measured)/max measured)², w_x = 0.5 and w_y = w_θ = 0.25.
 //!
-//! Parameters are r_s = L p² and χ = eᵏ, which keep them where they make sense; r_s = 0 can be reached and is tried by itself.
+//! Parameters are r_s = L p² and χ = eᵏ, which keep them where they make sense; the border r_s = 0 is fitted by itself.
 //! Levenberg–Marquardt (the MINPACK port) starts from the best of a grid, with ideal servos; its distinct ends then start the
 //! fit with the path that the servos really played. Jacobians are central differences of fourth order of a simulation that
 //! is smooth to 1e-10.
@@ -200,6 +200,8 @@ pub fn c_t_form(drag: &TangentialDrag<f64>) -> String {
 
 /// Starting grid: r_s/L and χ.
 const GRID: ([f64; 4], [f64; 5]) = ([0.02, 0.08, 0.2, 0.4], [1.3, 2.0, 3.5, 6.0, 10.0]);
+/// p of a start just inside the border r_s = 0: a sphere of a thousandth of the length.
+const SMALL_SPHERE: f64 = 0.03;
 /// Ends of the search that are followed up.
 const FOLLOWED: usize = 3;
 
@@ -234,9 +236,7 @@ pub(crate) fn fit(
     ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
     let mut ends: Vec<[f64; 2]> = Vec::new();
     let best = ranked.iter().take(FOLLOWED).map(|(p, _)| *p);
-    // At p = 0 the derivative by p vanishes, so that the fit stays without a sphere.
-    let bare = ranked.first().map(|(p, _)| [0.0, p[1]]);
-    for p in best.chain(bare).filter_map(|p| search.minimise(p)) {
+    for p in best.filter_map(|p| search.minimise(p)) {
         if ends
             .iter()
             .all(|q| (q[0] - p[0]).abs() + (q[1] - p[1]).abs() > 1e-3)
@@ -245,9 +245,18 @@ pub(crate) fn fit(
         }
     }
     let problem = Problem::new(start, runs, scales, &projection);
+    let bare = ends
+        .iter()
+        .filter_map(|p| problem.without_sphere().minimise(*p));
+    // From the border inwards again: its optimum may be a saddle.
+    let bare: Vec<[f64; 2]> = bare
+        .flat_map(|[_, k]| [[0.0, k], [SMALL_SPHERE, k]])
+        .collect();
     let finished = ends
         .iter()
+        .chain(bare.iter().filter(|p| p[0] > 0.0))
         .filter_map(|p| problem.minimise(*p))
+        .chain(bare.iter().filter(|p| p[0] <= 0.0).copied())
         .filter_map(|p| Some((p, problem.cost(p)?)));
     let best = finished.min_by(|a, b| a.1.total_cmp(&b.1));
     let (p, cost) = best.ok_or(FitError::NoConvergence {

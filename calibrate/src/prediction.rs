@@ -79,7 +79,8 @@ pub fn predict(
     Ok(path.predict(&file.swimmer, &Projection::new())?.0)
 }
 
-/// The joint angles of one cycle in steady state \[rad\], at the vertices of the played path or at 512 points of an ideal one.
+/// The joint angles of one cycle in steady state \[rad\], each with its fraction of the cycle, at the vertices of the played
+/// path or at 512 points of an ideal one.
 ///
 /// # Errors
 /// As [`predict`].
@@ -87,11 +88,15 @@ pub fn joint_path(
     gait: &AnyGait,
     servo: Option<&ServoFile>,
     period_s: f64,
-) -> Result<Vec<[f64; 2]>, PredictionError> {
+) -> Result<Vec<(f64, [f64; 2])>, PredictionError> {
     Ok(match JointPath::new(gait, servo, period_s)? {
-        JointPath::Played(vertices) => vertices.iter().map(|(_, phi)| [phi.x, phi.y]).collect(),
+        JointPath::Played(vertices) => vertices
+            .iter()
+            .map(|(u, phi)| (*u, [phi.x, phi.y]))
+            .collect(),
         JointPath::Ideal(gait) => (0..=KNOTS)
-            .map(|i| gait.at(i as f64 / KNOTS as f64).phi.into())
+            .map(|i| i as f64 / KNOTS as f64)
+            .map(|u| (u, gait.at(u).phi.into()))
             .collect(),
     })
 }
@@ -312,7 +317,7 @@ mod tests {
         );
         assert!(narrow.x_m < 0.92 * wide.x_m, "{narrow:?} {wide:?}");
         let path = joint_path(&gait, Some(&servo), 30.0).unwrap();
-        let reach = path.iter().flatten().copied().fold(0.0, f64::max);
+        let reach = path.iter().flat_map(|(_, phi)| *phi).fold(0.0, f64::max);
         assert!((reach - 0.9).abs() < 2e-3, "{reach}");
     }
 

@@ -15,6 +15,9 @@ pub(super) struct Problem<'a> {
     /// Square root of the weight over the largest measured value, for X, ΔY, Δθ.
     pub(super) factors: [f64; 3],
     pub(super) projection: &'a Projection,
+    /// Leaves the sphere out whatever p says. At p = 0 the derivative by p vanishes and Levenberg–Marquardt's scaling with
+    /// it, so the border is fitted by itself: p becomes a residual of its own, whose optimum is 0.
+    bare: bool,
     p: Vector2<f64>,
 }
 
@@ -43,7 +46,16 @@ impl<'a> Problem<'a> {
             runs,
             factors,
             projection,
+            bare: false,
             p: Vector2::zeros(),
+        }
+    }
+
+    /// The same without a sphere: only χ is sought.
+    pub(super) fn without_sphere(&self) -> Self {
+        Self {
+            bare: true,
+            ..*self
         }
     }
 
@@ -63,7 +75,12 @@ impl<'a> Problem<'a> {
     }
 
     fn at(&self, p: [f64; 2]) -> Option<Vec<f64>> {
-        self.residuals(&natural(self.start, p))
+        if !self.bare {
+            return self.residuals(&natural(self.start, p));
+        }
+        let mut out = self.residuals(&natural(self.start, [0.0, p[1]]))?;
+        out.push(p[0]);
+        Some(out)
     }
 
     /// The squared criterion.

@@ -173,16 +173,16 @@ fn predicted(round: &Finished) -> Outcome<Track> {
     let mut tank = Tank::new(&round.fitted.swimmer, Pose::identity())
         .map_err(|error| Failure::tried(&error))?;
     let place = |angles: &[f64; 2]| (*angles).into();
-    if let Some(first) = path.first() {
+    if let Some((_, first)) = path.first() {
         tank.move_joints(place(first));
     }
     let origin = tank.pose().inverse();
     let mut poses = Vec::new();
     for cycle in 0..round.swum.answer.cycles {
-        for (index, angles) in path.iter().enumerate() {
+        for (u, angles) in &path {
             tank.move_joints(place(angles));
             let pose = origin * tank.pose();
-            let time = (cycle as f64 + index as f64 / path.len() as f64) * round.period_s;
+            let time = (cycle as f64 + u) * round.period_s;
             poses.push([time, pose.x, pose.y, pose.theta]);
         }
     }
@@ -212,7 +212,7 @@ fn gait(round: &Finished) -> Outcome<GaitPicture> {
         set_points: (0..KNOTS_DRAWN)
             .map(|knot| at(f64::from(knot) / f64::from(KNOTS_DRAWN)))
             .collect(),
-        played,
+        played: played.into_iter().map(|(_, angles)| angles).collect(),
         bound: round.bounds.0,
     })
 }
