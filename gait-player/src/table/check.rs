@@ -18,8 +18,8 @@ const CLOSING_FACTOR: f32 = 2.0;
 const CLOSING_SLACK: f32 = 20.0;
 /// Units of work of one evaluation of the clearance; an interval's angles and slopes are one unit.
 const CLEARANCE_WORK: u32 = 10;
-/// Pieces of an interval in which the clearance is looked at again.
-const PIECES: usize = 4;
+/// Share of the margin that may be given up between two looks at the clearance.
+const GIVEN_UP: f32 = 0.5;
 
 /// The place in a table where something is largest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +97,9 @@ pub struct Checker {
     slope: Largest,
     steps: [f32; 2],
     crossing: Option<Refusal>,
-    /// Way that the links may still move before the last clearance vouches for nothing, m.
+    /// How far the interval was followed, 0 to 1.
+    at: f32,
+    /// Way that the links may still move from there before the last clearance vouches for nothing, m.
     reach: f32,
 }
 
@@ -116,6 +118,7 @@ impl Checker {
             slope: NOTHING,
             steps: [0.0; 2],
             crossing: None,
+            at: 0.0,
             reach: 0.0,
         }
     }
@@ -127,7 +130,12 @@ impl Checker {
             if left == 0 {
                 return None;
             }
-            left = left.saturating_sub(1 + self.interval(table, links));
+            let cubics = table.interval(self.next);
+            self.measure(&cubics, table.knots());
+            left -= 1;
+            if !self.follow(&cubics, links, &mut left) {
+                return None;
+            }
             self.next += 1;
         }
         let knots = table.knots() as u16;
@@ -140,51 +148,53 @@ impl Checker {
         })
     }
 
-    /// Checks one interval; returns the work beyond its own unit.
-    fn interval(&mut self, table: &GaitTable, links: &Links<f32>) -> u32 {
+    /// Angles and slopes of one interval; the same once more changes nothing.
+    fn measure(&mut self, cubics: &[Cubic; 2], knots: usize) {
         let knot = self.next as u16;
-        let cubics = table.interval(self.next);
-        for (joint, cubic) in [Joint::Front, Joint::Back].into_iter().zip(&cubics) {
+        for (joint, cubic) in [Joint::Front, Joint::Back].into_iter().zip(cubics) {
             let largest = cubic.largest_value(fabsf(self.angle.value));
             raise(&mut self.angle, joint, knot, largest);
             raise(&mut self.slope, joint, knot, cubic.largest_slope());
-            if self.next + 1 < table.knots() {
+            if self.next + 1 < knots {
                 let rise = fabsf(cubic.value(1.0) - cubic.a);
                 self.steps[joint.index()] = self.steps[joint.index()].max(rise);
             }
         }
+    }
+
+    /// Follows one interval from look to look, each as far as the last clearance vouches for; true at its end.
+    fn follow(&mut self, cubics: &[Cubic; 2], links: &Links<f32>, left: &mut u32) -> bool {
         if self.crossing.is_some() {
-            return 0;
+            return true;
         }
-        let way = motion(
-            links,
-            [0, 1].map(|joint| cubics[joint].way() * ANGLE_UNIT_RAD),
-        );
-        let mut work = 0;
-        let mut piece = 0;
-        let mut left = way;
-        // As long as the last clearance does not vouch for the rest of the interval, look again, piece by piece.
-        while self.reach < left && piece < PIECES {
-            let t = piece as f32 / PIECES as f32;
-            let angles = [0, 1].map(|joint| cubics[joint].value(t) * ANGLE_UNIT_RAD);
-            self.reach = clearance(links, angles) - margin(links);
-            work += CLEARANCE_WORK;
-            if self.reach < 0.0 {
+        let moved = |turns: [f32; 2]| motion(links, turns.map(|turn| turn * ANGLE_UNIT_RAD));
+        let way = moved([0, 1].map(|joint| cubics[joint].way()));
+        let fastest = moved([0, 1].map(|joint| cubics[joint].largest_slope()));
+        loop {
+            let ahead = way.min(fastest * (1.0 - self.at));
+            if self.reach >= ahead {
+                self.reach -= ahead;
+                self.at = 0.0;
+                return true;
+            }
+            if *left == 0 {
+                return false;
+            }
+            self.at += self.reach / fastest;
+            let angles = [0, 1].map(|joint| cubics[joint].value(self.at) * ANGLE_UNIT_RAD);
+            let spare = clearance(links, angles) - margin(links);
+            *left = left.saturating_sub(CLEARANCE_WORK);
+            if spare < 0.0 {
                 let [phi1, phi2] = angles.map(|angle| (angle / ANGLE_UNIT_RAD) as i16);
                 self.crossing = Some(Refusal::LinksCross {
-                    place: CrossingPlace::Gait(knot),
+                    place: CrossingPlace::Gait(self.next as u16),
                     phi1,
                     phi2,
                 });
-                return work;
+                return true;
             }
-            piece += 1;
-            if self.reach < left {
-                left = way * (1.0 - piece as f32 / PIECES as f32);
-            }
+            self.reach = spare + GIVEN_UP * margin(links);
         }
-        self.reach = (self.reach - left).max(0.0);
-        work
     }
 
     fn closing(&self, table: &GaitTable) -> Option<Refusal> {

@@ -283,3 +283,24 @@ fn the_papers_bounded_gait_passes_between_its_links() {
         "{refused:?}"
     );
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(4000))]
+    /// The sampled interpolant is the witness: no table passes whose links touch, between few knots as between many.
+    #[test]
+    fn no_table_passes_whose_links_touch_anywhere(
+        knots in prop::collection::vec([-28_000_i16..28_000, -28_000_i16..28_000], 2..=12), purcell in any::<bool>()
+    ) {
+        let bytes: Vec<u8> = knots.iter().flatten().flat_map(|angle| angle.to_le_bytes()).collect();
+        let table = GaitTable::from_bytes(&bytes).unwrap();
+        let links = if purcell { Swimmer::purcell().links } else { robot() };
+        let refused = matches!(facts(&table, &links).allow(&Limits { max_angle: 100.0, ..Limits::ROBOT }), Err(Refusal::LinksCross { .. } | Refusal::NotClosed { .. }));
+        if !refused {
+            for step in 0..4000 {
+                let angles = table.at(place(f64::from(step) / 4000.0, &table)).angles;
+                let gap = crate::clearance::clearance(&links, angles);
+                prop_assert!(gap > 0.0, "links touch at {angles:?}");
+            }
+        }
+    }
+}
