@@ -1,48 +1,11 @@
-//! The command line as one type, and the values on it that several commands share.
+//! The values on the command line that several commands share.
 
 use std::str::FromStr;
 
-use clap::{Parser, Subcommand};
 use swimmer_files::{AnyGait, GaitSpec, SwimmerFile, parse_angle};
 use swimmer_model::Model;
 
-use crate::commands::{calibrate, demo, optimize, robot, simulate, tracks, twin};
 use crate::failure::{Failure, Outcome};
-
-/// Optimal gaits for Purcell's three-link swimmer and its robot: model, optimise, play, track, fit.
-#[derive(Debug, Parser)]
-#[command(
-    name = "swimmer",
-    version,
-    max_term_width = 100,
-    arg_required_else_help = true
-)]
-#[command(after_help = "\
-Angles are 70deg, 1.2rad or a bare number of radians.
-SWIMMER is purcell, robot, robot-slender or the path of a swimmer file (TOML).
-GAIT is circle:AMPLITUDE, square:AMPLITUDE or the path of a gait file; add :cw to reverse it.
-Exit status: 0 done, 1 tried and failed, 2 bad usage or bad input.")]
-pub(crate) struct Arguments {
-    /// Print one JSON document on standard output; everything else goes to standard error
-    #[arg(long, global = true)]
-    pub(crate) json: bool,
-    /// What to do.
-    #[command(subcommand)]
-    pub(crate) command: Command,
-}
-
-/// What `swimmer` can do; the help of each command stands at its arguments.
-#[derive(Debug, Subcommand)]
-pub(crate) enum Command {
-    Demo(demo::Demo),
-    Simulate(simulate::Simulate),
-    #[command(subcommand)]
-    Optimize(optimize::Optimize),
-    Robot(robot::Robot),
-    Twin(twin::Twin),
-    Calibrate(calibrate::Calibrate),
-    Tracks(tracks::Tracks),
-}
 
 /// An angle on the command line, in radians.
 pub(crate) fn angle(text: &str) -> Result<f64, String> {
@@ -104,12 +67,6 @@ impl From<swimmer_files::FileError> for Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_command_line_is_consistent() {
-        use clap::CommandFactory;
-        Arguments::command().debug_assert();
-    }
 
     #[test]
     fn times_are_positive() {

@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::ErrorKind;
 
-use crate::arguments::Arguments;
+use crate::commands::Arguments;
 use crate::output::Output;
 
 fn main() -> ExitCode {

@@ -1,4 +1,4 @@
-//! One file for each subcommand: its arguments, what it calls, its answer.
+//! The command line as one type; one file for each subcommand: its arguments, what it calls, its answer.
 
 pub(crate) mod calibrate;
 pub(crate) mod demo;
@@ -8,9 +8,45 @@ pub(crate) mod simulate;
 pub(crate) mod tracks;
 pub(crate) mod twin;
 
-use crate::arguments::Command;
+use clap::{Parser, Subcommand};
+
 use crate::failure::Outcome;
 use crate::output::Output;
+
+/// Optimal gaits for Purcell's three-link swimmer and its robot: model, optimise, play, track, fit.
+#[derive(Debug, Parser)]
+#[command(
+    name = "swimmer",
+    version,
+    max_term_width = 100,
+    arg_required_else_help = true
+)]
+#[command(after_help = "\
+Angles are 70deg, 1.2rad or a bare number of radians.
+SWIMMER is purcell, robot, robot-slender or the path of a swimmer file (TOML).
+GAIT is circle:AMPLITUDE, square:AMPLITUDE or the path of a gait file; add :cw to reverse it.
+Exit status: 0 done, 1 tried and failed, 2 bad usage or bad input.")]
+pub(crate) struct Arguments {
+    /// Print one JSON document on standard output; everything else goes to standard error
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// What `swimmer` can do; the help of each command stands at its arguments.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Demo(demo::Demo),
+    Simulate(simulate::Simulate),
+    #[command(subcommand)]
+    Optimize(optimize::Optimize),
+    Robot(robot::Robot),
+    Twin(twin::Twin),
+    Calibrate(calibrate::Calibrate),
+    Tracks(tracks::Tracks),
+}
 
 /// Runs what was asked for.
 ///
@@ -25,5 +61,16 @@ pub(crate) fn run(command: Command, output: Output) -> Outcome {
         Command::Robot(robot) => robot.run(output),
         Command::Twin(twin) => twin.run(output),
         Command::Tracks(tracks) => tracks.run(output),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Arguments;
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
     }
 }
