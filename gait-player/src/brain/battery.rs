@@ -1,5 +1,5 @@
 //! Promise R8: a battery that is low for a second stops the robot, and keeps it from being armed until it has been well
-//! for five. What is not measured is never low.
+//! for five. What was never measured is never low; a sample that is missing changes nothing.
 
 const LOW_FOR_US: u64 = 1_000_000;
 const WELL_FOR_US: u64 = 5_000_000;
@@ -18,8 +18,7 @@ impl Battery {
     pub(crate) fn measure(&mut self, now_us: u64, measured_mv: Option<u16>, limit_mv: u16) -> bool {
         self.last_mv = measured_mv;
         let Some(mv) = measured_mv else {
-            *self = Self::default();
-            return false;
+            return self.latched;
         };
         if mv < limit_mv {
             self.well_since = None;
@@ -65,9 +64,19 @@ mod tests {
     }
 
     #[test]
+    fn a_sample_that_is_missing_releases_nothing() {
+        let mut battery = Battery::default();
+        battery.measure(0, Some(4000), 4400);
+        assert!(battery.measure(1_000_000, Some(4000), 4400));
+        assert!(battery.measure(1_020_000, None, 4400) && battery.low());
+        assert!(battery.measure(1_040_000, Some(5000), 4400) && battery.low());
+        assert_eq!(battery.mv(), Some(5000));
+    }
+
+    #[test]
     fn what_is_not_measured_is_never_low() {
         let mut battery = Battery::default();
-        assert!(!battery.measure(0, Some(0), 4400));
+        assert!(!battery.measure(0, None, 4400));
         assert!(!battery.measure(9_000_000, None, 4400) && !battery.low());
         assert_eq!(battery.mv(), None);
     }
