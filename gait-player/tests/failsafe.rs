@@ -102,6 +102,14 @@ fn a_detached_pause_holds_for_a_minute() {
     let took = bench.until(StateName::Stopping, 61 * SECOND);
     assert!(took.abs_diff(60 * SECOND) <= TICK, "{took}");
     follow_stop(&mut bench, StopCause::PauseExpired);
+    // The minute begins when the operator detaches, however long the pause is by then.
+    let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
+    bench.done(Request::Pause { detached: false });
+    bench.run(70 * SECOND);
+    bench.done(Request::Pause { detached: true });
+    bench.keep_alive = false;
+    let took = bench.until(StateName::Stopping, 61 * SECOND);
+    assert!(took.abs_diff(60 * SECOND) <= TICK, "{took}");
     // An attached pause after a detached one needs the link again.
     let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
     bench.done(Request::Pause { detached: true });

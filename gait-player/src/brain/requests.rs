@@ -332,9 +332,15 @@ impl Brain {
             State::Paused {
                 pose,
                 since_us,
+                detached: before,
                 play,
-                ..
             } => {
+                // The minute without a link begins when it is first asked for.
+                let since_us = if detached && !before {
+                    now_us
+                } else {
+                    since_us
+                };
                 self.state = State::Paused {
                     pose,
                     since_us,
