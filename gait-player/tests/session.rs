@@ -129,6 +129,46 @@ fn a_stop_cancels_a_play_that_waits_for_its_check() {
 }
 
 #[test]
+fn what_a_stop_from_elsewhere_cancels_is_answered_and_not_worked_at_for_ever() {
+    let mut bench = Bench::new();
+    bench.upload(&circle(1.2));
+    bench.done(ARM);
+    let stranger = Header::new(0, 9);
+    // A play, stopped by another program: it was answered, and its repeat hears the same.
+    let sequence = bench.sequence + 1;
+    assert_eq!(bench.send_request(sequence, play(1, 5_000_000)), None);
+    bench.send(stranger, &Message::Request(Request::Stop));
+    let refused = Reply::Refused(Refusal::NotArmed);
+    let answer = (Header::new(bench.session, sequence), refused.clone());
+    assert!(bench.replies.contains(&answer));
+    assert_eq!(
+        bench.send_request(sequence, play(1, 5_000_000)),
+        Some(refused)
+    );
+    bench.sequence = sequence;
+    // A commit: it may be asked again.
+    let table = circle(1.1);
+    let upload = bench.send_table(&table);
+    bench.until(StateName::Stopped, 2 * SECOND);
+    bench.done(ARM);
+    let sequence = bench.sequence + 1;
+    assert_eq!(
+        bench.send_request(sequence, Request::Commit { upload }),
+        None
+    );
+    bench.send(stranger, &Message::Request(Request::EStop));
+    assert_eq!(
+        bench.send_request(sequence, Request::Commit { upload }),
+        Some(Reply::Refused(Refusal::Busy))
+    );
+    bench.sequence = sequence;
+    assert!(matches!(
+        bench.ask(Request::Commit { upload }),
+        Reply::Table(Some(info)) if info.crc32 == table.crc32()
+    ));
+}
+
+#[test]
 fn a_repeat_gets_the_stored_reply_and_does_nothing() {
     let mut bench = Bench::new();
     bench.upload(&circle(1.2));

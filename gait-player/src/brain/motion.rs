@@ -5,7 +5,7 @@ use super::state::{Progress, State};
 use super::work::Work;
 use crate::TICK_US;
 use crate::ramp::{NEUTRAL, Ramp};
-use link_protocol::StopCause;
+use link_protocol::{Refusal, Reply, StopCause};
 
 /// Pulses stay on so long at neutral.
 const SETTLE_US: u64 = 500_000;
@@ -70,9 +70,17 @@ impl Brain {
         self.resets.estop = true;
     }
 
-    /// A request that still waits for its check will not act any more.
+    /// A request that still waits for its check will not act any more, and is told so: its host may be another one
+    /// than the one that stops. A commit may be asked again.
     fn drop_work(&mut self) {
-        self.work = Work::Idle;
+        let (reply_to, refusal) = match core::mem::replace(&mut self.work, Work::Idle) {
+            Work::Idle => return,
+            Work::Commit { reply_to, .. } | Work::Swap { reply_to, .. } => {
+                (reply_to, Refusal::Busy)
+            }
+            Work::Play { reply_to, .. } => (reply_to, Refusal::NotArmed),
+        };
+        self.finish(reply_to, Reply::Refused(refusal));
     }
 
     /// A table that waited for the end of a cycle need not wait any longer.
@@ -134,8 +142,8 @@ impl Brain {
             self.stop(StopCause::Requested);
             return self.commanded;
         };
+        let end = table.knot_angles(0);
         if now.finished() {
-            let end = table.knot_angles(0);
             now.elapsed_us = now.period_us() * u64::from(now.request.cycles);
             self.last_play = Some(now);
             let ramp = Ramp::to_neutral(end, &self.limits);
@@ -155,7 +163,8 @@ impl Brain {
                 .tables
                 .active()
                 .map_or(NEUTRAL, |table| table.knot_angles(0));
-            let ramp = Ramp::soft(self.commanded, first, swap.via_neutral, &self.limits);
+            // From where the way was checked, which is where this cycle ends.
+            let ramp = Ramp::soft(end, first, swap.via_neutral, &self.limits);
             now.elapsed_us = now.period_us() * now.cycles_done();
             self.last_play = Some(now);
             self.state = State::Starting {
@@ -163,7 +172,7 @@ impl Brain {
                 since: self.tick,
                 play: now,
             };
-            return self.commanded;
+            return end;
         }
         let angles = table
             .at(table.phase(now.in_cycle_us(), now.request.period_us))

@@ -177,7 +177,10 @@ impl Bench {
             Header::new(self.session, sequence),
             &Message::Request(request),
         );
-        self.replies.get(before).map(|(_, reply)| reply.clone())
+        let mut replies = self.replies.iter().skip(before);
+        replies
+            .find(|(header, _)| header.sequence == sequence)
+            .map(|(_, reply)| reply.clone())
     }
 
     /// Asks, and waits for the answer.
