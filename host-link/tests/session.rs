@@ -182,6 +182,43 @@ fn an_idle_session_feeds_the_lease_every_50_ms() {
 }
 
 #[test]
+fn an_idle_half_hour_does_not_age_the_next_request() {
+    let mut script = Script::open(MS * 10);
+    script.session.request(script.now, Request::Status);
+    script.collect();
+    script.reply(Reply::Done);
+    let (_, before, _) = script.last_request();
+    script.run_to(MS * 1_800_000);
+    script.session.request(script.now, Request::Table);
+    script.collect();
+    let (_, after, _) = script.last_request();
+    // Numbers from half the range on would be older than the first, and the robot would do nothing.
+    assert_eq!(after.wrapping_sub(before), 1);
+}
+
+#[test]
+fn what_the_robot_works_at_does_not_lengthen_the_round_trip() {
+    let mut script = Script::open(MS * 10);
+    let play = Request::Play(link_protocol::Play {
+        cycles: 1,
+        period_us: 5_000_000,
+        detached: false,
+    });
+    script.session.request(script.now, play);
+    script.collect();
+    script.run_to(MS * 60);
+    script.reply(Reply::Done);
+    script.session.request(script.now, Request::Resume);
+    script.collect();
+    script.run_to(MS * 200);
+    script.reply(Reply::Working);
+    script.run_to(MS * 3_000);
+    script.reply(Reply::Done);
+    let trip = script.session.counters().round_trip;
+    assert_eq!(trip, Some(MS * 10));
+}
+
+#[test]
 fn a_stop_drops_everything_unanswered_and_goes_first() {
     let mut script = Script::open(MS * 10);
     let upload = script

@@ -320,7 +320,8 @@ impl Session {
             return;
         }
         self.counters.keep_alives += 1;
-        let sequence = self.next_sequence();
+        // No request, so no number of its own: an hour of them would make the next request look old.
+        let sequence = self.sequence;
         if now >= self.next_ping || self.pings < QUICK_PINGS {
             self.pings += 1;
             self.next_ping = now + PING_EVERY;

@@ -146,7 +146,9 @@ impl Session {
 
     fn answered(&mut self, sequence: u16, reply: Reply, now: Duration) {
         if let Some(pending) = self.pending.take_if(|pending| pending.sequence == sequence) {
-            if pending.tries == 1 && !matches!(pending.request, Request::Commit { .. }) {
+            // Neither a repeat's answer tells the round trip, nor one that the robot worked for.
+            let once = pending.tries == 1 && pending.last_sent == pending.first_sent;
+            if once && !matches!(pending.request, Request::Commit { .. } | Request::Play(_)) {
                 self.trip.sample(now.saturating_sub(pending.first_sent));
             }
             if !matches!(reply, Reply::Refused(Refusal::Busy)) {
