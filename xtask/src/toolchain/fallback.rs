@@ -14,7 +14,7 @@ use crate::failure::{Failure, Outcome};
 use crate::run::{cargo, command, read, run, target_folder, works};
 
 /// Part of the folder's name: to be raised when the recipe below changes, so that old prefixes are made anew.
-const RECIPE: u32 = 1;
+const RECIPE: u32 = 2;
 /// The package whose version all others share.
 const COMPILER: &str = "rustc-web";
 
@@ -103,24 +103,38 @@ fn download(packages: &Path, version: &str) -> Outcome {
     fetch
         .current_dir(packages)
         .args(["download", "-qq", "-o", "APT::Sandbox::User=root"]);
-    run(fetch.args(same_version), next)?;
-    let library = deb_named(packages, &library)?;
-    let depends = read(
-        command("dpkg-deb").arg("-f").arg(&library).arg("Depends"),
+    run(fetch.args(&same_version), next)?;
+    // What these need of the system and a bare machine lacks: LLVM, and on such a machine the libraries that LLVM needs.
+    let plan = read(
+        command("apt-get")
+            .args(["install", "--simulate", "--no-install-recommends"])
+            .args([&same_version[1], &same_version[4]]),
         next,
     )?;
-    let llvm = llvm_package(&depends).ok_or_else(|| {
-        Failure::new(
-            format!("reading what {} needs", library.display()),
-            format!("no libllvm in `{depends}`"),
-            next,
-        )
-    })?;
+    let missing: Vec<&str> = planned(&plan)
+        .filter(|name| !same_version.iter().any(|own| is_of(own, name)))
+        .collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
     let mut fetch = command("apt-get");
     fetch
         .current_dir(packages)
         .args(["download", "-qq", "-o", "APT::Sandbox::User=root"]);
-    run(fetch.arg(llvm), next)
+    run(fetch.args(missing), next)
+}
+
+/// The packages that a simulated `apt-get install` would install.
+fn planned(plan: &str) -> impl Iterator<Item = &str> {
+    plan.lines()
+        .filter_map(|line| line.strip_prefix("Inst ")?.split_whitespace().next())
+}
+
+/// Whether `name=version` asks for the package.
+fn is_of(asked: &str, package: &str) -> bool {
+    asked
+        .split_once('=')
+        .is_some_and(|(name, _)| name == package)
 }
 
 fn unpack(packages: &Path, prefix: &Path) -> Outcome {
@@ -163,10 +177,7 @@ fn build_core(prefix: &Path, host: &HostCompiler) -> Outcome {
         .env("CARGO_TARGET_DIR", project.join("target"))
         .env("RUSTC", prefix.join("usr/bin/rustc"))
         .env("RUSTC_BOOTSTRAP", "1") // build-std is unstable; the result is an ordinary sysroot
-        .env(
-            "LD_LIBRARY_PATH",
-            prefix.join("usr/lib").join(multiarch(&host.triple)),
-        )
+        .env("LD_LIBRARY_PATH", library_path(prefix, host))
         // No path of this machine in the panic messages of the firmware.
         .env(
             "RUSTFLAGS",
@@ -212,13 +223,13 @@ fn build_core(prefix: &Path, host: &HostCompiler) -> Outcome {
 
 /// Scripts under the names that cargo looks for; cargo wants the compiler to be called `rustc`.
 fn write_wrappers(unfinished: &Path, prefix: &Path, host: &HostCompiler) -> Outcome {
-    let libraries = prefix.join("usr/lib").join(multiarch(&host.triple));
+    let libraries = library_path(prefix, host);
     for name in ["rustc", "clippy-driver"] {
         write_script(
             &unfinished.join("bin").join(name),
             &format!(
                 "LD_LIBRARY_PATH=\"{}${{LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}}\" exec \"{}\" \"$@\"",
-                libraries.display(),
+                libraries,
                 prefix.join("usr/bin").join(name).display()
             ),
         )?;
@@ -275,15 +286,11 @@ fn minor_version(version: &str) -> String {
     version.split('.').take(2).collect::<Vec<_>>().join(".")
 }
 
-/// The first `libllvmN` among dependencies.
-fn llvm_package(depends: &str) -> Option<&str> {
-    depends
-        .split([',', ' ', '|'])
-        .map(|word| word.split(':').next().unwrap_or(word))
-        .find(|word| {
-            word.strip_prefix("libllvm")
-                .is_some_and(|number| number.starts_with(|c: char| c.is_ascii_digit()))
-        })
+/// Where the unpacked shared libraries lie, as `LD_LIBRARY_PATH` wants it; some packages still use the folder at the root.
+fn library_path(prefix: &Path, host: &HostCompiler) -> String {
+    let folder = multiarch(&host.triple);
+    let root = prefix.display();
+    format!("{root}/usr/lib/{folder}:{root}/lib/{folder}")
 }
 
 /// Debian's name for the triple's library folder.
@@ -317,18 +324,6 @@ fn has_ending(name: &str, ending: &str) -> bool {
         .is_some_and(|found| found == ending)
 }
 
-fn deb_named(folder: &Path, package: &str) -> Outcome<PathBuf> {
-    entries(folder, |name| name.starts_with(&format!("{package}_")))?
-        .pop()
-        .ok_or_else(|| {
-            Failure::new(
-                format!("looking for {package}_*.deb in {}", folder.display()),
-                "apt-get did not leave it there",
-                "repeat the command",
-            )
-        })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -336,17 +331,16 @@ mod tests {
     #[test]
     fn names_follow_the_version() {
         assert_eq!(minor_version("1.96.0+dfsg1-1~deb12u2"), "1.96");
-        assert_eq!(prefix_name("1.96.0"), "1.96.0-recipe-1");
+        assert_eq!(prefix_name("1.96.0"), "1.96.0-recipe-2");
         assert_eq!(multiarch("aarch64-unknown-linux-gnu"), "aarch64-linux-gnu");
     }
 
     #[test]
-    fn finds_llvm_among_dependencies() {
-        assert_eq!(
-            llvm_package("libc6 (>= 2.36), libgcc-s1 (>= 4.2), libllvm22 (>= 1:22.1.8), zlib1g"),
-            Some("libllvm22")
-        );
-        assert_eq!(llvm_package("libc6 (>= 2.36), libllvm-tools"), None);
+    fn reads_what_apt_would_install() {
+        let plan = "NOTE: This is only a simulation!\nInst libedit2 (3.1 Debian:12/stable [amd64])\n\
+                    Inst libllvm22 (1:22.1.8 Debian:12/stable [amd64]) []\nConf libedit2 (3.1)\n";
+        assert_eq!(planned(plan).collect::<Vec<_>>(), ["libedit2", "libllvm22"]);
+        assert!(is_of("rustc-web=1.96.0", "rustc-web") && !is_of("rustc-web=1.96.0", "rustc"));
     }
 
     #[test]
