@@ -160,6 +160,16 @@ impl Session {
     pub fn request(&mut self, now: Duration, request: Request) -> Ticket {
         let ticket = self.ticket();
         if matches!(request, Request::Stop | Request::EStop) {
+            let estop_unanswered = self
+                .pending
+                .as_ref()
+                .is_some_and(|pending| matches!(pending.request, Request::EStop));
+            // The e-stop may have been lost: a stop after it must not be all that the robot hears.
+            let request = if estop_unanswered {
+                Request::EStop
+            } else {
+                request
+            };
             self.drop_unanswered();
             self.outgoing.clear();
             self.put_under_way(Owner::Ticket(ticket), request, now);

@@ -239,6 +239,23 @@ fn a_stop_drops_everything_unanswered_and_goes_first() {
 }
 
 #[test]
+fn a_stop_does_not_weaken_an_estop_that_is_not_answered_yet() {
+    let mut script = Script::open(MS * 10);
+    script.session.request(script.now, Request::EStop);
+    // Its frame is lost; the operator presses stop as well.
+    script.collect();
+    let stop = script.session.request(script.now, Request::Stop);
+    script.collect();
+    assert!(matches!(script.last_request().2, Request::EStop));
+    script.reply(Reply::Done);
+    assert_eq!(script.outcome(stop), Some(Ok(())));
+    // Once it is answered, a stop is a stop.
+    script.session.request(script.now, Request::Stop);
+    script.collect();
+    assert!(matches!(script.last_request().2, Request::Stop));
+}
+
+#[test]
 fn a_stop_needs_no_session_and_hurries() {
     let mut script = Script::new();
     let ticket = script.session.request(script.now, Request::EStop);
