@@ -121,7 +121,8 @@ pub enum Refusal {
         /// Duration, ms.
         needs_ms: u32,
     },
-    /// The robot is busy with an earlier request that is not answered yet.
+    /// The robot is busy with an earlier request that is not answered yet, or a stop cut its check of a table short: ask
+    /// again.
     Busy,
 }
 

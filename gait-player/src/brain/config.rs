@@ -50,7 +50,7 @@ pub struct Boot {
 /// What the shell measured by the time of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Inputs {
-    /// Battery (lowest since the last tick), mV; `None` where no divider is fitted.
+    /// Battery (lowest since the last tick), mV; `None` where no divider is fitted, or no sample came.
     pub battery_mv: Option<u16>,
     /// The radio says it is connected (STATE pin); true where there is no such pin. Nothing is sent while it is false.
     pub link_up: bool,
