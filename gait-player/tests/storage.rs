@@ -13,6 +13,8 @@ use link_protocol::*;
 struct Flash {
     slots: [Vec<u8>; SLOTS],
     settings: Option<Vec<u8>>,
+    /// The settings' own store refuses to write.
+    settings_broken: bool,
     /// Bytes until the power is cut.
     left: usize,
     spent: usize,
@@ -27,6 +29,7 @@ impl Flash {
         Self {
             slots: [slot.clone(), slot],
             settings: None,
+            settings_broken: false,
             left: usize::MAX,
             spent: 0,
         }
@@ -75,6 +78,9 @@ impl Storage for Flash {
     fn save_settings(&mut self, bytes: &[u8]) -> Result<(), PowerCut> {
         // Old or new: the record's own store sees to that.
         self.spend()?;
+        if self.settings_broken {
+            return Err(PowerCut);
+        }
         self.settings = Some(bytes.to_vec());
         Ok(())
     }
@@ -234,6 +240,29 @@ fn nothing_is_stored_unless_stopped_and_a_failure_is_retried_a_second_later() {
         boot(&mut flash).status().table.unwrap().crc32,
         circle(1.2).crc32()
     );
+}
+
+#[test]
+fn settings_that_cannot_be_stored_do_not_keep_a_table_from_it() {
+    let mut flash = Flash::new();
+    flash.settings_broken = true;
+    let mut bench = boot(&mut flash);
+    bench.done(Request::Trim {
+        joint: Joint::Back,
+        trim: 100,
+    });
+    bench.upload(&circle(1.2));
+    for _ in 0..5 {
+        assert_eq!(serve(&mut bench, &mut flash), Err(PowerCut));
+        bench.run(SECOND);
+    }
+    assert_eq!(stored(&mut bench), Some((circle(1.2).crc32(), true)));
+    assert!(bench.status().flags.contains(Flags::UNSAVED));
+    flash.settings_broken = false;
+    serve(&mut bench, &mut flash).unwrap();
+    assert!(!bench.status().flags.contains(Flags::UNSAVED));
+    let mut bench = boot(&mut flash);
+    assert_eq!(bench.status().table.unwrap().crc32, circle(1.2).crc32());
 }
 
 #[test]

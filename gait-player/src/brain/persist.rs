@@ -17,6 +17,8 @@ pub(crate) struct Persist {
     newest: Option<(usize, u32)>,
     step: Step,
     settings_unsaved: bool,
+    /// The last try to store them failed: a table goes first.
+    settings_failed: bool,
     failed_us: Option<u64>,
 }
 
@@ -34,6 +36,7 @@ impl Persist {
             newest: None,
             step: Step::Idle,
             settings_unsaved: false,
+            settings_failed: false,
             failed_us: None,
         }
     }
@@ -113,9 +116,10 @@ impl Persist {
         table: Option<&GaitTable>,
         settings: &[u8],
     ) -> Result<(), S::Error> {
-        if self.settings_unsaved {
+        if self.settings_unsaved && (self.table_stored() || !self.settings_failed) {
+            self.settings_failed = true;
             storage.save_settings(settings)?;
-            self.settings_unsaved = false;
+            (self.settings_failed, self.settings_unsaved) = (false, false);
             return Ok(());
         }
         let Some(table) = table else {
