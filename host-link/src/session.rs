@@ -323,9 +323,18 @@ impl Session {
         self.end_upload(LinkError::Dropped {
             doing: "uploading the gait",
         });
+        self.fail_unanswered(|_| true, |doing| LinkError::Dropped { doing });
+    }
+
+    /// Fails the queue, and the request under way where it is `meant`.
+    fn fail_unanswered(
+        &mut self,
+        meant: impl Fn(&Request) -> bool,
+        error: impl Fn(&'static str) -> LinkError,
+    ) {
         let under_way = self
             .pending
-            .take()
+            .take_if(|pending| meant(&pending.request))
             .map(|pending| (pending.owner, pending.request));
         let queued = std::mem::take(&mut self.queue);
         let queued = queued
@@ -333,8 +342,7 @@ impl Session {
             .map(|(ticket, request)| (Owner::Ticket(ticket), request));
         for (owner, request) in under_way.into_iter().chain(queued) {
             if let Owner::Ticket(ticket) = owner {
-                let doing = describe(&request);
-                self.fail(ticket, LinkError::Dropped { doing });
+                self.fail(ticket, error(describe(&request)));
             }
         }
     }

@@ -143,20 +143,10 @@ impl Session {
 
     /// There is no session: whatever waits ends here, but for a stop, which needs none.
     pub(super) fn fail_waiting(&mut self) {
-        let under_way = self
-            .pending
-            .take_if(|pending| !matches!(pending.request, Request::Stop | Request::EStop))
-            .map(|pending| (pending.owner, pending.request));
-        let queued = std::mem::take(&mut self.queue);
-        let queued = queued
-            .into_iter()
-            .map(|(ticket, request)| (Owner::Ticket(ticket), request));
-        for (owner, request) in under_way.into_iter().chain(queued) {
-            if let Owner::Ticket(ticket) = owner {
-                let doing = describe(&request);
-                self.fail(ticket, LinkError::NotConnected { doing });
-            }
-        }
+        self.fail_unanswered(
+            |request| !matches!(request, Request::Stop | Request::EStop),
+            |doing| LinkError::NotConnected { doing },
+        );
         self.end_upload(LinkError::NotConnected {
             doing: "uploading the gait",
         });
