@@ -122,6 +122,14 @@ impl<'a> Cell<'a> {
     }
 }
 
+/// The cell of a column; blank where the line ends before it.
+pub(super) fn cell_at<'a>(cells: &[Cell<'a>], column: usize) -> Cell<'a> {
+    cells
+        .get(column)
+        .copied()
+        .unwrap_or(Cell { raw: "", at: 0 })
+}
+
 /// Splits a line into `cells`, which is emptied first.
 ///
 /// # Errors

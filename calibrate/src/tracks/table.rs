@@ -11,7 +11,7 @@ mod header;
 use std::path::Path;
 
 use super::detect::TableLayout;
-use super::lines::{Cell, Line, lines, split};
+use super::lines::{Cell, Line, cell_at, lines, split};
 use super::number::{Number, number};
 use super::{TrackError, TrackFile, TrackFormat, TrackProblem, TrackWarning};
 use header::Header;
@@ -146,10 +146,7 @@ fn place(
         blank: 0,
     };
     for ((value, column), name) in placed.at.iter_mut().zip(columns).zip(names) {
-        let cell = cells
-            .get(*column)
-            .copied()
-            .unwrap_or(Cell { raw: "", at: 0 });
+        let cell = cell_at(cells, *column);
         match number(cell.raw, comma) {
             Number::Finite(finite) => *value = finite,
             Number::Missing => placed.blank += 1,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::TableOptions;
 use crate::tracks::detect::TableLayout;
-use crate::tracks::lines::{Cell, Line, split};
+use crate::tracks::lines::{Cell, Line, cell_at, split};
 use crate::tracks::number::{Number, number};
 use crate::tracks::{PointKind, TrackError, TrackPoint, TrackProblem, Unit};
 
@@ -30,12 +30,7 @@ impl Clock {
         comma: bool,
         row: usize,
     ) -> Result<(u64, f64), TrackError> {
-        let cell = |column: usize| {
-            cells
-                .get(column)
-                .copied()
-                .unwrap_or(Cell { raw: "", at: 0 })
-        };
+        let cell = |column: usize| cell_at(cells, column);
         let frame = |column| {
             let cell = cell(column);
             let wrong = || {

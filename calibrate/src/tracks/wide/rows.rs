@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::header::Header;
-use crate::tracks::lines::{Cell, Delimiter, Line, split};
+use crate::tracks::lines::{Cell, Delimiter, Line, cell_at, split};
 use crate::tracks::number::{Number, number};
 use crate::tracks::{TrackError, TrackPoint, TrackProblem, TrackWarning};
 
@@ -77,7 +77,7 @@ pub(super) fn read<'a>(
 }
 
 fn frame_number(cells: &[Cell<'_>], line: &Line<'_>, file: &Path) -> Result<u64, TrackError> {
-    let cell = cells.first().copied().unwrap_or(Cell { raw: "", at: 0 });
+    let cell = cell_at(cells, 0);
     cell.raw.parse().map_err(|_| {
         line.error(
             file,
@@ -101,10 +101,7 @@ fn position(
     let mut values = [f64::NAN; 3];
     let mut missing = 0;
     for ((value, column), axis) in values.iter_mut().zip(columns).zip(["X", "Y", "Z"]) {
-        let cell = cells
-            .get(*column)
-            .copied()
-            .unwrap_or(Cell { raw: "", at: 0 });
+        let cell = cell_at(cells, *column);
         match number(cell.raw, comma) {
             Number::Finite(finite) => *value = finite,
             Number::Missing => missing += 1,
