@@ -2,10 +2,10 @@
 
 mod closed_curve;
 
-use swimmer_model::{Model, Tolerance, swim};
+use swimmer_model::Stroke;
 
 use crate::cycle::{Cycle, QuarterTrace};
-use crate::displacement::region::Region;
+use crate::region::Region;
 use closed_curve::{crossings, turning_number};
 
 /// One condition.
@@ -76,11 +76,11 @@ impl Certificate {
 
     /// The conditions of paper section IV for a quarter gait, and those of the full cycle. Lengths are over L.
     pub(crate) fn of_displacement(
-        model: &Model<f64>,
         region: &Region,
         trace: &QuarterTrace,
         cycle: &Cycle,
         displacement_over_length: f64,
+        stroke: &Stroke<f64>,
         neighbour_gain: Option<f64>,
     ) -> Self {
         let evidence = &trace.evidence;
@@ -128,24 +128,15 @@ impl Certificate {
             crossings(curve) as f64,
             0.0,
         ));
-        checks.extend(swum_again(model, cycle, displacement_over_length));
+        checks.extend(swum_again(stroke, displacement_over_length));
         Self { checks }
     }
 }
 
 /// The samples swum by the model's own cycle integration, which shares no code with the arcs.
-fn swum_again(model: &Model<f64>, cycle: &Cycle, displacement_over_length: f64) -> [Check; 3] {
-    let (x, y, rotation) = match cycle.gait() {
-        Ok(gait) => {
-            let stroke = swim(model, &gait, &Tolerance::new(1e-12));
-            (
-                stroke.displacement.x,
-                stroke.displacement.y,
-                stroke.rotation,
-            )
-        }
-        Err(_) => (f64::NAN, f64::NAN, f64::NAN),
-    };
+fn swum_again(stroke: &Stroke<f64>, displacement_over_length: f64) -> [Check; 3] {
+    let (x, y) = (stroke.displacement.x, stroke.displacement.y);
+    let rotation = stroke.rotation;
     [
         Check::at_most(
             "displacement_swum_again",

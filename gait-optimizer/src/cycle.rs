@@ -6,7 +6,7 @@ mod trace;
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, GaitArc};
-use swimmer_model::{InvalidSamples, Model, crossing_share};
+use swimmer_model::{InvalidSamples, Model, Stroke, Tolerance, crossing_share, swim};
 
 pub(crate) use trace::QuarterTrace;
 
@@ -63,6 +63,12 @@ impl Cycle {
             .filter_map(|corner| self.u.iter().position(|u| u.to_bits() == corner.to_bits()))
             .collect();
         AnyGait::from_samples(&self.u, &self.phi, &corners)
+    }
+
+    /// One cycle swum by the model, which shares no code with the arcs; none where the samples make no gait.
+    pub(crate) fn swum(&self, model: &Model<f64>) -> Option<Stroke<f64>> {
+        let gait = self.gait().ok()?;
+        Some(swim(model, &gait, &Tolerance::new(1e-12)))
     }
 
     /// Share of the cycle in which links cross; NaN where the samples make no gait.

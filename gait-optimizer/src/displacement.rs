@@ -3,19 +3,19 @@
 mod error;
 pub(crate) mod flow;
 pub(crate) mod height;
-pub(crate) mod region;
 mod search;
 
 use std::fmt;
 
+use crate::region::Region;
 pub use error::{DisplacementError, Fates};
 use nalgebra::Vector2;
-use region::Region;
 use search::{Candidate, Search, Trunk};
 use swimmer_files::{ArcKind, Bounds, Objective};
 use swimmer_model::{Links, Model, Swimmer, TangentialDrag};
 
 use crate::cycle::{Cycle, QuarterTrace};
+use crate::optimal_gait::Solution;
 use crate::{Certificate, OptimalGait};
 
 /// Which way a counter-clockwise gait shall carry the swimmer.
@@ -232,25 +232,32 @@ fn certified(
     let trace = QuarterTrace::new(extremal, region, &legs, problem.quarter_samples)?;
     let cycle = Cycle::of_quarter(&trace);
     let displacement_over_length = 4.0 * candidate.quarter.end[2];
+    let stroke = cycle.swum(model)?;
     let certificate = Certificate::of_displacement(
-        model,
         region,
         &trace,
         &cycle,
         displacement_over_length,
+        &stroke,
         candidate.neighbour_gain,
     );
-    Some(OptimalGait {
+    let arcs = trace.arcs();
+    let links_cross = cycle.links_cross(model);
+    let mut gait = OptimalGait::new(Solution {
         objective: Objective::Displacement,
         swimmer: problem.swimmer,
         bounds: problem.bounds,
-        displacement_over_length,
-        displacement: displacement_over_length * problem.swimmer.total_length(),
-        start_angle: trace.start().x,
-        end_angle: trace.end().y,
-        arcs: trace.arcs(),
-        links_cross: cycle.links_cross(model),
+        symmetric: true,
+        arcs,
         cycle,
+        stroke,
+        links_cross,
         certificate,
-    })
+    });
+    // The arcs know these closer than the samples do.
+    gait.displacement_over_length = displacement_over_length;
+    gait.displacement = displacement_over_length * problem.swimmer.total_length();
+    gait.start_angle = trace.start().x;
+    gait.end_angle = trace.end().y;
+    Some(gait)
 }

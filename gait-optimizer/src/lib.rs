@@ -10,7 +10,7 @@
 //! |---|---|
 //! | `displacement` | the problem, the search for the quarter gait, the result |
 //! | `displacement::height` | the switching function F of the paper, its gradient, the singular control |
-//! | `displacement::region` | the bounds as a convex polygon of joint angles |
+//! | `region` | the bounds as a convex polygon of joint angles |
 //! | `displacement::flow` | one quarter gait: arc after arc, event after event |
 //! | `cycle` | from a quarter to the full cycle, at constant power |
 //! | `certificate` | checks, and those that any closed curve can be asked |
@@ -20,6 +20,7 @@ mod certificate;
 mod cycle;
 mod displacement;
 mod optimal_gait;
+mod region;
 mod runge_kutta;
 
 pub use certificate::{Certificate, Check};

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, ArcKind, Bounds, GaitArc, GaitFile, Objective, SwimmerHash};
-use swimmer_model::{InvalidSamples, Swimmer};
+use swimmer_model::{InvalidSamples, Stroke, Swimmer};
 
 use crate::Certificate;
 use crate::cycle::Cycle;
 
-/// One arc of the quarter gait from φ₁ = φ₂ > 0 to φ₁ = −φ₂.
+/// One arc of a gait.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arc {
     /// What it runs along.
@@ -27,15 +27,23 @@ pub struct OptimalGait {
     pub swimmer: Swimmer<f64>,
     /// The bounds it obeys.
     pub bounds: Bounds,
-    /// Net displacement X of a full counter-clockwise cycle over L, signed.
+    /// Net displacement X of a full cycle over L, signed, along the middle link's heading at the first sample.
     pub displacement_over_length: f64,
     /// The same in metres.
     pub displacement: f64,
-    /// φ₁ = φ₂ at t₀ \[rad\].
+    /// Net displacement Y of a full cycle over L, across that heading; zero for a gait with the paper's two symmetries.
+    pub lateral_over_length: f64,
+    /// Net rotation of a full cycle \[rad\].
+    pub rotation: f64,
+    /// Lighthill's efficiency ξ at constant power.
+    pub efficiency: f64,
+    /// Whether the gait has the paper's two symmetries, so that a quarter of it tells the whole.
+    pub symmetric: bool,
+    /// φ₁ at the first sample \[rad\]; there φ₁ = φ₂ where the gait is symmetric.
     pub start_angle: f64,
-    /// φ₂ = −φ₁ at `t_f` \[rad\].
+    /// φ₂ a quarter of the cycle later \[rad\]; there φ₂ = −φ₁ where the gait is symmetric.
     pub end_angle: f64,
-    /// The arcs of the quarter, in order.
+    /// The arcs in order: of the quarter where the gait is symmetric, else of the cycle.
     pub arcs: Vec<Arc>,
     /// Share of the cycle, as timed at constant power, with crossing links.
     pub links_cross: f64,
@@ -44,7 +52,48 @@ pub struct OptimalGait {
     pub(crate) cycle: Cycle,
 }
 
+/// What a solver knows of a gait before its numbers are worked out.
+#[derive(Debug)]
+pub(crate) struct Solution {
+    pub(crate) objective: Objective,
+    pub(crate) swimmer: Swimmer<f64>,
+    pub(crate) bounds: Bounds,
+    pub(crate) symmetric: bool,
+    pub(crate) arcs: Vec<Arc>,
+    pub(crate) cycle: Cycle,
+    /// The cycle swum by the model of the swimmer with L = 1.
+    pub(crate) stroke: Stroke<f64>,
+    pub(crate) links_cross: f64,
+    pub(crate) certificate: Certificate,
+}
+
 impl OptimalGait {
+    /// A gait with the numbers that follow from its cycle.
+    pub(crate) fn new(solution: Solution) -> Self {
+        let Solution { stroke, cycle, .. } = solution;
+        let over_length = stroke.displacement_over_length();
+        let first = cycle.phi.first().copied().unwrap_or_default();
+        let quarter = cycle.u.partition_point(|&u| u < 0.25 - 1e-12);
+        let last = cycle.phi.get(quarter).copied().unwrap_or_default();
+        Self {
+            objective: solution.objective,
+            swimmer: solution.swimmer,
+            bounds: solution.bounds,
+            displacement_over_length: over_length.x,
+            displacement: over_length.x * solution.swimmer.total_length(),
+            lateral_over_length: over_length.y,
+            rotation: stroke.rotation,
+            efficiency: stroke.efficiency_constant_power(),
+            symmetric: solution.symmetric,
+            start_angle: first.x,
+            end_angle: last.y,
+            arcs: solution.arcs,
+            links_cross: solution.links_cross,
+            certificate: solution.certificate,
+            cycle,
+        }
+    }
+
     /// Fractions of the period of the samples, 0 to 1, at constant power.
     pub fn u(&self) -> &[f64] {
         &self.cycle.u

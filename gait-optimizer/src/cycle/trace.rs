@@ -6,7 +6,7 @@ use swimmer_files::ArcKind;
 use crate::Arc;
 use crate::displacement::flow::{Leg, Motion};
 use crate::displacement::height::{Extremal, pose_rates, shape};
-use crate::displacement::region::Region;
+use crate::region::Region;
 use crate::runge_kutta::{Point, StepControl, System, advance};
 
 /// Traced state: φ₁, φ₂, x, y, θ, λ₁, λ₂ over the power length.

@@ -20,7 +20,7 @@ use event::{Event, MOST_EVENTS, Watched, first_event};
 use nalgebra::Vector2;
 
 use super::height::{Extremal, State, pose_rates, shape};
-use super::region::Region;
+use crate::region::Region;
 use crate::runge_kutta::{Point, StepControl, System, controlled_step, exact_step};
 
 /// What an arc runs along.

@@ -11,7 +11,7 @@ use swimmer_model::Model;
 use super::Fates;
 use super::flow::{Drive, Fate, Leg, Motion, Quarter, follow};
 use super::height::{Extremal, State, shape};
-use super::region::Region;
+use crate::region::Region;
 use crate::runge_kutta::{Point, StepControl, advance};
 
 /// Where singular arcs may begin.
