@@ -1,25 +1,19 @@
-//! `swimmer optimize`: finds an optimal gait and, with `-o`, writes it.
+//! `swimmer optimize displacement`: the gait of most displacement per cycle.
 
 use std::fmt;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use gait_optimizer::{
-    Certificate, DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement,
-};
+use gait_optimizer::{DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement};
 use serde::Serialize;
 use swimmer_files::Bounds;
 
 use crate::arguments::{load_swimmer, positive_angle};
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
-use crate::quantity::{self, Rows};
+use crate::quantity::Rows;
 
-/// Find an optimal gait
-#[derive(Debug, clap::Subcommand)]
-pub(crate) enum Optimize {
-    Displacement(Displacement),
-}
+use super::answer::{Arc, Evidence, closing_rows, displacement_row, quarter_rows};
 
 /// Find the gait of most displacement per cycle by the maximum principle, with its certificate
 ///
@@ -50,17 +44,8 @@ pub(crate) struct Displacement {
     output: Option<PathBuf>,
 }
 
-impl Optimize {
-    /// Finds the gait that was asked for.
-    pub(crate) fn run(self, output: Output) -> Outcome {
-        match self {
-            Self::Displacement(arguments) => arguments.run(output),
-        }
-    }
-}
-
 impl Displacement {
-    fn run(self, output: Output) -> Outcome {
+    pub(super) fn run(self, output: Output) -> Outcome {
         let file = load_swimmer(&self.swimmer)?;
         let begun = Instant::now();
         let gait = displacement(&DisplacementProblem {
@@ -102,57 +87,15 @@ struct Found {
     gait: Option<PathBuf>,
 }
 
-#[derive(Debug, Serialize)]
-struct Arc {
-    kind: &'static str,
-    from: [f64; 2],
-    to: [f64; 2],
-}
-
-/// The necessary conditions, each with its number.
-#[derive(Debug, Serialize)]
-pub(crate) struct Evidence {
-    pass: bool,
-    checks: Vec<Check>,
-}
-
-#[derive(Debug, Serialize)]
-struct Check {
-    name: &'static str,
-    value: f64,
-    tolerance: f64,
-    pass: bool,
-}
-
-impl From<&Certificate> for Evidence {
-    fn from(certificate: &Certificate) -> Self {
-        let check = |check: &gait_optimizer::Check| Check {
-            name: check.name,
-            value: check.value,
-            tolerance: check.tolerance,
-            pass: check.pass,
-        };
-        Self {
-            pass: certificate.pass(),
-            checks: certificate.checks().iter().map(check).collect(),
-        }
-    }
-}
-
 impl Found {
     fn new(name: &str, gait: &OptimalGait, seconds: f64, file: Option<PathBuf>) -> Self {
-        let arc = |arc: &gait_optimizer::Arc| Arc {
-            kind: arc.kind.word(),
-            from: arc.from,
-            to: arc.to,
-        };
         Self {
             name: name.to_owned(),
             displacement_over_length: gait.displacement_over_length,
             displacement_m: gait.displacement,
             start_angle_rad: gait.start_angle,
             end_angle_rad: gait.end_angle,
-            arcs: gait.arcs.iter().map(arc).collect(),
+            arcs: gait.arcs.iter().map(Arc::from).collect(),
             links_cross: gait.links_cross,
             certificate: (&gait.certificate).into(),
             seconds,
@@ -164,42 +107,23 @@ impl Found {
 impl fmt::Display for Found {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
-        let (displacement, over_length) = (
-            quantity::length(self.displacement_m),
+        displacement_row(
+            &mut rows,
+            self.displacement_m,
             self.displacement_over_length,
         );
-        rows.row(
-            "displacement X",
-            format!("{displacement} per cycle   X/L = {over_length:.10}"),
-        )
-        .row(
-            "starts at",
-            format!("φ₁ = φ₂ = {}", quantity::angle(self.start_angle_rad)),
-        )
-        .row(
-            "quarter ends at",
-            format!("φ₂ = −φ₁ = {}", quantity::angle(self.end_angle_rad)),
+        quarter_rows(
+            &mut rows,
+            self.start_angle_rad,
+            self.end_angle_rad,
+            &self.arcs,
         );
-        for arc in &self.arcs {
-            let shape = |[one, two]: [f64; 2]| {
-                format!("({}, {})", quantity::angle(one), quantity::angle(two))
-            };
-            rows.row(
-                format!("{} arc", arc.kind),
-                format!("{} to {}", shape(arc.from), shape(arc.to)),
-            );
-        }
-        rows.row("links cross", quantity::crossing(self.links_cross));
-        let checks = self.certificate.checks.len();
-        let verdict = if self.certificate.pass {
-            "hold"
-        } else {
-            "do not all hold"
-        };
-        rows.row("certificate", format!("{checks} conditions {verdict}"));
-        if let Some(path) = &self.gait {
-            rows.row("written to", path.display().to_string());
-        }
+        closing_rows(
+            &mut rows,
+            self.links_cross,
+            &self.certificate,
+            self.gait.as_ref(),
+        );
         write!(f, "{}, most displacement\n{rows}", self.name)
     }
 }

@@ -1,0 +1,22 @@
+//! `swimmer optimize`: finds an optimal gait and, with `-o`, writes it. One file for each objective.
+
+mod answer;
+mod displacement;
+
+use crate::failure::Outcome;
+use crate::output::Output;
+
+/// Find an optimal gait
+#[derive(Debug, clap::Subcommand)]
+pub(crate) enum Optimize {
+    Displacement(displacement::Displacement),
+}
+
+impl Optimize {
+    /// Finds the gait that was asked for.
+    pub(crate) fn run(self, output: Output) -> Outcome {
+        match self {
+            Self::Displacement(arguments) => arguments.run(output),
+        }
+    }
+}
