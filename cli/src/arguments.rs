@@ -22,6 +22,14 @@ pub(crate) fn positive_angle(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A length on the command line, zero or above, in metres.
+pub(crate) fn length(text: &str) -> Result<f64, String> {
+    match f64::from_str(text) {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err("write a length in metres, zero or above, as 0.005".to_owned()),
+    }
+}
+
 /// A time above zero on the command line, in seconds.
 pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     let number = text.strip_suffix('s').unwrap_or(text).trim_end();

@@ -122,6 +122,13 @@ impl DisplacementProblem {
                 );
             }
         }
+        let Bounds { clearance, .. } = self.bounds;
+        if !(clearance >= 0.0 && clearance < self.swimmer.links.middle) {
+            return Err(DisplacementError::Clearance {
+                value: clearance,
+                middle: self.swimmer.links.middle,
+            });
+        }
         if self.bounds.no_overlap {
             return Err(DisplacementError::NotYet { name: "no_overlap" });
         }
@@ -140,7 +147,7 @@ impl DisplacementProblem {
 pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, DisplacementError> {
     problem.validate()?;
     let model = Model::new(&of_unit_length(&problem.swimmer))?;
-    let region = Region::new(&problem.bounds);
+    let region = Region::new(&problem.bounds, &problem.swimmer.links);
     let heading = problem.heading();
     let search = Search {
         model: &model,

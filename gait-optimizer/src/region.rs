@@ -1,12 +1,25 @@
-//! Where a quarter gait may go: the bounds of the joint angles as a convex polygon in the (φ₁, φ₂) plane.
+//! Where a gait may go: straight bounds of the joint angles in the (φ₁, φ₂) plane, and the curved one that keeps the side
+//! links apart.
 //!
-//! A quarter runs from φ₁ = φ₂ > 0 to φ₁ = −φ₂, φ₂ > 0, so bounds on |φᵢ| bind its leading angle φ₂ from below and both
-//! angles from above; the sector adds the two diagonals.
+//! A quarter runs from φ₁ = φ₂ > 0 to φ₁ = −φ₂, φ₂ > 0, so a bound on |φᵢ| from below binds its leading angle φ₂, and the
+//! sector adds the two diagonals; those three only make sense for quarters. All others hold for full cycles as well.
+
+#[allow(dead_code, reason = "handed to several rooms, which land one by one")]
+mod clearance;
+#[cfg(test)]
+mod tests;
 
 use nalgebra::Vector2;
 use swimmer_files::{ArcKind, Bounds};
+use swimmer_model::Links;
 
-/// One bound: `normal · Φ ≤ offset`, with a unit normal that points out.
+#[allow(
+    unused_imports,
+    reason = "handed to several rooms, which land one by one"
+)]
+pub(crate) use clearance::{Clearance, Piece};
+
+/// A straight bound: `normal · Φ ≤ offset`, with a unit normal that points out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Edge {
     pub(crate) normal: Vector2<f64>,
@@ -14,10 +27,19 @@ pub(crate) struct Edge {
     pub(crate) kind: ArcKind,
 }
 
-/// A convex region of shapes.
+/// One bound of a region.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Bound {
+    Straight(Edge),
+    /// Both zones where the side links are too near or cross, φ₁, φ₂ > 0 and φ₁, φ₂ < 0.
+    Clearance(Clearance),
+}
+
+/// Where all bounds hold. Convex but for the clearance.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Region {
     edges: Vec<Edge>,
+    clearance: Option<Clearance>,
     /// Beyond this |Φ| the search does not look \[rad\]; farther than any corner where a bound binds.
     pub(crate) horizon: f64,
 }
@@ -39,12 +61,115 @@ impl Edge {
     }
 }
 
+#[allow(dead_code, reason = "handed to several rooms, which land one by one")]
+impl Bound {
+    /// What an arc along it is called.
+    pub(crate) fn kind(&self) -> ArcKind {
+        match self {
+            Self::Straight(edge) => edge.kind,
+            Self::Clearance(_) => ArcKind::Clearance,
+        }
+    }
+
+    /// Which piece of the bound decides at a shape; none for an edge, which has one piece.
+    pub(crate) fn piece(&self, phi: &Vector2<f64>) -> Option<Piece> {
+        match self {
+            Self::Straight(_) => None,
+            Self::Clearance(clearance) => Some(clearance.piece(phi)),
+        }
+    }
+
+    /// How far inside a shape is; negative outside. In rad for an edge, a length over L for the clearance.
+    pub(crate) fn margin(&self, phi: &Vector2<f64>) -> f64 {
+        match self {
+            Self::Straight(edge) => edge.margin(phi),
+            Self::Clearance(clearance) => clearance.margin(phi),
+        }
+    }
+
+    /// ∂margin/∂Φ; points inwards.
+    pub(crate) fn gradient(&self, phi: &Vector2<f64>) -> Vector2<f64> {
+        match self {
+            Self::Straight(edge) => -edge.normal,
+            Self::Clearance(clearance) => clearance.deciding_level(phi).gradient,
+        }
+    }
+
+    /// Unit vector along the bound with the region on its left. Off the bound: along the curve of equal margin.
+    pub(crate) fn tangent(&self, phi: &Vector2<f64>) -> Vector2<f64> {
+        match self {
+            Self::Straight(edge) => edge.counter_clockwise(),
+            Self::Clearance(clearance) => tangent(&clearance.deciding_level(phi)),
+        }
+    }
+
+    /// Curvature of the bound run along its tangent \[1/rad\]: positive where it turns left, into the region. Jumps between
+    /// the pieces.
+    pub(crate) fn curvature(&self, phi: &Vector2<f64>) -> f64 {
+        match self {
+            Self::Straight(_) => 0.0,
+            Self::Clearance(clearance) => {
+                let level = clearance.deciding_level(phi);
+                let along = tangent(&level);
+                -along.dot(&(level.hessian * along)) / level.gradient.norm()
+            }
+        }
+    }
+
+    /// A shape on the bound near this one: the nearest one of an edge; for the clearance along the margin's gradient, to
+    /// |margin| < 1e-15, where the shape is not too far off (the unchanged shape otherwise).
+    pub(crate) fn onto(&self, phi: &Vector2<f64>) -> Vector2<f64> {
+        match self {
+            Self::Straight(edge) => edge.onto(phi),
+            Self::Clearance(clearance) => onto(clearance, phi),
+        }
+    }
+}
+
+/// Along the curves of equal margin, with the larger margin on the left.
+pub(crate) fn tangent(level: &clearance::Level) -> Vector2<f64> {
+    Vector2::new(level.gradient.y, -level.gradient.x) / level.gradient.norm()
+}
+
+fn onto(clearance: &Clearance, phi: &Vector2<f64>) -> Vector2<f64> {
+    const STEPS: usize = 40;
+    /// Longest step towards the bound \[rad\].
+    const STRIDE: f64 = 0.3;
+    let mut here = *phi;
+    for _ in 0..STEPS {
+        let margin = clearance.margin(&here);
+        if margin.abs() < 1e-15 {
+            return here;
+        }
+        let gradient = clearance.deciding_level(&here).gradient;
+        let step = gradient * (margin / gradient.norm_squared());
+        if !step.norm().is_finite() {
+            return *phi;
+        }
+        here -= step * (STRIDE / step.norm()).min(1.0);
+    }
+    // Rounding may keep it from the very last digit.
+    if clearance.margin(&here).abs() < 1e-13 {
+        here
+    } else {
+        *phi
+    }
+}
+
 impl Region {
     /// The search looks no farther than one full turn of a joint when nothing binds it.
     pub(crate) const HORIZON: f64 = std::f64::consts::TAU;
 
-    pub(crate) fn new(bounds: &Bounds) -> Self {
-        let mut edges = Vec::with_capacity(6);
+    /// The region for a swimmer with these links \[m\]; the clearance is measured over their total length.
+    pub(crate) fn new(bounds: &Bounds, links: &Links<f64>) -> Self {
+        let length = links.middle + links.front + links.back;
+        let links = Links {
+            middle: links.middle / length,
+            front: links.front / length,
+            back: links.back / length,
+        };
+        let clearance = bounds.clearance / length;
+        let mut edges = Vec::with_capacity(7);
         let mut edge = |x: f64, y: f64, offset: f64, kind| {
             edges.push(Edge {
                 normal: Vector2::new(x, y),
@@ -52,10 +177,26 @@ impl Region {
                 kind,
             });
         };
-        if let Some(max) = bounds.max_angle {
-            edge(0.0, 1.0, max, ArcKind::Upper);
-            edge(-1.0, 0.0, max, ArcKind::Upper);
-            edge(1.0, 0.0, max, ArcKind::Upper);
+        // Of each joint, the tighter of the bound on its angle and of the fold onto the middle link.
+        let reach = |side: f64| {
+            let fold = bounds
+                .no_overlap
+                .then(|| Clearance::fold(side, links.middle, clearance));
+            match (bounds.max_angle, fold) {
+                (Some(max), Some(fold)) if fold < max => Some((fold, ArcKind::Clearance)),
+                (Some(max), _) => Some((max, ArcKind::Upper)),
+                (None, fold) => fold.map(|fold| (fold, ArcKind::Clearance)),
+            }
+        };
+        if let Some((max, kind)) = reach(links.back) {
+            edge(0.0, 1.0, max, kind);
+        }
+        if let Some((max, kind)) = reach(links.front) {
+            edge(-1.0, 0.0, max, kind);
+            edge(1.0, 0.0, max, kind);
+        }
+        if let Some((max, kind)) = reach(links.back) {
+            edge(0.0, -1.0, max, kind);
         }
         if let Some(min) = bounds.min_angle {
             edge(0.0, -1.0, -min, ArcKind::Lower);
@@ -65,12 +206,20 @@ impl Region {
             edge(half, -half, 0.0, ArcKind::Diagonal);
             edge(-half, -half, 0.0, ArcKind::Diagonal);
         }
+        let farthest = reach(links.front)
+            .zip(reach(links.back))
+            .map(|(front, back)| 2.0 * front.0.max(back.0));
         Self {
             edges,
-            horizon: bounds.max_angle.map_or(Self::HORIZON, |max| 2.0 * max),
+            clearance: bounds
+                .no_overlap
+                .then(|| Clearance::new(&links, clearance))
+                .flatten(),
+            horizon: farthest.unwrap_or(Self::HORIZON),
         }
     }
 
+    /// The straight bounds.
     pub(crate) fn edges(&self) -> &[Edge] {
         &self.edges
     }
@@ -79,16 +228,32 @@ impl Region {
         self.edges.get(index)
     }
 
+    /// All bounds: the straight ones, then the curved one. Its index is the place in this order.
+    pub(crate) fn bounds(&self) -> impl Iterator<Item = Bound> + '_ {
+        let straight = self.edges.iter().map(|edge| Bound::Straight(*edge));
+        straight.chain(self.clearance.map(Bound::Clearance))
+    }
+
+    #[allow(dead_code, reason = "handed to several rooms, which land one by one")]
+    pub(crate) fn bound(&self, index: usize) -> Option<Bound> {
+        match self.edges.get(index) {
+            Some(edge) => Some(Bound::Straight(*edge)),
+            None => self
+                .clearance
+                .filter(|_| index == self.edges.len())
+                .map(Bound::Clearance),
+        }
+    }
+
     /// Whether the sector's sides, φ₁ = φ₂ and φ₁ = −φ₂, are bounds.
     pub(crate) fn has_diagonals(&self) -> bool {
         self.edges.iter().any(|edge| edge.kind == ArcKind::Diagonal)
     }
 
-    /// Largest overstepping of any bound at a shape \[rad\]; negative where all hold.
+    /// Largest overstepping of any bound at a shape (rad, or over L for the clearance); negative where all hold.
     pub(crate) fn overstepped(&self, phi: &Vector2<f64>) -> f64 {
-        self.edges
-            .iter()
-            .map(|edge| -edge.margin(phi))
+        self.bounds()
+            .map(|bound| -bound.margin(phi))
             .fold(f64::NEG_INFINITY, f64::max)
     }
 }

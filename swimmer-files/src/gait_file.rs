@@ -3,6 +3,7 @@
 //!
 //! The format is documented at the top of every file that [`GaitFile::to_text`] writes.
 
+mod bounds;
 mod read;
 mod write;
 
@@ -10,6 +11,7 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
+pub use bounds::Bounds;
 use nalgebra::Vector2;
 
 use crate::place::read_text;
@@ -42,21 +44,10 @@ pub enum ArcKind {
     Lower,
     /// Along a side of the quarter-gait sector, `φ₂ = ±φ₁`.
     Diagonal,
+    /// Along the bound that keeps the side links apart, or on the least distance between them.
+    Clearance,
     /// Free, with the control from `H_u = 0` (efficiency).
     Regular,
-}
-
-/// Bounds on the joint angles that a gait was optimised under.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Bounds {
-    /// `|φᵢ| ≤ φ_max` \[rad\].
-    pub max_angle: Option<f64>,
-    /// `φ_min ≤ |φᵢ|` for the leading joint of each quarter \[rad\].
-    pub min_angle: Option<f64>,
-    /// Each quarter stays inside its sector, `φ₂ ≥ |φ₁|`.
-    pub sector: bool,
-    /// Links may not cross.
-    pub no_overlap: bool,
 }
 
 /// One arc of the cycle.
@@ -154,11 +145,12 @@ impl Objective {
 }
 
 impl ArcKind {
-    const ALL: [Self; 5] = [
+    const ALL: [Self; 6] = [
         Self::Singular,
         Self::Upper,
         Self::Lower,
         Self::Diagonal,
+        Self::Clearance,
         Self::Regular,
     ];
 
@@ -169,6 +161,7 @@ impl ArcKind {
             Self::Upper => "upper",
             Self::Lower => "lower",
             Self::Diagonal => "diagonal",
+            Self::Clearance => "clearance",
             Self::Regular => "regular",
         }
     }
@@ -201,5 +194,5 @@ word_in_text!(
 );
 word_in_text!(
     ArcKind,
-    "an arc is one of singular, upper, lower, diagonal, regular"
+    "an arc is one of singular, upper, lower, diagonal, clearance, regular"
 );

@@ -183,8 +183,8 @@ prop_compose! {
         objective in prop::sample::select(vec![Objective::Displacement, Objective::Efficiency, Objective::Turning,
             Objective::Sideways, Objective::Unspecified]),
         kinds in prop::collection::vec(prop::sample::select(vec![ArcKind::Singular, ArcKind::Upper, ArcKind::Lower,
-            ArcKind::Diagonal, ArcKind::Regular]), 0..5),
-        max_angle in any_angle(), min_angle in any_angle(), sector in any::<bool>(), no_overlap in any::<bool>(),
+            ArcKind::Diagonal, ArcKind::Clearance, ArcKind::Regular]), 0..5),
+        max_angle in any_angle(), min_angle in any_angle(), sector in any::<bool>(), no_overlap in any::<bool>(), clearance in prop::sample::select(vec![0.0, 1e-3, 0.02]),
         name in proptest::option::of("[a-zé][a-z é]{0,10}[a-z]"),
         corner in any::<prop::sample::Index>(),
     ) -> GaitFile {
@@ -203,7 +203,7 @@ prop_compose! {
         let arcs = kinds.into_iter().map(|kind| GaitArc { kind, from: u[1], to: u[3] }).collect();
         let swimmer_name = name.map(|name| name.split_whitespace().collect::<Vec<_>>().join(" "));
         GaitFile {
-            objective, swimmer_name, swimmer_hash: None, bounds: Bounds { max_angle, min_angle, sector, no_overlap },
+            objective, swimmer_name, swimmer_hash: None, bounds: Bounds { max_angle, min_angle, sector, no_overlap, clearance },
             arcs, corners, u, phi,
         }
     }

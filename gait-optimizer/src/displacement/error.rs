@@ -72,6 +72,17 @@ pub enum DisplacementError {
         /// What is wrong.
         problem: &'static str,
     },
+    /// A clearance that no shape can have.
+    #[error(
+        "clearance = {value} m: the side links hang {middle} m apart on the middle link, so their clearance must be below \
+         that and not below 0"
+    )]
+    Clearance {
+        /// Its value \[m\].
+        value: f64,
+        /// l₀ \[m\].
+        middle: f64,
+    },
     /// A bound that this objective does not know yet.
     #[error("displacement gaits under the bound `{name}` are not computed yet; leave it out")]
     NotYet {

@@ -193,9 +193,15 @@ fn bounds(line: Line<'_>, value: &str) -> Result<Bounds, FileError> {
             "min_angle" => bounds.min_angle = angle()?,
             "sector" => bounds.sector = flag()?,
             "no_overlap" => bounds.no_overlap = flag()?,
+            "clearance_m" => {
+                bounds.clearance = line.number(value)?;
+                if bounds.clearance < 0.0 {
+                    return Err(line.error(value, "a clearance is a length in metres, 0 or above"));
+                }
+            }
             _ => {
                 let problem = format!(
-                    "unknown bound `{key}`: max_angle, min_angle, sector and no_overlap are known"
+                    "unknown bound `{key}`: max_angle, min_angle, sector, no_overlap and clearance_m are known"
                 );
                 return Err(line.error(item, problem));
             }

@@ -10,8 +10,9 @@ const ABOUT: &str = "\
 ##   objective      displacement | efficiency | turning | sideways | unspecified
 ##   swimmer        name of the swimmer that the gait was made for
 ##   swimmer_hash   SHA-256 of its links, drag and sphere
-##   bounds         max_angle and min_angle in rad or `none`; sector and no_overlap `true` or `false`
-##   arc            kind (singular, upper, lower, diagonal, regular), then from and to in u; in order
+##   bounds         max_angle and min_angle in rad or `none`; sector and no_overlap `true` or `false`;
+##                  clearance_m the least distance of the side links in metres
+##   arc            kind (singular, upper, lower, diagonal, clearance, regular), then from and to in u; in order
 ##   corner         a u where the direction in the (phi1, phi2) plane jumps; the curve is smooth between corners
 ## Then, after the line `u,phi1,phi2`, the samples: u is the fraction of the period, rising from 0 to 1; the joint angles
 ## are in radians; the last sample is the first one again. 17 digits: a number reads back exactly. x runs along the middle
@@ -38,11 +39,12 @@ fn write_all(text: &mut String, file: &GaitFile) -> std::fmt::Result {
     let bounds = &file.bounds;
     writeln!(
         text,
-        "# bounds: max_angle={} min_angle={} sector={} no_overlap={}",
+        "# bounds: max_angle={} min_angle={} sector={} no_overlap={} clearance_m={:?}",
         angle(bounds.max_angle),
         angle(bounds.min_angle),
         bounds.sector,
-        bounds.no_overlap
+        bounds.no_overlap,
+        bounds.clearance
     )?;
     for arc in &file.arcs {
         writeln!(

@@ -8,7 +8,7 @@ use gait_optimizer::{DisplacementError, DisplacementProblem, Heading, OptimalGai
 use serde::Serialize;
 use swimmer_files::Bounds;
 
-use crate::arguments::{load_swimmer, positive_angle};
+use crate::arguments::{length, load_swimmer, positive_angle};
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::Rows;
@@ -36,6 +36,9 @@ pub(crate) struct Displacement {
     /// Links may not cross
     #[arg(long)]
     no_overlap: bool,
+    /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
+    #[arg(long, value_name = "LENGTH_M", value_parser = length)]
+    clearance: Option<f64>,
     /// The sign of X: + or -
     #[arg(long, value_name = "SIGN", value_parser = sign, allow_hyphen_values = true)]
     sign: Option<Heading>,
@@ -53,7 +56,8 @@ impl Displacement {
                 max_angle: self.max_angle,
                 min_angle: self.min_angle,
                 sector: self.sector,
-                no_overlap: self.no_overlap,
+                no_overlap: self.no_overlap || self.clearance.is_some(),
+                clearance: self.clearance.unwrap_or(0.0),
             },
             heading: self.sign,
             ..DisplacementProblem::new(file.swimmer)
@@ -142,7 +146,8 @@ impl From<DisplacementError> for Failure {
         match error {
             DisplacementError::Swimmer(_)
             | DisplacementError::Asymmetric { .. }
-            | DisplacementError::Bound { .. } => Self::bad_input(&error),
+            | DisplacementError::Bound { .. }
+            | DisplacementError::Clearance { .. } => Self::bad_input(&error),
             _ => Self::tried(&error),
         }
     }

@@ -16,8 +16,8 @@ pub(super) enum Event {
     Multiplier,
 }
 
-/// Events have at most this many sources: six edges and four others.
-pub(super) const MOST_EVENTS: usize = 10;
+/// Events have at most this many sources: eight bounds and four others.
+pub(super) const MOST_EVENTS: usize = 12;
 /// Each watched event with its value and slope at one end of a step.
 pub(super) type Watched = [Option<(Event, f64, f64)>; MOST_EVENTS];
 
