@@ -180,7 +180,7 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
 }
 
 /// The same swimmer measured in its own length: L = 1.
-fn of_unit_length(swimmer: &Swimmer<f64>) -> Swimmer<f64> {
+pub(crate) fn of_unit_length(swimmer: &Swimmer<f64>) -> Swimmer<f64> {
     let length = swimmer.total_length();
     Swimmer {
         links: Links {

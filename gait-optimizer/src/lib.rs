@@ -12,6 +12,7 @@
 //! | `displacement::height` | the switching function F of the paper, its gradient, the singular control |
 //! | `region` | the bounds as a convex polygon of joint angles |
 //! | `displacement::flow` | one quarter gait: arc after arc, event after event |
+//! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs |
 //! | `cycle` | from a quarter to the full cycle, at constant power |
 //! | `certificate` | checks, and those that any closed curve can be asked |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
@@ -19,6 +20,8 @@
 mod certificate;
 mod cycle;
 mod displacement;
+#[allow(dead_code, reason = "handed to several rooms, which land one by one")]
+mod extremal;
 mod optimal_gait;
 mod region;
 mod runge_kutta;

@@ -1,0 +1,161 @@
+//! From any closed curve to a guess for the shooting: states along it, with the momenta that fit it best.
+
+use nalgebra::{Vector2, Vector3};
+use swimmer_model::{Gait, Model, Tolerance, TrajectoryPoint, trajectory};
+
+use super::equations::{State, Turning};
+
+/// A closed curve swum once, densely.
+pub(crate) struct Swum {
+    /// Power length up to each sample.
+    pub(crate) length: Vec<f64>,
+    /// States: shapes, directions (never wrapped), momenta.
+    pub(crate) states: Vec<State>,
+    /// What the direction turns by \[rad\], a multiple of a full turn.
+    pub(crate) turn: f64,
+}
+
+/// How many samples a curve is looked at with.
+const SAMPLES: usize = 1440;
+
+impl Swum {
+    /// Swims a gait and fits the multiplier of rotation, the one that is free, to the parts of the curve that are `free`.
+    ///
+    /// None where the gait stands still or goes nowhere.
+    pub(crate) fn new<G: Gait<f64> + ?Sized>(
+        model: &Model<f64>,
+        gait: &G,
+        free: impl Fn(&Vector2<f64>) -> bool,
+    ) -> Option<Self> {
+        let mut points: Vec<TrajectoryPoint<f64>> = Vec::with_capacity(SAMPLES + 1);
+        trajectory(model, gait, &Tolerance::new(1e-10), SAMPLES, |point| {
+            points.push(point);
+        });
+        let rates: Vec<Vector2<f64>> = points.iter().map(|point| gait.at(point.u).rate).collect();
+        let psi = directions(&rates);
+        let mut length = vec![0.0];
+        let mut so_far = 0.0;
+        let speeds: Vec<f64> = points
+            .iter()
+            .zip(&rates)
+            .map(|(point, rate)| rate.dot(&(model.power_matrix(&point.phi) * rate)).sqrt())
+            .collect();
+        for pair in speeds.windows(2) {
+            so_far += 0.5 * (pair.first()? + pair.last()?) / SAMPLES as f64;
+            length.push(so_far);
+        }
+        let end = points.last()?;
+        let displacement = Vector2::new(end.pose.x, end.pose.y);
+        if points.len() != SAMPLES + 1
+            || so_far.is_nan()
+            || so_far <= 0.0
+            || displacement.norm() < 1e-12
+        {
+            return None;
+        }
+        let p = displacement * (so_far / displacement.norm_squared());
+        let turn = psi.last()? - psi.first()?;
+        let turn = (turn / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+        let mut swum = Self {
+            length,
+            states: Vec::with_capacity(points.len()),
+            turn,
+        };
+        for (point, psi) in points.iter().zip(&psi) {
+            let (sin, cos) = point.pose.theta.sin_cos();
+            swum.states.push([
+                point.phi.x,
+                point.phi.y,
+                *psi,
+                p.x * cos + p.y * sin,
+                p.y * cos - p.x * sin,
+                p.x * point.pose.y - p.y * point.pose.x,
+            ]);
+        }
+        let rotation = swum.fitted_rotation(model, free);
+        for state in &mut swum.states {
+            state[5] += rotation;
+        }
+        Some(swum)
+    }
+
+    /// The multiplier of rotation with which the turning of the curve is met best, in the least-squares sense.
+    fn fitted_rotation(&self, model: &Model<f64>, free: impl Fn(&Vector2<f64>) -> bool) -> f64 {
+        let (mut top, mut bottom) = (0.0, 0.0);
+        for (states, lengths) in self.states.windows(2).zip(self.length.windows(2)) {
+            let ([before, after], [from, to]) = (states, lengths) else {
+                continue;
+            };
+            let step = to - from;
+            let phi = Vector2::new(0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1]));
+            if step <= 0.0 || !free(&phi) {
+                continue;
+            }
+            let local = Turning::at(model, &phi, 0.5 * (before[2] + after[2]));
+            let mu = Vector3::new(
+                0.5 * (before[3] + after[3]),
+                0.5 * (before[4] + after[4]),
+                0.5 * (before[5] + after[5]),
+            );
+            let missing =
+                (after[2] - before[2]) / step - local.plain - local.gain * mu.dot(&local.curvature);
+            let slope = local.gain * local.curvature.z;
+            top += step * missing * slope;
+            bottom += step * slope * slope;
+        }
+        if bottom > 0.0 { top / bottom } else { 0.0 }
+    }
+
+    /// Every sample: its power length and state.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = (f64, &State)> {
+        self.length.iter().copied().zip(&self.states)
+    }
+
+    /// Power length of the cycle.
+    pub(crate) fn total(&self) -> f64 {
+        self.length.last().copied().unwrap_or(0.0)
+    }
+
+    /// The state at a power length, taken round the cycle as often as it goes.
+    pub(crate) fn at(&self, length: f64) -> State {
+        let total = self.total();
+        let laps = (length / total).floor();
+        let within = length - laps * total;
+        let after = self
+            .length
+            .partition_point(|&s| s <= within)
+            .clamp(1, self.length.len().saturating_sub(1).max(1));
+        let pick = |i: usize| self.states.get(i).copied().unwrap_or_default();
+        let place = |i: usize| self.length.get(i).copied().unwrap_or(0.0);
+        let (from, to) = (place(after - 1), place(after));
+        let share = if to > from {
+            (within - from) / (to - from)
+        } else {
+            0.0
+        };
+        let (low, high) = (pick(after - 1), pick(after));
+        let mut state: State = std::array::from_fn(|i| low[i] + share * (high[i] - low[i]));
+        state[2] += laps * self.turn;
+        state
+    }
+}
+
+/// Directions of motion, each within half a turn of the one before. A rate of zero keeps the direction.
+fn directions(rates: &[Vector2<f64>]) -> Vec<f64> {
+    let mut directions = Vec::with_capacity(rates.len());
+    let mut last = None;
+    for rate in rates {
+        let raw = rate.y.atan2(rate.x);
+        let psi = match last {
+            Some(before) if rate.norm() > 0.0 => {
+                let turns: f64 = (raw - before) / std::f64::consts::TAU;
+                raw - turns.round() * std::f64::consts::TAU
+            }
+            Some(before) => before,
+            None => raw,
+        };
+        directions.push(psi);
+        last = Some(psi);
+    }
+    directions
+}

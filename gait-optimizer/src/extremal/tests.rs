@@ -1,0 +1,106 @@
+//! Known optima, each reached as a quarter and as a closed curve.
+
+use super::equations::Motion;
+use super::*;
+use crate::displacement::of_unit_length;
+use swimmer_files::Bounds;
+use swimmer_model::{Swimmer, SymmetricFourier};
+
+/// A curve to start from, cut to a few digits, and the efficiency of the optimum nearby (none where it is not published).
+struct Case {
+    swimmer: Swimmer<f64>,
+    coefficients: [[f64; 2]; 3],
+    efficiency: Option<f64>,
+}
+
+impl Case {
+    fn model(&self) -> Model<f64> {
+        Model::new(&of_unit_length(&self.swimmer)).unwrap()
+    }
+
+    fn gait(&self) -> SymmetricFourier<[[f64; 2]; 3]> {
+        SymmetricFourier {
+            coefficients: self.coefficients,
+        }
+    }
+}
+
+fn cases() -> [Case; 4] {
+    let case = |swimmer, coefficients, efficiency| Case {
+        swimmer,
+        coefficients,
+        efficiency,
+    };
+    [
+        case(
+            Swimmer::purcell(),
+            [[1.42, 1.32], [0.05, 0.14], [0.01, 0.005]],
+            Some(0.012_364_154_624),
+        ),
+        case(
+            Swimmer::purcell(),
+            [[2.86, 4.06], [0.665, -0.046], [0.207, 0.048]],
+            Some(0.018_102_560_47),
+        ),
+        case(
+            Swimmer::robot(),
+            [[1.68, 1.42], [0.216, 0.557], [0.02, 0.095]],
+            None,
+        ),
+        case(
+            Swimmer::robot(),
+            [[3.2, 3.244], [0.39, -0.143], [0.172, 0.706]],
+            None,
+        ),
+    ]
+}
+
+#[test]
+fn the_published_optima_are_reached_as_quarters_and_as_closed_curves() {
+    let mut found = Vec::new();
+    for case in cases() {
+        let model = case.model();
+        let [quarter, closed] = [true, false]
+            .map(|quarter| polish(&model, &Walls::default(), &case.gait(), quarter).unwrap());
+        for extremal in [&quarter, &closed] {
+            assert!(extremal.solved.residual <= 1e-10);
+            assert_eq!(extremal.solved.chain.arcs.len(), 1);
+        }
+        let (xi, again) = (quarter.efficiency(&model), closed.efficiency(&model));
+        assert!((xi / again - 1.0).abs() < 1e-11, "{xi} {again}");
+        if let Some(known) = case.efficiency {
+            assert!((xi / known - 1.0).abs() < 1e-9, "{xi} {known}");
+        }
+        found.push(xi);
+    }
+    // The paper: 1.46 and 1.45.
+    assert!((found[1] / found[0] - 1.4641).abs() < 5e-5, "{found:?}");
+    assert!((found[3] / found[2] - 1.453).abs() < 5e-4, "{found:?}");
+}
+
+#[test]
+fn a_bound_is_followed_where_it_pushes_and_a_loose_one_changes_nothing() {
+    let case = &cases()[0];
+    let model = case.model();
+    let at = |max_angle: f64, quarter: bool| {
+        let walls = Walls::new(&Bounds {
+            max_angle: Some(max_angle),
+            ..Bounds::default()
+        });
+        polish(&model, &walls, &case.gait(), quarter).unwrap()
+    };
+    let free = at(2.0, true);
+    assert!((free.efficiency(&model) - 0.012_364_154_624).abs() < 1e-12);
+    let mut before = free.efficiency(&model);
+    for max_angle in [1.4, 1.35, 1.3] {
+        let (quarter, closed) = (at(max_angle, true), at(max_angle, false));
+        assert_eq!(quarter.solved.chain.arcs.len(), 3, "free, bound, free");
+        assert_eq!(closed.solved.chain.arcs.len(), 8);
+        let xi = quarter.efficiency(&model);
+        assert!((xi / closed.efficiency(&model) - 1.0).abs() < 1e-11);
+        assert!(xi < before, "a tighter bound costs efficiency");
+        before = xi;
+        let bound = quarter.solved.chain.arcs[1];
+        assert!(matches!(bound.motion, Motion::Along(_)) && bound.length > 0.0);
+    }
+}
