@@ -97,7 +97,7 @@ pub(crate) fn polish_chain(
 }
 
 impl Extremal {
-    /// Lighthill's efficiency ξ = c_t/|p|² of a swimmer with L = 1.
+    /// Lighthill's efficiency ξ = `c_t/|p|²` of a swimmer with L = 1.
     pub(crate) fn efficiency(&self, model: &Model<f64>) -> f64 {
         let first = self.solved.chain.states.first();
         first.map_or(f64::NAN, |z| {

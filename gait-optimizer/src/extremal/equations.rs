@@ -258,6 +258,9 @@ fn free_turning(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::region::{Clearance, Edge, Piece};
+    use crate::runge_kutta::{Point, StepControl, advance};
+    use swimmer_files::ArcKind;
     use swimmer_model::Swimmer;
 
     fn cases() -> Vec<(Model<f64>, State)> {
@@ -276,8 +279,14 @@ mod tests {
     #[test]
     fn the_linearisation_is_the_derivative_of_the_rates() {
         for (model, z) in cases() {
-            let wall = Wall::straight(Vector2::new(0.6, 0.8), 1.0, swimmer_files::ArcKind::Upper);
-            for motion in [Motion::Free, Motion::Along(wall)] {
+            let links = &model.swimmer().links;
+            let straight = Wall::Straight(Edge {
+                normal: Vector2::new(0.6, 0.8),
+                offset: 1.0,
+                kind: ArcKind::Upper,
+            });
+            let curved = Wall::Curved(Clearance::new(links, 0.01).unwrap(), Piece::FrontTip);
+            for motion in [Motion::Free, Motion::Along(straight), Motion::Along(curved)] {
                 let exact = linear(&model, &motion, &z);
                 let plain = rate(&model, &motion, &z);
                 for (a, b) in exact.rate.iter().zip(&plain) {
@@ -349,7 +358,6 @@ mod tests {
                     force(1),
                 ]
             };
-            use crate::runge_kutta::{Point, StepControl, advance};
             let control = StepControl {
                 tolerance: 1e-13,
                 longest: 0.1,

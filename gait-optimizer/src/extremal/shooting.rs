@@ -1,7 +1,7 @@
 //! Multiple shooting over arcs: one damped Newton iteration for quarter gaits and for closed curves.
 //!
 //! Unknown are the state at the start of every piece and the length of every arc. Each piece must end where the next one
-//! starts; an arc along a bound must start on it, tangent to it. Both ends of the chain belong to the [`Class`]. On a closed
+//! starts; an arc along a bound must start on it, tangent to it; at a corner of the forbidden shapes the direction may jump. Both ends of the chain belong to the [`Class`]. On a closed
 //! curve the length of `μ_xy` closes by itself because the flow keeps it; where no bound arc marks a start, the start is held
 //! on a line across the curve instead.
 //!
@@ -15,10 +15,20 @@ use swimmer_model::Model;
 use super::equations::{Motion, STATE, State, shape};
 use super::flow::{Mapped, mapped};
 
+/// How an arc begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Entry {
+    /// Smoothly; onto a bound, tangent to it.
+    Smooth,
+    /// At this corner of the forbidden shapes, which the curve is bent round with a kink.
+    Corner(Vector2<f64>),
+}
+
 /// One arc of a chain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stretch {
     pub(crate) motion: Motion,
+    pub(crate) entry: Entry,
     /// How many pieces it is shot in.
     pub(crate) pieces: usize,
     /// Power length.
@@ -293,64 +303,165 @@ fn assemble(model: &Model<f64>, class: Class, chain: &Chain, scale: f64) -> Opti
             length: (lengths_from + arc_index, 1.0 / arc.pieces as f64),
         })
         .collect();
-    let over = |row: usize| if row < 3 { 1.0 } else { 1.0 / scale };
-    for (i, pair) in endings.windows(2).enumerate() {
-        let (Some(ending), Some(next)) = (pair.first(), chain.states.get(i + 1)) else {
-            return None;
-        };
-        for (row, (end, start)) in ending.map.end.iter().zip(next).enumerate() {
-            let weight = over(row);
-            let gap = weight * (end - start);
-            let own = (STATE * (i + 1) + row, -weight);
-            equations.add(gap, ending.slopes(row, weight).chain([own]));
-        }
-    }
-    for (i, (_, arc, state)) in starts(chain) {
-        if let Motion::Along(wall) = &arc.motion {
-            let phi = shape(state);
-            let (sin, cos) = state[2].sin_cos();
-            let gradient = wall.gradient(&phi);
-            equations.add(
-                wall.value(&phi),
-                [(STATE * i, gradient.x), (STATE * i + 1, gradient.y)],
-            );
-            let by_shape = wall.hessian(&phi) * Vector2::new(cos, sin);
-            equations.add(
-                gradient.x * cos + gradient.y * sin,
-                [
-                    (STATE * i, by_shape.x),
-                    (STATE * i + 1, by_shape.y),
-                    (STATE * i + 2, gradient.y * cos - gradient.x * sin),
-                ],
-            );
-        }
-    }
-    let first = chain.states.first()?;
+    let mut first_piece = 0;
     let last = endings.last()?;
-    match class {
-        Class::Quarter => quarter_ends(&mut equations, first, last, scale),
-        Class::Closed { turn, line } => {
-            closed_ends(&mut equations, first, last, scale, turn);
-            if let Some((point, across)) = line {
-                equations.add(
-                    (shape(first) - point).dot(&across),
-                    [(0, across.x), (1, across.y)],
-                );
+    for (index, arc) in chain.arcs.iter().enumerate() {
+        let start = Start {
+            arc,
+            state: chain.states.get(first_piece)?,
+            column: STATE * first_piece,
+        };
+        if let Some(before) = first_piece.checked_sub(1) {
+            let leaves = chain.arcs.get(index.checked_sub(1)?)?;
+            joint(&mut equations, endings.get(before)?, leaves, &start, scale);
+        } else {
+            match class {
+                Class::Quarter => quarter_ends(&mut equations, &start, last, scale),
+                Class::Closed { turn, line } => {
+                    let leaves = chain.arcs.last()?;
+                    closed_ends(&mut equations, last, leaves, &start, scale, turn);
+                    if let Some((point, across)) = line {
+                        equations.add(
+                            (shape(start.state) - point).dot(&across),
+                            [(0, across.x), (1, across.y)],
+                        );
+                    }
+                }
             }
         }
+        for piece in first_piece + 1..first_piece + arc.pieces {
+            let (ending, next) = (endings.get(piece - 1)?, chain.states.get(piece)?);
+            continued(&mut equations, ending, next, STATE * piece, 0..STATE, scale);
+        }
+        first_piece += arc.pieces;
     }
     scale_condition(&mut equations, chain, &endings, lengths_from);
     (equations.row == equations.residual.len()).then_some(equations)
 }
 
-/// The first piece of every arc with its number among the pieces.
-fn starts(chain: &Chain) -> impl Iterator<Item = (usize, (usize, &Stretch, &State))> {
-    let mut before = None;
-    chain.pieces().enumerate().filter(move |(_, (arc, ..))| {
-        let is_first = before != Some(*arc);
-        before = Some(*arc);
-        is_first
-    })
+/// The start of an arc.
+struct Start<'a> {
+    arc: &'a Stretch,
+    state: &'a State,
+    /// First column of the state.
+    column: usize,
+}
+
+/// These rows of the state go on from one piece to the next.
+fn continued(
+    equations: &mut Equations,
+    ending: &Ending<'_>,
+    next: &State,
+    column: usize,
+    rows: std::ops::Range<usize>,
+    scale: f64,
+) {
+    for row in rows {
+        let weight = if row < 3 { 1.0 } else { 1.0 / scale };
+        let (end, start) = (ending.map.end[row], next[row]);
+        let own = (column + row, -weight);
+        equations.add(
+            weight * (end - start),
+            ending.slopes(row, weight).chain([own]),
+        );
+    }
+}
+
+/// From one arc to the next.
+fn joint(
+    equations: &mut Equations,
+    ending: &Ending<'_>,
+    leaves: &Stretch,
+    start: &Start<'_>,
+    scale: f64,
+) {
+    match start.arc.entry {
+        Entry::Smooth => {
+            continued(
+                equations,
+                ending,
+                start.state,
+                start.column,
+                0..STATE,
+                scale,
+            );
+            on_wall(equations, start);
+            tangent(equations, start);
+        }
+        Entry::Corner(corner) => {
+            ends_at(equations, ending, leaves, &corner);
+            starts_at(equations, start, &corner);
+            continued(
+                equations,
+                ending,
+                start.state,
+                start.column,
+                3..STATE,
+                scale,
+            );
+            tangent(equations, start);
+        }
+    }
+}
+
+/// An arc along a bound starts on it.
+fn on_wall(equations: &mut Equations, start: &Start<'_>) {
+    if let Motion::Along(wall) = &start.arc.motion {
+        let phi = shape(start.state);
+        let gradient = wall.gradient(&phi);
+        equations.add(
+            wall.value(&phi),
+            [(start.column, gradient.x), (start.column + 1, gradient.y)],
+        );
+    }
+}
+
+/// An arc along a bound starts tangent to it.
+fn tangent(equations: &mut Equations, start: &Start<'_>) {
+    if let Motion::Along(wall) = &start.arc.motion {
+        let phi = shape(start.state);
+        let (sin, cos) = start.state[2].sin_cos();
+        let gradient = wall.gradient(&phi);
+        let by_shape = wall.hessian(&phi) * Vector2::new(cos, sin);
+        equations.add(
+            gradient.x * cos + gradient.y * sin,
+            [
+                (start.column, by_shape.x),
+                (start.column + 1, by_shape.y),
+                (start.column + 2, gradient.y * cos - gradient.x * sin),
+            ],
+        );
+    }
+}
+
+/// An arc ends at a corner; one along a bound is on its line already.
+fn ends_at(
+    equations: &mut Equations,
+    ending: &Ending<'_>,
+    leaves: &Stretch,
+    corner: &Vector2<f64>,
+) {
+    let end = &ending.map.end;
+    match leaves.motion {
+        Motion::Free => {
+            for row in 0..2 {
+                equations.add(end[row] - corner[row], ending.slopes(row, 1.0));
+            }
+        }
+        Motion::Along(_) => {
+            let (sin, cos) = end[2].sin_cos();
+            equations.add(
+                (end[0] - corner.x) * cos + (end[1] - corner.y) * sin,
+                ending.slopes(0, cos).chain(ending.slopes(1, sin)),
+            );
+        }
+    }
+}
+
+fn starts_at(equations: &mut Equations, start: &Start<'_>, corner: &Vector2<f64>) {
+    for row in 0..2 {
+        equations.add(start.state[row] - corner[row], [(start.column + row, 1.0)]);
+    }
 }
 
 /// ∮q' = S: the momentum is the one of an optimum of |d|/S.
@@ -374,9 +485,20 @@ fn scale_condition(
     );
 }
 
-fn quarter_ends(equations: &mut Equations, first: &State, last: &Ending<'_>, scale: f64) {
-    equations.add(first[0] - first[1], [(0, 1.0), (1, -1.0)]);
-    equations.add(first[2] - 0.75 * PI, [(2, 1.0)]);
+fn quarter_ends(equations: &mut Equations, start: &Start<'_>, last: &Ending<'_>, scale: f64) {
+    let first = start.state;
+    match start.arc.entry {
+        Entry::Smooth => {
+            equations.add(first[0] - first[1], [(0, 1.0), (1, -1.0)]);
+            equations.add(first[2] - 0.75 * PI, [(2, 1.0)]);
+            // A bound that is square to φ₁ = φ₂ is met tangentially of itself.
+            on_wall(equations, start);
+        }
+        Entry::Corner(corner) => {
+            starts_at(equations, start, &corner);
+            tangent(equations, start);
+        }
+    }
     equations.add(first[4] / scale, [(4, 1.0 / scale)]);
     let end = &last.map.end;
     equations.add(
@@ -387,13 +509,31 @@ fn quarter_ends(equations: &mut Equations, first: &State, last: &Ending<'_>, sca
     equations.add(end[5] / scale, last.slopes(5, 1.0 / scale));
 }
 
-fn closed_ends(equations: &mut Equations, first: &State, last: &Ending<'_>, scale: f64, turn: f64) {
-    let end = &last.map.end;
-    for (row, shift) in [(0, 0.0), (1, 0.0), (2, turn)] {
-        equations.add(
-            end[row] - first[row] - shift,
-            last.slopes(row, 1.0).chain([(row, -1.0)]),
-        );
+fn closed_ends(
+    equations: &mut Equations,
+    last: &Ending<'_>,
+    leaves: &Stretch,
+    start: &Start<'_>,
+    scale: f64,
+    turn: f64,
+) {
+    let (first, end) = (start.state, &last.map.end);
+    match start.arc.entry {
+        Entry::Smooth => {
+            for (row, shift) in [(0, 0.0), (1, 0.0), (2, turn)] {
+                equations.add(
+                    end[row] - first[row] - shift,
+                    last.slopes(row, 1.0).chain([(row, -1.0)]),
+                );
+            }
+            on_wall(equations, start);
+            tangent(equations, start);
+        }
+        Entry::Corner(corner) => {
+            ends_at(equations, last, leaves, &corner);
+            starts_at(equations, start, &corner);
+            tangent(equations, start);
+        }
     }
     // The direction of μ_xy; its length closes by itself.
     let weight = 1.0 / (scale * scale);
@@ -403,8 +543,5 @@ fn closed_ends(equations: &mut Equations, first: &State, last: &Ending<'_>, scal
             .chain(last.slopes(3, -weight * first[4]))
             .chain([(3, weight * end[4]), (4, -weight * end[3])]),
     );
-    equations.add(
-        (end[5] - first[5]) / scale,
-        last.slopes(5, 1.0 / scale).chain([(5, -1.0 / scale)]),
-    );
+    continued(equations, last, first, 0, 5..STATE, scale);
 }

@@ -9,13 +9,15 @@ use swimmer_model::Model;
 use super::equations::{Motion, STATE, State, Turning, momentum, shape};
 use super::flow::flowed;
 use super::guess::Swum;
-use super::shooting::{Chain, Class, Stretch};
+use super::shooting::{Chain, Class, Entry, Stretch};
 use super::wall::{Wall, Walls};
 
 /// A stretch of a curve: what it runs along, from where to where (power length).
+/// A free one is named only where it begins at a corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
     pub(crate) motion: Motion,
+    pub(crate) entry: Entry,
     pub(crate) from: f64,
     pub(crate) to: f64,
 }
@@ -74,6 +76,30 @@ impl Samples {
         Some(Self { rows })
     }
 
+    /// Whether a curve bends round the corner where an arc begins, and not away from it. The forbidden shapes lie beyond
+    /// the corner, so the bend is to that side; a quarter is bent against its mirror image.
+    fn bends_round(&self, chain: &Chain, class: Class, index: usize) -> bool {
+        let first = |number: usize| self.rows.iter().find(|row| row.0 == number);
+        let last = |number: usize| self.rows.iter().rev().find(|row| row.0 == number);
+        let Some((.., start)) = first(index) else {
+            return false;
+        };
+        let before = match (index.checked_sub(1), class) {
+            (Some(before), _) => last(before).map(|row| row.2[2]),
+            (None, Class::Quarter) => Some(1.5 * std::f64::consts::PI - start[2]),
+            (None, Class::Closed { turn, .. }) => {
+                last(chain.arcs.len().saturating_sub(1)).map(|row| row.2[2] - turn)
+            }
+        };
+        let Some(before) = before else {
+            return false;
+        };
+        let mean = 0.5 * (before + start[2]);
+        // Positive where the corner points to the left of the motion, away from the origin.
+        let left = -start[0] * mean.sin() + start[1] * mean.cos();
+        (start[2] - before) * left >= 0.0
+    }
+
     /// The state at a power length, from the sample before by linear interpolation.
     fn at(&self, length: f64) -> State {
         let after = self
@@ -104,13 +130,28 @@ pub(crate) fn next_structure(
 ) -> Option<(Chain, Class)> {
     let total = chain.length();
     let samples = Samples::new(model, chain)?;
+    let least = SHORTEST * total;
     let mut spans: Vec<Span> = Vec::new();
     let mut changed = false;
     let mut from = 0.0;
     for (index, arc) in chain.arcs.iter().enumerate() {
         let to = from + arc.length.max(0.0);
-        if arc.length < SHORTEST * total {
+        let mut entry = arc.entry;
+        if matches!(entry, Entry::Corner(_)) && !samples.bends_round(chain, class, index) {
+            entry = Entry::Smooth;
             changed = true;
+        }
+        if arc.length < least {
+            changed = true;
+            // The corner stays with the arc that follows.
+            if let Entry::Corner(_) = entry {
+                spans.push(Span {
+                    motion: Motion::Free,
+                    entry,
+                    from,
+                    to: from,
+                });
+            }
             from = to;
             continue;
         }
@@ -119,22 +160,21 @@ pub(crate) fn next_structure(
             Motion::Along(wall) => {
                 let pushed = runs(rows().map(|(_, at, state)| {
                     let push = multiplier(model, wall, state);
-                    (*at, (push >= PULL).then_some(()))
+                    (*at, (push >= PULL).then_some(*wall))
                 }));
                 changed |= pushed.len() != 1
                     || pushed
                         .iter()
-                        .any(|(_, a, b)| b - a < (to - from) * (1.0 - 1e-9));
-                spans.extend(
-                    pushed
-                        .into_iter()
-                        .filter(|(_, a, b)| b - a > SHORTEST * total)
-                        .map(|((), from, to)| Span {
-                            motion: arc.motion,
-                            from,
-                            to,
-                        }),
-                );
+                        .any(|run| run.to - run.from < (to - from) * (1.0 - 1e-9));
+                for run in pushed.into_iter().filter(|run| run.to - run.from > least) {
+                    let at_start = run.from - from < least;
+                    spans.push(Span {
+                        motion: arc.motion,
+                        entry: if at_start { entry } else { Entry::Smooth },
+                        from: run.from,
+                        to: run.to,
+                    });
+                }
             }
             Motion::Free => {
                 let over = runs(rows().map(|(_, at, state)| {
@@ -144,16 +184,28 @@ pub(crate) fn next_structure(
                     (*at, beyond.map(|(wall, _)| wall))
                 }));
                 changed |= !over.is_empty();
-                for (wall, start, end) in over {
-                    // The overstepping is wider than the contact that it becomes.
-                    let (middle, half) = (0.5 * (start + end), 0.25 * (end - start));
-                    let half = half.max(2.0 * SHORTEST * total);
-                    spans.push(Span {
-                        motion: Motion::Along(wall),
-                        from: middle - half,
-                        to: middle + half,
-                    });
+                let next = chain.arcs.get(index + 1).or(match class {
+                    Class::Closed { .. } => chain.arcs.first(),
+                    Class::Quarter => None,
+                });
+                let to_corner = next.is_some_and(|next| matches!(next.entry, Entry::Corner(_)));
+                let edges = [(matches!(entry, Entry::Corner(_)), from), (to_corner, to)];
+                let mut contacts = contacts(walls, class, over, edges, |at| samples.at(at));
+                match contacts.first_mut() {
+                    // A bound that is met right at the corner.
+                    Some(first) if edges[0].0 && first.from - from < least => first.entry = entry,
+                    _ if edges[0].0 => contacts.insert(
+                        0,
+                        Span {
+                            motion: Motion::Free,
+                            entry,
+                            from,
+                            to: from,
+                        },
+                    ),
+                    _ => {}
                 }
+                spans.extend(contacts);
             }
         }
         from = to;
@@ -166,15 +218,68 @@ pub(crate) fn next_structure(
         }
         _ => samples.at(length),
     };
-    changed.then(|| rebuilt(class, &joined(spans, total), total, round))
+    changed.then(|| rebuilt(class, &joined(spans, least), total, round))
+}
+
+/// What runs of overstepping become: arcs along the bound, narrower than the overstepping, or (past both sides of the tips'
+/// corner) a bend round it. `edges` are the ends of the arc that oversteps, marked where they are corners already.
+fn contacts(
+    walls: &Walls,
+    class: Class,
+    over: Vec<Run>,
+    edges: [(bool, f64); 2],
+    at: impl Fn(f64) -> State,
+) -> Vec<Span> {
+    let mut spans: Vec<Span> = Vec::new();
+    let mut over = over.into_iter().peekable();
+    while let Some(run) = over.next() {
+        let round_tip = |run: &Run| matches!(run.wall, Wall::Curved(..));
+        let beyond_too =
+            over.next_if(|next| round_tip(&run) && round_tip(next) && next.from <= run.to);
+        let from_start = class == Class::Quarter && run.from <= 0.0 && round_tip(&run);
+        let place = beyond_too.as_ref().map_or(run.from, |next| next.from);
+        if (beyond_too.is_some() || (from_start && !edges[0].0))
+            && let Some(corner) = walls.corner(&shape(&at(place)))
+        {
+            spans.push(Span {
+                motion: Motion::Free,
+                entry: Entry::Corner(corner),
+                from: place,
+                to: place,
+            });
+            continue;
+        }
+        let (middle, half) = (0.5 * (run.from + run.to), 0.25 * (run.to - run.from));
+        let hugs = |edge: (bool, f64), end: f64| edge.0 && (edge.1 - end).abs() <= 0.0;
+        spans.push(Span {
+            motion: Motion::Along(run.wall),
+            entry: Entry::Smooth,
+            from: if hugs(edges[0], run.from) || from_start {
+                run.from
+            } else {
+                middle - half
+            },
+            to: if hugs(edges[1], run.to) {
+                run.to
+            } else {
+                middle + half
+            },
+        });
+    }
+    spans
 }
 
 /// Spans along the same bound with nothing between them made one.
-fn joined(spans: Vec<Span>, total: f64) -> Vec<Span> {
+fn joined(spans: Vec<Span>, least: f64) -> Vec<Span> {
     let mut joined: Vec<Span> = Vec::with_capacity(spans.len());
     for span in spans {
         match joined.last_mut() {
-            Some(last) if last.motion == span.motion && span.from - last.to < SHORTEST * total => {
+            Some(last)
+                if last.motion == span.motion
+                    && span.motion != Motion::Free
+                    && span.entry == Entry::Smooth
+                    && span.from - last.to < least =>
+            {
                 last.to = span.to;
             }
             _ => joined.push(span),
@@ -191,10 +296,12 @@ pub(crate) fn of_curve(swum: &Swum, walls: &Walls, quarter: bool) -> (Chain, Cla
             .filter(|(_, depth)| *depth > -NEAR)
             .map(|(wall, _)| wall)
     };
+    let open = |total: f64| [(false, 0.0), (false, total)];
     if quarter {
         let total = 0.25 * swum.total();
         let rows = swum.rows().take_while(|(at, _)| *at <= total);
-        let spans = along(runs(rows.map(|(at, state)| (at, near(state)))));
+        let runs = runs(rows.map(|(at, state)| (at, near(state))));
+        let spans = contacts(walls, Class::Quarter, runs, open(total), |at| swum.at(at));
         return rebuilt(Class::Quarter, &spans, total, |length| swum.at(length));
     }
     // From the shape that lies farthest inside, so that no contact is cut in two.
@@ -209,37 +316,41 @@ pub(crate) fn of_curve(swum: &Swum, walls: &Walls, quarter: bool) -> (Chain, Cla
     let round = later
         .map(|(at, state)| (at - begin, near(state)))
         .chain(earlier.map(|(at, state)| (at - begin + total, near(state))));
-    let spans = along(runs(round));
     let class = Class::Closed {
         turn: swum.turn,
         line: None,
     };
-    rebuilt(class, &spans, total, |length| swum.at(begin + length))
+    let at = |length: f64| swum.at(begin + length);
+    let spans = contacts(walls, class, runs(round), open(total), at);
+    rebuilt(class, &spans, total, at)
 }
 
-fn along(runs: Vec<(Wall, f64, f64)>) -> Vec<Span> {
-    let spans = runs.into_iter().map(|(wall, from, to)| Span {
-        motion: Motion::Along(wall),
-        from,
-        to,
-    });
-    spans.collect()
+/// A stretch of samples that are all beyond, or on, one bound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Run {
+    wall: Wall,
+    from: f64,
+    to: f64,
 }
 
-/// Runs of equal marks along a curve: the mark, from, to. A run ends halfway to the next sample.
-fn runs<M: PartialEq + Copy>(rows: impl Iterator<Item = (f64, Option<M>)>) -> Vec<(M, f64, f64)> {
-    let mut runs: Vec<(M, f64, f64)> = Vec::new();
-    let mut before: Option<(f64, Option<M>)> = None;
+/// Runs of equal marks along a curve. A run ends halfway to the next sample.
+fn runs(rows: impl Iterator<Item = (f64, Option<Wall>)>) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    let mut before: Option<(f64, Option<Wall>)> = None;
     for (at, mark) in rows {
         let boundary = before.map_or(at, |(last, _)| 0.5 * (last + at));
-        let same = before.is_some_and(|(_, last)| last == mark);
-        if let Some(mark) = mark {
-            match runs.last_mut() {
-                Some(run) if same && run.0 == mark => run.2 = at,
-                _ => runs.push((mark, boundary, at)),
-            }
-        } else if let (Some(run), Some((_, Some(_)))) = (runs.last_mut(), before) {
-            run.2 = boundary;
+        let last = before.and_then(|(_, last)| last);
+        match (runs.last_mut(), mark) {
+            (Some(run), Some(_)) if mark == last => run.to = at,
+            (Some(run), _) if last.is_some() => run.to = boundary,
+            _ => {}
+        }
+        if let Some(wall) = mark.filter(|_| mark != last) {
+            runs.push(Run {
+                wall,
+                from: boundary,
+                to: at,
+            });
         }
         before = Some((at, mark));
     }
@@ -272,10 +383,15 @@ pub(crate) fn rebuilt(
         states: Vec::new(),
     };
     let mut here = begin;
+    let mut entry = Entry::Smooth;
     let end = begin + total;
     for span in bound_spans {
         if span.from > here {
-            free_arc(&mut chain, here, span.from, total, class, &at);
+            free_arc(&mut chain, entry, [here, span.from], total, class, &at);
+            entry = Entry::Smooth;
+        }
+        if let Entry::Corner(_) = span.entry {
+            entry = span.entry;
         }
         if let Motion::Along(wall) = &span.motion {
             let mut state = at(span.from);
@@ -285,23 +401,25 @@ pub(crate) fn rebuilt(
             state[2] = wall.tangent(&phi, state[2]);
             chain.arcs.push(Stretch {
                 motion: span.motion,
+                entry,
                 pieces: 1,
                 length: span.to - span.from,
             });
             chain.states.push(state);
+            entry = Entry::Smooth;
         }
         here = span.to;
     }
     if end > here {
-        free_arc(&mut chain, here, end, total, class, &at);
+        free_arc(&mut chain, entry, [here, end], total, class, &at);
     }
     (chain, class)
 }
 
 fn free_arc(
     chain: &mut Chain,
-    from: f64,
-    to: f64,
+    entry: Entry,
+    [from, to]: [f64; 2],
     total: f64,
     class: Class,
     at: &impl Fn(f64) -> State,
@@ -311,17 +429,22 @@ fn free_arc(
         Class::Closed { .. } => 1.0,
     };
     let share = (to - from) / total * cycles;
-    // At least one, at most a few hundred: shares are between 0 and 1.
-    let pieces = (1..200)
-        .find(|&count| f64::from(count) >= share * PIECES)
-        .map_or(200, |count| count as usize);
+    let pieces = (1..200_usize)
+        .find(|&count| count as f64 >= share * PIECES)
+        .unwrap_or(200);
     for piece in 0..pieces {
-        chain
-            .states
-            .push(at(from + (to - from) * piece as f64 / pieces as f64));
+        let mut state = at(from + (to - from) * piece as f64 / pieces as f64);
+        if let (0, Entry::Corner(corner)) = (piece, entry) {
+            // Past the kink.
+            state = at(from + 1e-3 * (to - from));
+            state[0] = corner.x;
+            state[1] = corner.y;
+        }
+        chain.states.push(state);
     }
     chain.arcs.push(Stretch {
         motion: Motion::Free,
+        entry,
         pieces,
         length: to - from,
     });

@@ -83,10 +83,13 @@ fn a_bound_is_followed_where_it_pushes_and_a_loose_one_changes_nothing() {
     let case = &cases()[0];
     let model = case.model();
     let at = |max_angle: f64, quarter: bool| {
-        let walls = Walls::new(&Bounds {
-            max_angle: Some(max_angle),
-            ..Bounds::default()
-        });
+        let walls = Walls::new(
+            &Bounds {
+                max_angle: Some(max_angle),
+                ..Bounds::default()
+            },
+            &case.swimmer.links,
+        );
         polish(&model, &walls, &case.gait(), quarter).unwrap()
     };
     let free = at(2.0, true);

@@ -2,63 +2,117 @@
 
 use nalgebra::{Matrix2, Vector2};
 use swimmer_files::{ArcKind, Bounds};
+use swimmer_model::Links;
+
+use crate::region::{Clearance, Edge, Piece, Region};
 
 /// A bound `value(Φ) ≤ 0` whose zero is a smooth curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Wall {
-    normal: Vector2<f64>,
-    offset: f64,
-    pub(crate) kind: ArcKind,
+pub(crate) enum Wall {
+    /// A bound of one angle.
+    Straight(Edge),
+    /// One piece of the bound that keeps the side links apart.
+    Curved(Clearance, Piece),
 }
 
 impl Wall {
-    /// `normal · Φ ≤ offset` with a unit normal that points out.
-    pub(crate) fn straight(normal: Vector2<f64>, offset: f64, kind: ArcKind) -> Self {
-        Self {
-            normal,
-            offset,
-            kind,
+    /// What an arc along it is called.
+    pub(crate) fn kind(&self) -> ArcKind {
+        match self {
+            Self::Straight(edge) => edge.kind,
+            Self::Curved(..) => ArcKind::Clearance,
         }
     }
 
-    /// How far beyond the bound a shape is \[rad\]; negative inside.
+    /// How far beyond the bound a shape is, in rad or (between links) over L; negative inside.
     pub(crate) fn value(&self, phi: &Vector2<f64>) -> f64 {
-        self.normal.dot(phi) - self.offset
+        match self {
+            Self::Straight(edge) => -edge.margin(phi),
+            Self::Curved(clearance, piece) => -clearance.level(*piece, phi).value,
+        }
     }
 
     /// Gradient of [`Wall::value`]; points out.
-    pub(crate) fn gradient(&self, _phi: &Vector2<f64>) -> Vector2<f64> {
-        self.normal
+    pub(crate) fn gradient(&self, phi: &Vector2<f64>) -> Vector2<f64> {
+        match self {
+            Self::Straight(edge) => edge.normal,
+            Self::Curved(clearance, piece) => -clearance.level(*piece, phi).gradient,
+        }
     }
 
     /// Second derivatives of [`Wall::value`].
-    pub(crate) fn hessian(&self, _phi: &Vector2<f64>) -> Matrix2<f64> {
-        Matrix2::zeros()
+    pub(crate) fn hessian(&self, phi: &Vector2<f64>) -> Matrix2<f64> {
+        match self {
+            Self::Straight(_) => Matrix2::zeros(),
+            Self::Curved(clearance, piece) => -clearance.level(*piece, phi).hessian,
+        }
     }
 
     /// dψ over the arc length of a curve that keeps tangent to the bound.
-    pub(crate) fn turning(&self, _phi: &Vector2<f64>, _e: &Vector2<f64>) -> f64 {
-        0.0
+    pub(crate) fn turning(&self, phi: &Vector2<f64>, e: &Vector2<f64>) -> f64 {
+        match self {
+            Self::Straight(_) => 0.0,
+            Self::Curved(..) => {
+                let normal = Vector2::new(-e.y, e.x);
+                -e.dot(&(self.hessian(phi) * e)) / self.gradient(phi).dot(&normal)
+            }
+        }
     }
 
     /// [`Wall::turning`] and its derivatives with respect to φ₁, φ₂, ψ.
+    ///
+    /// Those of the Hessian are central differences: they steer Newton's iteration, and what it converges to does not
+    /// depend on them.
     pub(crate) fn turning_and_slopes(
         &self,
-        _phi: &Vector2<f64>,
-        _e: &Vector2<f64>,
+        phi: &Vector2<f64>,
+        e: &Vector2<f64>,
     ) -> (f64, [f64; 3]) {
-        (0.0, [0.0; 3])
+        const STEP: f64 = 1e-4;
+        if let Self::Straight(_) = self {
+            return (0.0, [0.0; 3]);
+        }
+        let n = Vector2::new(-e.y, e.x);
+        let (gradient, hessian) = (self.gradient(phi), self.hessian(phi));
+        let (bend, across) = (e.dot(&(hessian * e)), gradient.dot(&n));
+        let turning = -bend / across;
+        let by_joint = |axis: Vector2<f64>| {
+            let ahead = self.hessian(&(phi + axis * STEP));
+            let behind = self.hessian(&(phi - axis * STEP));
+            let bend_by = e.dot(&((ahead - behind) * e)) / (2.0 * STEP);
+            let across_by = (hessian * n).dot(&axis);
+            -(bend_by + turning * across_by) / across
+        };
+        // dn/dψ = −e.
+        let by_direction = -(2.0 * n.dot(&(hessian * e)) - turning * gradient.dot(e)) / across;
+        (
+            turning,
+            [by_joint(Vector2::x()), by_joint(Vector2::y()), by_direction],
+        )
     }
 
     /// Whether both are the same bound, perhaps at another place.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
-        self.normal == other.normal && self.kind == other.kind
+        match (self, other) {
+            (Self::Straight(a), Self::Straight(b)) => a.normal == b.normal,
+            (Self::Curved(_, a), Self::Curved(_, b)) => a == b,
+            _ => false,
+        }
     }
 
-    /// The shape on the bound nearest to this one, to first order.
+    /// The shape on the bound nearest to this one, or (on a curved bound) near it.
     pub(crate) fn onto(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        let gradient = self.gradient(phi);
-        phi - gradient * (self.value(phi) / gradient.norm_squared())
+        const STEPS: usize = 8;
+        let mut here = *phi;
+        for _ in 0..STEPS {
+            let gradient = self.gradient(&here);
+            let step = gradient * (self.value(&here) / gradient.norm_squared());
+            if !step.norm().is_finite() || step.norm() < 1e-15 {
+                break;
+            }
+            here -= step;
+        }
+        here
     }
 
     /// The tangent's direction nearest to ψ.
@@ -73,35 +127,76 @@ impl Wall {
 /// All bounds of a full cycle.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Walls {
-    walls: Vec<Wall>,
+    edges: Vec<Edge>,
+    clearance: Option<Clearance>,
+    /// Where the tips meet at φ₁, φ₂ > 0, where that is a corner; the other corner is its negative.
+    corner: Option<Vector2<f64>>,
+}
+
+/// The corner of the forbidden shapes at φ₁, φ₂ > 0 where the tips of the side links meet: the three links are the sides
+/// of a triangle.
+fn tips_meet(links: &Links<f64>) -> Option<Vector2<f64>> {
+    let outer = |own: f64, other: f64| {
+        let middle = links.middle;
+        ((other * other - middle * middle - own * own) / (2.0 * middle * own)).acos()
+    };
+    let corner = Vector2::new(
+        outer(links.front, links.back),
+        outer(links.back, links.front),
+    );
+    corner
+        .iter()
+        .all(|angle| angle.is_finite())
+        .then_some(corner)
 }
 
 impl Walls {
-    /// The upper bound on both angles, where there is one.
-    pub(crate) fn new(bounds: &Bounds) -> Self {
-        let sides = [(0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 0.0)];
-        let walls = bounds.max_angle.map_or_else(Vec::new, |max| {
-            sides
-                .map(|(x, y)| Wall::straight(Vector2::new(x, y), max, ArcKind::Upper))
-                .to_vec()
+    /// The bounds for a swimmer with these links \[m\]. Those that only make sense for quarters (a lower bound, the sector)
+    /// are not among them.
+    pub(crate) fn new(bounds: &Bounds, links: &Links<f64>) -> Self {
+        let region = Region::new(bounds, links);
+        let clearance = region.bounds().find_map(|bound| match bound {
+            crate::region::Bound::Clearance(clearance) => Some(clearance),
+            crate::region::Bound::Straight(_) => None,
         });
-        Self { walls }
+        let both_ways = |edge: &&Edge| matches!(edge.kind, ArcKind::Upper | ArcKind::Clearance);
+        Self {
+            edges: region.edges().iter().filter(both_ways).copied().collect(),
+            corner: clearance
+                .filter(Clearance::has_corner)
+                .and_then(|_| tips_meet(links)),
+            clearance,
+        }
     }
 
     /// The bound that a shape is farthest beyond, or nearest to, with how far; none without bounds.
     pub(crate) fn nearest(&self, phi: &Vector2<f64>) -> Option<(Wall, f64)> {
-        self.walls
+        let straight = self
+            .edges
             .iter()
-            .map(|wall| (*wall, wall.value(phi)))
-            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|edge| (Wall::Straight(*edge), -edge.margin(phi)));
+        let curved = self.clearance.iter().map(|clearance| {
+            let wall = Wall::Curved(*clearance, clearance.piece(phi));
+            (wall, -clearance.margin(phi))
+        });
+        straight.chain(curved).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The corner of the forbidden shapes on the same side as a shape.
+    pub(crate) fn corner(&self, phi: &Vector2<f64>) -> Option<Vector2<f64>> {
+        let side = if phi.x + phi.y < 0.0 { -1.0 } else { 1.0 };
+        self.corner.map(|corner| corner * side)
     }
 
     /// This region's wall that is like another's.
     pub(crate) fn like(&self, wall: &Wall) -> Option<Wall> {
-        self.walls.iter().copied().find(|own| own.is_like(wall))
-    }
-
-    pub(crate) fn is_empty(&self) -> bool {
-        self.walls.is_empty()
+        match wall {
+            Wall::Straight(_) => self
+                .edges
+                .iter()
+                .map(|edge| Wall::Straight(*edge))
+                .find(|own| own.is_like(wall)),
+            Wall::Curved(_, piece) => self.clearance.map(|own| Wall::Curved(own, *piece)),
+        }
     }
 }
