@@ -14,6 +14,7 @@
 //! | `displacement::flow` | one quarter gait: arc after arc, event after event |
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs |
 //! | `cycle` | from a quarter to the full cycle, at constant power |
+//! | `playable` | what a real robot makes of a gait: timing under servo limits, losses foretold |
 //! | `certificate` | checks, and those that any closed curve can be asked |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
 
@@ -23,6 +24,7 @@ mod displacement;
 #[allow(dead_code, reason = "handed to several rooms, which land one by one")]
 mod extremal;
 mod optimal_gait;
+pub mod playable;
 mod region;
 mod runge_kutta;
 

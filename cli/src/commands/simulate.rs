@@ -1,5 +1,7 @@
 //! `swimmer simulate`: swims a gait in the model.
 
+mod played;
+
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -27,6 +29,8 @@ pub(crate) struct Simulate {
     /// Write the path of the middle link as a table: cycle, u, joint angles, pose
     #[arg(long, value_name = "FILE.csv")]
     trajectory: Option<PathBuf>,
+    #[command(flatten)]
+    playing: played::Playing,
 }
 
 /// One cycle, the first.
@@ -45,6 +49,9 @@ struct Swum {
     /// As parametrised.
     efficiency: f64,
     efficiency_constant_power: f64,
+    /// What the robot will make of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    played: Option<played::PlayedAnswer>,
 }
 
 impl fmt::Display for Swum {
@@ -76,6 +83,9 @@ impl fmt::Display for Swum {
             ),
         )
         .row("links cross", quantity::crossing(self.links_cross));
+        if let Some(played) = &self.played {
+            played.rows(&mut rows);
+        }
         write!(f, "{}\n{rows}", self.title)
     }
 }
@@ -102,6 +112,7 @@ impl Simulate {
             delta_theta_rad: stroke.delta_theta,
             efficiency: stroke.efficiency(),
             efficiency_constant_power: stroke.efficiency_constant_power(),
+            played: self.playing.forecast(&file, &model, &gait)?,
         };
         if let Some(path) = &self.trajectory {
             write_trajectory(path, &model, &gait, self.cycles)?;

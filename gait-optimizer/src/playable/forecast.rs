@@ -1,0 +1,398 @@
+//! What is left of a gait's displacement on a robot, before it is sent: the same table, brain arithmetic, pulses and servo
+//! plant that the robot plays it by ([`gait_player::playback`]), with one imperfection after the other switched on.
+
+// Periods and pulses are bounded by what was checked; f32 is what the robot itself uses.
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+
+mod gap;
+mod stages;
+
+use gait_player::Limits;
+use gait_player::servo::ServoMap;
+use gait_player::servo::plant::PlantParameters;
+use gait_player::table::TableError;
+use nalgebra::Vector2;
+use swimmer_files::ServoFile;
+use swimmer_model::{Gait, Model, Tolerance, swim};
+
+use super::reach::{Reach, reach};
+pub use gap::Gap;
+
+/// The servos that shall play a gait.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Servos {
+    /// Angle, rate, dead band and the map between angle and pulse.
+    pub file: ServoFile,
+    /// One step of the timer that makes the pulses \[ns\]; 0 for whole nanoseconds.
+    pub pulse_step_ns: u32,
+}
+
+impl Servos {
+    /// One count of the robot's timer \[ns\] (firmware, 3.125 MHz).
+    pub const ROBOT_PULSE_STEP_NS: u32 = 320;
+
+    /// These servos behind the robot's timer.
+    pub fn on_the_robot(file: ServoFile) -> Self {
+        Self {
+            file,
+            pulse_step_ns: Self::ROBOT_PULSE_STEP_NS,
+        }
+    }
+
+    /// The largest angle that servo and pulse window allow \[rad\].
+    pub fn largest_angle(&self) -> f64 {
+        self.file.max_angle
+    }
+
+    fn map(&self) -> ServoMap {
+        ServoMap {
+            centre_ns: (self.file.centre_us * 1000.0).round() as u32,
+            slope_rad_per_us: self.file.slope_rad_per_us as f32,
+            ..ServoMap::ROBOT
+        }
+    }
+
+    fn limits(&self) -> Limits {
+        Limits {
+            max_angle: self.file.max_angle as f32,
+            max_rate: self.file.max_rate as f32,
+            ..Limits::ROBOT
+        }
+    }
+
+    fn plant(&self) -> PlantParameters {
+        PlantParameters {
+            max_rate: self.file.max_rate,
+            dead_band: self.file.dead_band,
+            pulse_step_ns: self.pulse_step_ns,
+        }
+    }
+}
+
+/// How a gait shall be played.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Played {
+    /// By which servos.
+    pub servos: Servos,
+    /// Duration of a cycle \[s\].
+    pub period: f64,
+    /// Knots of the table, 2 to 512.
+    pub knots: usize,
+}
+
+/// Why nothing can be foretold.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ForecastError {
+    /// The gait fits in no table.
+    #[error("the robot cannot hold this gait: {0}")]
+    Table(#[from] TableError),
+    /// The gait leaves the servos' range.
+    #[error(
+        "the gait turns φ{} to {:.4} rad at u = {:.4}, beyond the servos' largest angle of {max_angle} rad, so no robot plays \
+         it; optimise with --max-angle {max_angle}",
+        .reach.joint + 1, .reach.angle, .reach.u
+    )]
+    Range {
+        /// Where the gait reaches furthest.
+        reach: Reach,
+        /// The servos' largest angle \[rad\].
+        max_angle: f64,
+    },
+    /// The period is no time.
+    #[error("a period of {period} s is not playable; give 0.1 s to 4000 s")]
+    Period {
+        /// The period \[s\].
+        period: f64,
+    },
+    /// The servos' numbers are none.
+    #[error("the servos' {name} is {value}; {problem}")]
+    Servo {
+        /// Which number.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        problem: &'static str,
+    },
+}
+
+/// What becomes of a gait on its way to the servos' shafts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Stage {
+    /// The gait itself.
+    Designed,
+    /// Sampled at the table's knots, with the table's cubic between them.
+    Interpolated,
+    /// Knots rounded to 1e-4 rad.
+    Rounded,
+    /// Set-points every 20 ms, held between.
+    Ticked,
+    /// Set-points as pulses in steps of the timer.
+    Pulsed,
+    /// Servos that turn no faster than they can.
+    RateLimited,
+    /// Servos with their dead band: what the tank sees.
+    Played,
+}
+
+impl Stage {
+    /// All of them, in order.
+    pub const ALL: [Self; 7] = [
+        Self::Designed,
+        Self::Interpolated,
+        Self::Rounded,
+        Self::Ticked,
+        Self::Pulsed,
+        Self::RateLimited,
+        Self::Played,
+    ];
+
+    /// What is lost in this stage, in a word for people and scripts.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Designed => "designed",
+            Self::Interpolated => "interpolation",
+            Self::Rounded => "rounding",
+            Self::Ticked => "ticks",
+            Self::Pulsed => "pulses",
+            Self::RateLimited => "rate",
+            Self::Played => "dead_band",
+        }
+    }
+}
+
+/// One cycle as it is up to a stage. Everything is in the frame of the designed gait's first shape, so that stages compare.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loss {
+    /// The stage.
+    pub stage: Stage,
+    /// Net displacement (X, Y) with all imperfections up to this one \[m\].
+    pub displacement: Vector2<f64>,
+    /// Net rotation \[rad\].
+    pub rotation: f64,
+    /// ΔY \[m\].
+    pub delta_y: f64,
+    /// Δθ \[rad\].
+    pub delta_theta: f64,
+    /// What this imperfection takes from the displacement along the designed one \[m\]; negative where it adds. The losses of
+    /// all stages sum to the whole.
+    pub loss: f64,
+    /// What it adds to the net rotation \[rad\].
+    pub turned: f64,
+}
+
+/// What the robot's own checks of the table say.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// Why the robot would refuse the table or the period; none where it plays.
+    pub refused: Option<String>,
+    /// The shortest period that it allows for this table \[s\].
+    pub min_period: f64,
+}
+
+/// What a cycle will bring on the robot, in its steady state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Forecast {
+    /// How it is played.
+    pub played: Played,
+    /// Stage by stage, in the order of [`Stage::ALL`].
+    pub stages: Vec<Loss>,
+    /// The joint that turns furthest.
+    pub reach: Reach,
+    /// Where the side links come closest on the way that the servos take.
+    pub gap: Gap,
+    /// Where they do on the designed curve.
+    pub designed_gap: Gap,
+    /// Twice the half thickness of the links: centre lines that come closer mean plates that touch \[m\].
+    pub thickness: f64,
+    /// The margin that the robot keeps: one degree at the tip of the longer side link \[m\].
+    pub margin: f64,
+    /// What the robot will say.
+    pub verdict: Verdict,
+}
+
+/// Thickness of the robot's plates \[m\], where the swimmer's drag does not tell a half thickness.
+const PLATE: f64 = 0.005;
+
+/// Foretells a cycle of a gait, played over and over, in its second cycle: the servos have forgotten where they came from.
+///
+/// # Errors
+/// [`ForecastError`]: numbers that no robot can play.
+pub fn forecast<G: Gait<f64> + ?Sized>(
+    model: &Model<f64>,
+    gait: &G,
+    played: &Played,
+) -> Result<Forecast, ForecastError> {
+    played.validate()?;
+    let reach = reach(gait);
+    // The table's own rounding is no trespass.
+    if reach.angle.abs() > played.servos.largest_angle() + 1e-4 {
+        return Err(ForecastError::Range {
+            reach,
+            max_angle: played.servos.largest_angle(),
+        });
+    }
+    let ways = stages::Ways::new(gait, played)?;
+    let swum = ways.swum(model, gait);
+    let designed = swum
+        .first()
+        .map(|stroke| stroke.displacement)
+        .unwrap_or_default();
+    // A gait that goes nowhere loses along x.
+    let along = designed
+        .try_normalize(1e-12 * model.swimmer().total_length())
+        .unwrap_or_else(Vector2::x);
+    let mut stages: Vec<Loss> = Vec::with_capacity(Stage::ALL.len());
+    for (stage, stroke) in Stage::ALL.into_iter().zip(&swum) {
+        let before = stages
+            .last()
+            .map_or((stroke.displacement, stroke.rotation), |last| {
+                (last.displacement, last.rotation)
+            });
+        stages.push(Loss {
+            stage,
+            displacement: stroke.displacement,
+            rotation: stroke.rotation,
+            delta_y: stroke.delta_y,
+            delta_theta: stroke.delta_theta,
+            loss: along.dot(&(before.0 - stroke.displacement)),
+            turned: stroke.rotation - before.1,
+        });
+    }
+    let links = model.swimmer().links;
+    Ok(Forecast {
+        played: *played,
+        stages,
+        reach,
+        gap: Gap::along(&links, ways.played()),
+        designed_gap: Gap::of_gait(&links, gait),
+        thickness: match model.swimmer().tangential_drag {
+            swimmer_model::TangentialDrag::HalfThickness(half) => 2.0 * half,
+            _ => PLATE,
+        },
+        margin: gap::margin(&links),
+        verdict: ways.verdict(&links, played),
+    })
+}
+
+impl Played {
+    fn validate(&self) -> Result<(), ForecastError> {
+        if !(0.1..=4000.0).contains(&self.period) {
+            return Err(ForecastError::Period {
+                period: self.period,
+            });
+        }
+        let ServoFile {
+            max_angle,
+            max_rate,
+            dead_band,
+            slope_rad_per_us,
+            centre_us,
+        } = self.servos.file;
+        let positive = [
+            ("largest angle [rad]", max_angle),
+            ("largest rate [rad/s]", max_rate),
+            ("slope [rad/µs]", slope_rad_per_us),
+            ("centre pulse [µs]", centre_us),
+        ];
+        for (name, value) in positive {
+            if value.is_nan() || value <= 0.0 {
+                return Err(ForecastError::Servo {
+                    name,
+                    value,
+                    problem: "give a number above 0",
+                });
+            }
+        }
+        if !(dead_band >= 0.0 && dead_band.is_finite()) {
+            return Err(ForecastError::Servo {
+                name: "dead band [rad]",
+                value: dead_band,
+                problem: "give 0 or a number above",
+            });
+        }
+        Ok(())
+    }
+}
+
+impl Forecast {
+    /// The cycle as designed and as played.
+    pub fn ends(&self) -> Option<(&Loss, &Loss)> {
+        Some((self.stages.first()?, self.stages.last()?))
+    }
+
+    /// All losses together \[m\].
+    pub fn total_loss(&self) -> f64 {
+        self.stages.iter().map(|stage| stage.loss).sum()
+    }
+
+    /// A loss as a share of the designed displacement; none for a gait that goes nowhere.
+    pub fn share(&self, loss: f64) -> Option<f64> {
+        let designed = self.stages.first()?.displacement.norm();
+        (designed > 0.0).then(|| loss / designed)
+    }
+
+    /// Radius of the circle on which the played gait drives the swimmer round, cycle after cycle \[m\]; infinite where it
+    /// goes straight.
+    pub fn turn_radius(&self) -> f64 {
+        let Some((_, played)) = self.ends() else {
+            return f64::INFINITY;
+        };
+        if played.rotation.abs() < 1e-9 {
+            // Rounding, no turn.
+            return f64::INFINITY;
+        }
+        played.displacement.norm() / (2.0 * (0.5 * played.rotation.abs()).sin().abs())
+    }
+
+    /// What to know before the gait is sent.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let mm = |length: f64| length * 1e3;
+        if self.gap.distance < self.margin {
+            warnings.push(format!(
+                "the side links come within {:.2} mm of each other, below the robot's margin of {:.2} mm (one degree at the tip)",
+                mm(self.gap.distance),
+                mm(self.margin)
+            ));
+        } else if self.gap.distance < self.thickness {
+            warnings.push(format!(
+                "the side links' centre lines come within {:.2} mm, below the plates' thickness of {:.2} mm: they pass only if they lie in different planes",
+                mm(self.gap.distance),
+                mm(self.thickness)
+            ));
+        }
+        warnings.extend(
+            self.verdict
+                .refused
+                .as_ref()
+                .map(|reason| format!("the robot would refuse: {reason}")),
+        );
+        if let Some((_, played)) = self.ends()
+            && played.rotation.abs() > TURNING
+        {
+            warnings.push(format!(
+                "the robot turns by {:.3}° a cycle and goes round a circle of radius {:.3} m",
+                played.rotation.to_degrees(),
+                self.turn_radius()
+            ));
+        }
+        warnings
+    }
+}
+
+/// Net rotation a cycle that is worth a warning \[rad\]: a turn of one degree in ten cycles.
+const TURNING: f64 = 0.001_745;
+
+/// Integration of each stage: closer than the smallest loss that is told.
+fn tolerance() -> Tolerance {
+    Tolerance::new(1e-10)
+}
+
+/// One stage swum.
+fn stroke<G: Gait<f64> + ?Sized>(model: &Model<f64>, gait: &G) -> swimmer_model::Stroke<f64> {
+    swim(model, gait, &tolerance())
+}
+
+#[cfg(test)]
+mod tests;

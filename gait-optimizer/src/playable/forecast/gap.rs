@@ -1,0 +1,82 @@
+//! How close the side links come to each other along a way.
+
+#![allow(clippy::cast_possible_truncation)] // the clearance is the robot's own, in single precision
+
+use gait_player::clearance::{clearance, margin as robot_margin};
+use nalgebra::Vector2;
+use swimmer_model::{Gait, Links};
+
+use super::super::path::Polyline;
+
+/// Where the side links come closest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gap {
+    /// Distance between the centre lines of the side links \[m\] (or what a side link is from lying folded on the middle
+    /// one); 0 where they cross.
+    pub distance: f64,
+    /// The shape there \[rad\].
+    pub phi: Vector2<f64>,
+}
+
+/// Looks along a way are this close \[rad\], so that a tip moves less than a tenth of a millimetre between two.
+const LOOK: f64 = 5e-4;
+/// Most looks: a way of 500 rad.
+const MOST_LOOKS: f64 = 1e6;
+/// Pieces that a curved gait is looked at in.
+const CHORDS: u32 = 4096;
+
+impl Gap {
+    /// Along a chain of straight pieces.
+    pub(super) fn along(links: &Links<f64>, way: &Polyline) -> Self {
+        let mut gap = Self {
+            distance: f64::INFINITY,
+            phi: Vector2::zeros(),
+        };
+        let links = single(links);
+        let length: f64 = way
+            .vertices()
+            .windows(2)
+            .map(|pair| match pair {
+                [from, to] => (to - from).norm(),
+                _ => 0.0,
+            })
+            .sum();
+        let step = LOOK.max(length / MOST_LOOKS);
+        for pair in way.vertices().windows(2) {
+            let [from, to] = pair else { continue };
+            let looks = ((to - from).norm() / step).ceil().max(1.0);
+            let mut look = 0.0;
+            while look <= looks {
+                gap.look(&links, from + (to - from) * (look / looks));
+                look += 1.0;
+            }
+        }
+        gap
+    }
+
+    /// Along a curve.
+    pub(super) fn of_gait<G: Gait<f64> + ?Sized>(links: &Links<f64>, gait: &G) -> Self {
+        let places = (0..=CHORDS).map(|i| gait.at(f64::from(i) / f64::from(CHORDS)).phi);
+        Self::along(links, &Polyline::new(places))
+    }
+
+    fn look(&mut self, links: &Links<f32>, phi: Vector2<f64>) {
+        let distance = f64::from(clearance(links, [phi.x as f32, phi.y as f32]));
+        if distance < self.distance {
+            *self = Self { distance, phi };
+        }
+    }
+}
+
+/// The margin that the robot keeps between the side links \[m\].
+pub(super) fn margin(links: &Links<f64>) -> f64 {
+    f64::from(robot_margin(&single(links)))
+}
+
+pub(super) fn single(links: &Links<f64>) -> Links<f32> {
+    Links {
+        middle: links.middle as f32,
+        front: links.front as f32,
+        back: links.back as f32,
+    }
+}
