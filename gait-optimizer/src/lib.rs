@@ -16,9 +16,11 @@
 //! | `cycle` | from a quarter to the full cycle, at constant power |
 //! | `playable` | what a real robot makes of a gait: timing under servo limits, losses foretold |
 //! | `certificate` | checks, and those that any closed curve can be asked |
+//! | [`collocation`] | efficiency gaits by Radau collocation, with a structured Newton method and mesh refinement |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
 
 mod certificate;
+pub mod collocation;
 mod cycle;
 mod displacement;
 #[allow(dead_code, reason = "handed to several rooms, which land one by one")]

@@ -1,0 +1,96 @@
+//! Why there is no collocated gait.
+
+use thiserror::Error;
+
+/// Why a collocation was given up.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum CollocationError {
+    /// The swimmer lacks the symmetry that makes a quarter tell the whole.
+    #[error(
+        "direct collocation of a quarter gait needs side links of equal length; these are {front} m and {back} m: use a method \
+         for closed curves without symmetry"
+    )]
+    Asymmetric {
+        /// Length of link 1 \[m\].
+        front: f64,
+        /// Length of link 2 \[m\].
+        back: f64,
+    },
+    /// A parameter is out of range.
+    #[error("direct collocation: {name} is {value}; {problem}")]
+    Problem {
+        /// Which parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        problem: &'static str,
+    },
+    /// The guess is no quarter gait.
+    #[error(
+        "the guess for direct collocation is no quarter gait: {problem}; give at least three samples in order of time, from \
+         φ₁ = φ₂ > 0 to φ₁ = −φ₂"
+    )]
+    Guess {
+        /// What is wrong with it.
+        problem: &'static str,
+    },
+    /// The guess swims to the other side, where ln x has no value.
+    #[error(
+        "the guess for direct collocation swims {x:.3e} a quarter, while x shall have the sign of {wanted:+}; start from a gait \
+         that goes the wanted way"
+    )]
+    WrongWay {
+        /// Its x.
+        x: f64,
+        /// The wanted sign.
+        wanted: f64,
+    },
+    /// The iteration came to no optimum.
+    #[error(
+        "direct collocation stopped after {iterations} iterations at ξ = {efficiency:.3e} without an optimum; start nearer to \
+         one, such as from the optimal Fourier gait"
+    )]
+    Stalled {
+        /// Iterations done on the last mesh.
+        iterations: usize,
+        /// Lighthill's efficiency there.
+        efficiency: f64,
+    },
+    /// The integrator could not follow the collocated control.
+    #[error(
+        "the control that direct collocation found, ξ = {efficiency:.3e}, could not be integrated again; use more elements"
+    )]
+    NotIntegrated {
+        /// Lighthill's efficiency as collocated.
+        efficiency: f64,
+    },
+    /// An optimum of the discretisation alone: its control swims otherwise.
+    #[error(
+        "direct collocation found ξ = {efficiency:.3e} on {points} points, but its control makes {again:.3e} when integrated \
+         again: a spurious optimum of a coarse mesh; start nearer to the wanted gait or from more elements"
+    )]
+    Spurious {
+        /// Lighthill's efficiency as collocated.
+        efficiency: f64,
+        /// The same, integrated again.
+        again: f64,
+        /// Points of the mesh.
+        points: usize,
+    },
+    /// The mesh was refined as far as it may be.
+    #[error(
+        "direct collocation is still off by {error:.1e} (power uneven by {uneven_power:.1e}) on {points} points, against a \
+         tolerance of {tolerance:.1e}; ask for less, or start from a smoother guess"
+    )]
+    NotResolved {
+        /// Points of the last mesh.
+        points: usize,
+        /// Largest error of an element.
+        error: f64,
+        /// Largest relative unevenness of the power.
+        uneven_power: f64,
+        /// What was asked for.
+        tolerance: f64,
+    },
+}
