@@ -6,7 +6,7 @@ use swimmer_model::Stroke;
 
 use crate::cycle::{Cycle, QuarterTrace};
 use crate::region::Region;
-use closed_curve::{crossings, turning_number};
+pub(crate) use closed_curve::{crossings, turning_number};
 
 /// One condition.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +23,7 @@ pub struct Check {
 
 impl Check {
     /// The value may be at most the tolerance. NaN fails.
-    fn at_most(name: &'static str, value: f64, tolerance: f64) -> Self {
+    pub(crate) fn at_most(name: &'static str, value: f64, tolerance: f64) -> Self {
         Self {
             name,
             value,
@@ -33,7 +33,7 @@ impl Check {
     }
 
     /// The value must be at least the tolerance. NaN fails.
-    fn at_least(name: &'static str, value: f64, tolerance: f64) -> Self {
+    pub(crate) fn at_least(name: &'static str, value: f64, tolerance: f64) -> Self {
         Self {
             name,
             value,
@@ -50,6 +50,10 @@ pub struct Certificate {
 }
 
 impl Certificate {
+    pub(crate) fn new(checks: Vec<Check>) -> Self {
+        Self { checks }
+    }
+
     /// The conditions, one by one.
     pub fn checks(&self) -> &[Check] {
         &self.checks
@@ -134,7 +138,7 @@ impl Certificate {
 }
 
 /// The samples swum by the model's own cycle integration, which shares no code with the arcs.
-fn swum_again(stroke: &Stroke<f64>, displacement_over_length: f64) -> [Check; 3] {
+pub(crate) fn swum_again(stroke: &Stroke<f64>, displacement_over_length: f64) -> [Check; 3] {
     let (x, y) = (stroke.displacement.x, stroke.displacement.y);
     let rotation = stroke.rotation;
     [

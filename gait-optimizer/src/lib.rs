@@ -2,6 +2,7 @@
 //!
 //! [`displacement()`] finds the gaits of most net displacement by Pontryagin's maximum principle (paper, section IV): arcs on
 //! which the control is singular, arcs along bounds of the joint angles, and the order of both, with no initial guess.
+//! [`efficiency()`] finds the gaits of most Lighthill efficiency (section V), small and large.
 //! Each result is an [`OptimalGait`] and carries its [`Certificate`]: the necessary conditions, each with its number.
 //!
 //! How the rooms of this crate lie:
@@ -12,6 +13,7 @@
 //! | `displacement::height` | the switching function F of the paper, its gradient, the singular control |
 //! | `region` | the bounds as a convex polygon of joint angles |
 //! | `displacement::flow` | one quarter gait: arc after arc, event after event |
+//! | `efficiency` | free Lighthill gaits: Fourier series, shooting, second-order test |
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs |
 //! | `cycle` | from a quarter to the full cycle, at constant power |
 //! | `playable` | what a real robot makes of a gait: timing under servo limits, losses foretold |
@@ -23,6 +25,7 @@ mod certificate;
 pub mod collocation;
 mod cycle;
 mod displacement;
+mod efficiency;
 #[allow(dead_code, reason = "handed to several rooms, which land one by one")]
 mod extremal;
 mod optimal_gait;
@@ -32,5 +35,8 @@ mod runge_kutta;
 
 pub use certificate::{Certificate, Check};
 pub use displacement::{DisplacementError, DisplacementProblem, Fates, Heading, displacement};
+pub use efficiency::{
+    Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method, efficiency,
+};
 pub use optimal_gait::{Arc, OptimalGait};
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};

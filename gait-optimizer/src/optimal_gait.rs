@@ -5,6 +5,7 @@ use swimmer_files::{AnyGait, ArcKind, Bounds, GaitArc, GaitFile, Objective, Swim
 use swimmer_model::{InvalidSamples, Stroke, Swimmer};
 
 use crate::Certificate;
+use crate::EfficiencyFigures;
 use crate::cycle::Cycle;
 
 /// One arc of a gait.
@@ -49,6 +50,8 @@ pub struct OptimalGait {
     pub links_cross: f64,
     /// The necessary conditions, each with its number.
     pub certificate: Certificate,
+    /// What only efficiency gaits have.
+    pub efficiency_figures: Option<EfficiencyFigures>,
     pub(crate) cycle: Cycle,
 }
 
@@ -90,6 +93,7 @@ impl OptimalGait {
             arcs: solution.arcs,
             links_cross: solution.links_cross,
             certificate: solution.certificate,
+            efficiency_figures: None,
             cycle,
         }
     }

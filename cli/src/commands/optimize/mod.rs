@@ -2,6 +2,7 @@
 
 mod answer;
 mod displacement;
+mod efficiency;
 
 use crate::failure::Outcome;
 use crate::output::Output;
@@ -10,6 +11,7 @@ use crate::output::Output;
 #[derive(Debug, clap::Subcommand)]
 pub(crate) enum Optimize {
     Displacement(displacement::Displacement),
+    Efficiency(efficiency::Efficiency),
 }
 
 impl Optimize {
@@ -17,6 +19,7 @@ impl Optimize {
     pub(crate) fn run(self, output: Output) -> Outcome {
         match self {
             Self::Displacement(arguments) => arguments.run(output),
+            Self::Efficiency(arguments) => arguments.run(output),
         }
     }
 }

@@ -1,0 +1,196 @@
+//! `swimmer optimize efficiency`: the gaits of most Lighthill efficiency.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::ValueEnum;
+use gait_optimizer::{Branch, EfficiencyError, EfficiencyProblem, Method, OptimalGait, efficiency};
+use serde::Serialize;
+use swimmer_files::Bounds;
+
+use crate::arguments::{load_swimmer, positive_angle};
+use crate::failure::{Failure, Outcome};
+use crate::output::Output;
+use crate::quantity::{self, Rows};
+
+use super::answer::{Arc, Evidence, closing_rows, displacement_row, quarter_rows};
+
+/// Find a gait of most Lighthill efficiency by the maximum principle, with its certificate
+///
+/// Closed curves with the paper's two symmetries, run counter-clockwise at constant power. No guess is needed.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Efficiency {
+    /// purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
+    /// Which optimum: small has X > 0, large has X < 0 and a start angle above 2 rad
+    #[arg(long, value_name = "GAIT", default_value = "small")]
+    gait: Which,
+    /// How the start of the polish is found: fourier alone, or multiple shooting from a Fourier gait of low order
+    #[arg(long, value_name = "METHOD", default_value = "auto")]
+    method: How,
+    /// No joint may turn further than this, either way
+    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
+    max_angle: Option<f64>,
+    /// Links may not cross
+    #[arg(long)]
+    no_overlap: bool,
+    /// Write the gait, at constant power, as a gait file
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Which {
+    Small,
+    Large,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum How {
+    Auto,
+    Fourier,
+    Shooting,
+}
+
+impl Efficiency {
+    pub(super) fn run(self, output: Output) -> Outcome {
+        let file = load_swimmer(&self.swimmer)?;
+        let begun = Instant::now();
+        let gait = efficiency(&EfficiencyProblem {
+            method: match self.method {
+                How::Auto => Method::Auto,
+                How::Fourier => Method::Fourier,
+                How::Shooting => Method::Shooting,
+            },
+            bounds: Bounds {
+                max_angle: self.max_angle,
+                no_overlap: self.no_overlap,
+                ..Bounds::default()
+            },
+            ..EfficiencyProblem::new(
+                file.swimmer,
+                match self.gait {
+                    Which::Small => Branch::Small,
+                    Which::Large => Branch::Large,
+                },
+            )
+        })?;
+        let seconds = begun.elapsed().as_secs_f64();
+        if let Some(path) = &self.output {
+            gait.gait_file(&file.name).save(path)?;
+        }
+        output.answer(&Found::new(&file.name, &gait, seconds, self.output));
+        Ok(())
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Found {
+    #[serde(skip)]
+    name: String,
+    efficiency: f64,
+    displacement_over_length: f64,
+    displacement_m: f64,
+    start_angle_rad: f64,
+    end_angle_rad: f64,
+    /// Of the quarter, in order.
+    arcs: Vec<Arc>,
+    /// Max-norm of the shooting conditions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    residual: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    power_variation: Option<f64>,
+    /// Share of the cycle in which links cross.
+    links_cross: f64,
+    /// What led to the start of the polish.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    method: Option<&'static str>,
+    /// The direct method's own value, before the polish.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    direct_efficiency: Option<f64>,
+    certificate: Evidence,
+    /// From the parsed swimmer to the certified gait.
+    seconds: f64,
+    /// The gait file that was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gait: Option<PathBuf>,
+}
+
+impl Found {
+    fn new(name: &str, gait: &OptimalGait, seconds: f64, file: Option<PathBuf>) -> Self {
+        let figures = gait.efficiency_figures;
+        Self {
+            name: name.to_owned(),
+            efficiency: gait.efficiency,
+            displacement_over_length: gait.displacement_over_length,
+            displacement_m: gait.displacement,
+            start_angle_rad: gait.start_angle,
+            end_angle_rad: gait.end_angle,
+            arcs: gait.arcs.iter().map(Arc::from).collect(),
+            residual: figures.map(|figures| figures.residual),
+            power_variation: figures.map(|figures| figures.power_variation),
+            links_cross: gait.links_cross,
+            method: figures.map(|figures| figures.method.word()),
+            direct_efficiency: figures.and_then(|figures| figures.direct_efficiency),
+            certificate: (&gait.certificate).into(),
+            seconds,
+            gait: file,
+        }
+    }
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows = Rows::default();
+        rows.row("efficiency ξ", format!("{:.12}", self.efficiency));
+        displacement_row(
+            &mut rows,
+            self.displacement_m,
+            self.displacement_over_length,
+        );
+        quarter_rows(
+            &mut rows,
+            self.start_angle_rad,
+            self.end_angle_rad,
+            &self.arcs,
+        );
+        if let Some(residual) = self.residual {
+            let bound = if residual <= 1e-10 {
+                "at most 1e-10"
+            } else {
+                "above 1e-10"
+            };
+            rows.row("residual", bound);
+        }
+        if let Some(method) = self.method {
+            rows.row("method", method);
+        }
+        if let Some(direct) = self.direct_efficiency {
+            let deviation = (direct / self.efficiency - 1.0).abs();
+            rows.row(
+                "before polish",
+                format!("ξ off by {}", quantity::small(deviation)),
+            );
+        }
+        closing_rows(
+            &mut rows,
+            self.links_cross,
+            &self.certificate,
+            self.gait.as_ref(),
+        );
+        write!(f, "{}, most efficiency\n{rows}", self.name)
+    }
+}
+
+impl From<EfficiencyError> for Failure {
+    /// A problem that makes no sense is bad input; one without an optimum was tried.
+    fn from(error: EfficiencyError) -> Self {
+        if error.is_bad_input() {
+            Self::bad_input(&error)
+        } else {
+            Self::tried(&error)
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! From no guess to a polished extremal: circles, Fourier series of rising order, multiple shooting, single shooting.
+
+use nalgebra::Vector2;
+use swimmer_model::Model;
+
+use super::fourier::{
+    Grid, Maximum, Objective, best_circles, best_ellipses, climb, raised, series,
+};
+use super::shooting::{Final, Polished, RESIDUAL, polish};
+use super::start::Start;
+use super::{Branch, EfficiencyError, multiple};
+
+/// A polished extremal and where it came from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Found {
+    pub(crate) polished: Polished,
+    /// ξ of the Fourier gait that it started from.
+    pub(crate) fourier: f64,
+    /// Whether the Fourier gait was near enough for the single shooting.
+    pub(crate) straight: bool,
+}
+
+/// Joint angles beyond this are not followed \[rad\].
+pub(crate) const FARTHEST: f64 = 9.0;
+/// Weight of constant speed in the Fourier objective: enough to make the Hessian regular.
+const GAUGE: f64 = 0.01;
+/// Orders that lead to multiple shooting, each with the numbers of segments tried from it and the quarter's grid.
+const BRIDGES: [(usize, usize, &[usize]); 8] = [
+    (1, 32, &[]),
+    (2, 32, &[]),
+    (3, 48, &[]),
+    (4, 48, &[8, 16]),
+    (6, 64, &[8, 16]),
+    (9, 64, &[8, 16]),
+    (13, 96, &[8, 16]),
+    (18, 96, &[16, 32]),
+];
+/// Orders of the pure Fourier method, with their grids.
+const ORDERS: [(usize, usize); 10] = [
+    (1, 48),
+    (2, 48),
+    (3, 48),
+    (4, 64),
+    (6, 64),
+    (9, 96),
+    (13, 96),
+    (18, 96),
+    (24, 128),
+    (32, 128),
+];
+/// The extremal may be better than the Fourier gait by this factor, and worse by its inverse: else it is another gait.
+const SAME_GAIT: f64 = 1.05;
+
+/// Starts for a branch: coefficients of order 1.
+pub(crate) fn starts(model: &Model<f64>, branch: Branch) -> Result<Vec<[f64; 2]>, EfficiencyError> {
+    let grid = Grid::new(32);
+    let circles = best_circles(model, &grid, branch.sign());
+    if !circles.is_empty() {
+        return Ok(circles.into_iter().map(|a| [a, a]).collect());
+    }
+    let (ellipses, best) = best_ellipses(model, &grid, branch.sign());
+    if ellipses.is_empty() {
+        return Err(EfficiencyError::NoStart { branch, best });
+    }
+    Ok(ellipses)
+}
+
+/// Fourier to a low order, then multiple shooting; higher orders where that does not converge.
+pub(crate) fn by_multiple_shooting(
+    model: &Model<f64>,
+    branch: Branch,
+    start: [f64; 2],
+) -> Result<Found, EfficiencyError> {
+    let mut ladder = Ladder::new(model, branch, start);
+    let mut last = None;
+    for (order, nodes, bridges) in BRIDGES {
+        let maximum = ladder.climb_to(order, nodes)?;
+        for &segments in bridges {
+            if let Some(polished) = bridged(model, &maximum, segments) {
+                return Ok(Found {
+                    polished,
+                    fourier: maximum.value.efficiency(),
+                    straight: false,
+                });
+            }
+        }
+        last = Some((order, maximum));
+    }
+    Err(not_converged(branch, last.as_ref()))
+}
+
+/// Fourier alone up to orders where the single shooting converges from it.
+pub(crate) fn by_fourier(
+    model: &Model<f64>,
+    branch: Branch,
+    start: [f64; 2],
+) -> Result<Found, EfficiencyError> {
+    let mut ladder = Ladder::new(model, branch, start);
+    let mut last: Option<(usize, Maximum)> = None;
+    for (order, nodes) in ORDERS {
+        let maximum = ladder.climb_to(order, nodes)?;
+        let settled = last.as_ref().is_some_and(|(_, before)| {
+            (maximum.value.efficiency() / before.value.efficiency() - 1.0).abs() < 1e-8
+        });
+        if settled && let Some(polished) = polished(model, &maximum) {
+            return Ok(Found {
+                polished,
+                fourier: maximum.value.efficiency(),
+                straight: true,
+            });
+        }
+        last = Some((order, maximum));
+    }
+    Err(not_converged(branch, last.as_ref()))
+}
+
+fn not_converged(branch: Branch, last: Option<&(usize, Maximum)>) -> EfficiencyError {
+    EfficiencyError::NotConverged {
+        branch,
+        order: last.map_or(0, |(order, _)| *order),
+        efficiency: last.map_or(f64::NAN, |(_, maximum)| maximum.value.efficiency()),
+    }
+}
+
+/// Fourier gaits of rising order, each started from the one below.
+struct Ladder<'a> {
+    model: &'a Model<f64>,
+    branch: Branch,
+    amplitude: f64,
+    coefficients: Vec<f64>,
+    efficiency: f64,
+}
+
+impl<'a> Ladder<'a> {
+    fn new(model: &'a Model<f64>, branch: Branch, start: [f64; 2]) -> Self {
+        Self {
+            model,
+            branch,
+            amplitude: start[0],
+            coefficients: start.to_vec(),
+            efficiency: f64::NAN,
+        }
+    }
+
+    fn climb_to(&mut self, order: usize, nodes: usize) -> Result<Maximum, EfficiencyError> {
+        let grid = Grid::new(nodes);
+        let objective = Objective {
+            model: self.model,
+            grid: &grid,
+            gauge: GAUGE,
+        };
+        let from = raised(&self.coefficients, order);
+        let maximum = climb(&objective, &from, FARTHEST).ok_or(EfficiencyError::RunsAway {
+            branch: self.branch,
+            amplitude: self.amplitude,
+            order,
+            efficiency: self.efficiency,
+            farthest: FARTHEST,
+        })?;
+        self.coefficients.clone_from(&maximum.coefficients);
+        self.efficiency = maximum.value.efficiency();
+        Ok(maximum)
+    }
+}
+
+fn curve(maximum: &Maximum) -> impl Fn(f64) -> (Vector2<f64>, Vector2<f64>) {
+    |s| series(&maximum.coefficients, s)
+}
+
+fn polished(model: &Model<f64>, maximum: &Maximum) -> Option<Polished> {
+    let start = Start::of_curve(model, &curve(maximum), 1)?;
+    same_gait(polish(model, &final_values(model, &start)?)?, maximum)
+}
+
+fn bridged(model: &Model<f64>, maximum: &Maximum, segments: usize) -> Option<Polished> {
+    let start = Start::of_curve(model, &curve(maximum), segments)?;
+    let solved = multiple::solve(model, &start)?;
+    same_gait(polish(model, &final_values(model, &solved)?)?, maximum)
+}
+
+/// Newton's method may end at another extremal than the one it was started near.
+fn same_gait(polished: Polished, maximum: &Maximum) -> Option<Polished> {
+    let ratio = polished.efficiency() / maximum.value.efficiency();
+    let same_way = polished.at_end[1] * maximum.value.x > 0.0;
+    (same_way && (1.0 / SAME_GAIT..SAME_GAIT).contains(&ratio) && polished.residual <= RESIDUAL)
+        .then_some(polished)
+}
+
+/// φ₁, x, θ and E at the end: E is the power there, and `x_f = E_f/κ`.
+fn final_values(model: &Model<f64>, start: &Start) -> Option<Final> {
+    let last = start.states.last()?;
+    let flow = super::flow::Flow {
+        model,
+        kappa: start.kappa,
+        sense: 1.0,
+    };
+    let energy = flow.moment(last).power;
+    Some(Final::new(last[0], energy / start.kappa, last[2], energy))
+}

@@ -1,0 +1,138 @@
+//! Why there is no efficiency gait to return.
+
+use swimmer_model::InvalidSwimmer;
+
+use super::Branch;
+
+/// Why there is no efficiency gait to return.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum EfficiencyError {
+    /// The swimmer's parameters are out of range.
+    #[error("cannot optimise this swimmer: {0}")]
+    Swimmer(#[from] InvalidSwimmer),
+    /// The quarter gait rests on front and back links being alike.
+    #[error(
+        "the side links differ (front {front} m, back {back} m): a gait with the paper's two symmetries needs them alike"
+    )]
+    Asymmetric {
+        /// l₁ \[m\].
+        front: f64,
+        /// l₂ \[m\].
+        back: f64,
+    },
+    /// A bound makes no sense.
+    #[error("{name} = {value} rad: {problem}")]
+    Bound {
+        /// Which.
+        name: &'static str,
+        /// Its value \[rad\].
+        value: f64,
+        /// What is wrong.
+        problem: &'static str,
+    },
+    /// A bound that this objective does not know.
+    #[error("efficiency gaits under the bound `{name}` are not computed; leave it out")]
+    UnknownBound {
+        /// Which.
+        name: &'static str,
+    },
+    /// The free gait breaks a bound, and gaits along bounds are not computed yet.
+    #[error(
+        "the free {branch} gait breaks the bound `{name}` ({value:.6} against {limit}), and efficiency gaits along bounds \
+         are not computed yet; leave the bound out"
+    )]
+    BoundBinds {
+        /// Which gait.
+        branch: Branch,
+        /// Which bound.
+        name: &'static str,
+        /// The largest angle \[rad\] or the share of the cycle with crossing links.
+        value: f64,
+        /// What it may be.
+        limit: f64,
+    },
+    /// No circle or ellipse is a local optimum.
+    #[error(
+        "no start for a {branch} gait: |X|/S has no local maximum over circles and ellipses of 0.3 to 4.6 rad with this \
+         sign of X (the largest at the rim is {best:.3e}, in units of L and c_t); this branch does not exist for this \
+         swimmer, or lies at larger angles"
+    )]
+    NoStart {
+        /// Which gait.
+        branch: Branch,
+        /// The largest |X|/S of the right sign that was seen.
+        best: f64,
+    },
+    /// The Fourier gaits run away.
+    #[error(
+        "no {branch} gait: from the circle of {amplitude:.3} rad, Fourier gaits of order {order} get better until a joint \
+         turns further than {farthest:.2} rad (efficiency {efficiency:.6e} at the order before)"
+    )]
+    RunsAway {
+        /// Which gait.
+        branch: Branch,
+        /// Amplitude of the circle that it began with \[rad\].
+        amplitude: f64,
+        /// Order of the series that did not converge.
+        order: usize,
+        /// Efficiency of the order before.
+        efficiency: f64,
+        /// Angles beyond this are not followed \[rad\].
+        farthest: f64,
+    },
+    /// Shooting does not converge from the best start that there is.
+    #[error(
+        "no {branch} gait: the Fourier gait of order {order} has efficiency {efficiency:.9e}, but shooting does not \
+         converge from it to a residual of 1e-10"
+    )]
+    NotConverged {
+        /// Which gait.
+        branch: Branch,
+        /// Order of the series.
+        order: usize,
+        /// Its efficiency.
+        efficiency: f64,
+    },
+    /// What shooting converged to is another gait than the one that was asked for.
+    #[error(
+        "no {branch} gait: the extremal found (efficiency {efficiency:.9e}, X/L = {displacement_over_length:.9}, start angle \
+         {start_angle:.6} rad) is not of this branch, whose definition is {definition}"
+    )]
+    OtherBranch {
+        /// Which gait.
+        branch: Branch,
+        /// Its efficiency.
+        efficiency: f64,
+        /// Its net displacement over L.
+        displacement_over_length: f64,
+        /// φ₁ = φ₂ at its start \[rad\].
+        start_angle: f64,
+        /// What was asked for.
+        definition: &'static str,
+    },
+    /// An extremal was found, but it fails its certificate.
+    #[error(
+        "the {branch} extremal found (efficiency {efficiency:.9e}) is no optimum: it fails {failed}"
+    )]
+    NotCertified {
+        /// Which gait.
+        branch: Branch,
+        /// Its efficiency.
+        efficiency: f64,
+        /// The checks that it fails, with their values.
+        failed: String,
+    },
+}
+
+impl EfficiencyError {
+    /// Whether the problem itself makes no sense, rather than having no solution.
+    pub fn is_bad_input(&self) -> bool {
+        matches!(
+            self,
+            Self::Swimmer(_)
+                | Self::Asymmetric { .. }
+                | Self::Bound { .. }
+                | Self::UnknownBound { .. }
+        )
+    }
+}

@@ -1,0 +1,96 @@
+//! Newton's method uphill, kept uphill: a Levenberg term where the Hessian is not negative definite or a step would be long.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::objective::{Objective, Value, series};
+
+/// A local maximum over the coefficients.
+#[derive(Debug, Clone)]
+pub(crate) struct Maximum {
+    pub(crate) coefficients: Vec<f64>,
+    pub(crate) value: Value,
+}
+
+const MOST_STEPS: usize = 80;
+/// Longest step of one coefficient \[rad\].
+const LONGEST: f64 = 0.35;
+/// A gain in ln(X/S) below this ends the ascent.
+const LEAST_GAIN: f64 = 1e-15;
+
+/// Climbs from these coefficients; X keeps its sign. None where the curve runs away or the climb does not end.
+pub(crate) fn climb(objective: &Objective<'_>, start: &[f64], farthest: f64) -> Option<Maximum> {
+    let mut here = start.to_vec();
+    let mut damping = 0.0_f64;
+    for _ in 0..MOST_STEPS {
+        let expansion = objective.expansion(&here);
+        let value = expansion.value;
+        if !value.objective.is_finite() || farthest_point(&here) > farthest {
+            return None;
+        }
+        let bend = -&expansion.hessian;
+        let scale = bend.diagonal().amax().max(1e-6);
+        let finished = |coefficients: Vec<f64>, value: Value| Maximum {
+            coefficients,
+            value,
+        };
+        let mut next = None;
+        for _ in 0..60 {
+            let Some((step, promise)) = step(&bend, &expansion.gradient, damping) else {
+                damping = (damping * 4.0).max(1e-9 * scale);
+                continue;
+            };
+            if promise < LEAST_GAIN {
+                return Some(finished(here, value));
+            }
+            if step.amax() > LONGEST {
+                damping = (damping * 3.0).max(1e-6 * scale);
+                continue;
+            }
+            let trial: Vec<f64> = here.iter().zip(step.iter()).map(|(c, d)| c + d).collect();
+            let reached = objective.value(&trial);
+            let gain = reached.objective - value.objective;
+            if reached.x * value.x > 0.0 && gain >= 0.1 * promise {
+                if gain > 0.6 * promise {
+                    damping *= 0.1;
+                    if damping < 1e-10 * scale {
+                        damping = 0.0;
+                    }
+                }
+                next = Some(trial);
+                break;
+            }
+            // What is left is below the rounding of the objective.
+            if promise < 1e-13 {
+                return Some(finished(here, value));
+            }
+            damping = (damping * 4.0).max(1e-6 * scale);
+        }
+        here = next?;
+    }
+    None
+}
+
+/// The step that a damped Newton's method proposes with the gain that it promises; none where it would not lead uphill.
+fn step(bend: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64) -> Option<(DVector<f64>, f64)> {
+    let mut damped = bend.clone();
+    for i in 0..damped.nrows() {
+        damped[(i, i)] += damping;
+    }
+    let step = Cholesky::new(damped)?.solve(gradient);
+    let promise = gradient.dot(&step) - 0.5 * step.dot(&(bend * &step));
+    (promise.is_finite() && promise >= 0.0).then_some((step, promise))
+}
+
+/// Largest joint angle of the curve, from sixteen of its points \[rad\].
+fn farthest_point(coefficients: &[f64]) -> f64 {
+    (0..=16)
+        .map(|i| {
+            series(
+                coefficients,
+                std::f64::consts::FRAC_PI_2 * f64::from(i) / 16.0,
+            )
+            .0
+        })
+        .map(|phi| phi.amax())
+        .fold(0.0, f64::max)
+}

@@ -1,0 +1,156 @@
+//! Efficiency gaits against the known numbers, each by two methods.
+
+use gait_optimizer::{
+    Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method, OptimalGait, efficiency,
+};
+use swimmer_files::{AnyGait, ArcKind, GaitFile};
+use swimmer_model::{Model, Swimmer, Tolerance, swim};
+
+fn optimum(swimmer: Swimmer<f64>, branch: Branch) -> OptimalGait {
+    efficiency(&EfficiencyProblem::new(swimmer, branch)).unwrap()
+}
+
+fn figures(gait: &OptimalGait) -> EfficiencyFigures {
+    gait.efficiency_figures.unwrap()
+}
+
+#[test]
+fn purcells_gaits_are_the_known_ones() {
+    let small = optimum(Swimmer::purcell(), Branch::Small);
+    assert!((small.efficiency - 0.012_364_154_624).abs() < 1e-12);
+    assert!((small.start_angle - 1.044_257_42).abs() < 1e-8);
+    assert!((small.end_angle - 0.840_201_02).abs() < 1e-8);
+    let large = optimum(Swimmer::purcell(), Branch::Large);
+    assert!((large.efficiency / 0.018_102_560_473 - 1.0).abs() < 1e-9);
+    assert!((large.start_angle - 2.635_472_13).abs() < 1e-8);
+    assert!((large.efficiency / small.efficiency - 1.4641).abs() < 1e-4);
+    assert!(small.displacement_over_length > 0.0 && large.displacement_over_length < 0.0);
+}
+
+/// The paper's 1.46, 1.20, 1.45 and 1.90. Squares are compared at constant power.
+#[test]
+fn the_papers_ratios() {
+    for (swimmer, large_over_small, large_over_square) in [
+        (Swimmer::purcell(), 1.46, 1.203),
+        (Swimmer::robot(), 1.45, 1.90),
+    ] {
+        let small = optimum(swimmer, Branch::Small);
+        let large = optimum(swimmer, Branch::Large);
+        let ratio = large.efficiency / small.efficiency;
+        assert!((ratio / large_over_small - 1.0).abs() < 0.01, "{ratio}");
+        let ratio = large.efficiency / best_large_square(&swimmer);
+        assert!((ratio / large_over_square - 1.0).abs() < 0.01, "{ratio}");
+    }
+}
+
+/// Efficiency at constant power of the best square with X < 0, by golden section between 2.5 and 4 rad.
+fn best_large_square(swimmer: &Swimmer<f64>) -> f64 {
+    let model = Model::new(swimmer).unwrap();
+    let worth = |amplitude: f64| {
+        let stroke = swim(&model, &AnyGait::square(amplitude), &Tolerance::new(1e-10));
+        if stroke.displacement.x < 0.0 {
+            stroke.efficiency_constant_power()
+        } else {
+            0.0
+        }
+    };
+    let scan: Vec<f64> = (0..=60).map(|i| 2.0 + f64::from(i) / 20.0).collect();
+    let best = scan
+        .iter()
+        .copied()
+        .max_by(|a, b| worth(*a).total_cmp(&worth(*b)))
+        .unwrap();
+    let (mut low, mut high) = (best - 0.05, best + 0.05);
+    for _ in 0..30 {
+        let (one, two) = (low + 0.382 * (high - low), low + 0.618 * (high - low));
+        if worth(one) > worth(two) {
+            high = two;
+        } else {
+            low = one;
+        }
+    }
+    worth(0.5 * (low + high))
+}
+
+/// Fourier series of an order where they have converged, against multiple shooting from order 4; and both before and after
+/// the polish.
+#[test]
+fn two_methods_find_the_same_gaits() {
+    for swimmer in [
+        Swimmer::purcell(),
+        Swimmer::robot(),
+        Swimmer::robot_slender(),
+    ] {
+        for branch in [Branch::Small, Branch::Large] {
+            let by = |method| {
+                efficiency(&EfficiencyProblem {
+                    method,
+                    ..EfficiencyProblem::new(swimmer, branch)
+                })
+                .unwrap()
+            };
+            let (fourier, shot) = (by(Method::Fourier), by(Method::Shooting));
+            assert!((fourier.efficiency / shot.efficiency - 1.0).abs() < 1e-10);
+            assert!((fourier.start_angle - shot.start_angle).abs() < 1e-8);
+            // The series itself, one degree of freedom a coefficient, knows nothing of costates.
+            let direct = figures(&fourier).direct_efficiency.unwrap();
+            assert!(
+                (direct / shot.efficiency - 1.0).abs() < 1e-6,
+                "{branch}: {direct} {}",
+                shot.efficiency
+            );
+            for gait in [&fourier, &shot] {
+                assert!(gait.certificate.pass(), "{:?}", gait.certificate.failures());
+                assert!(figures(gait).residual <= 1e-10);
+                assert!(figures(gait).power_variation < 1e-8);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_gait_file_swims_the_same() {
+    let gait = optimum(Swimmer::robot(), Branch::Large);
+    let text = gait.gait_file("robot").to_text();
+    let file = GaitFile::parse(&text, std::path::Path::new("large.gait")).unwrap();
+    assert_eq!(file.arcs.len(), 1);
+    assert_eq!(file.arcs[0].kind, ArcKind::Regular);
+    assert!(file.corners.is_empty());
+    let model = Model::new(&Swimmer::robot()).unwrap();
+    let read = AnyGait::from_file(&file).unwrap();
+    let stroke = swim(&model, &read, &Tolerance::new(1e-12));
+    assert!((stroke.efficiency_constant_power() / gait.efficiency - 1.0).abs() < 1e-9);
+    // Run as sampled, the power is constant.
+    assert!((stroke.efficiency() / gait.efficiency - 1.0).abs() < 1e-9);
+    assert!(
+        (stroke.displacement_over_length().x / gait.displacement_over_length - 1.0).abs() < 1e-8
+    );
+}
+
+#[test]
+fn a_bound_that_does_not_bind_changes_nothing() {
+    let free = optimum(Swimmer::purcell(), Branch::Small);
+    let mut problem = EfficiencyProblem::new(Swimmer::purcell(), Branch::Small);
+    problem.bounds.max_angle = Some(2.8);
+    problem.bounds.no_overlap = true;
+    let bounded = efficiency(&problem).unwrap();
+    assert_eq!(bounded.phi(), free.phi());
+    assert_eq!(bounded.bounds, problem.bounds);
+}
+
+#[test]
+fn problems_that_make_no_sense_are_refused() {
+    let mut swimmer = Swimmer::purcell();
+    swimmer.links.front = 2.0;
+    let error = efficiency(&EfficiencyProblem::new(swimmer, Branch::Small)).unwrap_err();
+    assert!(error.is_bad_input(), "{error}");
+    let mut problem = EfficiencyProblem::new(Swimmer::purcell(), Branch::Small);
+    problem.bounds.max_angle = Some(f64::NAN);
+    assert!(matches!(
+        efficiency(&problem),
+        Err(EfficiencyError::Bound { .. })
+    ));
+    problem.bounds.max_angle = None;
+    problem.bounds.sector = true;
+    assert!(efficiency(&problem).unwrap_err().is_bad_input());
+}
