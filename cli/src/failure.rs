@@ -1,4 +1,4 @@
-//! The two ways a command can go wrong, and the exit status each of them has.
+//! The ways a command can go wrong, and the exit status each of them has.
 
 use std::process::ExitCode;
 
@@ -8,6 +8,10 @@ pub(crate) enum Failure {
     /// It was tried and did not work: no convergence, the robot refused, no answer. Exit status 1.
     #[error("{0}")]
     Tried(String),
+    /// It was tried and failed, and the answer that was printed says so already: the reason goes to standard error alone.
+    /// Exit status 1.
+    #[error("{0}")]
+    Answered(String),
     /// What was typed, or a file that was named, cannot be used. Exit status 2.
     #[error("{0}")]
     BadInput(String),
@@ -30,7 +34,7 @@ impl Failure {
     /// The exit status that scripts see.
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
-            Self::Tried(_) => ExitCode::from(1),
+            Self::Tried(_) | Self::Answered(_) => ExitCode::from(1),
             Self::BadInput(_) => ExitCode::from(2),
         }
     }

@@ -42,7 +42,7 @@ impl Output {
     /// Says why the command failed: on standard error for people, and as `{"error": …}` for scripts.
     pub(crate) fn failure(self, failure: &Failure) {
         eprintln!("error: {failure}");
-        if self.json {
+        if self.json && !matches!(failure, Failure::Answered(_)) {
             write_all(&error_document(&failure.to_string()));
         }
     }

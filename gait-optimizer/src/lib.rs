@@ -19,9 +19,11 @@
 //! | `playable` | what a real robot makes of a gait: timing under servo limits, losses foretold |
 //! | `certificate` | checks, and those that any closed curve can be asked |
 //! | [`collocation`] | efficiency gaits by Radau collocation, with a structured Newton method and mesh refinement |
+//! | `certify` | the same conditions asked of any closed curve, from its samples alone |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
 
 mod certificate;
+mod certify;
 pub mod collocation;
 mod cycle;
 mod displacement;
@@ -34,6 +36,7 @@ mod region;
 mod runge_kutta;
 
 pub use certificate::{Certificate, Check};
+pub use certify::{CertifyError, certify};
 pub use displacement::{DisplacementError, DisplacementProblem, Fates, Heading, displacement};
 pub use efficiency::{
     Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method, efficiency,

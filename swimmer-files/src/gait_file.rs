@@ -4,6 +4,7 @@
 //! The format is documented at the top of every file that [`GaitFile::to_text`] writes.
 
 mod bounds;
+mod curve;
 mod read;
 mod write;
 

@@ -1,6 +1,7 @@
 //! The command line as one type; one file for each subcommand: its arguments, what it calls, its answer.
 
 pub(crate) mod calibrate;
+pub(crate) mod certify;
 pub(crate) mod demo;
 pub(crate) mod optimize;
 pub(crate) mod robot;
@@ -42,6 +43,7 @@ pub(crate) enum Command {
     Simulate(simulate::Simulate),
     #[command(subcommand)]
     Optimize(optimize::Optimize),
+    Certify(certify::Certify),
     Robot(robot::Robot),
     Twin(twin::Twin),
     Calibrate(calibrate::Calibrate),
@@ -57,6 +59,7 @@ pub(crate) fn run(command: Command, output: Output) -> Outcome {
         Command::Demo(demo) => demo.run(output),
         Command::Calibrate(calibrate) => calibrate.run(output),
         Command::Simulate(simulate) => simulate.run(output),
+        Command::Certify(certify) => certify.run(output),
         Command::Optimize(optimize) => optimize.run(output),
         Command::Robot(robot) => robot.run(output),
         Command::Twin(twin) => twin.run(output),

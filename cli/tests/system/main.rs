@@ -2,6 +2,7 @@
 //! afresh and say where it is (`CARGO_BIN_EXE_swimmer`), so that no stale binary is ever tested.
 
 mod binary;
+mod certify;
 mod demo;
 mod numbers;
 mod output_discipline;

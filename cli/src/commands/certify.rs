@@ -1,0 +1,191 @@
+//! `swimmer certify`: holds any gait against the necessary conditions of an optimum.
+
+use std::fmt;
+
+use gait_optimizer::{Certificate, CertifyError, Objective, certify};
+use serde::Serialize;
+use swimmer_files::{Bounds, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
+
+use crate::arguments::{gait, length, load_gait, load_swimmer, positive_angle};
+use crate::failure::{Failure, Outcome};
+use crate::output::Output;
+use crate::quantity;
+
+/// Hold a gait against the necessary conditions of an optimum, each with its number and tolerance
+///
+/// Objective and bounds are those of the gait file unless told otherwise: naming one bound replaces all of the file's.
+/// A gait that fails ends with status 1, its whole certificate printed.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Certify {
+    /// purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
+    /// circle:AMPLITUDE, square:AMPLITUDE or a gait file; add :cw to reverse it
+    #[arg(long, value_name = "GAIT", value_parser = gait)]
+    gait: GaitSpec,
+    /// displacement, efficiency, turning or sideways
+    #[arg(long, value_name = "OBJECTIVE", value_parser = objective)]
+    objective: Option<Objective>,
+    /// No joint may turn further than this, either way
+    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
+    max_angle: Option<f64>,
+    /// The leading joint of each quarter must turn at least this far
+    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
+    min_angle: Option<f64>,
+    /// Each quarter stays in its sector, φ₂ ≥ |φ₁|
+    #[arg(long)]
+    sector: bool,
+    /// Links may not cross
+    #[arg(long)]
+    no_overlap: bool,
+    /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
+    #[arg(long, value_name = "LENGTH_M", value_parser = length)]
+    clearance: Option<f64>,
+}
+
+/// Samples that a circle or a square is asked by.
+const SAMPLES: usize = 1024;
+
+impl Certify {
+    /// Certifies the gait and answers.
+    pub(crate) fn run(self, output: Output) -> Outcome {
+        let swimmer = load_swimmer(&self.swimmer)?;
+        let file = self.load()?;
+        warn_of_another_swimmer(&swimmer, &file, &self.gait);
+        let objective = self.objective.unwrap_or(file.objective);
+        if objective == Objective::Unspecified {
+            return Err(Failure::BadInput(format!(
+                "{} does not tell what it shall be optimal for; add --objective displacement, efficiency, turning or sideways",
+                quantity::gait(&self.gait)
+            )));
+        }
+        let told = Bounds {
+            max_angle: self.max_angle,
+            min_angle: self.min_angle,
+            sector: self.sector,
+            no_overlap: self.no_overlap || self.clearance.is_some(),
+            clearance: self.clearance.unwrap_or(0.0),
+        };
+        let bounds = if told == Bounds::default() {
+            file.bounds
+        } else {
+            told
+        };
+        let certificate = certify(&swimmer.swimmer, &file, objective, &bounds)?;
+        let title = format!(
+            "{}, {}, most {objective}, {bounds}",
+            swimmer.name,
+            quantity::gait(&self.gait)
+        );
+        output.answer(&Answer::new(title, &certificate));
+        if certificate.pass() {
+            Ok(())
+        } else {
+            Err(Failure::Answered(format!(
+                "the gait is no certified optimum: {}",
+                certificate.failures()
+            )))
+        }
+    }
+
+    /// The gait with all that its file tells.
+    fn load(&self) -> Outcome<GaitFile> {
+        match &self.gait {
+            GaitSpec::File { path, reversed } => {
+                let file = GaitFile::load(path)?;
+                Ok(if *reversed { file.reversed() } else { file })
+            }
+            closed_form => Ok(GaitFile::sampled(&load_gait(closed_form)?, SAMPLES)),
+        }
+    }
+}
+
+fn warn_of_another_swimmer(swimmer: &SwimmerFile, file: &GaitFile, gait: &GaitSpec) {
+    let other = file
+        .swimmer_hash
+        .is_some_and(|hash| hash != SwimmerHash::of(&swimmer.swimmer));
+    if other {
+        eprintln!(
+            "warning: {gait} was made for another swimmer than {}{}",
+            swimmer.name,
+            file.swimmer_name
+                .as_ref()
+                .map_or_else(String::new, |name| format!(" (it names {name})"))
+        );
+    }
+}
+
+fn objective(text: &str) -> Result<Objective, String> {
+    match text.parse() {
+        Ok(Objective::Unspecified) | Err(_) => {
+            Err("an objective is one of displacement, efficiency, turning, sideways".to_owned())
+        }
+        Ok(objective) => Ok(objective),
+    }
+}
+
+impl From<CertifyError> for Failure {
+    /// Nothing can be asked: bad input.
+    fn from(error: CertifyError) -> Self {
+        Self::bad_input(&error)
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Answer {
+    #[serde(skip)]
+    title: String,
+    pass: bool,
+    checks: Vec<Check>,
+}
+
+#[derive(Debug, Serialize)]
+struct Check {
+    name: &'static str,
+    value: f64,
+    tolerance: f64,
+    pass: bool,
+}
+
+impl Answer {
+    fn new(title: String, certificate: &Certificate) -> Self {
+        let check = |check: &gait_optimizer::Check| Check {
+            name: check.name,
+            value: check.value,
+            tolerance: check.tolerance,
+            pass: check.pass,
+        };
+        Self {
+            title,
+            pass: certificate.pass(),
+            checks: certificate.checks().iter().map(check).collect(),
+        }
+    }
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = quantity::Table::new(["condition", "number", "", "tolerance", ""]);
+        for check in &self.checks {
+            let sign = if check.name.ends_with("_least") {
+                "≥"
+            } else {
+                "≤"
+            };
+            table.line([
+                check.name.to_owned(),
+                format!("{:.2e}", check.value),
+                sign.to_owned(),
+                format!("{:.1e}", check.tolerance),
+                if check.pass { "holds" } else { "FAILS" }.to_owned(),
+            ]);
+        }
+        let failed = self.checks.iter().filter(|check| !check.pass).count();
+        let verdict = if failed == 0 {
+            format!("all {} conditions hold", self.checks.len())
+        } else {
+            format!("{failed} of {} conditions fail", self.checks.len())
+        };
+        write!(f, "{}\n{table}\n  {verdict}", self.title)
+    }
+}

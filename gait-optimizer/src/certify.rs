@@ -1,0 +1,338 @@
+//! Certificates for any gait from anywhere: the necessary conditions of an optimum, from the curve alone.
+//!
+//! A solver knows its multipliers; a file holds only samples. But the multipliers of an extremal follow from its curve: the
+//! momentum p is parallel to the net displacement, and the multiplier of rotation is what the conditions on the free arcs
+//! leave no choice about (for gaits with the paper's symmetries it is −p y at a quarter). So every condition can be asked
+//! of every closed curve ([`certify`]).
+//!
+//! Slopes come from the polynomials of degree eight through neighbouring samples, never across a corner or the end of an
+//! arc. Polynomials of degree six tell how much the sampling leaves open: that much is added to the tolerances, and a gait
+//! that is sampled too coarsely fails the check of its sampling instead of passing the others by their width.
+
+mod grid;
+mod limits;
+mod momentum;
+mod neighbours;
+mod path;
+mod regular;
+mod singular;
+mod stencil;
+
+use nalgebra::Vector2;
+use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
+use swimmer_model::{Gait as _, InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, swim};
+
+use crate::certificate::{Certificate, Check, crossings, turning_number};
+use crate::displacement::of_unit_length;
+use grid::{Along, Degree, Grid};
+use limits::{Limit, Limits, image};
+use path::Path;
+
+/// Directions closer than this make no corner \[rad\].
+const SMOOTH: f64 = 1e-6;
+/// A sample this close to a bound lies on it \[rad\].
+const TOUCHING: f64 = 1e-9;
+/// Poses by polynomials of degree eight and six through the samples may differ by this, over L and in radians; so may slopes,
+/// over the slope, where a condition asks for slopes.
+const COARSEST: f64 = 1e-5;
+/// The same where none does.
+const COARSEST_WEAKLY: f64 = 1e-2;
+
+/// Why a gait cannot even be asked.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CertifyError {
+    /// The swimmer's parameters are out of range.
+    #[error("cannot certify a gait of this swimmer: {0}")]
+    Swimmer(#[from] InvalidSwimmer),
+    /// The samples are no closed curve.
+    #[error("cannot certify this gait: {0}")]
+    Samples(#[from] InvalidSamples),
+    /// Too few samples for slopes.
+    #[error(
+        "cannot certify a gait of {samples} samples; give at least {}",
+        GaitFile::FEWEST_SAMPLES
+    )]
+    TooFew {
+        /// How many there are.
+        samples: usize,
+    },
+    /// Nothing is known of what the gait shall be optimal for.
+    #[error(
+        "cannot certify a gait without knowing what it shall be optimal for: name displacement, efficiency, turning or sideways"
+    )]
+    NoObjective,
+}
+
+/// A gait made ready to be asked.
+struct Subject<'a> {
+    model: &'a Model<f64>,
+    limits: Limits,
+    grid: Grid,
+    shapes: Vec<Vector2<f64>>,
+    path: Path,
+    /// The same by the coarser polynomials.
+    coarse: Path,
+    symmetric: bool,
+}
+
+/// What the sampling leaves open.
+#[derive(Debug, Clone, Copy)]
+struct Openness {
+    /// Relative error of slopes.
+    slope: f64,
+    /// Error of poses, over L and in radians.
+    pose: f64,
+}
+
+/// Holds a gait against the necessary conditions of an optimum for `objective` within `bounds`.
+///
+/// `gait` is one cycle from any method, its arcs told or not; a clockwise gait is certified as its reverse, which is optimal
+/// exactly when the gait is. The certificate has the same numbers for a gait that was written to a file and read again.
+///
+/// # Errors
+/// [`CertifyError`] when there is no closed curve, no swimmer or no objective to ask about. A gait that is no optimum is no
+/// error: its certificate does not pass.
+pub fn certify(
+    swimmer: &Swimmer<f64>,
+    gait: &GaitFile,
+    objective: Objective,
+    bounds: &Bounds,
+) -> Result<Certificate, CertifyError> {
+    let model = Model::new(&of_unit_length(swimmer))?;
+    let curve = AnyGait::from_file(gait)?;
+    if gait.u.len() < GaitFile::FEWEST_SAMPLES || gait.u.last() != Some(&1.0) {
+        return Err(CertifyError::TooFew {
+            samples: gait.u.len(),
+        });
+    }
+    let limits = Limits::new(bounds, &swimmer.links);
+    if turning_number(&gait.phi) < 0.0 {
+        return certify_turned(
+            &model,
+            &gait.reversed(),
+            objective,
+            limits,
+            &curve.reversed_if(true),
+        );
+    }
+    certify_turned(&model, gait, objective, limits, &curve)
+}
+
+/// As [`certify`] of a counter-clockwise gait.
+fn certify_turned(
+    model: &Model<f64>,
+    gait: &GaitFile,
+    objective: Objective,
+    limits: Limits,
+    curve: &AnyGait,
+) -> Result<Certificate, CertifyError> {
+    let subject = Subject::new(model, gait, limits);
+    let open = subject.openness();
+    let mut checks = subject.of_the_curve(gait);
+    let coarsest = if objective == Objective::Efficiency {
+        COARSEST
+    } else {
+        COARSEST_WEAKLY
+    };
+    checks.push(Check::at_most("sampling_slope_error", open.slope, coarsest));
+    checks.push(Check::at_most("sampling_pose_error", open.pose, COARSEST));
+    let stroke = swim(model, curve, &Tolerance::default());
+    let [x, y, theta] = subject.path.end();
+    let apart = |[a, b]: [f64; 2]| (a - x).hypot(b - y);
+    let again = path::stepped(model, &subject.grid, &subject.shapes);
+    let swum = [stroke.displacement.x, stroke.displacement.y];
+    checks.push(Check::at_most(
+        "displacement_swum_again",
+        apart(swum),
+        1e-8 + open.pose,
+    ));
+    checks.push(Check::at_most(
+        "displacement_stepped_again",
+        apart([again[0], again[1]]),
+        1e-8 + open.pose,
+    ));
+    if objective != Objective::Turning {
+        checks.push(Check::at_most(
+            "net_rotation_rad",
+            theta.abs(),
+            1e-8 + open.pose,
+        ));
+    }
+    match objective {
+        Objective::Displacement | Objective::Turning | Objective::Sideways => {
+            checks.extend(subject.of_weak_optimum(objective, open));
+        }
+        Objective::Efficiency => checks.extend(subject.of_efficiency(open)),
+        Objective::Unspecified => return Err(CertifyError::NoObjective),
+    }
+    Ok(Certificate::new(checks))
+}
+
+impl<'a> Subject<'a> {
+    fn new(model: &'a Model<f64>, gait: &GaitFile, limits: Limits) -> Self {
+        let along = if gait.arcs.is_empty() {
+            touching(&limits, gait)
+        } else {
+            grid::told_by_arcs(gait)
+        };
+        let (grid, shapes) = Grid::new(gait, &along);
+        Self {
+            path: Path::new(model, &grid, &shapes, Degree::Fine),
+            coarse: Path::new(model, &grid, &shapes, Degree::Coarse),
+            symmetric: is_symmetric(gait),
+            model,
+            limits,
+            grid,
+            shapes,
+        }
+    }
+
+    fn openness(&self) -> Openness {
+        let slopes = self.path.places.iter().zip(&self.coarse.places);
+        let slope = slopes
+            .map(|(fine, coarse)| (fine.rate - coarse.rate).norm() / fine.rate.norm())
+            .fold(0.0, f64::max);
+        Openness {
+            slope,
+            pose: self.path.pose_distance(&self.coarse),
+        }
+    }
+
+    /// Closure, simplicity and bounds: what does not depend on the objective.
+    fn of_the_curve(&self, gait: &GaitFile) -> Vec<Check> {
+        let gap = match (gait.phi.first(), gait.phi.last()) {
+            (Some(first), Some(last)) => (last - first).norm(),
+            _ => f64::NAN,
+        };
+        let mut checks = vec![
+            Check::at_most("open_rad", gap, GaitFile::CLOSURE),
+            Check::at_most(
+                "turning_number_off_one",
+                (turning_number(&gait.phi) - 1.0).abs(),
+                1e-9,
+            ),
+        ];
+        // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
+        let quarter = gait.u.partition_point(|&u| u <= 0.25 + 1e-12);
+        let simple = if self.limits.has_diagonals() {
+            gait.phi.get(..quarter).unwrap_or_default()
+        } else {
+            &gait.phi
+        };
+        checks.push(Check::at_most(
+            "self_crossings",
+            crossings(simple) as f64,
+            0.0,
+        ));
+        if self.limits.need_quarters() {
+            let off = if self.symmetric { 0.0 } else { 1.0 };
+            checks.push(Check::at_most("without_the_papers_symmetries", off, 0.0));
+        }
+        let overstepped = self
+            .all_limits()
+            .map(|(_, limit)| -limit.margin)
+            .reduce(f64::max);
+        checks.extend(overstepped.map(|by| Check::at_most("bound_overstepped_rad", by, TOUCHING)));
+        let off = (0..self.grid.nodes.len())
+            .filter(|&node| self.along(node) == Along::Bound)
+            .map(|node| {
+                self.bound_followed(node)
+                    .map_or(f64::NAN, |limit| limit.margin.abs())
+            })
+            .reduce(|a, b| {
+                if a.is_nan() || b.is_nan() {
+                    f64::NAN
+                } else {
+                    a.max(b)
+                }
+            });
+        checks.extend(off.map(|off| Check::at_most("arc_off_its_bound_rad", off, TOUCHING)));
+        checks
+    }
+
+    fn along(&self, node: usize) -> Along {
+        self.grid
+            .nodes
+            .get(node)
+            .map_or(Along::Free, |node| node.along)
+    }
+
+    /// Every bound at every node.
+    fn all_limits(&self) -> impl Iterator<Item = (usize, Limit)> {
+        (0..self.grid.nodes.len()).flat_map(|node| {
+            let limits = self.limits_at(node);
+            limits.into_iter().map(move |limit| (node, limit))
+        })
+    }
+
+    fn limits_at(&self, node: usize) -> Vec<Limit> {
+        let shape = self.shapes.get(node).copied().unwrap_or_default();
+        self.limits.at(&shape, self.quarter(node))
+    }
+
+    /// Which quarter of the cycle a node belongs to; where two meet, the one of its piece.
+    fn quarter(&self, node: usize) -> usize {
+        let u = |node: usize| self.grid.nodes.get(node).map_or(0.0, |node| node.u);
+        let beside = if self.grid.before(node).is_some() {
+            node - 1
+        } else {
+            node + 1
+        };
+        let inside = f64::midpoint(u(node), u(beside));
+        (0..3)
+            .find(|&quarter| inside < 0.25 * (quarter + 1) as f64)
+            .unwrap_or(3)
+    }
+
+    /// The bound that a node of a bound arc runs along: near, and in the direction of the motion.
+    fn bound_followed(&self, node: usize) -> Option<Limit> {
+        let rate = self.path.places.get(node)?.rate;
+        let askew =
+            |limit: &Limit| limit.margin.abs() + (limit.normal.dot(&rate) / rate.norm()).abs();
+        self.limits_at(node)
+            .into_iter()
+            .min_by(|a, b| askew(a).total_cmp(&askew(b)))
+    }
+
+    /// y over L at a quarter of the cycle.
+    fn y_at_the_quarter(&self) -> f64 {
+        let y: Vec<f64> = self.path.places.iter().map(|place| place.pose[1]).collect();
+        self.grid.interpolated(&y, 0.25)
+    }
+}
+
+/// Which intervals between knots lie on a bound, for a gait that does not tell.
+fn touching(limits: &Limits, gait: &GaitFile) -> Vec<Along> {
+    let on_bound = |pair: (&Vector2<f64>, &Vector2<f64>), u: f64| {
+        let quarter = (0..3).find(|&q| u < 0.25 * (q + 1) as f64).unwrap_or(3);
+        let (from, to) = (limits.at(pair.0, quarter), limits.at(pair.1, quarter));
+        let touches = |limit: &Limit| limit.margin.abs() <= TOUCHING;
+        from.iter()
+            .zip(&to)
+            .any(|(from, to)| touches(from) && touches(to))
+    };
+    gait.phi
+        .iter()
+        .zip(gait.phi.iter().skip(1))
+        .zip(gait.u.iter().zip(gait.u.iter().skip(1)))
+        .map(|(pair, (&from, &to))| {
+            if on_bound(pair, f64::midpoint(from, to)) {
+                Along::Bound
+            } else {
+                Along::Free
+            }
+        })
+        .collect()
+}
+
+/// Whether the cycle has the paper's two symmetries, in time too.
+fn is_symmetric(gait: &GaitFile) -> bool {
+    const CLOSE: f64 = 1e-7;
+    let Ok(curve) = AnyGait::from_file(gait) else {
+        return false;
+    };
+    gait.u.iter().zip(&gait.phi).all(|(&u, shape)| {
+        (curve.at(0.5 - u).phi - image(*shape, 1)).norm() < CLOSE
+            && (curve.at(u + 0.5).phi + shape).norm() < CLOSE
+    })
+}

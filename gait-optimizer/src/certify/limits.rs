@@ -1,0 +1,73 @@
+//! The bounds that a gait was made under, asked at one shape after another.
+//!
+//! Upper bounds and the clearance of the links hold everywhere. A lower bound and the sector are told of the first quarter,
+//! between φ₁ = φ₂ > 0 and φ₁ = −φ₂, φ₂ > 0; the other quarters are its images.
+
+use nalgebra::Vector2;
+use swimmer_files::{ArcKind, Bounds};
+use swimmer_model::Links;
+
+use crate::region::Region;
+
+/// The bounds of a gait.
+#[derive(Debug, Clone)]
+pub(super) struct Limits {
+    region: Region,
+    need_quarters: bool,
+}
+
+/// One bound at one shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Limit {
+    /// How far inside the shape is \[rad\]; negative outside.
+    pub(super) margin: f64,
+    /// Unit vector that points out.
+    pub(super) normal: Vector2<f64>,
+}
+
+impl Limits {
+    /// The links are those of the swimmer \[m\].
+    pub(super) fn new(bounds: &Bounds, links: &Links<f64>) -> Self {
+        Self {
+            region: Region::new(bounds, links),
+            need_quarters: bounds.min_angle.is_some() || bounds.sector,
+        }
+    }
+
+    /// Whether the bounds are told of a quarter, so that they mean something for gaits with the paper's symmetries only.
+    pub(super) fn need_quarters(&self) -> bool {
+        self.need_quarters
+    }
+
+    /// Whether a quarter may run along the symmetry lines.
+    pub(super) fn has_diagonals(&self) -> bool {
+        self.region.has_diagonals()
+    }
+
+    /// All bounds at a shape in one quarter of the cycle (0 to 3), always in the same order.
+    pub(super) fn at(&self, phi: &Vector2<f64>, quarter: usize) -> Vec<Limit> {
+        let limit = |bound: crate::region::Bound| {
+            let of_quarter = matches!(bound.kind(), ArcKind::Lower | ArcKind::Diagonal);
+            // The images are their own inverses.
+            let quarter = if of_quarter { quarter } else { 0 };
+            let shape = image(*phi, quarter);
+            let gradient = bound.gradient(&shape);
+            let slope = gradient.norm();
+            Limit {
+                margin: bound.margin(&shape) / slope,
+                normal: image(-gradient / slope, quarter),
+            }
+        };
+        self.region.bounds().map(limit).collect()
+    }
+}
+
+/// A vector of the first quarter in another quarter, and back: the paper's reflections.
+pub(super) fn image(v: Vector2<f64>, quarter: usize) -> Vector2<f64> {
+    match quarter {
+        1 => Vector2::new(-v.y, -v.x),
+        2 => -v,
+        3 => Vector2::new(v.y, v.x),
+        _ => v,
+    }
+}

@@ -1,0 +1,238 @@
+//! The second-order test that any curve can be asked: is a neighbour better?
+//!
+//! The curve is pushed along its normal by a few smooth waves that vanish on bounds and at corners. The objective's gradient
+//! in these waves is exact, its differences give the Hessian, and on the waves that turn nothing the Hessian of an optimum
+//! has no direction that leads up.
+
+use nalgebra::{DMatrix, DVector, Vector2};
+use swimmer_model::Model;
+
+use super::grid::{Along, Degree, Grid};
+use super::momentum::Momentum;
+use super::path::Path;
+
+/// What is maximised, as far as the Hessian is concerned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Gain {
+    /// |d|, without net rotation.
+    Displacement,
+    /// ln |d| − ln S, without net rotation.
+    Efficiency,
+    /// ± Δθ.
+    Turning,
+}
+
+/// A curve and what it is optimal for.
+pub(super) struct Neighbours<'a> {
+    pub(super) model: &'a Model<f64>,
+    pub(super) grid: &'a Grid,
+    pub(super) shapes: &'a [Vector2<f64>],
+    pub(super) gain: Gain,
+    /// Multiplier of rotation, in the units of the gain.
+    pub(super) rotation: f64,
+    /// Only waves that keep the paper's symmetries.
+    pub(super) symmetric: bool,
+}
+
+/// Waves of a gait with the paper's symmetries, and of any other gait.
+const WAVES: [usize; 2] = [10, 17];
+/// Size of the pushes \[rad\].
+const PUSH: f64 = 1e-4;
+/// Eigenvalues below this part of the largest are not told from zero.
+const FLAT: f64 = 1e-5;
+
+impl Neighbours<'_> {
+    /// How many independent directions lead up; none where the curve cannot be pushed.
+    pub(super) fn ascents(&self) -> Option<usize> {
+        let slopes = self.grid.slopes(self.shapes, Degree::Fine);
+        let waves = self.waves(&slopes);
+        let size = waves.len();
+        if size == 0 {
+            return None;
+        }
+        let turned = DVector::from_iterator(size, {
+            let momentum = Momentum {
+                p: Vector2::zeros(),
+                c: 1.0,
+            };
+            let path = Path::new(self.model, self.grid, self.shapes, Degree::Fine);
+            waves
+                .iter()
+                .map(|wave| self.enclosed(&path, &momentum, wave))
+                .collect::<Vec<_>>()
+        });
+        let mut hessian = DMatrix::zeros(size, size);
+        for (k, wave) in waves.iter().enumerate() {
+            let pushed = |by: f64| {
+                let shapes: Vec<_> = self
+                    .shapes
+                    .iter()
+                    .zip(wave)
+                    .map(|(shape, wave)| shape + wave * by)
+                    .collect();
+                self.gradient(&shapes, &waves)
+            };
+            hessian.set_column(k, &((pushed(PUSH) - pushed(-PUSH)) / (2.0 * PUSH)));
+        }
+        let hessian = 0.5 * (&hessian + hessian.transpose());
+        if !hessian.iter().all(|entry| entry.is_finite()) {
+            return None;
+        }
+        let reduced = if self.gain == Gain::Turning || turned.norm() < 1e-9 {
+            hessian
+        } else {
+            without(&hessian, &turned)
+        };
+        let values = reduced.symmetric_eigenvalues();
+        let scale = values.amax();
+        Some(values.iter().filter(|&&value| value > FLAT * scale).count())
+    }
+
+    /// The pushes at every node.
+    fn waves(&self, slopes: &[Vector2<f64>]) -> Vec<Vec<Vector2<f64>>> {
+        let windows = self.windows(slopes);
+        let count = WAVES[usize::from(!self.symmetric)];
+        let wave = |k: usize| {
+            let push = |(node, (slope, window)): (&super::grid::Node, (&Vector2<f64>, &f64))| {
+                let right = Vector2::new(slope.y, -slope.x);
+                let turn = std::f64::consts::TAU * node.u;
+                let height = if self.symmetric {
+                    (2.0 * k as f64 * turn).cos()
+                } else if k.is_multiple_of(2) {
+                    (0.5 * k as f64 * turn).cos()
+                } else {
+                    (0.5 * (k + 1) as f64 * turn).sin()
+                };
+                let speed = right.norm();
+                if speed > 0.0 {
+                    right * (height * window / speed)
+                } else {
+                    Vector2::zeros()
+                }
+            };
+            let nodes = self.grid.nodes.iter();
+            nodes
+                .zip(slopes.iter().zip(&windows))
+                .map(push)
+                .collect::<Vec<_>>()
+        };
+        (0..count)
+            .map(wave)
+            .filter(|wave| wave.iter().any(|push| push.norm() > 1e-3))
+            .collect()
+    }
+
+    /// 1 on a curve that is free and smooth all round; else a half wave over each free stretch and 0 on bounds.
+    fn windows(&self, slopes: &[Vector2<f64>]) -> Vec<f64> {
+        let pieces = &self.grid.pieces;
+        let smooth_after = |i: usize| {
+            let (piece, next) = (&pieces[i], &pieces[(i + 1) % pieces.len()]);
+            let (Some(a), Some(b)) = (
+                slopes.get(*piece.nodes.end()),
+                slopes.get(*next.nodes.start()),
+            ) else {
+                return false;
+            };
+            piece.along == Along::Free && next.along == Along::Free && a.angle(b) < super::SMOOTH
+        };
+        let mut windows = vec![0.0; self.grid.nodes.len()];
+        let Some(first) = (0..pieces.len()).find(|&i| !smooth_after(i)) else {
+            return vec![1.0; self.grid.nodes.len()];
+        };
+        let u = |node: usize| self.grid.nodes.get(node).map_or(0.0, |node| node.u);
+        let width = |i: usize| u(*pieces[i].nodes.end()) - u(*pieces[i].nodes.start());
+        let order: Vec<usize> = (1..=pieces.len())
+            .map(|k| (first + k) % pieces.len())
+            .collect();
+        let mut begun = 0;
+        while begun < order.len() {
+            let run = order[begun..]
+                .iter()
+                .position(|&i| !smooth_after(i))
+                .map_or(order.len(), |last| begun + last + 1);
+            let stretch = &order[begun..run];
+            let total: f64 = stretch.iter().map(|&i| width(i)).sum();
+            let mut passed = 0.0;
+            for &i in stretch {
+                if pieces[i].along == Along::Free {
+                    let start = u(*pieces[i].nodes.start());
+                    for node in pieces[i].nodes.clone() {
+                        let part = (passed + u(node) - start) / total;
+                        windows[node] = (std::f64::consts::PI * part).sin().max(0.0);
+                    }
+                }
+                passed += width(i);
+            }
+            begun = run;
+        }
+        windows
+    }
+
+    /// Gradient of the gain (with the multiplier of rotation) in the waves, at the curve through these shapes.
+    fn gradient(&self, shapes: &[Vector2<f64>], waves: &[Vec<Vector2<f64>>]) -> DVector<f64> {
+        let path = Path::new(self.model, self.grid, shapes, Degree::Fine);
+        let d = path.displacement();
+        let p = match self.gain {
+            Gain::Displacement => d / d.norm(),
+            Gain::Efficiency => d / d.norm_squared(),
+            Gain::Turning => Vector2::zeros(),
+        };
+        let momentum = Momentum {
+            p,
+            c: self.rotation,
+        };
+        let length = path.total_power_length();
+        let of_wave = |wave: &Vec<Vector2<f64>>| {
+            let moved = self.enclosed(&path, &momentum, wave);
+            match self.gain {
+                Gain::Efficiency => moved - self.lengthened(&path, wave) / length,
+                Gain::Displacement | Gain::Turning => moved,
+            }
+        };
+        DVector::from_iterator(waves.len(), waves.iter().map(of_wave))
+    }
+
+    /// First variation of p · d + cΔθ under a push of the curve.
+    fn enclosed(&self, path: &Path, momentum: &Momentum, wave: &[Vector2<f64>]) -> f64 {
+        let gained: Vec<f64> = path
+            .places
+            .iter()
+            .zip(wave)
+            .map(|(place, push)| momentum.height(place) * push.perp(&place.rate))
+            .collect();
+        let inside = self.grid.integrals(&gained, 0.0, Degree::Fine);
+        let ends = match (path.places.first(), path.places.last(), wave.first()) {
+            (Some(first), Some(last), Some(push)) => (momentum.at(&last.pose)
+                - momentum.at(&first.pose))
+            .dot(&(first.first.connection * push)),
+            _ => 0.0,
+        };
+        inside.last().copied().unwrap_or_default() + ends
+    }
+
+    /// First variation of ∮√P under a push of the curve.
+    fn lengthened(&self, path: &Path, wave: &[Vector2<f64>]) -> f64 {
+        let slopes = self.grid.slopes(wave, Degree::Fine);
+        let longer: Vec<f64> = path
+            .places
+            .iter()
+            .zip(wave.iter().zip(&slopes))
+            .map(|(place, (push, slope))| {
+                let [d1, d2] = &place.first.d_power;
+                let rate = &place.rate;
+                let dearer =
+                    0.5 * (push.x * rate.dot(&(d1 * rate)) + push.y * rate.dot(&(d2 * rate)));
+                (rate.dot(&(place.first.power * slope)) + dearer) / place.root_power
+            })
+            .collect();
+        let integrals = self.grid.integrals(&longer, 0.0, Degree::Fine);
+        integrals.last().copied().unwrap_or_default()
+    }
+}
+
+/// The quadratic form on the plane across `direction`.
+fn without(hessian: &DMatrix<f64>, direction: &DVector<f64>) -> DMatrix<f64> {
+    let unit = direction / direction.norm();
+    let across = DMatrix::identity(unit.len(), unit.len()) - &unit * unit.transpose();
+    &across * hessian * &across
+}

@@ -1,0 +1,279 @@
+//! The conditions of a gait of most efficiency (paper, section V).
+//!
+//! At constant power a gait extremises ln |d| − ln S, S = ∮√P. With |p| = S/|d| the costates are
+//! λ = −Aᵀμ + W t (up to one common factor, t = Φ̇/√P): that is `H_u = 0`. Their equations then read
+//! `(W t)˙ = ½ ∂(t·W t) − h (t₂, −t₁)` on free arcs, and what is left over on a bound is its multiplier. The equations are held
+//! in their integrated form, which asks for slopes only.
+
+use nalgebra::Vector2;
+
+use super::grid::Along;
+use super::momentum::Momentum;
+use super::neighbours::{Gain, Neighbours};
+use super::path::Path;
+use super::{Degree, Openness, Subject};
+use crate::certificate::Check;
+
+impl Subject<'_> {
+    /// All checks of an optimum of efficiency.
+    pub(super) fn of_efficiency(&self, open: Openness) -> Vec<Check> {
+        let path = &self.path;
+        let d = path.displacement();
+        if d.norm().is_nan() || d.norm() <= 1e-6 {
+            return vec![Check::at_least("gain_least", d.norm(), 1e-6)];
+        }
+        let length = path.total_power_length();
+        let powers = || path.places.iter().map(|place| place.root_power.powi(2));
+        let (least, most) = powers().fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), p| {
+            (least.min(p), most.max(p))
+        });
+        let mut checks = vec![
+            Check::at_most(
+                "power_variation",
+                (most - least) / (length * length),
+                1e-7 + 4.0 * open.slope,
+            ),
+            Check::at_most(
+                "corner_rad",
+                self.sharpest_corner(),
+                1e-7 + 2.0 * open.slope,
+            ),
+        ];
+        if self.symmetric {
+            checks.push(Check::at_most(
+                "ends_not_square_rad",
+                self.ends_off_square(),
+                1e-7 + 2.0 * open.slope,
+            ));
+            checks.push(Check::at_most("net_lateral", d.y.abs(), 1e-8 + open.pose));
+        }
+        let momentum = self.effort_momentum();
+        let fine = Balance::new(self, path, &momentum);
+        // The coarser slopes tell how far the left-over can be trusted.
+        let coarse = Balance::new(self, &self.coarse, &momentum);
+        let unsure = fine.distance(&coarse);
+        checks.extend(fine.checks(self, unsure));
+        let definite = path.places.iter().map(|place| {
+            let w = &place.first.power;
+            w.determinant() / (w.trace() * w.trace())
+        });
+        checks.push(Check::at_least(
+            "legendre_least",
+            definite.fold(f64::INFINITY, f64::min),
+            1e-12,
+        ));
+        checks.extend(self.effort_multipliers(&momentum));
+        let neighbours = Neighbours {
+            model: self.model,
+            grid: &self.grid,
+            shapes: &self.shapes,
+            gain: Gain::Efficiency,
+            rotation: momentum.c / length,
+            symmetric: self.symmetric,
+        };
+        checks.extend(
+            neighbours
+                .ascents()
+                .map(|count| Check::at_most("ascent_directions", count as f64, 0.0)),
+        );
+        checks
+    }
+
+    /// p = S d/|d|², and c from the free arcs.
+    fn effort_momentum(&self) -> Momentum {
+        let d = self.path.displacement();
+        let p = d * (self.path.total_power_length() / d.norm_squared());
+        if self.symmetric {
+            return Momentum {
+                p,
+                c: -p.x * self.y_at_the_quarter(),
+            };
+        }
+        let without = Balance::new(self, &self.path, &Momentum { p, c: 0.0 });
+        let with = Balance::new(self, &self.path, &Momentum { p, c: 1.0 });
+        let (mut across, mut square) = (0.0, 0.0);
+        for ((a, b), node) in without.left_over.iter().zip(&with.left_over).zip(0..) {
+            if self.along(node) == Along::Free {
+                let slope = b - a;
+                across += a.dot(&slope);
+                square += slope.dot(&slope);
+            }
+        }
+        Momentum {
+            p,
+            c: if square > 0.0 { -across / square } else { 0.0 },
+        }
+    }
+
+    /// The largest jump of the direction where pieces meet.
+    fn sharpest_corner(&self) -> f64 {
+        let rate = |node: usize| self.path.places.get(node).map(|place| place.rate);
+        let pieces = &self.grid.pieces;
+        pieces
+            .iter()
+            .zip(pieces.iter().cycle().skip(1))
+            .filter_map(|(piece, next)| {
+                Some(rate(*piece.nodes.end())?.angle(&rate(*next.nodes.start())?))
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// How far from a right angle the curve crosses the symmetry lines.
+    fn ends_off_square(&self) -> f64 {
+        let component = |pick: fn(&Vector2<f64>) -> f64| -> Vec<f64> {
+            self.path
+                .places
+                .iter()
+                .map(|place| pick(&place.rate))
+                .collect()
+        };
+        let rates = [component(|rate| rate.x), component(|rate| rate.y)];
+        let direction = |u: f64| {
+            let [x, y] = &rates;
+            let rate = Vector2::new(self.grid.interpolated(x, u), self.grid.interpolated(y, u));
+            rate / rate.norm()
+        };
+        let (start, end) = (direction(0.0), direction(0.25));
+        (start.x + start.y).abs().max((end.x - end.y).abs())
+    }
+
+    /// The multiplier of the bound on each bound arc: what pushes out, over the size of W t.
+    fn effort_multipliers(&self, momentum: &Momentum) -> Option<Check> {
+        let multipliers = |degree: Degree, path: &Path| -> Vec<f64> {
+            let bends = self.grid.bends(&self.shapes, degree);
+            let scale = largest_costate(path);
+            path.places
+                .iter()
+                .zip(&bends)
+                .enumerate()
+                .filter(|(node, _)| self.along(*node) == Along::Bound)
+                .map(|(node, (place, bend))| {
+                    let Some(limit) = self.bound_followed(node) else {
+                        return f64::NAN;
+                    };
+                    let ([d1, d2], w, rate) =
+                        (&place.first.d_power, &place.first.power, &place.rate);
+                    let along = d1 * rate.x + d2 * rate.y;
+                    let power = place.root_power.powi(2);
+                    let power_rate = 2.0 * bend.dot(&(w * rate)) + rate.dot(&(along * rate));
+                    let faster = along * rate + w * bend - w * rate * (0.5 * power_rate / power);
+                    let height = momentum.height(place) * place.root_power;
+                    let dearer = Vector2::new(rate.dot(&(d1 * rate)), rate.dot(&(d2 * rate))) * 0.5;
+                    let push = (faster - dearer + Vector2::new(rate.y, -rate.x) * height) / power;
+                    push.dot(&limit.normal) / scale
+                })
+                .collect()
+        };
+        let fine = multipliers(Degree::Fine, &self.path);
+        let coarse = multipliers(Degree::Coarse, &self.coarse);
+        let unsure = fine
+            .iter()
+            .zip(&coarse)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
+        let least = fine.into_iter().reduce(|a, b| {
+            if a.is_nan() || b.is_nan() {
+                f64::NAN
+            } else {
+                a.min(b)
+            }
+        })?;
+        Some(Check::at_least(
+            "bound_multiplier_least",
+            least,
+            -(1e-7 + unsure.min(1e-4)),
+        ))
+    }
+}
+
+/// The costate equations along the curve: what they leave over at every node, each piece about its own mean.
+struct Balance {
+    left_over: Vec<Vector2<f64>>,
+    /// The largest |W t|.
+    scale: f64,
+}
+
+impl Balance {
+    fn new(subject: &Subject<'_>, path: &Path, momentum: &Momentum) -> Self {
+        let degree = Degree::Fine;
+        let forces: Vec<Vector2<f64>> = path
+            .places
+            .iter()
+            .map(|place| {
+                let ([d1, d2], rate) = (&place.first.d_power, &place.rate);
+                let dearer = Vector2::new(rate.dot(&(d1 * rate)), rate.dot(&(d2 * rate)));
+                dearer * (0.5 / place.root_power)
+                    - Vector2::new(rate.y, -rate.x) * momentum.height(place)
+            })
+            .collect();
+        let integrals = subject.grid.integrals(&forces, Vector2::zeros(), degree);
+        let mut left_over: Vec<Vector2<f64>> = path
+            .places
+            .iter()
+            .zip(&integrals)
+            .map(|(place, integral)| place.first.power * place.rate / place.root_power - integral)
+            .collect();
+        for piece in &subject.grid.pieces {
+            if let Some(nodes) = left_over.get_mut(piece.nodes.clone()) {
+                let mean = nodes.iter().sum::<Vector2<f64>>() / nodes.len() as f64;
+                for node in nodes.iter_mut() {
+                    *node -= mean;
+                }
+            }
+        }
+        Self {
+            left_over,
+            scale: largest_costate(path),
+        }
+    }
+
+    /// The largest difference on free arcs, relative.
+    fn distance(&self, other: &Self) -> f64 {
+        self.left_over
+            .iter()
+            .zip(&other.left_over)
+            .map(|(a, b)| (a - b).norm() / self.scale)
+            .fold(0.0, f64::max)
+    }
+
+    /// `H_u` and H with costates from their own equations.
+    fn checks(&self, subject: &Subject<'_>, unsure: f64) -> Vec<Check> {
+        let free = || {
+            self.left_over
+                .iter()
+                .zip(&subject.path.places)
+                .enumerate()
+                .filter(|(node, _)| subject.along(*node) == Along::Free)
+                .map(|(_, pair)| pair)
+        };
+        if free().next().is_none() {
+            return Vec::new();
+        }
+        let worse = |a: f64, b: f64| {
+            if a.is_nan() || b.is_nan() {
+                f64::NAN
+            } else {
+                a.max(b)
+            }
+        };
+        let h_u = free()
+            .map(|(left, _)| left.norm() / self.scale)
+            .fold(0.0, worse);
+        // t·W t = 1, so that this is relative to the constant H = ξ/(c_t L).
+        let hamiltonian = free()
+            .map(|(left, place)| (left.dot(&place.rate) / place.root_power).abs())
+            .fold(0.0, worse);
+        let tolerance = 1e-8 + unsure.min(super::COARSEST);
+        vec![
+            Check::at_most("h_u", h_u, tolerance),
+            Check::at_most("hamiltonian_variation", hamiltonian, 10.0 * tolerance),
+        ]
+    }
+}
+
+fn largest_costate(path: &Path) -> f64 {
+    path.places
+        .iter()
+        .map(|place| (place.first.power * place.rate).norm() / place.root_power)
+        .fold(0.0, f64::max)
+}

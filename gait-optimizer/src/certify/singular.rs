@@ -1,0 +1,275 @@
+//! The conditions of gaits whose objective does not ask for effort: displacement, turning, sideways (paper, section IV).
+//!
+//! Free arcs lie on the zero of the height h = μ · F, with the gain on their left (generalised Legendre–Clebsch); on a bound
+//! the height pushes against it. H is linear in the control, so with λ₁, λ₂ from `H_u = 0` at one place the costate equations
+//! leave `H_u = ∫ h (Φ̇₂, −Φ̇₁) dt` along a free arc.
+
+use nalgebra::Vector2;
+use swimmer_files::Objective;
+
+use super::grid::Along;
+use super::momentum::Momentum;
+use super::neighbours::{Gain, Neighbours};
+use super::{Degree, Openness, Subject};
+use crate::certificate::Check;
+
+/// What the height does at one node.
+#[derive(Debug, Clone, Copy)]
+struct Look {
+    height: f64,
+    gradient: Vector2<f64>,
+    /// Unit vector to the left of the motion.
+    left: Vector2<f64>,
+    /// How far a wrong pose can move the zero of the height, per unit of pose.
+    pose_leverage: f64,
+}
+
+impl Subject<'_> {
+    /// All checks of a weak optimum.
+    pub(super) fn of_weak_optimum(&self, objective: Objective, open: Openness) -> Vec<Check> {
+        let Some(momentum) = self.weak_momentum(objective) else {
+            // Nothing is gained, so nothing is optimal.
+            let gained = match objective {
+                Objective::Turning => self.path.rotation().abs(),
+                _ => self.path.displacement().norm(),
+            };
+            return vec![Check::at_least("gain_least", gained, 1e-6)];
+        };
+        let looks: Vec<Look> = self
+            .path
+            .places
+            .iter()
+            .map(|place| {
+                let second = self.model.second_derivatives(&place.phi);
+                let gradient = momentum.gradient(place, &second);
+                let curvature = place.first.curvature();
+                Look {
+                    height: momentum.height(place),
+                    gradient,
+                    left: Vector2::new(-place.rate.y, place.rate.x) / place.rate.norm(),
+                    pose_leverage: 2.0 * curvature.norm() / gradient.norm(),
+                }
+            })
+            .collect();
+        let mut checks = self.on_free_arcs(&looks, open);
+        checks.extend(self.on_bounds(&looks, open));
+        if objective == Objective::Displacement && self.symmetric {
+            let y = self.path.displacement().y;
+            checks.push(Check::at_most("net_lateral", y.abs(), 1e-8 + open.pose));
+        }
+        let neighbours = Neighbours {
+            model: self.model,
+            grid: &self.grid,
+            shapes: &self.shapes,
+            gain: if objective == Objective::Turning {
+                Gain::Turning
+            } else {
+                Gain::Displacement
+            },
+            rotation: momentum.c,
+            symmetric: self.symmetric,
+        };
+        checks.extend(
+            neighbours
+                .ascents()
+                .map(|count| Check::at_most("ascent_directions", count as f64, 0.0)),
+        );
+        checks
+    }
+
+    fn on_free_arcs(&self, looks: &[Look], open: Openness) -> Vec<Check> {
+        let free = || {
+            looks
+                .iter()
+                .enumerate()
+                .filter(|(node, _)| self.along(*node) == Along::Free)
+                .map(|(_, look)| look)
+        };
+        if free().next().is_none() {
+            return Vec::new();
+        }
+        let largest = |value: fn(&Look) -> f64| free().map(value).fold(0.0, worse);
+        let leverage = largest(|look| look.pose_leverage);
+        let tolerance = 1e-8 + leverage * open.pose;
+        let off_zero = |look: &Look| look.height.abs() / look.gradient.norm();
+        let mut checks = vec![Check::at_most(
+            "off_singular_condition_rad",
+            largest(off_zero),
+            tolerance,
+        )];
+        let exits = self
+            .grid
+            .pieces
+            .iter()
+            .filter(|piece| piece.along == Along::Bound)
+            .flat_map(|piece| [*piece.nodes.start(), *piece.nodes.end()])
+            .filter(|&node| self.meets_free(node))
+            .filter_map(|node| looks.get(node).map(off_zero))
+            .reduce(worse);
+        checks.extend(exits.map(|off| Check::at_most("off_exit_condition_rad", off, tolerance)));
+        let least = free()
+            .map(|look| look.gradient.dot(&look.left))
+            .fold(f64::INFINITY, |a, b| if b.is_nan() { b } else { a.min(b) });
+        checks.push(Check::at_least("legendre_clebsch_least", least, 1e-6));
+        let (h_u, hamiltonian) = self.drift_of_h_u(looks);
+        let slope = largest(|look| look.gradient.norm());
+        checks.push(Check::at_most("h_u", h_u, tolerance * slope.max(1.0)));
+        let rate = self
+            .path
+            .places
+            .iter()
+            .map(|place| place.rate.norm())
+            .fold(0.0, f64::max);
+        checks.push(Check::at_most(
+            "hamiltonian",
+            hamiltonian,
+            tolerance * slope.max(1.0) * rate,
+        ));
+        checks
+    }
+
+    fn on_bounds(&self, looks: &[Look], open: Openness) -> Vec<Check> {
+        let multiplier = |(node, look): (usize, &Look)| {
+            let limit = self.bound_followed(node)?;
+            Some(-look.height * look.left.dot(&limit.normal).signum())
+        };
+        let least = looks
+            .iter()
+            .enumerate()
+            .filter(|(node, _)| self.along(*node) == Along::Bound)
+            .map(|at| multiplier(at).unwrap_or(f64::NAN))
+            .reduce(|a, b| {
+                if a.is_nan() || b.is_nan() {
+                    f64::NAN
+                } else {
+                    a.min(b)
+                }
+            });
+        let tolerance = 1e-9 + 4.0 * open.pose;
+        least
+            .map(|least| Check::at_least("bound_multiplier_least", least, -tolerance))
+            .into_iter()
+            .collect()
+    }
+
+    /// Whether another, free piece begins or ends where this node of a bound arc lies.
+    fn meets_free(&self, node: usize) -> bool {
+        let Some(shape) = self.shapes.get(node) else {
+            return false;
+        };
+        self.grid
+            .pieces
+            .iter()
+            .filter(|piece| piece.along == Along::Free)
+            .flat_map(|piece| [*piece.nodes.start(), *piece.nodes.end()])
+            .any(|other| {
+                self.shapes
+                    .get(other)
+                    .is_some_and(|other| (other - shape).norm() < 1e-9)
+            })
+    }
+
+    /// The largest `|H_u|`, and H, that the costate equations leave along a free piece when `H_u = 0` where it begins.
+    fn drift_of_h_u(&self, looks: &[Look]) -> (f64, f64) {
+        let forces: Vec<Vector2<f64>> = looks
+            .iter()
+            .zip(&self.path.places)
+            .map(|(look, place)| Vector2::new(place.rate.y, -place.rate.x) * look.height)
+            .collect();
+        let integrals = self.grid.integrals(&forces, Vector2::zeros(), Degree::Fine);
+        let mut worst = (0.0_f64, 0.0_f64);
+        for piece in &self.grid.pieces {
+            if piece.along == Along::Bound {
+                continue;
+            }
+            let Some(start) = integrals.get(*piece.nodes.start()) else {
+                continue;
+            };
+            for node in piece.nodes.clone() {
+                if let (Some(here), Some(place)) = (integrals.get(node), self.path.places.get(node))
+                {
+                    let h_u = here - start;
+                    worst.0 = worse(worst.0, h_u.norm());
+                    worst.1 = worse(worst.1, h_u.dot(&place.rate).abs());
+                }
+            }
+        }
+        worst
+    }
+
+    /// The multipliers: p along the displacement, c from what must vanish on the free arcs. None where nothing is gained.
+    fn weak_momentum(&self, objective: Objective) -> Option<Momentum> {
+        if objective == Objective::Turning {
+            let rotation = self.path.rotation();
+            return (rotation.abs() > 1e-6).then(|| Momentum {
+                p: Vector2::zeros(),
+                c: rotation.signum(),
+            });
+        }
+        let d = self.path.displacement();
+        if d.norm().is_nan() || d.norm() <= 1e-6 {
+            return None;
+        }
+        let p = d / d.norm();
+        if self.symmetric {
+            let c = -p.x * self.y_at_the_quarter();
+            return Some(Momentum { p, c });
+        }
+        let without = Momentum { p, c: 0.0 };
+        let pairs = |along: Along| {
+            self.path
+                .places
+                .iter()
+                .enumerate()
+                .filter(move |(node, _)| self.along(*node) == along)
+                .map(move |(node, place)| {
+                    (
+                        node,
+                        place,
+                        without.height(place),
+                        place.first.curvature().z,
+                    )
+                })
+        };
+        let (mut across, mut square) = (0.0, 0.0);
+        for (_, _, height, turning) in pairs(Along::Free) {
+            across += height * turning;
+            square += turning * turning;
+        }
+        let c = if square > 0.0 {
+            -across / square
+        } else {
+            // Bounds all round: any c that every multiplier admits; the middle one.
+            let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+            for (node, place, height, turning) in pairs(Along::Bound) {
+                let Some(limit) = self.bound_followed(node) else {
+                    continue;
+                };
+                let right = Vector2::new(place.rate.y, -place.rate.x);
+                let side = right.dot(&limit.normal).signum();
+                let (height, turning) = (side * height, side * turning);
+                if turning > 0.0 {
+                    low = low.max(-height / turning);
+                } else if turning < 0.0 {
+                    high = high.min(-height / turning);
+                }
+            }
+            match (low.is_finite(), high.is_finite()) {
+                (true, true) => f64::midpoint(low, high),
+                (true, false) => low,
+                (false, true) => high,
+                (false, false) => 0.0,
+            }
+        };
+        Some(Momentum { p, c })
+    }
+}
+
+/// The larger, and NaN rather than either.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() {
+        f64::NAN
+    } else {
+        a.max(b)
+    }
+}

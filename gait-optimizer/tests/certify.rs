@@ -1,0 +1,160 @@
+//! Certificates from the curve alone: every optimum passes, nothing else does.
+
+use gait_optimizer::{
+    Bounds, Certificate, DisplacementProblem, Heading, Objective, certify, displacement,
+};
+use nalgebra::Vector2;
+use std::path::Path;
+use swimmer_files::{AnyGait, GaitFile};
+use swimmer_model::Swimmer;
+
+fn certificate(swimmer: &Swimmer<f64>, file: &GaitFile) -> Certificate {
+    certify(swimmer, file, file.objective, &file.bounds).unwrap()
+}
+
+fn show(certificate: &Certificate) {
+    for check in certificate.checks() {
+        println!(
+            "{:32} {:10.2e} {:10.1e} {}",
+            check.name, check.value, check.tolerance, check.pass
+        );
+    }
+}
+
+/// The four displacement gaits of the paper, and the other sign of each.
+fn displacement_gaits() -> Vec<(Swimmer<f64>, GaitFile)> {
+    let mut gaits = Vec::new();
+    for (swimmer, max, min, sector) in [
+        (Swimmer::purcell(), None, None, false),
+        (Swimmer::robot(), Some(2.8), None, false),
+        (Swimmer::robot(), Some(2.8), Some(1.5), false),
+        (Swimmer::robot(), Some(2.8), None, true),
+        (Swimmer::robot(), Some(1.2), None, false),
+    ] {
+        for heading in [Heading::Forwards, Heading::Backwards] {
+            let problem = DisplacementProblem {
+                bounds: Bounds {
+                    max_angle: max,
+                    min_angle: min,
+                    sector,
+                    ..Bounds::default()
+                },
+                heading: Some(heading),
+                ..DisplacementProblem::new(swimmer)
+            };
+            if let Ok(gait) = displacement(&problem) {
+                gaits.push((swimmer, gait.gait_file("a swimmer")));
+            }
+        }
+    }
+    assert!(gaits.len() >= 6, "{}", gaits.len());
+    gaits
+}
+
+#[test]
+fn every_displacement_gait_passes() {
+    for (swimmer, file) in displacement_gaits() {
+        let certificate = certificate(&swimmer, &file);
+        println!("{:?} {:?}", file.bounds, certificate.pass());
+        show(&certificate);
+        assert!(
+            certificate.pass(),
+            "{:?}: {}",
+            file.bounds,
+            certificate.failures()
+        );
+        // Written, read, run the other way, or told without its arcs, it is the same gait.
+        let read = GaitFile::parse(&file.to_text(), Path::new("g")).unwrap();
+        assert_eq!(self::certificate(&swimmer, &read), certificate);
+        let clockwise = self::certificate(&swimmer, &file.reversed());
+        assert!(
+            clockwise.pass(),
+            "{:?}: {}",
+            file.bounds,
+            clockwise.failures()
+        );
+        let silent = GaitFile {
+            arcs: Vec::new(),
+            ..file.clone()
+        };
+        let silent = self::certificate(&swimmer, &silent);
+        assert!(silent.pass(), "{:?}: {}", file.bounds, silent.failures());
+    }
+}
+
+#[test]
+fn a_bump_fails() {
+    for (swimmer, file) in displacement_gaits() {
+        for centre in [0.03, 0.11, 0.2, 0.45, 0.77] {
+            let bumped = GaitFile {
+                phi: file
+                    .phi
+                    .iter()
+                    .zip(&file.u)
+                    .map(|(phi, u)| {
+                        let bump = 1e-3 * (-((u - centre) / 0.01).powi(2)).exp();
+                        // Inwards, so that no bound notices.
+                        phi - phi.normalize() * bump
+                    })
+                    .collect(),
+                ..file.clone()
+            };
+            let certificate = certificate(&swimmer, &bumped);
+            assert!(!certificate.pass(), "{:?} at {centre}", file.bounds);
+        }
+    }
+}
+
+#[test]
+fn circles_and_squares_fail() {
+    for swimmer in [Swimmer::purcell(), Swimmer::robot()] {
+        for amplitude in [0.3, 1.2, 1.633_162_5, 3.0] {
+            for gait in [
+                AnyGait::circle(amplitude),
+                AnyGait::circle(amplitude).reversed_if(true),
+            ] {
+                for objective in [
+                    Objective::Displacement,
+                    Objective::Efficiency,
+                    Objective::Turning,
+                ] {
+                    let file = GaitFile::sampled(&gait, 512);
+                    let certificate =
+                        certify(&swimmer, &file, objective, &Bounds::default()).unwrap();
+                    assert!(!certificate.pass(), "{objective} {amplitude}");
+                }
+            }
+        }
+    }
+}
+
+/// A quarter of the samples: the tolerance follows, and the gait still passes.
+#[test]
+fn sparse_samples_are_enough_or_say_so() {
+    let gait = displacement(&DisplacementProblem {
+        quarter_samples: 48,
+        ..DisplacementProblem::new(Swimmer::purcell())
+    })
+    .unwrap();
+    let file = gait.gait_file("purcell");
+    let passes = certificate(&Swimmer::purcell(), &file);
+    show(&passes);
+    assert!(passes.pass(), "{}", passes.failures());
+    let few: Vec<usize> = (0..file.u.len()).step_by(16).collect();
+    let sparse = GaitFile {
+        u: few.iter().map(|&i| file.u[i]).collect(),
+        phi: few
+            .iter()
+            .map(|&i| file.phi[i])
+            .collect::<Vec<Vector2<f64>>>(),
+        arcs: Vec::new(),
+        ..file
+    };
+    let refused = certificate(&Swimmer::purcell(), &sparse);
+    assert!(!refused.pass());
+    assert!(
+        refused.failures().contains("sampling"),
+        "{}",
+        refused.failures()
+    );
+}
