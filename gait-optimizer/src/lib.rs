@@ -11,6 +11,7 @@
 //! |---|---|
 //! | `displacement` | the problem, the search for the quarter gait, the result |
 //! | `displacement::height` | the switching function F of the paper, its gradient, the singular control |
+//! | `height_map` | height functions in minimum-perturbation coordinates, their zero-level curves, the area rule |
 //! | `region` | the bounds as a convex polygon of joint angles |
 //! | `displacement::flow` | one quarter gait: arc after arc, event after event |
 //! | `efficiency` | free Lighthill gaits: Fourier series, shooting, second-order test |
@@ -30,6 +31,7 @@ mod displacement;
 mod efficiency;
 #[allow(dead_code, reason = "handed to several rooms, which land one by one")]
 mod extremal;
+mod height_map;
 mod optimal_gait;
 pub mod playable;
 mod region;
@@ -40,6 +42,9 @@ pub use certify::{CertifyError, certify};
 pub use displacement::{DisplacementError, DisplacementProblem, Fates, Heading, displacement};
 pub use efficiency::{
     Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method, efficiency,
+};
+pub use height_map::{
+    AreaRule, Convergence, Frame, Grid, HeightMap, HeightMapError, LevelCurve, Row,
 };
 pub use optimal_gait::{Arc, OptimalGait};
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};

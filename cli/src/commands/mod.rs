@@ -3,6 +3,7 @@
 pub(crate) mod calibrate;
 pub(crate) mod certify;
 pub(crate) mod demo;
+pub(crate) mod height_map;
 pub(crate) mod optimize;
 pub(crate) mod robot;
 pub(crate) mod simulate;
@@ -44,6 +45,7 @@ pub(crate) enum Command {
     #[command(subcommand)]
     Optimize(optimize::Optimize),
     Certify(certify::Certify),
+    HeightMap(height_map::HeightMap),
     Robot(robot::Robot),
     Twin(twin::Twin),
     Calibrate(calibrate::Calibrate),
@@ -61,6 +63,7 @@ pub(crate) fn run(command: Command, output: Output) -> Outcome {
         Command::Simulate(simulate) => simulate.run(output),
         Command::Certify(certify) => certify.run(output),
         Command::Optimize(optimize) => optimize.run(output),
+        Command::HeightMap(height_map) => height_map.run(output),
         Command::Robot(robot) => robot.run(output),
         Command::Twin(twin) => twin.run(output),
         Command::Tracks(tracks) => tracks.run(output),

@@ -1,0 +1,341 @@
+//! `swimmer height-map`: the height function of a swimmer, its zero-level curves, and what it says of gaits.
+
+mod picture;
+
+use std::fmt::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use gait_optimizer::{Convergence, HeightMap as Map, HeightMapError, LevelCurve, Row};
+use serde::Serialize;
+use swimmer_files::{AnyGait, GaitSpec, write_atomically};
+
+use crate::arguments::{gait, load_gait, load_swimmer, positive_angle};
+use crate::failure::{Failure, Outcome};
+use crate::output::Output;
+use crate::quantity::{self, Rows};
+
+/// Map the height function, with its zero-level curves and gaits
+///
+/// In minimum-perturbation coordinates. A small loop run counter-clockwise displaces the swimmer by the height it encloses, times its area; a large one nearly
+/// so (the area rule). A gait of most displacement goes round a region of one sign.
+#[derive(Debug, clap::Args)]
+pub(crate) struct HeightMap {
+    /// purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
+    /// Which displacement: along the swimmer, across it, or rotation
+    #[arg(long, value_enum, default_value_t = Component::X)]
+    row: Component,
+    /// Map joint angles up to this, either way; the frame is the one that turns and sways least over just these
+    #[arg(long, value_name = "ANGLE", default_value = "2.8", value_parser = positive_angle)]
+    max_angle: f64,
+    /// Lay this gait over the map and hold the area rule against what it swims; may be given several times
+    #[arg(long = "gait", value_name = "GAIT", value_parser = gait)]
+    gaits: Vec<GaitSpec>,
+    /// Write the map: FILE.svg as a figure, FILE.csv as a table of φ₁, φ₂, H at 201 × 201 nodes
+    #[arg(short, long, value_name = "FILE.svg|.csv")]
+    output: Option<PathBuf>,
+}
+
+/// A component of the displacement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Component {
+    /// Along the swimmer, over L
+    X,
+    /// Across the swimmer, over L
+    Y,
+    /// Rotation
+    Theta,
+}
+
+/// Nodes of the table in each direction.
+const TABLE: usize = 201;
+
+/// What is asked to be written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Figure,
+    Table,
+}
+
+impl Component {
+    fn row(self) -> Row {
+        match self {
+            Self::X => Row::X,
+            Self::Y => Row::Y,
+            Self::Theta => Row::Theta,
+        }
+    }
+
+    /// As people write it.
+    fn symbol(self) -> &'static str {
+        match self {
+            Self::X => "H_x",
+            Self::Y => "H_y",
+            Self::Theta => "H_θ",
+        }
+    }
+
+    /// With its unit.
+    fn quantity(self) -> &'static str {
+        match self {
+            Self::X => "H_x / L  [rad⁻²]",
+            Self::Y => "H_y / L  [rad⁻²]",
+            Self::Theta => "H_θ  [rad/rad²]",
+        }
+    }
+}
+
+impl HeightMap {
+    /// Maps, writes and answers.
+    pub(crate) fn run(self, output: Output) -> Outcome {
+        let kind = self.output.as_deref().map(kind).transpose()?;
+        let file = load_swimmer(&self.swimmer)?;
+        let gaits = self
+            .gaits
+            .iter()
+            .map(|spec| Ok((quantity::gait(spec), load_gait(spec)?)))
+            .collect::<Outcome<Vec<_>>>()?;
+        let map = Map::new(&file.swimmer, self.max_angle)?;
+        let row = self.row.row();
+        let curves = map.zero_curves(row);
+        let rules = gaits
+            .iter()
+            .map(|(name, gait)| Rule::new(&map, name, gait))
+            .collect::<Outcome<Vec<_>>>()?;
+        if let (Some(path), Some(kind)) = (&self.output, kind) {
+            let text = match kind {
+                Kind::Figure => picture::svg(&picture::Figure {
+                    title: format!("{}, |φᵢ| ≤ {} rad", file.name, self.max_angle),
+                    quantity: self.row.quantity(),
+                    map: &map,
+                    row,
+                    curves: &curves,
+                    gaits: &gaits,
+                })?,
+                Kind::Table => table(&map, row),
+            };
+            write_atomically(path, text.as_bytes())?;
+        }
+        let (on_diagonal, on_antidiagonal) =
+            (map.zeros_on_diagonal(row), map.zeros_on_antidiagonal(row));
+        output.answer(&Mapped {
+            name: file.name,
+            symbol: self.row.symbol(),
+            row: self.row,
+            max_angle_rad: self.max_angle,
+            at_origin_over_length: map.height(row, &[0.0, 0.0].into()),
+            zero_on_diagonal: on_diagonal.first().copied(),
+            zero_on_antidiagonal: on_antidiagonal.first().copied(),
+            zeros_on_diagonal: on_diagonal,
+            zeros_on_antidiagonal: on_antidiagonal,
+            convergence: map.convergence().into(),
+            zero_curves: curves.iter().map(Curve::from).collect(),
+            gaits: rules,
+            written: self.output,
+        });
+        Ok(())
+    }
+}
+
+/// What the ending of the file's name asks for.
+fn kind(path: &Path) -> Outcome<Kind> {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    match ending.map(str::to_ascii_lowercase).as_deref() {
+        Some("svg") => Ok(Kind::Figure),
+        Some("csv") => Ok(Kind::Table),
+        _ => Err(Failure::BadInput(format!(
+            "cannot tell from `{}` what to write: end the name in .svg for a figure or .csv for a table",
+            path.display()
+        ))),
+    }
+}
+
+fn table(map: &Map, row: Row) -> String {
+    let grid = map.grid(row, TABLE);
+    let mut text = String::from("phi1,phi2,H\n");
+    for (phi2, column) in grid.angles.iter().zip(grid.heights.column_iter()) {
+        for (phi1, height) in grid.angles.iter().zip(column.iter()) {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{phi1:?},{phi2:?},{height:?}");
+        }
+    }
+    text
+}
+
+#[derive(Debug, Serialize)]
+struct Mapped {
+    #[serde(skip)]
+    name: String,
+    #[serde(skip)]
+    symbol: &'static str,
+    row: Component,
+    /// D: the frame is the best over |φᵢ| ≤ D.
+    max_angle_rad: f64,
+    /// For the row theta in rad/rad².
+    at_origin_over_length: f64,
+    /// φ₂ of the first zero with φ₁ = φ₂ > 0.
+    zero_on_diagonal: Option<f64>,
+    /// φ₂ of the first zero with φ₁ = −φ₂ < 0.
+    zero_on_antidiagonal: Option<f64>,
+    zeros_on_diagonal: Vec<f64>,
+    zeros_on_antidiagonal: Vec<f64>,
+    convergence: Converged,
+    zero_curves: Vec<Curve>,
+    gaits: Vec<Rule>,
+    /// The file that was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    written: Option<PathBuf>,
+}
+
+/// How far the frame moved when its order was raised for the last time.
+#[derive(Debug, Serialize)]
+struct Converged {
+    order: usize,
+    order_before: usize,
+    /// Where |φᵢ| ≤ 0.8 D; lengths over L, angles in rad.
+    inner_change: f64,
+    /// On the whole square, corners included.
+    change: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Curve {
+    closed: bool,
+    /// Largest |H| at a vertex.
+    residual: f64,
+    vertices: Vec<[f64; 2]>,
+}
+
+/// The area rule for one gait.
+#[derive(Debug, Serialize)]
+struct Rule {
+    gait: String,
+    /// x, y over L and θ in rad: ∬ H over what the gait encloses.
+    area: [f64; 3],
+    /// The same as swum, seen from the frame of the map at the gait's first shape.
+    swum: [f64; 3],
+    deviation: [f64; 3],
+}
+
+impl Rule {
+    fn new(map: &Map, name: &str, gait: &AnyGait) -> Outcome<Self> {
+        let rule = map.area_rule(gait)?;
+        Ok(Self {
+            gait: name.to_owned(),
+            area: rule.area.into(),
+            swum: rule.swum.into(),
+            deviation: rule.deviation().into(),
+        })
+    }
+}
+
+impl From<Convergence> for Converged {
+    fn from(convergence: Convergence) -> Self {
+        Self {
+            order: convergence.order,
+            order_before: convergence.order_before,
+            inner_change: convergence.inner_change,
+            change: convergence.change,
+        }
+    }
+}
+
+impl From<&LevelCurve> for Curve {
+    fn from(curve: &LevelCurve) -> Self {
+        Self {
+            closed: curve.closed,
+            residual: curve.residual,
+            vertices: curve.points.iter().map(|phi| (*phi).into()).collect(),
+        }
+    }
+}
+
+impl fmt::Display for Mapped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows = Rows::default();
+        let (per_length, over_length) = match self.row {
+            Component::X | Component::Y => ("/L", " L"),
+            Component::Theta => ("", " rad"),
+        };
+        // Adding zero turns a rounded -0 into 0.
+        let at_origin = (self.at_origin_over_length * 1e10).round() / 1e10 + 0.0;
+        rows.row(
+            "at the straight shape",
+            format!("{}{per_length} = {at_origin:.10}", self.symbol),
+        );
+        let zeros = |zeros: &[f64]| match zeros {
+            [] => "none".to_owned(),
+            zeros => zeros
+                .iter()
+                .map(|zero| format!("{zero:.8} rad ({})", quantity::angle(*zero)))
+                .collect::<Vec<_>>()
+                .join(", "),
+        };
+        rows.row("zero where φ₁ = φ₂ > 0", zeros(&self.zeros_on_diagonal))
+            .row(
+                "zero where −φ₁ = φ₂ > 0",
+                zeros(&self.zeros_on_antidiagonal),
+            );
+        let closed = self.zero_curves.iter().filter(|curve| curve.closed).count();
+        let open = self.zero_curves.len() - closed;
+        rows.row(
+            "zero-level curves",
+            format!("{closed} closed, {open} from edge to edge"),
+        );
+        let Converged {
+            order,
+            order_before,
+            inner_change,
+            change,
+        } = self.convergence;
+        rows.row(
+            "frame",
+            format!(
+                "order {order}; from order {order_before} it moved {inner_change:.0e} inside, {change:.0e} at the corners"
+            ),
+        );
+        let component = self.row.row().index();
+        for rule in &self.gaits {
+            let value = |values: &[f64; 3]| values.get(component).copied().unwrap_or(f64::NAN);
+            let (area, swum) = (value(&rule.area), value(&rule.swum));
+            let off = quantity::relative(area, swum)
+                .filter(|off| off.abs() < 10.0)
+                .map(|off| format!(" ({})", quantity::deviation(off)))
+                .unwrap_or_default();
+            rows.row(
+                rule.gait.clone(),
+                format!(
+                    "encloses {:.6}{over_length}, swims {:.6}{over_length}{off}",
+                    rounded(area),
+                    rounded(swum)
+                ),
+            );
+        }
+        if let Some(path) = &self.written {
+            rows.row("written to", path.display().to_string());
+        }
+        write!(
+            f,
+            "{}, {} on joint angles up to {} rad\n{rows}",
+            self.name, self.symbol, self.max_angle_rad
+        )
+    }
+}
+
+/// To six decimals, without a minus before zero.
+fn rounded(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6 + 0.0
+}
+
+impl From<HeightMapError> for Failure {
+    /// A swimmer, square or gait that makes no sense is bad input; one that does not converge was tried.
+    fn from(error: HeightMapError) -> Self {
+        match error {
+            HeightMapError::NotConverged { .. } => Self::tried(&error),
+            _ => Self::bad_input(&error),
+        }
+    }
+}

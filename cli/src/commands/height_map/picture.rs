@@ -1,0 +1,320 @@
+//! The height map as a figure: colours for height, lines for the zero-level curves and for gaits.
+
+use gait_optimizer::{HeightMap, LevelCurve, Row};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use swimmer_files::AnyGait;
+use swimmer_model::Gait as _;
+
+use crate::failure::{Failure, Outcome};
+
+/// What the figure shows.
+#[derive(Debug)]
+pub(super) struct Figure<'a> {
+    pub(super) title: String,
+    /// The height with its unit, beside the colour bar.
+    pub(super) quantity: &'static str,
+    pub(super) map: &'a HeightMap,
+    pub(super) row: Row,
+    pub(super) curves: &'a [LevelCurve],
+    pub(super) gaits: &'a [(String, AnyGait)],
+}
+
+/// Plotters rounds to whole pixels; drawing this many times larger and showing it smaller keeps curves smooth.
+const SCALE: i32 = 8;
+/// Side of the map in pixels of the page.
+const MAP: i32 = 520;
+const LEFT: i32 = 76;
+/// Left of the label of φ₂, which would lose its edge otherwise.
+const MARGIN: i32 = 12;
+const BOTTOM: i32 = 50;
+const TOP: i32 = 44;
+/// From the map to the colour bar, the bar, and its labels.
+const GAP: i32 = 22;
+const BAR: i32 = 20;
+const RIGHT: i32 = 84;
+/// Of one gait in the legend.
+const LEGEND: i32 = 22;
+/// Colour cells in each direction.
+const CELLS: u16 = 260;
+/// Steps of colour on either side of zero.
+const SHADES: i32 = 24;
+/// Points a gait is drawn with.
+const GAIT_POINTS: u32 = 1500;
+
+const INK: RGBColor = RGBColor(0x1d, 0x24, 0x2c);
+const AXIS: RGBColor = RGBColor(0x4a, 0x55, 0x61);
+/// Gaits in turn; they stand out from both arms of the colour map and from each other, also for the colour-blind.
+const GAITS: [RGBColor; 5] = [
+    RGBColor(0x00, 0x8a, 0x5e),
+    RGBColor(0xe0, 0x9b, 0x00),
+    RGBColor(0x7a, 0x2e, 0xa6),
+    RGBColor(0x6b, 0x4a, 0x2b),
+    RGBColor(0xd6, 0x3a, 0x8f),
+];
+/// The `RdBu` map of `ColorBrewer`, blue to red: white is zero, and it reads in grey and to the colour-blind.
+const COLORS: [[f64; 3]; 11] = [
+    [5.0, 48.0, 97.0],
+    [33.0, 102.0, 172.0],
+    [67.0, 147.0, 195.0],
+    [146.0, 197.0, 222.0],
+    [209.0, 229.0, 240.0],
+    [247.0, 247.0, 247.0],
+    [253.0, 219.0, 199.0],
+    [244.0, 165.0, 130.0],
+    [214.0, 96.0, 77.0],
+    [178.0, 24.0, 43.0],
+    [103.0, 0.0, 31.0],
+];
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// The figure as SVG.
+///
+/// # Errors
+/// [`Failure::Tried`] when the drawing library gives up.
+pub(super) fn svg(figure: &Figure<'_>) -> Outcome<String> {
+    let legend = i32::try_from(figure.gaits.len()).unwrap_or(i32::MAX / 1000) * LEGEND;
+    let legend = if legend > 0 { legend + 10 } else { 0 };
+    let size = (LEFT + MAP + GAP + BAR + RIGHT, TOP + MAP + BOTTOM + legend);
+    let mut text = String::new();
+    {
+        let pixels = (
+            (size.0 * SCALE).unsigned_abs(),
+            (size.1 * SCALE).unsigned_abs(),
+        );
+        let area = SVGBackend::with_string(&mut text, pixels).into_drawing_area();
+        draw(figure, &area).map_err(|reason| {
+            Failure::Tried(format!("cannot draw the map of {}: {reason}", figure.title))
+        })?;
+    }
+    // The drawing's own units stay; the page shows it at its true size.
+    let drawn = format!("width=\"{}\" height=\"{}\"", size.0 * SCALE, size.1 * SCALE);
+    let shown = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
+    Ok(text.replacen(&drawn, &shown, 1))
+}
+
+fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
+    area.fill(&WHITE).map_err(|error| said(&error))?;
+    let text = |size: i32| ("sans-serif", size * SCALE).into_font().color(&INK);
+    area.draw_text(&figure.title, &text(19), (LEFT * SCALE, 14 * SCALE))
+        .map_err(|error| said(&error))?;
+    let (_, upper) = area.split_vertically(0);
+    let (map_area, bar_area) = upper.split_horizontally((LEFT + MAP) * SCALE);
+    let half_width = figure.map.half_width();
+    // Cells are coloured by the height at their middle.
+    let count = usize::from(CELLS);
+    let grid = figure.map.grid(figure.row, 2 * count + 1);
+    let largest = grid.heights.amax().max(f64::MIN_POSITIVE);
+
+    let (map_area, _) = map_area.split_vertically((TOP + MAP + BOTTOM) * SCALE);
+    let mut chart = ChartBuilder::on(&map_area)
+        .margin_top(TOP * SCALE)
+        .margin_left(MARGIN * SCALE)
+        .x_label_area_size(BOTTOM * SCALE)
+        .y_label_area_size((LEFT - MARGIN) * SCALE)
+        .build_cartesian_2d(-half_width..half_width, -half_width..half_width)
+        .map_err(|error| said(&error))?;
+    let cell = 2.0 * half_width / f64::from(CELLS);
+    let edge = |index: usize| -half_width + cell * index as f64;
+    for j in 0..count {
+        let shade_at = |i: usize| {
+            let height = grid.heights.get((2 * i + 1, 2 * j + 1)).copied();
+            shade(height.unwrap_or(0.0), largest)
+        };
+        // Neighbours of one colour are one rectangle; it reaches under the next ones, so that no seam shows.
+        let mut from = 0;
+        while from < count {
+            let same = shade_at(from);
+            let to = (from + 1..count)
+                .find(|&i| shade_at(i) != same)
+                .unwrap_or(count);
+            let corner = (
+                (edge(to) + 0.5 * cell).min(half_width),
+                (edge(j + 1) + 0.5 * cell).min(half_width),
+            );
+            let rectangle = Rectangle::new([(edge(from), edge(j)), corner], color(same).filled());
+            chart
+                .draw_series(std::iter::once(rectangle))
+                .map_err(|error| said(&error))?;
+            from = to;
+        }
+    }
+    for curve in figure.curves {
+        let points = curve.points.iter().map(|phi| (phi.x, phi.y));
+        chart
+            .draw_series(LineSeries::new(points, stroke(INK, 1.6)))
+            .map_err(|error| said(&error))?;
+    }
+    for ((_, gait), color) in figure.gaits.iter().zip(GAITS.iter().cycle()) {
+        let points: Vec<(f64, f64)> = (0..=GAIT_POINTS)
+            .map(|k| {
+                gait.at(f64::from(k % GAIT_POINTS) / f64::from(GAIT_POINTS))
+                    .phi
+            })
+            .map(|phi| (phi.x, phi.y))
+            .collect();
+        for style in [stroke(WHITE, 4.6), stroke(*color, 2.6)] {
+            chart
+                .draw_series(LineSeries::new(points.iter().copied(), style))
+                .map_err(|error| said(&error))?;
+        }
+    }
+    // Axes last, over the colours.
+    chart
+        .configure_mesh()
+        .disable_mesh()
+        .x_labels(9)
+        .y_labels(9)
+        .x_label_formatter(&|value| number(*value, 1))
+        .y_label_formatter(&|value| number(*value, 1))
+        .axis_style(stroke(AXIS, 1.0))
+        .set_all_tick_mark_size(5 * SCALE)
+        .label_style(text(15))
+        .axis_desc_style(text(17))
+        .x_desc("φ₁  [rad]")
+        .y_desc("φ₂  [rad]")
+        .draw()
+        .map_err(|error| said(&error))?;
+    chart
+        .draw_series(std::iter::once(Rectangle::new(
+            [(-half_width, -half_width), (half_width, half_width)],
+            stroke(AXIS, 1.0),
+        )))
+        .map_err(|error| said(&error))?;
+    let (bar_area, _) = bar_area.split_vertically((TOP + MAP) * SCALE);
+    bar(figure, &bar_area, largest)?;
+    legend(figure, area)
+}
+
+/// The colour bar, with the exponent of its numbers on top.
+fn bar(figure: &Figure<'_>, area: &Area<'_>, largest: f64) -> Result<(), String> {
+    let exponent = largest.log10().floor();
+    let unit = 10_f64.powf(exponent);
+    let top = largest / unit;
+    let text = |size: i32| ("sans-serif", size * SCALE).into_font().color(&INK);
+    let mut chart = ChartBuilder::on(area)
+        .margin_top(TOP * SCALE)
+        .margin_left(GAP * SCALE)
+        .right_y_label_area_size(RIGHT * SCALE)
+        .build_cartesian_2d(0.0..1.0, -top..top)
+        .map_err(|error| said(&error))?;
+    for step in -SHADES..=SHADES {
+        let middle = f64::from(step) / f64::from(SHADES) * top;
+        let half = 0.5 / f64::from(SHADES) * top;
+        let corners = [
+            (0.0, (middle - half).max(-top)),
+            (1.0, (middle + 1.6 * half).min(top)),
+        ];
+        chart
+            .draw_series(std::iter::once(Rectangle::new(
+                corners,
+                color(step).filled(),
+            )))
+            .map_err(|error| said(&error))?;
+    }
+    let quantity = if exponent == 0.0 {
+        figure.quantity.to_owned()
+    } else {
+        format!("10{} × {}", superscript(exponent), figure.quantity)
+    };
+    chart
+        .configure_mesh()
+        .disable_mesh()
+        .disable_x_axis()
+        .y_labels(9)
+        .y_label_formatter(&|value| number(*value, 1))
+        .axis_style(stroke(AXIS, 1.0))
+        .set_all_tick_mark_size(5 * SCALE)
+        .label_style(text(15))
+        .axis_desc_style(text(17))
+        .y_desc(quantity)
+        .draw()
+        .map_err(|error| said(&error))?;
+    chart
+        .draw_series(std::iter::once(Rectangle::new(
+            [(0.0, -top), (1.0, top)],
+            stroke(AXIS, 1.0),
+        )))
+        .map_err(|error| said(&error))?;
+    Ok(())
+}
+
+fn legend(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
+    let text = ("sans-serif", 15 * SCALE).into_font().color(&INK);
+    let mut y = TOP + MAP + BOTTOM + LEGEND / 2;
+    for ((name, _), color) in figure.gaits.iter().zip(GAITS.iter().cycle()) {
+        let line = PathElement::new(
+            [(LEFT * SCALE, y * SCALE), ((LEFT + 30) * SCALE, y * SCALE)],
+            stroke(*color, 2.6),
+        );
+        area.draw(&line).map_err(|error| said(&error))?;
+        area.draw_text(name, &text, ((LEFT + 40) * SCALE, (y - 8) * SCALE))
+            .map_err(|error| said(&error))?;
+        y += LEGEND;
+    }
+    Ok(())
+}
+
+fn said(error: &dyn std::fmt::Display) -> String {
+    error.to_string()
+}
+
+fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // A few dozen pixels.
+    color.stroke_width((width * f64::from(SCALE)).round() as u32)
+}
+
+/// The step of colour for a height, from −`SHADES` to `SHADES`.
+#[allow(clippy::cast_possible_truncation)] // At most a few dozen.
+fn shade(height: f64, largest: f64) -> i32 {
+    (height / largest * f64::from(SHADES))
+        .round()
+        .clamp(-f64::from(SHADES), f64::from(SHADES)) as i32
+}
+
+/// The colour of a step.
+fn color(shade: i32) -> RGBColor {
+    let place = 5.0 * (1.0 + f64::from(shade) / f64::from(SHADES));
+    let below = place.floor().clamp(0.0, 9.0);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 9.
+    let index = below as usize;
+    let (Some(low), Some(high)) = (COLORS.get(index), COLORS.get(index + 1)) else {
+        return INK;
+    };
+    let mixed = |k: usize| {
+        let part = |color: &[f64; 3]| color.get(k).copied().unwrap_or(0.0);
+        let value = part(low) + (part(high) - part(low)) * (place - below);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 255.
+        {
+            value.round().clamp(0.0, 255.0) as u8
+        }
+    };
+    RGBColor(mixed(0), mixed(1), mixed(2))
+}
+
+/// A number with the typographer's minus.
+fn number(value: f64, decimals: usize) -> String {
+    let zero = value.abs() < 0.5 * 10_f64.powi(-i32::try_from(decimals).unwrap_or(6));
+    format!("{:.decimals$}", if zero { 0.0 } else { value }).replace('-', "\u{2212}")
+}
+
+/// A whole number as an exponent.
+fn superscript(exponent: f64) -> String {
+    format!("{exponent:.0}")
+        .chars()
+        .map(|digit| match digit {
+            '-' => '⁻',
+            '0' => '⁰',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4' => '⁴',
+            '5' => '⁵',
+            '6' => '⁶',
+            '7' => '⁷',
+            '8' => '⁸',
+            _ => '⁹',
+        })
+        .collect()
+}

@@ -1,0 +1,295 @@
+//! Height functions in minimum-perturbation coordinates: where a gait should lie, drawn as a map (paper, section IV.B).
+//!
+//! The curvature of the connection, F = dA + \[A₁, A₂\], is what a tiny loop in the plane of joint angles displaces the
+//! swimmer by, over the loop's area, as seen from the middle link. Over a large loop the middle link turns, and such views
+//! do not add up. They nearly do when seen from a frame that turns and sways as little as possible: p′ = p + R(θ) b(Φ),
+//! θ′ = θ + b_θ(Φ), where b_θ minimises ∫|A^θ + ∇b_θ|² with b_θ(0) = 0, and b = (b_x, b_y) then minimises
+//! ∫|A^v + ∇b + A^θ ⊗ J b|², J = (0 −1; 1 0), both over the square \[−D, D\]² with natural boundary conditions (Hatton and
+//! Choset's minimum-perturbation coordinates). The height function is the curvature carried into that frame, over L:
+//! (H_x, H_y) = R(−b_θ)(F_v + F_θ J b), H_θ = F_θ.
+//!
+//! **How exact it is.** b is sought among products of Legendre polynomials, of an order raised until it stands still
+//! ([`Convergence`]). Inside the square it converges geometrically. At the square's corners the frame itself is not smooth:
+//! the natural conditions on the two edges that meet there contradict each other unless the curvature vanishes, and b has
+//! a part r² ln r; there it converges like a power of the order only. Both figures are part of the result.
+//!
+//! **It depends on D**, and nothing ties D to π: the connection has period 2π in each angle and is smooth beyond π, but
+//! the frame is not periodic, since the fluxes that it balances are those of the square. Large squares only need a higher
+//! order.
+
+#![allow(
+    clippy::doc_markdown,
+    reason = "formulas in the docs read like the paper's: b_x, H_x"
+)]
+
+mod area_rule;
+mod error;
+mod galerkin;
+mod legendre;
+mod level_curve;
+mod space;
+mod zeros;
+
+use nalgebra::{DMatrix, Vector2, Vector3};
+use swimmer_model::{Model, Swimmer};
+
+pub use area_rule::AreaRule;
+pub use error::HeightMapError;
+pub use level_curve::LevelCurve;
+pub(crate) use level_curve::{Level, LevelSearch, level_curves};
+
+use crate::displacement::of_unit_length;
+use galerkin::Coefficients;
+use legendre::polynomials;
+use space::table;
+
+/// Which component of a displacement a height function is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Row {
+    /// Along the frame: per L.
+    X,
+    /// Across the frame, to the left: per L.
+    Y,
+    /// Rotation, counter-clockwise. It is the same in every frame.
+    Theta,
+}
+
+/// How still the frame stood when the order was raised for the last time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Convergence {
+    /// Polynomials in each direction: degrees 0 to `order` − 1.
+    pub order: usize,
+    /// The order before.
+    pub order_before: usize,
+    /// Largest change of b_x, b_y (over L) and b_θ (rad) from the one to the other where |φᵢ| ≤ 0.8 D.
+    pub inner_change: f64,
+    /// The same on the whole square, corners included.
+    pub change: f64,
+}
+
+/// The frame at one shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// (b_x, b_y, b_θ): place over L and heading \[rad\] of the frame's origin as seen from the middle link.
+    pub b: Vector3<f64>,
+    /// ∂b/∂φ₁ and ∂b/∂φ₂.
+    pub slopes: [Vector3<f64>; 2],
+}
+
+/// The three height functions of a swimmer on one square.
+#[derive(Debug, Clone)]
+pub struct HeightMap {
+    /// With L = 1.
+    model: Model<f64>,
+    half_width: f64,
+    coefficients: Coefficients,
+    convergence: Convergence,
+}
+
+/// Heights at the nodes of a square grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// Nodes of either angle, from −D to D \[rad\].
+    pub angles: Vec<f64>,
+    /// Heights; the row index runs along φ₁, the column index along φ₂.
+    pub heights: DMatrix<f64>,
+}
+
+/// Orders that are tried in turn.
+const ORDERS: [usize; 8] = [16, 24, 36, 48, 64, 80, 96, 128];
+const HIGHEST: usize = 128;
+/// The order is high enough once the frame changes by no more than this inside the square.
+const STILL: f64 = 1e-9;
+/// A frame that changes by more than this at the highest order is of no use.
+const USELESS: f64 = 1e-4;
+/// Inside the square: this share of D.
+const INNER: f64 = 0.8;
+
+impl HeightMap {
+    /// Squares up to this half width are computed \[rad\].
+    pub const WIDEST: f64 = 2.0 * std::f64::consts::TAU;
+    /// Squares down to this one \[rad\].
+    pub const NARROWEST: f64 = 1e-3;
+
+    /// Solves for the minimum-perturbation coordinates on \[−D, D\]², D = `half_width` \[rad\]. Side links may differ.
+    ///
+    /// # Errors
+    /// [`HeightMapError`]: the swimmer or the square is out of range, or the frame does not converge.
+    pub fn new(swimmer: &Swimmer<f64>, half_width: f64) -> Result<Self, HeightMapError> {
+        swimmer.validate()?;
+        let model = Model::new(&of_unit_length(swimmer))?;
+        if !(Self::NARROWEST..=Self::WIDEST).contains(&half_width) {
+            return Err(HeightMapError::HalfWidth { value: half_width });
+        }
+        let mut order_before = ORDERS[0];
+        let mut before = galerkin::solve(&model, half_width, order_before);
+        let mut result = None;
+        for order in ORDERS.into_iter().skip(1) {
+            let coefficients = galerkin::solve(&model, half_width, order);
+            let (inner_change, change) = coefficients.change_from(&before);
+            let convergence = Convergence {
+                order,
+                order_before,
+                inner_change,
+                change,
+            };
+            result = Some(Self {
+                model,
+                half_width,
+                coefficients: coefficients.clone(),
+                convergence,
+            });
+            if inner_change <= STILL {
+                break;
+            }
+            (before, order_before) = (coefficients, order);
+        }
+        result
+            .filter(|map| map.convergence.inner_change <= USELESS)
+            .ok_or(HeightMapError::NotConverged {
+                half_width,
+                order: HIGHEST,
+            })
+    }
+
+    /// D \[rad\].
+    pub fn half_width(&self) -> f64 {
+        self.half_width
+    }
+
+    /// How well the frame is known.
+    pub fn convergence(&self) -> Convergence {
+        self.convergence
+    }
+
+    /// The minimum-perturbation frame at a shape of the square.
+    pub fn frame(&self, phi: &Vector2<f64>) -> Frame {
+        let order = self.coefficients.order();
+        let s = phi / self.half_width;
+        let ([mut p1, mut d1], [mut p2, mut d2]) = ([[0.0; HIGHEST]; 2], [[0.0; HIGHEST]; 2]);
+        let n = order.min(HIGHEST);
+        polynomials(s.x, &mut p1[..n], &mut d1[..n]);
+        polynomials(s.y, &mut p2[..n], &mut d2[..n]);
+        let mut frame = Frame {
+            b: Vector3::zeros(),
+            slopes: [Vector3::zeros(); 2],
+        };
+        for (k, row) in self.coefficients.rows.iter().enumerate() {
+            let mut sums = [0.0; 3];
+            for ((column, p2), d2) in row.column_iter().zip(&p2).zip(&d2) {
+                let (mut value, mut slope) = (0.0, 0.0);
+                for ((c, p1), d1) in column.iter().zip(&p1).zip(&d1) {
+                    value += c * p1;
+                    slope += c * d1;
+                }
+                sums[0] += value * p2;
+                sums[1] += slope * p2;
+                sums[2] += value * d2;
+            }
+            frame.b[k] = sums[0];
+            frame.slopes[0][k] = sums[1] / self.half_width;
+            frame.slopes[1][k] = sums[2] / self.half_width;
+        }
+        frame
+    }
+
+    /// (H_x, H_y, H_θ) at a shape of the square, over L and rad per rad².
+    pub fn heights(&self, phi: &Vector2<f64>) -> Vector3<f64> {
+        let curvature = self.model.first_derivatives(phi).curvature();
+        carried(&curvature, &self.frame(phi).b)
+    }
+
+    /// One height at a shape of the square.
+    pub fn height(&self, row: Row, phi: &Vector2<f64>) -> f64 {
+        self.heights(phi)[row.index()]
+    }
+
+    /// One height and its exact gradient at a shape of the square.
+    pub fn height_and_gradient(&self, row: Row, phi: &Vector2<f64>) -> (f64, Vector2<f64>) {
+        let second = self.model.second_derivatives(phi);
+        let curvature = second.first.curvature();
+        let along = second.d_curvature();
+        let frame = self.frame(phi);
+        let height = carried(&curvature, &frame.b);
+        let slope = |k: usize| {
+            // Of R(−b_θ)(F_v + F_θ J b): of the curvature, of b, and of the turning by −b_θ.
+            let of_curvature = carried(&along[k], &frame.b);
+            let step = frame.slopes[k];
+            let of_place = turned_back(&(Vector2::new(-step.y, step.x) * curvature.z), frame.b.z);
+            let of_turn = Vector2::new(height.y, -height.x) * step.z;
+            of_curvature + Vector3::new(of_place.x + of_turn.x, of_place.y + of_turn.y, 0.0)
+        };
+        let row = row.index();
+        (height[row], Vector2::new(slope(0)[row], slope(1)[row]))
+    }
+
+    /// Heights at `count` × `count` evenly spaced nodes, both ends included.
+    pub fn grid(&self, row: Row, count: usize) -> Grid {
+        let step = 2.0 / count.saturating_sub(1).max(1) as f64;
+        let places: Vec<f64> = (0..count)
+            .map(|i| (step * i as f64 - 1.0).min(1.0))
+            .collect();
+        Grid {
+            heights: self.on_nodes(row, &places, &places),
+            angles: places.iter().map(|s| s * self.half_width).collect(),
+        }
+    }
+
+    /// Heights at the products of nodes, given over D.
+    fn on_nodes(&self, row: Row, first: &[f64], second: &[f64]) -> DMatrix<f64> {
+        let order = self.coefficients.order();
+        let (p1, _) = table(first, order);
+        let p2 = if first == second {
+            p1.clone()
+        } else {
+            table(second, order).0
+        };
+        let p2 = p2.transpose();
+        let [x, y, theta] = &self.coefficients.rows;
+        let b = [&p1 * x * &p2, &p1 * y * &p2, &p1 * theta * &p2];
+        DMatrix::from_fn(first.len(), second.len(), |i, j| {
+            let phi = Vector2::new(first[i], second[j]) * self.half_width;
+            let curvature = self.model.first_derivatives(&phi).curvature();
+            let frame = Vector3::new(b[0][(i, j)], b[1][(i, j)], b[2][(i, j)]);
+            carried(&curvature, &frame)[row.index()]
+        })
+    }
+
+    /// Zero-level curves of a height on the square: every component, each vertex with |H| ≤ 1e-12.
+    pub fn zero_curves(&self, row: Row) -> Vec<LevelCurve> {
+        level_curves(
+            &Level(|phi: &Vector2<f64>| self.height_and_gradient(row, phi)),
+            &LevelSearch::new(self.half_width),
+            |first, second| self.on_nodes(row, first, second),
+        )
+    }
+
+    /// The swimmer with L = 1.
+    pub(crate) fn model(&self) -> &Model<f64> {
+        &self.model
+    }
+}
+
+impl Row {
+    /// The place of this component in (x, y, θ).
+    pub fn index(self) -> usize {
+        match self {
+            Self::X => 0,
+            Self::Y => 1,
+            Self::Theta => 2,
+        }
+    }
+}
+
+/// R(−angle) v
+fn turned_back(v: &Vector2<f64>, angle: f64) -> Vector2<f64> {
+    let (sin, cos) = angle.sin_cos();
+    Vector2::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x)
+}
+
+/// A velocity of the middle link, seen from the frame (b_x, b_y, b_θ) fixed to it.
+fn carried(velocity: &Vector3<f64>, b: &Vector3<f64>) -> Vector3<f64> {
+    let moved = Vector2::new(velocity.x - velocity.z * b.y, velocity.y + velocity.z * b.x);
+    let turned = turned_back(&moved, b.z);
+    Vector3::new(turned.x, turned.y, velocity.z)
+}

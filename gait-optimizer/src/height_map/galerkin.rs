@@ -1,0 +1,199 @@
+//! The minimum-perturbation frame among polynomials of one order: a Poisson equation for its angle, then a coupled pair
+//! for its place, by conjugate gradients.
+
+use nalgebra::{DMatrix, Vector2};
+use swimmer_model::Model;
+
+use super::space::{Field, Space, table};
+
+/// b_x, b_y, b_θ in products of orthonormal Legendre polynomials of Φ / D; rows run along φ₁, lengths over L.
+#[derive(Debug, Clone)]
+pub(super) struct Coefficients {
+    pub(super) rows: [Field; 3],
+}
+
+/// Gauss points beyond the order: the connection is no polynomial.
+const MORE_POINTS: usize = 10;
+/// Conjugate gradients end when the residual has fallen by this much.
+const RESIDUAL: f64 = 1e-15;
+/// They need about twenty rounds; more than this would only stir rounding.
+const ROUNDS: usize = 200;
+
+/// Rows of the connection times D at the Gauss points, so that lengths and slopes are those of the square \[−1, 1\]².
+struct Rows {
+    x: [Field; 2],
+    y: [Field; 2],
+    theta: [Field; 2],
+}
+
+/// A function for each of b_x and b_y.
+type Pair = [Field; 2];
+
+/// Solves both problems for a swimmer with L = 1.
+pub(super) fn solve(model: &Model<f64>, half_width: f64, order: usize) -> Coefficients {
+    let space = Space::new(order, order + MORE_POINTS);
+    let rows = Rows::at(model, half_width, &space);
+    let theta = poisson(&space, [&rows.theta[0], &rows.theta[1]]);
+    let [x, y] = place(&space, &rows);
+    let mut coefficients = Coefficients {
+        rows: [x, y, theta].map(|row| space.in_legendre(&row)),
+    };
+    coefficients.vanish_at_zero();
+    coefficients
+}
+
+impl Rows {
+    fn at(model: &Model<f64>, half_width: f64, space: &Space) -> Self {
+        let count = space.nodes.len();
+        let zero = || [DMatrix::zeros(count, count), DMatrix::zeros(count, count)];
+        let mut rows = Self {
+            x: zero(),
+            y: zero(),
+            theta: zero(),
+        };
+        for (j, s2) in space.nodes.iter().enumerate() {
+            for (i, s1) in space.nodes.iter().enumerate() {
+                let phi = Vector2::new(*s1, *s2) * half_width;
+                let a = model.local_connection(&phi) * half_width;
+                for joint in 0..2 {
+                    rows.x[joint][(i, j)] = a[(0, joint)];
+                    rows.y[joint][(i, j)] = a[(1, joint)];
+                    rows.theta[joint][(i, j)] = a[(2, joint)];
+                }
+            }
+        }
+        rows
+    }
+}
+
+/// The function without mean that minimises ∫|a + ∇b|².
+fn poisson(space: &Space, a: [&Field; 2]) -> Field {
+    let load = space.test_slopes(a);
+    divided(space, &load, 0.0) * -1.0
+}
+
+/// Solves (−Δ + shift) b = load; without a shift, up to a constant.
+fn divided(space: &Space, load: &Field, shift: f64) -> Field {
+    let lambda = &space.eigenvalues;
+    DMatrix::from_fn(space.order(), space.order(), |i, j| {
+        let stiffness = lambda[i] + lambda[j] + shift;
+        if stiffness > 0.0 {
+            load[(i, j)] / stiffness
+        } else {
+            0.0
+        }
+    })
+}
+
+/// b_x and b_y: they minimise ∫|a^x + ∇b_x − a^θ b_y|² + |a^y + ∇b_y + a^θ b_x|².
+fn place(space: &Space, rows: &Rows) -> Pair {
+    let [t1, t2] = &rows.theta;
+    let turning = t1.component_mul(t1) + t2.component_mul(t2);
+    let shift = space.mean(&turning);
+    let load = adjoint(space, rows, [&rows.x, &rows.y]).map(|row| -row);
+    let precondition = |r: &Pair| [divided(space, &r[0], shift), divided(space, &r[1], shift)];
+    // Conjugate gradients, preconditioned.
+    let mut b = [
+        Field::zeros(space.order(), space.order()),
+        Field::zeros(space.order(), space.order()),
+    ];
+    let mut residual = load;
+    let mut z = precondition(&residual);
+    let mut direction = z.clone();
+    let mut rho = dot(&residual, &z);
+    let goal = rho * RESIDUAL * RESIDUAL;
+    for _ in 0..ROUNDS {
+        if rho.is_nan() || rho <= goal {
+            break;
+        }
+        let (x, y) = (space.sample(&direction[0]), space.sample(&direction[1]));
+        let gone = |k: usize| {
+            [
+                &x.slopes[k] - rows.theta[k].component_mul(&y.value),
+                &y.slopes[k] + rows.theta[k].component_mul(&x.value),
+            ]
+        };
+        let ([x1, y1], [x2, y2]) = (gone(0), gone(1));
+        let image = adjoint(space, rows, [&[x1, x2], &[y1, y2]]);
+        let step = rho / dot(&direction, &image);
+        for k in 0..2 {
+            b[k] += &direction[k] * step;
+            residual[k] -= &image[k] * step;
+        }
+        z = precondition(&residual);
+        let next = dot(&residual, &z);
+        for k in 0..2 {
+            direction[k] = &z[k] + &direction[k] * (next / rho);
+        }
+        rho = next;
+    }
+    b
+}
+
+/// For each pair of basis functions (ψ, 0) and (0, ψ): ∫ of the given rows against ∇ψ + a^θ ⊗ J ψ.
+fn adjoint(space: &Space, rows: &Rows, [x, y]: [&[Field; 2]; 2]) -> Pair {
+    let along = |row: &[Field; 2]| {
+        rows.theta[0].component_mul(&row[0]) + rows.theta[1].component_mul(&row[1])
+    };
+    [
+        space.test(&along(y), [&x[0], &x[1]]),
+        space.test(&-along(x), [&y[0], &y[1]]),
+    ]
+}
+
+fn dot(a: &Pair, b: &Pair) -> f64 {
+    a[0].dot(&b[0]) + a[1].dot(&b[1])
+}
+
+impl Coefficients {
+    pub(super) fn order(&self) -> usize {
+        self.rows[0].nrows()
+    }
+
+    /// Largest change from another order, in the inner part of the square and on all of it, seen at 51 × 51 places.
+    pub(super) fn change_from(&self, before: &Self) -> (f64, f64) {
+        let places: Vec<f64> = (0..=50).map(|k| f64::from(k) / 25.0 - 1.0).collect();
+        let (now, _) = table(&places, self.order());
+        let (then, _) = table(&places, before.order());
+        let is_inner = |k: usize| {
+            places
+                .get(k)
+                .is_some_and(|s| s.abs() <= super::INNER + 1e-12)
+        };
+        let (mut inner, mut all) = (0.0_f64, 0.0_f64);
+        for (row, old) in self.rows.iter().zip(&before.rows) {
+            let change = &now * row * now.transpose() - &then * old * then.transpose();
+            for ((i, j), value) in indexed(&change) {
+                // `max` would pass over NaN.
+                let value = if value.is_nan() {
+                    f64::INFINITY
+                } else {
+                    value.abs()
+                };
+                all = all.max(value);
+                if is_inner(i) && is_inner(j) {
+                    inner = inner.max(value);
+                }
+            }
+        }
+        (inner, all)
+    }
+
+    /// Shifts b_θ so that it is 0 at Φ = 0.
+    fn vanish_at_zero(&mut self) {
+        let order = self.rows[2].nrows();
+        let (p, _) = table(&[0.0], order);
+        let at_zero = (&p * &self.rows[2] * p.transpose())[(0, 0)];
+        // The constant p₀p₀ is ½.
+        self.rows[2][(0, 0)] -= 2.0 * at_zero;
+    }
+}
+
+/// The entries of a matrix with their places.
+fn indexed(field: &Field) -> impl Iterator<Item = ((usize, usize), f64)> {
+    let rows = field.nrows().max(1);
+    field
+        .iter()
+        .enumerate()
+        .map(move |(k, value)| ((k % rows, k / rows), *value))
+}

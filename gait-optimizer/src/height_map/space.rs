@@ -1,0 +1,137 @@
+//! The polynomials that body frames are sought among, in the basis where the Neumann problem is diagonal.
+//!
+//! On \[−1, 1\] the eigenfunctions qᵢ of stiffness against mass, among polynomials of degree below n, are orthonormal and
+//! have orthogonal slopes: ∫qᵢqⱼ = δᵢⱼ, ∫qᵢ′qⱼ′ = λᵢδᵢⱼ. In their products on the square the Laplacian with natural boundary
+//! conditions is the number λᵢ + λⱼ: Poisson's equation is solved by one division, and the coupled problem has a
+//! preconditioner that leaves little to do.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::legendre::{gauss, polynomials};
+
+/// Polynomials of degree below n in each of two directions, with a Gauss rule.
+#[derive(Debug, Clone)]
+pub(super) struct Space {
+    /// Gauss points.
+    pub(super) nodes: Vec<f64>,
+    /// The λᵢ.
+    pub(super) eigenvalues: DVector<f64>,
+    /// Column i: qᵢ in orthonormal Legendre polynomials.
+    legendre: DMatrix<f64>,
+    /// qᵢ at the nodes: one row a node.
+    values: DMatrix<f64>,
+    slopes: DMatrix<f64>,
+    /// The same, transposed and times the weights: one column a node.
+    weighted_values: DMatrix<f64>,
+    weighted_slopes: DMatrix<f64>,
+}
+
+/// A function on the square at the products of the Gauss points, or its coefficients; rows run along φ₁.
+pub(super) type Field = DMatrix<f64>;
+
+/// A function and its slopes along both directions, at the Gauss points.
+#[derive(Debug, Clone)]
+pub(super) struct Sampled {
+    pub(super) value: Field,
+    pub(super) slopes: [Field; 2],
+}
+
+impl Space {
+    /// Polynomials of degree below `order`, with a rule of `points` Gauss points.
+    pub(super) fn new(order: usize, points: usize) -> Self {
+        let (nodes, weights) = gauss(points);
+        // p_k′ = Σ √(2j+1)(2k+1) p_j over j < k of the other parity.
+        let derivative = DMatrix::from_fn(order, order, |j, k| {
+            if j < k && (j + k) % 2 == 1 {
+                (((2 * j + 1) * (2 * k + 1)) as f64).sqrt()
+            } else {
+                0.0
+            }
+        });
+        let stiffness = derivative.transpose() * &derivative;
+        let eigen = stiffness.symmetric_eigen();
+        let (p, d) = table(&nodes, order);
+        let (values, slopes) = (p * &eigen.eigenvectors, d * &eigen.eigenvectors);
+        let weigh = |field: &DMatrix<f64>| {
+            let mut transposed = field.transpose();
+            for (mut column, weight) in transposed.column_iter_mut().zip(&weights) {
+                column *= *weight;
+            }
+            transposed
+        };
+        Self {
+            weighted_values: weigh(&values),
+            weighted_slopes: weigh(&slopes),
+            values,
+            slopes,
+            nodes,
+            // The constant's eigenvalue is 0 but for rounding.
+            eigenvalues: eigen
+                .eigenvalues
+                .map(|value| if value < 1e-6 { 0.0 } else { value }),
+            legendre: eigen.eigenvectors,
+        }
+    }
+
+    pub(super) fn order(&self) -> usize {
+        self.eigenvalues.len()
+    }
+
+    /// The function with these coefficients, at the Gauss points.
+    pub(super) fn sample(&self, coefficients: &Field) -> Sampled {
+        let across = coefficients * self.values.transpose();
+        let steep = coefficients * self.slopes.transpose();
+        Sampled {
+            value: &self.values * &across,
+            slopes: [&self.slopes * &across, &self.values * &steep],
+        }
+    }
+
+    /// For each basis function ψ: ∫ (f ψ + g·∇ψ).
+    pub(super) fn test(&self, f: &Field, g: [&Field; 2]) -> Field {
+        let across = &self.weighted_values * f + &self.weighted_slopes * g[0];
+        let steep = &self.weighted_values * g[1];
+        across * self.weighted_values.transpose() + steep * self.weighted_slopes.transpose()
+    }
+
+    /// For each basis function ψ: ∫ g·∇ψ.
+    pub(super) fn test_slopes(&self, g: [&Field; 2]) -> Field {
+        &self.weighted_slopes * g[0] * self.weighted_values.transpose()
+            + &self.weighted_values * g[1] * self.weighted_slopes.transpose()
+    }
+
+    /// ∫ f g over the square.
+    pub(super) fn mean(&self, f: &Field) -> f64 {
+        let (mut sum, mut area) = (0.0, 0.0);
+        let (_, weights) = gauss(self.nodes.len());
+        for (column, w2) in f.column_iter().zip(&weights) {
+            for (value, w1) in column.iter().zip(&weights) {
+                sum += w1 * w2 * value;
+                area += w1 * w2;
+            }
+        }
+        sum / area
+    }
+
+    /// Coefficients in products of orthonormal Legendre polynomials.
+    pub(super) fn in_legendre(&self, coefficients: &Field) -> Field {
+        &self.legendre * coefficients * self.legendre.transpose()
+    }
+}
+
+/// Orthonormal Legendre polynomials and their slopes at some places: one row a place.
+pub(super) fn table(places: &[f64], order: usize) -> (DMatrix<f64>, DMatrix<f64>) {
+    let mut values = DMatrix::zeros(places.len(), order);
+    let mut slopes = DMatrix::zeros(places.len(), order);
+    let (mut p, mut d) = (vec![0.0; order], vec![0.0; order]);
+    for (i, s) in places.iter().enumerate() {
+        polynomials(*s, &mut p, &mut d);
+        for (value, p) in values.row_mut(i).iter_mut().zip(&p) {
+            *value = *p;
+        }
+        for (slope, d) in slopes.row_mut(i).iter_mut().zip(&d) {
+            *slope = *d;
+        }
+    }
+    (values, slopes)
+}
