@@ -31,14 +31,16 @@ mod tests;
 mod walls;
 
 pub use error::CollocationError;
+use guess::Fit;
 pub use guess::QuarterGuess;
 pub use solution::{BoundArc, CollocationNode, CollocationSolution, MeshRound};
 
 use nalgebra::Vector2;
+use swimmer_files::Bounds;
 use swimmer_model::Model;
 
 use mesh::Mesh;
-use newton::{FIRST_BARRIER, Newton};
+use newton::{FIRST_BARRIER, Newton, Optimum};
 use path::Path;
 use refine::Verdict;
 use walls::Wall;
@@ -48,8 +50,8 @@ use walls::Wall;
 pub struct CollocationProblem<'a> {
     /// The swimmer, its side links alike.
     pub model: &'a Model<f64>,
-    /// `φ_max` \[rad\].
-    pub max_angle: Option<f64>,
+    /// Bounds of the shapes; not the sector, whose sides the quarter starts and ends on.
+    pub bounds: Bounds,
     /// Whether x shall be positive or negative: +1 or −1.
     pub sign: f64,
     /// Elements of the first mesh.
@@ -57,15 +59,26 @@ pub struct CollocationProblem<'a> {
     /// Degree of the first mesh's elements.
     pub degree: usize,
     /// What the error of each element may be: θ \[rad\], x over `x_f` and E over `E_f`, integrated again; and the square of
-    /// the relative unevenness of the power. 0 takes the first mesh as it is.
+    /// the relative unevenness of the power, and of ten times
+    /// the overstepping of a bound between nodes. 0 takes the first mesh as it is.
     pub tolerance: f64,
 }
 
 /// Where the mesh may go no further.
-const MOST_POINTS: usize = 4000;
+const MOST_POINTS: usize = 1500;
 const MOST_ROUNDS: usize = 30;
 /// Relative difference of ξ from that of the gait integrated again that no refinement could mend.
 const SPURIOUS: f64 = 0.02;
+/// Rounds in which element ends are put where bounds begin and end.
+const KINK_ROUNDS: usize = 10;
+/// The barrier on every mesh but the first.
+const AGAIN_BARRIER: f64 = 1e-9;
+/// A point whose multiplier wants it this near to a wall \[rad\] is put there.
+const NEAR_WALL: f64 = 1e-5;
+/// Share of the largest multiplier of a bound above which it counts as active.
+pub(crate) const ACTIVE: f64 = 1e-3;
+/// Multiplier density below which no bound is active, in an objective of order one.
+pub(crate) const ACTIVE_AT_ALL: f64 = 1e-6;
 /// Without a bound no angle may leave two turns.
 const HORIZON: f64 = 2.0 * std::f64::consts::TAU;
 
@@ -74,7 +87,7 @@ impl<'a> CollocationProblem<'a> {
     pub fn new(model: &'a Model<f64>, sign: f64) -> Self {
         Self {
             model,
-            max_angle: None,
+            bounds: Bounds::default(),
             sign,
             elements: 20,
             degree: 5,
@@ -85,7 +98,7 @@ impl<'a> CollocationProblem<'a> {
     /// With |φᵢ| ≤ `max_angle` \[rad\].
     #[must_use]
     pub fn with_max_angle(mut self, max_angle: f64) -> Self {
-        self.max_angle = Some(max_angle);
+        self.bounds.max_angle = Some(max_angle);
         self
     }
 
@@ -116,15 +129,37 @@ impl<'a> CollocationProblem<'a> {
         if self.tolerance < 0.0 || self.tolerance.is_nan() {
             return refuse("tolerance", self.tolerance, "it must not be negative");
         }
-        match self.max_angle {
-            Some(max) if !(max > 0.0 && max <= HORIZON) => refuse(
-                "max_angle",
-                max,
-                "an upper bound must be above 0 and at most two turns",
-            ),
-            Some(max) => Ok(Wall::sides(max).to_vec()),
-            None => Ok(Vec::new()),
+        let angle = |value: f64| value > 0.0 && value <= HORIZON;
+        let bounds = &self.bounds;
+        if let Some(max) = bounds.max_angle.filter(|&max| !angle(max)) {
+            return refuse("max_angle", max, "it must be above 0 and at most two turns");
         }
+        let highest = bounds.max_angle.unwrap_or(HORIZON);
+        if let Some(min) = bounds
+            .min_angle
+            .filter(|&min| !angle(min) || min >= highest)
+        {
+            return refuse(
+                "min_angle",
+                min,
+                "it must be above 0 and below the upper bound",
+            );
+        }
+        if bounds.sector {
+            return refuse(
+                "sector",
+                1.0,
+                "a smooth gait crosses its sides; leave it out",
+            );
+        }
+        if bounds.clearance.is_nan() || bounds.clearance < 0.0 || bounds.clearance >= links.middle {
+            return refuse(
+                "clearance",
+                bounds.clearance,
+                "it must be 0 or above, and below the middle link's length",
+            );
+        }
+        Ok(Wall::all(bounds, &links))
     }
 }
 
@@ -148,13 +183,13 @@ pub fn solve(
 ) -> Result<CollocationSolution, CollocationError> {
     let walls = problem.validate()?;
     let mut mesh = Mesh::even(problem.elements, problem.degree);
-    let mut phi = guess.on(problem.model, &mesh, &walls)?;
+    let mut phi = first_shapes(problem, guess, &mesh, &walls)?;
     let mut barrier = FIRST_BARRIER;
     let mut rounds = Vec::new();
     loop {
         let newton = Newton::new(problem.model, &mesh, &walls, problem.sign, HORIZON, phi);
         let optimum = newton.run(barrier)?;
-        let again = again::again(problem.model, &mesh, &optimum.path).ok_or(
+        let again = again::again(problem.model, &mesh, &walls, &optimum.path).ok_or(
             CollocationError::NotIntegrated {
                 efficiency: lighthill(problem.model, &optimum.path),
             },
@@ -162,8 +197,9 @@ pub fn solve(
         rounds.push(MeshRound {
             elements: mesh.elements.len(),
             nodes: mesh.len(),
-            error: again.errors.iter().copied().fold(0.0, f64::max),
-            uneven_power: again.power.iter().copied().fold(0.0, f64::max),
+            error: again.error(),
+            uneven_power: again.uneven_power(),
+            overstepped: again.overstepped(),
             efficiency: lighthill(problem.model, &optimum.path),
             iterations: optimum.iterations,
         });
@@ -182,7 +218,14 @@ pub fn solve(
             });
         }
         let verdict = if problem.tolerance > 0.0 {
-            refine::judge(&mesh, &again, problem.tolerance)
+            // Where a few rounds did not settle the kinks, halving will.
+            let kinks = if rounds.len() < KINK_ROUNDS {
+                refine::kinks(&mesh, &walls, &optimum)
+            } else {
+                Vec::new()
+            };
+            let pace = if rounds.len() <= 2 { 1.0 } else { 0.5 };
+            refine::judge(&mesh, &kinks, pace, &again, problem.tolerance)
         } else {
             Verdict::Good
         };
@@ -193,9 +236,9 @@ pub fn solve(
                 ));
             }
             Verdict::Finer(finer) if rounds.len() < MOST_ROUNDS && finer.len() <= MOST_POINTS => {
-                phi = carried_over(&mesh, &finer, &optimum.path.phi, &walls);
+                barrier = AGAIN_BARRIER;
+                phi = carried_over(&mesh, &finer, &optimum, &walls, barrier);
                 mesh = finer;
-                barrier = 1e-7;
             }
             Verdict::Finer(_) => {
                 return Err(CollocationError::NotResolved {
@@ -209,20 +252,57 @@ pub fn solve(
     }
 }
 
-/// The shapes on a finer mesh, drawn inside the walls where a polynomial overshoots them.
+/// The guess on the first mesh: shrunk to fit, or clipped where shrinking turned its way round.
+fn first_shapes(
+    problem: &CollocationProblem<'_>,
+    guess: &QuarterGuess,
+    mesh: &Mesh,
+    walls: &[Wall],
+) -> Result<Vec<Vector2<f64>>, CollocationError> {
+    let mut way = Err(CollocationError::Guess {
+        problem: "it spends no power",
+    });
+    for fit in [Fit::Shrunk, Fit::Clipped] {
+        match guess.on(problem.model, mesh, walls, fit) {
+            Ok(phi) => {
+                let path = Path::new(problem.model, mesh, phi);
+                if path.objective(problem.sign).is_some() {
+                    return Ok(path.phi);
+                }
+                way = Err(CollocationError::WrongWay {
+                    x: path.final_x,
+                    wanted: problem.sign,
+                });
+            }
+            Err(error) if fit == Fit::Shrunk => way = Err(error),
+            Err(_) => {}
+        }
+    }
+    way
+}
+
+/// The shapes on a finer mesh, as near to the walls as the multipliers there want them.
 fn carried_over(
     mesh: &Mesh,
     finer: &Mesh,
-    phi: &[Vector2<f64>],
+    optimum: &Optimum,
     walls: &[Wall],
+    barrier: f64,
 ) -> Vec<Vector2<f64>> {
+    let count = walls.len();
     finer
         .times
         .iter()
         .map(|&t| {
-            let mut shape = mesh.shape(phi, t);
-            for wall in walls {
-                wall.draw_inside(&mut shape, 1e-7);
+            let mut shape = mesh.shape(&optimum.path.phi, t);
+            let (before, after, share) = mesh.between(t);
+            for (k, wall) in walls.iter().enumerate() {
+                let multiplier = optimum.multipliers[before * count + k] * (1.0 - share)
+                    + optimum.multipliers[after * count + k] * share;
+                let near = barrier / multiplier;
+                if near < NEAR_WALL || wall.value(&shape) < barrier {
+                    wall.draw(&mut shape, near.clamp(barrier, NEAR_WALL));
+                }
             }
             shape
         })

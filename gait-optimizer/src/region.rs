@@ -17,7 +17,7 @@ use swimmer_model::Links;
     unused_imports,
     reason = "handed to several rooms, which land one by one"
 )]
-pub(crate) use clearance::{Clearance, Piece};
+pub(crate) use clearance::{Clearance, Level, Piece};
 
 /// A straight bound: `normal · Φ ≤ offset`, with a unit normal that points out.
 #[derive(Debug, Clone, Copy, PartialEq)]

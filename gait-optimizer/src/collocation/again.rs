@@ -9,6 +9,7 @@ use swimmer_model::Model;
 
 use super::mesh::{Element, Mesh};
 use super::path::Path;
+use super::walls::Wall;
 use crate::runge_kutta::{Point, StepControl, advance};
 
 /// Errors of each element and the quarter swum again.
@@ -16,8 +17,10 @@ use crate::runge_kutta::{Point, StepControl, advance};
 pub(crate) struct Again {
     /// Of each element: the largest error at its nodes of θ \[rad\], of x over `x_f` and of E over `E_f`.
     pub(crate) errors: Vec<f64>,
-    /// Of each element: largest |P/`E_f` − 1| between the nodes. The power of an optimum is constant.
-    pub(crate) power: Vec<f64>,
+    /// Of each element: least and largest P/`E_f` − 1 between the nodes. The power of an optimum is constant.
+    pub(crate) power: Vec<[f64; 2]>,
+    /// Of each element: how far it is beyond a bound between the nodes, where nothing keeps it, in rad or over L.
+    pub(crate) overstepped: Vec<f64>,
     pub(crate) final_x: f64,
     pub(crate) final_energy: f64,
     /// y at every point of the mesh.
@@ -30,8 +33,28 @@ type State = [f64; 5];
 /// Places between two nodes where the power is looked at.
 const LOOKS: usize = 2;
 
+impl Again {
+    /// Largest error of an element.
+    pub(crate) fn error(&self) -> f64 {
+        self.errors.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Largest |P/`E_f` − 1|.
+    pub(crate) fn uneven_power(&self) -> f64 {
+        self.power
+            .iter()
+            .flatten()
+            .fold(0.0, |most, off| most.max(off.abs()))
+    }
+
+    /// Largest overstepping of a bound.
+    pub(crate) fn overstepped(&self) -> f64 {
+        self.overstepped.iter().copied().fold(0.0, f64::max)
+    }
+}
+
 /// Integrates again; none where the integrator gives up.
-pub(crate) fn again(model: &Model<f64>, mesh: &Mesh, path: &Path) -> Option<Again> {
+pub(crate) fn again(model: &Model<f64>, mesh: &Mesh, walls: &[Wall], path: &Path) -> Option<Again> {
     let rates: Vec<Vector2<f64>> = path.nodes.iter().map(|node| node.rate).collect();
     let collocated = path.distance_and_energy(mesh);
     let (of_x, of_energy) = (1.0 / path.final_x.abs(), 1.0 / path.final_energy);
@@ -42,6 +65,7 @@ pub(crate) fn again(model: &Model<f64>, mesh: &Mesh, path: &Path) -> Option<Agai
     let mut found = Again {
         errors: Vec::with_capacity(mesh.elements.len()),
         power: Vec::with_capacity(mesh.elements.len()),
+        overstepped: Vec::with_capacity(mesh.elements.len()),
         final_x: 0.0,
         final_energy: 0.0,
         y: vec![0.0; mesh.len()],
@@ -69,9 +93,9 @@ pub(crate) fn again(model: &Model<f64>, mesh: &Mesh, path: &Path) -> Option<Agai
             found.y[first + j] = whole[2];
         }
         found.errors.push(error);
-        found
-            .power
-            .push(uneven_power(model, element, path, &rates, of_energy));
+        let (power, overstepped) = between_nodes(model, walls, element, path, &rates);
+        found.power.push(power.map(|power| power * of_energy - 1.0));
+        found.overstepped.push(overstepped);
     }
     (found.final_x, found.final_energy) = (whole[1], whole[4]);
     Some(found)
@@ -98,22 +122,28 @@ fn rate(
     ]
 }
 
-fn uneven_power(
+/// Least and largest power between the nodes, and how far the shapes there are beyond a wall.
+fn between_nodes(
     model: &Model<f64>,
+    walls: &[Wall],
     element: &Element,
     path: &Path,
     rates: &[Vector2<f64>],
-    of_energy: f64,
-) -> f64 {
-    let mut largest: f64 = 0.0;
+) -> ([f64; 2], f64) {
+    let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut overstepped: f64 = 0.0;
     for sides in element.rule.points.windows(2) {
         for look in 0..LOOKS {
             let share = (look as f64 + 0.5) / LOOKS as f64;
             let t = element.start + element.length * (sides[0] + (sides[1] - sides[0]) * share);
             let u = element.rate_between(rates, t);
-            let power = u.dot(&(model.power_matrix(&element.shape(&path.phi, t)) * u));
-            largest = largest.max((power * of_energy - 1.0).abs());
+            let phi = element.shape(&path.phi, t);
+            let power = u.dot(&(model.power_matrix(&phi) * u));
+            range = [range[0].min(power), range[1].max(power)];
+            for wall in walls {
+                overstepped = overstepped.max(-wall.value(&phi));
+            }
         }
     }
-    largest
+    (range, overstepped)
 }

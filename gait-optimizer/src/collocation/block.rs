@@ -8,6 +8,7 @@ use swimmer_model::Model;
 
 use super::mesh::Element;
 use super::path::Path;
+use super::walls::WallTerm;
 
 /// Rows of right-hand sides below the matrix: the gradients of the barrier, of `x_f` and of `E_f`.
 pub(crate) const SIDES: usize = 3;
@@ -37,13 +38,6 @@ struct Scratch {
     with_heading: Vec<f64>,
     /// ∂²/∂θ² of each node's share, and of `x_f`, ∂/∂θ.
     by_heading: Vec<[f64; 2]>,
-}
-
-/// What a node adds to the barrier problem by its walls.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct WallTerm {
-    pub(crate) gradient: Vector2<f64>,
-    pub(crate) hessian: Matrix2<f64>,
 }
 
 /// Derivatives of ln E − 2 ln x by x and E.

@@ -18,6 +18,18 @@ pub struct QuarterGuess {
 const SAMPLES: usize = 512;
 /// Share of the room inside the walls that a guess is shrunk to.
 const INSIDE: f64 = 0.98;
+/// How far inside the walls a sample is clipped, in rad, or over L between links.
+const CLIPPED: f64 = 0.01;
+const OUTSIDE: &str = "it does not fit inside the bounds";
+
+/// How a guess is brought inside the walls.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Fit {
+    /// All of it smaller.
+    Shrunk,
+    /// Only what is outside moved in.
+    Clipped,
+}
 
 impl QuarterGuess {
     /// From samples (t, (φ₁, φ₂)) in order of t, the first near φ₁ = φ₂ > 0 and the last near φ₁ = −φ₂, φ₂ > 0; these two
@@ -41,20 +53,13 @@ impl QuarterGuess {
         if samples.windows(2).any(|pair| pair[1].0 <= pair[0].0) {
             return refuse("its times do not grow");
         }
-        let mut samples: Vec<_> = samples
-            .iter()
-            .map(|&(t, phi)| (t, Vector2::from(phi)))
-            .collect();
-        if let Some((_, first)) = samples.first_mut() {
-            first.fill(0.5 * (first.x + first.y));
-        }
-        if let Some((_, last)) = samples.last_mut() {
-            let half = 0.5 * (last.y - last.x);
-            *last = Vector2::new(-half, half);
-        }
-        if samples.windows(2).all(|pair| pair[1].1 == pair[0].1) {
+        let times = samples.iter().map(|&(t, _)| t);
+        let mut shapes: Vec<_> = samples.iter().map(|&(_, phi)| phi.into()).collect();
+        on_symmetry_lines(&mut shapes);
+        if shapes.windows(2).all(|pair| pair[1] == pair[0]) {
             return refuse("it does not move");
         }
+        let samples = times.zip(shapes).collect();
         Ok(Self { samples })
     }
 
@@ -89,15 +94,21 @@ impl QuarterGuess {
         Self::from_gait(&SymmetricFourier { coefficients })
     }
 
-    /// The shapes at the points of a mesh, timed at constant power and shrunk to lie inside the walls.
+    /// The shapes at the points of a mesh, timed at constant power and brought inside the walls.
     pub(crate) fn on(
         &self,
         model: &Model<f64>,
         mesh: &Mesh,
         walls: &[Wall],
+        fit: Fit,
     ) -> Result<Vec<Vector2<f64>>, CollocationError> {
-        let size = self.shrunk(walls)?;
-        let scaled: Vec<Vector2<f64>> = self.samples.iter().map(|(_, phi)| phi * size).collect();
+        let scaled = match fit {
+            Fit::Shrunk => {
+                let size = self.shrunk(walls)?;
+                self.samples.iter().map(|(_, phi)| phi * size).collect()
+            }
+            Fit::Clipped => self.clipped(walls)?,
+        };
         let mut times = vec![0.0];
         for pair in scaled.windows(2) {
             let step = pair[1] - pair[0];
@@ -114,11 +125,41 @@ impl QuarterGuess {
         for time in &mut times {
             *time /= total;
         }
-        Ok(mesh
+        let shapes: Vec<_> = mesh
             .times
             .iter()
             .map(|&t| interpolated(&times, &scaled, t))
-            .collect())
+            .collect();
+        // Between samples at a corner of the walls a cubic may stray outside.
+        if shapes
+            .iter()
+            .all(|phi| walls.iter().all(|wall| wall.value(phi) > 0.0))
+        {
+            Ok(shapes)
+        } else {
+            Err(CollocationError::Guess { problem: OUTSIDE })
+        }
+    }
+
+    /// Each sample by itself, moved inside the walls.
+    fn clipped(&self, walls: &[Wall]) -> Result<Vec<Vector2<f64>>, CollocationError> {
+        let mut samples: Vec<_> = self.samples.iter().map(|(_, phi)| *phi).collect();
+        for _ in 0..4 {
+            for phi in &mut samples {
+                for wall in walls {
+                    if wall.value(phi) < 0.5 * CLIPPED {
+                        wall.draw(phi, CLIPPED);
+                    }
+                }
+            }
+            on_symmetry_lines(&mut samples);
+        }
+        let inside = samples
+            .iter()
+            .all(|phi| walls.iter().all(|wall| wall.value(phi) > 0.0));
+        inside
+            .then_some(samples)
+            .ok_or(CollocationError::Guess { problem: OUTSIDE })
     }
 
     /// The factor that brings all samples inside the walls: 1 where they are.
@@ -143,10 +184,19 @@ impl QuarterGuess {
         if low > 0.0 {
             Ok(INSIDE * low)
         } else {
-            Err(CollocationError::Guess {
-                problem: "no part of it lies inside the bounds",
-            })
+            Err(CollocationError::Guess { problem: OUTSIDE })
         }
+    }
+}
+
+/// Moves the first shape to φ₁ = φ₂ and the last to φ₁ = −φ₂.
+fn on_symmetry_lines(shapes: &mut [Vector2<f64>]) {
+    if let Some(first) = shapes.first_mut() {
+        first.fill(0.5 * (first.x + first.y));
+    }
+    if let Some(last) = shapes.last_mut() {
+        let half = 0.5 * (last.y - last.x);
+        *last = Vector2::new(-half, half);
     }
 }
 

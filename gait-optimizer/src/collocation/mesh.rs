@@ -57,6 +57,15 @@ impl Mesh {
         self.elements.get(after.saturating_sub(1))
     }
 
+    /// The points before and after a time, and how far it is from one to the other.
+    pub(crate) fn between(&self, t: f64) -> (usize, usize, f64) {
+        let last = self.times.len() - 1;
+        let after = self.times.partition_point(|&time| time < t).clamp(1, last);
+        let before = after - 1;
+        let share = (t - self.times[before]) / (self.times[after] - self.times[before]);
+        (before, after, share.clamp(0.0, 1.0))
+    }
+
     /// The shape at a time on the polynomials through these points.
     pub(crate) fn shape(&self, phi: &[Vector2<f64>], t: f64) -> Vector2<f64> {
         self.holding(t)

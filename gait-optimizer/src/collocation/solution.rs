@@ -1,12 +1,14 @@
 //! What direct collocation returns: the quarter gait with its costates, its active bounds, and what it was checked against.
 
 use nalgebra::Vector2;
+use swimmer_files::ArcKind;
 
 use super::again::Again;
 use super::mesh::Mesh;
 use super::newton::Optimum;
 use super::walls::Wall;
-use super::{CollocationProblem, lighthill, lighthill_of};
+use super::{ACTIVE, ACTIVE_AT_ALL, CollocationProblem, lighthill, lighthill_of};
+use super::{CollocationError, QuarterGuess};
 
 /// One point of the solution. The costates are those of the paper's section V, for J = `x_f²/E_f` made greatest, by the
 /// covector mapping from the multipliers of the discretised equations.
@@ -20,8 +22,9 @@ pub struct CollocationNode {
     pub control: [f64; 2],
     /// λ₁ … λ₅.
     pub costate: [f64; 5],
-    /// Multiplier density of the bound, per φᵢ: of φᵢ ≤ `φ_max` if positive, of φᵢ ≥ −`φ_max` if negative. In units of λ̇.
-    pub bound_multiplier: [f64; 2],
+    /// What the bounds add to λ̇₁, λ̇₂: the sum of their multipliers (≥ 0) times their outward gradients. For |φᵢ| ≤ `φ_max`
+    /// just the multiplier, with the sign of φᵢ.
+    pub bound_force: [f64; 2],
     /// y from the integration again; `λ₄ = λ₃(y − y_f)` holds at an optimum.
     pub y: f64,
 }
@@ -29,13 +32,13 @@ pub struct CollocationNode {
 /// An interval of time along a bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoundArc {
-    /// Which joint is held, 0 for φ₁.
-    pub joint: usize,
-    /// +1 at `φ_max`, −1 at −`φ_max`.
-    pub side: f64,
-    /// First time on the bound, to within a node's distance.
+    /// What the bound is.
+    pub kind: ArcKind,
+    /// Unit normal of the bound where the arc begins, out of the region.
+    pub normal: [f64; 2],
+    /// First point of time on the bound that is a node.
     pub from: f64,
-    /// Last time on the bound.
+    /// The last one.
     pub to: f64,
 }
 
@@ -50,6 +53,8 @@ pub struct MeshRound {
     pub error: f64,
     /// Largest |P/`E_f` − 1| between nodes.
     pub uneven_power: f64,
+    /// Largest overstepping of a bound between nodes, in rad, or over L for the distance of links.
+    pub overstepped: f64,
     /// ξ.
     pub efficiency: f64,
     /// Newton steps.
@@ -71,6 +76,9 @@ pub struct CollocationSolution {
     pub efficiency: f64,
     /// ξ of the whole quarter integrated again with the interpolated control.
     pub efficiency_again: f64,
+    /// How often the direction turns round in a whole cycle: 1 for a simple counter-clockwise curve. Others are optima too,
+    /// of curves with loops, in which displacement is not worth much.
+    pub turning_number: f64,
     /// Each mesh that was solved; the last is that of the solution.
     pub rounds: Vec<MeshRound>,
     /// Largest last Newton step \[rad\].
@@ -92,6 +100,18 @@ impl CollocationSolution {
         element.shape(&phi, t)
     }
 
+    /// The quarter as a guess for another problem, such as a neighbouring bound.
+    ///
+    /// # Errors
+    /// As [`QuarterGuess::from_samples`]; never for a solution that this module made.
+    pub fn guess(&self) -> Result<QuarterGuess, CollocationError> {
+        let nodes = self.nodes.iter();
+        let samples: Vec<_> = nodes
+            .map(|node| (node.t, [node.state[0], node.state[1]]))
+            .collect();
+        QuarterGuess::from_samples(&samples)
+    }
+
     /// Newton steps on all meshes together.
     pub fn iterations(&self) -> usize {
         self.rounds.iter().map(|round| round.iterations).sum()
@@ -102,9 +122,6 @@ impl CollocationSolution {
         self.rounds.last().map_or(f64::NAN, |round| round.error)
     }
 }
-
-/// Share of the largest multiplier above which a bound counts as active.
-const ACTIVE: f64 = 1e-4;
 
 pub(crate) fn finish(
     problem: &CollocationProblem<'_>,
@@ -135,17 +152,16 @@ pub(crate) fn finish(
             let carry = nalgebra::Vector3::new(of_x * node.cos, -of_x * node.sin, of_theta);
             let of_phi =
                 -(node.connection.tr_mul(&carry) + node.power * node.rate * (2.0 * of_energy));
-            let mut bound_multiplier = [0.0; 2];
+            let mut force = Vector2::zeros();
             for (wall, multiplier) in walls.iter().zip(&multipliers[point * walls.len()..]) {
-                let Wall::Angle { joint, sign, .. } = *wall;
-                bound_multiplier[joint] += sign * multiplier * merit;
+                force -= wall.margin(&phi).gradient * (multiplier * merit);
             }
             CollocationNode {
                 t: mesh.times[point],
                 state: [phi.x, phi.y, along[point].0, node.theta, along[point].1],
                 control: node.rate.into(),
                 costate: [of_phi.x, of_phi.y, of_x, of_theta, of_energy],
-                bound_multiplier,
+                bound_force: force.into(),
                 y: again.y[point],
             }
         })
@@ -153,7 +169,8 @@ pub(crate) fn finish(
     extrapolate_first(mesh, &mut nodes);
     let rounds_efficiency = lighthill(problem.model, &path);
     CollocationSolution {
-        bound_arcs: bound_arcs(&nodes),
+        turning_number: turning_number(&nodes),
+        bound_arcs: bound_arcs(&nodes, walls, &multipliers),
         nodes,
         final_x: x,
         final_energy: energy,
@@ -186,31 +203,42 @@ fn extrapolate_first(mesh: &Mesh, nodes: &mut [CollocationNode]) {
     }
 }
 
+/// The turns from node to node, begun and ended square to the symmetry lines as the whole cycle is.
+fn turning_number(nodes: &[CollocationNode]) -> f64 {
+    let mut before = Vector2::new(-1.0, 1.0);
+    let mut turned = 0.0;
+    let controls = nodes.iter().skip(1).map(|node| node.control.into());
+    for direction in controls.chain([Vector2::new(-1.0, -1.0)]) {
+        turned += before.perp(&direction).atan2(before.dot(&direction));
+        before = direction;
+    }
+    4.0 * turned / std::f64::consts::TAU
+}
+
 /// Runs of nodes with an active multiplier.
-fn bound_arcs(nodes: &[CollocationNode]) -> Vec<BoundArc> {
-    let largest = nodes
-        .iter()
-        .flat_map(|node| node.bound_multiplier)
-        .fold(0.0, |most: f64, value| most.max(value.abs()));
+fn bound_arcs(nodes: &[CollocationNode], walls: &[Wall], multipliers: &[f64]) -> Vec<BoundArc> {
+    let count = walls.len();
     let mut arcs: Vec<BoundArc> = Vec::new();
-    for joint in 0..2 {
+    for (k, wall) in walls.iter().enumerate() {
+        let multiplier = |point: usize| multipliers[point * count + k];
+        let largest = (0..nodes.len()).map(multiplier).fold(0.0, f64::max);
         let mut open: Option<BoundArc> = None;
-        for node in nodes {
-            let value = node.bound_multiplier[joint];
-            let active = value.abs() > ACTIVE * largest && largest > 1e-9;
-            let side = value.signum();
-            match &mut open {
-                Some(arc) if active && arc.side.to_bits() == side.to_bits() => arc.to = node.t,
-                _ => {
-                    arcs.extend(open.take());
-                    open = active.then_some(BoundArc {
-                        joint,
-                        side,
-                        from: node.t,
-                        to: node.t,
-                    });
-                }
+        for (point, node) in nodes.iter().enumerate() {
+            if largest < ACTIVE_AT_ALL || multiplier(point) < ACTIVE * largest {
+                arcs.extend(open.take());
+                continue;
             }
+            let normal = -wall
+                .margin(&Vector2::new(node.state[0], node.state[1]))
+                .gradient
+                .normalize();
+            open.get_or_insert(BoundArc {
+                kind: wall.kind(),
+                normal: normal.into(),
+                from: node.t,
+                to: node.t,
+            })
+            .to = node.t;
         }
         arcs.extend(open);
     }

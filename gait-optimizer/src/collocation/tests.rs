@@ -148,18 +148,72 @@ fn the_multiplier_is_the_price_of_the_bound() {
     };
     let here = at(1.2);
     assert_eq!(here.bound_arcs.len(), 1, "{:?}", here.bound_arcs);
-    assert!(here.bound_arcs[0].joint == 1 && here.bound_arcs[0].side > 0.0);
+    assert!(here.bound_arcs[0].normal[1] > 0.999);
     let step = 1e-3;
     let slope = (at(1.2 + step).efficiency - at(1.2 - step).efficiency) / (2.0 * step);
     let mut price = 0.0;
     for element in &here.mesh.elements {
         for (j, weight) in (1..=element.rule.degree).zip(element.rule.weights()) {
             let node = &here.nodes[element.first + j];
-            price += element.length * weight * node.bound_multiplier[1];
+            price += element.length * weight * node.bound_force[1];
         }
     }
     let price = price * model.side_drag() * model.swimmer().total_length();
     assert!((price / slope - 1.0).abs() < 1e-4, "{price} {slope}");
+}
+
+/// ξ under tightening bounds, each solved from the last, against the same problem on evenly refined meshes of another degree.
+#[test]
+fn bounded_gaits_do_not_depend_on_the_mesh() {
+    for model in [purcell(), robot()] {
+        let mut guess = QuarterGuess::circle(1.3).unwrap();
+        let mut before = f64::INFINITY;
+        for max in [2.8, 2.4, 2.0, 1.6, 1.2] {
+            let problem = CollocationProblem::new(&model, 1.0).with_max_angle(max);
+            let refined = solve(&problem, &guess).unwrap();
+            guess = refined.guess().unwrap();
+            let mut even = problem;
+            (even.elements, even.degree, even.tolerance) = (150, 3, 0.0);
+            let even = solve(&even, &guess).unwrap();
+            let off = even.efficiency / refined.efficiency - 1.0;
+            assert!(off.abs() < 1e-6, "φ_max = {max}: {off:.1e}");
+            assert!((refined.turning_number - 1.0).abs() < 1e-9);
+            assert!(refined.rounds.last().unwrap().overstepped < 1e-5);
+            assert!(refined.efficiency <= before * (1.0 + 1e-9));
+            before = refined.efficiency;
+        }
+    }
+}
+
+/// The large gait crosses its links. Kept from it, it gives up efficiency, touches, and stays out of the forbidden zone.
+#[test]
+fn links_are_kept_apart() {
+    let model = purcell();
+    let free = solved(&model, -1.0, 3.3, 1e-8);
+    let links = model.swimmer().links;
+    assert!(
+        free.nodes
+            .iter()
+            .any(|node| { links.overlap(&Vector2::new(node.state[0], node.state[1])) > 0.0 })
+    );
+    let mut before = free.efficiency;
+    for clearance in [0.0, 0.06, 0.3] {
+        let mut problem = CollocationProblem::new(&model, -1.0);
+        problem.bounds.no_overlap = true;
+        problem.bounds.clearance = clearance;
+        let apart = solve(&problem, &QuarterGuess::circle(3.3).unwrap()).unwrap();
+        assert!(
+            apart.efficiency < before,
+            "{clearance}: {}",
+            apart.efficiency
+        );
+        before = apart.efficiency;
+        assert_eq!(apart.bound_arcs[0].kind, swimmer_files::ArcKind::Clearance);
+        for step in 0..=1000 {
+            let phi = apart.phi(f64::from(step) / 1000.0);
+            assert!(links.overlap(&phi) < 1e-4, "{clearance}: {phi:?}");
+        }
+    }
 }
 
 /// From a circle far off, in a box much too tight for it: whatever comes out must be a gait.
@@ -206,7 +260,7 @@ proptest! {
         sphere in 0.0..1.2_f64,
         coefficients in prop::array::uniform3(prop::array::uniform2(-2.0..4.0_f64)),
         max_angle in prop::option::of(0.3..4.0_f64),
-        forwards in any::<bool>(),
+        (forwards, no_overlap) in any::<(bool, bool)>(),
         (elements, degree) in (1..24_usize, 2..9_usize),
     ) {
         let swimmer = Swimmer {
@@ -217,7 +271,8 @@ proptest! {
         };
         let model = Model::new(&swimmer).unwrap();
         let mut problem = CollocationProblem::new(&model, if forwards { 1.0 } else { -1.0 });
-        problem.max_angle = max_angle;
+        problem.bounds.max_angle = max_angle;
+        problem.bounds.no_overlap = no_overlap;
         (problem.elements, problem.degree, problem.tolerance) = (elements, degree, 1e-6);
         let [a, b, c] = coefficients;
         if let Ok(guess) = QuarterGuess::fourier(&[a, b.map(|v| 0.2 * v), c.map(|v| 0.05 * v)])

@@ -1,13 +1,14 @@
 //! What keeps a node inside: margins c(Φ) ≥ 0 with their derivatives, and the logarithmic barrier on them.
 
 use nalgebra::{Matrix2, Vector2};
+use swimmer_files::{ArcKind, Bounds};
+use swimmer_model::Links;
 
-/// A bound at every node.
+use crate::region::{Bound, Clearance, Level, Piece, Region};
+
+/// A bound at every point of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Wall {
-    /// `sign · φ[joint] ≤ limit`.
-    Angle { joint: usize, sign: f64, limit: f64 },
-}
+pub(crate) struct Wall(Bound);
 
 /// c, its gradient and its second derivatives at a shape.
 #[derive(Debug, Clone, Copy)]
@@ -17,44 +18,94 @@ pub(crate) struct Margin {
     pub(crate) curvature: Matrix2<f64>,
 }
 
+/// What the walls of a point add to gradient and Hessian of the barrier problem.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WallTerm {
+    pub(crate) gradient: Vector2<f64>,
+    pub(crate) hessian: Matrix2<f64>,
+}
+
 impl Wall {
-    /// The four sides of |φᵢ| ≤ `limit`.
-    pub(crate) fn sides(limit: f64) -> [Self; 4] {
-        [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)].map(|(joint, sign)| Self::Angle {
-            joint,
-            sign,
-            limit,
-        })
+    /// All bounds of a swimmer with these links.
+    pub(crate) fn all(bounds: &Bounds, links: &Links<f64>) -> Vec<Self> {
+        Region::new(bounds, links).bounds().map(Self).collect()
+    }
+
+    pub(crate) fn kind(&self) -> ArcKind {
+        self.0.kind()
     }
 
     pub(crate) fn value(&self, phi: &Vector2<f64>) -> f64 {
-        match *self {
-            Self::Angle { joint, sign, limit } => limit - sign * phi[joint],
+        match &self.0 {
+            Bound::Clearance(clearance) if clearance.has_corner() => touching(clearance, phi).value,
+            bound => bound.margin(phi),
         }
     }
 
     pub(crate) fn margin(&self, phi: &Vector2<f64>) -> Margin {
-        match *self {
-            Self::Angle { joint, sign, .. } => {
-                let mut gradient = Vector2::zeros();
-                gradient[joint] = -sign;
+        match &self.0 {
+            Bound::Straight(edge) => Margin {
+                value: edge.margin(phi),
+                gradient: -edge.normal,
+                curvature: Matrix2::zeros(),
+            },
+            Bound::Clearance(clearance) => {
+                let level = if clearance.has_corner() {
+                    touching(clearance, phi)
+                } else {
+                    clearance.deciding_level(phi)
+                };
                 Margin {
-                    value: self.value(phi),
-                    gradient,
-                    curvature: Matrix2::zeros(),
+                    value: level.value,
+                    gradient: level.gradient,
+                    curvature: level.hessian,
                 }
             }
         }
     }
 
-    /// Moves a shape back where its margin is below `least`.
-    pub(crate) fn draw_inside(&self, phi: &mut Vector2<f64>, least: f64) {
-        match *self {
-            Self::Angle { joint, sign, limit } => {
-                if limit - sign * phi[joint] < least {
-                    phi[joint] = sign * (limit - least);
-                }
+    /// Moves a shape, near enough, to where its margin is `wanted`.
+    pub(crate) fn draw(&self, phi: &mut Vector2<f64>, wanted: f64) {
+        for _ in 0..3 {
+            let margin = self.margin(phi);
+            let step = margin.gradient * ((wanted - margin.value) / margin.gradient.norm_squared());
+            if !step.norm().is_finite() {
+                return;
             }
+            *phi += step;
         }
     }
+}
+
+/// Where links may touch, the distance of the tips is a cone round the corner that Newton's method cannot see past. Side
+/// links cross if and only if both tips are beyond the other link's line; the higher one is a smooth margin up to the corner.
+fn touching(clearance: &Clearance, phi: &Vector2<f64>) -> Level {
+    let [front, back] = [Piece::FrontTip, Piece::BackTip].map(|piece| clearance.level(piece, phi));
+    if front.value > back.value {
+        front
+    } else {
+        back
+    }
+}
+
+/// The walls of one point, with their multiplier densities and the point's weight.
+pub(crate) fn wall_term(
+    walls: &[Wall],
+    multipliers: &[f64],
+    phi: &Vector2<f64>,
+    barrier: f64,
+    weight: f64,
+) -> WallTerm {
+    let (mut gradient, mut hessian) = (Vector2::zeros(), Matrix2::zeros());
+    for (wall, multiplier) in walls.iter().zip(multipliers) {
+        let Margin {
+            value,
+            gradient: slope,
+            curvature,
+        } = wall.margin(phi);
+        gradient -= slope * (weight * barrier / value);
+        hessian += slope * slope.transpose() * (weight * multiplier / value)
+            - curvature * (weight * multiplier);
+    }
+    WallTerm { gradient, hessian }
 }

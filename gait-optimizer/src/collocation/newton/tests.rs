@@ -1,6 +1,7 @@
 //! First and second derivatives of the whole barrier function, by differences.
 
 use super::*;
+use swimmer_files::Bounds;
 use swimmer_model::{Circle, Gait, Swimmer};
 
 const SIZE: f64 = 1e-4;
@@ -24,7 +25,13 @@ fn somewhere(mesh: &Mesh, amplitude: f64) -> Vec<Vector2<f64>> {
 fn gradient_and_hessian_are_exact() {
     let model = Model::new(&Swimmer::purcell()).unwrap();
     let mesh = Mesh::new(&[0.0, 0.3, 0.4, 0.75, 1.0], &[4, 2, 7, 3]);
-    let walls = Wall::sides(1.7);
+    let bounds = Bounds {
+        max_angle: Some(1.7),
+        no_overlap: true,
+        clearance: 0.1,
+        ..Bounds::default()
+    };
+    let walls = Wall::all(&bounds, &model.swimmer().links);
     let barrier = 1e-2;
     let make = |phi| {
         let mut newton = Newton::new(&model, &mesh, &walls, 1.0, 10.0, phi);
