@@ -28,7 +28,7 @@ pub enum Heading {
 }
 
 impl Heading {
-    fn sign(self) -> f64 {
+    pub(crate) fn sign(self) -> f64 {
         match self {
             Self::Forwards => 1.0,
             Self::Backwards => -1.0,

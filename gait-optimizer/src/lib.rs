@@ -18,6 +18,7 @@
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs |
 //! | `cycle` | from a quarter to the full cycle, at constant power |
 //! | `playable` | what a real robot makes of a gait: timing under servo limits, losses foretold |
+//! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
 //! | `certificate` | checks, and those that any closed curve can be asked |
 //! | [`collocation`] | efficiency gaits by Radau collocation, with a structured Newton method and mesh refinement |
 //! | `certify` | the same conditions asked of any closed curve, from its samples alone |
@@ -35,6 +36,7 @@ mod height_map;
 mod optimal_gait;
 pub mod playable;
 mod region;
+mod robust;
 mod runge_kutta;
 
 pub use certificate::{Certificate, Check};
@@ -47,4 +49,7 @@ pub use height_map::{
     AreaRule, Convergence, Frame, Grid, HeightMap, HeightMapError, LevelCurve, Row,
 };
 pub use optimal_gait::{Arc, OptimalGait};
+pub use robust::{
+    Over, RobustError, RobustGait, Uncertainty, Values, robust_displacement, robust_efficiency,
+};
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};

@@ -1,8 +1,11 @@
 //! What is left of a gait's displacement on a robot, before it is sent: the same table, brain arithmetic, pulses and servo
 //! plant that the robot plays it by ([`gait_player::playback`]), with one imperfection after the other switched on.
 
-// Periods and pulses are bounded by what was checked; f32 is what the robot itself uses.
-#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "periods and pulses are bounded by what was checked; f32 is what the robot itself uses"
+)]
 
 mod gap;
 mod stages;

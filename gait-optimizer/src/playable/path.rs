@@ -24,7 +24,11 @@ impl TableCurve {
 }
 
 /// The piece that holds u, of so many, with the place in it from 0 to 1.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share of the pieces; NaN becomes 0
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a share of the pieces; NaN becomes 0"
+)]
 fn piece(u: f64, pieces: usize) -> (usize, f64) {
     let scaled = (u - u.floor()) * pieces as f64;
     let index = (scaled as usize).min(pieces.saturating_sub(1));
@@ -112,7 +116,10 @@ impl Gait<f64> for Polyline {
 }
 
 #[cfg(test)]
-#[allow(clippy::cast_possible_truncation)] // the robot's own arithmetic is in single precision
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "the robot's own arithmetic is in single precision"
+)]
 mod tests {
     use super::*;
     use gait_player::{GaitTable, table::Phase};

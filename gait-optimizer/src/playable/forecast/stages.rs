@@ -1,7 +1,10 @@
 //! The ways of the joints through one cycle, one imperfection after the other.
 
-// Periods and pulses are bounded by what was checked; f32 is what the robot itself uses.
-#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "periods and pulses are bounded by what was checked; f32 is what the robot itself uses"
+)]
 
 use gait_player::playback::Playback;
 use gait_player::servo::ServoMap;

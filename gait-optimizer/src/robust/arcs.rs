@@ -1,0 +1,332 @@
+//! Displacement: the ensemble maximum principle on arcs.
+//!
+//! For weights wₖ of the members the first variation of Σ wₖ Xₖ under a push of the curve is ∮ h̄ ds with the weighted height
+//! h̄ = Σ wₖ μₖ·Fₖ, each member with its own pose, momentum and curvature. So free arcs satisfy h̄ = 0, and along an upper
+//! bound h̄ ≥ 0 (a push outwards would gain, were it allowed).
+//!
+//! A free arc is a polynomial through Chebyshev–Lobatto nodes. Each node moves along its own direction, which at the arc's
+//! ends lies along what the end must stay on (a diagonal or a bound) and turns evenly between; so there are as many unknowns
+//! as conditions h̄ = 0, one a node. Arcs along bounds are straight between their neighbours' ends. The nominal optimum of
+//! [`crate::displacement()`] gives the arcs and the start; Newton's method does the rest.
+
+use nalgebra::{DVector, Vector2};
+use swimmer_files::ArcKind;
+use swimmer_model::{Gait, Model};
+
+use super::RobustError;
+use super::newton::{Design, newton};
+use super::nodes::Nodes;
+use super::quarter::{ArcCurve, Swum};
+use crate::OptimalGait;
+
+/// Degree of the polynomial of an arc: of one of several, and of one that is the whole quarter.
+const DEGREES: [usize; 2] = [28, 44];
+/// Heights, over L and per square radian, that count as zero: what Newton's method reaches.
+pub(super) const FLAT: f64 = 1e-11;
+
+/// An arc as the design sees it.
+#[derive(Debug, Clone)]
+enum Leg {
+    /// Nodes and the direction in which each moves.
+    Free(Vec<(Vector2<f64>, Vector2<f64>)>),
+    /// Straight along a bound between these ends; a neighbouring free arc may move them.
+    Bound([Vector2<f64>; 2]),
+}
+
+/// Gaits with the arcs of a nominal optimum.
+#[derive(Debug)]
+pub(super) struct Arcs {
+    nodes: Nodes,
+    legs: Vec<Leg>,
+    /// 1 or −1: X is maximised or minimised.
+    sign: f64,
+    /// Whose optimum the family lies around.
+    nominal: Model<f64>,
+}
+
+impl Arcs {
+    /// The family around a gait.
+    pub(super) fn around(
+        gait: &OptimalGait,
+        nominal: &Model<f64>,
+        sign: f64,
+    ) -> Result<Self, RobustError> {
+        let [several, single] = DEGREES;
+        let nodes = Nodes::new(if gait.arcs.len() > 1 { several } else { single });
+        let curve = gait.gait().map_err(|_| RobustError::Structure {
+            problem: "the nominal gait's samples cannot be swum",
+        })?;
+        let mut legs = Vec::with_capacity(gait.arcs.len());
+        let count = gait.arcs.len();
+        let mut start = 0.0;
+        for (index, arc) in gait.arcs.iter().enumerate() {
+            let end = if index + 1 == count {
+                0.25
+            } else {
+                fraction_of(gait, arc.to)
+            };
+            let ends = [Vector2::from(arc.from), Vector2::from(arc.to)];
+            legs.push(match arc.kind {
+                ArcKind::Upper => Leg::Bound(ends),
+                ArcKind::Singular => {
+                    let neighbour = |at: Option<usize>, diagonal: Vector2<f64>| {
+                        at.and_then(|at| gait.arcs.get(at)).map_or(diagonal, |bound| {
+                            Vector2::from(bound.to) - Vector2::from(bound.from)
+                        })
+                    };
+                    let first = neighbour(index.checked_sub(1), Vector2::new(1.0, 1.0));
+                    let last = neighbour(Some(index + 1), Vector2::new(-1.0, 1.0));
+                    free(&nodes, &curve, (start, end), ends, [first, last])
+                }
+                _ => {
+                    return Err(RobustError::Structure {
+                        problem: "a robust design follows free arcs and upper bounds only; leave out --min-angle, \
+                                  --sector and --no-overlap",
+                    });
+                }
+            });
+            start = end;
+        }
+        Ok(Self {
+            nodes,
+            legs,
+            sign,
+            nominal: *nominal,
+        })
+    }
+
+    /// The arcs moved by `x`, a number for each free node.
+    pub(super) fn curves(&self, x: &DVector<f64>) -> Vec<ArcCurve> {
+        let mut next = x.iter();
+        let mut arcs: Vec<Vec<Vector2<f64>>> = self
+            .legs
+            .iter()
+            .map(|leg| match leg {
+                Leg::Free(free) => free
+                    .iter()
+                    .map(|(phi, direction)| phi + direction * next.next().copied().unwrap_or(0.0))
+                    .collect(),
+                Leg::Bound(ends) => ends.to_vec(),
+            })
+            .collect();
+        for at in 0..arcs.len() {
+            if let Some(Leg::Bound(ends)) = self.legs.get(at) {
+                let before = at.checked_sub(1).and_then(|i| arcs.get(i)?.last().copied());
+                let after = arcs.get(at + 1).and_then(|arc| arc.first().copied());
+                let (from, to) = (before.unwrap_or(ends[0]), after.unwrap_or(ends[1]));
+                let straight = self.nodes.place.iter().map(|t| from + (to - from) * *t);
+                if let Some(arc) = arcs.get_mut(at) {
+                    *arc = straight.collect();
+                }
+            }
+        }
+        arcs.into_iter()
+            .map(|phi| ArcCurve {
+                slope: self.nodes.slopes(&phi),
+                phi,
+            })
+            .collect()
+    }
+
+    pub(super) fn kinds(&self) -> impl Iterator<Item = ArcKind> + '_ {
+        self.legs.iter().map(|leg| match leg {
+            Leg::Free(_) => ArcKind::Singular,
+            Leg::Bound(_) => ArcKind::Upper,
+        })
+    }
+
+    pub(super) fn nodes(&self) -> &Nodes {
+        &self.nodes
+    }
+
+    /// Weighted heights of all nodes.
+    fn heights(&self, arcs: &[ArcCurve], members: &[(&Model<f64>, f64)]) -> Vec<f64> {
+        let count: usize = arcs.iter().map(|arc| arc.phi.len()).sum();
+        let mut heights = vec![0.0; count];
+        for (model, weight) in members.iter().filter(|(_, weight)| *weight != 0.0) {
+            let swum = Swum::new(model, &self.nodes, arcs);
+            let shapes = arcs.iter().flat_map(|arc| &arc.phi);
+            for ((index, phi), height) in shapes.enumerate().zip(&mut heights) {
+                *height += self.sign * weight * swum.height(model, index, phi);
+            }
+        }
+        heights
+    }
+
+    /// What the certificate asks of a solution.
+    pub(super) fn evidence(&self, x: &DVector<f64>, members: &[(&Model<f64>, f64)]) -> Evidence {
+        let arcs = self.curves(x);
+        let heights = self.heights(&arcs, members);
+        let mut evidence = Evidence {
+            free_height: 0.0,
+            multiplier: None,
+            legendre_clebsch: f64::INFINITY,
+        };
+        let swum: Vec<_> = members
+            .iter()
+            .filter(|(_, weight)| *weight != 0.0)
+            .map(|(model, weight)| (*model, *weight, Swum::new(model, &self.nodes, &arcs)))
+            .collect();
+        let mut index = 0;
+        for (leg, arc) in self.legs.iter().zip(&arcs) {
+            for (phi, slope) in arc.phi.iter().zip(&arc.slope) {
+                let height = heights.get(index).copied().unwrap_or(f64::NAN);
+                if matches!(leg, Leg::Bound(_)) {
+                    let least = evidence.multiplier.unwrap_or(f64::INFINITY);
+                    evidence.multiplier = Some(least.min(height));
+                } else {
+                    evidence.free_height = evidence.free_height.max(height.abs());
+                    let outward = Vector2::new(slope.y, -slope.x).normalize();
+                    let falls: f64 = swum
+                        .iter()
+                        .map(|(model, weight, swum)| {
+                            -self.sign * weight * swum.height_slope(model, index, phi, &outward)
+                        })
+                        .sum();
+                    evidence.legendre_clebsch = evidence.legendre_clebsch.min(falls);
+                }
+                index += 1;
+            }
+        }
+        evidence
+    }
+}
+
+/// Numbers of the ensemble maximum principle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Evidence {
+    /// Largest |h̄| on free arcs.
+    pub(super) free_height: f64,
+    /// Least h̄ along bounds.
+    pub(super) multiplier: Option<f64>,
+    /// Least fall of h̄ outwards on free arcs; it must be positive for a maximum (generalised Legendre–Clebsch).
+    pub(super) legendre_clebsch: f64,
+}
+
+impl Design for Arcs {
+    fn start(&self) -> DVector<f64> {
+        let free = self.legs.iter().map(|leg| match leg {
+            Leg::Free(nodes) => nodes.len(),
+            Leg::Bound(_) => 0,
+        });
+        DVector::zeros(free.sum())
+    }
+
+    fn values(&self, x: &DVector<f64>, members: &[Model<f64>]) -> Vec<f64> {
+        let arcs = self.curves(x);
+        members
+            .iter()
+            .map(|model| self.sign * Swum::new(model, &self.nodes, &arcs).displacement)
+            .collect()
+    }
+
+    /// Newton's method from the start; where that fails, along the weights from the nominal swimmer's optimum to those asked
+    /// for.
+    fn solve(
+        &self,
+        start: &DVector<f64>,
+        members: &[(&Model<f64>, f64)],
+    ) -> Result<DVector<f64>, RobustError> {
+        match self.polished(start, members) {
+            Err(RobustError::NotConverged { .. }) => self.followed(members),
+            other => other,
+        }
+    }
+}
+
+impl Arcs {
+    fn polished(
+        &self,
+        start: &DVector<f64>,
+        members: &[(&Model<f64>, f64)],
+    ) -> Result<DVector<f64>, RobustError> {
+        let residual = |x: &DVector<f64>| {
+            let heights = self.heights(&self.curves(x), members);
+            let mut index = 0;
+            let mut free = Vec::with_capacity(x.len());
+            for leg in &self.legs {
+                let nodes = self.nodes.count();
+                if matches!(leg, Leg::Free(_)) {
+                    free.extend(heights.iter().skip(index).take(nodes));
+                }
+                index += nodes;
+            }
+            DVector::from_vec(free)
+        };
+        newton(residual, start.clone(), FLAT, MOST)
+    }
+
+    fn followed(&self, members: &[(&Model<f64>, f64)]) -> Result<DVector<f64>, RobustError> {
+        let mut x = self.polished(&self.start(), &[(&self.nominal, 1.0)])?;
+        let (mut share, mut step) = (0.0, 0.25);
+        while share < 1.0 {
+            let next = f64::min(share + step, 1.0);
+            let mut mixed = vec![(&self.nominal, 1.0 - next)];
+            mixed.extend(
+                members
+                    .iter()
+                    .map(|(model, weight)| (*model, weight * next)),
+            );
+            match self.polished(&x, &mixed) {
+                Ok(there) => (x, share) = (there, next),
+                Err(error) if step < SMALLEST_STEP => return Err(error),
+                Err(_) => step *= 0.5,
+            }
+        }
+        Ok(x)
+    }
+}
+
+/// Smallest step along the weights.
+const SMALLEST_STEP: f64 = 0.05;
+
+/// Longest step of a node in one iteration \[rad\].
+const MOST: f64 = 0.1;
+
+/// u of the sample of the quarter that is nearest to a shape.
+fn fraction_of(gait: &OptimalGait, shape: [f64; 2]) -> f64 {
+    let shape = Vector2::from(shape);
+    gait.u()
+        .iter()
+        .zip(gait.phi())
+        .take_while(|(u, _)| **u <= 0.25 + 1e-12)
+        .min_by(|a, b| (a.1 - shape).norm().total_cmp(&(b.1 - shape).norm()))
+        .map_or(0.25, |(u, _)| *u)
+}
+
+/// A free arc between two fractions of the period, its ends put where they belong.
+fn free(
+    nodes: &Nodes,
+    curve: &impl Gait<f64>,
+    (from, to): (f64, f64),
+    [first, last]: [Vector2<f64>; 2],
+    along: [Vector2<f64>; 2],
+) -> Leg {
+    // Outward is the right-hand side of the motion.
+    let outward = |u: f64, along: Vector2<f64>| {
+        let rate = curve.at(u).rate;
+        let along = along.normalize();
+        if along.dot(&Vector2::new(rate.y, -rate.x)) < 0.0 {
+            -along
+        } else {
+            along
+        }
+    };
+    let inside = 1e-6 * (to - from);
+    let (begin, end) = (
+        outward(from + inside, along[0]),
+        outward(to - inside, along[1]),
+    );
+    let count = nodes.count();
+    let place = |(index, t): (usize, &f64)| {
+        let phi = if index == 0 {
+            first
+        } else if index + 1 == count {
+            last
+        } else {
+            curve.at(from + (to - from) * t).phi
+        };
+        (phi, (begin + (end - begin) * *t).normalize())
+    };
+    Leg::Free(nodes.place.iter().enumerate().map(place).collect())
+}

@@ -1,0 +1,97 @@
+//! Newton's method with a Jacobian by differences, and what a family of gaits must offer to be designed robustly.
+
+use nalgebra::{DMatrix, DVector};
+use swimmer_model::Model;
+
+use super::RobustError;
+
+/// A family of gaits in which the best for a weighted sum over swimmers can be found.
+pub(super) trait Design {
+    /// The nominal optimum's parameters.
+    fn start(&self) -> DVector<f64>;
+
+    /// The objective of each member; larger is better.
+    fn values(&self, x: &DVector<f64>, members: &[Model<f64>]) -> Vec<f64>;
+
+    /// The stationary point of the weighted sum near `start`.
+    fn solve(
+        &self,
+        start: &DVector<f64>,
+        members: &[(&Model<f64>, f64)],
+    ) -> Result<DVector<f64>, RobustError>;
+}
+
+const STEPS: usize = 40;
+const HALVINGS: usize = 12;
+/// Step of the differences; their error slows the last steps a little and shifts no root.
+const DIFFERENCE: f64 = 1e-7;
+/// Jacobians are kept while a step gains this factor.
+const GOOD: f64 = 0.05;
+
+/// A root of `residual` near `start`, to `tolerance` in the largest component. No component moves further than `longest` in
+/// a step.
+pub(super) fn newton(
+    residual: impl Fn(&DVector<f64>) -> DVector<f64>,
+    start: DVector<f64>,
+    tolerance: f64,
+    longest: f64,
+) -> Result<DVector<f64>, RobustError> {
+    let mut x = start;
+    let mut r = residual(&x);
+    let mut lu = None;
+    for _ in 0..STEPS {
+        if r.amax() <= tolerance {
+            return Ok(x);
+        }
+        if lu.is_none() {
+            lu = Some(jacobian(&residual, &x, &r).lu());
+        }
+        let step = lu.as_ref().and_then(|lu| lu.solve(&r));
+        let Some(step) = step.filter(|step| step.iter().all(|s| s.is_finite())) else {
+            break;
+        };
+        let mut share = (longest / step.amax().max(f64::MIN_POSITIVE)).min(1.0);
+        let before = r.amax();
+        let mut moved = false;
+        for _ in 0..HALVINGS {
+            let trial = &x - &step * share;
+            let there = residual(&trial);
+            if there.amax() < before {
+                (x, r, moved) = (trial, there, true);
+                break;
+            }
+            share *= 0.5;
+        }
+        if !moved {
+            // At the floor of rounding a step may gain nothing more.
+            if before <= 10.0 * tolerance {
+                return Ok(x);
+            }
+            break;
+        }
+        if r.amax() > GOOD * before {
+            lu = None;
+        }
+    }
+    if r.amax() <= tolerance {
+        return Ok(x);
+    }
+    Err(RobustError::NotConverged { residual: r.amax() })
+}
+
+fn jacobian(
+    residual: &impl Fn(&DVector<f64>) -> DVector<f64>,
+    x: &DVector<f64>,
+    here: &DVector<f64>,
+) -> DMatrix<f64> {
+    let columns: Vec<DVector<f64>> = (0..x.len())
+        .map(|i| {
+            let mut x = x.clone();
+            if let Some(component) = x.get_mut(i) {
+                *component += DIFFERENCE;
+            }
+            (residual(&x) - here) / DIFFERENCE
+        })
+        .collect();
+    DMatrix::from_columns(&columns)
+}
