@@ -4,6 +4,7 @@
 //! ([`fourier`]); multiple shooting ([`multiple`]) takes a series of low order to an extremal of the maximum principle, and the
 //! paper's single shooting ([`shooting`]) polishes it. The certificate ([`proof`]) is worked out from the finished gait.
 
+mod bounded;
 mod chain;
 mod error;
 pub(crate) mod flow;
@@ -22,8 +23,10 @@ use swimmer_model::{Links, Model, Swimmer};
 
 use crate::cycle::Cycle;
 use crate::displacement::of_unit_length;
+use crate::extremal::wall::Walls;
 use crate::optimal_gait::Solution;
 use crate::{Arc, OptimalGait};
+pub use bounded::Reached;
 use chain::Found;
 pub use error::EfficiencyError;
 use proof::Evidence;
@@ -54,11 +57,15 @@ impl Branch {
     }
 
     fn contains(self, gait: &OptimalGait) -> bool {
-        let least = match self {
+        self.sign() * gait.displacement_over_length > 0.0 && gait.start_angle > self.least_start()
+    }
+
+    /// Start angles are above this \[rad\].
+    fn least_start(self) -> f64 {
+        match self {
             Self::Small => 0.0,
             Self::Large => 2.0,
-        };
-        self.sign() * gait.displacement_over_length > 0.0 && gait.start_angle > least
+        }
     }
 }
 
@@ -183,7 +190,8 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Efficiency
         }
     }
     match (best, refused) {
-        (Some(gait), _) => within_bounds(problem, gait),
+        (Some(gait), _) if keeps_bounds(problem, &gait) => Ok(gait),
+        (Some(gait), _) => bounded::bounded(problem, &model, &gait),
         (None, Some(error)) => Err(error),
         (None, None) => Err(EfficiencyError::NoStart {
             branch: problem.branch,
@@ -288,29 +296,10 @@ fn certified(
     Some(gait)
 }
 
-/// A free gait that keeps the bounds is the optimum under them too.
-fn within_bounds(
-    problem: &EfficiencyProblem,
-    gait: OptimalGait,
-) -> Result<OptimalGait, EfficiencyError> {
-    let binds = |name, value, limit| EfficiencyError::BoundBinds {
-        branch: problem.branch,
-        name,
-        value,
-        limit,
-    };
-    if let Some(limit) = problem.bounds.max_angle {
-        let farthest = gait
-            .phi()
-            .iter()
-            .map(nalgebra::Vector2::amax)
-            .fold(0.0, f64::max);
-        if farthest > limit {
-            return Err(binds("max_angle", farthest, limit));
-        }
-    }
-    if problem.bounds.no_overlap && gait.links_cross > 0.0 {
-        return Err(binds("no_overlap", gait.links_cross, 0.0));
-    }
-    Ok(gait)
+/// Whether a free gait keeps the bounds: then it is the optimum under them too.
+fn keeps_bounds(problem: &EfficiencyProblem, gait: &OptimalGait) -> bool {
+    let walls = Walls::new(&problem.bounds, &problem.swimmer.links);
+    gait.phi()
+        .iter()
+        .all(|phi| walls.nearest(phi).is_none_or(|(_, depth)| depth <= 0.0))
 }

@@ -9,12 +9,17 @@
 //! | `guess` | states and momenta from any closed curve |
 //! | `structure` | which arcs a curve is made of, and what a solution says of that |
 
+pub(crate) mod continuation;
 mod equations;
+mod evidence;
 mod flow;
+pub(crate) mod gait;
 mod guess;
+mod sampled;
+mod second_variation;
 mod shooting;
 mod structure;
-mod wall;
+pub(crate) mod wall;
 
 use swimmer_model::{Gait, Model};
 
@@ -45,6 +50,9 @@ pub(crate) enum Unpolished {
     /// The shooting did not converge.
     #[error("shooting over {arcs} arcs did not converge: {reason}")]
     Shooting { arcs: usize, reason: Unsolved },
+    /// The finished arcs cannot be followed again.
+    #[error("the arcs found cannot be followed again")]
+    Trace,
     /// Structure after structure.
     #[error("{structures} arc structures were tried and each asked for another one")]
     Structure { structures: usize },
@@ -78,8 +86,15 @@ pub(crate) fn polish_chain(
     let (mut chain, mut class) = (guess, class);
     for structures in 1..=MOST_STRUCTURES {
         let arcs = chain.arcs.len();
-        let solved =
-            solve(model, class, chain).map_err(|reason| Unpolished::Shooting { arcs, reason })?;
+        let solved = match solve(model, class, chain.clone()) {
+            Ok(solved) => solved,
+            Err(reason) => {
+                let (shorter, same) = structure::simpler(model, class, &chain)
+                    .ok_or(Unpolished::Shooting { arcs, reason })?;
+                class = same;
+                solve(model, class, shorter).map_err(|_| Unpolished::Shooting { arcs, reason })?
+            }
+        };
         match next_structure(model, walls, class, &solved.chain) {
             None => {
                 return Ok(Extremal {
@@ -103,6 +118,22 @@ impl Extremal {
         first.map_or(f64::NAN, |z| {
             model.side_drag() / (z[3] * z[3] + z[4] * z[4])
         })
+    }
+
+    /// The shapes of the full cycle; none where an arc cannot be followed.
+    pub(crate) fn curve(
+        &self,
+        model: &Model<f64>,
+        samples: usize,
+    ) -> Option<Vec<nalgebra::Vector2<f64>>> {
+        let parts = if self.class == Class::Quarter { 4 } else { 1 };
+        let sampled = sampled::Sampled::new(model, &self.solved.chain, samples / parts)?;
+        Some(sampled.cycle(self.class).phi)
+    }
+
+    /// λ₃ = p·x̂ in the frame of the first shape: the sign of X for a quarter.
+    pub(crate) fn heading(&self) -> f64 {
+        self.solved.chain.states.first().map_or(f64::NAN, |z| z[3])
     }
 
     /// The first shape.

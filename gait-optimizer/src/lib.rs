@@ -43,7 +43,7 @@ pub use certificate::{Certificate, Check};
 pub use certify::{CertifyError, certify};
 pub use displacement::{DisplacementError, DisplacementProblem, Fates, Heading, displacement};
 pub use efficiency::{
-    Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method, efficiency,
+    Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method, Reached, efficiency,
 };
 pub use height_map::{
     AreaRule, Convergence, Frame, Grid, HeightMap, HeightMapError, LevelCurve, Row,

@@ -2,7 +2,7 @@
 
 use swimmer_model::InvalidSwimmer;
 
-use super::Branch;
+use super::{Branch, Reached};
 
 /// Why there is no efficiency gait to return.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -36,20 +36,23 @@ pub enum EfficiencyError {
         /// Which.
         name: &'static str,
     },
-    /// The free gait breaks a bound, and gaits along bounds are not computed yet.
-    #[error(
-        "the free {branch} gait breaks the bound `{name}` ({value:.6} against {limit}), and efficiency gaits along bounds \
-         are not computed yet; leave the bound out"
-    )]
-    BoundBinds {
+    /// The free gait breaks a bound, and cannot be followed all the way to where it obeys it.
+    #[error("the {branch} gait, followed as the bounds tighten, ends at {reached}: {reason}")]
+    BranchEnds {
         /// Which gait.
         branch: Branch,
-        /// Which bound.
-        name: &'static str,
-        /// The largest angle \[rad\] or the share of the cycle with crossing links.
-        value: f64,
-        /// What it may be.
-        limit: f64,
+        /// How tight the bounds were.
+        reached: Reached,
+        /// What happens there.
+        reason: String,
+    },
+    /// The free gait breaks a bound, and could not be set on its way.
+    #[error("the free {branch} gait breaks a bound and cannot be followed along it: {reason}")]
+    NotFollowed {
+        /// Which gait.
+        branch: Branch,
+        /// Why.
+        reason: String,
     },
     /// No circle or ellipse is a local optimum.
     #[error(

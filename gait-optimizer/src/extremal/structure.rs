@@ -31,6 +31,8 @@ pub(crate) const OVERSTEP: f64 = 1e-9;
 const PULL: f64 = -1e-8;
 /// How near to a bound \[rad\] a guess is taken to run along it.
 pub(super) const NEAR: f64 = 5e-3;
+/// Arcs shorter than this share of the chain may be left out where the shooting fails.
+const SHORT: f64 = 0.05;
 /// Arcs shorter than this share of the chain are none.
 const SHORTEST: f64 = 1e-7;
 
@@ -98,6 +100,18 @@ impl Samples {
         // Positive where the corner points to the left of the motion, away from the origin.
         let left = -start[0] * mean.sin() + start[1] * mean.cos();
         (start[2] - before) * left >= 0.0
+    }
+
+    /// The state at a power length that may go beyond the end of a closed curve.
+    fn round(&self, class: Class, total: f64, length: f64) -> State {
+        match class {
+            Class::Closed { turn, .. } if length > total => {
+                let mut state = self.at(length - total);
+                state[2] += turn;
+                state
+            }
+            _ => self.at(length),
+        }
     }
 
     /// The state at a power length, from the sample before by linear interpolation.
@@ -210,15 +224,56 @@ pub(crate) fn next_structure(
         }
         from = to;
     }
-    let round = |length: f64| match class {
-        Class::Closed { turn, .. } if length > total => {
-            let mut state = samples.at(length - total);
-            state[2] += turn;
-            state
-        }
-        _ => samples.at(length),
-    };
+    let round = |length: f64| samples.round(class, total, length);
     changed.then(|| rebuilt(class, &joined(spans, least), total, round))
+}
+
+/// The same chain with its shortest arc left out, where that makes sense: a free arc between two along the same bound, or
+/// an arc along a bound. Near such a change of structure the shooting of the longer chain is singular.
+pub(crate) fn simpler(model: &Model<f64>, class: Class, chain: &Chain) -> Option<(Chain, Class)> {
+    let total = chain.length();
+    let samples = Samples::new(model, chain)?;
+    let motion = |index: usize| chain.arcs.get(index).map(|arc| arc.motion);
+    let (out, _) = chain
+        .arcs
+        .iter()
+        .enumerate()
+        .filter(|(index, arc)| {
+            arc.length < SHORT * total
+                && match arc.motion {
+                    Motion::Along(_) => true,
+                    Motion::Free => {
+                        let before = index.checked_sub(1).and_then(motion);
+                        before.is_some() && before == motion(index + 1)
+                    }
+                }
+        })
+        .min_by(|a, b| a.1.length.total_cmp(&b.1.length))?;
+    let mut spans: Vec<Span> = Vec::new();
+    let mut from = 0.0;
+    for (index, arc) in chain.arcs.iter().enumerate() {
+        let to = from + arc.length.max(0.0);
+        let span = Span {
+            motion: arc.motion,
+            entry: arc.entry,
+            from,
+            to,
+        };
+        from = to;
+        let merges = index == out + 1 && matches!(chain.arcs.get(out)?.motion, Motion::Free);
+        match (arc.motion, spans.last_mut()) {
+            (Motion::Along(_), Some(last)) if merges => last.to = to,
+            (Motion::Along(_), _) if index != out => spans.push(span),
+            _ if matches!(arc.entry, Entry::Corner(_)) => spans.push(Span {
+                motion: Motion::Free,
+                to: span.from,
+                ..span
+            }),
+            _ => {}
+        }
+    }
+    let round = |length: f64| samples.round(class, total, length);
+    Some(rebuilt(class, &spans, total, round))
 }
 
 /// What runs of overstepping become: arcs along the bound, narrower than the overstepping, or (past both sides of the tips'

@@ -107,3 +107,83 @@ fn a_bound_is_followed_where_it_pushes_and_a_loose_one_changes_nothing() {
         assert!(matches!(bound.motion, Motion::Along(_)) && bound.length > 0.0);
     }
 }
+
+/// Continuation in the bound to just before the fold of the robot's large gait, and the other extremal that it meets there:
+/// the gait is a local optimum, the other one is not.
+#[test]
+fn an_optimum_has_no_ascent_and_the_saddle_beyond_a_fold_has_one() {
+    let case = &cases()[3];
+    let model = case.model();
+    let free = polish(&model, &Walls::default(), &case.gait(), true).unwrap();
+    let path = continuation::Path {
+        model: &model,
+        clearance: 0.0,
+        keeps: &|_| Ok(()),
+    };
+    let at = |max_angle: f64| continuation::Tightness {
+        max_angle,
+        share: 0.0,
+    };
+    let wide = path.follow(free, at(5.0), at(2.7302)).unwrap();
+    let narrow = path.follow(wide.clone(), at(2.7302), at(2.73005)).unwrap();
+    let ascents = |extremal: &Extremal| {
+        second_variation::ascent_directions(&model, extremal.class, &extremal.solved.chain).unwrap()
+    };
+    assert_eq!((ascents(&wide), ascents(&narrow)), (0, 0));
+    // Mirrored at the fold.
+    let mut guess = wide.solved.chain.clone();
+    let beyond = |there: f64, here: f64| there + 1.5 * (there - here);
+    for (state, there) in guess.states.iter_mut().zip(&narrow.solved.chain.states) {
+        for (value, there) in state.iter_mut().zip(there) {
+            *value = beyond(*there, *value);
+        }
+    }
+    for (arc, there) in guess.arcs.iter_mut().zip(&narrow.solved.chain.arcs) {
+        arc.length = beyond(there.length, arc.length);
+    }
+    let other = shooting::solve(&model, wide.class, guess).unwrap();
+    let lengths = |chain: &shooting::Chain| chain.arcs[2].length;
+    let apart = lengths(&other.chain) - lengths(&wide.solved.chain);
+    assert!(
+        apart > 1e-3,
+        "another extremal under the same bound: {apart}"
+    );
+    assert!(other.orientation * wide.solved.orientation < 0.0);
+    assert_eq!(
+        second_variation::ascent_directions(&model, wide.class, &other.chain),
+        Some(1)
+    );
+    let end = path.follow(wide, at(2.7302), at(2.7)).unwrap_err();
+    assert!(
+        matches!(end, continuation::Ended::NoneBeyond { fold: true, .. }),
+        "{end:?}"
+    );
+}
+
+/// The certificate of a free and of a bounded closed curve, found without using their symmetries.
+#[test]
+fn closed_gaits_are_certified() {
+    for (case, max_angle) in [(0, None), (0, Some(1.2)), (2, Some(1.6)), (3, None)] {
+        let case = &cases()[case];
+        let model = case.model();
+        let bounds = Bounds {
+            max_angle,
+            ..Bounds::default()
+        };
+        let walls = Walls::new(&bounds, &case.swimmer.links);
+        let extremal = polish(&model, &walls, &case.gait(), false).unwrap();
+        let order = gait::Order {
+            swimmer: &case.swimmer,
+            model: &model,
+            bounds: &bounds,
+            samples: 1024,
+        };
+        let gait = gait::gait(&order, &extremal).unwrap();
+        assert!(gait.certificate.pass(), "{}", gait.certificate.failures());
+        assert!(!gait.symmetric);
+        let distance = gait
+            .displacement_over_length
+            .hypot(gait.lateral_over_length);
+        assert!(distance > 0.03);
+    }
+}

@@ -124,6 +124,10 @@ impl Wall {
     }
 }
 
+/// Links that may touch are kept this share of the side links apart, so that samples along the bound do not cross by
+/// rounding.
+const HAIR: f64 = 1e-8;
+
 /// All bounds of a full cycle.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Walls {
@@ -154,6 +158,12 @@ impl Walls {
     /// The bounds for a swimmer with these links \[m\]. Those that only make sense for quarters (a lower bound, the sector)
     /// are not among them.
     pub(crate) fn new(bounds: &Bounds, links: &Links<f64>) -> Self {
+        let wider = |length: f64| length * (1.0 + if bounds.clearance > 0.0 { 0.0 } else { HAIR });
+        let links = &Links {
+            middle: links.middle,
+            front: wider(links.front),
+            back: wider(links.back),
+        };
         let region = Region::new(bounds, links);
         let clearance = region.bounds().find_map(|bound| match bound {
             crate::region::Bound::Clearance(clearance) => Some(clearance),

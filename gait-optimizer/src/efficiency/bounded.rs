@@ -1,0 +1,192 @@
+//! Efficiency gaits along bounds: the free gait followed as its bounds tighten.
+//!
+//! The name of a gait says which free gait it grew out of, so it is followed step by step (`extremal::continuation`), and where
+//! that ends there is no gait of the name, even where other gaits obey the bounds.
+
+use std::f64::consts::PI;
+use std::fmt;
+
+use swimmer_model::{Links, Model};
+
+use super::{Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem};
+use crate::OptimalGait;
+use crate::certificate::{crossings, turning_number};
+use crate::extremal::continuation::{Ended, Path, Tightness};
+use crate::extremal::gait::{Order, gait};
+use crate::extremal::{Extremal, polish, wall::Walls};
+use crate::region::Clearance;
+
+/// Below this share of the free gait's efficiency a gait has faded.
+const FADED: f64 = 1e-4;
+
+/// How tight the bounds were where a branch ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reached {
+    /// Bound on both angles \[rad\].
+    pub max_angle: f64,
+    /// While side links count as shortened: φ₁ = φ₂ \[rad\] where their tips meet. Where they really meet comes last.
+    pub tips_meet: Option<[f64; 2]>,
+}
+
+impl fmt::Display for Reached {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "|phi| <= {:.6} rad", self.max_angle)?;
+        match self.tips_meet {
+            Some([at, last]) => write!(
+                f,
+                ", and crossing links forbidden only where their tips are shortened to meet at phi1 = phi2 = {at:.6} rad \
+                 instead of {last:.6} rad"
+            ),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Follows a free gait that breaks the problem's bounds until it obeys them.
+pub(super) fn bounded(
+    problem: &EfficiencyProblem,
+    model: &Model<f64>,
+    free: &OptimalGait,
+) -> Result<OptimalGait, EfficiencyError> {
+    let (branch, bounds) = (problem.branch, &problem.bounds);
+    let not_followed = |reason: String| EfficiencyError::NotFollowed { branch, reason };
+    let curve = free
+        .gait()
+        .map_err(|error| not_followed(error.to_string()))?;
+    let start = polish(model, &Walls::default(), &curve, true)
+        .map_err(|error| not_followed(error.to_string()))?;
+    let floor = start.efficiency(model) * FADED;
+    let keeps = |extremal: &Extremal| keeps_its_name(branch, model, extremal, floor);
+    let path = Path {
+        model,
+        clearance: bounds.clearance / problem.swimmer.total_length(),
+        keeps: &keeps,
+    };
+    let farthest = free.phi().iter().map(nalgebra::Vector2::amax);
+    let farthest = farthest.fold(0.0, f64::max) + 1e-6;
+    let mut reached = Tightness {
+        max_angle: farthest,
+        share: 0.0,
+    };
+    let links = model.swimmer().links;
+    let fold = Clearance::fold(links.front, links.middle, path.clearance);
+    let max_angle = bounds.max_angle.unwrap_or(f64::INFINITY);
+    let tight = if bounds.no_overlap {
+        max_angle.min(fold)
+    } else {
+        max_angle
+    };
+    let mut stages = Vec::new();
+    if tight < farthest {
+        stages.push(Tightness {
+            max_angle: tight,
+            share: 0.0,
+        });
+    }
+    if bounds.no_overlap {
+        stages.push(Tightness {
+            max_angle: tight.min(farthest),
+            share: 1.0,
+        });
+    }
+    let mut extremal = start;
+    for stage in stages {
+        extremal = path
+            .follow(extremal, reached, stage)
+            .map_err(|ended| branch_ends(branch, &links, &ended))?;
+        reached = stage;
+    }
+    finished(problem, model, &extremal)
+}
+
+/// What a gait must keep being on its way; what it lost otherwise.
+fn keeps_its_name(
+    branch: Branch,
+    model: &Model<f64>,
+    extremal: &Extremal,
+    floor: f64,
+) -> Result<(), &'static str> {
+    if extremal.heading() * branch.sign() <= 0.0 {
+        return Err(match branch {
+            Branch::Small => "X > 0",
+            Branch::Large => "X < 0",
+        });
+    }
+    if extremal.start().x <= branch.least_start() {
+        return Err("a start angle of its branch (above 0 for small, above 2 rad for large)");
+    }
+    if extremal.efficiency(model) < floor {
+        return Err("any displacement worth the name (the efficiency fades to nothing)");
+    }
+    let curve = extremal
+        .curve(model, 256)
+        .ok_or("arcs that can be followed")?;
+    if crossings(&curve) > 0 || (turning_number(&curve) - 1.0).abs() > 1e-6 {
+        return Err("a simple curve");
+    }
+    Ok(())
+}
+
+fn branch_ends(branch: Branch, links: &Links<f64>, ended: &Ended) -> EfficiencyError {
+    let (at, reason) = match ended {
+        Ended::NoneBeyond { at, fold: true, .. } => (
+            at,
+            "there it folds: it meets another extremal, and beyond there is neither".to_owned(),
+        ),
+        Ended::NoneBeyond { at, reason, .. } => (at, format!("beyond, {reason}")),
+        Ended::OtherBranch { at } => (at, "beyond, only other branches are found".to_owned()),
+        Ended::Property { at, property } => (at, format!("there it loses {property}")),
+    };
+    let tips = |share: f64| (-links.middle / (2.0 * share * links.front)).acos();
+    EfficiencyError::BranchEnds {
+        branch,
+        reached: Reached {
+            max_angle: at.max_angle,
+            tips_meet: (at.share > 0.0).then(|| [tips(at.share), tips(1.0)].map(or_folded)),
+        },
+        reason,
+    }
+}
+
+/// Links too short to meet.
+fn or_folded(angle: f64) -> f64 {
+    if angle.is_finite() { angle } else { PI }
+}
+
+fn finished(
+    problem: &EfficiencyProblem,
+    model: &Model<f64>,
+    extremal: &Extremal,
+) -> Result<OptimalGait, EfficiencyError> {
+    let branch = problem.branch;
+    let order = Order {
+        swimmer: &problem.swimmer,
+        model,
+        bounds: &problem.bounds,
+        samples: 4 * problem.quarter_samples.max(16),
+    };
+    let mut gait = gait(&order, extremal).map_err(|error| EfficiencyError::NotFollowed {
+        branch,
+        reason: error.to_string(),
+    })?;
+    if !gait.certificate.pass() {
+        return Err(EfficiencyError::NotCertified {
+            branch,
+            efficiency: gait.efficiency,
+            failed: gait.certificate.failures(),
+        });
+    }
+    let power_variation = gait
+        .certificate
+        .checks()
+        .iter()
+        .find(|check| check.name == "power_variation")
+        .map_or(f64::NAN, |check| check.value);
+    gait.efficiency_figures = Some(EfficiencyFigures {
+        residual: extremal.solved.residual,
+        power_variation,
+        method: problem.method,
+        direct_efficiency: None,
+    });
+    Ok(gait)
+}

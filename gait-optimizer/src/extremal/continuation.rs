@@ -1,0 +1,182 @@
+//! A gait followed as its bounds tighten.
+//!
+//! The largest angle comes in from beyond the gait's own. For crossing links the side links count as shortened at first, by
+//! a factor that grows to 1: that moves the forbidden shapes in from |φ| = π. Each step starts from the arcs of the last one;
+//! where the next gait lies too far off for the step, or none is found, the step is halved, so that no other branch is taken
+//! for this one, until the branch is seen to end.
+
+use swimmer_files::Bounds;
+use swimmer_model::{Links, Model};
+
+use super::equations::Motion;
+use super::wall::Walls;
+use super::{Extremal, Unpolished, polish_chain};
+
+/// How tight the bounds are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Tightness {
+    /// |φᵢ| may be this \[rad\].
+    pub(crate) max_angle: f64,
+    /// Share of the side links that may not cross; 0 where they may.
+    pub(crate) share: f64,
+}
+
+/// Why a gait could not be followed all the way.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Ended {
+    /// No gait nearby for tighter bounds, however small the step. At a fold the arcs change ever faster on the way there.
+    NoneBeyond {
+        at: Tightness,
+        reason: Unpolished,
+        fold: bool,
+    },
+    /// Steps shrank although gaits were found: each was another branch.
+    OtherBranch { at: Tightness },
+    /// The gait is no longer what it was called.
+    Property {
+        at: Tightness,
+        property: &'static str,
+    },
+}
+
+/// The first step, and the smallest.
+const FIRST: f64 = 0.05;
+const SMALLEST: f64 = 1e-6;
+const MOST_STEPS: usize = 400;
+/// The efficiency may change by this share in one step, and the first shape by this much \[rad\].
+const MOST_CHANGE: f64 = 0.08;
+const MOST_SHIFT: f64 = 0.12;
+
+/// A path of bounds to follow a gait along.
+pub(crate) struct Path<'a> {
+    pub(crate) model: &'a Model<f64>,
+    /// Least distance between the side links over L.
+    pub(crate) clearance: f64,
+    /// What the gait must keep being, or which property it lost.
+    pub(crate) keeps: &'a dyn Fn(&Extremal) -> Result<(), &'static str>,
+}
+
+impl Path<'_> {
+    fn walls(&self, at: Tightness) -> Walls {
+        let links = self.model.swimmer().links;
+        let bounds = Bounds {
+            max_angle: Some(at.max_angle),
+            no_overlap: at.share > 0.0,
+            clearance: at.share * self.clearance,
+            ..Bounds::default()
+        };
+        let shortened = Links {
+            middle: links.middle,
+            front: links.front * at.share.max(1e-3),
+            back: links.back * at.share.max(1e-3),
+        };
+        Walls::new(&bounds, if at.share > 0.0 { &shortened } else { &links })
+    }
+
+    /// Follows a gait from one tightness to another.
+    pub(crate) fn follow(
+        &self,
+        start: Extremal,
+        from: Tightness,
+        to: Tightness,
+    ) -> Result<Extremal, Ended> {
+        let between = |t: f64| Tightness {
+            max_angle: from.max_angle + t * (to.max_angle - from.max_angle),
+            share: from.share + t * (to.share - from.share),
+        };
+        let way = (to.max_angle - from.max_angle).abs() + (to.share - from.share).abs();
+        let (mut here, mut t, mut step) = (start, 0.0_f64, (FIRST / way.max(1e-9)).min(1.0));
+        let mut failure;
+        let mut speeds = Vec::new();
+        for _ in 0..MOST_STEPS {
+            if t >= 1.0 {
+                return Ok(here);
+            }
+            let next = (t + step).min(1.0);
+            match self.step(&here, between(next)) {
+                Ok(found) => match difference(&here, &found) {
+                    small if small <= 1.0 => {
+                        (self.keeps)(&found).map_err(|property| Ended::Property {
+                            at: between(next),
+                            property,
+                        })?;
+                        speeds.extend(stretched(&here, &found).map(|change| change / step));
+                        here = found;
+                        t = next;
+                        step *= if small < 0.3 { 2.0 } else { 1.1 };
+                        continue;
+                    }
+                    _ => failure = None,
+                },
+                Err(reason) => failure = Some(reason),
+            }
+            step *= 0.5;
+            if step * way < SMALLEST {
+                let at = between(t);
+                return Err(failure.map_or(Ended::OtherBranch { at }, |reason| {
+                    Ended::NoneBeyond {
+                        at,
+                        reason,
+                        fold: speeds_up(&speeds),
+                    }
+                }));
+            }
+        }
+        Err(Ended::OtherBranch { at: between(t) })
+    }
+
+    fn step(&self, here: &Extremal, at: Tightness) -> Result<Extremal, Unpolished> {
+        let walls = self.walls(at);
+        let mut chain = here.solved.chain.clone();
+        for arc in &mut chain.arcs {
+            if let Motion::Along(wall) = &mut arc.motion
+                && let Some(moved) = walls.like(wall)
+            {
+                *wall = moved;
+            }
+            if let super::shooting::Entry::Corner(corner) = &mut arc.entry
+                && let Some(moved) = walls.corner(corner)
+            {
+                *corner = moved;
+            }
+        }
+        polish_chain(self.model, &walls, here.class, chain)
+    }
+}
+
+/// How far two gaits are apart, over what a step may change.
+fn difference(here: &Extremal, there: &Extremal) -> f64 {
+    let scale = |extremal: &Extremal| extremal.heading();
+    let change = (scale(there) / scale(here) - 1.0).abs() / MOST_CHANGE;
+    let shift = (there.start() - here.start()).amax() / MOST_SHIFT;
+    change.max(shift)
+}
+
+/// The largest change of an arc's length, over that of the chain; none where the arcs differ.
+fn stretched(here: &Extremal, there: &Extremal) -> Option<f64> {
+    let (before, after) = (&here.solved.chain, &there.solved.chain);
+    let same = before.arcs.len() == after.arcs.len()
+        && before
+            .arcs
+            .iter()
+            .zip(&after.arcs)
+            .all(|(a, b)| matches!(a.motion, Motion::Free) == matches!(b.motion, Motion::Free));
+    same.then(|| {
+        let changes = before
+            .arcs
+            .iter()
+            .zip(&after.arcs)
+            .map(|(a, b)| (a.length - b.length).abs());
+        changes.fold(0.0, f64::max) / before.length()
+    })
+}
+
+/// Whether the last changes are much faster than most.
+fn speeds_up(speeds: &[f64]) -> bool {
+    let mut sorted = speeds.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    match (sorted.get(sorted.len() / 2), speeds.last()) {
+        (Some(median), Some(last)) => speeds.len() > 4 && *last > 3.0 * median,
+        _ => false,
+    }
+}

@@ -1,0 +1,167 @@
+//! From an extremal to a gait with its certificate.
+
+use swimmer_files::{Bounds, Objective};
+use swimmer_model::{Gait, Model, Stroke, Swimmer};
+
+use super::evidence::{Evidence, follow};
+use super::sampled::Sampled;
+use super::second_variation::ascent_directions;
+use super::shooting::Class;
+use super::wall::Walls;
+use super::{Extremal, Unpolished};
+use crate::certificate::{Certificate, Check};
+use crate::cycle::Cycle;
+use crate::optimal_gait::{OptimalGait, Solution};
+
+/// The residual of the shooting that an extremal may have.
+const RESIDUAL: f64 = 1e-10;
+
+/// How much the power of the interpolated samples may vary, over its mean.
+const POWER_VARIATION: f64 = 1e-6;
+/// Samples of a cycle are not doubled beyond this.
+const MOST_SAMPLES: usize = 8192;
+
+/// What a gait is made for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Order<'a> {
+    /// The swimmer as it is, and the model of the same with L = 1.
+    pub(crate) swimmer: &'a Swimmer<f64>,
+    pub(crate) model: &'a Model<f64>,
+    pub(crate) bounds: &'a Bounds,
+    /// Samples of a cycle.
+    pub(crate) samples: usize,
+}
+
+/// An extremal as a gait, with all its checks; whether they pass is for the caller to see. Where the interpolated samples do
+/// not keep the power constant there are more of them than were asked for.
+pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait, Unpolished> {
+    let Order { model, .. } = *order;
+    let walls = Walls::new(order.bounds, &order.swimmer.links);
+    let (chain, class) = (&extremal.solved.chain, extremal.class);
+    let parts = if class == Class::Quarter { 4 } else { 1 };
+    let lost = || Unpolished::Trace;
+    let evidence = follow(model, &walls, chain).ok_or_else(lost)?;
+    let mut samples = order.samples / parts;
+    let (sampled, cycle, variation) = loop {
+        let sampled = Sampled::new(model, chain, samples).ok_or_else(lost)?;
+        let cycle = sampled.cycle(class);
+        let variation = power_variation(model, &cycle);
+        if variation <= POWER_VARIATION || samples * parts > MOST_SAMPLES {
+            break (sampled, cycle, variation);
+        }
+        samples *= 2;
+    };
+    let stroke = cycle.swum(model).ok_or_else(lost)?;
+    let ascents = ascent_directions(model, class, chain);
+    let certificate = Finished {
+        extremal,
+        walls: &walls,
+        evidence: &evidence,
+        stroke: &stroke,
+        power_variation: variation,
+        efficiency: extremal.efficiency(model),
+        ascents,
+    }
+    .certificate();
+    let links_cross = cycle.links_cross(model);
+    let mut gait = OptimalGait::new(Solution {
+        objective: Objective::Efficiency,
+        swimmer: *order.swimmer,
+        bounds: *order.bounds,
+        symmetric: class == Class::Quarter,
+        arcs: sampled.arcs(),
+        cycle,
+        stroke,
+        links_cross,
+        certificate,
+    });
+    // The arcs know these closer than the samples do.
+    gait.efficiency = extremal.efficiency(model);
+    match class {
+        Class::Quarter => {
+            gait.displacement_over_length = 4.0 * evidence.displacement.x;
+            gait.lateral_over_length = 0.0;
+        }
+        Class::Closed { .. } => {
+            gait.displacement_over_length = evidence.displacement.x;
+            gait.lateral_over_length = evidence.displacement.y;
+        }
+    }
+    gait.displacement = gait.displacement_over_length * order.swimmer.total_length();
+    Ok(gait)
+}
+
+struct Finished<'a> {
+    extremal: &'a Extremal,
+    walls: &'a Walls,
+    evidence: &'a Evidence,
+    stroke: &'a Stroke<f64>,
+    power_variation: f64,
+    efficiency: f64,
+    ascents: Option<usize>,
+}
+
+impl Finished<'_> {
+    fn certificate(&self) -> Certificate {
+        let (evidence, chain) = (self.evidence, &self.extremal.solved.chain);
+        let first = chain.states.first().copied().unwrap_or([f64::NAN; 6]);
+        let p = nalgebra::Vector2::new(first[3], first[4]);
+        let d = self.stroke.displacement;
+        let mut checks = vec![
+            Check::at_most("shooting_residual", self.extremal.solved.residual, RESIDUAL),
+            Check::at_most("off_extremal_rad", evidence.off_extremal, 1e-8),
+            Check::at_most("hamiltonian_variation", evidence.hamiltonian, 1e-8),
+            Check::at_most("momentum_off_pose", evidence.momentum, 1e-8),
+            Check::at_most(
+                "displacement_off_momentum",
+                (d.perp(&p) / (d.norm() * p.norm())).abs(),
+                1e-7,
+            ),
+            Check::at_most(
+                "momentum_off_scale",
+                (p.norm() * d.norm() / self.stroke.power_length - 1.0).abs(),
+                1e-7,
+            ),
+            Check::at_most("net_rotation_rad", self.stroke.rotation.abs(), 1e-8),
+            Check::at_most("power_variation", self.power_variation, POWER_VARIATION),
+            Check::at_most(
+                "efficiency_swum_again",
+                (self.stroke.efficiency_constant_power() / self.efficiency - 1.0).abs(),
+                1e-7,
+            ),
+        ];
+        checks.extend(
+            evidence
+                .multiplier
+                .map(|least| Check::at_least("bound_multiplier_least", least, -1e-7)),
+        );
+        if self.walls.nearest(&nalgebra::Vector2::zeros()).is_some() {
+            checks.push(Check::at_most(
+                "bound_overstepped",
+                evidence.overstepped,
+                1e-8,
+            ));
+        }
+        let ascents = self.ascents.map_or(f64::NAN, |count| count as f64);
+        checks.push(Check::at_most("ascent_directions", ascents, 0.0));
+        Certificate::new(checks)
+    }
+}
+
+/// (max − min)/mean of the power in the middle of the samples' intervals; NaN where the samples make no gait.
+pub(crate) fn power_variation(model: &Model<f64>, cycle: &Cycle) -> f64 {
+    let Ok(gait) = cycle.gait() else {
+        return f64::NAN;
+    };
+    let (mut least, mut most, mut sum) = (f64::INFINITY, 0.0_f64, 0.0);
+    for pair in cycle.u.windows(2) {
+        let middle = gait.at(0.5 * pair.iter().sum::<f64>());
+        let power = middle
+            .rate
+            .dot(&(model.power_matrix(&middle.phi) * middle.rate));
+        least = least.min(power);
+        most = most.max(power);
+        sum += power;
+    }
+    (most - least) * (cycle.u.len() - 1) as f64 / sum
+}

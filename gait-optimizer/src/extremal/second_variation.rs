@@ -1,0 +1,286 @@
+//! The second-order test: along how many directions does an extremal's efficiency grow to second order?
+//!
+//! The curve is pushed sideways by ν(s), zero along bounds (where the multiplier is positive, staying there is of first
+//! order) and at corners. With H(Φ, u, θ) = μ·A u − √(uᵀWu), μ turning with θ and `μ_θ` held, the second variation of
+//! p·d + cΔθ − S is ∫ D²H over (δΦ, δu, δθ) with δθ carried along by `δθ' = δ(A_θ u)`; heights downstream change with the
+//! heading, so it is no local form. Of ln |d| − ln S, times S, it lacks S (δd_⊥/|d|)², the gain from turning d aside, and on a
+//! closed curve δθ must vanish at the end. On quarters both drop out. ν is piecewise linear, so the count is a bound from
+//! below that settles as the mesh gets finer.
+
+use nalgebra::{DMatrix, DVector, Vector2, Vector3};
+use swimmer_model::Model;
+
+use super::equations::{Motion, State, momentum, rate, shape};
+use super::flow::flowed;
+use super::shooting::{Chain, Class, Entry};
+
+/// Elements of the whole chain, about.
+const ELEMENTS: f64 = 160.0;
+
+/// One element of the mesh: the state in its middle, its length, and its two nodes (none where the curve is held).
+struct Element {
+    state: State,
+    length: f64,
+    nodes: [Option<usize>; 2],
+}
+
+/// The elements of the free arcs and of the bounds, and the number of nodes.
+fn mesh(model: &Model<f64>, class: Class, chain: &Chain) -> Option<(Vec<Element>, usize)> {
+    let total = chain.length();
+    let mut elements = Vec::new();
+    let mut count = 0;
+    let arcs = chain.arcs.len();
+    let whole_round = arcs == 1
+        && matches!(class, Class::Closed { .. })
+        && matches!(chain.arcs.first()?.entry, Entry::Smooth);
+    let mut of_arc = vec![0; arcs];
+    for (index, ..) in chain.pieces() {
+        *of_arc.get_mut(index)? += 1;
+    }
+    let mut piece_of_arc = 0;
+    let mut last_index = None;
+    let mut previous: Option<usize> = None;
+    for (index, arc, state) in chain.pieces() {
+        piece_of_arc = if last_index == Some(index) {
+            piece_of_arc + 1
+        } else {
+            0
+        };
+        let opens = last_index != Some(index);
+        last_index = Some(index);
+        let free = matches!(arc.motion, Motion::Free);
+        let share = arc.length / arc.pieces as f64;
+        let parts = (1..400_usize)
+            .find(|&n| n as f64 * total >= ELEMENTS * share)
+            .unwrap_or(400);
+        let length = share / parts as f64;
+        if opens {
+            // The first node: free at a symmetry line and on a closed curve without contact, held elsewhere.
+            let open = whole_round
+                || (class == Class::Quarter && index == 0 && matches!(arc.entry, Entry::Smooth));
+            previous = (free && open).then(|| {
+                count += 1;
+                count - 1
+            });
+        }
+        let mut here = *state;
+        for part in 0..parts {
+            let middle = flowed(model, &arc.motion, &here, 0.5 * length)?.0;
+            here = flowed(model, &arc.motion, &middle, 0.5 * length)?.0;
+            let ends = part + 1 == parts && piece_of_arc + 1 == *of_arc.get(index)?;
+            let next = if !free {
+                None
+            } else if !ends || (class == Class::Quarter && index + 1 == arcs) {
+                count += 1;
+                Some(count - 1)
+            } else if whole_round {
+                Some(0)
+            } else {
+                None
+            };
+            elements.push(Element {
+                state: middle,
+                length,
+                nodes: [previous, next],
+            });
+            previous = next;
+        }
+    }
+    Some((elements, count))
+}
+
+/// How many directions raise the efficiency to second order; none where the arcs cannot be followed.
+pub(crate) fn ascent_directions(model: &Model<f64>, class: Class, chain: &Chain) -> Option<usize> {
+    let (elements, count) = mesh(model, class, chain)?;
+    if count == 0 {
+        return Some(0);
+    }
+    let mut form = DMatrix::zeros(count, count);
+    // δθ and δ of the displacement, as functions of the nodes.
+    let mut turned = DVector::zeros(count);
+    let mut aside = DVector::zeros(count);
+    let first = momentum(chain.states.first()?);
+    let p = Vector2::new(first.x, first.y);
+    let (mut theta, mut gone) = (0.0_f64, Vector2::zeros());
+    let mut gains = Vec::with_capacity(elements.len());
+    for element in &elements {
+        let local = Local::new(model, &element.state);
+        let length = element.length;
+        // δθ in the middle, from what came before and half of this element.
+        let mut middle = turned.clone();
+        for (node, (value, slope)) in element.weights() {
+            let by = local.by_node(value, slope);
+            middle[node] += 0.5 * length * by.heading;
+            turned[node] += length * by.heading;
+        }
+        let nodes: Vec<(usize, Node)> = element
+            .weights()
+            .map(|(node, (value, slope))| (node, local.by_node(value, slope)))
+            .collect();
+        for (i, a) in &nodes {
+            for (j, b) in &nodes {
+                form[(*i, *j)] += length * local.pair(a, b);
+            }
+            // 2 δθ μ_xy·J δξ, made symmetric.
+            let cross = length * local.turned_momentum(&a.body);
+            for (node, heading) in middle.iter().enumerate() {
+                form[(*i, node)] += 0.5 * cross * heading;
+                form[(node, *i)] += 0.5 * cross * heading;
+            }
+        }
+        let gain = local.momentum.x * local.body.x + local.momentum.y * local.body.y;
+        form.ger(-0.5 * length * gain, &middle, &middle, 1.0);
+        // The lateral displacement that follows: along p turned by a quarter.
+        let body = Vector2::new(local.body.x, local.body.y);
+        let heading = theta + 0.5 * length * local.body.z;
+        let (sin, cos) = heading.sin_cos();
+        let out = Vector2::new(cos * body.x - sin * body.y, sin * body.x + cos * body.y);
+        let across = Vector2::new(-p.y, p.x) / p.norm();
+        for (node, by) in &nodes {
+            let moved = Vector2::new(
+                cos * by.body.x - sin * by.body.y,
+                sin * by.body.x + cos * by.body.y,
+            );
+            aside[*node] += length * across.dot(&moved);
+        }
+        aside.axpy(
+            length * across.dot(&Vector2::new(-out.y, out.x)),
+            &middle,
+            1.0,
+        );
+        theta += length * local.body.z;
+        gone += out * length;
+        gains.push(gain);
+    }
+    if let Class::Closed { .. } = class {
+        // S (δd_⊥/|d|)²; the forms here are halves of second derivatives.
+        let weight = 0.5 * chain.length() / gone.norm_squared();
+        form.ger(weight, &aside, &aside, 1.0);
+        return Some(positive(&on_kernel(form, &turned)));
+    }
+    Some(positive(&form))
+}
+
+fn positive(form: &DMatrix<f64>) -> usize {
+    let eigenvalues = form.clone().symmetric_eigenvalues();
+    let scale = eigenvalues.amax();
+    eigenvalues
+        .iter()
+        .filter(|&&value| value > 1e-12 * scale)
+        .count()
+}
+
+/// A form where a linear function vanishes: reflected so that the function is the last coordinate, which is dropped.
+fn on_kernel(form: DMatrix<f64>, function: &DVector<f64>) -> DMatrix<f64> {
+    let size = form.nrows();
+    let norm = function.norm();
+    if size < 2 || norm <= 0.0 {
+        return form;
+    }
+    let last = size - 1;
+    let mut axis = function / norm;
+    axis[last] += if axis[last] < 0.0 { -1.0 } else { 1.0 };
+    axis /= axis.norm();
+    let reflect = |form: DMatrix<f64>| {
+        let mut out = form;
+        let row = axis.transpose() * &out;
+        out.ger(-2.0, &axis, &row.transpose(), 1.0);
+        out
+    };
+    let once = reflect(form);
+    let twice = reflect(once.transpose());
+    twice.view((0, 0), (last, last)).into_owned()
+}
+
+impl Element {
+    /// Weight and slope of every free node in the middle of the element.
+    fn weights(&self) -> impl Iterator<Item = (usize, (f64, f64))> {
+        let slopes = [-1.0 / self.length, 1.0 / self.length];
+        self.nodes
+            .into_iter()
+            .zip(slopes)
+            .filter_map(|(node, slope)| Some((node?, (0.5, slope))))
+    }
+}
+
+/// What one node's push does in the middle of an element.
+struct Node {
+    value: f64,
+    shape: Vector2<f64>,
+    speed: Vector2<f64>,
+    body: Vector3<f64>,
+    heading: f64,
+    /// First variation of the power.
+    power: f64,
+}
+
+/// Everything at the middle of an element.
+struct Local {
+    second: swimmer_model::SecondDerivatives<f64>,
+    momentum: Vector3<f64>,
+    control: Vector2<f64>,
+    body: Vector3<f64>,
+    normal: Vector2<f64>,
+    /// dn/ds.
+    normal_rate: Vector2<f64>,
+}
+
+impl Local {
+    fn new(model: &Model<f64>, state: &State) -> Self {
+        let second = model.second_derivatives(&shape(state));
+        let rates = rate(model, &Motion::Free, state);
+        let (sin, cos) = state[2].sin_cos();
+        let control = Vector2::new(rates[0], rates[1]);
+        Self {
+            body: second.first.connection * control,
+            second,
+            momentum: momentum(state),
+            control,
+            normal: Vector2::new(-sin, cos),
+            normal_rate: Vector2::new(cos, sin) * -rates[2],
+        }
+    }
+
+    fn by_node(&self, value: f64, slope: f64) -> Node {
+        let first = &self.second.first;
+        let shape = self.normal * value;
+        let speed = self.normal * slope + self.normal_rate * value;
+        let bent = first.d_connection[0] * shape.x + first.d_connection[1] * shape.y;
+        let heavier = first.d_power[0] * shape.x + first.d_power[1] * shape.y;
+        let body = bent * self.control + first.connection * speed;
+        Node {
+            value,
+            shape,
+            speed,
+            heading: body.z,
+            body,
+            power: 2.0 * speed.dot(&(first.power * self.control))
+                + self.control.dot(&(heavier * self.control)),
+        }
+    }
+
+    /// `μ_xy·J ξ`.
+    fn turned_momentum(&self, body: &Vector3<f64>) -> f64 {
+        self.momentum.y * body.x - self.momentum.x * body.y
+    }
+
+    /// The local part of half the second variation, for two nodes.
+    fn pair(&self, a: &Node, b: &Node) -> f64 {
+        let (first, u) = (&self.second.first, &self.control);
+        let [a11, a12, a22] = &self.second.d2_connection;
+        let [w11, w12, w22] = &self.second.d2_power;
+        let n = &self.normal;
+        let both = a.value * b.value;
+        let (xx, xy, yy) = (n.x * n.x, 2.0 * n.x * n.y, n.y * n.y);
+        let bent = (a11 * u) * xx + (a12 * u) * xy + (a22 * u) * yy;
+        let heavier = u.dot(&(w11 * u)) * xx + u.dot(&(w12 * u)) * xy + u.dot(&(w22 * u)) * yy;
+        let moved = |a: &Node, b: &Node| {
+            let connection = first.d_connection[0] * a.shape.x + first.d_connection[1] * a.shape.y;
+            let power = first.d_power[0] * a.shape.x + first.d_power[1] * a.shape.y;
+            0.5 * self.momentum.dot(&(connection * b.speed)) - 0.5 * b.speed.dot(&(power * u))
+        };
+        0.5 * both * self.momentum.dot(&bent) + moved(a, b) + moved(b, a)
+            - 0.5 * (a.speed.dot(&(first.power * b.speed)) + 0.5 * both * heavier)
+            + 0.125 * a.power * b.power
+    }
+}
