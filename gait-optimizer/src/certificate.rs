@@ -85,7 +85,6 @@ impl Certificate {
         cycle: &Cycle,
         displacement_over_length: f64,
         stroke: &Stroke<f64>,
-        neighbour_gain: Option<f64>,
     ) -> Self {
         let evidence = &trace.evidence;
         let mut checks = vec![
@@ -97,24 +96,26 @@ impl Certificate {
             Check::at_most("h_u", evidence.h_u, 1e-9),
             Check::at_most("off_singular_condition_rad", evidence.off_zero, 1e-8),
         ];
-        checks.extend(
-            evidence
-                .legendre_clebsch
-                .map(|least| Check::at_least("legendre_clebsch_least", least, 1e-6)),
-        );
+        checks.extend(evidence.legendre_clebsch.map(|least| {
+            Check::at_least("legendre_clebsch_least", least / evidence.steepest, 1e-4)
+        }));
         checks.extend(
             evidence
                 .multiplier
                 .map(|least| Check::at_least("bound_multiplier_least", least, -1e-9)),
         );
-        if !region.edges().is_empty() {
+        checks.extend(
+            evidence
+                .second_variation
+                .map(|form| Check::at_least("conjugate_point_least", form.least, 1e-6)),
+        );
+        if region.bounds().next().is_some() {
             checks.push(Check::at_most(
                 "bound_overstepped_rad",
                 evidence.overstepped,
                 1e-10,
             ));
         }
-        checks.extend(neighbour_gain.map(|gain| Check::at_most("neighbour_gain", gain, 0.0)));
         let turning = turning_number(&cycle.phi);
         checks.push(Check::at_most(
             "turning_number_off_one",

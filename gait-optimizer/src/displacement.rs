@@ -4,15 +4,16 @@ mod error;
 pub(crate) mod flow;
 pub(crate) mod height;
 mod search;
+mod trunk;
 
 use std::fmt;
 
 use crate::region::Region;
 pub use error::{DisplacementError, Fates};
-use nalgebra::Vector2;
-use search::{Candidate, Search, Trunk};
+use search::{Candidate, Search};
 use swimmer_files::{ArcKind, Bounds, Objective};
 use swimmer_model::{Links, Model, Swimmer, TangentialDrag};
+use trunk::trunks;
 
 use crate::cycle::{Cycle, QuarterTrace};
 use crate::optimal_gait::Solution;
@@ -129,9 +130,6 @@ impl DisplacementProblem {
                 middle: self.swimmer.links.middle,
             });
         }
-        if self.bounds.no_overlap {
-            return Err(DisplacementError::NotYet { name: "no_overlap" });
-        }
         Ok(())
     }
 }
@@ -142,24 +140,77 @@ impl DisplacementProblem {
 /// Displacement optima are weak, local in shape: small reverse loops would add to X, so the certificate also asks for a
 /// simple curve. With several optima the one with the largest |X| is returned.
 ///
+/// A simple curve with these symmetries keeps each quarter between the diagonals φ₂ = ±φ₁. Where a region that the gait
+/// should go round is cut off by a bound, no such curve is the best one: the best ones touch their own images along a
+/// diagonal (as the paper's gait in the sector does). Such a gait, with its `diagonal` arcs, is returned where bounds on the
+/// angles leave no other forward gait, or only one that ends in a corner of the bounds and carries less far.
+///
 /// # Errors
 /// [`DisplacementError`]: what is wrong with the problem, or why it has no optimum.
 pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, DisplacementError> {
     problem.validate()?;
     let model = Model::new(&of_unit_length(&problem.swimmer))?;
-    let region = Region::new(&problem.bounds, &problem.swimmer.links);
+    let found = best(problem, &model, &problem.bounds);
+    let Bounds {
+        max_angle,
+        min_angle,
+        sector,
+        no_overlap,
+        ..
+    } = problem.bounds;
+    let may_touch = problem.heading() == Heading::Forwards
+        && (max_angle.is_some() || no_overlap)
+        && min_angle.is_none()
+        && !sector;
+    let cut_off = |gait: &OptimalGait| {
+        let last = gait.arcs.last().map(|arc| arc.kind);
+        last != Some(ArcKind::Singular)
+    };
+    if !may_touch || found.as_ref().is_ok_and(|gait| !cut_off(gait)) {
+        return found;
+    }
+    let touching = best(
+        problem,
+        &model,
+        &Bounds {
+            sector: true,
+            ..problem.bounds
+        },
+    );
+    let carries =
+        |gait: &Result<OptimalGait, _>| gait.as_ref().map_or(0.0, |gait| gait.displacement);
+    if carries(&touching) > carries(&found) {
+        touching
+    } else {
+        found
+    }
+}
+
+/// The best gait that certifies within these bounds, which may be tighter than the problem's.
+fn best(
+    problem: &DisplacementProblem,
+    model: &Model<f64>,
+    bounds: &Bounds,
+) -> Result<OptimalGait, DisplacementError> {
+    let region = Region::new(bounds, &problem.swimmer.links);
     let heading = problem.heading();
-    let search = Search {
-        model: &model,
+    let mut search = Search {
+        model,
         region: &region,
         sign: heading.sign(),
+        touches: 0,
     };
-    let (mut candidates, fates) = search.candidates(&trunks(&problem.bounds, &region));
+    let trunks = trunks(search.extremal(0.0), bounds, &region);
+    let (mut candidates, fates) = search.candidates(&trunks);
+    if region.has_diagonals() {
+        search.touches = 1;
+        candidates.extend(search.candidates(&trunks).0);
+    }
     candidates.retain(|candidate| heading.sign() * candidate.quarter.end[2] > 0.0);
     candidates.sort_by(|a, b| b.quarter.end[2].abs().total_cmp(&a.quarter.end[2].abs()));
     let mut refused = None;
     for candidate in &candidates {
-        let Some(gait) = certified(problem, &model, &region, heading, candidate) else {
+        let Some(gait) = certified(problem, model, &region, heading, candidate) else {
             continue;
         };
         if gait.certificate.pass() {
@@ -199,29 +250,6 @@ pub(crate) fn of_unit_length(swimmer: &Swimmer<f64>) -> Swimmer<f64> {
     }
 }
 
-/// Where singular arcs may begin under these bounds.
-fn trunks(bounds: &Bounds, region: &Region) -> Vec<Trunk> {
-    let low = bounds.min_angle.unwrap_or(0.0);
-    let high = bounds.max_angle.unwrap_or(std::f64::consts::PI);
-    let mut trunks = vec![Trunk::StartLine {
-        low,
-        high: high.min(std::f64::consts::PI),
-    }];
-    // The bounds φ₂ ≤ φ_max and φ₂ ≥ φ_min, both run towards φ₁ = −φ₂.
-    for (edge, bound) in region.edges().iter().enumerate() {
-        let corner = bound.offset.abs();
-        if bound.normal.x == 0.0 && matches!(bound.kind, ArcKind::Upper | ArcKind::Lower) {
-            trunks.push(Trunk::Bound {
-                edge,
-                corner,
-                direction: Vector2::new(-1.0, 0.0),
-                length: 2.0 * corner,
-            });
-        }
-    }
-    trunks
-}
-
 /// A candidate as a full cycle with its certificate; none where it cannot even be traced again.
 fn certified(
     problem: &DisplacementProblem,
@@ -240,14 +268,8 @@ fn certified(
     let cycle = Cycle::of_quarter(&trace);
     let displacement_over_length = 4.0 * candidate.quarter.end[2];
     let stroke = cycle.swum(model)?;
-    let certificate = Certificate::of_displacement(
-        region,
-        &trace,
-        &cycle,
-        displacement_over_length,
-        &stroke,
-        candidate.neighbour_gain,
-    );
+    let certificate =
+        Certificate::of_displacement(region, &trace, &cycle, displacement_over_length, &stroke);
     let arcs = trace.arcs();
     let links_cross = cycle.links_cross(model);
     let mut gait = OptimalGait::new(Solution {

@@ -4,7 +4,6 @@
 //! A quarter runs from φ₁ = φ₂ > 0 to φ₁ = −φ₂, φ₂ > 0, so a bound on |φᵢ| from below binds its leading angle φ₂, and the
 //! sector adds the two diagonals; those three only make sense for quarters. All others hold for full cycles as well.
 
-#[allow(dead_code, reason = "handed to several rooms, which land one by one")]
 mod clearance;
 #[cfg(test)]
 mod tests;
@@ -13,10 +12,6 @@ use nalgebra::Vector2;
 use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Links;
 
-#[allow(
-    unused_imports,
-    reason = "handed to several rooms, which land one by one"
-)]
 pub(crate) use clearance::{Clearance, Level, Piece};
 
 /// A straight bound: `normal · Φ ≤ offset`, with a unit normal that points out.
@@ -61,7 +56,6 @@ impl Edge {
     }
 }
 
-#[allow(dead_code, reason = "handed to several rooms, which land one by one")]
 impl Bound {
     /// What an arc along it is called.
     pub(crate) fn kind(&self) -> ArcKind {
@@ -99,20 +93,7 @@ impl Bound {
     pub(crate) fn tangent(&self, phi: &Vector2<f64>) -> Vector2<f64> {
         match self {
             Self::Straight(edge) => edge.counter_clockwise(),
-            Self::Clearance(clearance) => tangent(&clearance.deciding_level(phi)),
-        }
-    }
-
-    /// Curvature of the bound run along its tangent \[1/rad\]: positive where it turns left, into the region. Jumps between
-    /// the pieces.
-    pub(crate) fn curvature(&self, phi: &Vector2<f64>) -> f64 {
-        match self {
-            Self::Straight(_) => 0.0,
-            Self::Clearance(clearance) => {
-                let level = clearance.deciding_level(phi);
-                let along = tangent(&level);
-                -along.dot(&(level.hessian * along)) / level.gradient.norm()
-            }
+            Self::Clearance(clearance) => clearance.deciding_level(phi).tangent(),
         }
     }
 
@@ -124,11 +105,6 @@ impl Bound {
             Self::Clearance(clearance) => onto(clearance, phi),
         }
     }
-}
-
-/// Along the curves of equal margin, with the larger margin on the left.
-pub(crate) fn tangent(level: &clearance::Level) -> Vector2<f64> {
-    Vector2::new(level.gradient.y, -level.gradient.x) / level.gradient.norm()
 }
 
 fn onto(clearance: &Clearance, phi: &Vector2<f64>) -> Vector2<f64> {
@@ -224,17 +200,12 @@ impl Region {
         &self.edges
     }
 
-    pub(crate) fn edge(&self, index: usize) -> Option<&Edge> {
-        self.edges.get(index)
-    }
-
     /// All bounds: the straight ones, then the curved one. Its index is the place in this order.
     pub(crate) fn bounds(&self) -> impl Iterator<Item = Bound> + '_ {
         let straight = self.edges.iter().map(|edge| Bound::Straight(*edge));
         straight.chain(self.clearance.map(Bound::Clearance))
     }
 
-    #[allow(dead_code, reason = "handed to several rooms, which land one by one")]
     pub(crate) fn bound(&self, index: usize) -> Option<Bound> {
         match self.edges.get(index) {
             Some(edge) => Some(Bound::Straight(*edge)),

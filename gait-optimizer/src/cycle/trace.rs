@@ -1,5 +1,7 @@
 //! A quarter gait traced once more, sampled at equal power and with the costates λ₁, λ₂ integrated along: the evidence.
 
+mod second_variation;
+
 use nalgebra::Vector2;
 use swimmer_files::ArcKind;
 
@@ -8,6 +10,7 @@ use crate::displacement::flow::{Leg, Motion};
 use crate::displacement::height::{Extremal, pose_rates, shape};
 use crate::region::Region;
 use crate::runge_kutta::{Point, StepControl, System, advance};
+use second_variation::{Push, SecondVariation};
 
 /// Traced state: φ₁, φ₂, x, y, θ, λ₁, λ₂ over the power length.
 type Traced = [f64; 7];
@@ -23,6 +26,10 @@ pub(crate) struct Evidence {
     pub(crate) multiplier: Option<f64>,
     /// Smallest slope of the height across a singular arc; none without such arcs.
     pub(crate) legendre_clebsch: Option<f64>,
+    /// Largest gradient of the height along the quarter: the scale of that slope.
+    pub(crate) steepest: f64,
+    /// The second variation; none without singular arcs.
+    pub(crate) second_variation: Option<SecondVariation>,
     /// Largest overstepping of a bound \[rad\].
     pub(crate) overstepped: f64,
     /// |λ₁ + λ₂| at the start.
@@ -56,15 +63,15 @@ const CONTROL: StepControl = StepControl {
     tolerance: 1e-13,
     longest: f64::INFINITY,
 };
-/// Fewest samples of an arc: the interpolation takes five on the same side of a corner.
+/// Fewest intervals of an arc: the interpolation takes five samples on the same side of a corner, and needs more where the
+/// arc is curved.
 const FEWEST: usize = 6;
+const FEWEST_CURVED: usize = 24;
 
 /// The dynamics of state and costates with the power length as independent variable.
 struct Equations<'a> {
     extremal: Extremal<'a>,
     motion: Motion,
-    /// Outward normal of the bound that the arc runs along.
-    normal: Option<Vector2<f64>>,
 }
 
 impl System<7> for Equations<'_> {
@@ -75,9 +82,8 @@ impl System<7> for Equations<'_> {
         let [x, y, theta, speed] = pose_rates(&slopes.connection, &slopes.power, z[4], &direction);
         // λ̇ᵢ = −∂H/∂φᵢ on a free arc; along a bound the multiplier pushes along its normal and keeps H_u at zero.
         let mut costate = -(slopes.by_angle.transpose() * direction);
-        if let Some(normal) = self.normal {
-            let right = Vector2::new(direction.y, -direction.x);
-            costate += normal * (slopes.height * right.dot(&normal));
+        if let Motion::Along(track) = self.motion {
+            costate -= track.inwards(&phi) * (slopes.height * track.way);
         }
         [direction.x, direction.y, x, y, theta, costate.x, costate.y].map(|rate| rate / speed)
     }
@@ -91,7 +97,7 @@ impl Equations<'_> {
                 .height_and_gradient(phi, pose)
                 .0
                 .singular_direction(),
-            Motion::Along { direction, .. } => direction,
+            Motion::Along(track) => track.direction(phi),
         }
     }
 }
@@ -120,17 +126,24 @@ impl QuarterTrace {
             let equations = Equations {
                 extremal,
                 motion: leg.motion,
-                normal: normal(region, leg.motion),
             };
             let leg_length = leg.to[5] - leg.from[5];
-            let intervals = (FEWEST..samples)
+            let fewest = match leg.motion {
+                Motion::Along(track) if track.piece.is_none() => FEWEST,
+                _ => FEWEST_CURVED,
+            };
+            let intervals = (fewest..samples)
                 .find(|&count| count as f64 * total >= samples as f64 * leg_length)
-                .unwrap_or(samples.max(FEWEST));
+                .unwrap_or(samples.max(fewest));
             let direction = equations.direction(&shape(&here), &[here[2], here[3], here[4]]);
             trace.meet(direction);
             let from = trace.phi.len() - 1;
+            let step = leg.length / intervals as f64;
+            let mut before = None;
             for interval in 0..intervals {
-                trace.evidence.look(&equations, region, &here);
+                let push = trace.evidence.look(&equations, region, &here, last.to[2]);
+                trace.evidence.vary(before, push, step);
+                before = push;
                 let point = Point::new(&equations, here);
                 here = advance(&equations, point, leg_length / intervals as f64, CONTROL)?.z;
                 let along = leg.from[5] - first.from[5]
@@ -138,12 +151,13 @@ impl QuarterTrace {
                 trace.phi.push(shape(&here));
                 trace.power_length.push(along);
             }
-            trace.evidence.look(&equations, region, &here);
+            let push = trace.evidence.look(&equations, region, &here, last.to[2]);
+            trace.evidence.vary(before, push, step);
             let gap = (shape(&here) - shape(&leg.to)).norm();
             trace.evidence.retraced = trace.evidence.retraced.max(gap);
             trace
                 .kinds
-                .push((kind(region, leg.motion), from, trace.phi.len() - 1));
+                .push((kind(leg.motion), from, trace.phi.len() - 1));
             trace.last_direction = equations.direction(&shape(&here), &[here[2], here[3], here[4]]);
         }
         trace.evidence.end(&extremal, &here);
@@ -188,19 +202,10 @@ fn start(extremal: &Extremal<'_>, leg: &Leg) -> Traced {
     [z[0], z[1], z[2], z[3], z[4], -momentum.x, -momentum.y]
 }
 
-fn normal(region: &Region, motion: Motion) -> Option<Vector2<f64>> {
-    match motion {
-        Motion::Singular => None,
-        Motion::Along { edge, .. } => region.edge(edge).map(|edge| edge.normal),
-    }
-}
-
-fn kind(region: &Region, motion: Motion) -> ArcKind {
+fn kind(motion: Motion) -> ArcKind {
     match motion {
         Motion::Singular => ArcKind::Singular,
-        Motion::Along { edge, .. } => region
-            .edge(edge)
-            .map_or(ArcKind::Singular, |edge| edge.kind),
+        Motion::Along(track) => track.bound.kind(),
     }
 }
 
@@ -211,6 +216,8 @@ impl Evidence {
             off_zero: 0.0,
             multiplier: None,
             legendre_clebsch: None,
+            steepest: 0.0,
+            second_variation: None,
             overstepped: f64::NEG_INFINITY,
             start_transversality: (z[5] + z[6]).abs(),
             end_transversality: f64::NAN,
@@ -220,8 +227,14 @@ impl Evidence {
         }
     }
 
-    /// Takes in one sample of an arc.
-    fn look(&mut self, equations: &Equations<'_>, region: &Region, z: &Traced) {
+    /// Takes in one sample of an arc; what a push there does to the displacement, where pushes are free.
+    fn look(
+        &mut self,
+        equations: &Equations<'_>,
+        region: &Region,
+        z: &Traced,
+        final_x: f64,
+    ) -> Option<Push> {
         let (phi, pose) = (shape(z), [z[2], z[3], z[4]]);
         let extremal = &equations.extremal;
         let h_u = extremal.slopes(&phi, &pose).momentum + Vector2::new(z[5], z[6]);
@@ -229,15 +242,14 @@ impl Evidence {
         self.overstepped = self.overstepped.max(region.overstepped(&phi));
         let (height, ..) = extremal.height_and_gradient(&phi, &pose);
         let slope = height.gradient.norm();
-        if let (Some(normal), Motion::Along { direction, .. }) =
-            (equations.normal, equations.motion)
-        {
-            let side = Vector2::new(direction.y, -direction.x).dot(&normal);
-            let multiplier = side * height.value;
+        self.steepest = self.steepest.max(slope);
+        if let Motion::Along(track) = equations.motion {
+            let multiplier = track.way * height.value;
             self.multiplier = Some(
                 self.multiplier
                     .map_or(multiplier, |least| least.min(multiplier)),
             );
+            None
         } else {
             self.off_zero = self.off_zero.max(height.value.abs() / slope);
             // Slope towards the left of the motion.
@@ -247,6 +259,23 @@ impl Evidence {
                 .dot(&Vector2::new(-direction.y, direction.x));
             self.legendre_clebsch =
                 Some(self.legendre_clebsch.map_or(left, |least| least.min(left)));
+            let curvature = extremal.model.first_derivatives(&phi).curvature();
+            Some(Push::new(
+                extremal.sign,
+                &curvature,
+                pose[2],
+                final_x - pose[0],
+                left,
+            ))
+        }
+    }
+
+    /// Takes in the stretch between two samples of a singular arc.
+    fn vary(&mut self, before: Option<Push>, after: Option<Push>, step: f64) {
+        if let (Some(before), Some(after)) = (before, after) {
+            self.second_variation
+                .get_or_insert_default()
+                .step(&before, &after, step);
         }
     }
 

@@ -83,12 +83,6 @@ pub enum DisplacementError {
         /// l₀ \[m\].
         middle: f64,
     },
-    /// A bound that this objective does not know yet.
-    #[error("displacement gaits under the bound `{name}` are not computed yet; leave it out")]
-    NotYet {
-        /// Which.
-        name: &'static str,
-    },
     /// Without bounds on the angles there is no optimum.
     #[error(
         "no optimum without a bound on the joint angles: no zero-level curve of the height function leads from \

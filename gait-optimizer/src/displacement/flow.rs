@@ -15,25 +15,14 @@
 //! both ends of a step, so that two crossings in one step are seen, and located by cutting the step.
 
 mod event;
+mod motion;
 
 use event::{Event, MOST_EVENTS, Watched, first_event};
-use nalgebra::Vector2;
 
 use super::height::{Extremal, State, pose_rates, shape};
-use crate::region::Region;
+use crate::region::{Bound, Region};
 use crate::runge_kutta::{Point, StepControl, System, controlled_step, exact_step};
-
-/// What an arc runs along.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Motion {
-    /// The singular control.
-    Singular,
-    /// An edge of the region, in this direction.
-    Along {
-        edge: usize,
-        direction: Vector2<f64>,
-    },
-}
+pub(crate) use motion::{Motion, Track};
 
 /// One arc of a quarter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,6 +30,8 @@ pub(crate) struct Leg {
     pub(crate) motion: Motion,
     pub(crate) from: State,
     pub(crate) to: State,
+    /// Of its curve in the (φ₁, φ₂) plane \[rad\].
+    pub(crate) length: f64,
 }
 
 /// How a quarter came to its end.
@@ -67,6 +58,8 @@ const LONGEST_CURVE: f64 = 40.0;
 pub(crate) struct Quarter {
     legs: [Leg; MOST_ARCS],
     count: usize,
+    /// How often it touched φ₁ = −φ₂ and went on along it.
+    pub(crate) touched: usize,
     pub(crate) fate: Fate,
     pub(crate) end: State,
 }
@@ -91,9 +84,9 @@ impl System<6> for Drive<'_> {
                 let (height, connection, power) = self.extremal.height_and_gradient(&phi, &pose);
                 (height.singular_direction(), connection, power)
             }
-            Motion::Along { direction, .. } => {
+            Motion::Along(track) => {
                 let (connection, power) = self.extremal.model.connection_and_power(&phi);
-                (direction, connection, power)
+                (track.direction(&phi), connection, power)
             }
         };
         let [x, y, theta, speed] = pose_rates(&connection, &power, z[4], &direction);
@@ -101,22 +94,58 @@ impl System<6> for Drive<'_> {
     }
 }
 
-/// Follows arcs from a state until the quarter is over.
+/// How to follow arcs.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Course {
+    pub(crate) control: StepControl,
+    /// How often to go on along φ₁ = −φ₂, where that is a bound, instead of ending there.
+    pub(crate) touches: usize,
+}
+
+/// Follows arcs from a state until the quarter is over, leaving bounds where the multiplier falls to zero.
 pub(crate) fn follow(
     extremal: Extremal<'_>,
     region: &Region,
     start: State,
     first: Motion,
+    course: Course,
+) -> Quarter {
+    arcs(extremal, region, start, first, course, true)
+}
+
+/// Follows the bounds from a state on one of them, never leaving them.
+pub(crate) fn along_bounds(
+    extremal: Extremal<'_>,
+    region: &Region,
+    start: State,
+    first: Track,
     control: StepControl,
+) -> Quarter {
+    let course = Course {
+        control,
+        touches: 0,
+    };
+    arcs(extremal, region, start, Motion::Along(first), course, false)
+}
+
+fn arcs(
+    extremal: Extremal<'_>,
+    region: &Region,
+    start: State,
+    first: Motion,
+    course: Course,
+    leaves: bool,
 ) -> Quarter {
     let still = Leg {
         motion: first,
         from: start,
         to: start,
+        length: 0.0,
     };
     let mut quarter = Quarter {
         legs: [still; MOST_ARCS],
         count: 0,
+        touched: 0,
         fate: Fate::TooManyArcs,
         end: start,
     };
@@ -125,16 +154,27 @@ pub(crate) fn follow(
         let tracer = Tracer {
             drive: Drive { extremal, motion },
             region,
-            control,
+            control: course.control,
+            leaves,
         };
-        let (end, event) = tracer.arc(quarter.end);
+        let (end, length, event) = tracer.arc(quarter.end);
         *leg = Leg {
             motion,
             from: quarter.end,
             to: end,
+            length,
         };
         quarter.end = end;
         quarter.count += 1;
+        let ends = event == Some(Event::End);
+        let touch = (ends && quarter.touched < course.touches)
+            .then(|| tracer.along_the_end(&end))
+            .flatten();
+        if let Some(touch) = touch {
+            quarter.touched += 1;
+            motion = touch;
+            continue;
+        }
         match tracer.next(&end, event) {
             Ok(next) => motion = next,
             Err(fate) => {
@@ -151,29 +191,32 @@ struct Tracer<'a> {
     drive: Drive<'a>,
     region: &'a Region,
     control: StepControl,
+    /// Whether bounds are left where the multiplier falls to zero.
+    leaves: bool,
 }
 
 impl Tracer<'_> {
     /// Integrates until the first event; none when steps fail or the curve grows too long.
-    fn arc(&self, start: State) -> (State, Option<Event>) {
+    fn arc(&self, start: State) -> (State, f64, Option<Event>) {
         let mut here = Point::new(&self.drive, start);
         let mut watched = self.watch(&here);
         let mut length = 0.0;
         let mut try_length = 0.05;
         while length < LONGEST_CURVE {
             let Some(step) = controlled_step(&self.drive, &here, try_length, self.control) else {
-                return (here.z, None);
+                return (here.z, length, None);
             };
             let after = self.watch(&step.end);
             if let Some((event, at)) = first_event(&watched, &after, step.length) {
-                return (self.locate(&here, event, at, step.length), Some(event));
+                let (end, at) = self.locate(&here, event, at, step.length);
+                return (end, length + at, Some(event));
             }
             here = step.end;
             watched = after;
             length += step.length;
             try_length = step.next;
         }
-        (here.z, None)
+        (here.z, length, None)
     }
 
     /// Every event's value and slope at a point.
@@ -188,13 +231,18 @@ impl Tracer<'_> {
         };
         let own = match self.drive.motion {
             Motion::Singular => None,
-            Motion::Along { edge, .. } => {
-                add(Event::Multiplier);
-                Some(edge)
+            Motion::Along(track) => {
+                if self.leaves {
+                    add(Event::Multiplier);
+                }
+                if track.piece_end(&shape(&at.z)).is_some() {
+                    add(Event::PieceEnd);
+                }
+                Some(track.index)
             }
         };
-        for index in 0..self.region.edges().len() {
-            let as_end = self.is_end_line(index) && !self.on_diagonal();
+        for (index, bound) in self.region.bounds().enumerate() {
+            let as_end = is_end_line(&bound) && !self.on_diagonal();
             if Some(index) != own && !as_end {
                 add(Event::Edge(index));
             }
@@ -209,30 +257,26 @@ impl Tracer<'_> {
         watched
     }
 
-    /// The edge φ₂ ≥ −φ₁ of the sector, which is also where quarters end.
-    fn is_end_line(&self, index: usize) -> bool {
-        self.region.edge(index).is_some_and(|edge| {
-            edge.kind == swimmer_files::ArcKind::Diagonal && edge.normal.x < 0.0
-        })
-    }
-
     /// Running along a side of the sector.
     fn on_diagonal(&self) -> bool {
         match self.drive.motion {
             Motion::Singular => false,
-            Motion::Along { edge, .. } => self
-                .region
-                .edge(edge)
-                .is_some_and(|edge| edge.kind == swimmer_files::ArcKind::Diagonal),
+            Motion::Along(track) => track.bound.kind() == swimmer_files::ArcKind::Diagonal,
         }
     }
 
     fn value(&self, event: Event, at: &Point<6>) -> (f64, f64) {
         let (phi, rate) = (shape(&at.z), shape(&at.rate));
         match event {
-            Event::Edge(index) => match self.region.edge(index) {
-                Some(edge) => (edge.margin(&phi), -edge.normal.dot(&rate)),
+            Event::Edge(index) => match self.region.bound(index) {
+                Some(bound) => (bound.margin(&phi), bound.gradient(&phi).dot(&rate)),
                 None => (1.0, 0.0),
+            },
+            Event::PieceEnd => match self.drive.motion {
+                Motion::Along(track) => track
+                    .piece_end(&phi)
+                    .map_or((1.0, 0.0), |(left, slope)| (left, slope.dot(&rate))),
+                Motion::Singular => (1.0, 0.0),
             },
             Event::End => (phi.x + phi.y, rate.x + rate.y),
             Event::Start => (phi.y - phi.x, rate.y - rate.x),
@@ -247,23 +291,20 @@ impl Tracer<'_> {
     /// The multiplier μ of the bound and its slope: the height where the region lies left of the motion, minus the height
     /// where it lies right (paper, exit criterion, with the sign that belongs to a maximum).
     fn multiplier(&self, at: &Point<6>) -> (f64, f64) {
-        let Motion::Along { edge, direction } = self.drive.motion else {
+        let Motion::Along(track) = self.drive.motion else {
             return (1.0, 0.0);
         };
-        let Some(edge) = self.region.edge(edge) else {
-            return (1.0, 0.0);
-        };
-        let side = edge.counter_clockwise().dot(&direction).signum();
-        let pose = [at.z[2], at.z[3], at.z[4]];
-        let (height, ..) = self
-            .drive
-            .extremal
-            .height_and_gradient(&shape(&at.z), &pose);
-        (side * height.value, side * height.gradient.dot(&direction))
+        let (phi, pose) = (shape(&at.z), [at.z[2], at.z[3], at.z[4]]);
+        let (height, ..) = self.drive.extremal.height_and_gradient(&phi, &pose);
+        let direction = track.direction(&phi);
+        (
+            track.way * height.value,
+            track.way * height.gradient.dot(&direction),
+        )
     }
 
     /// Cuts the step to end where the event's value is zero, by Newton's method on the step's length.
-    fn locate(&self, here: &Point<6>, event: Event, guess: f64, longest: f64) -> State {
+    fn locate(&self, here: &Point<6>, event: Event, guess: f64, longest: f64) -> (State, f64) {
         let mut length = guess;
         let mut there = exact_step(&self.drive, here, length);
         for _ in 0..12 {
@@ -281,12 +322,18 @@ impl Tracer<'_> {
         }
         let mut z = there.z;
         if let Event::Edge(index) = event
-            && let Some(edge) = self.region.edge(index)
+            && let Some(bound) = self.region.bound(index)
         {
-            let on = edge.onto(&shape(&z));
+            let on = bound.onto(&shape(&z));
             (z[0], z[1]) = (on.x, on.y);
         }
-        z
+        (z, length)
+    }
+
+    /// On along φ₁ = −φ₂ towards the straight shape, where that line is a bound: the quarter and its image touch there.
+    fn along_the_end(&self, at: &State) -> Option<Motion> {
+        let index = self.region.bounds().position(|bound| is_end_line(&bound))?;
+        Track::new(self.region, index, &shape(at), 1.0).map(Motion::Along)
     }
 
     /// What follows an arc.
@@ -297,11 +344,16 @@ impl Tracer<'_> {
             Some(Event::Start) => Err(Fate::CameBack),
             Some(Event::Horizon) => Err(Fate::LeftHorizon),
             Some(Event::Multiplier) => Ok(Motion::Singular),
+            Some(Event::PieceEnd) => match self.drive.motion {
+                Motion::Along(track) => track.next_piece().map(Motion::Along).ok_or(Fate::Stalled),
+                Motion::Singular => Err(Fate::Stalled),
+            },
             Some(Event::Edge(index)) => {
-                let Some(edge) = self.region.edge(index) else {
+                let phi = shape(at);
+                let Some(track) = Track::new(self.region, index, &phi, 1.0) else {
                     return Err(Fate::Stalled);
                 };
-                let along = edge.counter_clockwise();
+                let along = track.direction(&phi);
                 // A singular arc may turn either way on a bound; the way towards φ₁ = −φ₂ closes the loop. In a corner of
                 // the region the only way is back inside.
                 let forwards = match self.drive.motion {
@@ -313,17 +365,19 @@ impl Tracer<'_> {
                             along.dot(&shape(&self.drive.rate(at)))
                         }
                     }
-                    Motion::Along { edge: before, .. } => self
-                        .region
-                        .edge(before)
-                        .map_or(1.0, |before| -along.dot(&before.normal)),
+                    Motion::Along(before) => along.dot(&before.inwards(&phi)),
                 };
-                let direction = if forwards < 0.0 { -along } else { along };
-                Ok(Motion::Along {
-                    edge: index,
-                    direction,
-                })
+                Ok(Motion::Along(if forwards < 0.0 {
+                    track.back()
+                } else {
+                    track
+                }))
             }
         }
     }
+}
+
+/// The edge φ₂ ≥ −φ₁ of the sector, which is also where quarters end.
+fn is_end_line(bound: &Bound) -> bool {
+    matches!(bound, Bound::Straight(edge) if edge.kind == swimmer_files::ArcKind::Diagonal && edge.normal.x < 0.0)
 }

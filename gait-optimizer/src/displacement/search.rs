@@ -5,36 +5,20 @@
 //! one `y_f`, so the place fixes the whole extremal, and a scan over the trunk with a scalar root search on
 //! `λ₄(t_f) = 0` finds every quarter gait without a guess. One more candidate never leaves the bound at all.
 
-use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use super::Fates;
-use super::flow::{Drive, Fate, Leg, Motion, Quarter, follow};
-use super::height::{Extremal, State, shape};
+use super::flow::{Course, Fate, Leg, Motion, Quarter, follow};
+use super::height::{Extremal, shape};
+use super::trunk::{Place, Trunk};
 use crate::region::Region;
-use crate::runge_kutta::{Point, StepControl, advance};
-
-/// Where singular arcs may begin.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Trunk {
-    /// φ₁ = φ₂ = p.
-    StartLine { low: f64, high: f64 },
-    /// A bound, from `corner` on φ₁ = φ₂; p is the way along it.
-    Bound {
-        edge: usize,
-        corner: f64,
-        direction: Vector2<f64>,
-        length: f64,
-    },
-}
+use crate::runge_kutta::StepControl;
 
 /// An extremal that meets all end conditions.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Candidate {
     pub(crate) quarter: Quarter,
     pub(crate) final_y: f64,
-    /// Largest gain in λ₃ x over extremals beside this one; negative at a maximum. None where it has no neighbours.
-    pub(crate) neighbour_gain: Option<f64>,
 }
 
 /// The shooting problem.
@@ -45,6 +29,8 @@ pub(crate) struct Search<'a> {
     pub(crate) region: &'a Region,
     /// λ₃.
     pub(crate) sign: f64,
+    /// How often the quarter touches φ₁ = −φ₂ before it ends there.
+    pub(crate) touches: usize,
 }
 
 /// Places looked at on each trunk, and how near to a fold the search looks.
@@ -55,14 +41,12 @@ const COARSE: StepControl = StepControl {
 };
 /// |λ₄| over L from which on the fine tolerance takes over.
 const NEAR: f64 = 1e-3;
-const FINE: StepControl = StepControl {
+pub(super) const FINE: StepControl = StepControl {
     tolerance: 1e-13,
     longest: 0.3,
 };
 /// Halvings of an interval of which only one end has an extremal that ends.
 const HALVINGS: usize = 5;
-/// How far the neighbours are that a candidate is compared with \[rad\].
-const BESIDE: f64 = 1e-3;
 
 /// What a place on a trunk leads to.
 #[derive(Debug, Clone, Copy)]
@@ -84,7 +68,7 @@ impl<'a> Search<'a> {
     }
 
     fn scan(&self, trunk: &Trunk, fates: &mut Fates, found: &mut Vec<Candidate>) {
-        let (low, high) = trunk.range();
+        let [low, high] = trunk.range();
         let place = |look: usize| low + (high - low) * (look as f64 + 0.5) / LOOKS as f64;
         let mut before = Look::Nothing;
         let mut last_p = low;
@@ -116,7 +100,7 @@ impl<'a> Search<'a> {
             return Look::Nothing;
         };
         match quarter.fate {
-            Fate::Ended => {
+            Fate::Ended if quarter.touched == self.touches => {
                 fates.ended += 1;
                 let lambda4 = quarter.end[3] - final_y;
                 fates.nearest = Some(
@@ -126,6 +110,7 @@ impl<'a> Search<'a> {
                 );
                 return Look::Miss { p, lambda4 };
             }
+            Fate::Ended => fates.ended += 1,
             Fate::CameBack => fates.came_back += 1,
             Fate::LeftHorizon => fates.left_horizon += 1,
             Fate::Stalled | Fate::TooManyArcs => fates.lost += 1,
@@ -212,121 +197,100 @@ impl<'a> Search<'a> {
         let (quarter, final_y) = self.shoot(trunk, p, FINE)?;
         let whole = match trunk {
             Trunk::StartLine { .. } => quarter,
-            // Again from the corner: the multiplier itself must fall to zero at p.
-            Trunk::Bound { .. } => {
+            // Again from the start: the multiplier itself must fall to zero at p.
+            Trunk::Bounds(_) => {
+                let start = trunk.start()?;
                 let extremal = self.extremal(final_y);
                 let whole = follow(
                     extremal,
                     self.region,
-                    trunk.corner_state(),
-                    trunk.motion()?,
-                    FINE,
+                    start.state,
+                    start.motion,
+                    self.course(FINE),
                 );
-                let at = whole
+                let left = whole
                     .legs()
-                    .first()
-                    .map_or(f64::NAN, |leg| (shape(&leg.to) - shape(&leg.from)).norm());
-                ((at - p).abs() < 1e-6).then_some(whole)?
+                    .iter()
+                    .find(|leg| leg.motion == Motion::Singular)?;
+                let place = self.place(trunk, p)?.state;
+                ((shape(&left.from) - shape(&place)).norm() < 1e-6).then_some(whole)?
             }
         };
-        let gain = |beside: f64| {
-            let (neighbour, _) = self.shoot(trunk, beside, FINE)?;
-            (neighbour.fate == Fate::Ended).then(|| self.sign * (neighbour.end[2] - quarter.end[2]))
-        };
-        let neighbour_gain = match (gain(p - BESIDE), gain(p + BESIDE)) {
-            (Some(a), Some(b)) => Some(a.max(b)),
-            (one, other) => one.or(other),
-        };
-        (whole.fate == Fate::Ended).then_some(Candidate {
+        self.ended(&whole).then_some(Candidate {
             quarter: whole,
             final_y,
-            neighbour_gain,
         })
     }
 
-    /// The extremal that runs along the bound, and from there along the next, to the very end.
+    /// The extremal that runs along the bounds to the very end.
     fn never_leaving(&self, trunk: &Trunk) -> Option<Candidate> {
-        let motion = trunk.motion()?;
-        let mut here = trunk.corner_state();
-        let Motion::Along { edge, direction } = motion else {
-            return None;
-        };
-        // Straight to φ₁ = −φ₂, whatever the multiplier: this fixes y_f.
-        let way = -(here[0] + here[1]) / (direction.x + direction.y);
-        let length = match trunk {
-            Trunk::Bound { length, .. }
-                if way.is_finite() && way > 0.0 && way <= *length + 1e-9 =>
-            {
-                way
-            }
-            _ => return None,
-        };
-        let drive = Drive {
-            extremal: self.extremal(0.0),
-            motion: Motion::Along { edge, direction },
-        };
-        here = advance(&drive, Point::new(&drive, here), length, FINE)?.z;
-        let final_y = here[3];
+        let final_y = trunk.end()?[3];
+        let start = trunk.start()?;
+        let extremal = self.extremal(final_y);
         let quarter = follow(
-            self.extremal(final_y),
+            extremal,
             self.region,
-            trunk.corner_state(),
-            motion,
-            FINE,
+            start.state,
+            start.motion,
+            self.course(FINE),
         );
         let stayed = quarter
             .legs()
             .iter()
             .all(|leg| leg.motion != Motion::Singular);
-        (quarter.fate == Fate::Ended && stayed && (quarter.end[3] - final_y).abs() < 1e-10)
-            .then_some(Candidate {
-                quarter,
-                final_y,
-                neighbour_gain: None,
-            })
+        (self.ended(&quarter) && stayed && (quarter.end[3] - final_y).abs() < 1e-10)
+            .then_some(Candidate { quarter, final_y })
     }
 
     /// `λ₄(t_f)` over λ₃ of the extremal that leaves a trunk at p, where that extremal ends.
     fn miss(&self, trunk: &Trunk, p: f64, control: StepControl) -> Option<f64> {
         let (quarter, final_y) = self.shoot(trunk, p, control)?;
-        (quarter.fate == Fate::Ended).then(|| quarter.end[3] - final_y)
+        self.ended(&quarter).then(|| quarter.end[3] - final_y)
     }
 
     /// The quarter that becomes singular at place p of a trunk, with its `y_f`. None where the singular control would leave
     /// the region, or no `y_f` makes the height vanish.
     fn shoot(&self, trunk: &Trunk, p: f64, control: StepControl) -> Option<(Quarter, f64)> {
-        let start = self.place(trunk, p, control)?;
-        let (phi, pose) = (shape(&start), [start[2], start[3], start[4]]);
+        let Place { state, motion } = self.place(trunk, p)?;
+        let (phi, pose) = (shape(&state), [state[2], state[3], state[4]]);
         let final_y = Extremal::final_y_of_zero(self.model, &phi, &pose)?;
         let extremal = self.extremal(final_y);
         let (height, ..) = extremal.height_and_gradient(&phi, &pose);
         let direction = height.singular_direction();
-        let inwards = match trunk {
-            Trunk::StartLine { .. } => direction.y - direction.x,
-            Trunk::Bound { edge, .. } => -self.region.edge(*edge)?.normal.dot(&direction),
+        let inwards = match motion {
+            Motion::Singular => direction.y - direction.x,
+            Motion::Along(track) => track.inwards(&phi).dot(&direction),
         };
         (inwards > 0.0).then(|| {
             (
-                follow(extremal, self.region, start, Motion::Singular, control),
+                follow(
+                    extremal,
+                    self.region,
+                    state,
+                    Motion::Singular,
+                    self.course(control),
+                ),
                 final_y,
             )
         })
     }
 
-    fn place(&self, trunk: &Trunk, p: f64, control: StepControl) -> Option<State> {
-        match trunk {
-            Trunk::StartLine { .. } => Some([p, p, 0.0, 0.0, 0.0, 0.0]),
-            Trunk::Bound { .. } => {
-                let drive = Drive {
-                    extremal: self.extremal(0.0),
-                    motion: trunk.motion()?,
-                };
-                Some(advance(&drive, Point::new(&drive, trunk.corner_state()), p, control)?.z)
-            }
+    fn course(&self, control: StepControl) -> Course {
+        Course {
+            control,
+            touches: self.touches,
         }
     }
 
-    fn extremal(&self, final_y: f64) -> Extremal<'a> {
+    fn ended(&self, quarter: &Quarter) -> bool {
+        quarter.fate == Fate::Ended && quarter.touched == self.touches
+    }
+
+    fn place(&self, trunk: &Trunk, p: f64) -> Option<Place> {
+        trunk.place(self.extremal(0.0), p)
+    }
+
+    pub(super) fn extremal(&self, final_y: f64) -> Extremal<'a> {
         Extremal {
             model: self.model,
             sign: self.sign,
@@ -335,35 +299,10 @@ impl<'a> Search<'a> {
     }
 }
 
-impl Trunk {
-    fn range(&self) -> (f64, f64) {
-        match self {
-            Self::StartLine { low, high } => (*low, *high),
-            Self::Bound { length, .. } => (0.0, *length),
-        }
-    }
-
-    fn motion(&self) -> Option<Motion> {
-        match self {
-            Self::StartLine { .. } => None,
-            Self::Bound {
-                edge, direction, ..
-            } => Some(Motion::Along {
-                edge: *edge,
-                direction: *direction,
-            }),
-        }
-    }
-
-    fn corner_state(&self) -> State {
-        match self {
-            Self::StartLine { .. } => [0.0; 6],
-            Self::Bound { corner, .. } => [*corner, *corner, 0.0, 0.0, 0.0, 0.0],
-        }
-    }
-}
-
 /// Legs that have a length.
 pub(crate) fn lasting(legs: &[Leg]) -> impl Iterator<Item = &Leg> {
     legs.iter().filter(|leg| leg.to[5] > leg.from[5])
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,6 +9,13 @@
 use nalgebra::{Matrix2, Vector2};
 use swimmer_model::Links;
 
+impl Level {
+    /// Unit vector along the curve of equal margin, with the larger margin on the left.
+    pub(crate) fn tangent(&self) -> Vector2<f64> {
+        Vector2::new(self.gradient.y, -self.gradient.x) / self.gradient.norm()
+    }
+}
+
 /// What is nearest to what, or crosses it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Piece {

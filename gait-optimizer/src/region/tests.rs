@@ -130,7 +130,9 @@ proptest! {
             return Ok(());
         }
         prop_assert!(bound.margin(&on).abs() < 1e-13);
-        let (along, curvature) = (bound.tangent(&on), bound.curvature(&on));
+        let level = clearance.deciding_level(&on);
+        let along = bound.tangent(&on);
+        let curvature = -along.dot(&(level.hessian * along)) / level.gradient.norm();
         prop_assert!((along.norm() - 1.0).abs() < 1e-12);
         prop_assert!(along.perp(&bound.gradient(&on)) > 0.0, "the region is on the left");
         let left = Vector2::new(-along.y, along.x);

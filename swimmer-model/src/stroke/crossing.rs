@@ -16,13 +16,18 @@ pub struct CrossingShare<T> {
 /// Looks are at least this dense over a cycle.
 const LOOKS: usize = 256;
 
-/// Share of a gait with crossing links ([`Links::cross`]). Beginnings and ends are located exactly; a crossing that
+/// An overlap below this share of the middle link is a touch: samples of a gait that runs along the border of a crossing
+/// lie to either side of it by rounding.
+const TOUCH: f64 = 1e-8;
+
+/// Share of a gait with crossing links ([`Links::cross`]), where touching is not crossing. Beginnings and ends are located exactly; a crossing that
 /// comes and goes between two of 256 looks may be missed.
 pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
     links: &Links<T>,
     gait: &G,
 ) -> CrossingShare<T> {
-    let overlap = |u: T| links.overlap(&gait.at(u).phi);
+    let touch = links.middle * T::from_f64(TOUCH);
+    let overlap = |u: T| links.overlap(&gait.at(u).phi) - touch;
     let (mut u, mut crossing, mut length, mut crossing_length) =
         (T::zero(), T::zero(), T::zero(), T::zero());
     let pieces = gait.pieces().max(1);

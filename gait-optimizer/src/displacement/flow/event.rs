@@ -4,8 +4,10 @@
 /// What may end an arc. Each has a value that falls through zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Event {
-    /// Margin to an edge.
+    /// Margin to a bound.
     Edge(usize),
+    /// What is left of the piece of the bound that the arc runs along.
+    PieceEnd,
     /// φ₁ + φ₂.
     End,
     /// φ₂ − φ₁.
@@ -16,8 +18,8 @@ pub(super) enum Event {
     Multiplier,
 }
 
-/// Events have at most this many sources: eight bounds and four others.
-pub(super) const MOST_EVENTS: usize = 12;
+/// Events have at most this many sources: eight bounds and five others.
+pub(super) const MOST_EVENTS: usize = 13;
 /// Each watched event with its value and slope at one end of a step.
 pub(super) type Watched = [Option<(Event, f64, f64)>; MOST_EVENTS];
 

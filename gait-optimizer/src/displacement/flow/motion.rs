@@ -1,0 +1,95 @@
+//! What an arc runs along: free, or along a bound one way or the other, piece by piece.
+
+use nalgebra::Vector2;
+
+use crate::region::{Bound, Piece, Region};
+
+/// What an arc runs along.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Motion {
+    /// The singular control.
+    Singular,
+    /// A bound of the region.
+    Along(Track),
+}
+
+/// A bound with the way that it is run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Track {
+    /// Place of the bound in the region.
+    pub(crate) index: usize,
+    pub(crate) bound: Bound,
+    /// The piece, for a bound that has pieces.
+    pub(crate) piece: Option<Piece>,
+    /// 1 with the region on the left, −1 with the region on the right.
+    pub(crate) way: f64,
+}
+
+impl Track {
+    /// Along the piece of a bound that a shape lies on; none where the region has no such bound.
+    pub(crate) fn new(region: &Region, index: usize, phi: &Vector2<f64>, way: f64) -> Option<Self> {
+        let bound = region.bound(index)?;
+        Some(Self {
+            index,
+            bound,
+            piece: bound.piece(phi),
+            way,
+        })
+    }
+
+    /// The other way.
+    pub(crate) fn back(self) -> Self {
+        Self {
+            way: -self.way,
+            ..self
+        }
+    }
+
+    /// Unit direction of motion; smooth also beyond the piece's end.
+    pub(crate) fn direction(&self, phi: &Vector2<f64>) -> Vector2<f64> {
+        self.left(phi) * self.way
+    }
+
+    /// Unit normal that points into the region.
+    pub(crate) fn inwards(&self, phi: &Vector2<f64>) -> Vector2<f64> {
+        let along = self.left(phi);
+        Vector2::new(-along.y, along.x)
+    }
+
+    /// The direction with the region on the left.
+    fn left(&self, phi: &Vector2<f64>) -> Vector2<f64> {
+        match (&self.bound, self.piece) {
+            (Bound::Clearance(clearance), Some(piece)) => clearance.level(piece, phi).tangent(),
+            (bound, _) => bound.tangent(phi),
+        }
+    }
+
+    /// What is left of the piece, with its slope in Φ; none where it does not end.
+    pub(crate) fn piece_end(&self, phi: &Vector2<f64>) -> Option<(f64, Vector2<f64>)> {
+        match (&self.bound, self.piece) {
+            (Bound::Clearance(clearance), Some(piece)) => clearance.piece_end(piece, phi),
+            _ => None,
+        }
+    }
+
+    /// The piece after this one. Round a forbidden zone they follow each other as front tip, tips, back tip.
+    pub(crate) fn next_piece(&self) -> Option<Self> {
+        let Bound::Clearance(clearance) = &self.bound else {
+            return None;
+        };
+        let forwards = self.way > 0.0;
+        let next = match self.piece? {
+            Piece::FrontTip if forwards && clearance.has_corner() => Piece::BackTip,
+            Piece::BackTip if !forwards && clearance.has_corner() => Piece::FrontTip,
+            Piece::FrontTip if forwards => Piece::Tips,
+            Piece::BackTip if !forwards => Piece::Tips,
+            Piece::Tips if forwards => Piece::BackTip,
+            Piece::Tips => Piece::FrontTip,
+            _ => return None,
+        };
+        Some(Self {
+            piece: Some(next),
+            ..*self
+        })
+    }
+}

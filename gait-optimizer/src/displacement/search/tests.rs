@@ -1,0 +1,91 @@
+use super::*;
+use crate::cycle::QuarterTrace;
+use crate::displacement::of_unit_length;
+use crate::displacement::trunk::trunks;
+use swimmer_files::Bounds;
+use swimmer_model::{Links, Swimmer, TangentialDrag};
+
+/// Where λ₃ x of extremals beside a candidate is larger, the conjugate-point test must say so, and the other way round:
+/// two different roads to the same verdict. One extremal is no maximum: l₀ = l₁/2, χ = 1.2, backwards from 2.455 rad within
+/// 6.2 rad; it must fail.
+#[test]
+fn the_second_variation_agrees_with_the_neighbours() {
+    let (mut maxima, mut others) = (0, 0);
+    for ratio in [0.5, 1.0, 2.5] {
+        for chi in [1.2, 2.0, 3.6] {
+            for (sphere, max_angle) in [(0.0, 3.0), (0.5, 2.8), (1.0, 3.0), (0.0, 6.2)] {
+                let swimmer = of_unit_length(&Swimmer {
+                    links: Links {
+                        middle: ratio,
+                        front: 1.0,
+                        back: 1.0,
+                    },
+                    chi,
+                    tangential_drag: TangentialDrag::LogAspect(4.0),
+                    sphere_radius: sphere * ratio,
+                });
+                let model = Model::new(&swimmer).unwrap();
+                let bounds = Bounds {
+                    max_angle: Some(max_angle),
+                    ..Bounds::default()
+                };
+                let region = Region::new(&bounds, &swimmer.links);
+                for sign in [1.0, -1.0] {
+                    let search = Search {
+                        model: &model,
+                        region: &region,
+                        sign,
+                        touches: 0,
+                    };
+                    for trunk in trunks(search.extremal(0.0), &bounds, &region) {
+                        let (found, _) = search.candidates(std::slice::from_ref(&trunk));
+                        for candidate in found {
+                            let Some(gain) = neighbour_gain(&search, &trunk, &candidate) else {
+                                continue;
+                            };
+                            let legs: Vec<_> = lasting(candidate.quarter.legs()).copied().collect();
+                            let extremal = search.extremal(candidate.final_y);
+                            let trace = QuarterTrace::new(extremal, &region, &legs, 256).unwrap();
+                            let form = trace.evidence.second_variation.unwrap();
+                            if gain < 0.0 {
+                                maxima += 1;
+                                assert!(form.least > 0.0, "{swimmer:?} {gain} {form:?}");
+                            } else {
+                                others += 1;
+                                assert!(form.least < 0.0, "{swimmer:?} {gain} {form:?}");
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(maxima >= 40 && others >= 1, "{maxima} {others}");
+}
+
+/// The larger gain in λ₃ x of the two extremals beside a candidate on its trunk; none where it is not on it, or both neighbours
+/// do not end.
+fn neighbour_gain(search: &Search<'_>, trunk: &Trunk, candidate: &Candidate) -> Option<f64> {
+    const BESIDE: f64 = 1e-3;
+    let first = candidate
+        .quarter
+        .legs()
+        .iter()
+        .find(|leg| leg.motion == Motion::Singular)?;
+    let p = match trunk {
+        Trunk::StartLine { .. } => first.from[0],
+        Trunk::Bounds(_) => candidate
+            .quarter
+            .legs()
+            .iter()
+            .take_while(|leg| leg.motion != Motion::Singular)
+            .map(|leg| leg.length)
+            .sum(),
+    };
+    let x = |p: f64| {
+        let (quarter, _) = search.shoot(trunk, p, FINE)?;
+        (quarter.fate == Fate::Ended).then_some(search.sign * quarter.end[2])
+    };
+    let here = x(p)?;
+    Some(x(p - BESIDE)?.max(x(p + BESIDE)?) - here)
+}
