@@ -129,11 +129,11 @@ fn keeps_its_name(
 
 fn branch_ends(branch: Branch, links: &Links<f64>, ended: &Ended) -> EfficiencyError {
     let (at, reason) = match ended {
-        Ended::NoneBeyond { at, fold: true, .. } => (
+        Ended::Fold { at, .. } => (
             at,
             "there it folds: it meets another extremal, and beyond there is neither".to_owned(),
         ),
-        Ended::NoneBeyond { at, reason, .. } => (at, format!("beyond, {reason}")),
+        Ended::NoneBeyond { at, reason } => (at, format!("beyond, {reason}")),
         Ended::OtherBranch { at } => (at, "beyond, only other branches are found".to_owned()),
         Ended::Property { at, property } => (at, format!("there it loses {property}")),
     };

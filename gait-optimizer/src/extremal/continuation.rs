@@ -9,6 +9,7 @@ use swimmer_files::Bounds;
 use swimmer_model::{Links, Model};
 
 use super::equations::Motion;
+use super::shooting::{Chain, Entry, solve};
 use super::wall::Walls;
 use super::{Extremal, Unpolished, polish_chain};
 
@@ -22,14 +23,12 @@ pub(crate) struct Tightness {
 }
 
 /// Why a gait could not be followed all the way.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) enum Ended {
-    /// No gait nearby for tighter bounds, however small the step. At a fold the arcs change ever faster on the way there.
-    NoneBeyond {
-        at: Tightness,
-        reason: Unpolished,
-        fold: bool,
-    },
+    /// No gait nearby for tighter bounds, however small the step.
+    NoneBeyond { at: Tightness, reason: Unpolished },
+    /// A fold: the gait meets another extremal, and neither goes on. The other one, shortly before, is the proof.
+    Fold { at: Tightness, other: Box<Extremal> },
     /// Steps shrank although gaits were found: each was another branch.
     OtherBranch { at: Tightness },
     /// The gait is no longer what it was called.
@@ -43,6 +42,8 @@ pub(crate) enum Ended {
 const FIRST: f64 = 0.05;
 const SMALLEST: f64 = 1e-6;
 const MOST_STEPS: usize = 400;
+/// How many gaits on the way are kept.
+const REMEMBERED: usize = 12;
 /// The efficiency may change by this share in one step, and the first shape by this much \[rad\].
 const MOST_CHANGE: f64 = 0.08;
 const MOST_SHIFT: f64 = 0.12;
@@ -87,7 +88,8 @@ impl Path<'_> {
         let way = (to.max_angle - from.max_angle).abs() + (to.share - from.share).abs();
         let (mut here, mut t, mut step) = (start, 0.0_f64, (FIRST / way.max(1e-9)).min(1.0));
         let mut failure;
-        let mut speeds = Vec::new();
+        // The last gaits on the way, oldest first.
+        let mut way_here: Vec<Extremal> = Vec::new();
         for _ in 0..MOST_STEPS {
             if t >= 1.0 {
                 return Ok(here);
@@ -100,8 +102,10 @@ impl Path<'_> {
                             at: between(next),
                             property,
                         })?;
-                        speeds.extend(stretched(&here, &found).map(|change| change / step));
-                        here = found;
+                        way_here.push(std::mem::replace(&mut here, found));
+                        if way_here.len() > REMEMBERED {
+                            way_here.remove(0);
+                        }
                         t = next;
                         step *= if small < 0.3 { 2.0 } else { 1.1 };
                         continue;
@@ -113,13 +117,20 @@ impl Path<'_> {
             step *= 0.5;
             if step * way < SMALLEST {
                 let at = between(t);
-                return Err(failure.map_or(Ended::OtherBranch { at }, |reason| {
-                    Ended::NoneBeyond {
+                let Some(reason) = failure else {
+                    return Err(Ended::OtherBranch { at });
+                };
+                let other = way_here
+                    .iter()
+                    .rev()
+                    .find_map(|before| other_side(self.model, before, &here));
+                return Err(match other {
+                    Some(other) => Ended::Fold {
                         at,
-                        reason,
-                        fold: speeds_up(&speeds),
-                    }
-                }));
+                        other: Box::new(other),
+                    },
+                    None => Ended::NoneBeyond { at, reason },
+                });
             }
         }
         Err(Ended::OtherBranch { at: between(t) })
@@ -134,7 +145,7 @@ impl Path<'_> {
             {
                 *wall = moved;
             }
-            if let super::shooting::Entry::Corner(corner) = &mut arc.entry
+            if let Entry::Corner(corner) = &mut arc.entry
                 && let Some(moved) = walls.corner(corner)
             {
                 *corner = moved;
@@ -152,31 +163,44 @@ fn difference(here: &Extremal, there: &Extremal) -> f64 {
     change.max(shift)
 }
 
-/// The largest change of an arc's length, over that of the chain; none where the arcs differ.
-fn stretched(here: &Extremal, there: &Extremal) -> Option<f64> {
-    let (before, after) = (&here.solved.chain, &there.solved.chain);
-    let same = before.arcs.len() == after.arcs.len()
-        && before
-            .arcs
+/// Whether two chains are made of the same arcs.
+fn alike(a: &Chain, b: &Chain) -> bool {
+    a.states.len() == b.states.len()
+        && a.arcs.len() == b.arcs.len()
+        && a.arcs
             .iter()
-            .zip(&after.arcs)
-            .all(|(a, b)| matches!(a.motion, Motion::Free) == matches!(b.motion, Motion::Free));
-    same.then(|| {
-        let changes = before
-            .arcs
-            .iter()
-            .zip(&after.arcs)
-            .map(|(a, b)| (a.length - b.length).abs());
-        changes.fold(0.0, f64::max) / before.length()
-    })
+            .zip(&b.arcs)
+            .all(|(a, b)| matches!(a.motion, Motion::Free) == matches!(b.motion, Motion::Free))
 }
 
-/// Whether the last changes are much faster than most.
-fn speeds_up(speeds: &[f64]) -> bool {
-    let mut sorted = speeds.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    match (sorted.get(sorted.len() / 2), speeds.last()) {
-        (Some(median), Some(last)) => speeds.len() > 4 && *last > 3.0 * median,
-        _ => false,
+/// The chain as far on the other side of `turn` as `here` is on this side, `factor` times; the arcs are those of `here`.
+fn mirrored(here: &Chain, turn: &Chain, factor: f64) -> Chain {
+    let beyond = |from: f64, to: f64| to + factor * (to - from);
+    let mut chain = here.clone();
+    for (state, to) in chain.states.iter_mut().zip(&turn.states) {
+        for (value, to) in state.iter_mut().zip(to) {
+            *value = beyond(*value, *to);
+        }
     }
+    for (arc, to) in chain.arcs.iter_mut().zip(&turn.arcs) {
+        arc.length = beyond(arc.length, to.length);
+    }
+    chain
+}
+
+/// The other extremal that a branch meets where it ends, under the bounds of a gait shortly before: the proof of a fold.
+/// The Jacobian has the other orientation there.
+fn other_side(model: &Model<f64>, before: &Extremal, last: &Extremal) -> Option<Extremal> {
+    let (here, turn) = (&before.solved.chain, &last.solved.chain);
+    if !alike(here, turn) {
+        return None;
+    }
+    [1.0, 1.5, 2.0, 0.7].into_iter().find_map(|factor| {
+        let solved = solve(model, before.class, mirrored(here, turn, factor)).ok()?;
+        (solved.orientation * before.solved.orientation < 0.0).then_some(Extremal {
+            solved,
+            class: before.class,
+            structures: 1,
+        })
+    })
 }
