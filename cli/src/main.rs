@@ -7,6 +7,7 @@ mod interrupt;
 mod link_log;
 mod new_folder;
 mod output;
+mod paper;
 mod progress;
 mod quantity;
 mod report;

@@ -22,10 +22,13 @@
 //! | `certificate` | checks, and those that any closed curve can be asked |
 //! | [`collocation`] | efficiency gaits by Radau collocation, with a structured Newton method and mesh refinement |
 //! | `certify` | the same conditions asked of any closed curve, from its samples alone |
+//! | [`closed_forms`] | formulas of the paper's appendix, mended |
+//! | `simple_shapes` | circles and squares over their amplitude |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
 
 mod certificate;
 mod certify;
+pub mod closed_forms;
 pub mod collocation;
 mod cycle;
 mod displacement;
@@ -38,6 +41,7 @@ pub mod playable;
 mod region;
 mod robust;
 mod runge_kutta;
+mod simple_shapes;
 
 pub use certificate::{Certificate, Check};
 pub use certify::{CertifyError, certify};
@@ -52,4 +56,5 @@ pub use optimal_gait::{Arc, OptimalGait};
 pub use robust::{
     Over, RobustError, RobustGait, Uncertainty, Values, robust_displacement, robust_efficiency,
 };
+pub use simple_shapes::{BestAmplitude, SimpleShape, best_amplitudes};
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};

@@ -1,7 +1,8 @@
 //! Certificates from the curve alone: every optimum passes, nothing else does.
 
 use gait_optimizer::{
-    Bounds, Certificate, DisplacementProblem, Heading, Objective, certify, displacement,
+    Bounds, Branch, Certificate, DisplacementProblem, EfficiencyProblem, Heading, Objective,
+    certify, displacement, efficiency,
 };
 use nalgebra::Vector2;
 use std::path::Path;
@@ -82,25 +83,54 @@ fn every_displacement_gait_passes() {
     }
 }
 
+/// Pushed in by a thousandth of a radian, so that no bound notices.
+fn bumped(file: &GaitFile, centre: f64) -> GaitFile {
+    let push = |(phi, u): (&Vector2<f64>, &f64)| {
+        let bump = 1e-3 * (-((u - centre) / 0.01).powi(2)).exp();
+        phi - phi.normalize() * bump
+    };
+    GaitFile {
+        phi: file.phi.iter().zip(&file.u).map(push).collect(),
+        ..file.clone()
+    }
+}
+
 #[test]
 fn a_bump_fails() {
     for (swimmer, file) in displacement_gaits() {
         for centre in [0.03, 0.11, 0.2, 0.45, 0.77] {
-            let bumped = GaitFile {
-                phi: file
-                    .phi
-                    .iter()
-                    .zip(&file.u)
-                    .map(|(phi, u)| {
-                        let bump = 1e-3 * (-((u - centre) / 0.01).powi(2)).exp();
-                        // Inwards, so that no bound notices.
-                        phi - phi.normalize() * bump
-                    })
-                    .collect(),
-                ..file.clone()
-            };
+            let bumped = bumped(&file, centre);
             let certificate = certificate(&swimmer, &bumped);
             assert!(!certificate.pass(), "{:?} at {centre}", file.bounds);
+        }
+    }
+}
+
+/// Small and large Lighthill gaits of both swimmers, written, read and run the other way; with a bump they fail.
+#[test]
+fn every_efficiency_gait_passes() {
+    for swimmer in [Swimmer::purcell(), Swimmer::robot()] {
+        for branch in [Branch::Small, Branch::Large] {
+            let gait = efficiency(&EfficiencyProblem::new(swimmer, branch)).unwrap();
+            let file = gait.gait_file("a swimmer");
+            let certificate = certificate(&swimmer, &file);
+            println!("{branch}");
+            show(&certificate);
+            assert!(certificate.pass(), "{branch}: {}", certificate.failures());
+            let read = GaitFile::parse(&file.to_text(), Path::new("g")).unwrap();
+            assert_eq!(self::certificate(&swimmer, &read), certificate);
+            let clockwise = self::certificate(&swimmer, &file.reversed());
+            assert!(clockwise.pass(), "{branch}: {}", clockwise.failures());
+            for centre in [0.03, 0.2, 0.77] {
+                let bumped = bumped(&file, centre);
+                assert!(
+                    !self::certificate(&swimmer, &bumped).pass(),
+                    "{branch} at {centre}"
+                );
+            }
+            // What is best for efficiency is not best for displacement.
+            let other = certify(&swimmer, &file, Objective::Displacement, &Bounds::default());
+            assert!(!other.unwrap().pass());
         }
     }
 }

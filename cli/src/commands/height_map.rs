@@ -1,6 +1,6 @@
 //! `swimmer height-map`: the height function of a swimmer, its zero-level curves, and what it says of gaits.
 
-mod picture;
+pub(crate) mod picture;
 
 use std::fmt::{self, Write as _};
 use std::path::{Path, PathBuf};

@@ -5,6 +5,7 @@ pub(crate) mod certify;
 pub(crate) mod demo;
 pub(crate) mod height_map;
 pub(crate) mod optimize;
+pub(crate) mod paper;
 pub(crate) mod robot;
 pub(crate) mod simulate;
 pub(crate) mod tracks;
@@ -46,6 +47,7 @@ pub(crate) enum Command {
     Optimize(optimize::Optimize),
     Certify(certify::Certify),
     HeightMap(height_map::HeightMap),
+    Paper(paper::Paper),
     Robot(robot::Robot),
     Twin(twin::Twin),
     Calibrate(calibrate::Calibrate),
@@ -64,6 +66,7 @@ pub(crate) fn run(command: Command, output: Output) -> Outcome {
         Command::Certify(certify) => certify.run(output),
         Command::Optimize(optimize) => optimize.run(output),
         Command::HeightMap(height_map) => height_map.run(output),
+        Command::Paper(paper) => paper.run(output),
         Command::Robot(robot) => robot.run(output),
         Command::Twin(twin) => twin.run(output),
         Command::Tracks(tracks) => tracks.run(output),

@@ -1,6 +1,6 @@
 //! The one-page report of a round through the whole loop: what was measured, fitted, predicted and tracked.
 
-mod chart;
+pub(crate) mod chart;
 mod figures;
 mod page;
 

@@ -6,6 +6,7 @@ mod certify;
 mod demo;
 mod numbers;
 mod output_discipline;
+mod paper;
 #[cfg(unix)]
 mod pseudo_terminal;
 mod tracks;

@@ -133,7 +133,9 @@ impl Neighbours<'_> {
             ) else {
                 return false;
             };
-            piece.along == Along::Free && next.along == Along::Free && a.angle(b) < super::SMOOTH
+            piece.along == Along::Free
+                && next.along == Along::Free
+                && a.perp(b).atan2(a.dot(b)).abs() < super::SMOOTH
         };
         let mut windows = vec![0.0; self.grid.nodes.len()];
         let Some(first) = (0..pieces.len()).find(|&i| !smooth_after(i)) else {

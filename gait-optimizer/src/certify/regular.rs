@@ -113,7 +113,8 @@ impl Subject<'_> {
             .iter()
             .zip(pieces.iter().cycle().skip(1))
             .filter_map(|(piece, next)| {
-                Some(rate(*piece.nodes.end())?.angle(&rate(*next.nodes.start())?))
+                let (before, after) = (rate(*piece.nodes.end())?, rate(*next.nodes.start())?);
+                Some(before.perp(&after).atan2(before.dot(&after)).abs())
             })
             .fold(0.0, f64::max)
     }

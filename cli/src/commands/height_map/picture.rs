@@ -10,14 +10,14 @@ use crate::failure::{Failure, Outcome};
 
 /// What the figure shows.
 #[derive(Debug)]
-pub(super) struct Figure<'a> {
-    pub(super) title: String,
+pub(crate) struct Figure<'a> {
+    pub(crate) title: String,
     /// The height with its unit, beside the colour bar.
-    pub(super) quantity: &'static str,
-    pub(super) map: &'a HeightMap,
-    pub(super) row: Row,
-    pub(super) curves: &'a [LevelCurve],
-    pub(super) gaits: &'a [(String, AnyGait)],
+    pub(crate) quantity: &'static str,
+    pub(crate) map: &'a HeightMap,
+    pub(crate) row: Row,
+    pub(crate) curves: &'a [LevelCurve],
+    pub(crate) gaits: &'a [(String, AnyGait)],
 }
 
 /// Plotters rounds to whole pixels; drawing this many times larger and showing it smaller keeps curves smooth.
@@ -73,7 +73,7 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 ///
 /// # Errors
 /// [`Failure::Tried`] when the drawing library gives up.
-pub(super) fn svg(figure: &Figure<'_>) -> Outcome<String> {
+pub(crate) fn svg(figure: &Figure<'_>) -> Outcome<String> {
     let legend = i32::try_from(figure.gaits.len()).unwrap_or(i32::MAX / 1000) * LEGEND;
     let legend = if legend > 0 { legend + 10 } else { 0 };
     let size = (LEFT + MAP + GAP + BAR + RIGHT, TOP + MAP + BOTTOM + legend);

@@ -1,0 +1,96 @@
+//! `swimmer paper`: every number and figure of the paper, computed.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use serde::Serialize;
+use swimmer_files::write_atomically;
+
+use crate::failure::{Failure, Outcome};
+use crate::new_folder::NewFolder;
+use crate::output::Output;
+use crate::paper::{Row, Study, deviation, figures, number, page, printed, rows};
+use crate::quantity::Table;
+
+/// Compute every number and figure of the paper: the paper's value, ours, the deviation
+///
+/// A number that the paper's own definitions do not lead to is marked not reproducible, with the reason; any other that
+/// differs ends with status 1.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Paper {
+    /// Write the figures (SVG), their points (CSV) and one page with everything into this folder
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+#[derive(Debug, Serialize)]
+struct Answer {
+    rows: Vec<Row>,
+    /// The page that was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    page: Option<PathBuf>,
+}
+
+const PAGE: &str = "index.html";
+
+impl Paper {
+    /// Computes everything and answers.
+    pub(crate) fn run(self, output: Output) -> Outcome {
+        let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
+        let study = Study::new()?;
+        let rows = rows(&study);
+        let mut written = None;
+        if let Some(folder) = folder {
+            let drawn = figures(&study)?;
+            for figure in &drawn {
+                let place = |ending: &str| folder.draft().join(format!("{}.{ending}", figure.name));
+                write_atomically(&place("svg"), figure.svg()?.as_bytes())?;
+                write_atomically(&place("csv"), figure.csv().as_bytes())?;
+            }
+            let html = page(&rows, &drawn)?;
+            write_atomically(&folder.draft().join(PAGE), html.as_bytes())?;
+            written = Some(folder.place().join(PAGE));
+            folder.publish()?;
+        }
+        let differ: Vec<&str> = rows
+            .iter()
+            .filter(|row| row.pass == Some(false))
+            .map(|row| row.id)
+            .collect();
+        let failure = (!differ.is_empty())
+            .then(|| Failure::Answered(format!("differ from the paper: {}", differ.join(", "))));
+        output.answer(&Answer {
+            rows,
+            page: written,
+        });
+        failure.map_or(Ok(()), Err)
+    }
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = Table::new(["quantity", "paper", "ours", "deviation", ""]);
+        for row in &self.rows {
+            let verdict = match row.pass {
+                Some(true) => "ok",
+                Some(false) => "DIFFERS",
+                None => "not reproducible",
+            };
+            table.line([
+                row.quantity.to_owned(),
+                printed(row.paper),
+                number(row.ours),
+                deviation(row),
+                verdict.to_owned(),
+            ]);
+        }
+        write!(f, "{table}")?;
+        for row in self.rows.iter().filter(|row| row.pass.is_none()) {
+            write!(f, "\n  {}: {}", row.id, row.note)?;
+        }
+        if let Some(page) = &self.page {
+            write!(f, "\n  written to {}", page.display())?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,358 @@
+//! The paper's figures, drawn from what was computed, each with the table of its points.
+
+mod efficiency;
+mod experiment;
+
+use std::fmt::Write;
+
+use gait_optimizer::{HeightMap, OptimalGait, Row as HeightRow, SimpleShape};
+use nalgebra::Vector2;
+use plotters::style::RGBColor;
+use swimmer_files::AnyGait;
+use swimmer_model::{Gait as _, Stroke};
+
+use super::study::{Simple, Study, UPPER};
+use crate::commands::height_map::picture;
+use crate::failure::Outcome;
+use crate::report::chart::{
+    BOUND, Chart, INK, MEASURED, PREDICTED, Point, SINGULAR, SLENDER, Series,
+};
+
+/// One figure.
+#[derive(Debug)]
+pub(crate) struct Figure {
+    /// Name of its files, without ending.
+    pub(crate) name: &'static str,
+    pub(crate) title: &'static str,
+    /// HTML.
+    pub(crate) caption: &'static str,
+    chart: Chart,
+    /// Names of the chart's series, for the table.
+    names: Vec<&'static str>,
+    /// Shown instead of the chart, whose points it holds and more.
+    picture: Option<String>,
+}
+
+const WIDE: (i32, i32) = (520, 380);
+const SQUARE: (i32, i32) = (520, 510);
+const LOW: (i32, i32) = (520, 220);
+/// Points of a drawn gait.
+const POINTS: u32 = 400;
+
+impl Figure {
+    fn new(
+        name: &'static str,
+        title: &'static str,
+        caption: &'static str,
+        labels: [&str; 2],
+        size: (i32, i32),
+    ) -> Self {
+        Self {
+            name,
+            title,
+            caption,
+            chart: Chart {
+                x_label: labels[0].into(),
+                y_label: labels[1].into(),
+                size,
+                equal_axes: size == SQUARE,
+                series: Vec::new(),
+            },
+            names: Vec::new(),
+            picture: None,
+        }
+    }
+
+    fn with(mut self, name: &'static str, series: Series) -> Self {
+        self.chart.series.push(series);
+        self.names.push(name);
+        self
+    }
+
+    fn line(self, name: &'static str, color: RGBColor, points: Vec<Point>) -> Self {
+        self.with(
+            name,
+            Series::Line {
+                points,
+                color,
+                width: 1.7,
+            },
+        )
+    }
+
+    fn dashes(self, name: &'static str, color: RGBColor, points: Vec<Point>) -> Self {
+        self.with(
+            name,
+            Series::Dashes {
+                points,
+                color,
+                width: 1.3,
+            },
+        )
+    }
+
+    fn mark(self, name: &'static str, color: RGBColor, at: Point) -> Self {
+        self.with(
+            name,
+            Series::Dots {
+                points: vec![at],
+                color,
+                radius: 4.0,
+            },
+        )
+        .with(
+            name,
+            Series::Word {
+                at,
+                text: name.into(),
+                color: INK,
+            },
+        )
+    }
+
+    /// The picture.
+    ///
+    /// # Errors
+    /// As the drawing of a chart.
+    pub(crate) fn svg(&self) -> Outcome<String> {
+        self.picture.clone().map_or_else(|| self.chart.svg(), Ok)
+    }
+
+    /// Its points as a table, one line each, in the units of the axes.
+    pub(crate) fn csv(&self) -> String {
+        let mut text = format!(
+            "curve,{},{}\n",
+            field(&self.chart.x_label),
+            field(&self.chart.y_label)
+        );
+        for (name, series) in self.names.iter().zip(&self.chart.series) {
+            let points = match series {
+                Series::Line { points, .. }
+                | Series::Dashes { points, .. }
+                | Series::Dots { points, .. } => points,
+                Series::Bars { .. } | Series::Word { .. } => continue,
+            };
+            for (x, y) in points {
+                let _ = writeln!(text, "{},{x:?},{y:?}", field(name));
+            }
+        }
+        text
+    }
+}
+
+/// A field of a table that may hold a comma.
+fn field(text: &str) -> String {
+    if text.contains(',') {
+        format!("\"{text}\"")
+    } else {
+        text.to_owned()
+    }
+}
+
+/// All figures, in the order of the paper.
+///
+/// # Errors
+/// As the drawing of a map.
+pub(crate) fn figures(study: &Study) -> Outcome<Vec<Figure>> {
+    let mut figures = experiment::experiment(study);
+    figures.push(simple_gaits());
+    figures.extend(amplitudes(study));
+    figures.push(displacement_over_amplitude(study));
+    figures.push(height_map(&study.robot_map, &study.robot_simple)?);
+    figures.extend(displacement_gaits(study));
+    figures.push(efficiency::efficiency_over_amplitude(
+        "efficiency-purcell",
+        "Efficiency of Purcell's swimmer",
+        &study.purcell_simple,
+        &study.purcell_lighthill,
+    ));
+    figures.push(efficiency::efficiency_over_amplitude(
+        "efficiency-robot",
+        "Efficiency of the robot",
+        &study.robot_simple,
+        &study.robot_lighthill,
+    ));
+    figures.push(efficiency::lighthill(
+        "lighthill-purcell",
+        "Lighthill gaits of Purcell's swimmer",
+        &study.purcell_lighthill,
+        &study.purcell_simple,
+    ));
+    figures.push(efficiency::lighthill(
+        "lighthill-robot",
+        "Lighthill gaits of the robot",
+        &study.robot_lighthill,
+        &study.robot_simple,
+    ));
+    Ok(figures)
+}
+
+/// A circle and a square of the same amplitude.
+fn simple_gaits() -> Figure {
+    let of = |shape: SimpleShape| drawn(&shape.gait(1.0));
+    Figure::new(
+        "simple-gaits",
+        "Circle and square gaits",
+        "Amplitude ε = 1 rad, run counter-clockwise from φ₁ = φ₂ &gt; 0: <i style='color:#3a9d5d'></i>circle <i style='color:#1d242c'></i>square",
+        ["φ₁ [rad]", "φ₂ [rad]"],
+        SQUARE,
+    )
+    .line("circle", SLENDER, of(SimpleShape::Circle))
+    .line("square", INK, of(SimpleShape::Square))
+    .mark("start", SLENDER, (std::f64::consts::FRAC_1_SQRT_2, std::f64::consts::FRAC_1_SQRT_2))
+    .mark("start", INK, (1.0, 1.0))
+}
+
+/// X, ΔY and Δθ of circles over their amplitude, both models of the robot.
+fn amplitudes(study: &Study) -> [Figure; 3] {
+    const CAPTION: &str =
+        "<i style='color:#1d242c'></i>fitted robot <i style='color:#3a9d5d'></i>slender links";
+    let drawn = |figure: Figure, value: fn(&Stroke<f64>) -> f64| {
+        let curve = |simple: &Simple| -> Vec<Point> {
+            let shown = simple.curves[0]
+                .iter()
+                .filter(|(amplitude, _)| amplitude.to_degrees() < 125.0);
+            shown
+                .map(|(amplitude, stroke)| (amplitude.to_degrees(), value(stroke)))
+                .collect()
+        };
+        figure.line("fitted", INK, curve(&study.robot_simple)).line(
+            "slender",
+            SLENDER,
+            curve(&study.slender_simple),
+        )
+    };
+    let axes = |y| ["amplitude ε [°]", y];
+    [
+        drawn(
+            Figure::new(
+                "circles-x",
+                "Displacement of circles",
+                CAPTION,
+                axes("X [mm per cycle]"),
+                WIDE,
+            ),
+            |stroke| stroke.displacement.x * 1e3,
+        ),
+        drawn(
+            Figure::new(
+                "circles-delta-y",
+                "Sway of circles",
+                CAPTION,
+                axes("ΔY [mm]"),
+                LOW,
+            ),
+            |stroke| stroke.delta_y * 1e3,
+        ),
+        drawn(
+            Figure::new(
+                "circles-delta-theta",
+                "Yaw of circles",
+                CAPTION,
+                axes("Δθ [°]"),
+                LOW,
+            ),
+            |stroke| stroke.delta_theta.to_degrees(),
+        ),
+    ]
+}
+
+/// X/L of the robot's circles and squares, with the three optima.
+fn displacement_over_amplitude(study: &Study) -> Figure {
+    let [circles, squares] = &study.robot_simple.curves;
+    let curve = |swum: &[(f64, Stroke<f64>)]| {
+        swum.iter()
+            .map(|(amplitude, stroke)| (*amplitude, stroke.displacement_over_length().x))
+            .collect()
+    };
+    let mut figure = Figure::new(
+        "displacement",
+        "Displacement of the robot",
+        "<i style='color:#3a9d5d'></i>circles <i style='color:#1d242c'></i>squares \
+         <i class=dot style='color:#d35b1e'></i>optimal gaits (b), (c), (d) within 2.8 rad",
+        ["amplitude ε [rad]", "X/L"],
+        WIDE,
+    )
+    .line("circles", SLENDER, curve(circles))
+    .line("squares", INK, curve(squares));
+    for (name, gait) in ["b", "c", "d"].into_iter().zip(&study.robot_displacement) {
+        figure = figure.mark(name, PREDICTED, (UPPER, gait.displacement_over_length));
+    }
+    figure
+}
+
+/// The robot's height function with its zero-level curves and the best squares.
+fn height_map(map: &HeightMap, simple: &Simple) -> Outcome<Figure> {
+    let mut figure = Figure::new(
+        "height-map",
+        "Height map of the robot",
+        "H_x in minimum-perturbation coordinates on |φᵢ| ≤ 2.8 rad, its zero-level curves, and the best square within",
+        ["φ₁ [rad]", "φ₂ [rad]"],
+        SQUARE,
+    );
+    figure = with_zero_curves(figure, map, INK);
+    let mut gaits = Vec::new();
+    for (name, best) in ["first best square", "second best square"]
+        .into_iter()
+        .zip(&simple.displacement[1])
+    {
+        if best.amplitude < map.half_width() {
+            let gait = AnyGait::square(best.amplitude);
+            figure = figure.line(name, MEASURED, drawn(&gait));
+            gaits.push((name.to_owned(), gait));
+        }
+    }
+    figure.picture = Some(picture::svg(&picture::Figure {
+        title: String::new(),
+        quantity: "H_x, 1/rad²",
+        map,
+        row: HeightRow::X,
+        curves: &map.zero_curves(HeightRow::X),
+        gaits: &gaits,
+    })?);
+    Ok(figure)
+}
+
+fn with_zero_curves(mut figure: Figure, map: &HeightMap, color: RGBColor) -> Figure {
+    for curve in map.zero_curves(HeightRow::X) {
+        let points = curve.points.iter().map(pair).collect();
+        figure = figure.line("zero of the height", color, points);
+    }
+    figure
+}
+
+/// Gaits (b), (c), (d) over the zero-level curves.
+fn displacement_gaits(study: &Study) -> [Figure; 3] {
+    const CAPTION: &str = "<i class=band style='color:#c3cdd6'></i>zero-level curves of H_x <i style='color:#d35b1e'></i>gait \
+                           <i style='color:#d8b9e6'></i>bounds";
+    let [b, c, d] = &study.robot_displacement;
+    let titles = [
+        ("gait-b", "Gait (b): |φᵢ| ≤ 2.8", b),
+        ("gait-c", "Gait (c): 1.5 ≤ |φᵢ| ≤ 2.8", c),
+        (
+            "gait-d",
+            "Gait (d): |φᵢ| ≤ 2.8, each quarter in its sector",
+            d,
+        ),
+    ];
+    titles.map(|(name, title, gait)| {
+        let figure = Figure::new(name, title, CAPTION, ["φ₁ [rad]", "φ₂ [rad]"], SQUARE);
+        with_zero_curves(figure, &study.robot_map, SINGULAR)
+            .dashes("bound", BOUND, drawn(&AnyGait::square(UPPER)))
+            .line(name, PREDICTED, samples(gait))
+    })
+}
+
+fn samples(gait: &OptimalGait) -> Vec<Point> {
+    gait.phi().iter().map(pair).collect()
+}
+
+fn pair(shape: &Vector2<f64>) -> Point {
+    (shape.x, shape.y)
+}
+
+fn drawn(gait: &AnyGait) -> Vec<Point> {
+    (0..=POINTS)
+        .map(|i| pair(&gait.at(f64::from(i) / f64::from(POINTS)).phi))
+        .collect()
+}
