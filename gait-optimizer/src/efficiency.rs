@@ -5,6 +5,7 @@
 //! paper's single shooting ([`shooting`]) polishes it. The certificate ([`proof`]) is worked out from the finished gait.
 
 mod bounded;
+mod by_collocation;
 mod chain;
 mod error;
 pub(crate) mod flow;
@@ -27,6 +28,7 @@ use crate::extremal::wall::Walls;
 use crate::optimal_gait::Solution;
 use crate::{Arc, OptimalGait};
 pub use bounded::Reached;
+use by_collocation::by_collocation;
 use chain::Found;
 pub use error::EfficiencyError;
 use proof::Evidence;
@@ -85,6 +87,8 @@ pub enum Method {
     Auto,
     /// Fourier series alone, up to the order from which the single shooting converges.
     Fourier,
+    /// Fourier series of order 3, then direct collocation.
+    Collocation,
     /// Fourier series of low order, then multiple shooting.
     Shooting,
 }
@@ -95,6 +99,7 @@ impl Method {
         match self {
             Self::Auto => "auto",
             Self::Fourier => "fourier",
+            Self::Collocation => "collocation",
             Self::Shooting => "shooting",
         }
     }
@@ -145,6 +150,10 @@ impl EfficiencyProblem {
         if self.bounds.sector {
             return unknown("sector");
         }
+        let (value, middle) = (self.bounds.clearance, self.swimmer.links.middle);
+        if !(value >= 0.0 && value < middle) {
+            return Err(EfficiencyError::Clearance { value, middle });
+        }
         match self.bounds.max_angle {
             Some(value) if !(value > 0.0 && value.is_finite()) => Err(EfficiencyError::Bound {
                 name: "max_angle",
@@ -177,15 +186,21 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Efficiency
     problem.validate()?;
     let model = Model::new(&of_unit_length(&problem.swimmer))?;
     let mut best: Option<OptimalGait> = None;
-    let mut refused = None;
+    let mut refused: Option<EfficiencyError> = None;
     for start in chain::starts(&model, problem.branch)? {
         match optimum(problem, &model, start) {
-            Ok(gait) if best.as_ref().is_none_or(|b| gait.efficiency > b.efficiency) => {
-                best = Some(gait);
+            Ok(gait) => {
+                if best.as_ref().is_none_or(|b| gait.efficiency > b.efficiency) {
+                    best = Some(gait);
+                }
             }
-            Ok(_) => {}
             Err(error) => {
-                refused.get_or_insert(error);
+                if refused
+                    .as_ref()
+                    .is_none_or(|r| error.distance() > r.distance())
+                {
+                    refused = Some(error);
+                }
             }
         }
     }
@@ -209,9 +224,14 @@ fn optimum(
     let branch = problem.branch;
     let found = match problem.method {
         Method::Fourier => chain::by_fourier(model, branch, start)?,
+        Method::Collocation => by_collocation(model, branch, start)?,
         Method::Shooting => chain::by_multiple_shooting(model, branch, start)?,
-        Method::Auto => chain::by_multiple_shooting(model, branch, start)
-            .or_else(|error| chain::by_fourier(model, branch, start).map_err(|_| error))?,
+        Method::Auto => match chain::by_multiple_shooting(model, branch, start) {
+            Err(error @ EfficiencyError::NotConverged { .. }) => {
+                by_collocation(model, branch, start).map_err(|_| error)?
+            }
+            other => other?,
+        },
     };
     let gait = certified(problem, model, &found).ok_or(EfficiencyError::NotConverged {
         branch,
@@ -286,12 +306,8 @@ fn certified(
     gait.efficiency_figures = Some(EfficiencyFigures {
         residual: polished.residual,
         power_variation: deviations.power_variation,
-        method: if found.straight {
-            Method::Fourier
-        } else {
-            Method::Shooting
-        },
-        direct_efficiency: found.straight.then_some(found.fourier),
+        method: found.method,
+        direct_efficiency: found.direct_efficiency,
     });
     Some(gait)
 }

@@ -72,10 +72,10 @@ fn best_large_square(swimmer: &Swimmer<f64>) -> f64 {
     worth(0.5 * (low + high))
 }
 
-/// Fourier series of an order where they have converged, against multiple shooting from order 4; and both before and after
-/// the polish.
+/// Fourier series of an order where they have converged, and collocation, both before and after the polish, against multiple
+/// shooting from order 4.
 #[test]
-fn two_methods_find_the_same_gaits() {
+fn three_methods_find_the_same_gaits() {
     for swimmer in [
         Swimmer::purcell(),
         Swimmer::robot(),
@@ -89,20 +89,28 @@ fn two_methods_find_the_same_gaits() {
                 })
                 .unwrap()
             };
-            let (fourier, shot) = (by(Method::Fourier), by(Method::Shooting));
-            assert!((fourier.efficiency / shot.efficiency - 1.0).abs() < 1e-10);
-            assert!((fourier.start_angle - shot.start_angle).abs() < 1e-8);
-            // The series itself, one degree of freedom a coefficient, knows nothing of costates.
-            let direct = figures(&fourier).direct_efficiency.unwrap();
-            assert!(
-                (direct / shot.efficiency - 1.0).abs() < 1e-6,
-                "{branch}: {direct} {}",
-                shot.efficiency
-            );
-            for gait in [&fourier, &shot] {
+            let shot = by(Method::Shooting);
+            let directly = [by(Method::Fourier), by(Method::Collocation)];
+            for gait in &directly {
+                assert!((gait.efficiency / shot.efficiency - 1.0).abs() < 1e-10);
+                assert!((gait.start_angle - shot.start_angle).abs() < 1e-8);
+                // The direct method's own value: it knows nothing of the shooting.
+                let direct = figures(gait).direct_efficiency.unwrap();
+                assert!(
+                    (direct / shot.efficiency - 1.0).abs() < 1e-6,
+                    "{branch}: {direct} {}",
+                    shot.efficiency
+                );
+            }
+            for gait in directly.iter().chain([&shot]) {
                 assert!(gait.certificate.pass(), "{:?}", gait.certificate.failures());
-                assert!(figures(gait).residual <= 1e-10);
-                assert!(figures(gait).power_variation < 1e-8);
+                let EfficiencyFigures {
+                    residual,
+                    power_variation,
+                    ..
+                } = figures(gait);
+                assert!(residual <= 1e-10, "{branch}: {residual}");
+                assert!(power_variation < 1e-8, "{branch}: {power_variation}");
             }
         }
     }
@@ -151,6 +159,12 @@ fn problems_that_make_no_sense_are_refused() {
         Err(EfficiencyError::Bound { .. })
     ));
     problem.bounds.max_angle = None;
+    problem.bounds.clearance = -0.1;
+    assert!(matches!(
+        efficiency(&problem),
+        Err(EfficiencyError::Clearance { .. })
+    ));
+    problem.bounds.clearance = 0.0;
     problem.bounds.sector = true;
     assert!(efficiency(&problem).unwrap_err().is_bad_input());
 }

@@ -8,7 +8,7 @@ use std::fmt;
 
 use swimmer_model::{Links, Model};
 
-use super::{Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem};
+use super::{Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method};
 use crate::OptimalGait;
 use crate::certificate::{crossings, turning_number};
 use crate::extremal::continuation::{Ended, Path, Tightness};
@@ -185,7 +185,7 @@ fn finished(
     gait.efficiency_figures = Some(EfficiencyFigures {
         residual: extremal.solved.residual,
         power_variation,
-        method: problem.method,
+        method: Method::Shooting,
         direct_efficiency: None,
     });
     Ok(gait)

@@ -8,16 +8,17 @@ use super::fourier::{
 };
 use super::shooting::{Final, Polished, RESIDUAL, polish};
 use super::start::Start;
-use super::{Branch, EfficiencyError, multiple};
+use super::{Branch, EfficiencyError, Method, multiple};
+use crate::certificate::crossings;
 
 /// A polished extremal and where it came from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Found {
     pub(crate) polished: Polished,
-    /// ξ of the Fourier gait that it started from.
-    pub(crate) fourier: f64,
-    /// Whether the Fourier gait was near enough for the single shooting.
-    pub(crate) straight: bool,
+    /// What led to the start of the polish.
+    pub(crate) method: Method,
+    /// ξ of the curve that a direct method found by itself.
+    pub(crate) direct_efficiency: Option<f64>,
 }
 
 /// Joint angles beyond this are not followed \[rad\].
@@ -79,14 +80,35 @@ pub(crate) fn by_multiple_shooting(
             if let Some(polished) = bridged(model, &maximum, segments) {
                 return Ok(Found {
                     polished,
-                    fourier: maximum.value.efficiency(),
-                    straight: false,
+                    method: Method::Shooting,
+                    direct_efficiency: None,
                 });
             }
+        }
+        if !bridges.is_empty() {
+            simple(branch, order, &maximum)?;
         }
         last = Some((order, maximum));
     }
     Err(not_converged(branch, last.as_ref()))
+}
+
+/// A gait that crosses itself is out of the class: no need to look for an extremal near it.
+fn simple(branch: Branch, order: usize, maximum: &Maximum) -> Result<(), EfficiencyError> {
+    let sides = 256;
+    let points: Vec<Vector2<f64>> = (0..=sides)
+        .map(|i| std::f64::consts::TAU * f64::from(i % sides) / f64::from(sides))
+        .map(|s| series(&maximum.coefficients, s).0)
+        .collect();
+    match crossings(&points) {
+        0 => Ok(()),
+        crossings => Err(EfficiencyError::CrossesItself {
+            branch,
+            order,
+            efficiency: maximum.value.efficiency(),
+            crossings,
+        }),
+    }
 }
 
 /// Fourier alone up to orders where the single shooting converges from it.
@@ -105,8 +127,8 @@ pub(crate) fn by_fourier(
         if settled && let Some(polished) = polished(model, &maximum) {
             return Ok(Found {
                 polished,
-                fourier: maximum.value.efficiency(),
-                straight: true,
+                method: Method::Fourier,
+                direct_efficiency: Some(maximum.value.efficiency()),
             });
         }
         last = Some((order, maximum));
@@ -114,7 +136,7 @@ pub(crate) fn by_fourier(
     Err(not_converged(branch, last.as_ref()))
 }
 
-fn not_converged(branch: Branch, last: Option<&(usize, Maximum)>) -> EfficiencyError {
+pub(crate) fn not_converged(branch: Branch, last: Option<&(usize, Maximum)>) -> EfficiencyError {
     EfficiencyError::NotConverged {
         branch,
         order: last.map_or(0, |(order, _)| *order),
@@ -123,7 +145,7 @@ fn not_converged(branch: Branch, last: Option<&(usize, Maximum)>) -> EfficiencyE
 }
 
 /// Fourier gaits of rising order, each started from the one below.
-struct Ladder<'a> {
+pub(crate) struct Ladder<'a> {
     model: &'a Model<f64>,
     branch: Branch,
     amplitude: f64,
@@ -132,7 +154,7 @@ struct Ladder<'a> {
 }
 
 impl<'a> Ladder<'a> {
-    fn new(model: &'a Model<f64>, branch: Branch, start: [f64; 2]) -> Self {
+    pub(crate) fn new(model: &'a Model<f64>, branch: Branch, start: [f64; 2]) -> Self {
         Self {
             model,
             branch,
@@ -142,7 +164,11 @@ impl<'a> Ladder<'a> {
         }
     }
 
-    fn climb_to(&mut self, order: usize, nodes: usize) -> Result<Maximum, EfficiencyError> {
+    pub(crate) fn climb_to(
+        &mut self,
+        order: usize,
+        nodes: usize,
+    ) -> Result<Maximum, EfficiencyError> {
         let grid = Grid::new(nodes);
         let objective = Objective {
             model: self.model,
@@ -169,25 +195,27 @@ fn curve(maximum: &Maximum) -> impl Fn(f64) -> (Vector2<f64>, Vector2<f64>) {
 
 fn polished(model: &Model<f64>, maximum: &Maximum) -> Option<Polished> {
     let start = Start::of_curve(model, &curve(maximum), 1)?;
-    same_gait(polish(model, &final_values(model, &start)?)?, maximum)
+    let polished = polish(model, &final_values(model, &start)?)?;
+    same_gait(polished, maximum.value.efficiency(), maximum.value.x)
 }
 
 fn bridged(model: &Model<f64>, maximum: &Maximum, segments: usize) -> Option<Polished> {
     let start = Start::of_curve(model, &curve(maximum), segments)?;
     let solved = multiple::solve(model, &start)?;
-    same_gait(polish(model, &final_values(model, &solved)?)?, maximum)
+    let polished = polish(model, &final_values(model, &solved)?)?;
+    same_gait(polished, maximum.value.efficiency(), maximum.value.x)
 }
 
-/// Newton's method may end at another extremal than the one it was started near.
-fn same_gait(polished: Polished, maximum: &Maximum) -> Option<Polished> {
-    let ratio = polished.efficiency() / maximum.value.efficiency();
-    let same_way = polished.at_end[1] * maximum.value.x > 0.0;
+/// Newton's method may end at another extremal than the one it was started near: none then.
+pub(crate) fn same_gait(polished: Polished, efficiency: f64, x: f64) -> Option<Polished> {
+    let ratio = polished.efficiency() / efficiency;
+    let same_way = polished.at_end[1] * x > 0.0;
     (same_way && (1.0 / SAME_GAIT..SAME_GAIT).contains(&ratio) && polished.residual <= RESIDUAL)
         .then_some(polished)
 }
 
 /// φ₁, x, θ and E at the end: E is the power there, and `x_f = E_f/κ`.
-fn final_values(model: &Model<f64>, start: &Start) -> Option<Final> {
+pub(crate) fn final_values(model: &Model<f64>, start: &Start) -> Option<Final> {
     let last = start.states.last()?;
     let flow = super::flow::Flow {
         model,

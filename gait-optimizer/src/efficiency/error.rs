@@ -30,6 +30,16 @@ pub enum EfficiencyError {
         /// What is wrong.
         problem: &'static str,
     },
+    /// A clearance that makes no sense.
+    #[error(
+        "clearance = {value} m: it must be 0 or above, and below the middle link's length, {middle} m"
+    )]
+    Clearance {
+        /// The clearance \[m\].
+        value: f64,
+        /// l₀ \[m\].
+        middle: f64,
+    },
     /// A bound that this objective does not know.
     #[error("efficiency gaits under the bound `{name}` are not computed; leave it out")]
     UnknownBound {
@@ -83,6 +93,21 @@ pub enum EfficiencyError {
         /// Angles beyond this are not followed \[rad\].
         farthest: f64,
     },
+    /// The Fourier gaits of this branch cross themselves, and shooting does not converge from them.
+    #[error(
+        "no simple {branch} gait: the Fourier gait of order {order} (efficiency {efficiency:.9e}) crosses itself {crossings} \
+         times"
+    )]
+    CrossesItself {
+        /// Which gait.
+        branch: Branch,
+        /// Order of the series.
+        order: usize,
+        /// Its efficiency.
+        efficiency: f64,
+        /// How often it crosses itself.
+        crossings: usize,
+    },
     /// Shooting does not converge from the best start that there is.
     #[error(
         "no {branch} gait: the Fourier gait of order {order} has efficiency {efficiency:.9e}, but shooting does not \
@@ -95,6 +120,14 @@ pub enum EfficiencyError {
         order: usize,
         /// Its efficiency.
         efficiency: f64,
+    },
+    /// Collocation failed.
+    #[error("no {branch} gait by collocation: {reason}")]
+    NotCollocated {
+        /// Which gait.
+        branch: Branch,
+        /// What it says.
+        reason: String,
     },
     /// What shooting converged to is another gait than the one that was asked for.
     #[error(
@@ -128,6 +161,17 @@ pub enum EfficiencyError {
 }
 
 impl EfficiencyError {
+    /// How far the search for a gait came: of several reasons the farthest is told.
+    pub(super) fn distance(&self) -> u8 {
+        match self {
+            Self::NotCertified { .. } => 4,
+            Self::NotConverged { .. } | Self::NotCollocated { .. } => 3,
+            Self::CrossesItself { .. } => 2,
+            Self::RunsAway { .. } => 1,
+            _ => 0,
+        }
+    }
+
     /// Whether the problem itself makes no sense, rather than having no solution.
     pub fn is_bad_input(&self) -> bool {
         matches!(
@@ -135,6 +179,7 @@ impl EfficiencyError {
             Self::Swimmer(_)
                 | Self::Asymmetric { .. }
                 | Self::Bound { .. }
+                | Self::Clearance { .. }
                 | Self::UnknownBound { .. }
         )
     }

@@ -13,6 +13,8 @@ pub(crate) type Final = Vector4<f64>;
 
 /// Conditions are met to this.
 pub(crate) const RESIDUAL: f64 = 1e-10;
+/// What the iteration tries for, as far as rounding lets it.
+const BEYOND: f64 = 1e-12;
 const TOLERANCE: f64 = 1e-13;
 const MOST_STEPS: usize = 30;
 
@@ -141,10 +143,9 @@ pub(crate) fn polish(model: &Model<f64>, start: &Final) -> Option<Polished> {
         let Some((trial, reached, slope)) = next else {
             break;
         };
-        let ended = residual.amax() < RESIDUAL;
         (here, residual, jacobian) = (trial, reached, slope);
-        // One step beyond the goal is cheap and takes what rounding leaves.
-        if ended {
+        // Beyond the goal: what is left of the conditions becomes a kink where the quarter meets its image.
+        if residual.amax() < BEYOND {
             break;
         }
     }

@@ -9,7 +9,7 @@ use gait_optimizer::{Branch, EfficiencyError, EfficiencyProblem, Method, Optimal
 use serde::Serialize;
 use swimmer_files::Bounds;
 
-use crate::arguments::{load_swimmer, positive_angle};
+use crate::arguments::{length, load_swimmer, positive_angle};
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::{self, Rows};
@@ -27,7 +27,7 @@ pub(crate) struct Efficiency {
     /// Which optimum: small has X > 0, large has X < 0 and a start angle above 2 rad
     #[arg(long, value_name = "GAIT", default_value = "small")]
     gait: Which,
-    /// How the start of the polish is found: fourier alone, or multiple shooting from a Fourier gait of low order
+    /// What leads to the polish: Fourier series alone, or collocation or multiple shooting from a Fourier gait of low order
     #[arg(long, value_name = "METHOD", default_value = "auto")]
     method: How,
     /// No joint may turn further than this, either way
@@ -36,6 +36,9 @@ pub(crate) struct Efficiency {
     /// Links may not cross
     #[arg(long)]
     no_overlap: bool,
+    /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
+    #[arg(long, value_name = "LENGTH_M", value_parser = length)]
+    clearance: Option<f64>,
     /// Write the gait, at constant power, as a gait file
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -51,6 +54,7 @@ enum Which {
 enum How {
     Auto,
     Fourier,
+    Collocation,
     Shooting,
 }
 
@@ -62,11 +66,13 @@ impl Efficiency {
             method: match self.method {
                 How::Auto => Method::Auto,
                 How::Fourier => Method::Fourier,
+                How::Collocation => Method::Collocation,
                 How::Shooting => Method::Shooting,
             },
             bounds: Bounds {
                 max_angle: self.max_angle,
-                no_overlap: self.no_overlap,
+                no_overlap: self.no_overlap || self.clearance.is_some(),
+                clearance: self.clearance.unwrap_or(0.0),
                 ..Bounds::default()
             },
             ..EfficiencyProblem::new(
