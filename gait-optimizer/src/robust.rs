@@ -311,11 +311,7 @@ pub fn robust_displacement(
     let values = ensemble.values(&family, &found.x, sign);
     let (cycle, arcs) = cycle::of_arcs(&ensemble.nominal, &family, &found.x);
     let mut checks = proof::of_arcs(&family, &found.x, &borrowed(&found.weighted));
-    checks.extend(proof::of_curve(
-        &cycle,
-        &problem.bounds,
-        &of_unit_length(&swimmer).links,
-    ));
+    checks.extend(proof::of_curve(&cycle, &problem.bounds, &swimmer.links));
     checks.extend(proof::of_displacement(
         &ensemble,
         &cycle,
@@ -339,15 +335,15 @@ pub fn robust_displacement(
 }
 
 /// The doubly symmetric Fourier gait of this order whose efficiency ξ, as timed, is the most in the worst case or in the mean.
-/// r_s and χ of the swimmer give way to the estimates. `max_angle` is not designed for, only kept: a gait beyond it is
-/// refused.
+/// r_s and χ of the swimmer give way to the estimates. Bounds are not designed for, only kept: a gait
+/// beyond them is refused.
 ///
 /// # Errors
 /// [`RobustError`]: why there is none.
 pub fn robust_efficiency(
     swimmer: &Swimmer<f64>,
     (branch, order): (Branch, usize),
-    max_angle: Option<f64>,
+    bounds: &Bounds,
     uncertainty: &Uncertainty,
     over: Over,
 ) -> Result<RobustGait, RobustError> {
@@ -360,32 +356,29 @@ pub fn robust_efficiency(
             problem: "the class of doubly symmetric gaits wants side links of one length",
         });
     }
+    if bounds.min_angle.is_some() || bounds.sector {
+        return Err(RobustError::Structure {
+            problem: "efficiency knows no lower bound and no sector; leave them out",
+        });
+    }
     let ensemble = Ensemble::new(swimmer, uncertainty)?;
     let swimmer = uncertainty.nominal(swimmer);
     let family = FourierFamily::around(&ensemble.nominal, order, branch)?;
     let found = ensemble.find(&family, over)?;
     let values = ensemble.values(&family, &found.x, 1.0);
     let (cycle, arcs) = cycle::of_series(&FourierFamily::gait(&found.x));
-    let bounds = Bounds {
-        max_angle,
-        ..Bounds::default()
-    };
     let reach = cycle
         .phi
         .iter()
         .map(nalgebra::Matrix::amax)
         .fold(0.0, f64::max);
-    if let Some(max_angle) = max_angle
+    if let Some(max_angle) = bounds.max_angle
         && reach > max_angle
     {
         return Err(RobustError::Bound { reach, max_angle });
     }
     let mut checks = proof::of_series(&family, &found.x, &borrowed(&found.weighted));
-    checks.extend(proof::of_curve(
-        &cycle,
-        &bounds,
-        &of_unit_length(&swimmer).links,
-    ));
+    checks.extend(proof::of_curve(&cycle, bounds, &swimmer.links));
     checks.extend(proof::of_efficiency(
         &ensemble,
         &cycle,
@@ -394,7 +387,7 @@ pub fn robust_efficiency(
     ));
     finish(
         Objective::Efficiency,
-        (&swimmer, bounds),
+        (&swimmer, *bounds),
         &ensemble,
         (cycle, arcs),
         checks,

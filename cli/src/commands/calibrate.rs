@@ -68,6 +68,8 @@ pub(crate) struct FitAnswer {
     pub(crate) chi: f64,
     pub(crate) rmse: f64,
     pub(crate) intervals: Intervals,
+    /// Between both.
+    pub(crate) correlation: f64,
     pub(crate) c_t_form: String,
     /// What to know about the runs and the fit.
     pub(crate) warnings: Vec<String>,
@@ -220,6 +222,7 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
             chi: fit.intervals.chi,
             level: fit.intervals.level,
         },
+        correlation: fit.correlation,
         c_t_form: c_t_form(&fit.c_t_form),
         warnings: of_runs
             .chain(fit.warnings.iter().map(ToString::to_string))

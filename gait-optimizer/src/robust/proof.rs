@@ -54,23 +54,25 @@ pub(super) fn of_series(
 
 /// Bounds kept, a simple curve that turns once.
 pub(super) fn of_curve(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) -> Vec<Check> {
+    // Those that hold all round; the family has none of the others.
     let full = Bounds {
-        max_angle: bounds.max_angle,
-        ..Bounds::default()
+        min_angle: None,
+        sector: false,
+        ..*bounds
     };
     let region = Region::new(&full, links);
-    // Only |φᵢ| ≤ φ_max, which a cycle obeys on all four sides.
     let overstepped = cycle
         .phi
         .iter()
         .map(|phi| {
-            bounds
+            let beyond = bounds
                 .max_angle
-                .map_or(f64::NEG_INFINITY, |max| phi.amax() - max)
+                .map_or(f64::NEG_INFINITY, |max| phi.amax() - max);
+            region.overstepped(phi).max(beyond)
         })
         .fold(f64::NEG_INFINITY, f64::max);
     let mut checks = Vec::new();
-    if !region.edges().is_empty() {
+    if overstepped > f64::NEG_INFINITY {
         checks.push(Check::at_most("bound_overstepped_rad", overstepped, 1e-10));
     }
     checks.push(Check::at_most(

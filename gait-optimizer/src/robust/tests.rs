@@ -174,7 +174,7 @@ fn purcells_small_gait_comes_out_of_the_series() {
         robust_efficiency(
             &Swimmer::purcell(),
             (Branch::Small, order),
-            None,
+            &Bounds::default(),
             &exact,
             Over::Mean,
         )
@@ -197,8 +197,16 @@ fn purcells_small_gait_comes_out_of_the_series() {
 #[test]
 fn robust_efficiency_pays_too() {
     for branch in [Branch::Small, Branch::Large] {
-        let robust =
-            |over| robust_efficiency(&Swimmer::robot(), (branch, 3), None, &fit(), over).unwrap();
+        let robust = |over| {
+            robust_efficiency(
+                &Swimmer::robot(),
+                (branch, 3),
+                &Bounds::default(),
+                &fit(),
+                over,
+            )
+            .unwrap()
+        };
         let (worst, mean) = (robust(Over::Worst), robust(Over::Mean));
         assert!(worst.values.worst > worst.nominal.worst, "{worst:?}");
         assert!(mean.values.mean > mean.nominal.mean);
@@ -249,7 +257,10 @@ fn nonsense_is_refused() {
         robust_efficiency(
             &Swimmer::robot(),
             (Branch::Large, order),
-            max_angle,
+            &Bounds {
+                max_angle,
+                ..Bounds::default()
+            },
             uncertainty,
             Over::Mean,
         )
@@ -289,7 +300,7 @@ fn a_branch_that_ends_is_told() {
         robust_efficiency(
             &Swimmer::robot(),
             (Branch::Small, order),
-            None,
+            &Bounds::default(),
             &fit(),
             Over::Worst,
         )

@@ -4,7 +4,9 @@ use std::fmt;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use gait_optimizer::{DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement};
+use gait_optimizer::{
+    DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement, robust_displacement,
+};
 use serde::Serialize;
 use swimmer_files::Bounds;
 
@@ -14,6 +16,8 @@ use crate::output::Output;
 use crate::quantity::Rows;
 
 use super::answer::{Arc, Evidence, closing_rows, displacement_row, quarter_rows};
+use super::robust::{RobustAnswer, Robustly};
+use super::timing::{ServoTiming, TimingAnswer};
 
 /// Find the gait of most displacement per cycle by the maximum principle, with its certificate
 ///
@@ -42,7 +46,11 @@ pub(crate) struct Displacement {
     /// The sign of X: + or -
     #[arg(long, value_name = "SIGN", value_parser = sign, allow_hyphen_values = true)]
     sign: Option<Heading>,
-    /// Write the gait, at constant power, as a gait file
+    #[command(flatten)]
+    robustly: Robustly,
+    #[command(flatten)]
+    timing: ServoTiming,
+    /// Write the gait, at constant power or as timed for the servos, as a gait file
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -50,8 +58,9 @@ pub(crate) struct Displacement {
 impl Displacement {
     pub(super) fn run(self, output: Output) -> Outcome {
         let file = load_swimmer(&self.swimmer)?;
+        let uncertain = self.robustly.load()?;
         let begun = Instant::now();
-        let gait = displacement(&DisplacementProblem {
+        let problem = DisplacementProblem {
             bounds: Bounds {
                 max_angle: self.max_angle,
                 min_angle: self.min_angle,
@@ -61,12 +70,29 @@ impl Displacement {
             },
             heading: self.sign,
             ..DisplacementProblem::new(file.swimmer)
-        })?;
-        let seconds = begun.elapsed().as_secs_f64();
-        if let Some(path) = &self.output {
-            gait.gait_file(&file.name).save(path)?;
+        };
+        if let Some((uncertainty, over)) = uncertain {
+            let found = robust_displacement(&problem, &uncertainty, over)?;
+            let seconds = begun.elapsed().as_secs_f64();
+            let timing = self
+                .timing
+                .write(&found.gait, &file.name, self.output.as_deref())?;
+            output.answer(&RobustAnswer::new(
+                format!("{}, most displacement, robust", file.name),
+                "X/L",
+                &found,
+                timing,
+                (seconds, self.output),
+            ));
+            return Ok(());
         }
-        output.answer(&Found::new(&file.name, &gait, seconds, self.output));
+        let gait = displacement(&problem)?;
+        let seconds = begun.elapsed().as_secs_f64();
+        let timing = self
+            .timing
+            .write(&gait, &file.name, self.output.as_deref())?;
+        let found = Found::new(&file.name, &gait, timing, (seconds, self.output));
+        output.answer(&found);
         Ok(())
     }
 }
@@ -83,6 +109,9 @@ struct Found {
     arcs: Vec<Arc>,
     /// Share of the cycle in which links cross.
     links_cross: f64,
+    /// Under the servos' limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    timing: Option<TimingAnswer>,
     certificate: Evidence,
     /// From the parsed swimmer to the certified gait.
     seconds: f64,
@@ -92,7 +121,12 @@ struct Found {
 }
 
 impl Found {
-    fn new(name: &str, gait: &OptimalGait, seconds: f64, file: Option<PathBuf>) -> Self {
+    fn new(
+        name: &str,
+        gait: &OptimalGait,
+        timing: Option<TimingAnswer>,
+        (seconds, file): (f64, Option<PathBuf>),
+    ) -> Self {
         Self {
             name: name.to_owned(),
             displacement_over_length: gait.displacement_over_length,
@@ -101,6 +135,7 @@ impl Found {
             end_angle_rad: gait.end_angle,
             arcs: gait.arcs.iter().map(Arc::from).collect(),
             links_cross: gait.links_cross,
+            timing,
             certificate: (&gait.certificate).into(),
             seconds,
             gait: file,
@@ -122,6 +157,9 @@ impl fmt::Display for Found {
             self.end_angle_rad,
             &self.arcs,
         );
+        if let Some(timing) = &self.timing {
+            timing.rows(&mut rows);
+        }
         closing_rows(
             &mut rows,
             self.links_cross,

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use gait_optimizer::{Branch, EfficiencyError, EfficiencyProblem, Method, OptimalGait, efficiency};
+use gait_optimizer::{
+    Branch, EfficiencyError, EfficiencyProblem, Method, OptimalGait, efficiency, robust_efficiency,
+};
 use serde::Serialize;
 use swimmer_files::Bounds;
 
@@ -15,6 +17,8 @@ use crate::output::Output;
 use crate::quantity::{self, Rows};
 
 use super::answer::{Arc, Evidence, closing_rows, displacement_row, quarter_rows};
+use super::robust::{RobustAnswer, Robustly};
+use super::timing::{ServoTiming, TimingAnswer};
 
 /// Find a gait of most Lighthill efficiency by the maximum principle, with its certificate
 ///
@@ -39,7 +43,14 @@ pub(crate) struct Efficiency {
     /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
     #[arg(long, value_name = "LENGTH_M", value_parser = length)]
     clearance: Option<f64>,
-    /// Write the gait, at constant power, as a gait file
+    #[command(flatten)]
+    robustly: Robustly,
+    /// Order of the Fourier series of a robust gait
+    #[arg(long, value_name = "N", default_value_t = 6, requires = "robust")]
+    order: usize,
+    #[command(flatten)]
+    timing: ServoTiming,
+    /// Write the gait, at constant power or as timed for the servos, as a gait file
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -61,7 +72,39 @@ enum How {
 impl Efficiency {
     pub(super) fn run(self, output: Output) -> Outcome {
         let file = load_swimmer(&self.swimmer)?;
+        let branch = match self.gait {
+            Which::Small => Branch::Small,
+            Which::Large => Branch::Large,
+        };
+        let uncertain = self.robustly.load()?;
         let begun = Instant::now();
+        let bounds = Bounds {
+            max_angle: self.max_angle,
+            no_overlap: self.no_overlap || self.clearance.is_some(),
+            clearance: self.clearance.unwrap_or(0.0),
+            ..Bounds::default()
+        };
+        if let Some((uncertainty, over)) = uncertain {
+            let found = robust_efficiency(
+                &file.swimmer,
+                (branch, self.order),
+                &bounds,
+                &uncertainty,
+                over,
+            )?;
+            let seconds = begun.elapsed().as_secs_f64();
+            let timing = self
+                .timing
+                .write(&found.gait, &file.name, self.output.as_deref())?;
+            output.answer(&RobustAnswer::new(
+                format!("{}, most efficiency, robust", file.name),
+                "ξ",
+                &found,
+                timing,
+                (seconds, self.output),
+            ));
+            return Ok(());
+        }
         let gait = efficiency(&EfficiencyProblem {
             method: match self.method {
                 How::Auto => Method::Auto,
@@ -69,25 +112,15 @@ impl Efficiency {
                 How::Collocation => Method::Collocation,
                 How::Shooting => Method::Shooting,
             },
-            bounds: Bounds {
-                max_angle: self.max_angle,
-                no_overlap: self.no_overlap || self.clearance.is_some(),
-                clearance: self.clearance.unwrap_or(0.0),
-                ..Bounds::default()
-            },
-            ..EfficiencyProblem::new(
-                file.swimmer,
-                match self.gait {
-                    Which::Small => Branch::Small,
-                    Which::Large => Branch::Large,
-                },
-            )
+            bounds,
+            ..EfficiencyProblem::new(file.swimmer, branch)
         })?;
         let seconds = begun.elapsed().as_secs_f64();
-        if let Some(path) = &self.output {
-            gait.gait_file(&file.name).save(path)?;
-        }
-        output.answer(&Found::new(&file.name, &gait, seconds, self.output));
+        let timing = self
+            .timing
+            .write(&gait, &file.name, self.output.as_deref())?;
+        let found = Found::new(&file.name, &gait, timing, (seconds, self.output));
+        output.answer(&found);
         Ok(())
     }
 }
@@ -116,6 +149,9 @@ struct Found {
     /// The direct method's own value, before the polish.
     #[serde(skip_serializing_if = "Option::is_none")]
     direct_efficiency: Option<f64>,
+    /// Under the servos' limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    timing: Option<TimingAnswer>,
     certificate: Evidence,
     /// From the parsed swimmer to the certified gait.
     seconds: f64,
@@ -125,7 +161,12 @@ struct Found {
 }
 
 impl Found {
-    fn new(name: &str, gait: &OptimalGait, seconds: f64, file: Option<PathBuf>) -> Self {
+    fn new(
+        name: &str,
+        gait: &OptimalGait,
+        timing: Option<TimingAnswer>,
+        (seconds, file): (f64, Option<PathBuf>),
+    ) -> Self {
         let figures = gait.efficiency_figures;
         Self {
             name: name.to_owned(),
@@ -140,6 +181,7 @@ impl Found {
             links_cross: gait.links_cross,
             method: figures.map(|figures| figures.method.word()),
             direct_efficiency: figures.and_then(|figures| figures.direct_efficiency),
+            timing,
             certificate: (&gait.certificate).into(),
             seconds,
             gait: file,
@@ -179,6 +221,9 @@ impl fmt::Display for Found {
                 "before polish",
                 format!("ξ off by {}", quantity::small(deviation)),
             );
+        }
+        if let Some(timing) = &self.timing {
+            timing.rows(&mut rows);
         }
         closing_rows(
             &mut rows,

@@ -3,6 +3,8 @@
 mod answer;
 mod displacement;
 mod efficiency;
+mod robust;
+mod timing;
 
 use crate::failure::Outcome;
 use crate::output::Output;

@@ -1,0 +1,275 @@
+//! `--robust FIT.json`: the gait for a swimmer that is known as well as a calibration knows it.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use gait_optimizer::{Over, RobustError, RobustGait, Uncertainty, Values};
+use serde::{Deserialize, Serialize};
+
+use super::answer::{Arc, Evidence, closing_rows, displacement_row, quarter_rows};
+use super::timing::TimingAnswer;
+use crate::failure::{Failure, Outcome};
+use crate::quantity::Rows;
+
+/// What is uncertain, and what is made of it.
+#[derive(Debug, clap::Args)]
+pub(super) struct Robustly {
+    /// Design for all that this fit (of swimmer calibrate: fit.json, or its --json) leaves open of the sphere's radius and χ
+    #[arg(long, value_name = "FIT.json")]
+    robust: Option<PathBuf>,
+    /// Maximise the worst case over the intervals (their ellipse, where the fit tells the correlation) or the mean
+    #[arg(
+        long,
+        value_name = "WHAT",
+        default_value = "worst",
+        requires = "robust"
+    )]
+    over: Which,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Which {
+    Worst,
+    Mean,
+}
+
+/// What is read of a fit.
+#[derive(Debug, Deserialize)]
+struct Fit {
+    sphere_radius_m: f64,
+    chi: f64,
+    intervals: Intervals,
+    correlation: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Intervals {
+    sphere_radius_m: [f64; 2],
+    chi: [f64; 2],
+    level: f64,
+}
+
+impl Robustly {
+    /// What the fit leaves open and what shall be maximised, if that was asked for.
+    pub(super) fn load(&self) -> Outcome<Option<(Uncertainty, Over)>> {
+        let Some(path) = &self.robust else {
+            return Ok(None);
+        };
+        let over = match self.over {
+            Which::Worst => Over::Worst,
+            Which::Mean => Over::Mean,
+        };
+        Ok(Some((load(path)?, over)))
+    }
+}
+
+fn load(path: &Path) -> Outcome<Uncertainty> {
+    let text = std::fs::read_to_string(path).map_err(|error| {
+        Failure::BadInput(format!("cannot read the fit {}: {error}", path.display()))
+    })?;
+    let fit: Fit = serde_json::from_str(&text).map_err(|error| {
+        Failure::BadInput(format!(
+            "{}:{}:{}: {error}; a fit is what swimmer calibrate --json prints",
+            path.display(),
+            error.line(),
+            error.column()
+        ))
+    })?;
+    let uncertainty = Uncertainty {
+        sphere_radius: fit.sphere_radius_m,
+        chi: fit.chi,
+        sphere_radius_interval: fit.intervals.sphere_radius_m,
+        chi_interval: fit.intervals.chi,
+        level: fit.intervals.level,
+        correlation: fit.correlation,
+    };
+    uncertainty.validate()?;
+    Ok(uncertainty)
+}
+
+/// A robust gait and what robustness costs and brings.
+#[derive(Debug, Serialize)]
+pub(super) struct RobustAnswer {
+    #[serde(skip)]
+    title: String,
+    /// Of the estimates' swimmer.
+    displacement_over_length: f64,
+    displacement_m: f64,
+    efficiency: f64,
+    start_angle_rad: f64,
+    end_angle_rad: f64,
+    arcs: Vec<Arc>,
+    links_cross: f64,
+    robust: Robustness,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    timing: Option<TimingAnswer>,
+    certificate: Evidence,
+    seconds: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gait: Option<PathBuf>,
+}
+
+#[derive(Debug, Serialize)]
+struct Robustness {
+    over: &'static str,
+    quantity: &'static str,
+    /// What the robust gait brings.
+    robust: Brings,
+    /// What the nominal optimum of the same family brings.
+    nominal_optimum: Brings,
+    /// The swimmers that hold the worst case.
+    held_by: Vec<Holder>,
+    worst_among: usize,
+    mean_of: usize,
+    /// The robust gait is better for the estimates, too: the nominal branch does not reach it.
+    off_branch: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct Brings {
+    nominal: f64,
+    worst: f64,
+    mean: f64,
+}
+
+impl From<Values> for Brings {
+    fn from(values: Values) -> Self {
+        Self {
+            nominal: values.nominal,
+            worst: values.worst,
+            mean: values.mean,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Holder {
+    sphere_radius_m: f64,
+    chi: f64,
+    multiplier: f64,
+}
+
+impl RobustAnswer {
+    pub(super) fn new(
+        title: String,
+        quantity: &'static str,
+        found: &RobustGait,
+        timing: Option<TimingAnswer>,
+        (seconds, file): (f64, Option<PathBuf>),
+    ) -> Self {
+        let gait = &found.gait;
+        Self {
+            title,
+            displacement_over_length: gait.displacement_over_length,
+            displacement_m: gait.displacement,
+            efficiency: gait.efficiency,
+            start_angle_rad: gait.start_angle,
+            end_angle_rad: gait.end_angle,
+            arcs: gait.arcs.iter().map(Arc::from).collect(),
+            links_cross: gait.links_cross,
+            robust: Robustness {
+                over: match found.over {
+                    Over::Worst => "worst",
+                    Over::Mean => "mean",
+                },
+                quantity,
+                robust: found.values.into(),
+                nominal_optimum: found.nominal.into(),
+                held_by: found
+                    .held_by
+                    .iter()
+                    .map(|&[sphere_radius_m, chi, multiplier]| Holder {
+                        sphere_radius_m,
+                        chi,
+                        multiplier,
+                    })
+                    .collect(),
+                worst_among: found.members.0,
+                mean_of: found.members.1,
+                off_branch: found.off_branch(),
+            },
+            timing,
+            certificate: (&gait.certificate).into(),
+            seconds,
+            gait: file,
+        }
+    }
+}
+
+impl fmt::Display for RobustAnswer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows = Rows::default();
+        displacement_row(
+            &mut rows,
+            self.displacement_m,
+            self.displacement_over_length,
+        );
+        quarter_rows(
+            &mut rows,
+            self.start_angle_rad,
+            self.end_angle_rad,
+            &self.arcs,
+        );
+        let Robustness {
+            robust,
+            nominal_optimum,
+            quantity,
+            ..
+        } = &self.robust;
+        for (name, ours, theirs) in [
+            ("as estimated", robust.nominal, nominal_optimum.nominal),
+            ("worst case", robust.worst, nominal_optimum.worst),
+            ("mean", robust.mean, nominal_optimum.mean),
+        ] {
+            rows.row(
+                name,
+                format!(
+                    "{quantity} = {ours:.8}, the nominal optimum {theirs:.8} ({:+.3} %)",
+                    (ours / theirs - 1.0) * 100.0 + 0.0
+                ),
+            );
+        }
+        for holder in &self.robust.held_by {
+            rows.row(
+                "held by",
+                format!(
+                    "r_s = {:.3} mm, χ = {:.4} (multiplier {:.3})",
+                    holder.sphere_radius_m * 1e3,
+                    holder.chi,
+                    holder.multiplier
+                ),
+            );
+        }
+        if self.robust.off_branch {
+            rows.row(
+                "note",
+                "this gait is better for the estimates, too: it lies on another branch than the nominal optimum",
+            );
+        }
+        if let Some(timing) = &self.timing {
+            timing.rows(&mut rows);
+        }
+        closing_rows(
+            &mut rows,
+            self.links_cross,
+            &self.certificate,
+            self.gait.as_ref(),
+        );
+        write!(f, "{}\n{rows}", self.title)
+    }
+}
+
+impl From<RobustError> for Failure {
+    /// A problem that makes no sense is bad input; one that does not come out was tried.
+    fn from(error: RobustError) -> Self {
+        match error {
+            RobustError::Nominal(error) => error.into(),
+            RobustError::Swimmer(_)
+            | RobustError::Uncertainty { .. }
+            | RobustError::Order { .. }
+            | RobustError::Structure { .. } => Self::bad_input(&error),
+            _ => Self::tried(&error),
+        }
+    }
+}

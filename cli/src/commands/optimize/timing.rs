@@ -1,0 +1,146 @@
+//! Servo limits on the timing of an optimised gait: `--max-rate` and `--period`.
+
+use std::path::Path;
+
+use gait_optimizer::OptimalGait;
+use gait_optimizer::playable::{Timing, TimingError, timing};
+use serde::Serialize;
+use swimmer_files::GaitFile;
+use swimmer_model::Model;
+
+use crate::arguments::{positive_angle, seconds};
+use crate::failure::{Failure, Outcome};
+use crate::quantity::{self, Rows};
+
+/// How fast the servos are, and in which period the gait shall run.
+#[derive(Debug, clap::Args)]
+pub(super) struct ServoTiming {
+    /// Servos turn no faster than this angle a second: the gait is timed best under that limit instead of at constant power
+    #[arg(long, value_name = "ANGLE_PER_S", value_parser = positive_angle, requires = "period")]
+    max_rate: Option<f64>,
+    /// Seconds a cycle shall take with servos of that rate
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, requires = "max_rate")]
+    period: Option<f64>,
+}
+
+/// A gait's timing under the limit.
+#[derive(Debug)]
+struct Timed {
+    timing: Timing,
+}
+
+/// What the limit costs.
+#[derive(Debug, Serialize)]
+pub(super) struct TimingAnswer {
+    period_s: f64,
+    /// The shortest period in which such servos can run the gait at all.
+    period_min_s: f64,
+    max_rate_rad_s: f64,
+    /// Fastest joint at constant power, without the limit.
+    rate_at_constant_power_rad_s: f64,
+    /// Share of the period in which a servo runs at its limit.
+    at_limit: f64,
+    /// Share of Lighthill's ξ that the limit costs.
+    efficiency_loss: f64,
+}
+
+impl ServoTiming {
+    /// Times a gait, if that was asked for.
+    fn of(&self, gait: &OptimalGait) -> Outcome<Option<Timed>> {
+        let (Some(max_rate), Some(period)) = (self.max_rate, self.period) else {
+            return Ok(None);
+        };
+        let broken = |error: &dyn std::error::Error| Failure::tried(error);
+        let model = Model::new(&gait.swimmer).map_err(|error| broken(&error))?;
+        let curve = gait.gait().map_err(|error| broken(&error))?;
+        Ok(Some(Timed {
+            timing: timing(&model, &curve, period, max_rate)?,
+        }))
+    }
+}
+
+impl ServoTiming {
+    /// Times a gait, if that was asked for, and writes it, if it was.
+    pub(super) fn write(
+        &self,
+        gait: &OptimalGait,
+        name: &str,
+        path: Option<&Path>,
+    ) -> Outcome<Option<TimingAnswer>> {
+        let timed = self.of(gait)?;
+        if let Some(path) = path {
+            let file = gait.gait_file(name);
+            timed
+                .as_ref()
+                .map_or_else(|| file.clone(), |timed| timed.file(&file))
+                .save(path)?;
+        }
+        Ok(timed.as_ref().map(Timed::answer))
+    }
+}
+
+impl Timed {
+    /// The gait file with this timing.
+    fn file(&self, file: &GaitFile) -> GaitFile {
+        self.timing.retime_file(file)
+    }
+
+    /// What is printed of it.
+    fn answer(&self) -> TimingAnswer {
+        let Timing {
+            period,
+            shortest_period,
+            max_rate,
+            at_limit,
+            rate_at_constant_power,
+            efficiency_loss,
+            ..
+        } = self.timing;
+        TimingAnswer {
+            period_s: period,
+            period_min_s: shortest_period,
+            max_rate_rad_s: max_rate,
+            rate_at_constant_power_rad_s: rate_at_constant_power,
+            at_limit,
+            efficiency_loss,
+        }
+    }
+}
+
+impl TimingAnswer {
+    /// Lines for people.
+    pub(super) fn rows(&self, rows: &mut Rows) {
+        let rate = |value: f64| format!("{} a second", quantity::angle(value));
+        rows.row(
+            "timed for",
+            format!(
+                "{} s with joints of at most {} (shortest period {:.2} s)",
+                self.period_s,
+                rate(self.max_rate_rad_s),
+                self.period_min_s
+            ),
+        )
+        .row(
+            "servo at limit",
+            format!(
+                "{:.1} % of the period; constant power would want {}",
+                self.at_limit * 100.0,
+                rate(self.rate_at_constant_power_rad_s)
+            ),
+        )
+        .row(
+            "limit costs",
+            format!("{:.3} % of ξ", self.efficiency_loss * 100.0),
+        );
+    }
+}
+
+impl From<TimingError> for Failure {
+    /// A gait that servos cannot run in time was tried; numbers that are none are bad input.
+    fn from(error: TimingError) -> Self {
+        match error {
+            TimingError::Rate { .. } | TimingError::Period { .. } => Self::bad_input(&error),
+            _ => Self::tried(&error),
+        }
+    }
+}
