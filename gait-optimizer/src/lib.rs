@@ -12,6 +12,9 @@
 //! | `displacement` | the problem, the search for the quarter gait, the result |
 //! | `displacement::height` | the switching function F of the paper, its gradient, the singular control |
 //! | `height_map` | height functions in minimum-perturbation coordinates, their zero-level curves, the area rule |
+//! | `atlas` | multi-start over closed curves of any symmetry, and which of them are one gait |
+//! | `closed_curve` | displacement, rotation and cost of any closed curve, with exact first and second derivatives |
+//! | `loops` | closed loops of singular arcs and bounds, without any symmetry |
 //! | `region` | the bounds as a convex polygon of joint angles |
 //! | `displacement::flow` | one quarter gait: arc after arc, event after event |
 //! | `efficiency` | free Lighthill gaits: Fourier series, shooting, second-order test |
@@ -26,8 +29,10 @@
 //! | `simple_shapes` | circles and squares over their amplitude |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
 
+mod atlas;
 mod certificate;
 mod certify;
+mod closed_curve;
 pub mod closed_forms;
 pub mod collocation;
 mod cycle;
@@ -36,6 +41,7 @@ mod efficiency;
 #[allow(dead_code, reason = "handed to several rooms, which land one by one")]
 mod extremal;
 mod height_map;
+mod loops;
 mod optimal_gait;
 pub mod playable;
 mod region;
@@ -43,6 +49,7 @@ mod robust;
 mod runge_kutta;
 mod simple_shapes;
 
+pub use atlas::{Atlas, AtlasError, AtlasProblem, Optimum, atlas};
 pub use certificate::{Certificate, Check};
 pub use certify::{CertifyError, certify};
 pub use displacement::{DisplacementError, DisplacementProblem, Fates, Heading, displacement};

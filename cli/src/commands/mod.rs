@@ -1,5 +1,6 @@
 //! The command line as one type; one file for each subcommand: its arguments, what it calls, its answer.
 
+pub(crate) mod atlas;
 pub(crate) mod calibrate;
 pub(crate) mod certify;
 pub(crate) mod demo;
@@ -45,6 +46,7 @@ pub(crate) enum Command {
     Simulate(simulate::Simulate),
     #[command(subcommand)]
     Optimize(optimize::Optimize),
+    Atlas(atlas::Atlas),
     Certify(certify::Certify),
     HeightMap(height_map::HeightMap),
     Paper(paper::Paper),
@@ -67,6 +69,7 @@ pub(crate) fn run(command: Command, output: Output) -> Outcome {
         Command::Optimize(optimize) => optimize.run(output),
         Command::HeightMap(height_map) => height_map.run(output),
         Command::Paper(paper) => paper.run(output),
+        Command::Atlas(atlas) => atlas.run(output),
         Command::Robot(robot) => robot.run(output),
         Command::Twin(twin) => twin.run(output),
         Command::Tracks(tracks) => tracks.run(output),

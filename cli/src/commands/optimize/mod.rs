@@ -1,6 +1,6 @@
 //! `swimmer optimize`: finds an optimal gait and, with `-o`, writes it. One file for each objective.
 
-mod answer;
+pub(crate) mod answer;
 mod displacement;
 mod efficiency;
 mod robust;

@@ -1,0 +1,239 @@
+//! `swimmer atlas`: every locally optimal gait that a seeded multi-start finds.
+
+mod picture;
+
+use std::fmt;
+use std::fs;
+use std::num::NonZero;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::ValueEnum;
+use gait_optimizer::{Atlas as Found, AtlasError, AtlasProblem, Objective, Optimum, atlas};
+use serde::Serialize;
+use swimmer_files::Bounds;
+
+use crate::arguments::{load_swimmer, positive_angle};
+use crate::failure::{Failure, Outcome};
+use crate::new_folder::NewFolder;
+use crate::output::Output;
+use crate::quantity;
+
+use super::optimize::answer::{Arc, Evidence};
+
+/// Find every locally optimal gait, with and without the paper's symmetries, each certified
+///
+/// Random closed curves are optimised, polished by the maximum principle and put together: images of a gait under the
+/// swimmer's own symmetries (left for right, front for back, run backwards) count as one. The same seed gives the same
+/// atlas. For displacement the curves are simple; best is the largest net displacement, whatever its direction.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Atlas {
+    /// purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
+    /// What the gaits are optimal for
+    #[arg(long, value_name = "OBJECTIVE")]
+    objective: Aim,
+    /// No joint may turn further than this, either way
+    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
+    max_angle: Option<f64>,
+    /// Links may not cross
+    #[arg(long)]
+    no_overlap: bool,
+    /// How many random starts
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    starts: u32,
+    /// Seed of the starts
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Put every gait as a gait file and a picture of them all into this folder
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Aim {
+    Displacement,
+    Efficiency,
+}
+
+impl Atlas {
+    /// Makes the atlas that was asked for.
+    pub(crate) fn run(self, output: Output) -> Outcome {
+        let file = load_swimmer(&self.swimmer)?;
+        let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
+        let begun = Instant::now();
+        let objective = match self.objective {
+            Aim::Displacement => Objective::Displacement,
+            Aim::Efficiency => Objective::Efficiency,
+        };
+        let found = atlas(&AtlasProblem {
+            bounds: Bounds {
+                max_angle: self.max_angle,
+                no_overlap: self.no_overlap,
+                ..Bounds::default()
+            },
+            starts: usize::try_from(self.starts).unwrap_or(usize::MAX),
+            seed: self.seed,
+            threads: std::thread::available_parallelism().map_or(1, NonZero::get),
+            ..AtlasProblem::new(file.swimmer, objective)
+        })?;
+        let seconds = begun.elapsed().as_secs_f64();
+        let mut answer = Answer::new(&file.name, objective, &found, seconds);
+        if let Some(folder) = folder {
+            for (number, (optimum, line)) in found.optima.iter().zip(&mut answer.optima).enumerate()
+            {
+                let name = format!("{:02}.gait", number + 1);
+                optimum
+                    .gait
+                    .gait_file(&file.name)
+                    .save(&folder.draft().join(&name))?;
+                line.gait = Some(folder.place().join(&name));
+            }
+            let picture = picture::svg(&answer.title(), &found.optima);
+            let path = folder.draft().join("atlas.svg");
+            fs::write(&path, picture).map_err(|error| {
+                Failure::Tried(format!("cannot write {}: {error}", path.display()))
+            })?;
+            answer.picture = Some(folder.place().join("atlas.svg"));
+            folder.publish()?;
+        }
+        output.answer(&answer);
+        Ok(())
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Answer {
+    #[serde(skip)]
+    name: String,
+    #[serde(skip)]
+    objective: Objective,
+    /// Best first.
+    optima: Vec<Line>,
+    starts: usize,
+    /// Starts that settled nowhere.
+    unsettled: usize,
+    /// Starts that left the shapes searched.
+    left: usize,
+    /// Starts whose end could not be polished to a certified gait.
+    uncertified: usize,
+    seconds: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    picture: Option<PathBuf>,
+}
+
+#[derive(Debug, Serialize)]
+struct Line {
+    efficiency: f64,
+    displacement_over_length: f64,
+    displacement_m: f64,
+    lateral_over_length: f64,
+    /// |d| over L.
+    distance_over_length: f64,
+    rotation_rad: f64,
+    start_angle_rad: f64,
+    end_angle_rad: f64,
+    /// Of the quarter where the gait is symmetric, else of the cycle.
+    arcs: Vec<Arc>,
+    links_cross: f64,
+    certificate: Evidence,
+    simple: bool,
+    symmetric: bool,
+    found: usize,
+    seconds: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gait: Option<PathBuf>,
+}
+
+impl Answer {
+    fn new(name: &str, objective: Objective, found: &Found, seconds: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            objective,
+            optima: found
+                .optima
+                .iter()
+                .map(|optimum| Line::new(optimum, seconds))
+                .collect(),
+            starts: found.starts,
+            unsettled: found.unsettled,
+            left: found.left,
+            uncertified: found.uncertified,
+            seconds,
+            picture: None,
+        }
+    }
+
+    fn title(&self) -> String {
+        let most = match self.objective {
+            Objective::Efficiency => "efficiency",
+            _ => "displacement",
+        };
+        format!("{}, atlas of {most}", self.name)
+    }
+}
+
+impl Line {
+    fn new(optimum: &Optimum, seconds: f64) -> Self {
+        let gait = &optimum.gait;
+        Self {
+            efficiency: gait.efficiency,
+            displacement_over_length: gait.displacement_over_length,
+            displacement_m: gait.displacement,
+            lateral_over_length: gait.lateral_over_length,
+            distance_over_length: optimum.distance_over_length,
+            rotation_rad: gait.rotation,
+            start_angle_rad: gait.start_angle,
+            end_angle_rad: gait.end_angle,
+            arcs: gait.arcs.iter().map(Arc::from).collect(),
+            links_cross: gait.links_cross,
+            certificate: (&gait.certificate).into(),
+            simple: optimum.simple,
+            symmetric: gait.symmetric,
+            found: optimum.found,
+            seconds,
+            gait: None,
+        }
+    }
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: {} starts", self.title(), self.starts)?;
+        writeln!(
+            f,
+            "  no   |d|/L          efficiency ξ     simple symmetric found  links cross"
+        )?;
+        for (number, line) in self.optima.iter().enumerate() {
+            let yes = |value: bool| if value { "yes" } else { "no" };
+            writeln!(
+                f,
+                "  {:<3}  {:.10}   {:.10}     {:<6} {:<9} {:<6} {}",
+                number + 1,
+                line.distance_over_length,
+                line.efficiency,
+                yes(line.simple),
+                yes(line.symmetric),
+                line.found,
+                quantity::crossing(line.links_cross),
+            )?;
+        }
+        write!(
+            f,
+            "  not listed: {} starts settled nowhere, {} left the shapes searched, {} ended where no gait could be certified",
+            self.unsettled, self.left, self.uncertified
+        )?;
+        if let Some(picture) = &self.picture {
+            write!(f, "\n  drawn in {}", picture.display())?;
+        }
+        Ok(())
+    }
+}
+
+impl From<AtlasError> for Failure {
+    /// Every way to fail is a problem that makes no sense.
+    fn from(error: AtlasError) -> Self {
+        Self::bad_input(&error)
+    }
+}

@@ -1,0 +1,186 @@
+//! The atlas: every locally optimal gait that a seeded multi-start finds, with and without the paper's two symmetries.
+//!
+//! 1. Each start, a random Fourier curve, runs into a stationary curve of low order by Newton's method inside the bounds
+//!    ([`newton`]).
+//! 2. Curves that are one and the same gait are put together ([`distinct`]), images under the swimmer's own symmetries
+//!    and the reversed curve included.
+//! 3. Each that is left is polished by the maximum principle to an exact extremal, and certified. What cannot be polished is
+//!    counted, never listed.
+
+mod curve;
+mod displacement;
+mod distinct;
+mod fence;
+mod gates;
+mod newton;
+mod objective;
+mod parallel;
+mod pipeline;
+mod starts;
+
+use swimmer_files::{Bounds, Objective};
+use swimmer_model::{InvalidSwimmer, Model, Swimmer};
+
+use crate::OptimalGait;
+use crate::displacement::of_unit_length;
+use crate::region::Region;
+
+/// What to make an atlas of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AtlasProblem {
+    /// The swimmer; its side links may differ.
+    pub swimmer: Swimmer<f64>,
+    /// [`Objective::Displacement`]: most net displacement |d| of a simple closed curve without net rotation.
+    pub objective: Objective,
+    /// Bounds on the shapes: the largest angle and crossing links.
+    pub bounds: Bounds,
+    /// How many random starts.
+    pub starts: usize,
+    /// Seed of the starts: the same seed gives the same atlas on any number of threads.
+    pub seed: u64,
+    /// Order of the Fourier series that the starts are optimised in before the polish.
+    pub order: usize,
+    /// Threads to work on, at least 1.
+    pub threads: usize,
+    /// Samples of each gait's cycle.
+    pub samples: usize,
+}
+
+impl AtlasProblem {
+    /// 200 starts of order 6 on one thread, without bounds.
+    pub fn new(swimmer: Swimmer<f64>, objective: Objective) -> Self {
+        Self {
+            swimmer,
+            objective,
+            bounds: Bounds::default(),
+            starts: 200,
+            seed: 1,
+            order: 6,
+            threads: 1,
+            samples: 1024,
+        }
+    }
+
+    fn validate(&self) -> Result<(), AtlasError> {
+        if self.objective != Objective::Displacement {
+            return Err(AtlasError::Objective {
+                objective: self.objective,
+            });
+        }
+        if self.bounds.sector || self.bounds.min_angle.is_some() {
+            return Err(AtlasError::QuarterBound);
+        }
+        if let Some(max) = self.bounds.max_angle
+            && !(max > 0.0 && max <= Region::HORIZON)
+        {
+            return Err(AtlasError::MaxAngle { value: max });
+        }
+        let (clearance, middle) = (self.bounds.clearance, self.swimmer.links.middle);
+        if !(clearance >= 0.0 && clearance < middle) {
+            return Err(AtlasError::Clearance {
+                value: clearance,
+                middle,
+            });
+        }
+        if !(1..=100_000).contains(&self.starts) || !(1..=24).contains(&self.order) {
+            return Err(AtlasError::Size {
+                starts: self.starts,
+                order: self.order,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// One locally optimal gait.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Optimum {
+    /// The gait with its numbers and its certificate. `gait.symmetric` tells whether it has the paper's two symmetries.
+    pub gait: OptimalGait,
+    /// Net displacement |d| over L, whatever its direction against the first sample's heading.
+    pub distance_over_length: f64,
+    /// Whether the curve is simple: turns once and never crosses itself.
+    pub simple: bool,
+    /// How many of the starts ended in it, or in one of its images.
+    pub found: usize,
+}
+
+/// All that was found, and what became of the rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Atlas {
+    /// Certified optima, best first.
+    pub optima: Vec<Optimum>,
+    /// How many starts there were.
+    pub starts: usize,
+    /// Starts that did not settle on any stationary curve.
+    pub unsettled: usize,
+    /// Starts that left for shapes beyond the horizon of the search (without a bound on the angles).
+    pub left: usize,
+    /// Starts that ended on a curve whose polish failed, or whose certificate does.
+    pub uncertified: usize,
+}
+
+/// Why there is no atlas.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AtlasError {
+    /// The swimmer's parameters are out of range.
+    #[error("cannot make an atlas for this swimmer: {0}")]
+    Swimmer(#[from] InvalidSwimmer),
+    /// Another objective.
+    #[error(
+        "there is no atlas for the objective `{objective}`; it knows displacement and efficiency"
+    )]
+    Objective {
+        /// Asked for.
+        objective: Objective,
+    },
+    /// A bound on a quarter gait.
+    #[error(
+        "an atlas holds closed curves of any symmetry, so bounds on a quarter (a least angle, the sector) mean nothing; \
+         leave them out"
+    )]
+    QuarterBound,
+    /// The largest angle makes no sense.
+    #[error(
+        "max_angle = {value} rad: an upper bound must be above 0 and at most one turn, 6.283 rad"
+    )]
+    MaxAngle {
+        /// Asked for \[rad\].
+        value: f64,
+    },
+    /// The clearance makes no sense.
+    #[error("a clearance of {value} m: give 0 or more, below the middle link's {middle} m")]
+    Clearance {
+        /// Asked for \[m\].
+        value: f64,
+        /// l₀ \[m\].
+        middle: f64,
+    },
+    /// Too many or too few starts, or too high an order.
+    #[error("{starts} starts of order {order}: give 1 to 100000 starts and an order of 1 to 24")]
+    Size {
+        /// Asked for.
+        starts: usize,
+        /// Asked for.
+        order: usize,
+    },
+}
+
+/// Makes an atlas.
+///
+/// # Errors
+/// [`AtlasError`]: what is wrong with the problem. An atlas without any optimum is no error.
+pub fn atlas(problem: &AtlasProblem) -> Result<Atlas, AtlasError> {
+    problem.validate()?;
+    let model = Model::new(&of_unit_length(&problem.swimmer))?;
+    let region = Region::new(&problem.bounds, &problem.swimmer.links);
+    let seek = displacement::Displacement {
+        problem,
+        model: &model,
+        region: &region,
+    };
+    Ok(pipeline::run(problem, &model, &seek))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,32 @@
+//! Coarse curves as shapes: their sense, whether they are simple, and whether two are the same gait.
+
+use nalgebra::{DMatrix, Vector2};
+
+use crate::certificate::{crossings, turning_number};
+use crate::closed_curve::Basis;
+
+/// Sides of the polygon that a coarse curve is looked at as.
+const SIDES: usize = 240;
+
+/// The closed polygon of a curve, last point = first.
+pub(crate) fn polygon(basis: &Basis, coefficients: &DMatrix<f64>) -> Vec<Vector2<f64>> {
+    (0..=SIDES)
+        .map(|k| basis.shape(coefficients, (k % SIDES) as f64 / SIDES as f64))
+        .collect()
+}
+
+/// Twice the area that a closed polygon encloses, counter-clockwise positive.
+pub(crate) fn double_area(points: &[Vector2<f64>]) -> f64 {
+    points
+        .windows(2)
+        .map(|pair| match pair {
+            [a, b] => a.perp(b),
+            _ => 0.0,
+        })
+        .sum()
+}
+
+/// Whether a closed polygon turns once and never crosses itself.
+pub(crate) fn is_simple(points: &[Vector2<f64>]) -> bool {
+    (turning_number(points).abs() - 1.0).abs() < 1e-6 && crossings(points) == 0
+}

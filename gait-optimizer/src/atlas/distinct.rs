@@ -1,0 +1,192 @@
+//! Which curves are one and the same gait.
+//!
+//! Invariant is the curve itself, not how it is run: shift of time, reversal (the swimmer swims the same way back) and the
+//! swimmer's own symmetries – left for right, Φ → −Φ, and, with side links that are alike, front for back,
+//! (φ₁, φ₂) → (φ₂, φ₁) – make one gait of several curves. Without bounds whole turns of a joint do as well.
+
+use nalgebra::Vector2;
+
+/// Points that a curve is compared at.
+const POINTS: usize = 96;
+
+/// A closed curve as evenly spaced points.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Outline(Vec<Vector2<f64>>);
+
+/// The maps of the plane of shapes that leave a swimmer the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Symmetries {
+    /// The side links are alike.
+    pub(crate) swap: bool,
+    /// Whole turns of a joint make no difference.
+    pub(crate) turns: bool,
+}
+
+impl Outline {
+    /// Of a closed polygon, last point = first.
+    pub(crate) fn new(polygon: &[Vector2<f64>]) -> Self {
+        let mut lengths = vec![0.0];
+        let mut total = 0.0;
+        for pair in polygon.windows(2) {
+            if let [a, b] = pair {
+                total += (b - a).norm();
+                lengths.push(total);
+            }
+        }
+        let at = |length: f64| {
+            let after = lengths
+                .partition_point(|&l| l <= length)
+                .clamp(1, lengths.len().saturating_sub(1).max(1));
+            let place = |i: usize| lengths.get(i).copied().unwrap_or(0.0);
+            let point = |i: usize| polygon.get(i).copied().unwrap_or_default();
+            let (from, to) = (place(after - 1), place(after));
+            let share = if to > from {
+                (length - from) / (to - from)
+            } else {
+                0.0
+            };
+            point(after - 1).lerp(&point(after), share)
+        };
+        Self(
+            (0..POINTS)
+                .map(|k| at(total * k as f64 / POINTS as f64))
+                .collect(),
+        )
+    }
+
+    fn mapped(&self, map: impl Fn(&Vector2<f64>) -> Vector2<f64>) -> Self {
+        Self(self.0.iter().map(map).collect())
+    }
+
+    fn centre(&self) -> Vector2<f64> {
+        self.0.iter().sum::<Vector2<f64>>() / POINTS as f64
+    }
+
+    /// Largest distance of a point of either curve from the other curve \[rad\].
+    fn distance(&self, other: &Self) -> f64 {
+        self.one_way(other).max(other.one_way(self))
+    }
+
+    fn one_way(&self, other: &Self) -> f64 {
+        let sides = other.0.iter().zip(other.0.iter().cycle().skip(1));
+        self.0
+            .iter()
+            .map(|point| {
+                sides
+                    .clone()
+                    .map(|(a, b)| to_segment(point, a, b))
+                    .fold(f64::INFINITY, f64::min)
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// Distance to the nearest image of another curve.
+    pub(crate) fn apart(&self, other: &Self, symmetries: Symmetries) -> f64 {
+        let turn = |image: Self| {
+            if !symmetries.turns {
+                return image;
+            }
+            let turns = ((self.centre() - image.centre()) / std::f64::consts::TAU).map(f64::round);
+            image.mapped(|phi| phi + turns * std::f64::consts::TAU)
+        };
+        let swapped = |phi: &Vector2<f64>| Vector2::new(phi.y, phi.x);
+        let mut least = self.distance(&turn(other.clone()));
+        least = least.min(self.distance(&turn(other.mapped(|phi| -phi))));
+        if symmetries.swap {
+            least = least.min(self.distance(&turn(other.mapped(swapped))));
+            least = least.min(self.distance(&turn(other.mapped(|phi| -swapped(phi)))));
+        }
+        least
+    }
+
+    /// How far the curve is from having both symmetries of the paper: its images in φ₁ = φ₂ and in φ₁ = −φ₂.
+    pub(crate) fn asymmetry(&self) -> f64 {
+        let mirrored = self.mapped(|phi| Vector2::new(phi.y, phi.x));
+        let turned = self.mapped(|phi| -Vector2::new(phi.y, phi.x));
+        self.distance(&mirrored).max(self.distance(&turned))
+    }
+}
+
+fn to_segment(point: &Vector2<f64>, a: &Vector2<f64>, b: &Vector2<f64>) -> f64 {
+    let side = b - a;
+    let share = ((point - a).dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
+    if share.is_finite() {
+        (point - a - side * share).norm()
+    } else {
+        (point - a).norm()
+    }
+}
+
+/// Puts entries with (nearly) the same outline together, in the order in which each was first seen: the first entry of every
+/// class, and which entries belong to it.
+pub(crate) fn classes(
+    outlines: &[(f64, Outline)],
+    symmetries: Symmetries,
+    same_value: f64,
+    same_place: f64,
+) -> Vec<Vec<usize>> {
+    let mut classes: Vec<Vec<usize>> = Vec::new();
+    for (index, (value, outline)) in outlines.iter().enumerate() {
+        let home = classes.iter_mut().find(|class| {
+            class
+                .first()
+                .and_then(|&first| outlines.get(first))
+                .is_some_and(|(other, first)| {
+                    (value - other).abs() <= same_value * value.abs().max(other.abs())
+                        && outline.apart(first, symmetries) < same_place
+                })
+        });
+        match home {
+            Some(class) => class.push(index),
+            None => classes.push(vec![index]),
+        }
+    }
+    classes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn egg(map: impl Fn(Vector2<f64>) -> Vector2<f64>) -> Outline {
+        let points: Vec<_> = (0..=300)
+            .map(|k| f64::from(k) / 300.0 * std::f64::consts::TAU)
+            .map(|t| {
+                map(Vector2::new(
+                    0.4 + t.cos() + 0.2 * (2.0 * t).cos(),
+                    0.8 * t.sin(),
+                ))
+            })
+            .collect();
+        Outline::new(&points)
+    }
+
+    #[test]
+    fn images_are_the_same_gait() {
+        let both = Symmetries {
+            swap: true,
+            turns: true,
+        };
+        let one = egg(|phi| phi);
+        for image in [
+            egg(|phi| -phi),
+            egg(|phi| Vector2::new(phi.y, phi.x)),
+            egg(|phi| Vector2::new(phi.y + std::f64::consts::TAU, phi.x)),
+        ] {
+            assert!(one.apart(&image, both) < 1e-2);
+        }
+        let none = Symmetries {
+            swap: false,
+            turns: false,
+        };
+        assert!(one.apart(&egg(|phi| Vector2::new(phi.y, phi.x)), none) > 0.1);
+        assert!(one.apart(&egg(|phi| phi * 1.1), both) > 0.05);
+        assert!(one.asymmetry() > 0.1);
+        let outlines = [
+            (1.0, one.clone()),
+            (2.0, one.clone()),
+            (1.0, egg(|phi| -phi)),
+        ];
+        assert_eq!(classes(&outlines, both, 1e-6, 2e-2), [vec![0, 2], vec![1]]);
+    }
+}

@@ -1,0 +1,185 @@
+//! From random starts to the certified optima of one objective: coarse curves, classes of them, polish, classes again.
+
+use nalgebra::{DMatrix, Vector2};
+use swimmer_model::Model;
+
+use super::curve::{double_area, is_simple, polygon};
+use super::distinct::{Outline, Symmetries, classes};
+use super::fence::Fence;
+use super::newton::{Newton, Settings, Stationary};
+use super::objective::Aim;
+use super::parallel::in_parallel;
+use super::starts::{fitted, start};
+use super::{Atlas, AtlasProblem, Optimum};
+use crate::OptimalGait;
+use crate::closed_curve::{Basis, Functional};
+use crate::region::Region;
+
+/// Coarse curves this near to each other \[rad\], with values this near, are one.
+const SAME_COARSE: (f64, f64) = (1e-3, 0.05);
+/// The same for polished gaits.
+const SAME: (f64, f64) = (1e-7, 1e-3);
+/// A curve that comes this near to the horizon has left \[rad\].
+const LEAVING: f64 = 0.3;
+
+/// How one objective is sought.
+pub(super) trait Seek: Sync {
+    /// κ of the coarse objective, one after the other.
+    const THRIFT: &'static [f64];
+    /// How closely the coarse curves are solved.
+    const SETTINGS: Settings;
+    /// Whether only simple curves count; the coarse curve is the last simple one.
+    const SIMPLE: bool;
+
+    /// What is to be large.
+    fn value(gait: &OptimalGait) -> f64;
+
+    /// Gaits known from elsewhere, to start from beside the random ones.
+    fn known(&self, problem: &AtlasProblem) -> Vec<OptimalGait>;
+
+    /// The certified gait that a coarse curve, run counter-clockwise, leads to.
+    fn polished(&self, functional: &Functional<'_>, coarse: &Stationary) -> Option<OptimalGait>;
+}
+
+/// Where a start ended.
+enum Ended {
+    Nowhere,
+    Left,
+    At(Box<Settled>),
+}
+
+struct Settled {
+    stationary: Stationary,
+    points: Vec<Vector2<f64>>,
+}
+
+pub(super) fn run<S: Seek>(problem: &AtlasProblem, model: &Model<f64>, seek: &S) -> Atlas {
+    let basis = Basis::fourier(problem.order, 8 + 2 * problem.order);
+    let functional = Functional::new(model, &basis);
+    let links = &model.swimmer().links;
+    let clearance = problem.bounds.clearance / problem.swimmer.total_length();
+    let fence = Fence::new(&problem.bounds, *links, clearance, Region::HORIZON);
+    let symmetries = Symmetries {
+        swap: (links.front - links.back).abs() < 1e-12,
+        turns: problem.bounds.max_angle.is_none() && !problem.bounds.no_overlap,
+    };
+    let known = seek.known(problem);
+    let count = problem.starts + known.len();
+    let ended = in_parallel(
+        count,
+        problem.threads,
+        || Newton::new(functional, Aim::Far { thrift: 1.0 }, fence),
+        |newton, index| {
+            let curve = match known.get(index.wrapping_sub(problem.starts)) {
+                Some(known) => fitted(known, &basis, &fence),
+                None => start(&basis, &fence, problem.seed, index),
+            };
+            coarse::<S>(newton, &basis, curve, symmetries.turns)
+        },
+    );
+    let mut atlas = Atlas {
+        optima: Vec::new(),
+        starts: count,
+        unsettled: 0,
+        left: 0,
+        uncertified: 0,
+    };
+    let mut settled = Vec::new();
+    for one in ended {
+        match one {
+            Ended::Nowhere => atlas.unsettled += 1,
+            Ended::Left => atlas.left += 1,
+            Ended::At(one) => settled.push(one),
+        }
+    }
+    let outlines: Vec<(f64, Outline)> = settled
+        .iter()
+        .map(|one| {
+            let distance = one.stationary.values.displacement.norm();
+            (distance, Outline::new(&one.points))
+        })
+        .collect();
+    let coarse_classes = classes(&outlines, symmetries, SAME_COARSE.0, SAME_COARSE.1);
+    let polished = in_parallel(
+        coarse_classes.len(),
+        problem.threads,
+        || (),
+        |(), class| {
+            let first = coarse_classes.get(class)?.first()?;
+            seek.polished(&functional, &settled.get(*first)?.stationary)
+        },
+    );
+    let mut gaits: Vec<(OptimalGait, usize)> = Vec::new();
+    for (class, gait) in coarse_classes.iter().zip(polished) {
+        match gait {
+            Some(gait) => gaits.push((gait, class.len())),
+            None => atlas.uncertified += class.len(),
+        }
+    }
+    atlas.optima = distinct::<S>(&gaits, symmetries);
+    atlas
+}
+
+/// One entry for each gait, best first.
+fn distinct<S: Seek>(gaits: &[(OptimalGait, usize)], symmetries: Symmetries) -> Vec<Optimum> {
+    let outlines: Vec<(f64, Outline)> = gaits
+        .iter()
+        .map(|(gait, _)| (S::value(gait), Outline::new(gait.phi())))
+        .collect();
+    let mut optima = Vec::new();
+    for class in classes(&outlines, symmetries, SAME.0, SAME.1) {
+        let found = class.iter().filter_map(|&index| gaits.get(index));
+        let found = found.map(|(_, found)| found).sum();
+        if let Some((gait, _)) = class.first().and_then(|&index| gaits.get(index)) {
+            optima.push(Optimum {
+                distance_over_length: distance(gait),
+                simple: is_simple(gait.phi()),
+                gait: gait.clone(),
+                found,
+            });
+        }
+    }
+    optima.sort_by(|a, b| S::value(&b.gait).total_cmp(&S::value(&a.gait)));
+    optima
+}
+
+/// |d| over L.
+pub(super) fn distance(gait: &OptimalGait) -> f64 {
+    let (x, y) = (gait.displacement_over_length, gait.lateral_over_length);
+    x.hypot(y)
+}
+
+/// Leads one start to a coarse optimum.
+fn coarse<S: Seek>(
+    newton: &mut Newton<'_>,
+    basis: &Basis,
+    start: DMatrix<f64>,
+    may_leave: bool,
+) -> Ended {
+    let mut curve = start;
+    let mut last = None;
+    for &thrift in S::THRIFT {
+        newton.set_aim(Aim::Far { thrift });
+        let Some(stationary) = newton.solve(&curve, &S::SETTINGS) else {
+            break;
+        };
+        let points = polygon(basis, &stationary.coefficients);
+        let far = points.iter().map(Vector2::amax).fold(0.0, f64::max);
+        if may_leave && far > Region::HORIZON - LEAVING {
+            return Ended::Left;
+        }
+        if S::SIMPLE && !is_simple(&points) {
+            break;
+        }
+        curve.clone_from(&stationary.coefficients);
+        last = Some((stationary, points));
+    }
+    let Some((mut stationary, mut points)) = last else {
+        return Ended::Nowhere;
+    };
+    if double_area(&points) < 0.0 {
+        basis.reverse(&mut stationary.coefficients);
+        points.reverse();
+    }
+    Ended::At(Box::new(Settled { stationary, points }))
+}

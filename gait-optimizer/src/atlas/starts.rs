@@ -1,0 +1,99 @@
+//! Random closed curves to start from: Fourier series of order 1 to 4, of several sizes, centres and aspects, with and
+//! without the paper's two symmetries. Each start has its own stream of the generator, so none depends on another.
+
+use nalgebra::{DMatrix, Vector2};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use swimmer_model::Gait;
+
+use super::fence::Fence;
+use crate::OptimalGait;
+use crate::closed_curve::Basis;
+
+/// Highest order of a start.
+const MOST_HARMONICS: usize = 4;
+/// A start keeps this share of the way to the bounds.
+const INSIDE: f64 = 0.97;
+
+/// Coefficients of a start in a Fourier basis, inside the fence.
+pub(crate) fn start(basis: &Basis, fence: &Fence, seed: u64, index: usize) -> DMatrix<f64> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(index as u64);
+    let functions = basis.functions();
+    let reach = fence.max_angle();
+    let size = reach * rng.random_range(0.12..1.0);
+    let highest = rng.random_range(1..=MOST_HARMONICS).min(functions / 2);
+    let mut curve = DMatrix::zeros(2, functions);
+    // Along the diagonals φ₁ = φ₂ and φ₁ = −φ₂.
+    let mut set = |function: usize, along: f64, across: f64| {
+        if function < functions {
+            let half = std::f64::consts::FRAC_1_SQRT_2;
+            curve[(0, function)] = (along - across) * half;
+            curve[(1, function)] = (along + across) * half;
+        }
+    };
+    let symmetric = index.is_multiple_of(3);
+    if symmetric {
+        for k in (1..=highest).step_by(2) {
+            let part = size / (k * k) as f64;
+            let (a, b) = if k == 1 {
+                (1.0, rng.random_range(0.3..1.5))
+            } else {
+                (rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0))
+            };
+            set(2 * k - 1, part * a, 0.0);
+            set(2 * k, 0.0, part * b);
+        }
+    } else {
+        let free = (reach - size).max(0.1 * reach);
+        let mut draw = |largest: f64| rng.random_range(-largest..largest);
+        set(0, draw(free), draw(free));
+        let (turn, aspect) = (draw(std::f64::consts::PI), 0.65 + draw(0.5));
+        let (sin, cos) = turn.sin_cos();
+        set(1, size * cos, size * sin);
+        set(2, -size * aspect * sin, size * aspect * cos);
+        for k in 2..=highest {
+            let part = 1.2 * size / (k * k) as f64;
+            set(2 * k - 1, draw(part), draw(part));
+            set(2 * k, draw(part), draw(part));
+        }
+    }
+    shrink_into(&mut curve, basis, fence);
+    curve
+}
+
+/// A gait's cycle as a series of the basis's order, shrunk into the fence.
+pub(crate) fn fitted(gait: &OptimalGait, basis: &Basis, fence: &Fence) -> DMatrix<f64> {
+    const SAMPLES: usize = 512;
+    let mut curve = DMatrix::zeros(2, basis.functions());
+    if let Ok(any) = gait.gait() {
+        let mut here = vec![(0.0, 0.0); basis.functions()];
+        for k in 0..SAMPLES {
+            let u = k as f64 / SAMPLES as f64;
+            let phi = any.at(u).phi;
+            basis.at(u, &mut here);
+            for (j, (value, _)) in here.iter().enumerate() {
+                let weight = if j == 0 { 1.0 } else { 2.0 } / SAMPLES as f64;
+                curve[(0, j)] += weight * value * phi.x;
+                curve[(1, j)] += weight * value * phi.y;
+            }
+        }
+    }
+    shrink_into(&mut curve, basis, fence);
+    curve
+}
+
+/// Scales a curve about the straight swimmer until it lies inside the fence.
+pub(crate) fn shrink_into(curve: &mut DMatrix<f64>, basis: &Basis, fence: &Fence) {
+    for _ in 0..200 {
+        let inside = (0..basis.nodes()).all(|node| {
+            let shape = curve as &DMatrix<f64> * basis.values.column(node);
+            fence.least(&Vector2::new(shape[0], shape[1])) > (1.0 - INSIDE) * 0.1
+        });
+        if inside {
+            return;
+        }
+        *curve *= INSIDE;
+    }
+}

@@ -1,0 +1,56 @@
+use swimmer_files::{Bounds, Objective};
+use swimmer_model::Swimmer;
+
+use super::{AtlasError, AtlasProblem, atlas};
+
+fn problem(swimmer: Swimmer<f64>) -> AtlasProblem {
+    AtlasProblem {
+        bounds: Bounds {
+            max_angle: Some(2.8),
+            ..Bounds::default()
+        },
+        starts: 16,
+        ..AtlasProblem::new(swimmer, Objective::Displacement)
+    }
+}
+
+/// The quarter solver finds the paper's gait (b) by quite another way; its own results are not among these starts.
+#[test]
+fn the_best_displacement_of_the_robot_is_the_papers_gait_b() {
+    let found = atlas(&problem(Swimmer::robot())).unwrap();
+    let best = found.optima.first().unwrap();
+    assert!((best.distance_over_length - 0.079_697_972_2).abs() < 1e-9);
+    assert!(best.gait.symmetric && best.simple && best.gait.certificate.pass());
+    assert!(best.found > 8);
+    assert!((best.gait.start_angle - 1.401_83).abs() < 1e-4);
+    assert!(best.gait.lateral_over_length.abs() < 1e-9);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_atlas_on_any_number_of_threads() {
+    let one = atlas(&problem(Swimmer::purcell())).unwrap();
+    let three = atlas(&AtlasProblem {
+        threads: 3,
+        ..problem(Swimmer::purcell())
+    })
+    .unwrap();
+    assert_eq!(one, three);
+}
+
+#[test]
+fn senseless_problems_are_refused() {
+    let good = problem(Swimmer::purcell());
+    let with = |bounds| atlas(&AtlasProblem { bounds, ..good });
+    let sector = Bounds {
+        sector: true,
+        ..Bounds::default()
+    };
+    assert_eq!(with(sector), Err(AtlasError::QuarterBound));
+    let max = Bounds {
+        max_angle: Some(-1.0),
+        ..Bounds::default()
+    };
+    assert!(matches!(with(max), Err(AtlasError::MaxAngle { .. })));
+    let none = atlas(&AtlasProblem { starts: 0, ..good });
+    assert!(matches!(none, Err(AtlasError::Size { .. })));
+}

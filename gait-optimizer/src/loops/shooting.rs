@@ -1,0 +1,191 @@
+//! Closing a loop: Gauss–Newton on the place of the start and the direction of the momentum.
+
+use nalgebra::{Matrix2, Vector2, Vector3};
+use swimmer_model::Model;
+
+use super::flow::{Course, Lap};
+use super::height::Momentum;
+use crate::region::Region;
+use crate::runge_kutta::StepControl;
+
+/// A one-parameter family of starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Gate {
+    /// The start for parameter 0.
+    pub(crate) at: Vector2<f64>,
+    /// How it moves with the parameter.
+    pub(crate) along: Vector2<f64>,
+    /// The bound that the start lies on; the curve leaves it there.
+    pub(crate) bound: Option<usize>,
+}
+
+/// A guess: a start and the momentum's direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Loop {
+    /// Place along the gate \[rad\].
+    pub(crate) place: f64,
+    /// Angle of p against the heading at the start \[rad\].
+    pub(crate) angle: f64,
+}
+
+/// A closed loop.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Closed {
+    pub(crate) start: Vector2<f64>,
+    pub(crate) momentum: Momentum,
+    pub(crate) lap: Lap,
+    /// What is left of the conditions.
+    pub(crate) residual: f64,
+}
+
+const COARSE: StepControl = StepControl {
+    tolerance: 1e-8,
+    longest: 0.15,
+};
+const FINE: StepControl = StepControl {
+    tolerance: 1e-13,
+    longest: 0.15,
+};
+const ROUNDS: usize = 30;
+/// Longest steps in place and angle.
+const STRIDE: f64 = 0.12;
+/// Where the coarse integration gives way to the fine one, and where it is enough.
+const NEAR: f64 = 1e-4;
+const CLOSED: f64 = 1e-11;
+
+struct Problem<'a> {
+    model: &'a Model<f64>,
+    region: &'a Region,
+    gate: Gate,
+    /// About how long the lap is \[rad\].
+    length: f64,
+}
+
+/// Closes a loop from a guess; `length` is about how long it is.
+pub(crate) fn close(
+    model: &Model<f64>,
+    region: &Region,
+    gate: Gate,
+    guess: Loop,
+    length: f64,
+) -> Option<Closed> {
+    let problem = Problem {
+        model,
+        region,
+        gate,
+        length,
+    };
+    let mut here = guess;
+    let mut control = COARSE;
+    let (mut miss, mut lap) = problem.shoot(&here, control)?;
+    for _ in 0..ROUNDS {
+        if miss.norm() < NEAR && control.tolerance > FINE.tolerance {
+            control = FINE;
+            (miss, lap) = problem.shoot(&here, control)?;
+        }
+        let step = problem.step(&here, &miss, control)?;
+        let mut factor = (STRIDE / step.amax()).min(1.0);
+        let mut better = None;
+        for _ in 0..8 {
+            let there = Loop {
+                place: here.place + factor * step.x,
+                angle: here.angle + factor * step.y,
+            };
+            if let Some((new, new_lap)) = problem.shoot(&there, control)
+                && new.norm() < miss.norm()
+            {
+                better = Some((there, new, new_lap));
+                break;
+            }
+            factor *= 0.5;
+        }
+        let Some((there, new, new_lap)) = better else {
+            break;
+        };
+        (here, miss, lap) = (there, new, new_lap);
+        if miss.norm() < 1e-13 {
+            break;
+        }
+    }
+    let start = problem.start(&here);
+    (control.tolerance <= FINE.tolerance && miss.norm() < CLOSED).then_some(Closed {
+        start,
+        momentum: Momentum::of_zero(model, &start, here.angle)?,
+        lap,
+        residual: miss.norm(),
+    })
+}
+
+impl Problem<'_> {
+    fn start(&self, at: &Loop) -> Vector2<f64> {
+        let straight = self.gate.at + self.gate.along * at.place;
+        match self.gate.bound.and_then(|index| self.region.bound(index)) {
+            Some(bound) => bound.onto(&straight),
+            None => straight,
+        }
+    }
+
+    /// Place, heading and the part of the displacement across p that the lap ends with.
+    fn shoot(&self, at: &Loop, control: StepControl) -> Option<(Vector3<f64>, Lap)> {
+        let start = self.start(at);
+        let momentum = Momentum::of_zero(self.model, &start, at.angle)?;
+        let state = [start.x, start.y, 0.0, 0.0, 0.0, 0.0];
+        let (height, ..) = momentum.height(self.model, &state);
+        let ahead = height.singular_direction();
+        let course = Course {
+            model: self.model,
+            region: self.region,
+            momentum,
+            start,
+            home: self.gate.bound,
+            ahead,
+            shortest: 0.5 * self.length,
+            near: 1.0,
+            control,
+        };
+        let lap = course.lap()?;
+        let end = lap.end;
+        let off = Vector2::new(end[0], end[1]) - start;
+        let miss = Vector3::new(
+            off.dot(&self.gate.along),
+            end[4],
+            momentum.direction.perp(&Vector2::new(end[2], end[3])),
+        );
+        miss.norm().is_finite().then_some((miss, lap))
+    }
+
+    /// The Gauss–Newton step, by differences.
+    fn step(&self, at: &Loop, miss: &Vector3<f64>, control: StepControl) -> Option<Vector2<f64>> {
+        let h = if control.tolerance < 1e-10 {
+            1e-6
+        } else {
+            1e-4
+        };
+        let column = |place: f64, angle: f64| {
+            let there = Loop {
+                place: at.place + place,
+                angle: at.angle + angle,
+            };
+            let back = Loop {
+                place: at.place - place,
+                angle: at.angle - angle,
+            };
+            match (self.shoot(&there, control), self.shoot(&back, control)) {
+                (Some((a, _)), Some((b, _))) => Some((a - b) / (2.0 * h)),
+                (Some((a, _)), None) => Some((a - miss) / h),
+                (None, Some((b, _))) => Some((miss - b) / h),
+                (None, None) => None,
+            }
+        };
+        let (by_place, by_angle) = (column(h, 0.0)?, column(0.0, h)?);
+        let normal = Matrix2::new(
+            by_place.norm_squared(),
+            by_place.dot(&by_angle),
+            by_place.dot(&by_angle),
+            by_angle.norm_squared(),
+        );
+        let right = -Vector2::new(by_place.dot(miss), by_angle.dot(miss));
+        let step = normal.try_inverse()? * right;
+        step.norm().is_finite().then_some(step)
+    }
+}
