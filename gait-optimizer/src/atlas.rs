@@ -10,6 +10,7 @@
 mod curve;
 mod displacement;
 mod distinct;
+mod efficiency;
 mod fence;
 mod gates;
 mod newton;
@@ -23,6 +24,7 @@ use swimmer_model::{InvalidSwimmer, Model, Swimmer};
 
 use crate::OptimalGait;
 use crate::displacement::of_unit_length;
+use crate::extremal::Walls;
 use crate::region::Region;
 
 /// What to make an atlas of.
@@ -30,7 +32,8 @@ use crate::region::Region;
 pub struct AtlasProblem {
     /// The swimmer; its side links may differ.
     pub swimmer: Swimmer<f64>,
-    /// [`Objective::Displacement`]: most net displacement |d| of a simple closed curve without net rotation.
+    /// [`Objective::Displacement`]: most net displacement |d| of a simple closed curve. [`Objective::Efficiency`]: most
+    /// Lighthill efficiency |d|²/S² of any closed curve. Both without net rotation.
     pub objective: Objective,
     /// Bounds on the shapes: the largest angle and crossing links.
     pub bounds: Bounds,
@@ -62,7 +65,10 @@ impl AtlasProblem {
     }
 
     fn validate(&self) -> Result<(), AtlasError> {
-        if self.objective != Objective::Displacement {
+        if !matches!(
+            self.objective,
+            Objective::Displacement | Objective::Efficiency
+        ) {
             return Err(AtlasError::Objective {
                 objective: self.objective,
             });
@@ -173,13 +179,26 @@ pub enum AtlasError {
 pub fn atlas(problem: &AtlasProblem) -> Result<Atlas, AtlasError> {
     problem.validate()?;
     let model = Model::new(&of_unit_length(&problem.swimmer))?;
-    let region = Region::new(&problem.bounds, &problem.swimmer.links);
-    let seek = displacement::Displacement {
-        problem,
-        model: &model,
-        region: &region,
-    };
-    Ok(pipeline::run(problem, &model, &seek))
+    Ok(match problem.objective {
+        Objective::Efficiency => pipeline::run(
+            problem,
+            &model,
+            &efficiency::Efficiency {
+                problem,
+                model: &model,
+                walls: &Walls::new(&problem.bounds, &problem.swimmer.links),
+            },
+        ),
+        _ => pipeline::run(
+            problem,
+            &model,
+            &displacement::Displacement {
+                problem,
+                model: &model,
+                region: &Region::new(&problem.bounds, &problem.swimmer.links),
+            },
+        ),
+    })
 }
 
 #[cfg(test)]

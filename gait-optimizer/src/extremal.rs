@@ -27,7 +27,7 @@ use equations::shape;
 use guess::Swum;
 use shooting::{Class, Solved, Unsolved, solve};
 use structure::{next_structure, of_curve};
-use wall::Walls;
+pub(crate) use wall::Walls;
 
 /// How often a structure may be changed.
 const MOST_STRUCTURES: usize = 12;

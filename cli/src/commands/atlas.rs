@@ -13,7 +13,7 @@ use gait_optimizer::{Atlas as Found, AtlasError, AtlasProblem, Objective, Optimu
 use serde::Serialize;
 use swimmer_files::Bounds;
 
-use crate::arguments::{load_swimmer, positive_angle};
+use crate::arguments::{length, load_swimmer, positive_angle};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
@@ -40,6 +40,9 @@ pub(crate) struct Atlas {
     /// Links may not cross
     #[arg(long)]
     no_overlap: bool,
+    /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
+    #[arg(long, value_name = "LENGTH_M", value_parser = length)]
+    clearance: Option<f64>,
     /// How many random starts
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     starts: u32,
@@ -70,7 +73,8 @@ impl Atlas {
         let found = atlas(&AtlasProblem {
             bounds: Bounds {
                 max_angle: self.max_angle,
-                no_overlap: self.no_overlap,
+                no_overlap: self.no_overlap || self.clearance.is_some(),
+                clearance: self.clearance.unwrap_or(0.0),
                 ..Bounds::default()
             },
             starts: usize::try_from(self.starts).unwrap_or(usize::MAX),

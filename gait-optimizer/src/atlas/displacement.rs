@@ -18,8 +18,8 @@ use crate::optimal_gait::Solution;
 use crate::region::Region;
 use crate::{Certificate, DisplacementProblem, Heading, OptimalGait};
 
-/// Curves are symmetric to within this \[rad\].
-const SYMMETRIC: f64 = 1e-3;
+/// Curves are symmetric to within this, the sag of the outline that they are compared by \[rad\].
+const SYMMETRIC: f64 = 0.01;
 
 pub(super) struct Displacement<'a> {
     pub(super) problem: &'a AtlasProblem,
@@ -74,7 +74,8 @@ impl Displacement<'_> {
             return None;
         }
         let links_cross = trace.cycle.links_cross(model);
-        let symmetric = Outline::new(&trace.cycle.phi).asymmetry() < SYMMETRIC;
+        let symmetric = Outline::new(&trace.cycle.phi).asymmetry() < SYMMETRIC
+            && stroke.displacement.y.abs() < 1e-8;
         Some(OptimalGait::new(Solution {
             objective: Objective::Displacement,
             swimmer: problem.swimmer,

@@ -18,7 +18,7 @@ use crate::region::Region;
 /// Coarse curves this near to each other \[rad\], with values this near, are one.
 const SAME_COARSE: (f64, f64) = (1e-3, 0.05);
 /// The same for polished gaits.
-const SAME: (f64, f64) = (1e-7, 1e-3);
+const SAME: (f64, f64) = (1e-7, 0.02);
 /// A curve that comes this near to the horizon has left \[rad\].
 const LEAVING: f64 = 0.3;
 

@@ -1,5 +1,5 @@
 use swimmer_files::{Bounds, Objective};
-use swimmer_model::Swimmer;
+use swimmer_model::{Model, Swimmer, Tolerance, swim};
 
 use super::{AtlasError, AtlasProblem, atlas};
 
@@ -24,6 +24,32 @@ fn the_best_displacement_of_the_robot_is_the_papers_gait_b() {
     assert!(best.found > 8);
     assert!((best.gait.start_angle - 1.401_83).abs() < 1e-4);
     assert!(best.gait.lateral_over_length.abs() < 1e-9);
+}
+
+/// Without the double symmetry there are far better gaits than the paper's, also within what the robot can play.
+#[test]
+fn without_symmetry_the_robot_swims_more_efficiently_within_its_bounds() {
+    let found = atlas(&AtlasProblem {
+        bounds: Bounds {
+            max_angle: Some(2.8),
+            no_overlap: true,
+            ..Bounds::default()
+        },
+        starts: 24,
+        ..AtlasProblem::new(Swimmer::robot(), Objective::Efficiency)
+    })
+    .unwrap();
+    assert!(found.optima.iter().all(|one| one.gait.certificate.pass()));
+    let best = found.optima.first().unwrap();
+    assert!(!best.gait.symmetric && best.simple && best.gait.links_cross == 0.0);
+    let small = found.optima.iter().find(|one| one.gait.symmetric).unwrap();
+    assert!((small.gait.start_angle - 1.38).abs() < 1e-2);
+    assert!(best.gait.efficiency > 1.6 * small.gait.efficiency);
+    // Swum again by the model alone.
+    let model = Model::new(&Swimmer::robot()).unwrap();
+    let stroke = swim(&model, &best.gait.gait().unwrap(), &Tolerance::default());
+    assert!((stroke.efficiency_constant_power() / best.gait.efficiency - 1.0).abs() < 1e-7);
+    assert!(stroke.rotation.abs() < 1e-8);
 }
 
 #[test]

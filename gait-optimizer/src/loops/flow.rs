@@ -122,7 +122,10 @@ impl Motion {
             Self::Edge { direction, .. } => *direction,
             Self::Clearance {
                 piece, clearance, ..
-            } => crate::region::tangent(&clearance.level(*piece, phi)),
+            } => {
+                let inwards = clearance.level(*piece, phi).gradient;
+                Vector2::new(inwards.y, -inwards.x) / inwards.norm()
+            }
         }
     }
 

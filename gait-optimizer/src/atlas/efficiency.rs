@@ -1,0 +1,162 @@
+//! The atlas of efficiency: closed extremals, free or along bounds, polished by multiple shooting.
+
+use nalgebra::{DMatrix, Vector2};
+use swimmer_model::{Fourier, Gait, GaitPoint, Harmonic, Model};
+
+use super::AtlasProblem;
+use super::distinct::Outline;
+use super::newton::{Settings, Stationary};
+use super::pipeline::Seek;
+use crate::certificate::{Certificate, Check};
+use crate::closed_curve::Functional;
+use crate::extremal::gait::{Order, gait};
+use crate::extremal::{Walls, polish};
+use crate::{Branch, EfficiencyProblem, OptimalGait};
+
+/// Curves are symmetric to within this, the sag of the outline that they are compared by \[rad\].
+const SYMMETRIC: f64 = 0.01;
+
+pub(super) struct Efficiency<'a> {
+    pub(super) problem: &'a AtlasProblem,
+    pub(super) model: &'a Model<f64>,
+    pub(super) walls: &'a Walls,
+}
+
+impl Seek for Efficiency<'_> {
+    const THRIFT: &'static [f64] = &[1.0];
+    const SETTINGS: Settings = Settings {
+        iterations: 100,
+        residual: 1e-9,
+        barrier: (1e-2, 1e-6),
+    };
+    const SIMPLE: bool = false;
+
+    fn value(gait: &OptimalGait) -> f64 {
+        gait.efficiency
+    }
+
+    fn known(&self, problem: &AtlasProblem) -> Vec<OptimalGait> {
+        // The free gaits, shrunk into the bounds, are starts like others.
+        [Branch::Small, Branch::Large]
+            .into_iter()
+            .filter_map(|branch| {
+                crate::efficiency(&EfficiencyProblem::new(problem.swimmer, branch)).ok()
+            })
+            .collect()
+    }
+
+    fn polished(&self, _functional: &Functional<'_>, coarse: &Stationary) -> Option<OptimalGait> {
+        let curve = series(&coarse.coefficients);
+        let start = Shifted {
+            by: home(&curve),
+            curve,
+        };
+        let closed = self.solved(&start, false)?;
+        if !closed.certificate.pass() {
+            return None;
+        }
+        let symmetric = Outline::new(closed.phi()).asymmetry() < SYMMETRIC;
+        if symmetric && let Some(quarter) = self.of_quarter(&start, &closed) {
+            return Some(quarter);
+        }
+        Some(OptimalGait {
+            symmetric,
+            ..closed
+        })
+    }
+}
+
+impl Efficiency<'_> {
+    fn solved(&self, start: &Shifted, quarter: bool) -> Option<OptimalGait> {
+        let extremal = polish(self.model, self.walls, start, quarter).ok()?;
+        let order = Order {
+            swimmer: &self.problem.swimmer,
+            model: self.model,
+            bounds: &self.problem.bounds,
+            samples: self.problem.samples,
+        };
+        gait(&order, &extremal).ok()
+    }
+
+    /// A symmetric gait again from its quarter, so that it starts and is told as those of the quarter solvers are; that no
+    /// variation without the symmetry makes it better stays on record.
+    fn of_quarter(&self, start: &Shifted, closed: &OptimalGait) -> Option<OptimalGait> {
+        let quarter = self.solved(start, true)?;
+        let same = (quarter.efficiency / closed.efficiency - 1.0).abs();
+        let mut checks = quarter.certificate.checks().to_vec();
+        checks.push(Check::at_most("closed_curve_off_quarter", same, 1e-8));
+        checks.extend(
+            closed
+                .certificate
+                .checks()
+                .iter()
+                .filter(|check| check.name == "ascent_directions")
+                .map(|check| Check {
+                    name: "ascent_directions_without_symmetry",
+                    ..*check
+                }),
+        );
+        let certificate = Certificate::new(checks);
+        certificate.pass().then_some(OptimalGait {
+            certificate,
+            ..quarter
+        })
+    }
+}
+
+type Series = Fourier<f64, Vec<Harmonic<f64>>>;
+
+fn series(coefficients: &DMatrix<f64>) -> Series {
+    let column = |j: usize| Vector2::new(coefficients[(0, j)], coefficients[(1, j)]);
+    Fourier {
+        mean: column(0),
+        harmonics: (1..=coefficients.ncols() / 2)
+            .map(|k| Harmonic {
+                cos: column(2 * k - 1),
+                sin: column(2 * k),
+            })
+            .collect(),
+    }
+}
+
+/// Where a curve crosses φ₁ = φ₂ > 0 farthest out; 0 where it never does.
+fn home(curve: &Series) -> f64 {
+    const LOOKS: u32 = 720;
+    let place = |k: u32| f64::from(k) / f64::from(LOOKS);
+    let off = |u: f64| {
+        let phi = curve.at(u).phi;
+        phi.x - phi.y
+    };
+    let mut best = (0.0, 0.0);
+    for k in 0..LOOKS {
+        let (mut low, mut high) = (place(k), place(k + 1));
+        if off(low) * off(high) > 0.0 {
+            continue;
+        }
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            if off(low) * off(middle) <= 0.0 {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        let out = curve.at(low).phi.sum();
+        if out > best.1 {
+            best = (low, out);
+        }
+    }
+    best.0
+}
+
+/// A curve from another start.
+struct Shifted {
+    curve: Series,
+    by: f64,
+}
+
+impl Gait<f64> for Shifted {
+    fn at(&self, u: f64) -> GaitPoint<f64> {
+        self.curve.at(u + self.by)
+    }
+}
