@@ -25,7 +25,7 @@
 mod area_rule;
 mod error;
 mod galerkin;
-mod legendre;
+pub(crate) mod legendre;
 mod level_curve;
 mod space;
 mod zeros;
@@ -36,7 +36,8 @@ use swimmer_model::{Model, Swimmer};
 pub use area_rule::AreaRule;
 pub use error::HeightMapError;
 pub use level_curve::LevelCurve;
-pub(crate) use level_curve::{Level, LevelSearch, level_curves};
+use level_curve::level_curves;
+pub(crate) use level_curve::{Level, LevelSearch, OnCurve, level_seeds, passes};
 
 use crate::displacement::of_unit_length;
 use galerkin::Coefficients;

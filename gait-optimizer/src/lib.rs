@@ -20,6 +20,7 @@
 //! | `efficiency` | free Lighthill gaits: Fourier series, shooting, second-order test |
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs |
 //! | `cycle` | from a quarter to the full cycle, at constant power |
+//! | `turning` | the simple closed gait that turns most: round a region of the curvature |
 //! | `playable` | what a real robot makes of a gait: timing under servo limits, losses foretold |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
 //! | `certificate` | checks, and those that any closed curve can be asked |
@@ -48,6 +49,7 @@ mod region;
 mod robust;
 mod runge_kutta;
 mod simple_shapes;
+mod turning;
 
 pub use atlas::{Atlas, AtlasError, AtlasProblem, Optimum, atlas};
 pub use certificate::{Certificate, Check};
@@ -65,3 +67,4 @@ pub use robust::{
 };
 pub use simple_shapes::{BestAmplitude, SimpleShape, best_amplitudes};
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};
+pub use turning::{Turning, TurningError, TurningProblem, turning};

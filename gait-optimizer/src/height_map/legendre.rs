@@ -20,7 +20,7 @@ pub(super) fn polynomials(s: f64, values: &mut [f64], slopes: &mut [f64]) {
 }
 
 /// The Gauss–Legendre rule with `count` points: nodes in rising order, and weights.
-pub(super) fn gauss(count: usize) -> (Vec<f64>, Vec<f64>) {
+pub(crate) fn gauss(count: usize) -> (Vec<f64>, Vec<f64>) {
     let n = count as f64;
     let node = |i: usize| {
         // Tricomi's guess, then Newton: it converges quadratically, four rounds reach rounding.

@@ -46,10 +46,12 @@ const MOST_POINTS: usize = 100_000;
 
 /// A point of a curve with the direction it was reached in.
 #[derive(Debug, Clone, Copy)]
-struct OnCurve {
-    phi: Vector2<f64>,
-    tangent: Vector2<f64>,
-    value: f64,
+pub(crate) struct OnCurve {
+    pub(crate) phi: Vector2<f64>,
+    pub(crate) tangent: Vector2<f64>,
+    pub(crate) value: f64,
+    /// The function's slope to the left of the tangent.
+    pub(crate) slope_left: f64,
 }
 
 /// How a walk along a curve ended.
@@ -86,6 +88,11 @@ impl LevelSearch {
         2.0 * self.half_width / self.cells[0] as f64
     }
 
+    /// A seed this close to a traced curve lies on it.
+    pub(crate) fn close(&self) -> f64 {
+        0.05 * self.cell()
+    }
+
     fn holds(&self, phi: &Vector2<f64>) -> bool {
         phi.amax() <= self.half_width
     }
@@ -97,6 +104,24 @@ pub(crate) fn level_curves<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     search: &LevelSearch,
     on_nodes: impl Fn(&[f64], &[f64]) -> DMatrix<f64>,
 ) -> Vec<LevelCurve> {
+    let mut seeds = level_seeds(level, search, on_nodes);
+    let mut curves: Vec<LevelCurve> = Vec::new();
+    while let Some(seed) = seeds.pop() {
+        let Some(curve) = level.curve_through(search, &seed) else {
+            continue;
+        };
+        seeds.retain(|seed| !passes(&curve.points, seed, search.close()));
+        curves.push(curve);
+    }
+    curves
+}
+
+/// Points on the zero-level curves, several on each component.
+pub(crate) fn level_seeds<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
+    level: &Level<F>,
+    search: &LevelSearch,
+    on_nodes: impl Fn(&[f64], &[f64]) -> DMatrix<f64>,
+) -> Vec<Vector2<f64>> {
     let [first, second] = search.cells.map(LevelSearch::places);
     let values = on_nodes(&first, &second);
     let node = |i: usize, j: usize| {
@@ -118,15 +143,7 @@ pub(crate) fn level_curves<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
             }
         }
     }
-    let mut curves: Vec<LevelCurve> = Vec::new();
-    while let Some(seed) = seeds.pop() {
-        let Some(curve) = level.curve_through(search, &seed) else {
-            continue;
-        };
-        seeds.retain(|seed| !curve.passes(seed, 0.05 * search.cell()));
-        curves.push(curve);
-    }
-    curves
+    seeds
 }
 
 /// Whether a node has the smallest |value| among its neighbours, all of its sign.
@@ -142,7 +159,7 @@ fn is_dip(values: &DMatrix<f64>, i: usize, j: usize) -> bool {
 }
 
 impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
-    fn at(&self, phi: &Vector2<f64>) -> (f64, Vector2<f64>) {
+    pub(crate) fn at(&self, phi: &Vector2<f64>) -> (f64, Vector2<f64>) {
         self.0(phi)
     }
 
@@ -197,11 +214,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
     }
 
     /// The whole curve through one of its points.
-    pub(crate) fn curve_through(
-        &self,
-        search: &LevelSearch,
-        seed: &Vector2<f64>,
-    ) -> Option<LevelCurve> {
+    fn curve_through(&self, search: &LevelSearch, seed: &Vector2<f64>) -> Option<LevelCurve> {
         let start = self.corrected(seed, None, search.step)?;
         let (mut points, mut worst) = (vec![start.phi], start.value.abs());
         let end = self.walk(search, start, &mut points, &mut worst);
@@ -209,6 +222,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
             let mut back = Vec::new();
             let turned = OnCurve {
                 tangent: -start.tangent,
+                slope_left: -start.slope_left,
                 ..start
             };
             self.walk(search, turned, &mut back, &mut worst);
@@ -275,7 +289,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
     }
 
     /// One step along the curve; none where it would turn too much or leave the curve.
-    fn stepped(&self, here: &OnCurve, step: f64) -> Option<OnCurve> {
+    pub(crate) fn stepped(&self, here: &OnCurve, step: f64) -> Option<OnCurve> {
         let guess = here.phi + here.tangent * step;
         let next = self.corrected(&guess, Some(&here.tangent), 0.2 * step)?;
         let turn = here
@@ -293,7 +307,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
     }
 
     /// Newton's method along the gradient, no farther than `reach` from the guess; the tangent goes on along `onward`.
-    fn corrected(
+    pub(crate) fn corrected(
         &self,
         guess: &Vector2<f64>,
         onward: Option<&Vector2<f64>>,
@@ -316,6 +330,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
                 phi,
                 tangent: if along { tangent } else { -tangent },
                 value,
+                slope_left: if along { slope } else { -slope },
             });
             if value.abs() <= ROUNDING {
                 break;
@@ -346,11 +361,10 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
                 .clamp(met - way.norm(), met + way.norm())
                 .clamp(-search.half_width, search.half_width);
             if value.abs() <= ROUNDING || (next - phi[other]).abs() < 1e-16 || !next.is_finite() {
-                let tangent = from.tangent;
                 return (value.abs() <= POLISHED).then_some(OnCurve {
                     phi,
-                    tangent,
                     value,
+                    ..*from
                 });
             }
             phi[other] = next;
@@ -358,91 +372,20 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
         let value = self.at(&phi).0;
         (value.abs() <= POLISHED).then_some(OnCurve {
             phi,
-            tangent: from.tangent,
             value,
+            ..*from
         })
     }
 }
 
-impl LevelCurve {
-    /// Whether a point lies within `distance` of the curve.
-    fn passes(&self, point: &Vector2<f64>, distance: f64) -> bool {
-        self.points
-            .iter()
-            .zip(self.points.iter().skip(1))
-            .any(|(a, b)| {
-                let along = b - a;
-                let t = ((point - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-                (a + along * t - point).norm() <= distance
-            })
-    }
+/// Whether a point lies within `distance` of a polyline.
+pub(crate) fn passes(points: &[Vector2<f64>], point: &Vector2<f64>, distance: f64) -> bool {
+    points.iter().zip(points.iter().skip(1)).any(|(a, b)| {
+        let along = b - a;
+        let t = ((point - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        (a + along * t - point).norm() <= distance
+    })
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn find(f: impl Fn(&Vector2<f64>) -> (f64, Vector2<f64>)) -> Vec<LevelCurve> {
-        let level = Level(f);
-        level_curves(&level, &LevelSearch::new(2.0), |first, second| {
-            DMatrix::from_fn(first.len(), second.len(), |i, j| {
-                level.at(&(Vector2::new(first[i], second[j]) * 2.0)).0
-            })
-        })
-    }
-
-    #[test]
-    fn circles_are_closed_and_on_the_level() {
-        // A circle, and a loop far smaller than a cell.
-        let curves = find(|p| {
-            let small = Vector2::new(1.301, -1.507);
-            let (a, b) = (p.norm_squared() - 0.49, (p - small).norm_squared() - 4e-4);
-            (a * b, p * (2.0 * b) + (p - small) * (2.0 * a))
-        });
-        assert_eq!(curves.len(), 2, "{curves:?}");
-        assert!(
-            curves
-                .iter()
-                .all(|curve| curve.closed && curve.residual <= 1e-12)
-        );
-        let length = |curve: &LevelCurve| -> f64 {
-            curve
-                .points
-                .windows(2)
-                .map(|pair| (pair[1] - pair[0]).norm())
-                .sum()
-        };
-        let mut lengths: Vec<f64> = curves.iter().map(length).collect();
-        lengths.sort_by(f64::total_cmp);
-        assert!(
-            (lengths[0] / (0.04 * std::f64::consts::PI) - 1.0).abs() < 0.01,
-            "{lengths:?}"
-        );
-        assert!(
-            (lengths[1] / (1.4 * std::f64::consts::PI) - 1.0).abs() < 1e-3,
-            "{lengths:?}"
-        );
-    }
-
-    #[test]
-    fn curves_go_straight_through_their_crossings_and_end_on_the_edge() {
-        // φ₁ = −φ₂, and a parabola that crosses it twice.
-        let curves = find(|p| {
-            let (a, b) = (p.x + p.y, p.y - p.x * p.x + 0.7);
-            (a * b, Vector2::new(b - 2.0 * p.x * a, b + a))
-        });
-        assert_eq!(curves.len(), 2);
-        for curve in &curves {
-            assert!(!curve.closed);
-            for end in [curve.points[0], curve.points[curve.points.len() - 1]] {
-                assert!((end.amax() - 2.0).abs() < 1e-15, "{end}");
-            }
-            let straight = curve.points.iter().all(|p| (p.x + p.y).abs() < 1e-9);
-            let parabola = curve
-                .points
-                .iter()
-                .all(|p| (p.y - p.x * p.x + 0.7).abs() < 1e-9);
-            assert!(straight || parabola);
-        }
-    }
-}
+mod tests;

@@ -74,6 +74,11 @@ pub(crate) fn quarter_rows(rows: &mut Rows, start_angle: f64, end_angle: f64, ar
         "quarter ends at",
         format!("φ₂ = −φ₁ = {}", quantity::angle(end_angle)),
     );
+    arc_rows(rows, arcs);
+}
+
+/// Arcs in order, each with its ends.
+pub(crate) fn arc_rows(rows: &mut Rows, arcs: &[Arc]) {
     for arc in arcs {
         let shape =
             |[one, two]: [f64; 2]| format!("({}, {})", quantity::angle(one), quantity::angle(two));

@@ -5,6 +5,7 @@ mod displacement;
 mod efficiency;
 mod robust;
 mod timing;
+mod turning;
 
 use crate::failure::Outcome;
 use crate::output::Output;
@@ -14,6 +15,7 @@ use crate::output::Output;
 pub(crate) enum Optimize {
     Displacement(displacement::Displacement),
     Efficiency(efficiency::Efficiency),
+    Turning(turning::Turning),
 }
 
 impl Optimize {
@@ -22,6 +24,7 @@ impl Optimize {
         match self {
             Self::Displacement(arguments) => arguments.run(output),
             Self::Efficiency(arguments) => arguments.run(output),
+            Self::Turning(arguments) => arguments.run(output),
         }
     }
 }

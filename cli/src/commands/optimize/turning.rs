@@ -1,0 +1,156 @@
+//! `swimmer optimize turning`: the simple closed gait of most rotation per cycle.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use gait_optimizer::{Turning as Found, TurningError, TurningProblem, turning};
+use serde::Serialize;
+use swimmer_files::Bounds;
+
+use crate::arguments::{length, load_swimmer, positive_angle};
+use crate::failure::{Failure, Outcome};
+use crate::output::Output;
+use crate::quantity::{self, Rows};
+
+use super::answer::{Arc, Evidence, closing_rows};
+
+/// Find the simple closed gait that turns the swimmer most per cycle, with its certificate
+///
+/// It runs counter-clockwise round one connected region of the θ curvature and turns the swimmer to the left; reversed, to
+/// the right. Without a bound the joints stay within half a turn, where a side link lies folded on the middle one.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Turning {
+    /// purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
+    /// No joint may turn further than this, either way
+    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
+    max_angle: Option<f64>,
+    /// Links may not cross
+    #[arg(long)]
+    no_overlap: bool,
+    /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
+    #[arg(long, value_name = "LENGTH_M", value_parser = length)]
+    clearance: Option<f64>,
+    /// Write the gait, at constant power, as a gait file
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+impl Turning {
+    pub(super) fn run(self, output: Output) -> Outcome {
+        let file = load_swimmer(&self.swimmer)?;
+        let begun = Instant::now();
+        let found = turning(&TurningProblem {
+            swimmer: file.swimmer,
+            bounds: Bounds {
+                max_angle: self.max_angle,
+                no_overlap: self.no_overlap || self.clearance.is_some(),
+                clearance: self.clearance.unwrap_or(0.0),
+                ..Bounds::default()
+            },
+        })?;
+        let seconds = begun.elapsed().as_secs_f64();
+        if let Some(path) = &self.output {
+            found.gait.gait_file(&file.name).save(path)?;
+        }
+        output.answer(&Answer::new(&file.name, &found, seconds, self.output));
+        Ok(())
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Answer {
+    #[serde(skip)]
+    name: String,
+    #[serde(skip)]
+    bounds: Bounds,
+    rotation_rad: f64,
+    /// What loops that join all regions by bridges come near to.
+    bridged_supremum_rad: f64,
+    /// Connected regions of that sign.
+    regions: usize,
+    displacement_over_length: f64,
+    lateral_over_length: f64,
+    /// Of the cycle, in order.
+    arcs: Vec<Arc>,
+    /// Share of the cycle in which links cross.
+    links_cross: f64,
+    certificate: Evidence,
+    /// From the parsed swimmer to the certified gait.
+    seconds: f64,
+    /// The gait file that was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gait: Option<PathBuf>,
+}
+
+impl Answer {
+    fn new(name: &str, found: &Found, seconds: f64, file: Option<PathBuf>) -> Self {
+        let gait = &found.gait;
+        Self {
+            name: name.to_owned(),
+            bounds: gait.bounds,
+            rotation_rad: gait.rotation,
+            bridged_supremum_rad: found.bridged_supremum,
+            regions: found.regions,
+            displacement_over_length: gait.displacement_over_length,
+            lateral_over_length: gait.lateral_over_length,
+            arcs: gait.arcs.iter().map(Arc::from).collect(),
+            links_cross: gait.links_cross,
+            certificate: (&gait.certificate).into(),
+            seconds,
+            gait: file,
+        }
+    }
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows = Rows::default();
+        rows.row(
+            "rotation",
+            format!(
+                "{} per cycle, {:.10} rad",
+                quantity::angle(self.rotation_rad),
+                self.rotation_rad
+            ),
+        )
+        .row(
+            "with bridges",
+            format!(
+                "below {} ({} regions)",
+                quantity::angle(self.bridged_supremum_rad),
+                self.regions
+            ),
+        )
+        .row(
+            "displacement",
+            format!(
+                "X/L = {:.8}, Y/L = {:.8}",
+                self.displacement_over_length, self.lateral_over_length
+            ),
+        );
+        super::answer::arc_rows(&mut rows, &self.arcs);
+        closing_rows(
+            &mut rows,
+            self.links_cross,
+            &self.certificate,
+            self.gait.as_ref(),
+        );
+        write!(f, "{}, most rotation, {}\n{rows}", self.name, self.bounds)
+    }
+}
+
+impl From<TurningError> for Failure {
+    /// A problem that makes no sense is bad input; one without a gait was tried.
+    fn from(error: TurningError) -> Self {
+        match error {
+            TurningError::Swimmer(_)
+            | TurningError::MaxAngle { .. }
+            | TurningError::Clearance { .. }
+            | TurningError::QuarterBounds => Self::bad_input(&error),
+            _ => Self::tried(&error),
+        }
+    }
+}

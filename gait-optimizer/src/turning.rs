@@ -1,0 +1,373 @@
+//! The simple closed gait that turns the swimmer most per cycle.
+//!
+//! Rotations of the plane commute, so the net rotation of a closed gait is exactly ∬ F_θ dφ₁ dφ₂ over what it encloses
+//! (F_θ is the θ row of the curvature, the same in every frame). The best simple loop round one
+//! connected region of one sign runs along the region's edge: zero-level curves of F_θ, and arcs along the bounds where the
+//! region reaches them.
+//!
+//! **Which way.** Mirroring the swimmer, Φ → −Φ, turns F_θ round, whatever the links: regions of either sign are mirror
+//! images. The gait returned encloses a positive region and runs counter-clockwise: it turns the swimmer to the left
+//! (rotation > 0). Reversed, or mirrored, it turns right.
+//!
+//! **Bounds.** F_θ has period 2π in both angles, so without any bound loops could grow over region after region. Without
+//! one the angles are kept within ±π, where a side link lies folded on the middle one.
+//!
+//! **The supremum.** A loop may join several regions by bridges run there and back, which cost nothing and enclose
+//! nothing: the more bridges, the nearer to ∬ max(F_θ, 0), which no simple loop reaches. That is the bridged supremum. A
+//! region with a hole is gone round outside: the hole counts against it.
+
+#![allow(
+    clippy::doc_markdown,
+    reason = "formulas in the docs read like the paper's: F_θ"
+)]
+
+mod crossing;
+mod error;
+mod evidence;
+mod piece;
+mod shore;
+mod walk;
+
+use nalgebra::{DMatrix, Vector2};
+use swimmer_files::{AnyGait, ArcKind, Bounds, GaitArc, Objective};
+use swimmer_model::{Gait as _, Model, Swimmer};
+
+pub use error::TurningError;
+
+use crate::OptimalGait;
+use crate::cycle::Cycle;
+use crate::displacement::of_unit_length;
+use crate::height_map::legendre::gauss;
+use crate::height_map::{Level, LevelSearch, level_seeds};
+use crate::optimal_gait::{Arc, Solution};
+use crate::region::Region;
+use piece::{Piece, Round};
+use shore::Shore;
+use walk::{Country, Lost, curvature};
+
+/// Whose gait, and within what.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurningProblem {
+    /// Whose gait. Side links may differ.
+    pub swimmer: Swimmer<f64>,
+    /// An upper bound of the angles, and links kept from crossing; lower bounds and the sector belong to quarter gaits.
+    pub bounds: Bounds,
+}
+
+/// The gait that turns most, and what bridges could add.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Turning {
+    /// The gait; its bounds are those it was found within.
+    pub gait: OptimalGait,
+    /// ∬ max(F_θ, 0) \[rad\]: what loops with ever more bridges come near to.
+    pub bridged_supremum: f64,
+    /// How many connected regions of positive F_θ there are, counting what lies round each hole apart.
+    pub regions: usize,
+}
+
+/// Directions in which the border is looked at.
+const DIRECTIONS: usize = 1440;
+/// Steps along zero-level curves, in a half width of the region.
+const STEPS: f64 = 240.0;
+
+/// Finds the simple closed gait that turns most within the bounds.
+///
+/// # Errors
+/// [`TurningError`]: what is wrong with the problem, or why there is no such gait.
+pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
+    let model = Model::new(&of_unit_length(&problem.swimmer))?;
+    let bounds = validated(problem)?;
+    let region = Region::new(&bounds, &problem.swimmer.links);
+    let shore = Shore::new(&region, DIRECTIONS).ok_or(TurningError::Border)?;
+    let reach = shore.reach();
+    let level = Level(|phi: &Vector2<f64>| curvature(&model, phi));
+    let country = Country {
+        region: &region,
+        shore: &shore,
+        level: &level,
+        step: reach / STEPS,
+    };
+    let search = LevelSearch::new(reach);
+    let seeds = level_seeds(&level, &search, |first, second| {
+        DMatrix::from_fn(first.len(), second.len(), |i, j| {
+            let at = |places: &[f64], i: usize| places.get(i).copied().unwrap_or(0.0) * reach;
+            let phi = Vector2::new(at(first, i), at(second, j));
+            model.first_derivatives(&phi).curvature().z
+        })
+    });
+    let rounds = country.rounds(&search, seeds)?;
+    let mut bridged_supremum = 0.0;
+    let mut best: Option<(f64, Vec<Piece>)> = None;
+    for round in &rounds {
+        let pieces = begun_on_diagonal(round, &shore, &level);
+        let Some(rotation) = cycle(&pieces, &model)
+            .and_then(|cycle| cycle.swum(&model))
+            .map(|stroke| stroke.rotation)
+        else {
+            return Err(no_gait(&pieces));
+        };
+        bridged_supremum += rotation;
+        let outside = evidence::area(&pieces) > 0.0;
+        if outside && best.as_ref().is_none_or(|(most, _)| rotation > *most) {
+            best = Some((rotation, pieces));
+        }
+    }
+    let Some((_, pieces)) = best else {
+        return Err(TurningError::NoRegion);
+    };
+    let gait = certified(problem, bounds, &model, &region, &level, &pieces)
+        .ok_or_else(|| no_gait(&pieces))?;
+    if !gait.certificate.pass() {
+        return Err(TurningError::NotCertified {
+            rotation: gait.rotation,
+            failed: gait.certificate.failures(),
+        });
+    }
+    Ok(Turning {
+        gait,
+        bridged_supremum,
+        regions: rounds.len(),
+    })
+}
+
+impl From<Lost> for TurningError {
+    fn from(lost: Lost) -> Self {
+        Self::Lost {
+            near: lost.near.into(),
+            what: lost.what,
+        }
+    }
+}
+
+/// An edge whose points make no closed gait: too small, or closed only nearly.
+fn no_gait(pieces: &[Piece]) -> TurningError {
+    let first = pieces.first().and_then(|piece| piece.points.first());
+    TurningError::Lost {
+        near: first.map_or([f64::NAN; 2], |phi| (*phi).into()),
+        what: "it is too small",
+    }
+}
+
+/// The bounds that the search really has.
+fn validated(problem: &TurningProblem) -> Result<Bounds, TurningError> {
+    let mut bounds = problem.bounds;
+    if bounds.min_angle.is_some() || bounds.sector {
+        return Err(TurningError::QuarterBounds);
+    }
+    if let Some(max) = bounds.max_angle
+        && !(max > 0.0 && max <= Region::HORIZON)
+    {
+        return Err(TurningError::MaxAngle { value: max });
+    }
+    let middle = problem.swimmer.links.middle;
+    if bounds.no_overlap && !(0.0..middle).contains(&bounds.clearance) {
+        return Err(TurningError::Clearance {
+            value: bounds.clearance,
+            middle,
+        });
+    }
+    if bounds.max_angle.is_none() && !bounds.no_overlap {
+        bounds.max_angle = Some(std::f64::consts::PI);
+    }
+    Ok(bounds)
+}
+
+/// The pieces in order from where the curve first meets φ₁ = φ₂ > 0; from where they are where it does not.
+fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
+    round: &Round,
+    shore: &Shore<'_>,
+    level: &Level<F>,
+) -> Vec<Piece> {
+    let off = |phi: &Vector2<f64>| phi.x - phi.y;
+    let mut first: Option<(usize, usize, Vector2<f64>)> = None;
+    for (number, piece) in round.pieces.iter().enumerate() {
+        for (at, (a, b)) in piece
+            .points
+            .iter()
+            .zip(piece.points.iter().skip(1))
+            .enumerate()
+        {
+            if (off(a) >= 0.0) == (off(b) >= 0.0) || a.sum() + b.sum() < 1e-6 {
+                continue;
+            }
+            let middle = 0.5 * (a + (b - a) * (off(a) / (off(a) - off(b)))).sum();
+            let step = (b - a).norm();
+            let diagonal = |angle: f64| Vector2::repeat(angle);
+            let met = if piece.kind == ArcKind::Singular {
+                level.between(&diagonal(middle - step), &diagonal(middle + step))
+            } else {
+                shore
+                    .at(std::f64::consts::FRAC_PI_4)
+                    .map(|station| station.phi)
+                    .filter(|phi| (phi - diagonal(middle)).norm() < step)
+            };
+            if let Some(met) = met
+                && first.is_none_or(|(.., other)| met.sum() < other.sum())
+            {
+                first = Some((number, at, met));
+            }
+        }
+    }
+    let Some((number, at, met)) = first else {
+        return round.pieces.clone();
+    };
+    let mut pieces = round.pieces.clone();
+    pieces.rotate_left(number);
+    let Some(cut) = pieces.first().cloned() else {
+        return pieces;
+    };
+    let (before, after) = cut.points.split_at(at + 1);
+    // Vertices that would crowd the cut give way, but for the piece's own ends.
+    let crowded = |phi: &Vector2<f64>| (phi - met).norm() < 1e-3;
+    let mut head = vec![met];
+    let kept = after.len().saturating_sub(1);
+    head.extend(
+        after
+            .iter()
+            .enumerate()
+            .filter(|(i, phi)| *i == kept || !crowded(phi))
+            .map(|(_, phi)| *phi),
+    );
+    let mut tail: Vec<Vector2<f64>> = before
+        .iter()
+        .enumerate()
+        .filter(|(i, phi)| *i == 0 || !crowded(phi))
+        .map(|(_, phi)| *phi)
+        .collect();
+    tail.push(met);
+    if let Some(first) = pieces.first_mut() {
+        first.points = head;
+    }
+    pieces.push(Piece {
+        kind: cut.kind,
+        points: tail,
+    });
+    // Cut at a corner, one of both parts is nothing.
+    pieces.retain(|piece| {
+        piece
+            .points
+            .iter()
+            .zip(piece.points.iter().skip(1))
+            .any(|(a, b)| (b - a).norm() > 1e-9)
+    });
+    pieces
+}
+
+/// The pieces as a cycle at constant power; none where they make no gait.
+fn cycle(pieces: &[Piece], model: &Model<f64>) -> Option<Cycle> {
+    let mut phi: Vec<Vector2<f64>> = Vec::new();
+    let mut ends = Vec::new();
+    for piece in pieces {
+        let new = piece.points.iter().skip(usize::from(!phi.is_empty()));
+        phi.extend(new.copied());
+        ends.push(phi.len() - 1);
+    }
+    // Exactly closed.
+    let first = *phi.first()?;
+    *phi.last_mut()? = first;
+    let mut chord = vec![0.0];
+    for (a, b) in phi.iter().zip(phi.iter().skip(1)) {
+        chord.push(chord.last()? + (b - a).norm());
+    }
+    let smooth_start = begins_smoothly(&phi);
+    let mut corners: Vec<usize> = ends.iter().copied().take(ends.len() - 1).collect();
+    if !smooth_start {
+        corners.insert(0, 0);
+    }
+    let total = *chord.last()?;
+    let u: Vec<f64> = chord.iter().map(|length| length / total).collect();
+    let gait = AnyGait::from_samples(&u, &phi, &corners).ok()?;
+    let u = at_constant_power(&gait, &u, model)?;
+    let place = |i: usize| u.get(i).copied().unwrap_or(1.0);
+    let mut from = 0.0;
+    let mut arcs = Vec::new();
+    for (piece, end) in pieces.iter().zip(&ends) {
+        let to = place(*end);
+        arcs.push(GaitArc {
+            kind: piece.kind,
+            from,
+            to,
+        });
+        from = to;
+    }
+    Some(Cycle {
+        corners: corners.iter().map(|&corner| place(corner)).collect(),
+        arcs,
+        u,
+        phi,
+    })
+}
+
+/// Whether the last side of a closed curve goes on into the first: their turn is no more than the neighbours' turns
+/// explain.
+fn begins_smoothly(phi: &[Vector2<f64>]) -> bool {
+    let count = phi.len();
+    let side = |i: usize| match (phi.get(i), phi.get(i + 1)) {
+        (Some(a), Some(b)) => b - a,
+        _ => Vector2::zeros(),
+    };
+    if count < 8 {
+        return false;
+    }
+    let (last, first) = (side(count - 2), side(0));
+    last.perp(&first).atan2(last.dot(&first)).abs() < 0.1
+}
+
+/// Fractions of the period for the same knots such that the power is constant: proportional to ∫√(Φ′ᵀWΦ′).
+fn at_constant_power(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Option<Vec<f64>> {
+    let (nodes, weights) = gauss(4);
+    let mut length = vec![0.0];
+    for (a, b) in u.iter().zip(u.iter().skip(1)) {
+        let sum: f64 = nodes
+            .iter()
+            .zip(&weights)
+            .map(|(s, w)| {
+                let point = gait.at(a + 0.5 * (s + 1.0) * (b - a));
+                let power = point
+                    .rate
+                    .dot(&(model.power_matrix(&point.phi) * point.rate));
+                w * power.max(0.0).sqrt()
+            })
+            .sum();
+        length.push(length.last()? + 0.5 * (b - a) * sum);
+    }
+    let total = *length.last()?;
+    let mut fractions: Vec<f64> = length.iter().map(|length| length / total).collect();
+    *fractions.last_mut()? = 1.0;
+    Some(fractions)
+}
+
+fn certified<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
+    problem: &TurningProblem,
+    bounds: Bounds,
+    model: &Model<f64>,
+    region: &Region,
+    level: &Level<F>,
+    pieces: &[Piece],
+) -> Option<OptimalGait> {
+    let cycle = cycle(pieces, model)?;
+    let stroke = cycle.swum(model)?;
+    let certificate = evidence::certificate(model, region, level, pieces, &cycle, &stroke)?;
+    let arcs = pieces
+        .iter()
+        .filter_map(|piece| {
+            Some(Arc {
+                kind: piece.kind,
+                from: (*piece.points.first()?).into(),
+                to: (*piece.points.last()?).into(),
+            })
+        })
+        .collect();
+    let links_cross = cycle.links_cross(model);
+    Some(OptimalGait::new(Solution {
+        objective: Objective::Turning,
+        swimmer: problem.swimmer,
+        bounds,
+        symmetric: false,
+        arcs,
+        cycle,
+        stroke,
+        links_cross,
+        certificate,
+    }))
+}

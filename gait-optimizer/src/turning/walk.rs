@@ -1,0 +1,364 @@
+//! Round the regions where the curvature turns left: along zero-level curves and along the border, the region always on
+//! the left. Every piece of either belongs to exactly one such walk, so all walks together go round all regions.
+
+use nalgebra::Vector2;
+use swimmer_files::ArcKind;
+use swimmer_model::Model;
+
+use super::piece::{Piece, Round, close_up, pieces_of, singular};
+use super::shore::Shore;
+use crate::height_map::{Level, LevelSearch, OnCurve, passes};
+use crate::region::Region;
+
+/// What the walks go by.
+pub(super) struct Country<'a, F> {
+    pub(super) region: &'a Region,
+    pub(super) shore: &'a Shore<'a>,
+    pub(super) level: &'a Level<F>,
+    pub(super) step: f64,
+}
+
+/// A place of the border where the curvature changes sign.
+#[derive(Debug, Clone, Copy)]
+struct Port {
+    phi: Vector2<f64>,
+    /// Index of the station before it.
+    after: usize,
+    /// Whether the curvature falls there, going counter-clockwise: a walk leaves the border.
+    leaves: bool,
+}
+
+/// Where a walk lost its way, and why.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Lost {
+    pub(super) near: Vector2<f64>,
+    pub(super) what: &'static str,
+}
+
+impl Lost {
+    pub(super) fn at(near: Vector2<f64>, what: &'static str) -> Self {
+        Self { near, what }
+    }
+}
+
+/// Curvatures this small count as zero.
+const ZERO: f64 = 1e-13;
+/// A curve ends at a port if it comes this near \[rad\].
+const ARRIVED: f64 = 1e-6;
+/// More points than this and the walk has lost its way.
+const MOST_POINTS: usize = 60_000;
+
+/// The curvature of θ and its gradient.
+pub(super) fn curvature(model: &Model<f64>, phi: &Vector2<f64>) -> (f64, Vector2<f64>) {
+    let second = model.second_derivatives(phi);
+    let [along1, along2] = second.d_curvature();
+    (second.first.curvature().z, Vector2::new(along1.z, along2.z))
+}
+
+impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
+    /// All walks, or where one loses its way.
+    pub(super) fn rounds(
+        &self,
+        search: &LevelSearch,
+        seeds: Vec<Vector2<f64>>,
+    ) -> Result<Vec<Round>, Lost> {
+        let ports = self.ports().ok_or(Lost::at(
+            Vector2::zeros(),
+            "the curvature vanishes all along the bounds",
+        ))?;
+        let mut rounds = Vec::new();
+        let mut unused: Vec<usize> = (0..ports.len())
+            .filter(|&i| ports.get(i).is_some_and(|port| port.leaves))
+            .collect();
+        while let Some(&first) = unused.first() {
+            let mut round = Round { pieces: Vec::new() };
+            let mut at = first;
+            loop {
+                unused.retain(|&port| port != at);
+                let (inland, arrived) = self.across(&ports, at)?;
+                round.pieces.extend(inland);
+                let (along, left) = self.along_border(&ports, arrived)?;
+                round.pieces.extend(along);
+                at = left;
+                if at == first {
+                    break;
+                }
+                if !unused.contains(&at) {
+                    return Err(Lost::at(
+                        ports.get(at).map_or(Vector2::zeros(), |port| port.phi),
+                        "two regions share an edge",
+                    ));
+                }
+            }
+            rounds.push(round);
+        }
+        if ports.is_empty() && self.border_is_positive() {
+            rounds.push(Round {
+                pieces: self.whole_border(),
+            });
+        }
+        // What the walks from the border did not meet is closed.
+        let mut seeds = seeds;
+        seeds.retain(|seed| self.region.overstepped(seed) < -1e-7);
+        while !seeds.is_empty() {
+            seeds.retain(|seed| {
+                !rounds.iter().any(|round: &Round| {
+                    round.pieces.iter().any(|piece| {
+                        piece.kind == ArcKind::Singular
+                            && passes(&piece.points, seed, search.close())
+                    })
+                })
+            });
+            let Some(seed) = seeds.pop() else { break };
+            rounds.push(Round {
+                pieces: self.inland_round(&seed)?,
+            });
+        }
+        Ok(rounds)
+    }
+
+    fn value(&self, phi: &Vector2<f64>) -> f64 {
+        self.level.at(phi).0
+    }
+
+    /// The sign of the curvature; 0 where it is zero but for rounding.
+    fn sign(&self, phi: &Vector2<f64>) -> i8 {
+        let value = self.value(phi);
+        i8::from(value > ZERO) - i8::from(value < -ZERO)
+    }
+
+    /// All ports, counter-clockwise.
+    fn ports(&self) -> Option<Vec<Port>> {
+        let stations = &self.shore.stations;
+        let signs: Vec<i8> = stations.iter().map(|s| self.sign(&s.phi)).collect();
+        let count = stations.len();
+        let start = signs.iter().position(|&sign| sign != 0)?;
+        let mut ports = Vec::new();
+        let (mut last, mut last_sign) = (start, *signs.get(start)?);
+        for k in 1..=count {
+            let i = (start + k) % count;
+            let sign = *signs.get(i)?;
+            if sign == 0 {
+                continue;
+            }
+            if sign != last_sign {
+                ports.push(self.port(last, i, last_sign > 0)?);
+            }
+            (last, last_sign) = (i, sign);
+        }
+        ports.sort_by_key(|port| port.after);
+        Some(ports)
+    }
+
+    /// The port between two stations of different sign; stations between them, if any, are zeros.
+    fn port(&self, last: usize, next: usize, leaves: bool) -> Option<Port> {
+        let stations = &self.shore.stations;
+        let count = stations.len();
+        if (last + 1) % count != next {
+            let zero = (last + 1) % count;
+            return Some(Port {
+                phi: stations.get(zero)?.phi,
+                after: zero,
+                leaves,
+            });
+        }
+        let (a, b) = (stations.get(last)?, stations.get(next)?);
+        let mut low = a.direction;
+        // Across direction 0 the next one is a turn ahead.
+        let mut high = if b.direction < low {
+            b.direction + std::f64::consts::TAU
+        } else {
+            b.direction
+        };
+        let mut phi = a.phi;
+        for _ in 0..70 {
+            let station = self.shore.at(f64::midpoint(low, high))?;
+            phi = station.phi;
+            let value = self.value(&phi);
+            if value.abs() < 1e-16 {
+                break;
+            }
+            if (value > 0.0) == leaves {
+                low = station.direction;
+            } else {
+                high = station.direction;
+            }
+        }
+        Some(Port {
+            phi,
+            after: last,
+            leaves,
+        })
+    }
+
+    /// From a port inland along zero-level curves to the port where they meet the border again.
+    fn across(&self, ports: &[Port], from: usize) -> Result<(Vec<Piece>, usize), Lost> {
+        let none = Lost::at(Vector2::zeros(), "there is no such port");
+        let port = ports.get(from).ok_or(none)?;
+        let begin = self
+            .level
+            .corrected(&port.phi, None, 1e-6)
+            .ok_or(Lost::at(port.phi, "zero-level curves cross on the bound"))?;
+        let begin = OnCurve {
+            phi: port.phi,
+            ..positive_left(begin)
+        };
+        let (mut pieces, end) = self.inland(begin, None)?;
+        let end = end.ok_or(none)?;
+        let arrived = (0..ports.len())
+            .filter_map(|i| {
+                let port = ports.get(i)?;
+                (!port.leaves).then_some((i, (port.phi - end).norm()))
+            })
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .filter(|&(_, gap)| gap < ARRIVED)
+            .ok_or(Lost::at(end, "a zero-level curve touches the bound"))?
+            .0;
+        let met = ports.get(arrived).ok_or(none)?.phi;
+        let last = pieces.last_mut().ok_or(none)?;
+        close_up(&mut last.points, met, 0.3 * self.step);
+        Ok((pieces, arrived))
+    }
+
+    /// Along zero-level curves from a point on one, turning left where they cross, until the border (its place is
+    /// returned) or, with `home`, until back there.
+    fn inland(
+        &self,
+        begin: OnCurve,
+        home: Option<Vector2<f64>>,
+    ) -> Result<(Vec<Piece>, Option<Vector2<f64>>), Lost> {
+        let mut pieces = Vec::new();
+        let mut points = vec![begin.phi];
+        let (mut here, mut step) = (begin, self.step);
+        let mut walked = 0;
+        while walked < MOST_POINTS {
+            if let Some(home) = home
+                && walked > 8
+            {
+                let ahead = (home - here.phi).dot(&here.tangent);
+                let off = (home - here.phi).perp(&here.tangent).abs();
+                if ahead > 0.0 && ahead <= step && off <= 0.2 * ahead {
+                    close_up(&mut points, home, 0.3 * self.step);
+                    pieces.push(singular(points));
+                    return Ok((pieces, None));
+                }
+            }
+            let shorter = |step: f64, what| {
+                if step > 1e-8 * self.step {
+                    Ok(0.5 * step)
+                } else {
+                    Err(Lost::at(here.phi, what))
+                }
+            };
+            let Some(next) = self.level.stepped(&here, step) else {
+                step = shorter(step, "a zero-level curve has a kink")?;
+                continue;
+            };
+            walked += 1;
+            if self.region.overstepped(&next.phi) > 1e-12 {
+                let stuck = Lost::at(here.phi, "a zero-level curve runs along the bound");
+                let end = self.leaving(&here, step).ok_or(stuck)?;
+                pieces.push(singular(points));
+                return Ok((pieces, Some(end)));
+            }
+            if next.slope_left < 0.0 {
+                // The curve has crossed another one: beyond, the region lies to the right.
+                let Some((node, ahead)) = self.node(&here, &next) else {
+                    step = shorter(step, "zero-level curves nearly cross")?;
+                    continue;
+                };
+                close_up(&mut points, node, 0.3 * self.step);
+                pieces.push(singular(points));
+                points = vec![node];
+                here = self.after(node, ahead)?;
+            } else {
+                here = next;
+            }
+            points.push(here.phi);
+            step = (1.5 * step).min(self.step);
+        }
+        Err(Lost::at(here.phi, "a zero-level curve does not end"))
+    }
+
+    /// Where a step leaves the region.
+    fn leaving(&self, here: &OnCurve, step: f64) -> Option<Vector2<f64>> {
+        let (mut low, mut high) = (0.0, step);
+        let mut end = here.phi;
+        for _ in 0..60 {
+            let middle = f64::midpoint(low, high);
+            let guess = here.phi + here.tangent * middle;
+            let point = self.level.corrected(&guess, Some(&here.tangent), step)?;
+            end = point.phi;
+            if self.region.overstepped(&end) > 0.0 {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        Some(end)
+    }
+
+    /// Counter-clockwise along the border from a port to the next one where the walk leaves it.
+    fn along_border(&self, ports: &[Port], from: usize) -> Result<(Vec<Piece>, usize), Lost> {
+        let none = Lost::at(Vector2::zeros(), "there is no such port");
+        let stations = &self.shore.stations;
+        let count = stations.len();
+        let to = (from + 1) % ports.len();
+        let (begin, end) = (ports.get(from).ok_or(none)?, ports.get(to).ok_or(none)?);
+        if !end.leaves {
+            return Err(Lost::at(
+                end.phi,
+                "the curvature changes sign twice at one place of the bound",
+            ));
+        }
+        let mut ahead = Vec::new();
+        let mut i = begin.after;
+        while i != end.after && ahead.len() <= count {
+            i = (i + 1) % count;
+            ahead.push(*stations.get(i).ok_or(none)?);
+        }
+        // The stretch that ends at the port is bounded as the station before it.
+        let bound = stations.get(begin.after).ok_or(none)?.bound;
+        let pieces = pieces_of(begin.phi, bound, &ahead, end.phi, 0.3 * self.step);
+        Ok((pieces, to))
+    }
+
+    fn border_is_positive(&self) -> bool {
+        self.shore
+            .stations
+            .first()
+            .is_some_and(|station| self.sign(&station.phi) > 0)
+    }
+
+    fn whole_border(&self) -> Vec<Piece> {
+        let stations = &self.shore.stations;
+        let Some(first) = stations.first() else {
+            return Vec::new();
+        };
+        pieces_of(first.phi, first.bound, stations, first.phi, 0.3 * self.step)
+    }
+
+    /// A walk that never meets the border.
+    fn inland_round(&self, seed: &Vector2<f64>) -> Result<Vec<Piece>, Lost> {
+        let begin = self.level.corrected(seed, None, 1e-6);
+        let begin = begin.ok_or(Lost::at(*seed, "zero-level curves branch"))?;
+        let begin = positive_left(begin);
+        match self.inland(begin, Some(begin.phi))? {
+            (pieces, None) => Ok(pieces),
+            (_, Some(end)) => Err(Lost::at(end, "a zero-level curve grazes the bound")),
+        }
+    }
+}
+
+/// The same point, run with the function rising to the left.
+fn positive_left(point: OnCurve) -> OnCurve {
+    if point.slope_left < 0.0 {
+        OnCurve {
+            tangent: -point.tangent,
+            slope_left: -point.slope_left,
+            ..point
+        }
+    } else {
+        point
+    }
+}

@@ -1,0 +1,249 @@
+//! Turning gaits: against brute force, over swimmers and bounds of all kinds, and the way through a file.
+
+use std::path::Path;
+
+use gait_optimizer::{Bounds, Objective, Turning, TurningError, TurningProblem, certify, turning};
+use nalgebra::Vector2;
+use swimmer_files::{AnyGait, GaitFile};
+use swimmer_model::{Links, Model, Swimmer, TangentialDrag, Tolerance, swim};
+
+fn within(max_angle: f64) -> Bounds {
+    Bounds {
+        max_angle: Some(max_angle),
+        ..Bounds::default()
+    }
+}
+
+fn apart(max_angle: f64, clearance: f64) -> Bounds {
+    Bounds {
+        no_overlap: true,
+        clearance,
+        ..within(max_angle)
+    }
+}
+
+fn uneven() -> Swimmer<f64> {
+    Swimmer {
+        links: Links {
+            middle: 0.09,
+            front: 0.14,
+            back: 0.11,
+        },
+        ..Swimmer::robot()
+    }
+}
+
+fn found(swimmer: Swimmer<f64>, bounds: Bounds) -> Turning {
+    match turning(&TurningProblem { swimmer, bounds }) {
+        Ok(turning) => turning,
+        Err(error) => panic!("{swimmer:?} {bounds}: {error}"),
+    }
+}
+
+/// The numbers of the note; each is also checked by its certificate (area integral, circles) and below by brute force.
+#[test]
+fn purcell_and_robot() {
+    let close = |turning: &Turning, rotation: f64| {
+        let have = turning.gait.rotation;
+        assert!((have - rotation).abs() < 1e-9, "{have} {rotation}");
+    };
+    close(&found(Swimmer::purcell(), within(2.0)), 0.590_238_913_2);
+    close(&found(Swimmer::purcell(), within(2.8)), 1.479_779_773_5);
+    close(&found(Swimmer::robot(), within(2.8)), 0.396_738_842_3);
+    // Where links must not cross, the region round φ₁ = φ₂ loses its core, and the one round the straight shape wins.
+    let playable = found(Swimmer::robot(), apart(2.8, 0.0));
+    close(&playable, 0.254_612_354_9);
+    assert!(playable.gait.links_cross.abs() < 1e-12);
+    assert!(
+        playable
+            .gait
+            .phi()
+            .iter()
+            .all(|phi| phi.amax() <= 2.8 + 1e-12)
+    );
+}
+
+/// The curvature of θ where it is positive, summed over the nodes of a grid.
+#[test]
+fn the_supremum_by_brute_force() {
+    for (swimmer, bounds) in [
+        (Swimmer::purcell(), within(2.3)),
+        (Swimmer::robot(), within(2.8)),
+        (Swimmer::robot(), apart(2.8, 0.0)),
+        (uneven(), within(2.5)),
+    ] {
+        let turning = found(swimmer, bounds);
+        let model = Model::new(&swimmer).unwrap();
+        let max = bounds.max_angle.unwrap();
+        let count = 600;
+        let cell = 2.0 * max / f64::from(count);
+        let mut sum = 0.0;
+        for i in 0..count {
+            for j in 0..count {
+                let middle = |k: i32| -max + (f64::from(k) + 0.5) * cell;
+                let phi = Vector2::new(middle(i), middle(j));
+                if !(bounds.no_overlap && swimmer.links.cross(&phi)) {
+                    let height = model.first_derivatives(&phi).curvature().z;
+                    sum += height.max(0.0) * cell * cell;
+                }
+            }
+        }
+        let off = (turning.bridged_supremum - sum).abs() / sum;
+        // A cell cut by the bound of crossing links counts whole or not at all.
+        let tolerance = if bounds.no_overlap { 2e-3 } else { 2e-5 };
+        assert!(
+            off < tolerance,
+            "{bounds}: {} {sum}",
+            turning.bridged_supremum
+        );
+        assert!(turning.gait.rotation < turning.bridged_supremum + 1e-12);
+    }
+}
+
+#[test]
+fn the_gait_file_swims_the_same_and_is_certified_from_its_samples() {
+    for (swimmer, bounds) in [
+        (Swimmer::robot(), apart(2.8, 0.005)),
+        (Swimmer::purcell(), within(2.0)),
+        (uneven(), within(2.4)),
+    ] {
+        let turning = found(swimmer, bounds);
+        let text = turning.gait.gait_file("one").to_text();
+        let file = GaitFile::parse(&text, Path::new("one.gait")).unwrap();
+        assert_eq!((file.objective, file.bounds), (Objective::Turning, bounds));
+        let gait = AnyGait::from_file(&file).unwrap();
+        let model = Model::new(&swimmer).unwrap();
+        let rotation = |gait: &AnyGait| swim(&model, gait, &Tolerance::default()).rotation;
+        assert!((rotation(&gait) - turning.gait.rotation).abs() < 1e-11);
+        // Turned round, or mirrored, it turns right.
+        assert!((rotation(&gait.clone().reversed_if(true)) + turning.gait.rotation).abs() < 1e-9);
+        let mirrored: Vec<_> = file.phi.iter().map(|phi| -phi).collect();
+        let corners: Vec<usize> = file
+            .corners
+            .iter()
+            .filter_map(|corner| file.u.iter().position(|u| u.to_bits() == corner.to_bits()))
+            .collect();
+        let mirrored = AnyGait::from_samples(&file.u, &mirrored, &corners).unwrap();
+        assert!((rotation(&mirrored) + turning.gait.rotation).abs() < 1e-9);
+        // Where zero-level curves cross, as Purcell's do, the slope that `certify` asks for vanishes at that corner.
+        if swimmer != Swimmer::purcell() {
+            let certificate = certify(&swimmer, &file, Objective::Turning, &bounds).unwrap();
+            assert!(certificate.pass(), "{bounds}: {}", certificate.failures());
+        }
+    }
+}
+
+#[test]
+fn without_a_bound_joints_stay_within_a_half_turn() {
+    let turning = found(Swimmer::robot(), Bounds::default());
+    assert_eq!(turning.gait.bounds, within(std::f64::consts::PI));
+    assert!(
+        turning
+            .gait
+            .phi()
+            .iter()
+            .all(|phi| phi.amax() < std::f64::consts::PI + 1e-9)
+    );
+}
+
+#[test]
+fn nonsense_is_refused() {
+    let refused = |bounds: Bounds| {
+        turning(&TurningProblem {
+            swimmer: Swimmer::robot(),
+            bounds,
+        })
+        .unwrap_err()
+    };
+    for value in [0.0, -1.0, f64::NAN, 7.0, f64::INFINITY] {
+        assert!(matches!(
+            refused(within(value)),
+            TurningError::MaxAngle { .. }
+        ));
+    }
+    for value in [-0.1, f64::NAN, 0.08, f64::INFINITY] {
+        assert!(matches!(
+            refused(apart(2.0, value)),
+            TurningError::Clearance { .. }
+        ));
+    }
+    for bounds in [
+        Bounds {
+            min_angle: Some(1.0),
+            ..within(2.0)
+        },
+        Bounds {
+            sector: true,
+            ..within(2.0)
+        },
+    ] {
+        assert!(matches!(refused(bounds), TurningError::QuarterBounds));
+    }
+    let broken = Swimmer {
+        chi: f64::NAN,
+        ..Swimmer::robot()
+    };
+    let problem = TurningProblem {
+        swimmer: broken,
+        bounds: within(2.0),
+    };
+    assert!(matches!(turning(&problem), Err(TurningError::Swimmer(_))));
+}
+
+/// A number between 0 and 1 that fills the interval evenly with growing `index` (van der Corput).
+fn even(index: u32, base: u32) -> f64 {
+    let (mut left, mut share, mut sum) = (index, 1.0, 0.0);
+    while left > 0 {
+        share /= f64::from(base);
+        sum += share * f64::from(left % base);
+        left /= base;
+    }
+    sum
+}
+
+#[test]
+fn all_kinds_of_swimmers_get_a_gait_or_a_reason() {
+    let mut gaits = 0;
+    let count = 36;
+    for k in 1..=count {
+        let between = |base: u32, low: f64, high: f64| low + (high - low) * even(k, base);
+        let middle = 1.0;
+        let front = between(2, 0.3, 3.0);
+        let swimmer = Swimmer {
+            links: Links {
+                middle,
+                front,
+                back: if k % 3 == 0 {
+                    between(13, 0.3, 3.0)
+                } else {
+                    front
+                },
+            },
+            chi: between(3, 1.3, 5.0),
+            tangential_drag: TangentialDrag::OverViscosity(1.4),
+            sphere_radius: if k % 4 == 0 {
+                0.0
+            } else {
+                between(5, 0.0, 1.2)
+            },
+        };
+        let max_angle = between(7, 1.8, 3.0);
+        let bounds = match k % 3 {
+            0 => within(max_angle),
+            1 => apart(max_angle, 0.0),
+            _ => apart(max_angle, 0.05),
+        };
+        match turning(&TurningProblem { swimmer, bounds }) {
+            Ok(turning) => {
+                gaits += 1;
+                let gait = &turning.gait;
+                assert!(gait.certificate.pass() && gait.rotation > 0.0);
+                assert!(gait.rotation <= turning.bridged_supremum + 1e-9);
+                assert!(gait.phi().iter().all(|phi| phi.amax() <= max_angle + 1e-9));
+            }
+            Err(error) => println!("{swimmer:?} {bounds}: {error}"),
+        }
+    }
+    println!("{gaits} of {count}");
+    assert!(gaits >= count * 9 / 10, "{gaits} of {count}");
+}
