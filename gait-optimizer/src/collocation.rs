@@ -172,7 +172,8 @@ fn lighthill_of(model: &Model<f64>, x: f64, energy: f64) -> f64 {
     model.side_drag() * model.swimmer().total_length() * x * x / energy
 }
 
-/// Solves from a guess, and refines the mesh until the tolerance is met.
+/// Solves from a guess, and refines the mesh until the tolerance is met. A guess that leaves the bounds is shrunk, and if
+/// that leads nowhere, clipped.
 ///
 /// # Errors
 /// [`CollocationError`]: what is wrong with the problem or the guess, where the iteration stopped, or that the mesh could
@@ -182,14 +183,28 @@ pub fn solve(
     guess: &QuarterGuess,
 ) -> Result<CollocationSolution, CollocationError> {
     let walls = problem.validate()?;
+    let shrunk = refined(problem, guess, &walls, Fit::Shrunk);
+    if shrunk.is_ok() || guess.lies_inside(&walls) {
+        return shrunk;
+    }
+    refined(problem, guess, &walls, Fit::Clipped).or(shrunk)
+}
+
+/// Mesh after mesh, from the guess on the first.
+fn refined(
+    problem: &CollocationProblem<'_>,
+    guess: &QuarterGuess,
+    walls: &[Wall],
+    fit: Fit,
+) -> Result<CollocationSolution, CollocationError> {
     let mut mesh = Mesh::even(problem.elements, problem.degree);
-    let mut phi = first_shapes(problem, guess, &mesh, &walls)?;
+    let mut phi = guess.on(problem.model, &mesh, walls, fit)?;
     let mut barrier = FIRST_BARRIER;
     let mut rounds = Vec::new();
     loop {
-        let newton = Newton::new(problem.model, &mesh, &walls, problem.sign, HORIZON, phi);
+        let newton = Newton::new(problem.model, &mesh, walls, problem.sign, HORIZON, phi);
         let optimum = newton.run(barrier)?;
-        let again = again::again(problem.model, &mesh, &walls, &optimum.path).ok_or(
+        let again = again::again(problem.model, &mesh, walls, &optimum.path).ok_or(
             CollocationError::NotIntegrated {
                 efficiency: lighthill(problem.model, &optimum.path),
             },
@@ -220,7 +235,7 @@ pub fn solve(
         let verdict = if problem.tolerance > 0.0 {
             // Where a few rounds did not settle the kinks, halving will.
             let kinks = if rounds.len() < KINK_ROUNDS {
-                refine::kinks(&mesh, &walls, &optimum)
+                refine::kinks(&mesh, walls, &optimum)
             } else {
                 Vec::new()
             };
@@ -232,12 +247,12 @@ pub fn solve(
         match verdict {
             Verdict::Good => {
                 return Ok(solution::finish(
-                    problem, &mesh, &walls, optimum, &again, rounds,
+                    problem, &mesh, walls, optimum, &again, rounds,
                 ));
             }
             Verdict::Finer(finer) if rounds.len() < MOST_ROUNDS && finer.len() <= MOST_POINTS => {
                 barrier = AGAIN_BARRIER;
-                phi = carried_over(&mesh, &finer, &optimum, &walls, barrier);
+                phi = carried_over(&mesh, &finer, &optimum, walls, barrier);
                 mesh = finer;
             }
             Verdict::Finer(_) => {
@@ -250,35 +265,6 @@ pub fn solve(
             }
         }
     }
-}
-
-/// The guess on the first mesh: shrunk to fit, or clipped where shrinking turned its way round.
-fn first_shapes(
-    problem: &CollocationProblem<'_>,
-    guess: &QuarterGuess,
-    mesh: &Mesh,
-    walls: &[Wall],
-) -> Result<Vec<Vector2<f64>>, CollocationError> {
-    let mut way = Err(CollocationError::Guess {
-        problem: "it spends no power",
-    });
-    for fit in [Fit::Shrunk, Fit::Clipped] {
-        match guess.on(problem.model, mesh, walls, fit) {
-            Ok(phi) => {
-                let path = Path::new(problem.model, mesh, phi);
-                if path.objective(problem.sign).is_some() {
-                    return Ok(path.phi);
-                }
-                way = Err(CollocationError::WrongWay {
-                    x: path.final_x,
-                    wanted: problem.sign,
-                });
-            }
-            Err(error) if fit == Fit::Shrunk => way = Err(error),
-            Err(_) => {}
-        }
-    }
-    way
 }
 
 /// The shapes on a finer mesh, as near to the walls as the multipliers there want them.

@@ -162,20 +162,26 @@ impl QuarterGuess {
             .ok_or(CollocationError::Guess { problem: OUTSIDE })
     }
 
+    /// Whether it needs no change to fit.
+    pub(crate) fn lies_inside(&self, walls: &[Wall]) -> bool {
+        self.inside(walls, 1.0 / INSIDE)
+    }
+
+    fn inside(&self, walls: &[Wall], size: f64) -> bool {
+        self.samples
+            .iter()
+            .all(|(_, phi)| walls.iter().all(|wall| wall.value(&(phi * size)) > 0.0))
+    }
+
     /// The factor that brings all samples inside the walls: 1 where they are.
     fn shrunk(&self, walls: &[Wall]) -> Result<f64, CollocationError> {
-        let inside = |size: f64| {
-            self.samples
-                .iter()
-                .all(|(_, phi)| walls.iter().all(|wall| wall.value(&(phi * size)) > 0.0))
-        };
-        if inside(1.0 / INSIDE) {
+        if self.lies_inside(walls) {
             return Ok(1.0);
         }
         let (mut low, mut high) = (0.0, 1.0 / INSIDE);
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
-            if inside(middle) {
+            if self.inside(walls, middle) {
                 low = middle;
             } else {
                 high = middle;
