@@ -1,11 +1,13 @@
 //! Displacement gaits against the paper, against an independent direct method, and over swimmers and bounds of all kinds.
 
 mod direct;
+mod swimmers;
 
-use direct::{Direct, fan, row};
+use direct::Direct;
 use gait_optimizer::{ArcKind, DisplacementError, DisplacementProblem, OptimalGait, displacement};
-use swimmer_files::{AnyGait, GaitFile};
+use swimmer_files::{Bounds, GaitFile};
 use swimmer_model::{Links, Swimmer, TangentialDrag, Tolerance, swim};
+use swimmers::{Case, best_simple_displacement};
 
 fn optimum(problem: &DisplacementProblem) -> OptimalGait {
     match displacement(problem) {
@@ -98,12 +100,11 @@ fn a_tightening_bound() {
     assert!((square.displacement - swum.displacement.x).abs() < 1e-12);
 }
 
-/// The maximum principle and the direct method meet.
+/// The maximum principle and the direct method meet: gait (a) from a circle, with no knowledge of the arcs.
 #[test]
-fn the_direct_method_agrees_on_purcell() {
+fn the_direct_method_climbs_to_gait_a_from_a_circle() {
     let gait = optimum(&DisplacementProblem::new(Swimmer::purcell()));
-    let guess = [[1.3, 1.3], [0.9, 1.7], [0.0, 1.8], [-0.6, 1.3], [-0.8, 0.8]];
-    let direct = Direct::new(&Swimmer::purcell(), f64::INFINITY, fan(&guess, 0.0, 40)).climb();
+    let direct = Direct::from_circle(&Swimmer::purcell(), 1.6, 48).climb();
     assert!(
         (direct - gait.displacement_over_length).abs() < 1e-6,
         "{direct} {}",
@@ -111,22 +112,42 @@ fn the_direct_method_agrees_on_purcell() {
     );
 }
 
+/// Gaits (a) to (d), and those that keep links apart, from their arcs moved by 0.05 rad and more.
 #[test]
-fn the_direct_method_agrees_on_the_robot() {
-    let gait = optimum(&DisplacementProblem::new(Swimmer::robot()).with_max_angle(2.8));
-    // Up on the right, along the top, down on the left: sides slide sideways, the top up and down against its bound.
-    let mut start = row([1.5, 1.5], [0.7, 2.8], [1.0, 0.0], 24);
-    start.extend(row([0.7, 2.8], [0.6, 2.8], [1.0, 0.0], 1));
-    start.extend(row([0.5, 2.75], [-1.2, 2.75], [0.0, 1.0], 5));
-    start.extend(row([-1.3, 2.8], [-0.4, 1.3], [-1.0, 0.0], 30));
-    start.extend(row([-0.4, 1.3], [-0.4, 0.5], [-1.0, 0.0], 12));
-    start.extend(row([-0.5, 0.5], [0.0, 0.0], [-1.0, 1.0], 1));
-    let direct = Direct::new(&Swimmer::robot(), 2.8, start).climb();
-    assert!(
-        (direct - gait.displacement_over_length).abs() < 1e-6,
-        "{direct} {}",
-        gait.displacement_over_length
-    );
+fn the_direct_method_climbs_back_to_every_gait() {
+    let robot = DisplacementProblem::new(Swimmer::robot()).with_max_angle(2.8);
+    let (mut lower, mut sector) = (robot, robot);
+    lower.bounds.min_angle = Some(1.5);
+    sector.bounds.sector = true;
+    let apart = |mut problem: DisplacementProblem, clearance| {
+        problem.bounds.no_overlap = true;
+        problem.bounds.clearance = clearance;
+        problem
+    };
+    let problems = [
+        ("a", DisplacementProblem::new(Swimmer::purcell())),
+        ("b", robot),
+        ("c", lower),
+        ("d", sector),
+        ("b, 10 mm apart", apart(robot, 0.01)),
+        ("c without crossing", apart(lower, 0.0)),
+        ("c, 20 mm apart", apart(lower, 0.02)),
+        ("d without crossing", apart(sector, 0.0)),
+        ("d, 5 mm apart", apart(sector, 0.005)),
+    ];
+    for (name, problem) in problems {
+        let gait = optimum(&problem);
+        let mut direct = Direct::off_from(&gait, 0.05, 30);
+        let start = direct.start();
+        let climbed = direct.climb();
+        let exact = gait.displacement_over_length;
+        println!(
+            "{name}: {start} -> {climbed}, arcs {exact}, {:e}",
+            climbed - exact
+        );
+        assert!((start - exact).abs() > 1e-5, "{name}: the start is off");
+        assert!((climbed - exact).abs() < 1e-6, "{name}: {climbed} {exact}");
+    }
 }
 
 /// The samples: a closed curve at constant power that a file keeps exactly.
@@ -216,7 +237,14 @@ fn a_grid_of_swimmers_and_bounds() {
                     };
                     let name =
                         format!("l0/l1 {ratio}, chi {chi}, sphere {sphere} l0, within {max_angle}");
-                    let best = best_simple_gait(&swimmer, max_angle);
+                    let best = best_simple_displacement(&Case {
+                        name: name.clone(),
+                        swimmer,
+                        bounds: Bounds {
+                            max_angle: Some(max_angle),
+                            ..Bounds::default()
+                        },
+                    });
                     forwards += usize::from(best > 0.0);
                     match displacement(&DisplacementProblem::new(swimmer).with_max_angle(max_angle))
                     {
@@ -310,23 +338,38 @@ fn the_papers_gaits_without_crossing_links() {
     }
 }
 
-/// Largest X over L of circles and squares within the bound, up to the first maximum over the amplitude.
-fn best_simple_gait(swimmer: &Swimmer<f64>, max_angle: f64) -> f64 {
-    let model = swimmer_model::Model::new(swimmer).unwrap();
-    let swum = |gait: &AnyGait| {
-        swim(&model, gait, &Tolerance::new(1e-9)).displacement.x / swimmer.total_length()
-    };
-    let mut best: f64 = 0.0;
-    for shape in [AnyGait::circle, AnyGait::square] {
-        let mut last = 0.0;
-        for step in 1..=20 {
-            let x = swum(&shape(max_angle * f64::from(step) / 20.0));
-            if x < last {
-                break;
+/// 200 swimmers drawn at random, every second one without crossing links: a certified gait that no circle or square beats and
+/// that swims as it says, or a reason where none of them goes forwards.
+#[test]
+fn random_swimmers() {
+    let mut found = 0;
+    let mut wrong = Vec::new();
+    for case in swimmers::random(20_260_703, 200) {
+        let best = best_simple_displacement(&case);
+        let problem = DisplacementProblem {
+            bounds: case.bounds,
+            ..DisplacementProblem::new(case.swimmer)
+        };
+        match displacement(&problem) {
+            Ok(gait) => {
+                found += 1;
+                let x = gait.displacement_over_length;
+                assert!(gait.certificate.pass(), "{}", case.name);
+                let model = swimmer_model::Model::new(&case.swimmer).unwrap();
+                let stroke = swim(&model, &gait.gait().unwrap(), &Tolerance::new(1e-11));
+                let swum = stroke.displacement_over_length();
+                assert!((swum.x - x).abs() < 1e-8, "{}: {swum} {x}", case.name);
+                if !(x > 0.0 && x >= best - 1e-9) {
+                    wrong.push(format!("{}: {x} below {best}", case.name));
+                }
             }
-            last = x;
-            best = best.max(x);
+            Err(error @ DisplacementError::NoOptimum { .. }) if best <= 0.0 => {
+                assert!(!error.to_string().is_empty());
+            }
+            Err(error) => wrong.push(format!("{}: {error}; {best}", case.name)),
         }
     }
-    best
+    println!("{found} of 200 with a gait");
+    assert!(found > 120, "{found}");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

@@ -1,71 +1,352 @@
-//! An independent direct method: the quarter gait as a polygon with one degree of freedom a node, climbed on the swum X.
+//! An independent direct method: the quarter gait as a polygon with one degree of freedom a node, climbed on its own swum X.
 //!
-//! Nodes slide on fixed rays across a rough guess, the first along φ₁ = φ₂ and the last along φ₁ = −φ₂. Each sweep
-//! moves every node by a damped Newton step on its own, from differences of the swum displacement; bounds clip the node. It
-//! shares nothing with the arcs but the model's cycle integration.
+//! Nodes slide on fixed rays across a rough start, corners along the bound they lie on, the first and last along the
+//! diagonals. A projected Newton method with all second differences climbs the final x. The pose along a side is the product
+//! of fourth-order Magnus steps in SE(2); from the model it takes A(Φ) alone, from the library's gaits only the order of arcs.
 
-use nalgebra::Vector2;
+mod pose;
+
+use gait_optimizer::{ArcKind, OptimalGait};
+use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_files::AnyGait;
 use swimmer_model::{Model, Swimmer, Tolerance, swim};
 
+use crate::swimmers::Apart;
+use pose::Pose;
+
+/// A node: where it is and how it may move.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    at: Vector2<f64>,
+    way: Way,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Way {
+    Fixed,
+    /// Along this direction.
+    Ray(Vector2<f64>),
+    /// Round the origin on the border of the shapes with links apart.
+    Border,
+}
+
 pub(crate) struct Direct {
+    swimmer: Swimmer<f64>,
     model: Model<f64>,
-    length: f64,
+    sign: f64,
     max_angle: f64,
-    nodes: Vec<Vector2<f64>>,
-    rays: Vec<Vector2<f64>>,
+    apart: Option<Apart>,
+    nodes: Vec<Node>,
+    /// Whether the side after each node follows the border of the shapes with links apart.
+    on_border: Vec<bool>,
 }
 
-/// A node and the direction it may slide in.
-pub(crate) type Node = (Vector2<f64>, Vector2<f64>);
-
-/// Nodes evenly spread on the polyline through `guess`, with rays from a centre at (0, `centre`).
-pub(crate) fn fan(guess: &[[f64; 2]], centre: f64, intervals: usize) -> Vec<Node> {
-    let guess: Vec<Vector2<f64>> = guess.iter().map(|&point| point.into()).collect();
-    let whole: f64 = guess
-        .windows(2)
-        .map(|side| (side[1] - side[0]).norm())
-        .sum();
-    (0..=intervals)
-        .map(|k| along(&guess, whole * k as f64 / intervals as f64))
-        .map(|node| (node, (node - Vector2::new(0.0, centre)).normalize()))
-        .collect()
-}
-
-/// Nodes evenly spread on the straight line between two points, its last one left out, all with the same ray.
-pub(crate) fn row(from: [f64; 2], to: [f64; 2], ray: [f64; 2], intervals: usize) -> Vec<Node> {
-    let (from, to) = (Vector2::from(from), Vector2::from(to));
-    (0..intervals)
-        .map(|k| {
-            (
-                from + (to - from) * (k as f64 / intervals as f64),
-                ray.into(),
-            )
-        })
-        .collect()
-}
+/// Second differences are taken over this \[rad\].
+const H: f64 = 1e-3;
+/// Sides of a curved border.
+const BORDER_SIDES: usize = 400;
 
 impl Direct {
-    /// Starts from these nodes, the first on φ₁ = φ₂ and the last on φ₁ = −φ₂; those two slide along these lines.
-    pub(crate) fn new(swimmer: &Swimmer<f64>, max_angle: f64, start: Vec<Node>) -> Self {
-        let (nodes, mut rays): (Vec<_>, Vec<_>) = start.into_iter().unzip();
-        let last = rays.len() - 1;
-        rays[0] = Vector2::new(1.0, 1.0).normalize();
-        rays[last] = Vector2::new(-1.0, 1.0).normalize();
-        let model = Model::new(swimmer).unwrap();
+    /// Round a circle's quarter, free of bounds.
+    pub(crate) fn from_circle(swimmer: &Swimmer<f64>, radius: f64, intervals: usize) -> Self {
+        let nodes: Vec<Node> = (0..=intervals)
+            .map(|k| {
+                let angle = std::f64::consts::FRAC_PI_4
+                    + std::f64::consts::FRAC_PI_2 * k as f64 / intervals as f64;
+                let ray = Vector2::new(angle.cos(), angle.sin());
+                Node {
+                    at: ray * radius,
+                    way: Way::Ray(ray),
+                }
+            })
+            .collect();
         Self {
-            model,
-            length: swimmer.total_length(),
-            max_angle,
+            swimmer: *swimmer,
+            model: Model::new(swimmer).unwrap(),
+            sign: 1.0,
+            max_angle: f64::INFINITY,
+            apart: None,
+            on_border: vec![false; nodes.len()],
             nodes,
-            rays,
         }
     }
 
-    /// X over L of the closed polygon through these quarter nodes and their images.
-    fn displacement(&self, quarter: &[Vector2<f64>]) -> f64 {
+    /// With the arcs of a gait, its shape moved off by `off` \[rad\] or more: free arcs bent to alternating sides, corners slid
+    /// along their bounds.
+    pub(crate) fn off_from(gait: &OptimalGait, off: f64, intervals: usize) -> Self {
+        let bounds = &gait.bounds;
+        let apart = bounds
+            .no_overlap
+            .then(|| Apart::new(gait.swimmer.links, bounds.clearance));
+        let quarter = gait.u().partition_point(|&u| u < 0.25 - 1e-12);
+        let samples = &gait.phi()[..=quarter];
+        let mut direct = Self {
+            swimmer: gait.swimmer,
+            model: Model::new(&gait.swimmer).unwrap(),
+            sign: gait.displacement_over_length.signum(),
+            max_angle: bounds.max_angle.unwrap_or(f64::INFINITY),
+            apart,
+            nodes: Vec::new(),
+            on_border: Vec::new(),
+        };
+        let last = gait.arcs.len() - 1;
+        for (i, arc) in gait.arcs.iter().enumerate() {
+            let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let (from, to) = (Vector2::from(arc.from), Vector2::from(arc.to));
+            // The node where the arc begins.
+            let before = (i > 0).then(|| gait.arcs[i - 1]);
+            let way = match before {
+                None if arc.kind == ArcKind::Singular => {
+                    Way::Ray(Vector2::new(1.0, 1.0).normalize())
+                }
+                None => Way::Fixed,
+                Some(before) => corner(&before, arc),
+            };
+            direct.push(from, way, side * off, arc.kind == ArcKind::Clearance);
+            if arc.kind == ArcKind::Singular {
+                let points = spread(samples, from, to, intervals);
+                for k in 1..points.len() - 1 {
+                    let along = (points[k + 1] - points[k - 1]).normalize();
+                    let ray = Vector2::new(along.y, -along.x);
+                    direct.push(points[k], Way::Ray(ray), side * off, false);
+                }
+            }
+            if i == last {
+                let way = if arc.kind == ArcKind::Singular {
+                    Way::Ray(Vector2::new(-1.0, 1.0).normalize())
+                } else {
+                    Way::Fixed
+                };
+                direct.push(to, way, side * off, false);
+            }
+        }
+        direct
+    }
+
+    fn push(&mut self, at: Vector2<f64>, way: Way, off: f64, on_border: bool) {
+        let node = Node { at, way };
+        let moved = self.moved(&node, off);
+        self.nodes.push(Node {
+            at: self.inside(&node, moved),
+            way,
+        });
+        self.on_border.push(on_border);
+    }
+
+    /// Where a node gets when it moves by t.
+    fn moved(&self, node: &Node, t: f64) -> Vector2<f64> {
+        match (node.way, &self.apart) {
+            (Way::Ray(ray), _) => node.at + ray * t,
+            (Way::Border, Some(apart)) => {
+                apart.border(node.at.y.atan2(node.at.x) + t / node.at.norm())
+            }
+            _ => node.at,
+        }
+    }
+
+    /// The nearest allowed place on the way back from a move.
+    fn inside(&self, node: &Node, there: Vector2<f64>) -> Vector2<f64> {
+        let allowed = |phi: &Vector2<f64>| {
+            phi.amax() <= self.max_angle + 1e-12
+                && self.apart.as_ref().is_none_or(|apart| apart.allows(phi))
+        };
+        if !matches!(node.way, Way::Ray(_)) || allowed(&there) {
+            return there;
+        }
+        let back = node.at - there;
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if allowed(&(there + back * middle)) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        there + back * high
+    }
+
+    /// The pose from one node to the next.
+    fn side(&self, k: usize, from: Vector2<f64>, to: Vector2<f64>) -> Pose {
+        if !self.on_border[k] {
+            return Pose::along(&self.model, from, to);
+        }
+        let points = self.border(from, to);
+        points.windows(2).fold(Pose::default(), |pose, pair| {
+            pose * Pose::along(&self.model, pair[0], pair[1])
+        })
+    }
+
+    fn border(&self, from: Vector2<f64>, to: Vector2<f64>) -> Vec<Vector2<f64>> {
+        let apart = self.apart.as_ref().unwrap();
+        let angle = |phi: &Vector2<f64>| phi.y.atan2(phi.x);
+        let (first, last) = (angle(&from), angle(&to));
+        (0..=BORDER_SIDES)
+            .map(|i| apart.border(first + (last - first) * i as f64 / BORDER_SIDES as f64))
+            .collect()
+    }
+
+    /// X over L of the start.
+    pub(crate) fn start(&self) -> f64 {
+        4.0 * self.sign * self.value()
+    }
+
+    /// λ₃ x at the end of the quarter.
+    fn value(&self) -> f64 {
+        let whole = (0..self.nodes.len() - 1).fold(Pose::default(), |pose, k| {
+            pose * self.side(k, self.nodes[k].at, self.nodes[k + 1].at)
+        });
+        self.sign * whole.x
+    }
+
+    /// Gradient and second derivatives of the value over all moves.
+    fn derivatives(&self) -> (DVector<f64>, DMatrix<f64>) {
+        let count = self.nodes.len();
+        let at = |k: usize, step: usize| self.moved(&self.nodes[k], H * (step as f64 - 1.0));
+        // Each side with both ends moved by −H, 0, H.
+        let sides: Vec<[[Pose; 3]; 3]> = (0..count - 1)
+            .map(|k| {
+                std::array::from_fn(|i| {
+                    std::array::from_fn(|j| self.side(k, at(k, i), at(k + 1, j)))
+                })
+            })
+            .collect();
+        let mut before = vec![Pose::default()];
+        for side in &sides {
+            before.push(before[before.len() - 1] * side[1][1]);
+        }
+        let whole = before[count - 1];
+        let after = |k: usize| before[k].inverse() * whole;
+        // What comes up to node k + 1 when node k has moved.
+        let up_to = |k: usize, step: usize| {
+            let start = if k == 0 {
+                Pose::default()
+            } else {
+                before[k - 1] * sides[k - 1][1][step]
+            };
+            if k + 1 < count {
+                start * sides[k][step][1]
+            } else {
+                start
+            }
+        };
+        let end = |k: usize| {
+            if k + 1 < count {
+                after(k + 1)
+            } else {
+                Pose::default()
+            }
+        };
+        let alone = |k: usize, step: usize| self.sign * (up_to(k, step) * end(k)).x;
+        let both = |i: usize, j: usize, a: usize, b: usize| {
+            let pose = if j == i + 1 {
+                let start = if i == 0 {
+                    Pose::default()
+                } else {
+                    before[i - 1] * sides[i - 1][1][a]
+                };
+                let next = start * sides[i][a][b];
+                if j + 1 < count {
+                    next * sides[j][b][1]
+                } else {
+                    next
+                }
+            } else {
+                let up = up_to(i, a) * before[i + 1].inverse() * before[j - 1];
+                let next = up * sides[j - 1][1][b];
+                if j + 1 < count {
+                    next * sides[j][b][1]
+                } else {
+                    next
+                }
+            };
+            self.sign * (pose * end(j)).x
+        };
+        let here = self.sign * whole.x;
+        let mut gradient = DVector::zeros(count);
+        let mut second = DMatrix::zeros(count, count);
+        for i in 0..count {
+            let (minus, plus) = (alone(i, 0), alone(i, 2));
+            gradient[i] = (plus - minus) / (2.0 * H);
+            second[(i, i)] = (plus - 2.0 * here + minus) / (H * H);
+            for j in i + 1..count {
+                let mixed = (both(i, j, 2, 2) - both(i, j, 2, 0) - both(i, j, 0, 2)
+                    + both(i, j, 0, 0))
+                    / (4.0 * H * H);
+                second[(i, j)] = mixed;
+                second[(j, i)] = mixed;
+            }
+        }
+        (gradient, second)
+    }
+
+    /// Climbs until the moves are below 1e-8; returns X over L, signed, swum by the model.
+    pub(crate) fn climb(&mut self) -> f64 {
+        let mut damping = 1e-2;
+        let mut here = self.value();
+        for _ in 0..200 {
+            let (gradient, second) = self.derivatives();
+            // Nodes that rest on a bound and push against it stay.
+            let free: Vec<usize> = (0..self.nodes.len())
+                .filter(|&k| {
+                    let node = &self.nodes[k];
+                    let probe = self.moved(node, 1e-7 * gradient[k].signum());
+                    !matches!(node.way, Way::Fixed)
+                        && (self.inside(node, probe) - node.at).norm() > 5e-8
+                })
+                .collect();
+            let scale = second.amax();
+            let matrix = DMatrix::from_fn(free.len(), free.len(), |i, j| {
+                let damped = if i == j { damping * scale } else { 0.0 };
+                damped - second[(free[i], free[j])]
+            });
+            let right = DVector::from_fn(free.len(), |i, _| gradient[free[i]]);
+            let Some(factors) = matrix.cholesky() else {
+                damping = (damping * 4.0).max(1e-6);
+                continue;
+            };
+            let step = factors.solve(&right);
+            let kept = self.nodes.clone();
+            let mut largest: f64 = 0.0;
+            for (i, &k) in free.iter().enumerate() {
+                let node = self.nodes[k];
+                let there = self.moved(&node, step[i].clamp(-0.1, 0.1));
+                self.nodes[k].at = self.inside(&node, there);
+                largest = largest.max((self.nodes[k].at - node.at).norm());
+            }
+            let value = self.value();
+            if value >= here - 1e-15 {
+                here = value;
+                damping *= 0.2;
+                if largest < 1e-8 {
+                    break;
+                }
+            } else {
+                self.nodes = kept;
+                damping = (damping * 10.0).max(1e-6);
+                if damping > 1e6 {
+                    break;
+                }
+            }
+        }
+        self.swum()
+    }
+
+    /// X over L of the closed polygon through the quarter and its images, by the model's own integration.
+    fn swum(&self) -> f64 {
+        let mut quarter: Vec<Vector2<f64>> = Vec::new();
+        for k in 0..self.nodes.len() - 1 {
+            let (from, to) = (self.nodes[k].at, self.nodes[k + 1].at);
+            if self.on_border[k] {
+                let border = self.border(from, to);
+                quarter.extend(&border[..border.len() - 1]);
+            } else {
+                quarter.push(from);
+            }
+        }
+        quarter.push(self.nodes[self.nodes.len() - 1].at);
         let last = quarter.len() - 1;
-        let mut phi: Vec<Vector2<f64>> = quarter.to_vec();
+        let mut phi = quarter.clone();
         phi.extend(
             quarter[..last]
                 .iter()
@@ -74,74 +355,60 @@ impl Direct {
         );
         phi.pop();
         phi.extend(phi.clone().iter().map(|p| -p));
+        phi.dedup_by(|a, b| (*a - *b).norm() < 1e-13);
         let u: Vec<f64> = (0..phi.len())
             .map(|k| k as f64 / phi.len() as f64)
             .collect();
         // A corner at every knot: straight sides.
         let corners: Vec<usize> = (0..phi.len()).collect();
         let gait = AnyGait::from_samples(&u, &phi, &corners).unwrap();
-        let stroke = swim(&self.model, &gait, &Tolerance::new(1e-10));
-        stroke.displacement.x / self.length
-    }
-
-    /// Climbs until no node moves more than 1e-6; returns X over L.
-    pub(crate) fn climb(&mut self) -> f64 {
-        const H: f64 = 1e-3;
-        for _ in 0..60 {
-            let here = self.displacement(&self.nodes);
-            let mut largest: f64 = 0.0;
-            let moved: Vec<_> = (0..self.nodes.len())
-                .map(|k| {
-                    let at = |h: f64| {
-                        let mut nodes = self.nodes.clone();
-                        nodes[k] += self.rays[k] * h;
-                        self.displacement(&nodes)
-                    };
-                    let (plus, minus) = (at(H), at(-H));
-                    let slope = (plus - minus) / (2.0 * H);
-                    let bend = (plus - 2.0 * here + minus) / (H * H);
-                    let newton = if bend < 0.0 {
-                        -0.6 * slope / bend
-                    } else {
-                        0.01 * slope.signum()
-                    };
-                    let next =
-                        self.inside(self.nodes[k] + self.rays[k] * newton.clamp(-0.05, 0.05), k);
-                    largest = largest.max((next - self.nodes[k]).norm());
-                    next
-                })
-                .collect();
-            self.nodes = moved;
-            if largest < 1e-6 {
-                break;
-            }
-        }
-        self.displacement(&self.nodes)
-    }
-
-    /// Pulls a node back along its ray to `|φᵢ| ≤ φ_max`.
-    fn inside(&self, node: Vector2<f64>, k: usize) -> Vector2<f64> {
-        let ray = self.rays[k];
-        (0..2).fold(node, |node, i| {
-            let excess = node[i].abs() - self.max_angle;
-            let towards = ray[i] * node[i].signum();
-            if excess > 0.0 && towards != 0.0 {
-                node - ray * (excess / towards)
-            } else {
-                node
-            }
-        })
+        let stroke = swim(&self.model, &gait, &Tolerance::new(1e-11));
+        stroke.displacement.x / self.swimmer.total_length()
     }
 }
 
-/// The point of a polyline this far along it.
-fn along(polyline: &[Vector2<f64>], mut way: f64) -> Vector2<f64> {
-    for side in polyline.windows(2) {
-        let length = (side[1] - side[0]).norm();
-        if way <= length {
-            return side[0] + (side[1] - side[0]) * (way / length);
+/// How the corner between two arcs may move: along the bound that one of them runs along; not at all between two bounds.
+fn corner(before: &gait_optimizer::Arc, after: &gait_optimizer::Arc) -> Way {
+    let bound = match (before.kind, after.kind) {
+        (ArcKind::Singular, ArcKind::Clearance) | (ArcKind::Clearance, ArcKind::Singular) => {
+            return Way::Border;
         }
-        way -= length;
+        (ArcKind::Singular, _) => after,
+        (_, ArcKind::Singular) => before,
+        _ => return Way::Fixed,
+    };
+    let way = Vector2::from(bound.to) - Vector2::from(bound.from);
+    Way::Ray(way.normalize())
+}
+
+/// Points spread evenly over the samples from one place to another.
+fn spread(
+    samples: &[Vector2<f64>],
+    from: Vector2<f64>,
+    to: Vector2<f64>,
+    intervals: usize,
+) -> Vec<Vector2<f64>> {
+    let nearest = |place: Vector2<f64>| {
+        (0..samples.len())
+            .min_by(|&a, &b| {
+                (samples[a] - place)
+                    .norm()
+                    .total_cmp(&(samples[b] - place).norm())
+            })
+            .unwrap()
+    };
+    let arc = &samples[nearest(from)..=nearest(to)];
+    let mut way = vec![0.0];
+    for side in arc.windows(2) {
+        way.push(way[way.len() - 1] + (side[1] - side[0]).norm());
     }
-    polyline[polyline.len() - 1]
+    let whole = way[way.len() - 1];
+    (0..=intervals)
+        .map(|k| {
+            let along = whole * k as f64 / intervals as f64;
+            let next = way.partition_point(|&w| w < along).clamp(1, arc.len() - 1);
+            let share = (along - way[next - 1]) / (way[next] - way[next - 1]);
+            arc[next - 1] + (arc[next] - arc[next - 1]) * share
+        })
+        .collect()
 }
