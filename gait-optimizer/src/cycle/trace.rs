@@ -77,8 +77,13 @@ struct Equations<'a> {
 impl System<7> for Equations<'_> {
     fn rate(&self, z: &Traced) -> Traced {
         let (phi, pose) = (shape(z), [z[2], z[3], z[4]]);
-        let slopes = self.extremal.slopes(&phi, &pose);
-        let direction = self.direction(&phi, &pose);
+        let (slopes, direction) = match self.motion {
+            Motion::Singular => {
+                let (height, slopes) = self.extremal.height_and_slopes(&phi, &pose);
+                (slopes, height.singular_direction())
+            }
+            Motion::Along(track) => (self.extremal.slopes(&phi, &pose), track.direction(&phi)),
+        };
         let [x, y, theta, speed] = pose_rates(&slopes.connection, &slopes.power, z[4], &direction);
         // λ̇ᵢ = −∂H/∂φᵢ on a free arc; along a bound the multiplier pushes along its normal and keeps H_u at zero.
         let mut costate = -(slopes.by_angle.transpose() * direction);
@@ -237,10 +242,10 @@ impl Evidence {
     ) -> Option<Push> {
         let (phi, pose) = (shape(z), [z[2], z[3], z[4]]);
         let extremal = &equations.extremal;
-        let h_u = extremal.slopes(&phi, &pose).momentum + Vector2::new(z[5], z[6]);
+        let (height, slopes) = extremal.height_and_slopes(&phi, &pose);
+        let h_u = slopes.momentum + Vector2::new(z[5], z[6]);
         self.h_u = self.h_u.max(h_u.norm());
         self.overstepped = self.overstepped.max(region.overstepped(&phi));
-        let (height, ..) = extremal.height_and_gradient(&phi, &pose);
         let slope = height.gradient.norm();
         self.steepest = self.steepest.max(slope);
         if let Motion::Along(track) = equations.motion {
@@ -253,16 +258,15 @@ impl Evidence {
         } else {
             self.off_zero = self.off_zero.max(height.value.abs() / slope);
             // Slope towards the left of the motion.
-            let direction = equations.direction(&phi, &pose);
+            let direction = height.singular_direction();
             let left = height
                 .gradient
                 .dot(&Vector2::new(-direction.y, direction.x));
             self.legendre_clebsch =
                 Some(self.legendre_clebsch.map_or(left, |least| least.min(left)));
-            let curvature = extremal.model.first_derivatives(&phi).curvature();
             Some(Push::new(
                 extremal.sign,
-                &curvature,
+                &slopes.curvature,
                 pose[2],
                 final_x - pose[0],
                 left,

@@ -7,7 +7,7 @@
 //! regular on φ₁ = −φ₂.
 
 use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
-use swimmer_model::Model;
+use swimmer_model::{FirstDerivatives, Model, SecondDerivatives};
 
 /// State along a quarter gait: φ₁, φ₂, x, y, θ (lengths over L) and the power length ∫√P over the arc.
 pub(crate) type State = [f64; 6];
@@ -49,6 +49,8 @@ pub(crate) struct Slopes {
     pub(crate) power: Matrix2<f64>,
     /// The height.
     pub(crate) height: f64,
+    /// The connection's curvature in the body's frame.
+    pub(crate) curvature: Vector3<f64>,
 }
 
 impl Extremal<'_> {
@@ -71,6 +73,24 @@ impl Extremal<'_> {
         pose: &[f64; 3],
     ) -> (Height, Matrix3x2<f64>, Matrix2<f64>) {
         let second = self.model.second_derivatives(phi);
+        let height = self.height_of(&second, pose);
+        (height, second.first.connection, second.first.power)
+    }
+
+    /// The height with its gradient, and everything that the costate equations need, from one look at the model.
+    pub(crate) fn height_and_slopes(
+        &self,
+        phi: &Vector2<f64>,
+        pose: &[f64; 3],
+    ) -> (Height, Slopes) {
+        let second = self.model.second_derivatives(phi);
+        (
+            self.height_of(&second, pose),
+            self.slopes_of(&second.first, pose),
+        )
+    }
+
+    fn height_of(&self, second: &SecondDerivatives<f64>, pose: &[f64; 3]) -> Height {
         let connection = second.first.connection;
         let curvature = second.first.curvature();
         let [along1, along2] = second.d_curvature();
@@ -82,11 +102,10 @@ impl Extremal<'_> {
             self.turned(along, pose) + by_theta * column.z + self.sign * curvature.z * y_rate
         };
         let gradient = Vector2::new(slope(&along1, 0), slope(&along2, 1));
-        let height = Height {
+        Height {
             value: self.turned(&curvature, pose),
             gradient,
-        };
-        (height, connection, second.first.power)
+        }
     }
 
     /// Row x of the turned curvature times λ₃, plus row θ times λ₄.
@@ -109,7 +128,10 @@ impl Extremal<'_> {
 
     /// Everything that the costate equations need.
     pub(crate) fn slopes(&self, phi: &Vector2<f64>, pose: &[f64; 3]) -> Slopes {
-        let first = self.model.first_derivatives(phi);
+        self.slopes_of(&self.model.first_derivatives(phi), pose)
+    }
+
+    fn slopes_of(&self, first: &FirstDerivatives<f64>, pose: &[f64; 3]) -> Slopes {
         let (sin, cos) = pose[2].sin_cos();
         let lambda4 = self.lambda4(pose);
         let weigh = |a: &Matrix3x2<f64>| {
@@ -125,6 +147,7 @@ impl Extremal<'_> {
                 weigh(&first.d_connection[0]),
                 weigh(&first.d_connection[1]),
             ]),
+            curvature: first.curvature(),
             height: self.turned(&first.curvature(), pose),
             connection: first.connection,
             power: first.power,
