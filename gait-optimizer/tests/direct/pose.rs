@@ -38,15 +38,18 @@ impl Pose {
     /// Along a straight side, over L: Magnus steps of order four at two Gauss points each.
     pub(super) fn along(model: &Model<f64>, from: Vector2<f64>, to: Vector2<f64>) -> Self {
         let way = to - from;
-        let steps = (way.norm() / 0.02).ceil().clamp(1.0, 1000.0);
+        let count = (1..1000)
+            .find(|&count| way.norm() <= 0.02 * f64::from(count))
+            .unwrap_or(1000);
+        let steps = f64::from(count);
         let half_gap = 3.0_f64.sqrt() / 6.0;
         let velocity = |s: f64| {
             let body = model.connection_and_power(&(from + way * s)).0 * way / steps;
             Vector3::new(body.x, body.y, body.z)
         };
         let length = model.swimmer().total_length();
-        (0..steps as usize).fold(Self::default(), |pose, i| {
-            let middle = (i as f64 + 0.5) / steps;
+        (0..count).fold(Self::default(), |pose, i| {
+            let middle = (f64::from(i) + 0.5) / steps;
             let (a, b) = (
                 velocity(middle - half_gap / steps),
                 velocity(middle + half_gap / steps),
