@@ -6,10 +6,19 @@
 //! | `flow` | flow maps with exact Jacobians |
 //! | `wall` | bounds of the joint angles as curves to run along |
 //! | `shooting` | multiple shooting over arcs: a quarter, or a closed curve without symmetry |
+//! | `elimination` | the linear systems of the shooting, without their zeros |
 //! | `guess` | states and momenta from any closed curve |
 //! | `structure` | which arcs a curve is made of, and what a solution says of that |
+//! | `continuation` | a gait followed as its bounds tighten |
+//! | `sampled` | an extremal as a sampled cycle |
+//! | `evidence` | the arcs followed again in the plain form of the maximum principle |
+//! | `second_variation` | along how many directions the efficiency grows to second order |
+//! | `gait` | the gait with its certificate |
+//!
+//! [`polish_efficiency`] is the way in: any closed curve near an optimum, and bounds.
 
 pub(crate) mod continuation;
+mod elimination;
 mod equations;
 mod evidence;
 mod flow;
@@ -21,11 +30,16 @@ mod shooting;
 mod structure;
 pub(crate) mod wall;
 
-use swimmer_model::{Gait, Model};
+use swimmer_files::Bounds;
+use swimmer_model::{Gait, InvalidSwimmer, Model, Swimmer};
+
+use crate::OptimalGait;
+use crate::displacement::of_unit_length;
 
 use equations::shape;
 use guess::Swum;
-use shooting::{Class, Solved, Unsolved, solve};
+pub use shooting::Unsolved;
+use shooting::{Class, Solved, solve};
 use structure::{next_structure, of_curve};
 pub(crate) use wall::Walls;
 
@@ -37,25 +51,84 @@ const MOST_STRUCTURES: usize = 12;
 pub(crate) struct Extremal {
     pub(crate) solved: Solved,
     pub(crate) class: Class,
-    /// How many structures were tried.
-    pub(crate) structures: usize,
 }
 
 /// Why a curve could not be polished.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub(crate) enum Unpolished {
+pub enum Unpolished {
+    /// The swimmer's parameters are out of range.
+    #[error("cannot polish a gait of this swimmer: {0}")]
+    Swimmer(#[from] InvalidSwimmer),
     /// The curve goes nowhere, or cannot be swum.
     #[error("the curve to polish goes nowhere")]
     NoGuess,
     /// The shooting did not converge.
     #[error("shooting over {arcs} arcs did not converge: {reason}")]
-    Shooting { arcs: usize, reason: Unsolved },
+    Shooting {
+        /// How many arcs the last structure had.
+        arcs: usize,
+        /// What went wrong.
+        reason: Unsolved,
+    },
     /// The finished arcs cannot be followed again.
     #[error("the arcs found cannot be followed again")]
     Trace,
     /// Structure after structure.
     #[error("{structures} arc structures were tried and each asked for another one")]
-    Structure { structures: usize },
+    Structure {
+        /// How many.
+        structures: usize,
+    },
+}
+
+/// What a curve shall be polished for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Polish {
+    /// The swimmer; its side links may differ, unless the gait shall be symmetric.
+    pub swimmer: Swimmer<f64>,
+    /// Bounds on the shapes: the largest angle and crossing links.
+    pub bounds: Bounds,
+    /// Whether the gait has the paper's two symmetries and starts on φ₁ = φ₂ > 0: then only a quarter of it is shot.
+    pub symmetric: bool,
+    /// Samples of the gait's cycle, at least.
+    pub samples: usize,
+}
+
+impl Polish {
+    /// Closed curves of any symmetry, without bounds, with 1024 samples.
+    pub fn new(swimmer: Swimmer<f64>) -> Self {
+        Self {
+            swimmer,
+            bounds: Bounds::default(),
+            symmetric: false,
+            samples: 1024,
+        }
+    }
+}
+
+/// Polishes a closed curve to a gait that satisfies the maximum principle for Lighthill's efficiency to rounding: the arcs are
+/// read off the curve, shot, and changed until they are right. Curves that turn more than once or cross themselves are
+/// gaits too; whether the gait found is still the one that was meant is for the caller to compare.
+///
+/// The certificate may still fail: an extremal can be a saddle (`ascent_directions`), and a curve with a net rotation of a
+/// full turn repeats its momenta too (`net_rotation_rad`).
+///
+/// # Errors
+/// [`Unpolished`]: the swimmer makes no sense, the curve goes nowhere, or no extremal is near.
+pub fn polish_efficiency<G: Gait<f64> + ?Sized>(
+    polish_for: &Polish,
+    gait: &G,
+) -> Result<OptimalGait, Unpolished> {
+    let model = Model::new(&of_unit_length(&polish_for.swimmer))?;
+    let walls = Walls::new(&polish_for.bounds, &polish_for.swimmer.links);
+    let extremal = polish(&model, &walls, gait, polish_for.symmetric)?;
+    let order = gait::Order {
+        swimmer: &polish_for.swimmer,
+        model: &model,
+        bounds: &polish_for.bounds,
+        samples: polish_for.samples.clamp(16, 1 << 16),
+    };
+    gait::gait(&order, &extremal)
 }
 
 /// Polishes a closed curve (or, for a gait with the paper's two symmetries that starts on φ₁ = φ₂, its quarter) to an
@@ -84,7 +157,7 @@ pub(crate) fn polish_chain(
     guess: shooting::Chain,
 ) -> Result<Extremal, Unpolished> {
     let (mut chain, mut class) = (guess, class);
-    for structures in 1..=MOST_STRUCTURES {
+    for _ in 0..MOST_STRUCTURES {
         let arcs = chain.arcs.len();
         let solved = match solve(model, class, chain.clone()) {
             Ok(solved) => solved,
@@ -97,11 +170,7 @@ pub(crate) fn polish_chain(
         };
         match next_structure(model, walls, class, &solved.chain) {
             None => {
-                return Ok(Extremal {
-                    solved,
-                    class,
-                    structures,
-                });
+                return Ok(Extremal { solved, class });
             }
             Some(next) => (chain, class) = next,
         }

@@ -39,7 +39,6 @@ pub mod collocation;
 mod cycle;
 mod displacement;
 mod efficiency;
-#[allow(dead_code, reason = "handed to several rooms, which land one by one")]
 mod extremal;
 mod height_map;
 mod loops;
@@ -58,6 +57,7 @@ pub use displacement::{DisplacementError, DisplacementProblem, Fates, Heading, d
 pub use efficiency::{
     Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method, Reached, efficiency,
 };
+pub use extremal::{Polish, Unpolished, Unsolved, polish_efficiency};
 pub use height_map::{
     AreaRule, Convergence, Frame, Grid, HeightMap, HeightMapError, LevelCurve, Row,
 };

@@ -129,9 +129,13 @@ fn keeps_its_name(
 
 fn branch_ends(branch: Branch, links: &Links<f64>, ended: &Ended) -> EfficiencyError {
     let (at, reason) = match ended {
-        Ended::Fold { at, .. } => (
+        Ended::Fold { at, other } => (
             at,
-            "there it folds: it meets another extremal, and beyond there is neither".to_owned(),
+            format!(
+                "there it folds: it meets another extremal (which starts at {:.4} rad shortly before), and beyond there is \
+                 neither",
+                other.start().x
+            ),
         ),
         Ended::NoneBeyond { at, reason } => (at, format!("beyond, {reason}")),
         Ended::OtherBranch { at } => (at, "beyond, only other branches are found".to_owned()),

@@ -200,7 +200,6 @@ fn other_side(model: &Model<f64>, before: &Extremal, last: &Extremal) -> Option<
         (solved.orientation * before.solved.orientation < 0.0).then_some(Extremal {
             solved,
             class: before.class,
-            structures: 1,
         })
     })
 }

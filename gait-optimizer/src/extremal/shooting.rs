@@ -9,9 +9,10 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{DMatrix, DVector, Vector2};
+use nalgebra::Vector2;
 use swimmer_model::Model;
 
+use super::elimination::System;
 use super::equations::{Motion, STATE, State, shape};
 use super::flow::{Mapped, mapped};
 
@@ -61,20 +62,22 @@ pub(crate) struct Solved {
     pub(crate) chain: Chain,
     /// Largest residual: angles in radians, momenta over |p|, the scale condition over the length.
     pub(crate) residual: f64,
-    pub(crate) iterations: usize,
     /// Sign of the Jacobian's determinant; it changes at a fold of the family of solutions.
     pub(crate) orientation: f64,
 }
 
 /// Why an iteration gave up.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Unsolved {
+pub enum Unsolved {
     /// An extremal could not be integrated from the guess.
     Lost,
     /// The Jacobian is singular.
     Singular,
     /// No step made the residual smaller.
-    Stuck { residual: f64 },
+    Stuck {
+        /// The smallest that was reached.
+        residual: f64,
+    },
     /// The chain has no unknowns or does not fit together.
     Malformed,
 }
@@ -122,7 +125,7 @@ impl Chain {
             && self.arcs.iter().all(|arc| arc.pieces > 0)
     }
 
-    fn moved(&self, step: &DVector<f64>, factor: f64) -> Self {
+    fn moved(&self, step: &[f64], factor: f64) -> Self {
         let mut chain = self.clone();
         let mut changes = step.iter().map(|change| factor * change);
         for state in &mut chain.states {
@@ -139,29 +142,45 @@ impl Chain {
 
 /// Residuals and Jacobian under construction, row by row.
 struct Equations {
-    residual: DVector<f64>,
-    jacobian: DMatrix<f64>,
-    row: usize,
+    residual: Vec<f64>,
+    jacobian: System,
+    size: usize,
 }
 
 impl Equations {
-    fn new(size: usize) -> Self {
+    fn new(size: usize, lengths_from: usize) -> Self {
         Self {
-            residual: DVector::zeros(size),
-            jacobian: DMatrix::zeros(size, size),
-            row: 0,
+            residual: Vec::with_capacity(size),
+            jacobian: System::new(size, lengths_from),
+            size,
         }
     }
 
+    fn norm(&self) -> f64 {
+        self.residual
+            .iter()
+            .map(|value| value * value)
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    /// NaN where any residual is.
+    fn largest(&self) -> f64 {
+        let worse = |a: f64, b: &f64| {
+            if b.is_nan() || b.abs() > a {
+                b.abs()
+            } else {
+                a
+            }
+        };
+        self.residual.iter().fold(0.0, worse)
+    }
+
     fn add(&mut self, value: f64, slopes: impl IntoIterator<Item = (usize, f64)>) {
-        let row = self.row;
-        self.row += 1;
-        if row >= self.residual.len() {
-            return;
-        }
-        self.residual[row] = value;
+        let row = self.residual.len();
+        self.residual.push(value);
         for (column, slope) in slopes {
-            self.jacobian[(row, column)] += slope;
+            self.jacobian.add(row, column, slope);
         }
     }
 }
@@ -200,28 +219,30 @@ pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<So
     let mut chain = guess;
     let mut here = assemble(model, class, &chain, scale).ok_or(Unsolved::Lost)?;
     let mut orientation = 0.0;
-    for iterations in 0..MOST_ITERATIONS {
-        let residual = here.residual.amax();
+    for _ in 0..MOST_ITERATIONS {
+        let residual = here.largest();
         if residual.is_nan() {
             return Err(Unsolved::Lost);
         }
-        let lu = here.jacobian.clone().lu();
-        orientation = lu_sign(&lu);
+        let right: Vec<f64> = here.residual.iter().map(|value| -value).collect();
+        let newton = here.jacobian.solve(&right);
+        if let Some(newton) = &newton {
+            orientation = newton.orientation;
+        }
         if residual <= TOLERANCE {
             return Ok(Solved {
                 chain,
                 residual,
-                iterations,
                 orientation,
             });
         }
-        let step = lu.solve(&(-&here.residual)).ok_or(Unsolved::Singular)?;
-        let norm = here.residual.norm();
+        let step = newton.ok_or(Unsolved::Singular)?.solution;
+        let norm = here.norm();
         let mut factor = longest_factor(&chain, &step);
         let next = loop {
             let moved = chain.moved(&step, factor);
             let trial = assemble(model, class, &moved, scale)
-                .filter(|trial| trial.residual.norm() < (1.0 - 1e-4 * factor) * norm);
+                .filter(|trial| trial.norm() < (1.0 - 1e-4 * factor) * norm);
             if let Some(trial) = trial {
                 break Some((moved, trial));
             }
@@ -236,19 +257,17 @@ pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<So
                 return Ok(Solved {
                     chain,
                     residual,
-                    iterations,
                     orientation,
                 });
             }
             None => return Err(Unsolved::Stuck { residual }),
         }
     }
-    let residual = here.residual.amax();
+    let residual = here.largest();
     if residual <= ACCEPTED {
         Ok(Solved {
             chain,
             residual,
-            iterations: MOST_ITERATIONS,
             orientation,
         })
     } else {
@@ -256,15 +275,8 @@ pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<So
     }
 }
 
-fn lu_sign(lu: &nalgebra::LU<f64, nalgebra::Dyn, nalgebra::Dyn>) -> f64 {
-    let upper = lu.u();
-    let negative = upper.diagonal().iter().filter(|&&d| d < 0.0).count();
-    let sign: f64 = lu.p().determinant();
-    if negative % 2 == 0 { sign } else { -sign }
-}
-
 /// How much of a step keeps angles from turning too far and arcs from losing too much of their length at once.
-fn longest_factor(chain: &Chain, step: &DVector<f64>) -> f64 {
+fn longest_factor(chain: &Chain, step: &[f64]) -> f64 {
     let mut factor = 1.0_f64;
     let mut changes = step.iter();
     for _ in &chain.states {
@@ -287,7 +299,7 @@ fn longest_factor(chain: &Chain, step: &DVector<f64>) -> f64 {
 fn assemble(model: &Model<f64>, class: Class, chain: &Chain, scale: f64) -> Option<Equations> {
     let count = chain.states.len();
     let lengths_from = STATE * count;
-    let mut equations = Equations::new(lengths_from + chain.arcs.len());
+    let mut equations = Equations::new(lengths_from + chain.arcs.len(), lengths_from);
     let mut maps = Vec::with_capacity(count);
     for (_, arc, state) in chain.pieces() {
         let share = arc.length / arc.pieces as f64;
@@ -336,7 +348,7 @@ fn assemble(model: &Model<f64>, class: Class, chain: &Chain, scale: f64) -> Opti
         first_piece += arc.pieces;
     }
     scale_condition(&mut equations, chain, &endings, lengths_from);
-    (equations.row == equations.residual.len()).then_some(equations)
+    (equations.residual.len() == equations.size).then_some(equations)
 }
 
 /// The start of an arc.

@@ -31,6 +31,8 @@ pub(crate) const OVERSTEP: f64 = 1e-9;
 const PULL: f64 = -1e-8;
 /// How near to a bound \[rad\] a guess is taken to run along it.
 pub(super) const NEAR: f64 = 5e-3;
+/// A stretch near the tips' bound that is shorter than this share of a curve only bends round the corner.
+const HELD: f64 = 0.005;
 /// Arcs shorter than this share of the chain may be left out where the shooting fails.
 const SHORT: f64 = 0.05;
 /// Arcs shorter than this share of the chain are none.
@@ -285,27 +287,21 @@ fn contacts(
     edges: [(bool, f64); 2],
     at: impl Fn(f64) -> State,
 ) -> Vec<Span> {
+    let least = SHORTEST * (edges[1].1 - edges[0].1);
     let mut spans: Vec<Span> = Vec::new();
     let mut over = over.into_iter().peekable();
     while let Some(run) = over.next() {
-        let round_tip = |run: &Run| matches!(run.wall, Wall::Curved(..));
-        let beyond_too =
-            over.next_if(|next| round_tip(&run) && round_tip(next) && next.from <= run.to);
-        let from_start = class == Class::Quarter && run.from <= 0.0 && round_tip(&run);
-        let place = beyond_too.as_ref().map_or(run.from, |next| next.from);
-        if (beyond_too.is_some() || (from_start && !edges[0].0))
+        let next = over.next_if(|next| round_tip(&run) && round_tip(next) && next.from <= run.to);
+        let from_start = starts_quarter(class, &run);
+        let place = next.map_or(run.from, |next| next.from);
+        if (next.is_some() || (from_start && !edges[0].0))
             && let Some(corner) = walls.corner(&shape(&at(place)))
         {
-            spans.push(Span {
-                motion: Motion::Free,
-                entry: Entry::Corner(corner),
-                from: place,
-                to: place,
-            });
+            spans.push(Span::bend(corner, place));
             continue;
         }
         let (middle, half) = (0.5 * (run.from + run.to), 0.25 * (run.to - run.from));
-        let hugs = |edge: (bool, f64), end: f64| edge.0 && (edge.1 - end).abs() <= 0.0;
+        let hugs = |edge: (bool, f64), end: f64| edge.0 && (edge.1 - end).abs() < least;
         spans.push(Span {
             motion: Motion::Along(run.wall),
             entry: Entry::Smooth,
@@ -322,6 +318,80 @@ fn contacts(
         });
     }
     spans
+}
+
+/// What runs of a sampled curve near bounds become: arcs along them, with a bend between two round the tips' corner. Short
+/// ones there are nothing but the bend.
+fn held(
+    walls: &Walls,
+    class: Class,
+    near: &[Run],
+    total: f64,
+    at: impl Fn(f64) -> State,
+) -> Vec<Span> {
+    let mut spans: Vec<Span> = Vec::new();
+    for group in near.chunk_by(|a, b| round_tip(a) && round_tip(b) && b.from <= a.to) {
+        let (Some(first), Some(last)) = (group.first(), group.last()) else {
+            continue;
+        };
+        let lasts = |run: &Run| run.to - run.from > HELD * total || !round_tip(run);
+        let along = |run: &Run, entry| Span {
+            motion: Motion::Along(run.wall),
+            entry,
+            from: run.from,
+            to: run.to,
+        };
+        // Tip to tip comes between the two sides, and is nothing but the corner where there is one.
+        let corner = walls
+            .corner(&shape(&at(last.from)))
+            .filter(|_| group.len() > 1 || starts_quarter(class, first) || first.wall.is_tips());
+        let Some(corner) = corner else {
+            spans.extend(
+                group
+                    .iter()
+                    .filter(|run| lasts(run))
+                    .map(|run| along(run, Entry::Smooth)),
+            );
+            continue;
+        };
+        let comes_along = group.len() > 1 && !first.wall.is_tips() && lasts(first);
+        if comes_along {
+            spans.push(along(first, Entry::Smooth));
+        }
+        if !last.wall.is_tips() && lasts(last) {
+            // Without a gap to what comes before.
+            let from = if comes_along { first.to } else { last.from };
+            spans.push(Span {
+                from,
+                ..along(last, Entry::Corner(corner))
+            });
+        } else {
+            let place = if comes_along { first.to } else { last.from };
+            spans.push(Span::bend(corner, place));
+        }
+    }
+    spans
+}
+
+fn round_tip(run: &Run) -> bool {
+    matches!(run.wall, Wall::Curved(..))
+}
+
+/// A quarter that begins beyond the bound of the tips is bent there against its mirror image.
+fn starts_quarter(class: Class, run: &Run) -> bool {
+    class == Class::Quarter && run.from <= 0.0 && round_tip(run)
+}
+
+impl Span {
+    /// A free arc begins with a bend round a corner.
+    fn bend(corner: nalgebra::Vector2<f64>, place: f64) -> Self {
+        Self {
+            motion: Motion::Free,
+            entry: Entry::Corner(corner),
+            from: place,
+            to: place,
+        }
+    }
 }
 
 /// Spans along the same bound with nothing between them made one.
@@ -351,12 +421,11 @@ pub(crate) fn of_curve(swum: &Swum, walls: &Walls, quarter: bool) -> (Chain, Cla
             .filter(|(_, depth)| *depth > -NEAR)
             .map(|(wall, _)| wall)
     };
-    let open = |total: f64| [(false, 0.0), (false, total)];
     if quarter {
         let total = 0.25 * swum.total();
         let rows = swum.rows().take_while(|(at, _)| *at <= total);
         let runs = runs(rows.map(|(at, state)| (at, near(state))));
-        let spans = contacts(walls, Class::Quarter, runs, open(total), |at| swum.at(at));
+        let spans = held(walls, Class::Quarter, &runs, total, |at| swum.at(at));
         return rebuilt(Class::Quarter, &spans, total, |length| swum.at(length));
     }
     // From the shape that lies farthest inside, so that no contact is cut in two.
@@ -376,7 +445,7 @@ pub(crate) fn of_curve(swum: &Swum, walls: &Walls, quarter: bool) -> (Chain, Cla
         line: None,
     };
     let at = |length: f64| swum.at(begin + length);
-    let spans = contacts(walls, class, runs(round), open(total), at);
+    let spans = held(walls, class, &runs(round), total, at);
     rebuilt(class, &spans, total, at)
 }
 

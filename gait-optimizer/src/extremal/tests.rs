@@ -139,30 +139,57 @@ fn an_optimum_has_no_ascent_and_the_saddle_beyond_a_fold_has_one() {
     assert_eq!(ascents(&other), 1);
 }
 
-/// The certificate of a free and of a bounded closed curve, found without using their symmetries.
+/// Free and bounded closed curves, found without using their symmetries, certified.
 #[test]
 fn closed_gaits_are_certified() {
     for (case, max_angle) in [(0, None), (0, Some(1.2)), (2, Some(1.6)), (3, None)] {
         let case = &cases()[case];
-        let model = case.model();
         let bounds = Bounds {
             max_angle,
             ..Bounds::default()
         };
-        let walls = Walls::new(&bounds, &case.swimmer.links);
-        let extremal = polish(&model, &walls, &case.gait(), false).unwrap();
-        let order = gait::Order {
-            swimmer: &case.swimmer,
-            model: &model,
-            bounds: &bounds,
-            samples: 1024,
+        let polish_for = Polish {
+            bounds,
+            ..Polish::new(case.swimmer)
         };
-        let gait = gait::gait(&order, &extremal).unwrap();
+        let gait = polish_efficiency(&polish_for, &case.gait()).unwrap();
         assert!(gait.certificate.pass(), "{}", gait.certificate.failures());
         assert!(!gait.symmetric);
+        let quarter = Polish {
+            symmetric: true,
+            ..polish_for
+        };
+        let quarter = polish_efficiency(&quarter, &case.gait()).unwrap();
+        assert!((gait.efficiency / quarter.efficiency - 1.0).abs() < 1e-11);
         let distance = gait
             .displacement_over_length
             .hypot(gait.lateral_over_length);
-        assert!(distance > 0.03);
+        assert!((distance / quarter.displacement_over_length.abs() - 1.0).abs() < 1e-9);
     }
+}
+
+/// Round both corners where the tips meet, as a closed curve: the gait of the quarter, from its own samples.
+#[test]
+fn a_closed_gait_bends_round_the_forbidden_shapes() {
+    use crate::{Branch, EfficiencyProblem, efficiency};
+    let bounds = Bounds {
+        no_overlap: true,
+        ..Bounds::default()
+    };
+    let quarter = efficiency(&EfficiencyProblem {
+        bounds,
+        ..EfficiencyProblem::new(Swimmer::purcell(), Branch::Large)
+    })
+    .unwrap();
+    let polish_for = Polish {
+        bounds,
+        ..Polish::new(Swimmer::purcell())
+    };
+    let closed = polish_efficiency(&polish_for, &quarter.gait().unwrap()).unwrap();
+    assert!(
+        closed.certificate.pass(),
+        "{}",
+        closed.certificate.failures()
+    );
+    assert!((closed.efficiency / quarter.efficiency - 1.0).abs() < 1e-11);
 }

@@ -24,6 +24,11 @@ impl Wall {
         }
     }
 
+    /// Whether it is the bound on the distance from tip to tip.
+    pub(crate) fn is_tips(&self) -> bool {
+        matches!(self, Self::Curved(_, Piece::Tips))
+    }
+
     /// How far beyond the bound a shape is, in rad or (between links) over L; negative inside.
     pub(crate) fn value(&self, phi: &Vector2<f64>) -> f64 {
         match self {
@@ -185,9 +190,11 @@ impl Walls {
             .edges
             .iter()
             .map(|edge| (Wall::Straight(*edge), -edge.margin(phi)));
-        let curved = self.clearance.iter().map(|clearance| {
-            let wall = Wall::Curved(*clearance, clearance.piece(phi));
-            (wall, -clearance.margin(phi))
+        // A tip over the other side link's joint is bounded by its angle alone, which is a straight bound.
+        let curved = self.clearance.iter().filter_map(|clearance| {
+            let piece = clearance.piece(phi);
+            let at_joint = matches!(piece, Piece::FrontTipToJoint | Piece::BackTipToJoint);
+            (!at_joint).then(|| (Wall::Curved(*clearance, piece), -clearance.margin(phi)))
         });
         straight.chain(curved).max_by(|a, b| a.1.total_cmp(&b.1))
     }
