@@ -15,8 +15,9 @@
 //! | `atlas` | multi-start over closed curves of any symmetry, and which of them are one gait |
 //! | `closed_curve` | displacement, rotation and cost of any closed curve, with exact first and second derivatives |
 //! | `loops` | closed loops of singular arcs and bounds, without any symmetry |
-//! | `region` | the bounds as a convex polygon of joint angles |
+//! | `region` | the bounds: straight ones of the joint angles, and the curved one that keeps the side links apart |
 //! | `displacement::flow` | one quarter gait: arc after arc, event after event |
+//! | `displacement::trunk` | where singular arcs may begin: φ₁ = φ₂, and chains of bounds from there |
 //! | `efficiency` | free Lighthill gaits: Fourier series, shooting, second-order test |
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs |
 //! | `cycle` | from a quarter to the full cycle, at constant power |
