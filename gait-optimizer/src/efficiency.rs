@@ -134,7 +134,7 @@ impl EfficiencyProblem {
             branch,
             method: Method::Auto,
             bounds: Bounds::default(),
-            quarter_samples: 256,
+            quarter_samples: 192,
         }
     }
 

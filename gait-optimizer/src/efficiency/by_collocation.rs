@@ -8,8 +8,9 @@ use super::start::Start;
 use super::{Branch, EfficiencyError, Method, multiple};
 use crate::collocation::{CollocationProblem, CollocationSolution, QuarterGuess, solve};
 
-/// The Fourier gait that collocation starts from has this order, on a grid of so many nodes.
-const GUESS: [(usize, usize); 3] = [(1, 32), (2, 32), (3, 48)];
+/// Orders up to that of the Fourier gait that collocation starts from, the nodes of their grids, and the gain that a climb
+/// stops at.
+const GUESS: [(usize, usize, f64); 3] = [(1, 32, 1e-4), (2, 32, 1e-4), (3, 48, 1e-6)];
 /// Segments of the multiple shooting where the single shooting does not converge from the collocated end.
 const SEGMENTS: usize = 16;
 
@@ -21,8 +22,8 @@ pub(crate) fn by_collocation(
 ) -> Result<Found, EfficiencyError> {
     let mut ladder = Ladder::new(model, branch, start);
     let mut last = None;
-    for (order, nodes) in GUESS {
-        last = Some((order, ladder.climb_to(order, nodes)?));
+    for (order, nodes, gain) in GUESS {
+        last = Some((order, ladder.climb_to(order, nodes, gain)?));
     }
     let failed = || not_converged(branch, last.as_ref());
     let (_, maximum) = last.as_ref().ok_or_else(failed)?;

@@ -4,11 +4,11 @@ use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use super::fourier::{
-    Grid, Maximum, Objective, best_circles, best_ellipses, climb, raised, series,
+    Ends, Grid, Maximum, Objective, best_circles, best_ellipses, climb, raised, series,
 };
-use super::shooting::{Final, Polished, RESIDUAL, polish};
+use super::shooting::{Final, Polished, RESIDUAL, last_state, polish};
 use super::start::Start;
-use super::{Branch, EfficiencyError, Method, multiple};
+use super::{Branch, EfficiencyError, Method, multiple, second_order};
 use crate::certificate::crossings;
 
 /// A polished extremal and where it came from.
@@ -25,32 +25,34 @@ pub(crate) struct Found {
 pub(crate) const FARTHEST: f64 = 9.0;
 /// Weight of constant speed in the Fourier objective: enough to make the Hessian regular.
 const GAUGE: f64 = 0.01;
-/// Orders that lead to multiple shooting, each with the numbers of segments tried from it and the quarter's grid.
-const BRIDGES: [(usize, usize, &[usize]); 8] = [
-    (1, 32, &[]),
-    (2, 32, &[]),
-    (3, 48, &[]),
-    (4, 48, &[8, 16]),
-    (6, 64, &[8, 16]),
-    (9, 64, &[8, 16]),
-    (13, 96, &[8, 16]),
-    (18, 96, &[16, 32]),
+/// Orders that lead to multiple shooting, the nodes of the quarter's grid, the gain that a climb stops at, and the numbers
+/// of segments tried from there.
+const BRIDGES: [(usize, usize, f64, &[usize]); 8] = [
+    (1, 24, 1e-6, &[]),
+    (2, 24, 1e-6, &[]),
+    (3, 32, 1e-6, &[]),
+    (4, 40, 1e-7, &[8, 16]),
+    (6, 64, 1e-8, &[8, 16]),
+    (9, 64, 1e-9, &[8, 16]),
+    (13, 96, 1e-9, &[8, 16]),
+    (18, 96, 1e-10, &[16, 32]),
 ];
-/// Orders of the pure Fourier method, with their grids.
-const ORDERS: [(usize, usize); 10] = [
-    (1, 48),
-    (2, 48),
-    (3, 48),
-    (4, 64),
-    (6, 64),
-    (9, 96),
-    (13, 96),
-    (18, 96),
-    (24, 128),
-    (32, 128),
+/// Orders of the pure Fourier method, with their grids and gains.
+const ORDERS: [(usize, usize, f64); 10] = [
+    (1, 48, 1e-4),
+    (2, 48, 1e-4),
+    (3, 48, 1e-6),
+    (4, 64, 1e-8),
+    (6, 64, 1e-10),
+    (9, 96, 1e-12),
+    (13, 96, 1e-14),
+    (18, 96, 1e-15),
+    (24, 128, 1e-15),
+    (32, 128, 1e-15),
 ];
-/// The extremal may be better than the Fourier gait by this factor, and worse by its inverse: else it is another gait.
-const SAME_GAIT: f64 = 1.05;
+/// The extremal may be better than the gait of the direct method by this factor. It cannot be worse, but for the error of the
+/// direct method's quadrature: else it is another extremal.
+const SAME_GAIT: std::ops::Range<f64> = 1.0 - 1e-5..1.05;
 
 /// Starts for a branch: coefficients of order 1.
 pub(crate) fn starts(model: &Model<f64>, branch: Branch) -> Result<Vec<[f64; 2]>, EfficiencyError> {
@@ -73,24 +75,36 @@ pub(crate) fn by_multiple_shooting(
     start: [f64; 2],
 ) -> Result<Found, EfficiencyError> {
     let mut ladder = Ladder::new(model, branch, start);
-    let mut last = None;
-    for (order, nodes, bridges) in BRIDGES {
-        let maximum = ladder.climb_to(order, nodes)?;
+    let (mut last, mut saddle) = (None, None);
+    for (order, nodes, gain, bridges) in BRIDGES {
+        let maximum = ladder.climb_to(order, nodes, gain)?;
         for &segments in bridges {
             if let Some(polished) = bridged(model, &maximum, segments) {
-                return Ok(Found {
+                let found = Found {
                     polished,
                     method: Method::Shooting,
                     direct_efficiency: None,
-                });
+                };
+                if is_maximum(model, &polished) {
+                    return Ok(found);
+                }
+                saddle.get_or_insert(found);
             }
         }
-        if !bridges.is_empty() {
+        if !bridges.is_empty() && saddle.is_none() {
             simple(branch, order, &maximum)?;
         }
         last = Some((order, maximum));
     }
-    Err(not_converged(branch, last.as_ref()))
+    // A saddle is told with its certificate, which says so.
+    saddle.ok_or_else(|| not_converged(branch, last.as_ref()))
+}
+
+/// Whether an extremal passes the second-order test: Newton's method takes saddles as well.
+fn is_maximum(model: &Model<f64>, polished: &Polished) -> bool {
+    last_state(model, &polished.at_end)
+        .and_then(|(flow, last)| second_order::test(flow, &last))
+        .is_some_and(|test| test.least_determinant > 0.0 && test.bend_at_start < 0.0)
 }
 
 /// A gait that crosses itself is out of the class: no need to look for an extremal near it.
@@ -119,8 +133,8 @@ pub(crate) fn by_fourier(
 ) -> Result<Found, EfficiencyError> {
     let mut ladder = Ladder::new(model, branch, start);
     let mut last: Option<(usize, Maximum)> = None;
-    for (order, nodes) in ORDERS {
-        let maximum = ladder.climb_to(order, nodes)?;
+    for (order, nodes, gain) in ORDERS {
+        let maximum = ladder.climb_to(order, nodes, gain)?;
         let settled = last.as_ref().is_some_and(|(_, before)| {
             (maximum.value.efficiency() / before.value.efficiency() - 1.0).abs() < 1e-8
         });
@@ -168,6 +182,7 @@ impl<'a> Ladder<'a> {
         &mut self,
         order: usize,
         nodes: usize,
+        least_gain: f64,
     ) -> Result<Maximum, EfficiencyError> {
         let grid = Grid::new(nodes);
         let objective = Objective {
@@ -176,7 +191,11 @@ impl<'a> Ladder<'a> {
             gauge: GAUGE,
         };
         let from = raised(&self.coefficients, order);
-        let maximum = climb(&objective, &from, FARTHEST).ok_or(EfficiencyError::RunsAway {
+        let ends = Ends {
+            least_gain,
+            farthest: FARTHEST,
+        };
+        let maximum = climb(&objective, &from, ends).ok_or(EfficiencyError::RunsAway {
             branch: self.branch,
             amplitude: self.amplitude,
             order,
@@ -210,8 +229,7 @@ fn bridged(model: &Model<f64>, maximum: &Maximum, segments: usize) -> Option<Pol
 pub(crate) fn same_gait(polished: Polished, efficiency: f64, x: f64) -> Option<Polished> {
     let ratio = polished.efficiency() / efficiency;
     let same_way = polished.at_end[1] * x > 0.0;
-    (same_way && (1.0 / SAME_GAIT..SAME_GAIT).contains(&ratio) && polished.residual <= RESIDUAL)
-        .then_some(polished)
+    (same_way && SAME_GAIT.contains(&ratio) && polished.residual <= RESIDUAL).then_some(polished)
 }
 
 /// φ₁, x, θ and E at the end: E is the power there, and `x_f = E_f/κ`.

@@ -6,7 +6,7 @@ mod objective;
 
 use swimmer_model::Model;
 
-pub(crate) use ascent::{Maximum, climb};
+pub(crate) use ascent::{Ends, Maximum, climb};
 pub(crate) use grid::Grid;
 pub(crate) use objective::{Objective, series};
 

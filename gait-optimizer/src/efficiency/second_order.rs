@@ -124,7 +124,7 @@ pub(crate) fn costate(flow: &Flow<'_>, state: &State, control: &Vector2<f64>) ->
 
 #[cfg(test)]
 mod tests {
-    use super::super::fourier::{Grid, Objective, climb, raised, series};
+    use super::super::fourier::{Ends, Grid, Objective, climb, raised, series};
     use super::super::multiple;
     use super::super::shooting::{Final, Polished, last_state, polish};
     use super::super::start::Start;
@@ -155,6 +155,9 @@ mod tests {
     #[test]
     fn optima_pass() {
         let model = Model::new(&of_unit_length(&Swimmer::purcell())).unwrap();
+        let small = extremal(&model, [1.2, 1.2]).at_end;
+        assert!((small[0].abs() - 0.840_201_02).abs() < 1e-8);
+        assert!((small[2].abs() - 0.507_623_64).abs() < 1e-8);
         for ellipse in [[1.2, 1.2], [3.6, 3.6]] {
             let test = tested(&model, &extremal(&model, ellipse).at_end);
             assert!(
@@ -210,7 +213,11 @@ mod tests {
         assert!((here.efficiency() / saddle.efficiency() - 1.0).abs() < 1e-5);
         let bends = objective.expansion(&fitted).hessian.symmetric_eigenvalues();
         assert!(bends.max() > 0.1, "{bends}");
-        let higher = climb(&objective, &raised(&fitted, order), 9.0).unwrap();
+        let ends = Ends {
+            least_gain: 1e-12,
+            farthest: 9.0,
+        };
+        let higher = climb(&objective, &raised(&fitted, order), ends).unwrap();
         assert!(higher.value.efficiency() > 1.5 * saddle.efficiency());
     }
 

@@ -15,7 +15,7 @@ pub(crate) type Final = Vector4<f64>;
 pub(crate) const RESIDUAL: f64 = 1e-10;
 /// What the iteration tries for, as far as rounding lets it.
 const BEYOND: f64 = 1e-12;
-const TOLERANCE: f64 = 1e-13;
+const TOLERANCE: f64 = 2e-14;
 const MOST_STEPS: usize = 30;
 
 /// A quarter that meets the conditions at both ends.

@@ -14,17 +14,24 @@ pub(crate) struct Maximum {
 const MOST_STEPS: usize = 80;
 /// Longest step of one coefficient \[rad\].
 const LONGEST: f64 = 0.35;
-/// A gain in ln(X/S) below this ends the ascent.
-const LEAST_GAIN: f64 = 1e-15;
+
+/// Where a climb ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ends {
+    /// A promised gain in ln(X/S) below this is not worth a step.
+    pub(crate) least_gain: f64,
+    /// A curve with joint angles beyond this has run away \[rad\].
+    pub(crate) farthest: f64,
+}
 
 /// Climbs from these coefficients; X keeps its sign. None where the curve runs away or the climb does not end.
-pub(crate) fn climb(objective: &Objective<'_>, start: &[f64], farthest: f64) -> Option<Maximum> {
+pub(crate) fn climb(objective: &Objective<'_>, start: &[f64], ends: Ends) -> Option<Maximum> {
     let mut here = start.to_vec();
     let mut damping = 0.0_f64;
     for _ in 0..MOST_STEPS {
         let expansion = objective.expansion(&here);
         let value = expansion.value;
-        if !value.objective.is_finite() || farthest_point(&here) > farthest {
+        if !value.objective.is_finite() || farthest_point(&here) > ends.farthest {
             return None;
         }
         let bend = -&expansion.hessian;
@@ -39,7 +46,7 @@ pub(crate) fn climb(objective: &Objective<'_>, start: &[f64], farthest: f64) -> 
                 damping = (damping * 4.0).max(1e-9 * scale);
                 continue;
             };
-            if promise < LEAST_GAIN {
+            if promise < ends.least_gain {
                 return Some(finished(here, value));
             }
             if step.amax() > LONGEST {
