@@ -11,6 +11,10 @@ use crate::run::{cargo, command, read, run, target_folder, works};
 
 /// What times the peers; it runs beside a copy of their modules.
 const PEERS: &str = include_str!("bench/peers.py");
+/// The open GPOPS-II algorithm; it pins an older `CasADi`, so it has an environment of its own.
+const YAPSS: &str = "yapss==0.2.3";
+/// Its script among the peers.
+const YAPSS_SCRIPT: &str = "yap.py";
 /// The newest at the time of writing, pinned so that ratios can be compared over time.
 const PACKAGES: [&str; 3] = ["numpy==2.4.6", "scipy==1.17.1", "casadi==3.8.2"];
 /// Libraries under `NumPy` that would take all processors.
@@ -21,14 +25,17 @@ struct Comparison {
     what: &'static str,
     /// Our bench, as criterion names its folder.
     ours: &'static str,
+    /// What of ours does it.
+    by: &'static str,
     /// Name in the peers' JSON, and how to call it.
     peers: &'static [(&'static str, &'static str)],
 }
 
-const COMPARISONS: [Comparison; 2] = [
+const COMPARISONS: [Comparison; 6] = [
     Comparison {
         what: "A and W at one shape",
         ours: "f64/connection and power",
+        by: "swimmer-model",
         peers: &[
             ("numpy_one", "NumPy, one shape a call"),
             ("casadi_one", "CasADi, one shape a call"),
@@ -39,9 +46,83 @@ const COMPARISONS: [Comparison; 2] = [
     Comparison {
         what: "one cycle of the best circle (ours: all of it, to 1e-10)",
         ours: "f64/stroke of the best circle",
+        by: "swimmer-model",
         peers: &[("quarter_cycle", "gaits.py, a quarter of it by symmetry")],
     },
+    Comparison {
+        what: "Purcell's small Lighthill gait (ours: no guess, polished, with its certificate)",
+        ours: "efficiency/purcell, small",
+        by: COLD,
+        peers: &[
+            ("casadi purcell small", "CasADi 20x5, built and solved"),
+            (
+                "casadi warm purcell small",
+                "CasADi 20x5, solved from a Fourier start",
+            ),
+            ("fourier purcell small", "Fourier chain N = 1, 2, 3"),
+            (
+                "shooting purcell small",
+                "SciPy shooting from a guess right to 1e-4",
+            ),
+            ("yapss 1.3", "YAPSS, 10 segments, from a circle"),
+        ],
+    },
+    Comparison {
+        what: "Purcell's large Lighthill gait",
+        ours: "efficiency/purcell, large",
+        by: COLD,
+        peers: &[
+            ("casadi purcell large", "CasADi 20x5, built and solved"),
+            (
+                "casadi warm purcell large",
+                "CasADi 20x5, solved from a Fourier start",
+            ),
+            ("fourier purcell large", "Fourier chain N = 1, 2, 3"),
+            (
+                "shooting purcell large",
+                "SciPy shooting from a guess right to 1e-4",
+            ),
+            ("yapss 3.0", "YAPSS, 10 segments, from a circle"),
+        ],
+    },
+    Comparison {
+        what: "the robot's small Lighthill gait",
+        ours: "efficiency/robot, small",
+        by: COLD,
+        peers: &[
+            ("casadi robot small", "CasADi 20x5, built and solved"),
+            (
+                "casadi warm robot small",
+                "CasADi 20x5, solved from a Fourier start",
+            ),
+            ("fourier robot small", "Fourier chain N = 1, 2, 3"),
+            (
+                "shooting robot small",
+                "SciPy shooting from a guess right to 1e-4",
+            ),
+        ],
+    },
+    Comparison {
+        what: "the robot's large Lighthill gait",
+        ours: "efficiency/robot, large",
+        by: COLD,
+        peers: &[
+            ("casadi robot large", "CasADi 20x5, built and solved"),
+            (
+                "casadi warm robot large",
+                "CasADi 20x5, solved from a Fourier start",
+            ),
+            ("fourier robot large", "Fourier chain N = 1, 2, 3"),
+            (
+                "shooting robot large",
+                "SciPy shooting from a guess right to 1e-4",
+            ),
+        ],
+    },
 ];
+
+/// How ours finds a Lighthill gait.
+const COLD: &str = "gait-optimizer, cold";
 
 /// Runs the benches and, where they can be had, the peers of `folder`.
 ///
@@ -85,8 +166,52 @@ fn peers_times(folder: &Path, place: &Path) -> Outcome<Value> {
     }
     let next = "run it by hand to see why";
     let times = read(&mut times, next)?;
-    serde_json::from_str(&times)
-        .map_err(|why| Failure::new("reading what peers.py printed", why, next))
+    let mut times: Value = serde_json::from_str(&times)
+        .map_err(|why| Failure::new("reading what peers.py printed", why, next))?;
+    match yapss_times(place) {
+        Ok(found) => {
+            for (start, seconds) in found {
+                times[format!("yapss {start}")] = seconds.into();
+            }
+        }
+        Err(failure) => println!("\n!!!! YAPSS NOT COMPARED !!!!\n{failure}"),
+    }
+    Ok(times)
+}
+
+/// What YAPSS takes for Purcell's swimmer with ten segments, by the radius of the circle that it starts from.
+fn yapss_times(place: &Path) -> Outcome<Vec<(String, f64)>> {
+    let python = place.join("yapss/bin/python");
+    if !works(command(&python).args(["-c", "import yapss"])) {
+        run(
+            command("python3")
+                .args(["-m", "venv"])
+                .arg(place.join("yapss")),
+            "check `python3 -m venv --help`",
+        )?;
+        run(
+            command(&python).args(["-m", "pip", "install", "--quiet", YAPSS]),
+            "check the network and the package index of pip, and repeat the command",
+        )?;
+    }
+    let mut script = command(python);
+    script.current_dir(place).arg(YAPSS_SCRIPT);
+    for name in ONE_THREAD {
+        script.env(name, "1");
+    }
+    let printed = read(&mut script, "run it by hand to see why")?;
+    Ok(printed.lines().filter_map(yapss_line).collect())
+}
+
+/// `yapss eps0 1.3 seg 10 col 6 xi=0.0123 time 0.17 s …` with ten segments: start and seconds.
+fn yapss_line(line: &str) -> Option<(String, f64)> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let after = |name: &str| {
+        let at = words.iter().position(|word| *word == name)?;
+        words.get(at + 1).copied()
+    };
+    (after("seg")? == "10").then_some(())?;
+    Some((after("eps0")?.to_owned(), after("time")?.parse().ok()?))
 }
 
 /// The Python of a virtual environment with the peers' packages.
@@ -129,9 +254,10 @@ fn print_comparisons(target: &Path, times: &Value) -> Outcome {
     for comparison in COMPARISONS {
         let ours = our_time(target, comparison.ours)?;
         println!(
-            "\n{}\n  {:>12}           swimmer-model",
+            "\n{}\n  {:>12}           {}",
             comparison.what,
-            duration(ours)
+            duration(ours),
+            comparison.by
         );
         for (key, name) in comparison.peers {
             match times[*key].as_f64() {
@@ -142,6 +268,16 @@ fn print_comparisons(target: &Path, times: &Value) -> Outcome {
                 ),
                 None => println!("  {:>12} {:>8} {name}", "skipped", ""),
             }
+        }
+    }
+    for gait in [
+        "purcell small",
+        "purcell large",
+        "robot small",
+        "robot large",
+    ] {
+        if let Some(efficiency) = times[format!("xi {gait}")].as_f64() {
+            println!("CasADi finds xi = {efficiency:.12} for the gait {gait}.");
         }
     }
     if let Some(displacement) = times["displacement_over_length"].as_f64() {
@@ -199,6 +335,17 @@ mod tests {
         assert_eq!(duration(0.0456), "45.60 ms");
         assert_eq!(ratio(1.234), "x 1.23");
         assert_eq!(ratio(987.6), "x 988");
+    }
+
+    #[test]
+    fn reads_what_yapss_prints() {
+        let line = "yapss eps0 1.3 seg 10 col 6 xi=0.0123641546 time 0.17 s ";
+        assert_eq!(yapss_line(line), Some(("1.3".to_owned(), 0.17)));
+        assert_eq!(
+            yapss_line("yapss eps0 1.3 seg 5 col 6 xi=0.01 time 0.17 s"),
+            None
+        );
+        assert_eq!(yapss_line("IPOPT says hello"), None);
     }
 
     #[test]
