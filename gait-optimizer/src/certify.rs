@@ -32,6 +32,11 @@ use path::Path;
 const SMOOTH: f64 = 1e-6;
 /// A sample this close to a bound lies on it \[rad\].
 const TOUCHING: f64 = 1e-9;
+/// An arc along the links' clearance lies on it up to this \[rad\]: solvers keep a hair off the corner where tip meets tip,
+/// at which the bound has no tangent.
+const TOUCHING_CURVED: f64 = 1e-7;
+/// How far beside the curve the sides of a bound are told apart \[rad\].
+const ASIDE: f64 = 1e-6;
 /// Poses by polynomials of degree eight and six through the samples may differ by this, over L and in radians; so may slopes,
 /// over the slope, where a condition asks for slopes.
 const COARSEST: f64 = 1e-5;
@@ -233,20 +238,18 @@ impl<'a> Subject<'a> {
             .map(|(_, limit)| -limit.margin)
             .reduce(f64::max);
         checks.extend(overstepped.map(|by| Check::at_most("bound_overstepped_rad", by, TOUCHING)));
-        let off = (0..self.grid.nodes.len())
-            .filter(|&node| self.along(node) == Along::Bound)
-            .map(|node| {
-                self.bound_followed(node)
-                    .map_or(f64::NAN, |limit| limit.margin.abs())
-            })
-            .reduce(|a, b| {
-                if a.is_nan() || b.is_nan() {
-                    f64::NAN
-                } else {
-                    a.max(b)
-                }
-            });
-        checks.extend(off.map(|off| Check::at_most("arc_off_its_bound_rad", off, TOUCHING)));
+        for (curved, name, tolerance) in [
+            (false, "arc_off_its_bound_rad", TOUCHING),
+            (true, "arc_off_clearance_rad", TOUCHING_CURVED),
+        ] {
+            let off = (0..self.grid.nodes.len())
+                .filter(|&node| self.along(node) == Along::Bound)
+                .map(|node| self.bound_followed(node))
+                .filter(|limit| limit.is_some_and(|limit| limit.curved) == curved)
+                .map(|limit| limit.map_or(f64::NAN, |limit| limit.margin.abs()))
+                .reduce(worse);
+            checks.extend(off.map(|off| Check::at_most(name, off, tolerance)));
+        }
         checks
     }
 
@@ -286,18 +289,84 @@ impl<'a> Subject<'a> {
 
     /// The bound that a node of a bound arc runs along: near, and in the direction of the motion.
     fn bound_followed(&self, node: usize) -> Option<Limit> {
+        let limits = self.limits_at(node);
+        limits.get(self.bound_followed_at(node)?).copied()
+    }
+
+    /// Its place among the bounds.
+    fn bound_followed_at(&self, node: usize) -> Option<usize> {
         let rate = self.path.places.get(node)?.rate;
         let askew =
             |limit: &Limit| limit.margin.abs() + (limit.normal.dot(&rate) / rate.norm()).abs();
-        self.limits_at(node)
-            .into_iter()
-            .min_by(|a, b| askew(a).total_cmp(&askew(b)))
+        let limits = self.limits_at(node).into_iter().enumerate();
+        limits
+            .min_by(|(_, a), (_, b)| askew(a).total_cmp(&askew(b)))
+            .map(|(at, _)| at)
+    }
+
+    /// On which side of the motion the bound lies that a bound arc runs along: 1 for the right, −1 for the left. Where an arc
+    /// ends the bound may have a corner, so the node beside is asked there.
+    fn bound_side(&self, node: usize) -> Option<f64> {
+        let inside = if self.grid.before(node).is_none() {
+            node + 1
+        } else if self.grid.before(node + 1).is_none() {
+            node - 1
+        } else {
+            node
+        };
+        // Right on the links' clearance its slope may point either way by rounding, so both sides are asked.
+        let place = self.path.places.get(inside)?;
+        let right = Vector2::new(place.rate.y, -place.rate.x).normalize() * ASIDE;
+        let bound = self.bound_followed_at(inside)?;
+        let margin = |shape: Vector2<f64>| {
+            let limits = self.limits.at(&shape, self.quarter(inside));
+            limits.get(bound).map(|limit| limit.margin)
+        };
+        let (on_right, on_left) = (margin(place.phi + right)?, margin(place.phi - right)?);
+        Some(if on_right < on_left { 1.0 } else { -1.0 })
+    }
+
+    /// Whether the curve is bent round a corner of the forbidden shapes between these nodes, the end of a piece and the
+    /// beginning of the next: like a string round an edge it may have a kink there, towards the corner.
+    fn bent_round_a_corner(&self, end: usize, start: usize) -> bool {
+        const BESIDE: f64 = 1e-5;
+        let (Some(before), Some(after)) = (self.path.places.get(end), self.path.places.get(start))
+        else {
+            return false;
+        };
+        let (into, out) = (before.rate.normalize(), after.rate.normalize());
+        let curved = |shape: Vector2<f64>, node: usize| {
+            let limits = self.limits.at(&shape, self.quarter(node));
+            limits.into_iter().find(|limit| limit.curved)
+        };
+        let (Some(here), Some(first), Some(second)) = (
+            curved(before.phi, end),
+            curved(before.phi - into * BESIDE, end),
+            curved(after.phi + out * BESIDE, start),
+        ) else {
+            return false;
+        };
+        let corner = first.normal.perp(&second.normal).abs() > 1e-3;
+        let towards = (out - into) * BESIDE;
+        let inside = curved(before.phi + towards, end);
+        here.margin.abs() <= TOUCHING_CURVED
+            && corner
+            && inside.is_some_and(|limit| limit.margin < 0.0)
     }
 
     /// y over L at a quarter of the cycle.
     fn y_at_the_quarter(&self) -> f64 {
         let y: Vec<f64> = self.path.places.iter().map(|place| place.pose[1]).collect();
         self.grid.interpolated(&y, 0.25)
+    }
+}
+
+/// The larger, and NaN rather than either.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() {
+        f64::NAN
+    } else {
+        a.max(b)
     }
 }
 

@@ -48,7 +48,28 @@ fn displacement_gaits() -> Vec<(Swimmer<f64>, GaitFile)> {
             }
         }
     }
-    assert!(gaits.len() >= 6, "{}", gaits.len());
+    // Along the bound that keeps links apart, and past its corner.
+    for (swimmer, sector, heading) in [
+        (Swimmer::robot_slender(), false, Heading::Backwards),
+        (Swimmer::robot(), true, Heading::Backwards),
+        (Swimmer::purcell(), false, Heading::Forwards),
+    ] {
+        let problem = DisplacementProblem {
+            bounds: Bounds {
+                max_angle: Some(2.8),
+                sector,
+                no_overlap: true,
+                ..Bounds::default()
+            },
+            heading: Some(heading),
+            ..DisplacementProblem::new(swimmer)
+        };
+        gaits.push((
+            swimmer,
+            displacement(&problem).unwrap().gait_file("a swimmer"),
+        ));
+    }
+    assert!(gaits.len() >= 9, "{}", gaits.len());
     gaits
 }
 
@@ -131,6 +152,33 @@ fn every_efficiency_gait_passes() {
             // What is best for efficiency is not best for displacement.
             let other = certify(&swimmer, &file, Objective::Displacement, &Bounds::default());
             assert!(!other.unwrap().pass());
+        }
+    }
+}
+
+/// Bounded Lighthill gaits, the one bent round the corner of the forbidden shapes among them.
+#[test]
+fn bounded_efficiency_gaits_pass() {
+    let bounds = |max_angle, no_overlap| Bounds {
+        max_angle,
+        no_overlap,
+        ..Bounds::default()
+    };
+    for (swimmer, branch, bounds) in [
+        (Swimmer::purcell(), Branch::Large, bounds(Some(2.8), false)),
+        (Swimmer::purcell(), Branch::Large, bounds(None, true)),
+        (Swimmer::robot(), Branch::Small, bounds(Some(1.2), false)),
+    ] {
+        let problem = EfficiencyProblem {
+            bounds,
+            ..EfficiencyProblem::new(swimmer, branch)
+        };
+        let file = efficiency(&problem).unwrap().gait_file("a swimmer");
+        let certificate = certificate(&swimmer, &file);
+        assert!(certificate.pass(), "{bounds:?}: {}", certificate.failures());
+        for centre in [0.03, 0.2] {
+            let bumped = self::certificate(&swimmer, &bumped(&file, centre));
+            assert!(!bumped.pass(), "{bounds:?} at {centre}");
         }
     }
 }

@@ -23,6 +23,8 @@ pub(super) struct Limit {
     pub(super) margin: f64,
     /// Unit vector that points out.
     pub(super) normal: Vector2<f64>,
+    /// Whether it is the links' clearance.
+    pub(super) curved: bool,
 }
 
 impl Limits {
@@ -56,6 +58,7 @@ impl Limits {
             Limit {
                 margin: bound.margin(&shape) / slope,
                 normal: image(-gradient / slope, quarter),
+                curved: matches!(bound, crate::region::Bound::Clearance(_)),
             }
         };
         self.region.bounds().map(limit).collect()

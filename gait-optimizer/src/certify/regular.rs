@@ -11,7 +11,7 @@ use super::grid::Along;
 use super::momentum::Momentum;
 use super::neighbours::{Gain, Neighbours};
 use super::path::Path;
-use super::{Degree, Openness, Subject};
+use super::{Degree, Openness, Subject, worse};
 use crate::certificate::Check;
 
 impl Subject<'_> {
@@ -105,13 +105,16 @@ impl Subject<'_> {
         }
     }
 
-    /// The largest jump of the direction where pieces meet.
+    /// The largest jump of the direction where pieces meet, but for corners of the forbidden shapes.
     fn sharpest_corner(&self) -> f64 {
         let rate = |node: usize| self.path.places.get(node).map(|place| place.rate);
         let pieces = &self.grid.pieces;
         pieces
             .iter()
             .zip(pieces.iter().cycle().skip(1))
+            .filter(|(piece, next)| {
+                !self.bent_round_a_corner(*piece.nodes.end(), *next.nodes.start())
+            })
             .filter_map(|(piece, next)| {
                 let (before, after) = (rate(*piece.nodes.end())?, rate(*next.nodes.start())?);
                 Some(before.perp(&after).atan2(before.dot(&after)).abs())
@@ -135,7 +138,13 @@ impl Subject<'_> {
             rate / rate.norm()
         };
         let (start, end) = (direction(0.0), direction(0.25));
-        (start.x + start.y).abs().max((end.x - end.y).abs())
+        let last = self.grid.nodes.len().saturating_sub(1);
+        let off_start = if self.bent_round_a_corner(last, 0) {
+            0.0
+        } else {
+            (start.x + start.y).abs()
+        };
+        off_start.max((end.x - end.y).abs())
     }
 
     /// The multiplier of the bound on each bound arc: what pushes out, over the size of W t.
@@ -149,7 +158,7 @@ impl Subject<'_> {
                 .enumerate()
                 .filter(|(node, _)| self.along(*node) == Along::Bound)
                 .map(|(node, (place, bend))| {
-                    let Some(limit) = self.bound_followed(node) else {
+                    let Some(side) = self.bound_side(node) else {
                         return f64::NAN;
                     };
                     let ([d1, d2], w, rate) =
@@ -161,7 +170,7 @@ impl Subject<'_> {
                     let height = momentum.height(place) * place.root_power;
                     let dearer = Vector2::new(rate.dot(&(d1 * rate)), rate.dot(&(d2 * rate))) * 0.5;
                     let push = (faster - dearer + Vector2::new(rate.y, -rate.x) * height) / power;
-                    push.dot(&limit.normal) / scale
+                    push.dot(&Vector2::new(rate.y, -rate.x)) * side / (rate.norm() * scale)
                 })
                 .collect()
         };
@@ -250,13 +259,6 @@ impl Balance {
         if free().next().is_none() {
             return Vec::new();
         }
-        let worse = |a: f64, b: f64| {
-            if a.is_nan() || b.is_nan() {
-                f64::NAN
-            } else {
-                a.max(b)
-            }
-        };
         let h_u = free()
             .map(|(left, _)| left.norm() / self.scale)
             .fold(0.0, worse);

@@ -10,7 +10,7 @@ use swimmer_files::Objective;
 use super::grid::Along;
 use super::momentum::Momentum;
 use super::neighbours::{Gain, Neighbours};
-use super::{Degree, Openness, Subject};
+use super::{Degree, Openness, Subject, worse};
 use crate::certificate::Check;
 
 /// What the height does at one node.
@@ -129,10 +129,7 @@ impl Subject<'_> {
     }
 
     fn on_bounds(&self, looks: &[Look], open: Openness) -> Vec<Check> {
-        let multiplier = |(node, look): (usize, &Look)| {
-            let limit = self.bound_followed(node)?;
-            Some(-look.height * look.left.dot(&limit.normal).signum())
-        };
+        let multiplier = |(node, look): (usize, &Look)| Some(look.height * self.bound_side(node)?);
         let least = looks
             .iter()
             .enumerate()
@@ -222,17 +219,10 @@ impl Subject<'_> {
                 .iter()
                 .enumerate()
                 .filter(move |(node, _)| self.along(*node) == along)
-                .map(move |(node, place)| {
-                    (
-                        node,
-                        place,
-                        without.height(place),
-                        place.first.curvature().z,
-                    )
-                })
+                .map(move |(node, place)| (node, without.height(place), place.first.curvature().z))
         };
         let (mut across, mut square) = (0.0, 0.0);
-        for (_, _, height, turning) in pairs(Along::Free) {
+        for (_, height, turning) in pairs(Along::Free) {
             across += height * turning;
             square += turning * turning;
         }
@@ -241,12 +231,10 @@ impl Subject<'_> {
         } else {
             // Bounds all round: any c that every multiplier admits; the middle one.
             let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-            for (node, place, height, turning) in pairs(Along::Bound) {
-                let Some(limit) = self.bound_followed(node) else {
+            for (node, height, turning) in pairs(Along::Bound) {
+                let Some(side) = self.bound_side(node) else {
                     continue;
                 };
-                let right = Vector2::new(place.rate.y, -place.rate.x);
-                let side = right.dot(&limit.normal).signum();
                 let (height, turning) = (side * height, side * turning);
                 if turning > 0.0 {
                     low = low.max(-height / turning);
@@ -262,14 +250,5 @@ impl Subject<'_> {
             }
         };
         Some(Momentum { p, c })
-    }
-}
-
-/// The larger, and NaN rather than either.
-fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() {
-        f64::NAN
-    } else {
-        a.max(b)
     }
 }
