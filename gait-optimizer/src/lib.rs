@@ -15,6 +15,7 @@
 //! | `atlas` | multi-start over closed curves of any symmetry, and which of them are one gait |
 //! | `closed_curve` | displacement, rotation and cost of any closed curve, with exact first and second derivatives |
 //! | `loops` | closed loops of singular arcs and bounds, without any symmetry |
+//! | `sideways` | the gait of most displacement across the heading at its start |
 //! | `region` | the bounds: straight ones of the joint angles, and the curved one that keeps the side links apart |
 //! | `displacement::flow` | one quarter gait: arc after arc, event after event |
 //! | `displacement::trunk` | where singular arcs may begin: φ₁ = φ₂, and chains of bounds from there |
@@ -48,6 +49,7 @@ pub mod playable;
 mod region;
 mod robust;
 mod runge_kutta;
+mod sideways;
 mod simple_shapes;
 mod turning;
 
@@ -66,6 +68,7 @@ pub use optimal_gait::{Arc, OptimalGait};
 pub use robust::{
     Over, RobustError, RobustGait, Uncertainty, Values, robust_displacement, robust_efficiency,
 };
+pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways};
 pub use simple_shapes::{BestAmplitude, SimpleShape, best_amplitudes};
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};
 pub use turning::{Turning, TurningError, TurningProblem, turning};

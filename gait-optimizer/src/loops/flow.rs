@@ -39,6 +39,8 @@ const MOST_ARCS: usize = 24;
 const LONGEST: f64 = 60.0;
 /// Most steps of an arc: where steps shrink to nothing the zero of the height has no direction.
 const MOST_STEPS: usize = 600;
+/// A lap that reaches its start's bound this near to the start is home \[rad\].
+const AT_START: f64 = 1e-7;
 /// The height may start this much below zero on a bound, over L.
 const SLACK: f64 = 1e-9;
 
@@ -49,6 +51,17 @@ pub(crate) struct Lap {
     pub(crate) end: State,
 }
 
+/// What ends a lap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Home {
+    /// Leaving the bound with this index near the start.
+    Exit(usize),
+    /// Crossing the line across the curve at the start.
+    Line,
+    /// Passing the start on the straight bound with this index, or reaching that bound there.
+    Along(usize),
+}
+
 /// Where a lap begins and what ends it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Course<'a> {
@@ -56,9 +69,9 @@ pub(crate) struct Course<'a> {
     pub(crate) region: &'a Region,
     pub(crate) momentum: Momentum,
     pub(crate) start: Vector2<f64>,
-    /// Ends where a bound with this index is left near the start, or, without one, where the line across the curve at the
-    /// start is crossed.
-    pub(crate) home: Option<usize>,
+    /// What the first arc runs along.
+    pub(crate) first: Motion,
+    pub(crate) home: Home,
     /// Direction of the curve at the start.
     pub(crate) ahead: Vector2<f64>,
     /// No end before this much of the curve \[rad\] …
@@ -153,7 +166,7 @@ impl Course<'_> {
             legs: Vec::with_capacity(8),
             end: [self.start.x, self.start.y, 0.0, 0.0, 0.0, 0.0],
         };
-        let mut motion = Motion::Singular;
+        let mut motion = self.first;
         let mut travelled = 0.0;
         for _ in 0..MOST_ARCS {
             let drive = Drive {
@@ -173,13 +186,20 @@ impl Course<'_> {
             match event {
                 Event::Home => return Some(lap),
                 Event::HeightGone => {
-                    let at_home = motion.bound() == self.home
+                    let at_home = motion.bound().map(Home::Exit) == Some(self.home)
                         && travelled > self.shortest
                         && (phi - self.start).norm() < self.near;
                     if at_home {
                         return Some(lap);
                     }
                     motion = Motion::Singular;
+                }
+                Event::Reached(index)
+                    if self.home == Home::Along(index)
+                        && travelled > self.shortest
+                        && (phi - self.start).norm() < AT_START =>
+                {
+                    return Some(lap);
                 }
                 Event::Reached(index) => {
                     motion = along(self.region.bound(index)?, index, &phi, &motion)?;
@@ -242,6 +262,15 @@ impl Course<'_> {
                     consider(event, bound.margin(&from), bound.margin(&to));
                 }
             }
+            let far_enough = before + length + step.length > self.shortest;
+            if own.is_some() && self.home == own.map_or(Home::Line, Home::Along) && far_enough {
+                let event = Event::Home;
+                consider(
+                    event,
+                    self.value(event, &here),
+                    self.value(event, &step.end),
+                );
+            }
             if own.is_some() {
                 let event = Event::HeightGone;
                 consider(
@@ -254,7 +283,7 @@ impl Course<'_> {
                     let value = |at: &Point<6>| drive.piece_left(at);
                     consider(event, value(&here), value(&step.end));
                 }
-            } else if self.home.is_none() && before + length + step.length > self.shortest {
+            } else if self.home == Home::Line && far_enough {
                 let event = Event::Home;
                 let near = (shape(&step.end.z) - self.start).norm() < self.near;
                 let (from, to) = (self.value(event, &here), self.value(event, &step.end));

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector2, Vector3};
 use swimmer_model::Model;
 
-use super::flow::{Course, Lap};
+use super::flow::{Course, Home, Lap, Motion};
 use super::height::Momentum;
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
@@ -137,7 +137,8 @@ impl Problem<'_> {
             region: self.region,
             momentum,
             start,
-            home: self.gate.bound,
+            first: Motion::Singular,
+            home: self.gate.bound.map_or(Home::Line, Home::Exit),
             ahead,
             shortest: 0.5 * self.length,
             near: 1.0,

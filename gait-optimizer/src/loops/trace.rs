@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use swimmer_files::{ArcKind, GaitArc};
 use swimmer_model::{Model, Stroke};
 
-use super::flow::{Leg, Motion};
+use super::flow::{Lap, Leg, Motion};
 use super::height::{Momentum, State, shape};
 use super::shooting::Closed;
 use crate::certificate::{crossings, turning_number};
@@ -96,13 +96,7 @@ impl LoopTrace {
         samples: usize,
     ) -> Option<Self> {
         let total = closed.lap.end[5];
-        let legs: Vec<Leg> = closed
-            .lap
-            .legs
-            .iter()
-            .filter(|leg| leg.to[5] - leg.from[5] > LASTING * total)
-            .copied()
-            .collect();
+        let legs = lasting(&closed.lap);
         let home = Self::home(model, closed, &legs);
         let (first, state) = home.unwrap_or((0, legs.first()?.from));
         let momentum = closed.momentum.seen_from(&state);
@@ -117,6 +111,23 @@ impl LoopTrace {
         route.retain(|(_, length)| *length > LASTING * total);
         let start = [state[0], state[1], 0.0, 0.0, 0.0, 0.0];
         Self::along(model, region, momentum, start, &route, total, samples)
+    }
+
+    /// Traces a lap from its own start.
+    pub(crate) fn from_start(
+        model: &Model<f64>,
+        region: &Region,
+        momentum: Momentum,
+        lap: &Lap,
+        samples: usize,
+    ) -> Option<Self> {
+        let legs = lasting(lap);
+        let start = legs.first()?.from;
+        let route: Vec<(Motion, f64)> = legs
+            .iter()
+            .map(|leg| (leg.motion, leg.to[5] - leg.from[5]))
+            .collect();
+        Self::along(model, region, momentum, start, &route, lap.end[5], samples)
     }
 
     /// Where the loop crosses φ₁ = φ₂ > 0: the leg, and the state there.
@@ -199,10 +210,26 @@ impl LoopTrace {
     /// samples.
     pub(crate) fn checks(&self, region: &Region, stroke: &Stroke<f64>) -> Vec<Check> {
         let evidence = &self.evidence;
+        let mut checks = self.conditions(region);
+        let (x, y) = (stroke.displacement.x, stroke.displacement.y);
+        checks.extend([
+            Check::at_most("displacement_across_momentum", evidence.across.abs(), 1e-9),
+            Check::at_most(
+                "displacement_swum_again",
+                (x.hypot(y) - evidence.along).abs(),
+                1e-8,
+            ),
+            Check::at_most("net_rotation_rad", stroke.rotation.abs(), 1e-8),
+        ]);
+        checks
+    }
+
+    /// The conditions on the arcs alone, whatever the displacement is sought for.
+    pub(crate) fn conditions(&self, region: &Region) -> Vec<Check> {
+        let evidence = &self.evidence;
         let mut checks = vec![
             Check::at_most("closure_rad", evidence.closure, 1e-9),
             Check::at_most("off_singular_condition_rad", evidence.off_zero, 1e-8),
-            Check::at_most("displacement_across_momentum", evidence.across.abs(), 1e-9),
         ];
         checks.extend(
             evidence
@@ -219,16 +246,9 @@ impl LoopTrace {
             checks.push(Check::at_most("bound_overstepped_rad", overstepped, 1e-10));
         }
         let turning = turning_number(&self.cycle.phi);
-        let (x, y) = (stroke.displacement.x, stroke.displacement.y);
         checks.extend([
             Check::at_most("turning_number_off_one", (turning - 1.0).abs(), 1e-9),
             Check::at_most("self_crossings", crossings(&self.cycle.phi) as f64, 0.0),
-            Check::at_most(
-                "displacement_swum_again",
-                (x.hypot(y) - evidence.along).abs(),
-                1e-8,
-            ),
-            Check::at_most("net_rotation_rad", stroke.rotation.abs(), 1e-8),
         ]);
         checks
     }
@@ -347,6 +367,15 @@ impl LoopEvidence {
             );
         }
     }
+}
+
+/// Arcs that last.
+fn lasting(lap: &Lap) -> Vec<Leg> {
+    let total = lap.end[5];
+    let legs = lap.legs.iter();
+    legs.filter(|leg| leg.to[5] - leg.from[5] > LASTING * total)
+        .copied()
+        .collect()
 }
 
 /// An interval of the cycle, cut at the quarters inside it.

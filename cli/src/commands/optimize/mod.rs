@@ -4,6 +4,7 @@ pub(crate) mod answer;
 mod displacement;
 mod efficiency;
 mod robust;
+mod sideways;
 mod timing;
 mod turning;
 
@@ -16,6 +17,7 @@ pub(crate) enum Optimize {
     Displacement(displacement::Displacement),
     Efficiency(efficiency::Efficiency),
     Turning(turning::Turning),
+    Sideways(sideways::Sideways),
 }
 
 impl Optimize {
@@ -25,6 +27,7 @@ impl Optimize {
             Self::Displacement(arguments) => arguments.run(output),
             Self::Efficiency(arguments) => arguments.run(output),
             Self::Turning(arguments) => arguments.run(output),
+            Self::Sideways(arguments) => arguments.run(output),
         }
     }
 }

@@ -1,0 +1,138 @@
+//! `swimmer optimize sideways`: the gait that moves most across its heading, without turning.
+
+use std::fmt;
+use std::num::NonZero;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use gait_optimizer::{Sideways as Found, SidewaysError, SidewaysProblem, sideways};
+use serde::Serialize;
+use swimmer_files::Bounds;
+
+use crate::arguments::{length, load_swimmer, positive_angle};
+use crate::failure::{Failure, Outcome};
+use crate::output::Output;
+use crate::quantity::{self, Rows};
+
+use super::answer::{Arc, Evidence, closing_rows};
+
+/// Find the simple closed gait of most displacement across the heading at its first sample, without net rotation
+///
+/// The first sample is free to choose, so it is part of what is optimised: either the heading there is square to the
+/// displacement, or as near to it as the loop gets. Bridges to another start do not count.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Sideways {
+    /// purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
+    /// No joint may turn further than this, either way
+    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
+    max_angle: Option<f64>,
+    /// Links may not cross
+    #[arg(long)]
+    no_overlap: bool,
+    /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
+    #[arg(long, value_name = "LENGTH_M", value_parser = length)]
+    clearance: Option<f64>,
+    /// Write the gait, at constant power, as a gait file
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+impl Sideways {
+    pub(super) fn run(self, output: Output) -> Outcome {
+        let file = load_swimmer(&self.swimmer)?;
+        let begun = Instant::now();
+        let found = sideways(&SidewaysProblem {
+            bounds: Bounds {
+                max_angle: self.max_angle,
+                no_overlap: self.no_overlap || self.clearance.is_some(),
+                clearance: self.clearance.unwrap_or(0.0),
+                ..Bounds::default()
+            },
+            threads: std::thread::available_parallelism().map_or(1, NonZero::get),
+            ..SidewaysProblem::new(file.swimmer)
+        })?;
+        let seconds = begun.elapsed().as_secs_f64();
+        if let Some(path) = &self.output {
+            found.gait.gait_file(&file.name).save(path)?;
+        }
+        output.answer(&Answer::new(&file.name, &found, seconds, self.output));
+        Ok(())
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Answer {
+    #[serde(skip)]
+    name: String,
+    /// Across the heading at the first sample, positive.
+    lateral_over_length: f64,
+    /// Along it.
+    displacement_over_length: f64,
+    /// What bridges to another start, which do not count, would come near to.
+    bridged_supremum_over_length: f64,
+    rotation_rad: f64,
+    arcs: Vec<Arc>,
+    links_cross: f64,
+    certificate: Evidence,
+    seconds: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gait: Option<PathBuf>,
+}
+
+impl Answer {
+    fn new(name: &str, found: &Found, seconds: f64, file: Option<PathBuf>) -> Self {
+        let gait = &found.gait;
+        Self {
+            name: name.to_owned(),
+            lateral_over_length: found.lateral_over_length,
+            displacement_over_length: gait.displacement_over_length,
+            bridged_supremum_over_length: found.bridged_supremum_over_length,
+            rotation_rad: gait.rotation,
+            arcs: gait.arcs.iter().map(Arc::from).collect(),
+            links_cross: gait.links_cross,
+            certificate: (&gait.certificate).into(),
+            seconds,
+            gait: file,
+        }
+    }
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows = Rows::default();
+        let signed = |value: f64| (value * 1e9).round() / 1e9 + 0.0;
+        rows.row(
+            "sideways",
+            format!("|Y|/L = {:.9}", self.lateral_over_length),
+        )
+        .row(
+            "along the heading",
+            format!("X/L = {:.9}", signed(self.displacement_over_length)),
+        )
+        .row(
+            "with bridges",
+            format!("up to |Y|/L = {:.9}", self.bridged_supremum_over_length),
+        )
+        .row("net rotation", quantity::angle(self.rotation_rad))
+        .row("arcs", self.arcs.len().to_string());
+        closing_rows(
+            &mut rows,
+            self.links_cross,
+            &self.certificate,
+            self.gait.as_ref(),
+        );
+        write!(f, "{}, most displacement sideways\n{rows}", self.name)
+    }
+}
+
+impl From<SidewaysError> for Failure {
+    /// A problem that makes no sense is bad input; one without an optimum was tried.
+    fn from(error: SidewaysError) -> Self {
+        match error {
+            SidewaysError::Problem(_) => Self::bad_input(&error),
+            SidewaysError::NoOptimum { .. } => Self::tried(&error),
+        }
+    }
+}

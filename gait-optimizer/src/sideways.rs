@@ -1,0 +1,164 @@
+//! The gait that moves most across the heading it starts with, without net rotation, so that a robot can be steered.
+//!
+//! Where the first sample lies is free: of a loop with net displacement d, the best start is where the heading is square to
+//! d, and then only |d| counts – the loop is one of most displacement. Where no heading is square to d, the start is where
+//! the heading is farthest turned. Moving the first sample then changes the frame that d is seen from, and the momentum's
+//! rotational part jumps by X there (p across the heading, X along it): the heights before and after the start differ
+//! by X times the θ row of the curvature. Both vanish on free arcs, so a loop that is stationary together with such a start
+//! has it on a bound – where the heading is stationary along it, or in a corner of the bounds.
+//!
+//! A bridge – a way out to a start with the heading square to d and back along itself – costs nothing, so the supremum over
+//! all curves is the largest |d| wherever a bridge can turn that far ([`Sideways::bridged_supremum_over_length`]). As with
+//! the gait that turns most, bridges do not count here: the start is a point of the loop itself. What is compared are the
+//! loops of most displacement, each with its best start, and the loops that are stationary with a start on a straight bound.
+
+mod error;
+mod on_bound;
+mod square;
+
+use nalgebra::Vector2;
+use swimmer_files::{Bounds, Objective};
+use swimmer_model::{Model, Swimmer, Tolerance, trajectory};
+
+pub use error::SidewaysError;
+
+use crate::certificate::{Certificate, Check};
+use crate::cycle::Cycle;
+use crate::displacement::of_unit_length;
+use crate::loops::LoopTrace;
+use crate::optimal_gait::Solution;
+use crate::region::Region;
+use crate::{AtlasProblem, OptimalGait, atlas};
+
+/// What to steer, and how.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SidewaysProblem {
+    /// The swimmer.
+    pub swimmer: Swimmer<f64>,
+    /// Bounds on the shapes: the largest angle and crossing links.
+    pub bounds: Bounds,
+    /// Random starts of the search among the loops of most displacement.
+    pub starts: usize,
+    /// Threads to work on; the result does not depend on them.
+    pub threads: usize,
+    /// Samples of the cycle.
+    pub samples: usize,
+}
+
+impl SidewaysProblem {
+    /// The problem without bounds.
+    pub fn new(swimmer: Swimmer<f64>) -> Self {
+        Self {
+            swimmer,
+            bounds: Bounds::default(),
+            starts: 48,
+            threads: 1,
+            samples: 1024,
+        }
+    }
+}
+
+/// A gait that moves sideways.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sideways {
+    /// The gait with its certificate.
+    pub gait: OptimalGait,
+    /// |Y| over L: net displacement across the heading at the first sample.
+    pub lateral_over_length: f64,
+    /// The largest |d| over L of the loops found: what a bridge to a start with its heading square to d would come near to.
+    pub bridged_supremum_over_length: f64,
+}
+
+/// The simple closed loop of most displacement across the heading at its first sample, without net rotation: the best of
+/// those that are found and certified.
+///
+/// # Errors
+/// [`SidewaysError`]: what is wrong with the problem, or that there is no such gait.
+pub fn sideways(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
+    let loops = atlas(&AtlasProblem {
+        bounds: problem.bounds,
+        starts: problem.starts,
+        threads: problem.threads,
+        samples: problem.samples,
+        ..AtlasProblem::new(problem.swimmer, Objective::Displacement)
+    })?;
+    let model = Model::new(&of_unit_length(&problem.swimmer)).map_err(crate::AtlasError::from)?;
+    let region = Region::new(&problem.bounds, &problem.swimmer.links);
+    let mut found: Vec<Sideways> = Vec::new();
+    for optimum in &loops.optima {
+        found.extend(square::turned(problem, &model, &optimum.gait));
+    }
+    for candidate in on_bound::candidates(&model, &region, problem.samples) {
+        found.extend(finished(problem, &model, &region, candidate));
+    }
+    let bridged = loops.optima.first().map(|best| best.distance_over_length);
+    found
+        .into_iter()
+        .max_by(|a, b| a.lateral_over_length.total_cmp(&b.lateral_over_length))
+        .map(|best| Sideways {
+            bridged_supremum_over_length: bridged.unwrap_or(0.0).max(best.lateral_over_length),
+            ..best
+        })
+        .ok_or(SidewaysError::NoOptimum {
+            bounds: problem.bounds,
+            loops: loops.optima.len(),
+        })
+}
+
+/// A traced loop as a gait, where its certificate holds.
+fn finished(
+    problem: &SidewaysProblem,
+    model: &Model<f64>,
+    region: &Region,
+    trace: LoopTrace,
+) -> Option<Sideways> {
+    let stroke = trace.cycle.swum(model)?;
+    let mut checks = trace.conditions(region);
+    let lateral = stroke.displacement.y.abs();
+    checks.extend([
+        Check::at_most(
+            "lateral_swum_again",
+            (lateral - trace.evidence.along).abs(),
+            1e-8,
+        ),
+        Check::at_most("net_rotation_rad", stroke.rotation.abs(), 1e-8),
+        Check::at_most(
+            "other_start_better",
+            better_start(model, &trace.cycle, &stroke.displacement)?,
+            1e-9,
+        ),
+    ]);
+    let certificate = Certificate::new(checks);
+    if !certificate.pass() {
+        return None;
+    }
+    Some(Sideways {
+        lateral_over_length: lateral,
+        bridged_supremum_over_length: lateral,
+        gait: OptimalGait::new(Solution {
+            objective: Objective::Sideways,
+            swimmer: problem.swimmer,
+            bounds: problem.bounds,
+            symmetric: false,
+            links_cross: trace.cycle.links_cross(model),
+            arcs: trace.arcs,
+            cycle: trace.cycle,
+            stroke,
+            certificate,
+        }),
+    })
+}
+
+/// How much more of d another start would have across its heading, over L.
+fn better_start(model: &Model<f64>, cycle: &Cycle, d: &Vector2<f64>) -> Option<f64> {
+    let gait = cycle.gait().ok()?;
+    let mut best = 0.0_f64;
+    trajectory(model, &gait, &Tolerance::new(1e-11), 2048, |point| {
+        let (sin, cos) = point.pose.theta.sin_cos();
+        best = best.max((d.y * cos - d.x * sin).abs());
+    });
+    Some(best - d.y.abs())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,189 @@
+//! Loops that start on a straight bound where the heading is stationary along it, or in a corner of the bounds.
+//!
+//! The start is known, p is across its heading; one unknown is left, the multiplier c of the rotation, and one condition,
+//! no net rotation: a scan over c with a root search finds every such loop.
+
+use nalgebra::Vector2;
+use swimmer_model::Model;
+
+use crate::loops::{Course, Lap, LoopTrace, Momentum, Motion};
+use crate::region::{Bound, Edge, Region};
+use crate::runge_kutta::StepControl;
+
+/// Places looked at along an edge.
+const PLACES: u32 = 160;
+/// Multipliers looked at, from −RANGE to RANGE, over L.
+const LOOKS: u32 = 80;
+const RANGE: f64 = 0.8;
+const COARSE: StepControl = StepControl {
+    tolerance: 1e-7,
+    longest: 0.15,
+};
+const FINE: StepControl = StepControl {
+    tolerance: 1e-13,
+    longest: 0.15,
+};
+
+/// A start on an edge.
+#[derive(Debug, Clone, Copy)]
+struct Start {
+    at: Vector2<f64>,
+    bound: usize,
+    along: Vector2<f64>,
+}
+
+/// All loops that close, traced.
+pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) -> Vec<LoopTrace> {
+    let mut found = Vec::new();
+    for start in starts(model, region) {
+        for sign in [1.0, -1.0] {
+            let family = Family {
+                model,
+                region,
+                start,
+                sign,
+            };
+            for rotation in family.roots() {
+                let trace = family.shoot(rotation, FINE).and_then(|lap| {
+                    let momentum = family.momentum(rotation);
+                    LoopTrace::from_start(model, region, momentum, &lap, samples)
+                });
+                found.extend(trace);
+            }
+        }
+    }
+    found
+}
+
+/// Shapes on the straight bounds where the heading is stationary along them, and their corners.
+fn starts(model: &Model<f64>, region: &Region) -> Vec<Start> {
+    let mut found = Vec::new();
+    let reach = region.horizon;
+    for (bound, edge) in region.bounds().enumerate() {
+        let Bound::Straight(edge) = edge else {
+            continue;
+        };
+        let along = edge.counter_clockwise();
+        let middle = edge.normal * edge.offset;
+        let place = |k: u32| reach * (2.0 * f64::from(k) / f64::from(PLACES) - 1.0);
+        let inside = |at: &Vector2<f64>| region.overstepped(at) < 1e-12;
+        let turning = |at: &Vector2<f64>| {
+            let a = model.local_connection(at);
+            a[(2, 0)] * along.x + a[(2, 1)] * along.y
+        };
+        for k in 0..PLACES {
+            let (mut low, mut high) = (middle + along * place(k), middle + along * place(k + 1));
+            if !inside(&low) || !inside(&high) || turning(&low) * turning(&high) > 0.0 {
+                continue;
+            }
+            for _ in 0..60 {
+                let half = (low + high) * 0.5;
+                if turning(&low) * turning(&half) <= 0.0 {
+                    high = half;
+                } else {
+                    low = half;
+                }
+            }
+            let at = edge.onto(&((low + high) * 0.5));
+            found.push(Start { at, bound, along });
+        }
+        found.extend(corner(region, bound, &edge).filter(|start| inside(&start.at)));
+    }
+    found
+}
+
+/// The corner where an edge begins, run counter-clockwise.
+fn corner(region: &Region, bound: usize, edge: &Edge) -> Option<Start> {
+    let along = edge.counter_clockwise();
+    region.edges().iter().find_map(|other| {
+        // The edge before is square to this one for a box.
+        let turns_left = other.counter_clockwise().perp(&along);
+        (turns_left > 0.99).then(|| Start {
+            at: edge.normal * edge.offset + other.normal * other.offset,
+            bound,
+            along,
+        })
+    })
+}
+
+struct Family<'a> {
+    model: &'a Model<f64>,
+    region: &'a Region,
+    start: Start,
+    /// Left or right of the heading.
+    sign: f64,
+}
+
+impl Family<'_> {
+    fn momentum(&self, rotation: f64) -> Momentum {
+        Momentum {
+            direction: Vector2::new(0.0, self.sign),
+            rotation,
+        }
+    }
+
+    fn shoot(&self, rotation: f64, control: StepControl) -> Option<Lap> {
+        let course = Course {
+            model: self.model,
+            region: self.region,
+            momentum: self.momentum(rotation),
+            start: self.start.at,
+            first: Motion::Edge {
+                bound: self.start.bound,
+                direction: self.start.along,
+            },
+            home: crate::loops::Home::Along(self.start.bound),
+            ahead: self.start.along,
+            shortest: 0.5,
+            near: f64::INFINITY,
+            control,
+        };
+        course.lap()
+    }
+
+    fn miss(&self, rotation: f64, control: StepControl) -> Option<f64> {
+        let end = self.shoot(rotation, control)?.end;
+        let off = (Vector2::new(end[0], end[1]) - self.start.at).norm();
+        (off < 1e-6).then_some(end[4])
+    }
+
+    /// Multipliers for which the loop closes without net rotation.
+    fn roots(&self) -> Vec<f64> {
+        let place = |k: u32| RANGE * (2.0 * f64::from(k) / f64::from(LOOKS) - 1.0);
+        let misses: Vec<Option<f64>> = (0..=LOOKS).map(|k| self.miss(place(k), COARSE)).collect();
+        let mut roots = Vec::new();
+        for (k, pair) in (0..LOOKS).zip(misses.windows(2)) {
+            if let [Some(a), Some(b)] = pair
+                && a * b <= 0.0
+            {
+                roots.extend(self.root((place(k), *a), (place(k + 1), *b)));
+            }
+        }
+        roots
+    }
+
+    fn root(&self, low: (f64, f64), high: (f64, f64)) -> Option<f64> {
+        let (mut low, mut high) = (low, high);
+        for round in 0..80 {
+            let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            let at = if round % 4 != 3 && secant > low.0 && secant < high.0 {
+                secant
+            } else {
+                0.5 * (low.0 + high.0)
+            };
+            let miss = self.miss(at, FINE)?;
+            if miss.abs() < 1e-12 {
+                return Some(at);
+            }
+            if miss * low.1 > 0.0 {
+                low = (at, miss);
+            } else {
+                high = (at, miss);
+            }
+            if high.0 - low.0 < 1e-15 {
+                break;
+            }
+        }
+        None
+    }
+}

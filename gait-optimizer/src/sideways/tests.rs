@@ -1,0 +1,39 @@
+use swimmer_files::{Bounds, Objective};
+use swimmer_model::{Model, Swimmer, Tolerance, swim};
+
+use super::{SidewaysError, SidewaysProblem, sideways};
+use crate::AtlasError;
+
+fn problem(swimmer: Swimmer<f64>) -> SidewaysProblem {
+    SidewaysProblem {
+        bounds: Bounds {
+            max_angle: Some(2.8),
+            ..Bounds::default()
+        },
+        starts: 24,
+        ..SidewaysProblem::new(swimmer)
+    }
+}
+
+#[test]
+fn the_robot_moves_sideways_without_turning() {
+    let found = sideways(&problem(Swimmer::robot())).unwrap();
+    assert!(found.gait.certificate.pass());
+    assert_eq!(found.gait.objective, Objective::Sideways);
+    // Gait (b) turns its heading by 0.92028 rad either way (`swimmer simulate`), X/L = 0.0796979722.
+    assert!(found.lateral_over_length >= 0.079_697_972_2 * 0.920_282_807_f64.sin() - 1e-8);
+    assert!((found.bridged_supremum_over_length - 0.079_697_972_2).abs() < 1e-9);
+    let model = Model::new(&Swimmer::robot()).unwrap();
+    let stroke = swim(&model, &found.gait.gait().unwrap(), &Tolerance::default());
+    let across = stroke.displacement_over_length().y.abs();
+    assert!((across - found.lateral_over_length).abs() < 1e-9);
+    assert!(stroke.rotation.abs() < 1e-8);
+}
+
+#[test]
+fn senseless_problems_are_refused() {
+    let mut bad = problem(Swimmer::purcell());
+    bad.bounds.sector = true;
+    let quarter = SidewaysError::Problem(AtlasError::QuarterBound);
+    assert_eq!(sideways(&bad), Err(quarter));
+}
