@@ -2,7 +2,7 @@
 
 use gait_optimizer::{
     Bounds, Branch, Certificate, DisplacementProblem, EfficiencyProblem, Heading, Objective,
-    certify, displacement, efficiency,
+    TurningProblem, certify, displacement, efficiency, turning,
 };
 use nalgebra::Vector2;
 use std::path::Path;
@@ -180,6 +180,25 @@ fn bounded_efficiency_gaits_pass() {
             let bumped = self::certificate(&swimmer, &bumped(&file, centre));
             assert!(!bumped.pass(), "{bounds:?} at {centre}");
         }
+    }
+}
+
+/// The loops that turn most; the border of Purcell's has a corner where two zero-level curves cross.
+#[test]
+fn turning_gaits_pass() {
+    for swimmer in [Swimmer::purcell(), Swimmer::robot()] {
+        let bounds = Bounds {
+            max_angle: Some(2.8),
+            no_overlap: true,
+            ..Bounds::default()
+        };
+        let file = turning(&TurningProblem { swimmer, bounds })
+            .unwrap()
+            .gait
+            .gait_file("a swimmer");
+        let certificate = certificate(&swimmer, &file);
+        assert!(certificate.pass(), "{}", certificate.failures());
+        assert!(!self::certificate(&swimmer, &bumped(&file, 0.2)).pass());
     }
 }
 

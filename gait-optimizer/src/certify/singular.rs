@@ -20,7 +20,7 @@ struct Look {
     gradient: Vector2<f64>,
     /// Unit vector to the left of the motion.
     left: Vector2<f64>,
-    /// How far a wrong pose can move the zero of the height, per unit of pose.
+    /// How far a wrong pose can change the height, per unit of pose.
     pose_leverage: f64,
 }
 
@@ -47,7 +47,7 @@ impl Subject<'_> {
                     height: momentum.height(place),
                     gradient,
                     left: Vector2::new(-place.rate.y, place.rate.x) / place.rate.norm(),
-                    pose_leverage: 2.0 * curvature.norm() / gradient.norm(),
+                    pose_leverage: 2.0 * curvature.norm(),
                 }
             })
             .collect();
@@ -88,13 +88,16 @@ impl Subject<'_> {
         if free().next().is_none() {
             return Vec::new();
         }
-        let largest = |value: fn(&Look) -> f64| free().map(value).fold(0.0, worse);
-        let leverage = largest(|look| look.pose_leverage);
+        let largest = |value: &dyn Fn(&Look) -> f64| free().map(value).fold(0.0, worse);
+        // Zero-level curves may cross where a gait has a corner: there the slope vanishes, and no distance goes by it.
+        let steepest = largest(&|look| look.gradient.norm());
+        let slope_at = |look: &Look| look.gradient.norm().max(1e-3 * steepest);
+        let leverage = largest(&|look| look.pose_leverage / slope_at(look));
         let tolerance = 1e-8 + leverage * open.pose;
-        let off_zero = |look: &Look| look.height.abs() / look.gradient.norm();
+        let off_zero = |look: &Look| look.height.abs() / slope_at(look);
         let mut checks = vec![Check::at_most(
             "off_singular_condition_rad",
-            largest(off_zero),
+            largest(&off_zero),
             tolerance,
         )];
         let exits = self
@@ -107,12 +110,21 @@ impl Subject<'_> {
             .filter_map(|node| looks.get(node).map(off_zero))
             .reduce(worse);
         checks.extend(exits.map(|off| Check::at_most("off_exit_condition_rad", off, tolerance)));
-        let least = free()
-            .map(|look| look.gradient.dot(&look.left))
+        // Not where a piece ends: there two zero-level curves may cross.
+        let inner = |node: usize| {
+            self.along(node) == Along::Free
+                && self.grid.before(node).is_some()
+                && self.grid.before(node + 1).is_some()
+        };
+        let least = looks
+            .iter()
+            .enumerate()
+            .filter(|(node, _)| inner(*node))
+            .map(|(_, look)| look.gradient.dot(&look.left))
             .fold(f64::INFINITY, |a, b| if b.is_nan() { b } else { a.min(b) });
         checks.push(Check::at_least("legendre_clebsch_least", least, 1e-6));
         let (h_u, hamiltonian) = self.drift_of_h_u(looks);
-        let slope = largest(|look| look.gradient.norm());
+        let slope = steepest;
         checks.push(Check::at_most("h_u", h_u, tolerance * slope.max(1.0)));
         let rate = self
             .path
