@@ -1,0 +1,82 @@
+//! What is shot: arcs in order, with the state at the start of every piece.
+
+use nalgebra::Vector2;
+
+use crate::extremal::equations::{Motion, State};
+
+/// How an arc begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Entry {
+    /// Smoothly; onto a bound, tangent to it.
+    Smooth,
+    /// At this corner of the forbidden shapes, which the curve is bent round with a kink.
+    Corner(Vector2<f64>),
+}
+
+/// One arc of a chain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stretch {
+    pub(crate) motion: Motion,
+    pub(crate) entry: Entry,
+    /// How many pieces it is shot in.
+    pub(crate) pieces: usize,
+    /// Power length.
+    pub(crate) length: f64,
+}
+
+/// A chain of arcs with the state at the start of every piece.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Chain {
+    pub(crate) arcs: Vec<Stretch>,
+    pub(crate) states: Vec<State>,
+}
+
+/// What is asked of both ends of a chain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Class {
+    /// A quarter of a doubly symmetric gait: square to φ₁ = φ₂ with θ = 0, square to φ₁ = −φ₂ with λ₄ = 0.
+    Quarter,
+    /// A closed curve whose direction turns by `turn` \[rad\].
+    Closed {
+        turn: f64,
+        /// A line that the first shape is held on: a point and the direction across it; for curves without a bound arc.
+        line: Option<(Vector2<f64>, Vector2<f64>)>,
+    },
+}
+
+impl Chain {
+    /// Power length of the whole chain.
+    pub(crate) fn length(&self) -> f64 {
+        self.arcs.iter().map(|arc| arc.length).sum()
+    }
+
+    /// The arc, the length and the start of every piece.
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = (usize, &Stretch, &State)> {
+        self.arcs
+            .iter()
+            .enumerate()
+            .flat_map(|(index, arc)| std::iter::repeat_n((index, arc), arc.pieces))
+            .zip(&self.states)
+            .map(|((index, arc), state)| (index, arc, state))
+    }
+
+    pub(super) fn is_whole(&self) -> bool {
+        !self.states.is_empty()
+            && self.states.len() == self.arcs.iter().map(|arc| arc.pieces).sum::<usize>()
+            && self.arcs.iter().all(|arc| arc.pieces > 0)
+    }
+
+    pub(super) fn moved(&self, step: &[f64], factor: f64) -> Self {
+        let mut chain = self.clone();
+        let mut changes = step.iter().map(|change| factor * change);
+        for state in &mut chain.states {
+            for value in state.iter_mut() {
+                *value += changes.next().unwrap_or(0.0);
+            }
+        }
+        for arc in &mut chain.arcs {
+            arc.length += changes.next().unwrap_or(0.0);
+        }
+        chain
+    }
+}
