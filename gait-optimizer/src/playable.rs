@@ -1,9 +1,9 @@
 //! What a real robot makes of a gait: how fast its servos can run it, which angles they reach, and what is left of the
 //! displacement once a table, pulses, a rate limit and a dead band have had their share.
 //!
-//! - [`timing`]: a gait is a curve; its timing is free. The best timing under a rate limit, and the shortest period.
-//! - [`reach`]: the largest angle of a gait, with its place, against what the servos allow.
-//! - [`forecast`]: the displacement as designed, as stored, as commanded and as turned, loss by loss, before a gait is sent.
+//! - [`timing()`]: a gait is a curve; its timing is free. The best timing under a rate limit, and the shortest period.
+//! - [`reach()`]: the largest angle of a gait, with its place, against what the servos allow.
+//! - [`forecast()`]: the displacement as designed, as stored, as commanded and as turned, loss by loss, before a gait is sent.
 
 pub mod forecast;
 pub mod path;
