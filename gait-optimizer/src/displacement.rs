@@ -66,7 +66,7 @@ impl DisplacementProblem {
             swimmer,
             bounds: Bounds::default(),
             heading: None,
-            quarter_samples: 256,
+            quarter_samples: 192,
         }
     }
 

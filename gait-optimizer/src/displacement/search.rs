@@ -41,6 +41,10 @@ const COARSE: StepControl = StepControl {
 };
 /// |λ₄| over L from which on the fine tolerance takes over.
 const NEAR: f64 = 1e-3;
+const MIDDLING: StepControl = StepControl {
+    tolerance: 1e-9,
+    longest: 0.5,
+};
 pub(super) const FINE: StepControl = StepControl {
     tolerance: 1e-13,
     longest: 0.3,
@@ -173,23 +177,43 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Secant method at the fine tolerance from a place near a root.
+    /// From a place near a root to the root: secants at a middling tolerance, then a few steps at the fine one with the slope
+    /// found there, since the fine shots are what costs. None where the secants lead away.
     fn polished(&self, trunk: &Trunk, near: f64) -> Option<f64> {
-        let mut before = (near, self.miss(trunk, near, FINE)?);
+        let (p, slope) = self.secants(trunk, near)?;
+        let mut here = (p, self.miss(trunk, p, FINE)?);
+        for _ in 0..6 {
+            if here.1.abs() < 1e-14 {
+                return Some(here.0);
+            }
+            let next = here.0 - here.1 / slope;
+            let lambda4 = self.miss(trunk, next, FINE)?;
+            if lambda4.abs() > 0.5 * here.1.abs() {
+                break; // rounding, or a slope that does not hold
+            }
+            here = (next, lambda4);
+        }
+        (here.1.abs() < 1e-10).then_some(here.0)
+    }
+
+    /// Secant method at the middling tolerance: a place with a small `λ₄(t_f)` and the slope there.
+    fn secants(&self, trunk: &Trunk, near: f64) -> Option<(f64, f64)> {
+        let mut before = (near, self.miss(trunk, near, MIDDLING)?);
         let mut here = near + 1e-5;
         for _ in 0..12 {
-            let lambda4 = self.miss(trunk, here, FINE)?;
-            let next = here - lambda4 * (here - before.0) / (lambda4 - before.1);
-            if lambda4.abs() < 1e-14 || !next.is_finite() {
-                return (lambda4.abs() < 1e-10).then_some(here);
-            }
-            if (next - near).abs() > 0.05 {
+            let lambda4 = self.miss(trunk, here, MIDDLING)?;
+            let slope = (lambda4 - before.1) / (here - before.0);
+            let next = here - lambda4 / slope;
+            if !next.is_finite() || (next - near).abs() > 0.05 {
                 return None;
+            }
+            if lambda4.abs() < 1e-6 {
+                return Some((next, slope));
             }
             before = (here, lambda4);
             here = next;
         }
-        (before.1.abs() < 1e-10).then_some(before.0)
+        None
     }
 
     /// The candidate that leaves a trunk at p.
