@@ -299,8 +299,13 @@ impl LoopTrace {
                     evidence.look(&system, region, &here);
                     let step = (to - from) * total / intervals as f64;
                     here = advance(&system, Point::new(&system, here), step, CONTROL)?.z;
+                    // Exactly `to` in the end: corners are named by their sample's fraction.
                     let share = (interval + 1) as f64 / intervals as f64;
-                    cycle.u.push(from + (to - from) * share);
+                    cycle.u.push(if interval + 1 == intervals {
+                        to
+                    } else {
+                        from + (to - from) * share
+                    });
                     cycle.phi.push(shape(&here));
                 }
             }
