@@ -296,8 +296,15 @@ impl<'a> Subject<'a> {
     /// Its place among the bounds.
     fn bound_followed_at(&self, node: usize) -> Option<usize> {
         let rate = self.path.places.get(node)?.rate;
-        let askew =
-            |limit: &Limit| limit.margin.abs() + (limit.normal.dot(&rate) / rate.norm()).abs();
+        // At a corner between two bounds the normal may be the other's; a bound farther away is still not followed.
+        let askew = |limit: &Limit| {
+            let far = if limit.margin.abs() > TOUCHING_CURVED {
+                1.0 + limit.margin.abs()
+            } else {
+                0.0
+            };
+            far + (limit.normal.dot(&rate) / rate.norm()).abs()
+        };
         let limits = self.limits_at(node).into_iter().enumerate();
         limits
             .min_by(|(_, a), (_, b)| askew(a).total_cmp(&askew(b)))

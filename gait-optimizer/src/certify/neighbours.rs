@@ -18,6 +18,8 @@ pub(super) enum Gain {
     Displacement,
     /// ln |d| − ln S, without net rotation.
     Efficiency,
+    /// |Y|, across the heading at the start, without net rotation.
+    Sideways,
     /// ± Δθ.
     Turning,
 }
@@ -177,6 +179,7 @@ impl Neighbours<'_> {
         let p = match self.gain {
             Gain::Displacement => d / d.norm(),
             Gain::Efficiency => d / d.norm_squared(),
+            Gain::Sideways => Vector2::new(0.0, d.y.signum()),
             Gain::Turning => Vector2::zeros(),
         };
         let momentum = Momentum {
@@ -188,7 +191,7 @@ impl Neighbours<'_> {
             let moved = self.enclosed(&path, &momentum, wave);
             match self.gain {
                 Gain::Efficiency => moved - self.lengthened(&path, wave) / length,
-                Gain::Displacement | Gain::Turning => moved,
+                Gain::Displacement | Gain::Sideways | Gain::Turning => moved,
             }
         };
         DVector::from_iterator(waves.len(), waves.iter().map(of_wave))

@@ -25,15 +25,40 @@ struct Look {
 }
 
 impl Subject<'_> {
-    /// All checks of a weak optimum.
+    /// All checks of a weak optimum. A sideways gait is stationary with its start, or it is a loop of most displacement
+    /// whatever its start; in both cases no other start may be better.
     pub(super) fn of_weak_optimum(&self, objective: Objective, open: Openness) -> Vec<Check> {
-        let Some(momentum) = self.weak_momentum(objective) else {
+        let first = match objective {
+            Objective::Turning => Gain::Turning,
+            Objective::Sideways => Gain::Sideways,
+            _ => Gain::Displacement,
+        };
+        let mut checks = self.of_gain(first, open);
+        if objective == Objective::Sideways {
+            if !checks.iter().all(|check| check.pass) {
+                let of_loop = self.of_gain(Gain::Displacement, open);
+                if of_loop.iter().all(|check| check.pass) {
+                    checks = of_loop;
+                }
+            }
+            checks.push(Check::at_most(
+                "other_start_better",
+                self.better_start(),
+                1e-8 + 4.0 * open.pose,
+            ));
+        }
+        if objective == Objective::Displacement && self.symmetric {
+            let y = self.path.displacement().y;
+            checks.push(Check::at_most("net_lateral", y.abs(), 1e-8 + open.pose));
+        }
+        checks
+    }
+
+    /// All checks of what one gain asks for.
+    fn of_gain(&self, gain: Gain, open: Openness) -> Vec<Check> {
+        let Some(momentum) = self.weak_momentum(gain) else {
             // Nothing is gained, so nothing is optimal.
-            let gained = match objective {
-                Objective::Turning => self.path.rotation().abs(),
-                _ => self.path.displacement().norm(),
-            };
-            return vec![Check::at_least("gain_least", gained, 1e-6)];
+            return vec![Check::at_least("gain_least", self.gained(gain), 1e-6)];
         };
         let looks: Vec<Look> = self
             .path
@@ -53,19 +78,11 @@ impl Subject<'_> {
             .collect();
         let mut checks = self.on_free_arcs(&looks, open);
         checks.extend(self.on_bounds(&looks, open));
-        if objective == Objective::Displacement && self.symmetric {
-            let y = self.path.displacement().y;
-            checks.push(Check::at_most("net_lateral", y.abs(), 1e-8 + open.pose));
-        }
         let neighbours = Neighbours {
             model: self.model,
             grid: &self.grid,
             shapes: &self.shapes,
-            gain: if objective == Objective::Turning {
-                Gain::Turning
-            } else {
-                Gain::Displacement
-            },
+            gain,
             rotation: momentum.c,
             symmetric: self.symmetric,
         };
@@ -75,6 +92,26 @@ impl Subject<'_> {
                 .map(|count| Check::at_most("ascent_directions", count as f64, 0.0)),
         );
         checks
+    }
+
+    /// What a gain is for this gait.
+    fn gained(&self, gain: Gain) -> f64 {
+        match gain {
+            Gain::Turning => self.path.rotation().abs(),
+            Gain::Sideways => self.path.displacement().y.abs(),
+            Gain::Displacement | Gain::Efficiency => self.path.displacement().norm(),
+        }
+    }
+
+    /// How much more of the displacement another start would have across its heading, over L.
+    fn better_start(&self) -> f64 {
+        let d = self.path.displacement();
+        let across = |theta: f64| {
+            let (sin, cos) = theta.sin_cos();
+            (d.y * cos - d.x * sin).abs()
+        };
+        let starts = self.path.places.iter().map(|place| across(place.pose[2]));
+        starts.fold(0.0, worse) - d.y.abs()
     }
 
     fn on_free_arcs(&self, looks: &[Look], open: Openness) -> Vec<Check> {
@@ -206,20 +243,23 @@ impl Subject<'_> {
         worst
     }
 
-    /// The multipliers: p along the displacement, c from what must vanish on the free arcs. None where nothing is gained.
-    fn weak_momentum(&self, objective: Objective) -> Option<Momentum> {
-        if objective == Objective::Turning {
-            let rotation = self.path.rotation();
-            return (rotation.abs() > 1e-6).then(|| Momentum {
-                p: Vector2::zeros(),
-                c: rotation.signum(),
-            });
-        }
-        let d = self.path.displacement();
-        if d.norm().is_nan() || d.norm() <= 1e-6 {
+    /// The multipliers: p along the displacement (across the heading at the start for a sideways gait), c from what must vanish on the free arcs. None where nothing is gained.
+    fn weak_momentum(&self, gain: Gain) -> Option<Momentum> {
+        let gained = self.gained(gain);
+        if gained.is_nan() || gained <= 1e-6 {
             return None;
         }
-        let p = d / d.norm();
+        let d = self.path.displacement();
+        let p = match gain {
+            Gain::Turning => {
+                return Some(Momentum {
+                    p: Vector2::zeros(),
+                    c: self.path.rotation().signum(),
+                });
+            }
+            Gain::Sideways => Vector2::new(0.0, d.y.signum()),
+            Gain::Displacement | Gain::Efficiency => d / d.norm(),
+        };
         if self.symmetric {
             let c = -p.x * self.y_at_the_quarter();
             return Some(Momentum { p, c });
