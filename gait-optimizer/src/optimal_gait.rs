@@ -98,6 +98,23 @@ impl OptimalGait {
         }
     }
 
+    /// The gait of the mirrored swimmer, Φ → −Φ: as far across, to the other side; as much rotation, the other way.
+    #[must_use]
+    pub(crate) fn mirrored(mut self) -> Self {
+        for phi in &mut self.cycle.phi {
+            *phi = -*phi;
+        }
+        for arc in &mut self.arcs {
+            arc.from = arc.from.map(|angle| -angle);
+            arc.to = arc.to.map(|angle| -angle);
+        }
+        self.lateral_over_length = -self.lateral_over_length;
+        self.rotation = -self.rotation;
+        self.start_angle = -self.start_angle;
+        self.end_angle = -self.end_angle;
+        self
+    }
+
     /// Fractions of the period of the samples, 0 to 1, at constant power.
     pub fn u(&self) -> &[f64] {
         &self.cycle.u

@@ -63,7 +63,7 @@ impl SidewaysProblem {
 pub struct Sideways {
     /// The gait with its certificate.
     pub gait: OptimalGait,
-    /// |Y| over L: net displacement across the heading at the first sample.
+    /// Y over L: net displacement across the heading at the first sample, to the left.
     pub lateral_over_length: f64,
     /// The largest |d| over L of the loops found: what a bridge to a start with its heading square to d would come near to.
     pub bridged_supremum_over_length: f64,
@@ -97,7 +97,12 @@ pub fn sideways(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
         .max_by(|a, b| a.lateral_over_length.total_cmp(&b.lateral_over_length))
         .map(|best| Sideways {
             bridged_supremum_over_length: bridged.unwrap_or(0.0).max(best.lateral_over_length),
-            ..best
+            gait: if best.gait.lateral_over_length < 0.0 {
+                best.gait.mirrored()
+            } else {
+                best.gait
+            },
+            lateral_over_length: best.lateral_over_length,
         })
         .ok_or(SidewaysError::NoOptimum {
             bounds: problem.bounds,
