@@ -9,7 +9,7 @@
 
 mod curve;
 mod displacement;
-mod distinct;
+pub(crate) mod distinct;
 mod efficiency;
 mod fence;
 mod gates;

@@ -86,6 +86,29 @@ impl DisplacementProblem {
             })
     }
 
+    /// Whether gaits that touch their own images along a diagonal are gaits too.
+    fn may_touch(&self) -> bool {
+        let Bounds {
+            max_angle,
+            min_angle,
+            sector,
+            no_overlap,
+            ..
+        } = self.bounds;
+        self.heading() == Heading::Forwards
+            && (max_angle.is_some() || no_overlap)
+            && min_angle.is_none()
+            && !sector
+    }
+
+    /// The bounds that such gaits obey.
+    fn touching(&self) -> Bounds {
+        Bounds {
+            sector: true,
+            ..self.bounds
+        }
+    }
+
     fn validate(&self) -> Result<(), DisplacementError> {
         let Links { front, back, .. } = self.swimmer.links;
         if (front - back).abs() > 1e-12 * front.abs() {
@@ -151,32 +174,10 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
     problem.validate()?;
     let model = Model::new(&of_unit_length(&problem.swimmer))?;
     let found = best(problem, &model, &problem.bounds);
-    let Bounds {
-        max_angle,
-        min_angle,
-        sector,
-        no_overlap,
-        ..
-    } = problem.bounds;
-    let may_touch = problem.heading() == Heading::Forwards
-        && (max_angle.is_some() || no_overlap)
-        && min_angle.is_none()
-        && !sector;
-    let cut_off = |gait: &OptimalGait| {
-        let last = gait.arcs.last().map(|arc| arc.kind);
-        last != Some(ArcKind::Singular)
-    };
-    if !may_touch || found.as_ref().is_ok_and(|gait| !cut_off(gait)) {
+    if !problem.may_touch() || found.as_ref().is_ok_and(|gait| !cut_off(gait)) {
         return found;
     }
-    let touching = best(
-        problem,
-        &model,
-        &Bounds {
-            sector: true,
-            ..problem.bounds
-        },
-    );
+    let touching = best(problem, &model, &problem.touching());
     let carries =
         |gait: &Result<OptimalGait, _>| gait.as_ref().map_or(0.0, |gait| gait.displacement);
     if carries(&touching) > carries(&found) {
@@ -184,6 +185,59 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
     } else {
         found
     }
+}
+
+/// Every gait that the search finds, farthest first: also those that fail their certificate, and those that touch their own
+/// images where [`displacement()`] would look for them.
+pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, DisplacementError> {
+    problem.validate()?;
+    let model = Model::new(&of_unit_length(&problem.swimmer))?;
+    let of = |bounds: &Bounds| {
+        let region = Region::new(bounds, &problem.swimmer.links);
+        let (candidates, _) = candidates(problem, &model, bounds, &region);
+        let gaits = candidates.into_iter().filter_map(|candidate| {
+            certified(problem, &model, &region, problem.heading(), &candidate)
+        });
+        gaits.collect::<Vec<_>>()
+    };
+    let mut gaits = of(&problem.bounds);
+    let best = gaits.iter().find(|gait| gait.certificate.pass());
+    if problem.may_touch() && best.is_none_or(cut_off) {
+        gaits.extend(of(&problem.touching()));
+    }
+    gaits.sort_by(|a, b| b.displacement.abs().total_cmp(&a.displacement.abs()));
+    Ok(gaits)
+}
+
+/// Whether a quarter ends along a bound.
+fn cut_off(gait: &OptimalGait) -> bool {
+    let last = gait.arcs.last().map(|arc| arc.kind);
+    last != Some(ArcKind::Singular)
+}
+
+/// The extremals within these bounds that head the right way, farthest first, and what became of all.
+fn candidates(
+    problem: &DisplacementProblem,
+    model: &Model<f64>,
+    bounds: &Bounds,
+    region: &Region,
+) -> (Vec<Candidate>, Fates) {
+    let sign = problem.heading().sign();
+    let mut search = Search {
+        model,
+        region,
+        sign,
+        touches: 0,
+    };
+    let trunks = trunks(search.extremal(0.0), bounds, region);
+    let (mut candidates, fates) = search.candidates(&trunks);
+    if region.has_diagonals() {
+        search.touches = 1;
+        candidates.extend(search.candidates(&trunks).0);
+    }
+    candidates.retain(|candidate| sign * candidate.quarter.end[2] > 0.0);
+    candidates.sort_by(|a, b| b.quarter.end[2].abs().total_cmp(&a.quarter.end[2].abs()));
+    (candidates, fates)
 }
 
 /// The best gait that certifies within these bounds, which may be tighter than the problem's.
@@ -194,20 +248,7 @@ fn best(
 ) -> Result<OptimalGait, DisplacementError> {
     let region = Region::new(bounds, &problem.swimmer.links);
     let heading = problem.heading();
-    let mut search = Search {
-        model,
-        region: &region,
-        sign: heading.sign(),
-        touches: 0,
-    };
-    let trunks = trunks(search.extremal(0.0), bounds, &region);
-    let (mut candidates, fates) = search.candidates(&trunks);
-    if region.has_diagonals() {
-        search.touches = 1;
-        candidates.extend(search.candidates(&trunks).0);
-    }
-    candidates.retain(|candidate| heading.sign() * candidate.quarter.end[2] > 0.0);
-    candidates.sort_by(|a, b| b.quarter.end[2].abs().total_cmp(&a.quarter.end[2].abs()));
+    let (candidates, fates) = candidates(problem, model, bounds, &region);
     let mut refused = None;
     for candidate in &candidates {
         let Some(gait) = certified(problem, model, &region, heading, candidate) else {

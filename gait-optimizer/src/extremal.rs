@@ -180,6 +180,11 @@ pub(crate) fn polish_chain(
     })
 }
 
+/// Along how many directions the efficiency grows to second order; none where that cannot be told.
+pub(crate) fn ascents(model: &Model<f64>, extremal: &Extremal) -> Option<usize> {
+    second_variation::ascent_directions(model, extremal.class, &extremal.solved.chain)
+}
+
 impl Extremal {
     /// Lighthill's efficiency ξ = `c_t/|p|²` of a swimmer with L = 1.
     pub(crate) fn efficiency(&self, model: &Model<f64>) -> f64 {

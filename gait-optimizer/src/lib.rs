@@ -13,6 +13,7 @@
 //! | `displacement::height` | the switching function F of the paper, its gradient, the singular control |
 //! | `height_map` | height functions in minimum-perturbation coordinates, their zero-level curves, the area rule |
 //! | `atlas` | multi-start over closed curves of any symmetry, and which of them are one gait |
+//! | `continuation` | an optimum followed in a parameter: folds, meetings, changes of its arcs |
 //! | `closed_curve` | displacement, rotation and cost of any closed curve, with exact first and second derivatives |
 //! | `loops` | closed loops of singular arcs and bounds, without any symmetry |
 //! | `sideways` | the gait of most displacement across the heading at its start |
@@ -38,6 +39,7 @@ mod certify;
 mod closed_curve;
 pub mod closed_forms;
 pub mod collocation;
+mod continuation;
 mod cycle;
 mod displacement;
 mod efficiency;
@@ -56,6 +58,10 @@ mod turning;
 pub use atlas::{Atlas, AtlasError, AtlasProblem, Optimum, atlas};
 pub use certificate::{Certificate, Check};
 pub use certify::{CertifyError, certify};
+pub use continuation::{
+    Continuation, ContinuationError, ContinuationProblem, Event, EventKind, Fold, OtherSide,
+    Parameter, Point, Start, continuation,
+};
 pub use displacement::{DisplacementError, DisplacementProblem, Fates, Heading, displacement};
 pub use efficiency::{
     Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method, Reached, efficiency,

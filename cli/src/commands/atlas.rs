@@ -1,5 +1,6 @@
 //! `swimmer atlas`: every locally optimal gait that a seeded multi-start finds.
 
+mod follow;
 mod picture;
 
 use std::fmt;
@@ -49,6 +50,21 @@ pub(crate) struct Atlas {
     /// Seed of the starts
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Follow the gaits as a parameter changes from FROM to TO: max-angle (an angle), chi, sphere (radius in metres) or
+    /// link-ratio (side link over middle link, at the same total length)
+    ///
+    /// Reported are the points on the way and what happens there: arcs that appear or vanish, folds, mergers, branches that
+    /// overtake each other, optima that are lost. Efficiency: the atlas is made at FROM and its two best gaits are followed;
+    /// with --gait the named ones instead, without an atlas. Displacement: the two gaits with the paper's symmetries that
+    /// carry farthest (where there are two), without an atlas.
+    #[arg(long = "continue", value_name = "PARAMETER=FROM..TO", value_parser = follow::way)]
+    way: Option<follow::Way>,
+    /// Efficiency gait to follow with --continue; may be given twice, to compare both
+    #[arg(long, value_name = "GAIT", requires = "way")]
+    gait: Vec<follow::Named>,
+    /// Equal steps to follow gaits in; smaller ones are taken where they must be
+    #[arg(long, value_name = "N", default_value_t = 20, requires = "way", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    steps: u32,
     /// Put every gait as a gait file and a picture of them all into this folder
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -64,26 +80,54 @@ impl Atlas {
     /// Makes the atlas that was asked for.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let file = load_swimmer(&self.swimmer)?;
-        let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
         let begun = Instant::now();
         let objective = match self.objective {
             Aim::Displacement => Objective::Displacement,
             Aim::Efficiency => Objective::Efficiency,
         };
+        let mut bounds = Bounds {
+            max_angle: self.max_angle,
+            no_overlap: self.no_overlap || self.clearance.is_some(),
+            clearance: self.clearance.unwrap_or(0.0),
+            ..Bounds::default()
+        };
+        let order = self.way.map(|way| follow::Order {
+            swimmer: file.swimmer,
+            objective,
+            bounds,
+            way,
+            steps: usize::try_from(self.steps).unwrap_or(usize::MAX),
+        });
+        let mut swimmer = file.swimmer;
+        if let Some(order) = &order {
+            if self.gait.is_empty() && objective == Objective::Efficiency {
+                (swimmer, bounds) = order.at_first();
+            } else if self.output.is_some() {
+                return Err(Failure::BadInput(
+                    "--output holds the gaits of an atlas, and none is made here: leave it out"
+                        .to_owned(),
+                ));
+            } else {
+                let followed = order.named(&self.gait)?;
+                output.answer(&follow::Alone::new(
+                    format!("{}, {objective}", file.name),
+                    followed,
+                    begun.elapsed().as_secs_f64(),
+                ));
+                return Ok(());
+            }
+        }
+        let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
         let found = atlas(&AtlasProblem {
-            bounds: Bounds {
-                max_angle: self.max_angle,
-                no_overlap: self.no_overlap || self.clearance.is_some(),
-                clearance: self.clearance.unwrap_or(0.0),
-                ..Bounds::default()
-            },
+            bounds,
             starts: usize::try_from(self.starts).unwrap_or(usize::MAX),
             seed: self.seed,
             threads: std::thread::available_parallelism().map_or(1, NonZero::get),
-            ..AtlasProblem::new(file.swimmer, objective)
+            ..AtlasProblem::new(swimmer, objective)
         })?;
         let seconds = begun.elapsed().as_secs_f64();
         let mut answer = Answer::new(&file.name, objective, &found, seconds);
+        answer.continuation = order.map(|order| order.best(&found)).transpose()?;
         if let Some(folder) = folder {
             for (number, (optimum, line)) in found.optima.iter().zip(&mut answer.optima).enumerate()
             {
@@ -123,6 +167,8 @@ struct Answer {
     /// Starts whose end could not be polished to a certified gait.
     uncertified: usize,
     seconds: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    continuation: Option<follow::Followed>,
     #[serde(skip_serializing_if = "Option::is_none")]
     picture: Option<PathBuf>,
 }
@@ -165,6 +211,7 @@ impl Answer {
             left: found.left,
             uncertified: found.uncertified,
             seconds,
+            continuation: None,
             picture: None,
         }
     }
@@ -228,6 +275,9 @@ impl fmt::Display for Answer {
             "  not listed: {} starts settled nowhere, {} left the shapes searched, {} ended where no gait could be certified",
             self.unsettled, self.left, self.uncertified
         )?;
+        if let Some(continuation) = &self.continuation {
+            write!(f, "\n{continuation}")?;
+        }
         if let Some(picture) = &self.picture {
             write!(f, "\n  drawn in {}", picture.display())?;
         }

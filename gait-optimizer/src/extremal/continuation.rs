@@ -138,21 +138,27 @@ impl Path<'_> {
 
     fn step(&self, here: &Extremal, at: Tightness) -> Result<Extremal, Unpolished> {
         let walls = self.walls(at);
-        let mut chain = here.solved.chain.clone();
-        for arc in &mut chain.arcs {
-            if let Motion::Along(wall) = &mut arc.motion
-                && let Some(moved) = walls.like(wall)
-            {
-                *wall = moved;
-            }
-            if let Entry::Corner(corner) = &mut arc.entry
-                && let Some(moved) = walls.corner(corner)
-            {
-                *corner = moved;
-            }
-        }
+        let chain = within_walls(&walls, &here.solved.chain);
         polish_chain(self.model, &walls, here.class, chain)
     }
+}
+
+/// The same arcs along walls that have moved.
+pub(crate) fn within_walls(walls: &Walls, chain: &Chain) -> Chain {
+    let mut chain = chain.clone();
+    for arc in &mut chain.arcs {
+        if let Motion::Along(wall) = &mut arc.motion
+            && let Some(moved) = walls.like(wall)
+        {
+            *wall = moved;
+        }
+        if let Entry::Corner(corner) = &mut arc.entry
+            && let Some(moved) = walls.corner(corner)
+        {
+            *corner = moved;
+        }
+    }
+    chain
 }
 
 /// How far two gaits are apart, over what a step may change.
@@ -164,7 +170,7 @@ fn difference(here: &Extremal, there: &Extremal) -> f64 {
 }
 
 /// Whether two chains are made of the same arcs.
-fn alike(a: &Chain, b: &Chain) -> bool {
+pub(crate) fn alike(a: &Chain, b: &Chain) -> bool {
     a.states.len() == b.states.len()
         && a.arcs.len() == b.arcs.len()
         && a.arcs
@@ -174,7 +180,7 @@ fn alike(a: &Chain, b: &Chain) -> bool {
 }
 
 /// The chain as far on the other side of `turn` as `here` is on this side, `factor` times; the arcs are those of `here`.
-fn mirrored(here: &Chain, turn: &Chain, factor: f64) -> Chain {
+pub(crate) fn mirrored(here: &Chain, turn: &Chain, factor: f64) -> Chain {
     let beyond = |from: f64, to: f64| to + factor * (to - from);
     let mut chain = here.clone();
     for (state, to) in chain.states.iter_mut().zip(&turn.states) {
@@ -190,7 +196,11 @@ fn mirrored(here: &Chain, turn: &Chain, factor: f64) -> Chain {
 
 /// The other extremal that a branch meets where it ends, under the bounds of a gait shortly before: the proof of a fold.
 /// The Jacobian has the other orientation there.
-fn other_side(model: &Model<f64>, before: &Extremal, last: &Extremal) -> Option<Extremal> {
+pub(crate) fn other_side(
+    model: &Model<f64>,
+    before: &Extremal,
+    last: &Extremal,
+) -> Option<Extremal> {
     let (here, turn) = (&before.solved.chain, &last.solved.chain);
     if !alike(here, turn) {
         return None;

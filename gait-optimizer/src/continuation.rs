@@ -1,0 +1,368 @@
+//! An optimum followed as a parameter changes: the largest angle, χ, the sphere, or the ratio of the links.
+//!
+//! Each step starts from the last gait and is halved where the next one lies too far off, so that no other branch is taken
+//! for this one. What happens on the way is reported with its place: arcs that come and go, folds, branches that meet or
+//! overtake each other, optima that are none any more.
+//!
+//! | module | what lives there |
+//! |---|---|
+//! | `parameter` | what changes |
+//! | `follow` | step control, and the search for the places of events |
+//! | `kept` | a gait on the way, and how far it is from another one |
+//! | `efficiency` | the next gait by shooting from the last one's arcs; folds proven by the extremal beyond |
+//! | `displacement` | the next gait as the nearest of all that the search finds |
+//! | `meeting` | two branches side by side |
+
+mod displacement;
+mod efficiency;
+mod follow;
+mod kept;
+mod meeting;
+mod parameter;
+#[cfg(test)]
+mod tests;
+
+use swimmer_files::{ArcKind, Bounds, Objective};
+use swimmer_model::{InvalidSwimmer, Swimmer};
+
+use crate::displacement::Heading;
+use crate::{Branch, OptimalGait};
+use follow::{Family, Track};
+use kept::Kept;
+pub use parameter::Parameter;
+
+/// Where a branch begins.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Start {
+    /// The small or large efficiency gait at the first value.
+    Efficiency(Branch),
+    /// A gait of most displacement at the first value.
+    Displacement {
+        /// Which way; none for the problem's own.
+        heading: Option<Heading>,
+        /// 0 for the one that carries farthest, 1 for the next local optimum, and so on.
+        rank: usize,
+    },
+    /// A gait at (or near) the first value, of an atlas for instance. A displacement gait must have the paper's two symmetries;
+    /// an efficiency gait that has them is followed among such gaits only, any other as a closed curve.
+    Gait(Box<OptimalGait>),
+}
+
+/// What to follow, and how far.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContinuationProblem {
+    /// The swimmer; the parameter's own value in it does not matter.
+    pub swimmer: Swimmer<f64>,
+    /// [`Objective::Efficiency`] or [`Objective::Displacement`].
+    pub objective: Objective,
+    /// The bounds; the largest angle does not matter where it is the parameter.
+    pub bounds: Bounds,
+    /// What changes.
+    pub parameter: Parameter,
+    /// Its first value (rad, metres or none).
+    pub from: f64,
+    /// Its last value.
+    pub to: f64,
+    /// The branches; several are compared with each other.
+    pub starts: Vec<Start>,
+    /// Equal steps whose ends all branches stop at; more points lie between them where steps must be smaller.
+    pub steps: usize,
+    /// Samples of each gait's cycle, at least.
+    pub samples: usize,
+}
+
+impl ContinuationProblem {
+    /// In 20 steps, without bounds.
+    pub fn new(
+        swimmer: Swimmer<f64>,
+        parameter: Parameter,
+        [from, to]: [f64; 2],
+        start: Start,
+    ) -> Self {
+        let objective = match &start {
+            Start::Efficiency(_) => Objective::Efficiency,
+            Start::Displacement { .. } => Objective::Displacement,
+            Start::Gait(gait) => gait.objective,
+        };
+        Self {
+            swimmer,
+            objective,
+            bounds: Bounds::default(),
+            parameter,
+            from,
+            to,
+            starts: vec![start],
+            steps: 20,
+            samples: 512,
+        }
+    }
+}
+
+/// A gait on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// Which of the starts it came from.
+    pub branch: usize,
+    /// The parameter.
+    pub value: f64,
+    /// The gait, with its numbers, arcs and certificate.
+    pub gait: OptimalGait,
+    /// Of the shooting (efficiency), or λ₄ over L that is left at the end of the quarter (displacement).
+    pub residual: f64,
+}
+
+/// Something that happened on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// Which of the starts it happened to.
+    pub branch: usize,
+    /// The parameter's value.
+    pub value: f64,
+    /// The value is as sure as this, either way.
+    pub within: f64,
+    /// What happened.
+    pub kind: EventKind,
+}
+
+/// What can happen.
+#[derive(Debug, Clone, PartialEq)]
+pub enum EventKind {
+    /// An arc appeared or vanished.
+    Structure {
+        /// Arcs before.
+        before: Vec<ArcKind>,
+        /// Arcs after.
+        after: Vec<ArcKind>,
+    },
+    /// The branch turns back.
+    Fold(Fold),
+    /// The nearest gait beyond, within `within`, is further off than a step may lead: it may be another branch's, or the same
+    /// branch after a gap in the search. It is followed from here on.
+    Jump {
+        /// Largest distance of the two curves \[rad\].
+        apart: f64,
+        /// Power of the distance in the parameter that the gait changed with before; 1 where it changed evenly.
+        exponent: Option<f64>,
+    },
+    /// The gait of this branch becomes the gait of another branch.
+    Merger {
+        /// The other branch.
+        with: usize,
+    },
+    /// Another branch becomes the better one.
+    Overtaken {
+        /// The other branch.
+        by: usize,
+    },
+    /// There is a gait, but it is no optimum any more.
+    Lost {
+        /// The conditions that it fails.
+        failed: String,
+    },
+    /// No gait is found beyond.
+    Ended {
+        /// Why, as far as is known.
+        reason: String,
+        /// As for a jump.
+        exponent: Option<f64>,
+    },
+    /// The last value is reached.
+    Reached,
+}
+
+/// A fold: the branch meets another one and neither goes on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fold {
+    /// The other extremal, shortly before: the proof. Without it the fold rests on `exponent` alone.
+    pub other: Option<OtherSide>,
+    /// Power of the distance to the fold that the gait changed with before; ½ at a fold.
+    pub exponent: Option<f64>,
+}
+
+/// The extremal that a branch meets in a fold: its Jacobian has the other orientation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OtherSide {
+    /// Where it was found.
+    pub value: f64,
+    /// Its efficiency.
+    pub efficiency: f64,
+    /// φ₁ at its start \[rad\].
+    pub start_angle: f64,
+    /// Along how many directions its efficiency grows to second order; 0 for an optimum.
+    pub ascent_directions: Option<usize>,
+}
+
+/// All branches with all that happened to them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Continuation {
+    /// Branch by branch, in the order in which they were followed.
+    pub points: Vec<Point>,
+    /// Branch by branch; events between branches come last.
+    pub events: Vec<Event>,
+}
+
+/// Why nothing can be followed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ContinuationError {
+    /// The swimmer's parameters are out of range.
+    #[error("cannot follow gaits of this swimmer: {0}")]
+    Swimmer(#[from] InvalidSwimmer),
+    /// Another objective, or a start of another one.
+    #[error(
+        "gaits can be followed for the objectives displacement and efficiency, with starts of the same objective, not for \
+         `{objective}` from here"
+    )]
+    Objective {
+        /// Asked for.
+        objective: Objective,
+    },
+    /// The range makes no sense.
+    #[error("cannot follow {parameter} from {from} to {to}: {problem}")]
+    Range {
+        /// The parameter.
+        parameter: Parameter,
+        /// Asked for.
+        from: f64,
+        /// Asked for.
+        to: f64,
+        /// What is wrong.
+        problem: &'static str,
+    },
+    /// A size makes no sense.
+    #[error("{steps} steps, {starts} branches: give 1 to 10000 steps and 1 to 16 branches")]
+    Size {
+        /// Asked for.
+        steps: usize,
+        /// Asked for.
+        starts: usize,
+    },
+    /// There is no gait to begin with.
+    #[error("no gait to follow from {parameter} = {from} (branch {branch}): {reason}")]
+    NoStart {
+        /// The parameter.
+        parameter: Parameter,
+        /// Its first value.
+        from: f64,
+        /// Which start.
+        branch: usize,
+        /// Why.
+        reason: String,
+    },
+}
+
+impl ContinuationError {
+    /// Whether the problem itself makes no sense, rather than having no gait to begin with.
+    pub fn is_bad_input(&self) -> bool {
+        !matches!(self, Self::NoStart { .. })
+    }
+}
+
+impl ContinuationProblem {
+    fn validate(&self) -> Result<(), ContinuationError> {
+        let (parameter, from, to) = (self.parameter, self.from, self.to);
+        let range = |problem| {
+            Err(ContinuationError::Range {
+                parameter,
+                from,
+                to,
+                problem,
+            })
+        };
+        if !(from.is_finite() && to.is_finite()) {
+            return range("both must be finite numbers");
+        }
+        if (to - from).abs() <= 1e-9 * from.abs().max(to.abs()) {
+            return range("they are the same");
+        }
+        if parameter != Parameter::SphereRadius && from.min(to) <= 0.0 {
+            return range("both must be above 0");
+        }
+        if from.min(to) < 0.0 {
+            return range("no value may be below 0");
+        }
+        if parameter == Parameter::MaxAngle && from.max(to) > std::f64::consts::TAU {
+            return range("a largest angle is at most one turn, 6.283 rad");
+        }
+        if !(1..=10_000).contains(&self.steps) || !(1..=16).contains(&self.starts.len()) {
+            return Err(ContinuationError::Size {
+                steps: self.steps,
+                starts: self.starts.len(),
+            });
+        }
+        self.swimmer_at(from).validate()?;
+        self.swimmer_at(to).validate()?;
+        let fits = |start: &Start| match start {
+            Start::Efficiency(_) => self.objective == Objective::Efficiency,
+            Start::Displacement { .. } => self.objective == Objective::Displacement,
+            Start::Gait(gait) => gait.objective == self.objective,
+        };
+        let known = matches!(
+            self.objective,
+            Objective::Efficiency | Objective::Displacement
+        );
+        if !known || !self.starts.iter().all(fits) {
+            return Err(ContinuationError::Objective {
+                objective: self.objective,
+            });
+        }
+        Ok(())
+    }
+
+    fn swimmer_at(&self, value: f64) -> Swimmer<f64> {
+        self.parameter.swimmer(&self.swimmer, value)
+    }
+
+    fn bounds_at(&self, value: f64) -> Bounds {
+        self.parameter.bounds(&self.bounds, value)
+    }
+}
+
+/// Follows every start from the first value of the parameter to the last, or to where its branch ends.
+///
+/// # Errors
+/// [`ContinuationError`]: what is wrong with the problem, or that there is no gait to begin with. A branch that ends on the
+/// way is no error but an event.
+pub fn continuation(problem: &ContinuationProblem) -> Result<Continuation, ContinuationError> {
+    problem.validate()?;
+    match problem.objective {
+        Objective::Efficiency => all(problem, &efficiency::Efficiency { problem }),
+        _ => all(problem, &displacement::Displacement { problem }),
+    }
+}
+
+fn all<F: Family>(
+    problem: &ContinuationProblem,
+    family: &F,
+) -> Result<Continuation, ContinuationError> {
+    let mut tracks: Vec<Track<F::Held>> = Vec::with_capacity(problem.starts.len());
+    for (branch, start) in problem.starts.iter().enumerate() {
+        let first: Kept<F::Held> =
+            family
+                .start(start)
+                .map_err(|reason| ContinuationError::NoStart {
+                    parameter: problem.parameter,
+                    from: problem.from,
+                    branch,
+                    reason,
+                })?;
+        tracks.push(follow::follow(problem, family, branch, first));
+    }
+    let meetings = meeting::meetings(problem, family, &tracks);
+    let mut found = Continuation {
+        points: Vec::new(),
+        events: Vec::new(),
+    };
+    for (branch, track) in tracks.into_iter().enumerate() {
+        found
+            .points
+            .extend(track.kept.into_iter().map(|kept| Point {
+                branch,
+                value: kept.value,
+                gait: kept.gait,
+                residual: kept.residual,
+            }));
+        found.events.extend(track.events);
+    }
+    found.events.extend(meetings);
+    Ok(found)
+}

@@ -1,0 +1,96 @@
+//! Displacement gaits: the search needs no guess, so the next gait is the nearest of all that it finds.
+
+use super::follow::Family;
+use super::kept::Kept;
+use super::{ContinuationProblem, OtherSide, Start};
+use crate::OptimalGait;
+use crate::displacement::{DisplacementProblem, Heading, every};
+
+pub(super) struct Displacement<'a> {
+    pub(super) problem: &'a ContinuationProblem,
+}
+
+impl Displacement<'_> {
+    /// Every gait at a value that heads a way, farthest first; also those that fail their certificate.
+    fn all(&self, value: f64, heading: Option<Heading>) -> Result<Vec<OptimalGait>, String> {
+        every(&DisplacementProblem {
+            swimmer: self.problem.swimmer_at(value),
+            bounds: self.problem.bounds_at(value),
+            heading,
+            quarter_samples: (self.problem.samples / 4).clamp(64, 1 << 12),
+        })
+        .map_err(|error| error.to_string())
+    }
+
+    fn nearest(&self, value: f64, to: &OptimalGait) -> Result<Kept<()>, String> {
+        let place = kept(0.0, to.clone());
+        let all = self.all(value, Some(heading(to)))?;
+        let found = all.into_iter().map(|gait| kept(value, gait));
+        // An optimum before an extremal that is none.
+        let far = |kept: &Kept<()>| {
+            let apart = kept.apart(&place);
+            if kept.gait.certificate.pass() || apart > 0.05 {
+                apart
+            } else {
+                apart + 0.05
+            }
+        };
+        found
+            .min_by(|a, b| far(a).total_cmp(&far(b)))
+            .ok_or_else(|| "no gait heads this way".to_owned())
+    }
+}
+
+fn heading(gait: &OptimalGait) -> Heading {
+    if gait.displacement_over_length < 0.0 {
+        Heading::Backwards
+    } else {
+        Heading::Forwards
+    }
+}
+
+fn kept(value: f64, gait: OptimalGait) -> Kept<()> {
+    let left = gait.certificate.checks().iter();
+    let left = left.filter(|check| check.name == "final_lambda4");
+    let residual = left.map(|check| check.value).fold(f64::NAN, f64::max);
+    Kept::new(value, gait, residual, ())
+}
+
+impl Family for Displacement<'_> {
+    type Held = ();
+
+    const JUMPS: bool = true;
+
+    fn start(&self, start: &Start) -> Result<Kept<()>, String> {
+        let value = self.problem.from;
+        match start {
+            Start::Displacement { heading, rank } => {
+                let all = self.all(value, *heading)?;
+                let mut optima = all.into_iter().filter(|gait| gait.certificate.pass());
+                let gait = optima.nth(*rank);
+                gait.map(|gait| kept(value, gait))
+                    .ok_or_else(|| format!("there are no {} optima", rank + 1))
+            }
+            Start::Gait(gait) if gait.symmetric => self.nearest(value, gait),
+            _ => Err(
+                "displacement gaits are followed only with the paper's two symmetries".to_owned(),
+            ),
+        }
+    }
+
+    fn next(&self, value: f64, here: &Kept<()>, _: Option<&Kept<()>>) -> Result<Kept<()>, String> {
+        self.nearest(value, &here.gait)
+    }
+
+    fn optimum(&self, value: f64, last: &Kept<()>) -> Option<Kept<()>> {
+        let all = self.all(value, Some(heading(&last.gait))).ok()?;
+        let optima = all.into_iter().filter(|gait| gait.certificate.pass());
+        optima
+            .map(|gait| kept(value, gait))
+            .min_by(|a, b| a.apart(last).total_cmp(&b.apart(last)))
+    }
+
+    fn other_side(&self, _: &Kept<()>, _: &Kept<()>) -> Option<OtherSide> {
+        None
+    }
+}

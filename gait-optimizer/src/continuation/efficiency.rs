@@ -1,0 +1,146 @@
+//! Efficiency gaits: the next one by shooting from the last one's arcs.
+
+use swimmer_model::{Gait, Model};
+
+use super::follow::Family;
+use super::kept::Kept;
+use super::{ContinuationProblem, OtherSide, Start};
+use crate::displacement::of_unit_length;
+use crate::extremal::continuation::{alike, mirrored, other_side, within_walls};
+use crate::extremal::gait::{Order, gait};
+use crate::extremal::{Extremal, Walls, ascents, polish, polish_chain};
+use crate::{EfficiencyProblem, efficiency};
+
+pub(super) struct Efficiency<'a> {
+    pub(super) problem: &'a ContinuationProblem,
+}
+
+/// The secant through two gaits is not followed further than this many times their distance.
+const FARTHEST: f64 = 2.0;
+
+impl Efficiency<'_> {
+    fn model(&self, value: f64) -> Result<Model<f64>, String> {
+        Model::new(&of_unit_length(&self.problem.swimmer_at(value)))
+            .map_err(|error| error.to_string())
+    }
+
+    fn walls(&self, value: f64) -> Walls {
+        Walls::new(
+            &self.problem.bounds_at(value),
+            &self.problem.swimmer_at(value).links,
+        )
+    }
+
+    fn kept(
+        &self,
+        value: f64,
+        model: &Model<f64>,
+        extremal: Extremal,
+    ) -> Result<Kept<Extremal>, String> {
+        let (swimmer, bounds) = (
+            self.problem.swimmer_at(value),
+            self.problem.bounds_at(value),
+        );
+        let order = Order {
+            swimmer: &swimmer,
+            model,
+            bounds: &bounds,
+            samples: self.problem.samples.clamp(64, 1 << 14),
+        };
+        let gait = gait(&order, &extremal).map_err(|error| error.to_string())?;
+        let residual = extremal.solved.residual;
+        Ok(Kept::new(value, gait, residual, extremal))
+    }
+
+    fn polished<G: Gait<f64> + ?Sized>(
+        &self,
+        value: f64,
+        curve: &G,
+        quarter: bool,
+    ) -> Result<Kept<Extremal>, String> {
+        let model = self.model(value)?;
+        let extremal = polish(&model, &self.walls(value), curve, quarter)
+            .map_err(|error| error.to_string())?;
+        self.kept(value, &model, extremal)
+    }
+}
+
+impl Family for Efficiency<'_> {
+    type Held = Extremal;
+
+    const JUMPS: bool = false;
+
+    fn start(&self, start: &Start) -> Result<Kept<Extremal>, String> {
+        let value = self.problem.from;
+        let gait = match start {
+            Start::Gait(gait) => (**gait).clone(),
+            Start::Efficiency(branch) => efficiency(&EfficiencyProblem {
+                bounds: self.problem.bounds_at(value),
+                ..EfficiencyProblem::new(self.problem.swimmer_at(value), *branch)
+            })
+            .map_err(|error| error.to_string())?,
+            Start::Displacement { .. } => {
+                return Err("it is no efficiency gait".to_owned());
+            }
+        };
+        let curve = gait.gait().map_err(|error| error.to_string())?;
+        let kept = self.polished(value, &curve, gait.symmetric)?;
+        if kept.gait.certificate.pass() {
+            Ok(kept)
+        } else {
+            Err(format!(
+                "the extremal there is no optimum: it fails {}",
+                kept.gait.certificate.failures()
+            ))
+        }
+    }
+
+    fn next(
+        &self,
+        value: f64,
+        here: &Kept<Extremal>,
+        before: Option<&Kept<Extremal>>,
+    ) -> Result<Kept<Extremal>, String> {
+        let (model, walls) = (self.model(value)?, self.walls(value));
+        let chain = &here.held.solved.chain;
+        let secant = before.and_then(|before| {
+            let factor = (value - here.value) / (here.value - before.value);
+            let last = &before.held.solved.chain;
+            (alike(last, chain) && factor > 0.0 && factor <= FARTHEST)
+                .then(|| mirrored(last, chain, factor))
+        });
+        let mut reason = String::new();
+        for guess in secant.into_iter().chain([chain.clone()]) {
+            match polish_chain(
+                &model,
+                &walls,
+                here.held.class,
+                within_walls(&walls, &guess),
+            ) {
+                Ok(extremal) => return self.kept(value, &model, extremal),
+                Err(error) => reason = error.to_string(),
+            }
+        }
+        if here.gait.symmetric {
+            return Err(reason);
+        }
+        // A closed chain's first shape is held on a line, which may not fit any more.
+        let curve = here.gait.gait().map_err(|error| error.to_string())?;
+        self.polished(value, &curve, false).map_err(|_| reason)
+    }
+
+    fn optimum(&self, _: f64, _: &Kept<Extremal>) -> Option<Kept<Extremal>> {
+        None
+    }
+
+    fn other_side(&self, before: &Kept<Extremal>, last: &Kept<Extremal>) -> Option<OtherSide> {
+        let model = self.model(before.value).ok()?;
+        let other = other_side(&model, &before.held, &last.held)?;
+        Some(OtherSide {
+            value: before.value,
+            efficiency: other.efficiency(&model),
+            start_angle: other.start().x,
+            ascent_directions: ascents(&model, &other),
+        })
+    }
+}

@@ -1,0 +1,379 @@
+//! Step control, and the search for the places of events.
+
+use std::ops::Range;
+
+use super::kept::{FIGURES, Kept, slope};
+use super::{ContinuationProblem, Event, EventKind, Fold, OtherSide, Start};
+
+/// A step, and the place of an event, is not cut smaller than this share of the whole way.
+const SMALLEST: f64 = 5e-7;
+/// At most so many gaits are worked out for one branch, beyond those that the steps ask for.
+const MOST_GAITS: usize = 2000;
+/// Below this share of the first gait's gain a branch has faded.
+const FADED: f64 = 1e-4;
+/// Arcs may change so often in one step.
+const MOST_CHANGES: usize = 8;
+/// A gait that changes with a power of the distance to its end between these turns back there.
+const TURNS_BACK: Range<f64> = 0.42..0.6;
+/// That power is measured over these distances, as shares of the whole way.
+const POWER_OVER: Range<f64> = 1e-5..1e-2;
+/// How often the end of a gap is halved.
+const MOST_HALVINGS: usize = 16;
+/// A fold's other extremal is looked for at this many points before it.
+const MOST_BEFORE: usize = 12;
+
+/// How the gaits of one objective are found.
+pub(super) trait Family {
+    /// What is kept of a gait for the next one.
+    type Held: Clone;
+
+    /// Whether a branch that ends goes on with the nearest other gait.
+    const JUMPS: bool;
+
+    /// The first gait.
+    fn start(&self, start: &Start) -> Result<Kept<Self::Held>, String>;
+
+    /// A gait near the last one (and the one before it), at another value.
+    fn next(
+        &self,
+        value: f64,
+        here: &Kept<Self::Held>,
+        before: Option<&Kept<Self::Held>>,
+    ) -> Result<Kept<Self::Held>, String>;
+
+    /// The optimum nearest to a gait that is none any more, where one shall be followed instead.
+    fn optimum(&self, value: f64, last: &Kept<Self::Held>) -> Option<Kept<Self::Held>>;
+
+    /// The extremal that a branch meets where it ends.
+    fn other_side(&self, before: &Kept<Self::Held>, last: &Kept<Self::Held>) -> Option<OtherSide>;
+}
+
+/// A branch.
+pub(super) struct Track<H> {
+    pub(super) kept: Vec<Kept<H>>,
+    pub(super) events: Vec<Event>,
+}
+
+/// The values that all branches stop at.
+pub(super) fn stop(problem: &ContinuationProblem, number: usize) -> f64 {
+    let share = number as f64 / problem.steps as f64;
+    problem.from + share * (problem.to - problem.from)
+}
+
+/// The finest step.
+pub(super) fn smallest(problem: &ContinuationProblem) -> f64 {
+    SMALLEST * (problem.to - problem.from).abs()
+}
+
+/// Why a step failed.
+enum Refused<H> {
+    Another(Box<Kept<H>>),
+    Nothing(String),
+}
+
+/// A gait that may be the next one, and how far off it is over what a step may change.
+type Tried<H> = Result<(Kept<H>, f64), Refused<H>>;
+
+/// Follows one branch.
+pub(super) fn follow<F: Family>(
+    problem: &ContinuationProblem,
+    family: &F,
+    branch: usize,
+    first: Kept<F::Held>,
+) -> Track<F::Held> {
+    Walk {
+        problem,
+        family,
+        branch,
+        floor: FADED * first.gain(),
+        gaits: MOST_GAITS + 4 * problem.steps,
+        since: 0,
+        track: Track {
+            kept: vec![first.clone()],
+            events: Vec::new(),
+        },
+        here: first,
+        before: None,
+    }
+    .run()
+}
+
+struct Walk<'a, F: Family> {
+    problem: &'a ContinuationProblem,
+    family: &'a F,
+    branch: usize,
+    floor: f64,
+    /// How many gaits may still be worked out.
+    gaits: usize,
+    /// First point since the last jump.
+    since: usize,
+    track: Track<F::Held>,
+    here: Kept<F::Held>,
+    before: Option<Kept<F::Held>>,
+}
+
+impl<F: Family> Walk<'_, F> {
+    fn run(mut self) -> Track<F::Held> {
+        let smallest = smallest(self.problem);
+        let whole = (self.problem.to - self.problem.from) / self.problem.steps as f64;
+        let mut step = whole;
+        for number in 1..=self.problem.steps {
+            let target = stop(self.problem, number);
+            // A landing may lie beyond.
+            while (target - self.here.value) * whole > 0.0 {
+                let left = target - self.here.value;
+                let value = if step.abs() >= left.abs() * 0.999_999 {
+                    target
+                } else {
+                    self.here.value + step
+                };
+                if self.gaits == 0 {
+                    self.ends(
+                        "more steps are needed than allowed".to_owned(),
+                        value - self.here.value,
+                    );
+                    return self.track;
+                }
+                match self.tried(value) {
+                    Ok((found, off)) => {
+                        if !self.accepts(found) {
+                            return self.track;
+                        }
+                        let larger = step * if off < 0.4 { 2.0 } else { 1.1 };
+                        step = larger.clamp(-whole.abs(), whole.abs());
+                    }
+                    Err(refused) => {
+                        step = 0.5 * (value - self.here.value);
+                        if step.abs() >= smallest {
+                            continue;
+                        }
+                        if !self.stops(refused, 2.0 * step) {
+                            return self.track;
+                        }
+                        step = whole / 16.0;
+                    }
+                }
+            }
+        }
+        self.event(self.here.value, 0.0, EventKind::Reached);
+        self.track
+    }
+
+    fn event(&mut self, value: f64, within: f64, kind: EventKind) {
+        self.track.events.push(Event {
+            branch: self.branch,
+            value,
+            within: within.abs(),
+            kind,
+        });
+    }
+
+    fn tried(&mut self, value: f64) -> Tried<F::Held> {
+        self.gaits = self.gaits.saturating_sub(1);
+        match self.family.next(value, &self.here, self.before.as_ref()) {
+            Ok(found) => match self.here.off(&found) {
+                off if off <= 1.0 => Ok((found, off)),
+                _ => Err(Refused::Another(Box::new(found))),
+            },
+            Err(reason) => Err(Refused::Nothing(reason)),
+        }
+    }
+
+    /// Takes a gait for the next one; false where the branch ends in it.
+    fn accepts(&mut self, found: Kept<F::Held>) -> bool {
+        let mut from = self.here.clone();
+        if !found.gait.certificate.pass() {
+            let (last, next) = self.parted(&from, &found, |kept| kept.gait.certificate.pass());
+            let (value, within) = between(last.value, next.value);
+            let failed = next.gait.certificate.failures();
+            self.event(value, within, EventKind::Lost { failed });
+            return self.resumes();
+        }
+        for _ in 0..MOST_CHANGES {
+            if from.arcs() == found.arcs() {
+                break;
+            }
+            let before = from.arcs();
+            let (last, next) = self.parted(&from, &found, |kept| kept.arcs() == before);
+            self.changes(&last, &next);
+            from = next;
+        }
+        let faded = found.gain() < self.floor;
+        self.before = Some(std::mem::replace(&mut self.here, found));
+        self.track.kept.push(self.here.clone());
+        if faded {
+            self.ends("the gait fades to nothing".to_owned(), 0.0);
+        }
+        !faded
+    }
+
+    /// Two gaits close by, of which the first still has a property of `from` and the second has not.
+    fn parted(
+        &mut self,
+        from: &Kept<F::Held>,
+        to: &Kept<F::Held>,
+        has: impl Fn(&Kept<F::Held>) -> bool,
+    ) -> (Kept<F::Held>, Kept<F::Held>) {
+        let (mut last, mut next) = (from.clone(), to.clone());
+        while (next.value - last.value).abs() > smallest(self.problem) && self.gaits > 0 {
+            self.gaits -= 1;
+            let value = 0.5 * (last.value + next.value);
+            let middle = self
+                .family
+                .next(value, &last, None)
+                .or_else(|_| self.family.next(value, &next, None));
+            match middle {
+                Ok(middle) if last.off(&middle) <= 1.0 => {
+                    if has(&middle) {
+                        last = middle;
+                    } else {
+                        next = middle;
+                    }
+                }
+                _ => break,
+            }
+        }
+        (last, next)
+    }
+
+    /// No step goes on from here; true where another gait does.
+    fn stops(&mut self, refused: Refused<F::Held>, step: f64) -> bool {
+        let exponent = self.exponent();
+        let other = self.other_side();
+        let (value, within) = between(self.here.value, self.here.value + step);
+        let turns = exponent.is_some_and(|power| TURNS_BACK.contains(&power));
+        let folds = other.is_some() || turns;
+        if folds {
+            self.event(value, within, EventKind::Fold(Fold { other, exponent }));
+        }
+        match refused {
+            Refused::Another(found) if F::JUMPS && found.gait.certificate.pass() => {
+                self.lands(*found);
+                true
+            }
+            _ if folds => self.resumes(),
+            Refused::Another(_) => {
+                self.ends(
+                    "beyond, only gaits of other branches are found".to_owned(),
+                    step,
+                );
+                self.resumes()
+            }
+            Refused::Nothing(reason) => {
+                self.ends(reason, step);
+                self.resumes()
+            }
+        }
+    }
+
+    /// Goes on from another gait that is further off than a step may lead.
+    fn lands(&mut self, found: Kept<F::Held>) {
+        let (apart, exponent) = (self.here.apart(&found), self.exponent());
+        let (value, within) = between(self.here.value, found.value);
+        self.event(value, within, EventKind::Jump { apart, exponent });
+        let last = self.here.clone();
+        if last.arcs() != found.arcs() {
+            self.changes(&last, &found);
+        }
+        self.since = self.track.kept.len();
+        self.track.kept.push(found.clone());
+        self.here = found;
+        self.before = None;
+    }
+
+    /// Goes on with the nearest optimum at the next stop that has one; false where none has, or the family does not jump.
+    fn resumes(&mut self) -> bool {
+        if !F::JUMPS {
+            return false;
+        }
+        let along = self.problem.to - self.problem.from;
+        for number in 1..=self.problem.steps {
+            let value = stop(self.problem, number);
+            if (value - self.here.value) * along <= 0.0 {
+                continue;
+            }
+            if let Some(found) = self.family.optimum(value, &self.here) {
+                let nearest = self.nearest(found);
+                self.lands(nearest);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// The end of a gap in which there is no optimum, nearest to here.
+    fn nearest(&self, found: Kept<F::Held>) -> Kept<F::Held> {
+        let (mut none, mut nearest) = (self.here.value, found);
+        for _ in 0..MOST_HALVINGS {
+            if (nearest.value - none).abs() <= smallest(self.problem) {
+                break;
+            }
+            let value = 0.5 * (none + nearest.value);
+            match self.family.optimum(value, &self.here) {
+                Some(found) => nearest = found,
+                None => none = value,
+            }
+        }
+        nearest
+    }
+
+    /// An event: the arcs are others.
+    fn changes(&mut self, last: &Kept<F::Held>, next: &Kept<F::Held>) {
+        let (value, within) = between(last.value, next.value);
+        let kind = EventKind::Structure {
+            before: last.arcs(),
+            after: next.arcs(),
+        };
+        self.event(value, within, kind);
+    }
+
+    /// The other extremal of a fold, where it can: from far enough to be told from an optimum.
+    fn other_side(&self) -> Option<OtherSide> {
+        let points = self.track.kept.get(self.since..).unwrap_or_default();
+        let mut nearest = None;
+        for before in points.iter().rev().skip(1).take(MOST_BEFORE) {
+            if let Some(other) = self.family.other_side(before, &self.here) {
+                if other.ascent_directions.is_some_and(|count| count > 0) {
+                    return Some(other);
+                }
+                nearest = nearest.or(Some(other));
+            }
+        }
+        nearest
+    }
+
+    fn ends(&mut self, reason: String, step: f64) {
+        let exponent = self.exponent();
+        let (value, within) = between(self.here.value, self.here.value + step);
+        self.event(value, within, EventKind::Ended { reason, exponent });
+    }
+
+    /// The power of the distance to the last point that the gait changed with before it, over points with the same arcs.
+    fn exponent(&self) -> Option<f64> {
+        let way = (self.problem.to - self.problem.from).abs();
+        let points = self.track.kept.get(self.since..).unwrap_or_default();
+        let near: Vec<_> = points
+            .iter()
+            .filter(|kept| kept.arcs() == self.here.arcs())
+            .map(|kept| ((kept.value - self.here.value).abs(), kept.figures()))
+            .filter(|(distance, _)| POWER_OVER.contains(&(distance / way)))
+            .collect();
+        let last = self.here.figures();
+        let powers = (0..FIGURES).filter_map(|figure| {
+            let value = |figures: &[f64; FIGURES]| figures.get(figure).copied();
+            let last = value(&last)?;
+            let change = |figures| Some((value(figures)? - last).abs().ln());
+            let logs: Option<Vec<_>> = near
+                .iter()
+                .map(|(distance, figures)| Some([distance.ln(), change(figures)?]))
+                .collect();
+            slope(&logs?)
+        });
+        // A figure that the turn does not touch to first order changes evenly.
+        powers.min_by(f64::total_cmp)
+    }
+}
+
+fn between(last: f64, next: f64) -> (f64, f64) {
+    (0.5 * (last + next), 0.5 * (next - last).abs())
+}

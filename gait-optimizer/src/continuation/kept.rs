@@ -1,0 +1,88 @@
+//! A gait on the way, and how far it is from another one.
+
+use swimmer_files::{ArcKind, Objective};
+
+use crate::OptimalGait;
+use crate::atlas::distinct::{Outline, Symmetries};
+
+/// In one step a curve may move this far \[rad\], and the logarithm of its gain change by this much.
+const MOST_MOVE: f64 = 0.15;
+const MOST_CHANGE: f64 = 0.15;
+/// How many numbers of a gait it is measured with.
+pub(super) const FIGURES: usize = 4;
+
+/// A gait at a value of the parameter, with what its family needs for the next one.
+#[derive(Debug, Clone)]
+pub(super) struct Kept<H> {
+    pub(super) value: f64,
+    pub(super) gait: OptimalGait,
+    pub(super) residual: f64,
+    pub(super) held: H,
+    outline: Outline,
+}
+
+impl<H> Kept<H> {
+    pub(super) fn new(value: f64, gait: OptimalGait, residual: f64, held: H) -> Self {
+        Self {
+            value,
+            outline: Outline::new(gait.phi()),
+            gait,
+            residual,
+            held,
+        }
+    }
+
+    pub(super) fn arcs(&self) -> Vec<ArcKind> {
+        self.gait.arcs.iter().map(|arc| arc.kind).collect()
+    }
+
+    /// What the gait is optimal for.
+    pub(super) fn gain(&self) -> f64 {
+        match self.gait.objective {
+            Objective::Efficiency => self.gait.efficiency,
+            _ => self
+                .gait
+                .displacement_over_length
+                .hypot(self.gait.lateral_over_length),
+        }
+    }
+
+    /// Largest distance of the curves \[rad\].
+    pub(super) fn apart(&self, other: &Self) -> f64 {
+        let none = Symmetries {
+            swap: false,
+            turns: false,
+        };
+        self.outline.apart(&other.outline, none)
+    }
+
+    /// How far two gaits are apart, over what a step may change.
+    pub(super) fn off(&self, other: &Self) -> f64 {
+        let change = (self.gain() / other.gain()).ln().abs() / MOST_CHANGE;
+        let off = change.max(self.apart(other) / MOST_MOVE);
+        if off.is_finite() { off } else { f64::INFINITY }
+    }
+
+    /// Numbers that change smoothly with the gait.
+    pub(super) fn figures(&self) -> [f64; FIGURES] {
+        let gait = &self.gait;
+        [
+            gait.start_angle,
+            gait.end_angle,
+            gait.displacement_over_length
+                .hypot(gait.lateral_over_length),
+            gait.efficiency.ln(),
+        ]
+    }
+}
+
+/// The slope of a straight line by least squares; none below three points.
+pub(super) fn slope(points: &[[f64; 2]]) -> Option<f64> {
+    let count = points.len() as f64;
+    let mean = |axis: fn(&[f64; 2]) -> f64| points.iter().map(axis).sum::<f64>() / count;
+    let (x, y) = (mean(|[x, _]| *x), mean(|[_, y]| *y));
+    let rise: f64 = points.iter().map(|[a, b]| (a - x) * (b - y)).sum();
+    let run: f64 = points.iter().map(|[a, _]| (a - x) * (a - x)).sum();
+    let slope = rise / run;
+    (points.len() >= 3 && slope.is_finite()).then_some(slope)
+}
