@@ -15,6 +15,7 @@ mod service;
 mod servos;
 mod tank;
 mod twin;
+mod world;
 
 pub use camera::{Camera, CameraConfig, Frame, MotiveFile, Point, TrackError};
 pub use config::{TwinConfig, configuration};
@@ -23,7 +24,8 @@ pub use host_link::port::{VirtualPort, WireSpeed};
 pub use service::serve;
 pub use servos::Servos;
 pub use tank::Tank;
-pub use twin::{CycleStart, Recording, Twin};
+pub use twin::Twin;
+pub use world::{CycleStart, Recording, World};
 
 /// The host's end of a serial line to a twin, in virtual time.
 pub type TwinPort = VirtualPort<Twin>;

@@ -1,77 +1,35 @@
-//! The twin itself: brain, servos, tank and cameras in step, from event to event.
+//! The twin itself: the brain and its world in step, from tick to tick.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 use gait_player::{Brain, Inputs, Output, TICK_US};
 use host_link::port::Device;
 use link_protocol::{MAX_ENCODED, StateName};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use swimmer_model::{InvalidSwimmer, Pose};
 
-use crate::camera::{Camera, MotiveFile, TrackError};
+use crate::camera::TrackError;
 use crate::config::TwinConfig;
 use crate::flash::VirtualFlash;
-use crate::servos::Servos;
-use crate::tank::Tank;
-
-const FRAME_US: u64 = 1_000_000 / Camera::RATE_HZ as u64;
-
-/// A cycle began.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CycleStart {
-    /// When, on the twin's clock: at the tick whose flash the cameras see.
-    pub at: Duration,
-    /// Where the robot truly was then, in the tank's frame.
-    pub pose: Pose<f64>,
-}
-
-/// A finished recording of the cameras.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Recording {
-    /// The tracking file.
-    pub path: PathBuf,
-    /// Frames in it.
-    pub frames: u64,
-    /// The twin's clock at its frame 0.
-    pub started: Duration,
-    /// The cycles that began during it.
-    pub cycle_starts: Vec<CycleStart>,
-}
-
-#[derive(Debug)]
-struct Cameras {
-    camera: Camera,
-    file: MotiveFile,
-    started_us: u64,
-    next_frame_us: u64,
-    cycle_starts: Vec<CycleStart>,
-    failed: Option<TrackError>,
-}
+use crate::world::{CycleStart, Recording, World};
 
 /// A robot in a virtual tank.
 pub struct Twin {
     config: TwinConfig,
     brain: Brain,
     flash: VirtualFlash,
-    servos: Servos,
-    tank: Tank,
+    world: World,
     output: Option<Output>,
-    now_us: u64,
     next_tick_us: u64,
     link_up: bool,
-    recordings: u64,
-    cameras: Option<Cameras>,
-    cycle_starts: Vec<CycleStart>,
 }
 
 impl std::fmt::Debug for Twin {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Twin")
-            .field("now_us", &self.now_us)
+            .field("now", &self.world.now())
             .field("output", &self.output)
-            .field("pose", &self.tank.pose())
+            .field("pose", &self.world.pose())
             .finish_non_exhaustive()
     }
 }
@@ -82,43 +40,34 @@ impl Twin {
     /// # Errors
     /// The lengths and drags make no swimmer.
     pub fn new(config: TwinConfig) -> Result<Self, InvalidSwimmer> {
-        let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
-        rng.set_stream(3);
-        let mut draw = |largest: f64| rng.random_range(-largest..largest);
-        let pose = Pose::new(draw(0.2), draw(0.2), draw(std::f64::consts::PI));
-        let tank = Tank::new(&config.swimmer, pose)?;
+        let world = World::new(&config)?;
         let mut brain = config.brain();
         let mut flash = config.flash.clone();
         let Ok(()) = brain.load(&mut flash);
         Ok(Self {
-            servos: Servos::new(config.servos.map(Into::into), config.plant),
             brain,
             flash,
-            tank,
+            world,
             output: None,
-            now_us: 0,
             next_tick_us: 0,
             link_up: true,
-            recordings: 0,
-            cameras: None,
-            cycle_starts: Vec::new(),
             config,
         })
     }
 
     /// The twin's clock.
     pub fn now(&self) -> Duration {
-        Duration::from_micros(self.now_us)
+        self.world.now()
     }
 
     /// Where the robot truly is, in the tank's frame.
     pub fn pose(&self) -> Pose<f64> {
-        self.tank.pose()
+        self.world.pose()
     }
 
     /// Where its joints truly are, rad.
     pub fn angles(&self) -> [f64; 2] {
-        self.servos.angles()
+        self.world.angles()
     }
 
     /// What the brain decided in its last tick; `None` before the first.
@@ -149,7 +98,7 @@ impl Twin {
 
     /// The cycles that have begun so far.
     pub fn cycle_starts(&self) -> &[CycleStart] {
-        &self.cycle_starts
+        self.world.cycle_starts()
     }
 
     /// Starts to record at the next frame (frames come every 10 ms of the twin's clock) into a tracking file at `path`. A
@@ -158,20 +107,7 @@ impl Twin {
     /// # Errors
     /// [`TrackError`] when nothing can be written there.
     pub fn start_recording(&mut self, path: &Path) -> Result<(), TrackError> {
-        let reach = 0.5 * self.config.swimmer.links.middle;
-        let (seed, number) = (self.config.seed, self.recordings);
-        let file = MotiveFile::create(path, &self.config.camera, seed)?;
-        let started_us = self.now_us.next_multiple_of(FRAME_US);
-        self.recordings += 1;
-        self.cameras = Some(Cameras {
-            camera: Camera::new(self.config.camera.clone(), reach, seed, number),
-            file,
-            started_us,
-            next_frame_us: started_us,
-            cycle_starts: Vec::new(),
-            failed: None,
-        });
-        Ok(())
+        self.world.start_recording(path)
     }
 
     /// Ends the recording and puts its file in place; `None` when none was under way.
@@ -179,53 +115,18 @@ impl Twin {
     /// # Errors
     /// [`TrackError`]; then no file is left.
     pub fn finish_recording(&mut self) -> Result<Option<Recording>, TrackError> {
-        let Some(cameras) = self.cameras.take() else {
-            return Ok(None);
-        };
-        if let Some(error) = cameras.failed {
-            return Err(error);
-        }
-        let path = cameras.file.path().to_path_buf();
-        let frames = cameras.file.finish()?;
-        Ok(Some(Recording {
-            path,
-            frames,
-            started: Duration::from_micros(cameras.started_us),
-            cycle_starts: cameras.cycle_starts,
-        }))
+        self.world.finish_recording()
     }
 
     /// Lives until `to` on the twin's clock, from event to event: ticks every 20 ms, frames every 10 ms while recording, and
     /// the end. An earlier time does nothing.
     pub fn advance(&mut self, to: Duration) {
         let to_us = u64::try_from(to.as_micros()).unwrap_or(u64::MAX);
-        loop {
-            let frame = self
-                .cameras
-                .as_ref()
-                .map_or(u64::MAX, |cameras| cameras.next_frame_us);
-            let event = frame.min(self.next_tick_us);
-            if event > to_us {
-                break;
-            }
-            self.now_until(event);
-            if frame == event {
-                self.expose();
-            }
-            if self.next_tick_us == event {
-                self.tick();
-            }
+        while self.next_tick_us <= to_us {
+            self.world.advance_us(self.next_tick_us);
+            self.tick();
         }
-        if to_us > self.now_us {
-            self.now_until(to_us);
-        }
-    }
-
-    fn now_until(&mut self, until_us: u64) {
-        let seconds = until_us.saturating_sub(self.now_us) as f64 * 1e-6;
-        let tank = &mut self.tank;
-        self.servos.advance(seconds, |phi| tank.move_joints(phi));
-        self.now_us = until_us;
+        self.world.advance_us(to_us);
     }
 
     fn tick(&mut self) {
@@ -233,35 +134,19 @@ impl Twin {
             battery_mv: Some(self.config.battery_mv),
             link_up: self.link_up,
         };
-        let output = self.brain.tick(self.now_us, &inputs);
+        let output = self.brain.tick(self.world.now_us(), &inputs);
         let flashed = self.output.is_some_and(|before| before.cycle_flash);
         if output.cycle_flash && !flashed {
-            let start = CycleStart {
-                at: self.now(),
-                pose: self.tank.pose(),
-            };
-            self.cycle_starts.push(start);
-            if let Some(cameras) = &mut self.cameras {
-                cameras.cycle_starts.push(start);
-            }
+            self.world.begin_cycle();
         }
-        self.servos.set_pulses(output.pulses_ns);
+        self.world.set_pulses(output.pulses_ns);
         if output.storage_wanted {
-            let Ok(()) = self.brain.serve_storage(self.now_us, &mut self.flash);
+            let Ok(()) = self
+                .brain
+                .serve_storage(self.world.now_us(), &mut self.flash);
         }
         self.output = Some(output);
         self.next_tick_us += u64::from(TICK_US);
-    }
-
-    fn expose(&mut self) {
-        let pose = self.tank.pose();
-        if let Some(cameras) = &mut self.cameras {
-            let frame = cameras.camera.expose(&pose);
-            if cameras.failed.is_none() {
-                cameras.failed = cameras.file.push(&frame).err();
-            }
-            cameras.next_frame_us += FRAME_US;
-        }
     }
 }
 
@@ -271,7 +156,7 @@ impl Device for Twin {
     }
 
     fn receive(&mut self, bytes: &[u8]) {
-        self.brain.receive(self.now_us, bytes);
+        self.brain.receive(self.world.now_us(), bytes);
     }
 
     fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {

@@ -1,0 +1,208 @@
+//! Everything outside the robot's board: servos, tank and cameras, from event to event. Twin and emulated board both live in
+//! one; all they tell it is pulses and when a cycle began.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use swimmer_model::{InvalidSwimmer, Pose};
+
+use crate::camera::{Camera, CameraConfig, MotiveFile, TrackError};
+use crate::config::TwinConfig;
+use crate::servos::Servos;
+use crate::tank::Tank;
+
+const FRAME_US: u64 = 1_000_000 / Camera::RATE_HZ as u64;
+
+/// A cycle began.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CycleStart {
+    /// When, on the twin's clock: at the tick whose flash the cameras see.
+    pub at: Duration,
+    /// Where the robot truly was then, in the tank's frame.
+    pub pose: Pose<f64>,
+}
+
+/// A finished recording of the cameras.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// The tracking file.
+    pub path: PathBuf,
+    /// Frames in it.
+    pub frames: u64,
+    /// The twin's clock at its frame 0.
+    pub started: Duration,
+    /// The cycles that began during it.
+    pub cycle_starts: Vec<CycleStart>,
+}
+
+#[derive(Debug)]
+struct Cameras {
+    camera: Camera,
+    file: MotiveFile,
+    started_us: u64,
+    next_frame_us: u64,
+    cycle_starts: Vec<CycleStart>,
+    failed: Option<TrackError>,
+}
+
+/// A robot's servos and links in a tank under cameras.
+#[derive(Debug)]
+pub struct World {
+    servos: Servos,
+    tank: Tank,
+    now_us: u64,
+    reach: f64,
+    camera: CameraConfig,
+    seed: u64,
+    recordings: u64,
+    cameras: Option<Cameras>,
+    cycle_starts: Vec<CycleStart>,
+}
+
+impl World {
+    /// A robot that lies somewhere in the tank, straight, with a heading of its seed, at time zero.
+    ///
+    /// # Errors
+    /// The lengths and drags make no swimmer.
+    pub fn new(config: &TwinConfig) -> Result<Self, InvalidSwimmer> {
+        let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
+        rng.set_stream(3);
+        let mut draw = |largest: f64| rng.random_range(-largest..largest);
+        let pose = Pose::new(draw(0.2), draw(0.2), draw(std::f64::consts::PI));
+        Ok(Self {
+            servos: Servos::new(config.servos.map(Into::into), config.plant),
+            tank: Tank::new(&config.swimmer, pose)?,
+            now_us: 0,
+            reach: 0.5 * config.swimmer.links.middle,
+            camera: config.camera.clone(),
+            seed: config.seed,
+            recordings: 0,
+            cameras: None,
+            cycle_starts: Vec::new(),
+        })
+    }
+
+    /// The world's clock.
+    pub fn now(&self) -> Duration {
+        Duration::from_micros(self.now_us)
+    }
+
+    /// The same in whole µs.
+    pub(crate) fn now_us(&self) -> u64 {
+        self.now_us
+    }
+
+    /// Where the robot truly is, in the tank's frame.
+    pub fn pose(&self) -> Pose<f64> {
+        self.tank.pose()
+    }
+
+    /// Where its joints truly are, rad.
+    pub fn angles(&self) -> [f64; 2] {
+        self.servos.angles()
+    }
+
+    /// The servos get new pulses, ns, or none.
+    pub fn set_pulses(&mut self, pulses_ns: Option<[u32; 2]>) {
+        self.servos.set_pulses(pulses_ns);
+    }
+
+    /// The robot begins a cycle: the flash that cameras see.
+    pub fn begin_cycle(&mut self) {
+        let start = CycleStart {
+            at: self.now(),
+            pose: self.tank.pose(),
+        };
+        self.cycle_starts.push(start);
+        if let Some(cameras) = &mut self.cameras {
+            cameras.cycle_starts.push(start);
+        }
+    }
+
+    /// The cycles that have begun so far.
+    pub fn cycle_starts(&self) -> &[CycleStart] {
+        &self.cycle_starts
+    }
+
+    /// Starts to record at the next frame (frames come every 10 ms of the world's clock) into a tracking file at `path`. A
+    /// recording under way is thrown away.
+    ///
+    /// # Errors
+    /// [`TrackError`] when nothing can be written there.
+    pub fn start_recording(&mut self, path: &Path) -> Result<(), TrackError> {
+        let (seed, number) = (self.seed, self.recordings);
+        let file = MotiveFile::create(path, &self.camera, seed)?;
+        let started_us = self.now_us.next_multiple_of(FRAME_US);
+        self.recordings += 1;
+        self.cameras = Some(Cameras {
+            camera: Camera::new(self.camera.clone(), self.reach, seed, number),
+            file,
+            started_us,
+            next_frame_us: started_us,
+            cycle_starts: Vec::new(),
+            failed: None,
+        });
+        Ok(())
+    }
+
+    /// Ends the recording and puts its file in place; `None` when none was under way.
+    ///
+    /// # Errors
+    /// [`TrackError`]; then no file is left.
+    pub fn finish_recording(&mut self) -> Result<Option<Recording>, TrackError> {
+        let Some(cameras) = self.cameras.take() else {
+            return Ok(None);
+        };
+        if let Some(error) = cameras.failed {
+            return Err(error);
+        }
+        let path = cameras.file.path().to_path_buf();
+        let frames = cameras.file.finish()?;
+        Ok(Some(Recording {
+            path,
+            frames,
+            started: Duration::from_micros(cameras.started_us),
+            cycle_starts: cameras.cycle_starts,
+        }))
+    }
+
+    /// Lives until `to`, from frame to frame; an earlier time does nothing. A frame due at `to` itself is taken.
+    pub fn advance(&mut self, to: Duration) {
+        self.advance_us(u64::try_from(to.as_micros()).unwrap_or(u64::MAX));
+    }
+
+    /// The same until a time in µs.
+    pub(crate) fn advance_us(&mut self, to_us: u64) {
+        while let Some(frame) = self.next_frame_us().filter(|frame| *frame <= to_us) {
+            self.move_until(frame);
+            self.expose();
+        }
+        if to_us > self.now_us {
+            self.move_until(to_us);
+        }
+    }
+
+    fn next_frame_us(&self) -> Option<u64> {
+        self.cameras.as_ref().map(|cameras| cameras.next_frame_us)
+    }
+
+    fn move_until(&mut self, until_us: u64) {
+        let seconds = until_us.saturating_sub(self.now_us) as f64 * 1e-6;
+        let tank = &mut self.tank;
+        self.servos.advance(seconds, |phi| tank.move_joints(phi));
+        self.now_us = until_us;
+    }
+
+    fn expose(&mut self) {
+        let pose = self.tank.pose();
+        if let Some(cameras) = &mut self.cameras {
+            let frame = cameras.camera.expose(&pose);
+            if cameras.failed.is_none() {
+                cameras.failed = cameras.file.push(&frame).err();
+            }
+            cameras.next_frame_us += FRAME_US;
+        }
+    }
+}
