@@ -3,6 +3,7 @@
 use std::process::Command;
 
 use crate::debian;
+use crate::emulator;
 use crate::failure::Outcome;
 use crate::firmware::{self, Board};
 use crate::run::{cargo, command, read, run};
@@ -28,6 +29,13 @@ pub(crate) fn all() -> Outcome {
     if let Some(toolchain) = toolchain {
         for_the_chip(&mut steps, &toolchain);
     }
+    steps.take("emulator for the firmware", || {
+        // Without it the tests of the booted firmware say that they are skipped; everything else still counts.
+        if let Err(failure) = emulator::install() {
+            println!("\n!!!! THE FIRMWARE WILL NOT BE BOOTED IN TESTS !!!!\n{failure}");
+        }
+        Ok(())
+    });
     steps.take("clippy for the host", || {
         run(
             cargo(["clippy", "--workspace", "--all-targets"]).args(["--", "-D", "warnings"]),

@@ -4,6 +4,7 @@ mod bench;
 mod check;
 mod debian;
 mod disk;
+mod emulator;
 mod failure;
 mod firmware;
 mod image;
@@ -41,6 +42,8 @@ enum Chore {
         #[arg(long, default_value = "nano-connect")]
         board: Board,
     },
+    /// Installs the RP2040 emulator that boots the firmware in tests (npm).
+    Emulator,
     /// Runs our benches, then the Python peers beside them, and prints the ratios.
     Bench {
         /// Folder of the peers' Python modules (`model.py`, `gaits.py`); it is copied, not written to.
@@ -80,6 +83,7 @@ fn perform(chore: Chore) -> Outcome {
                 .try_for_each(|board| firmware::build(&toolchain, board))
         }
         Chore::Flash { board } => firmware::flash(&ChipToolchain::find_or_make()?, board),
+        Chore::Emulator => emulator::install(),
         Chore::Bench { peers } => bench::run_all(&peers),
         Chore::Soak { filter } => soak::run_ignored(filter.as_deref()),
     }

@@ -1,0 +1,201 @@
+// The swimmer's board: an emulated RP2040 with its flash, the servos' pins, the battery's divider, the HC-05's STATE pin, and
+// the mains switch. Time is emulated time in nanoseconds and never the machine's.
+
+import { RP2040 } from 'rp2040js';
+import { fillGaps } from './shims.mjs';
+
+const FLASH_START = 0x10000000;
+const FLASH_SIZE = 2 << 20;
+const SECTOR = 4096, PAGE = 256;
+/** Typical times of the W25Q16 on both boards: 45 ms a sector erased, 0.4 ms a page programmed. */
+const ERASE_NS = 45e6, PROGRAM_NS = 0.4e6;
+/** Both servos hang on PWM slice 0. */
+const SLICE = 0;
+export const PINS = { front: 16, back: 17, state: { 'nano-connect': 25, pico: 22 }, led: { 'nano-connect': 6, pico: 25 } };
+
+/** Thrown inside the emulation when the power goes. */
+class PowerCut extends Error {}
+
+export class Board {
+  constructor(elf, kind) {
+    this.kind = kind;
+    this.flash = new Uint8Array(FLASH_SIZE).fill(0xff);
+    for (const { address, bytes } of elf.segments) this.flash.set(bytes, address - FLASH_START);
+    this.connected = false;
+    this.battery = 0;
+    this.before = 0;
+    this.events = emptyEvents();
+    this.flashBytesLeft = Infinity;
+    this.powered = true;
+    this.start({ reason: 0, scratch: new Uint32Array(8) });
+  }
+
+  /** Emulated time since the first power-on [ns]; it goes on over resets and power cycles. */
+  get now() { return this.before + this.mcu.clock.nanos; }
+
+  /** What happened since the last call. */
+  takeEvents() {
+    const events = this.events;
+    this.events = emptyEvents();
+    return events;
+  }
+
+  /** Bytes towards the board, at its baud rate. */
+  feed(bytes, bad) { if (this.powered) this.mcu.uart[0].feed(bytes, bad); }
+
+  /** The HC-05's STATE pin. */
+  setConnected(connected) {
+    this.connected = connected;
+    this.mcu.gpio[PINS.state[this.kind]].setInputValue(connected);
+  }
+
+  /** Voltage at the battery's pin [V]. */
+  setBattery(volts) {
+    this.battery = volts;
+    this.mcu.adc.channelValues[0] = Math.max(0, Math.min(4095, Math.round((volts / 3.3) * 4096)));
+  }
+
+  /** The power goes when so many more bytes of flash have been erased or programmed. */
+  cutPowerAfter(flashBytes) { this.flashBytesLeft = flashBytes; }
+
+  /** Off and on again: RAM and scratch registers are lost, flash stays. */
+  powerCycle() {
+    this.before = this.now;
+    this.powered = true;
+    this.flashBytesLeft = Infinity;
+    this.start({ reason: 0, scratch: new Uint32Array(8) });
+  }
+
+  /** Two bytes of code in flash, as a fault would change them: the copy that runs, not the one that survives. */
+  patch(address, halfword) {
+    new DataView(this.mcu.flash.buffer, this.mcu.flash.byteOffset).setUint16((address & ~1) - FLASH_START, halfword, true);
+  }
+
+  /** Runs until emulated time `until` [ns] or until the power is cut. */
+  run(until) {
+    while (this.powered && this.now < until) {
+      try {
+        this.runUntilReset(until);
+      } catch (thrown) {
+        if (!(thrown instanceof PowerCut)) throw thrown;
+        this.powered = false;
+        this.events.power_cuts.push({ at: this.now });
+      }
+      if (this.reset) {
+        this.events.resets.push({ at: this.now, reason: this.reset.reason });
+        this.before = this.now;
+        this.start(this.reset);
+      }
+    }
+    if (!this.powered) this.before += Math.max(0, until - this.now);
+  }
+
+  runUntilReset(until) {
+    const { core, clock } = this.mcu;
+    const end = until - this.before;
+    let cycle = 1e9 / this.mcu.clkSys;
+    let count = 0;
+    while (clock.nanosCounter < end && !this.reset) {
+      if (core.waiting) {
+        const next = clock.nanosToNextAlarm, left = end - clock.nanosCounter;
+        clock.tick(next > 0 && next < left ? next : Math.max(left, 1));
+        continue;
+      }
+      if (core.registers[15] < 0x4000) this.trap(core);
+      const cycles = core.executeInstruction();
+      this.busy += cycles;
+      clock.tick(cycles * cycle);
+      count = (count + 1) & 0x3ff;
+      if (count === 0) cycle = 1e9 / this.mcu.clkSys; // the firmware sets its clock up once, early
+    }
+  }
+
+  trap(core) {
+    const trap = this.traps.get(core.registers[15] & ~1);
+    if (!trap) return;
+    trap(core.registers);
+    core.registers[15] = core.registers[14] & ~1;
+  }
+
+  /** The chip comes out of reset as its boot ROM leaves it: at the second-stage loader. */
+  start({ reason, scratch }) {
+    this.reset = null;
+    this.busy = 0;
+    const mcu = new RP2040();
+    this.mcu = mcu;
+    this.traps = fillGaps(mcu, {
+      onByte: (byte) => this.events.uart.push(byte),
+      onReset: (reset) => { this.reset = reset; },
+      flash: { erase: (at, count) => this.erase(at, count), program: (at, bytes) => this.program(at, bytes) },
+      warn: (text) => { this.events.warnings[text] = (this.events.warnings[text] ?? 0) + 1; },
+    });
+    mcu.flash.set(this.flash, 0);
+    const dog = mcu.peripherals[0x40058];
+    dog.reason = reason;
+    dog.scratchData.set(scratch);
+    this.setConnected(this.connected);
+    this.setBattery(this.battery);
+    this.watchPulses();
+    mcu.core.VTOR = 0;
+    mcu.core.PC = FLASH_START;
+    mcu.core.LR = 0;
+  }
+
+  /** Every PWM period as latched at its wrap, and every edge of both pins. */
+  watchPulses() {
+    const { mcu } = this;
+    const slice = mcu.pwm.channels[SLICE];
+    const wrap = slice.wrap.bind(slice);
+    const latched = () => {
+      wrap();
+      const [front, back] = [slice.alarmA.target, slice.alarmB.target];
+      this.events.periods.push({
+        at: this.now, front, back, top: slice.timer.top, divider: slice.timer.prescaler, clock: mcu.clkSys, busy: this.busy,
+      });
+      this.busy = 0;
+    };
+    slice.wrap = latched;
+    slice.alarmBottom.callback = latched;
+    for (const [name, pin] of [['front', PINS.front], ['back', PINS.back]]) {
+      mcu.gpio[pin].addListener((level) => this.events.edges.push({ at: this.now, pin: name, high: level === 1 }));
+    }
+    mcu.gpio[PINS.led[this.kind]].addListener((level) => this.events.led.push({ at: this.now, on: level === 1 }));
+  }
+
+  erase(offset, count) {
+    for (let at = offset; at < offset + count; at += SECTOR) {
+      // The cells of a sector that loses power while it is erased may hold anything: here they are half done.
+      this.spend(SECTOR, (done) => this.store(at, new Uint8Array(done).fill(0xff)));
+      this.mcu.clock.tick(ERASE_NS);
+      this.events.erased += 1;
+    }
+  }
+
+  program(offset, bytes) {
+    for (let start = 0; start < bytes.length; start += PAGE) {
+      const page = bytes.subarray(start, start + PAGE);
+      // Programming only clears bits.
+      const cleared = page.map((byte, i) => byte & this.flash[offset + start + i]);
+      this.spend(page.length, (done) => this.store(offset + start, cleared.subarray(0, done)));
+      this.mcu.clock.tick(PROGRAM_NS * (page.length / PAGE));
+      this.events.programmed += 1;
+    }
+  }
+
+  /** Does a flash operation of so many bytes, or as much of it as the power lasts for. */
+  spend(count, perform) {
+    const done = Math.min(count, this.flashBytesLeft);
+    perform(done);
+    this.flashBytesLeft -= done;
+    if (done < count) throw new PowerCut();
+  }
+
+  store(at, bytes) {
+    this.flash.set(bytes, at);
+    this.mcu.flash.set(bytes, at);
+  }
+}
+
+function emptyEvents() {
+  return { uart: [], periods: [], edges: [], led: [], resets: [], power_cuts: [], warnings: {}, erased: 0, programmed: 0 };
+}

@@ -1,0 +1,333 @@
+//! The emulated board as a child process that is driven command by command; it lives only while a command runs, so the caller
+//! owns its time.
+
+use std::collections::BTreeMap;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
+use crate::events::{Answer, Events, nanos};
+
+/// Which board the firmware was built for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BoardKind {
+    /// Arduino Nano RP2040 Connect.
+    NanoConnect,
+    /// Raspberry Pi Pico.
+    Pico,
+}
+
+impl BoardKind {
+    /// The word in the names of images and features.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::NanoConnect => "nano-connect",
+            Self::Pico => "pico",
+        }
+    }
+}
+
+/// What is needed to start a board.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BoardConfig {
+    /// The folder of `serve.mjs` with its `node_modules`.
+    pub scripts: PathBuf,
+    /// The firmware's ELF file, as it is flashed.
+    pub firmware: PathBuf,
+    /// The board it was built for.
+    pub kind: BoardKind,
+}
+
+impl BoardConfig {
+    /// The Nano's board of a checkout: scripts in `emulator/board`, firmware in `target/firmware-images`.
+    pub fn of_checkout(root: &Path, kind: BoardKind) -> Self {
+        Self {
+            scripts: root.join("emulator/board"),
+            firmware: root.join(format!(
+                "target/firmware-images/firmware-{}.elf",
+                kind.word()
+            )),
+            kind,
+        }
+    }
+}
+
+impl BoardConfig {
+    /// The first thing that is needed and not there: firmware, script, emulator or Node.js.
+    pub fn missing(&self) -> Option<EmulatorError> {
+        let script = self.scripts.join("serve.mjs");
+        let emulator = self.scripts.join("node_modules/rp2040js");
+        let needed = [
+            (
+                "the firmware",
+                &self.firmware,
+                "build it with `cargo xtask firmware`",
+            ),
+            (
+                "its script",
+                &script,
+                "name the folder `emulator/board` of the sources",
+            ),
+            (
+                "the RP2040 emulator",
+                &emulator,
+                "install it with `cargo xtask emulator`",
+            ),
+        ];
+        let absent = needed.into_iter().find(|(_, path, _)| !path.exists());
+        if let Some((what, path, advice)) = absent {
+            return Some(EmulatorError::Missing {
+                what,
+                path: path.clone(),
+                advice,
+            });
+        }
+        let node = Command::new("node")
+            .arg("--version")
+            .stdout(Stdio::null())
+            .status();
+        node.err().map(EmulatorError::Node)
+    }
+}
+
+/// Why the emulated board does not do what it was told.
+#[derive(Debug, thiserror::Error)]
+pub enum EmulatorError {
+    /// Something that a start needs is not there.
+    #[error("the emulated board cannot start: {what} is not at {path}; {advice}")]
+    Missing {
+        /// What.
+        what: &'static str,
+        /// Where it was looked for.
+        path: PathBuf,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// Node could not be started.
+    #[error("the emulated board cannot start: running `node`: {0}; install Node.js 18 or newer")]
+    Node(#[source] std::io::Error),
+    /// The process went away.
+    #[error("the emulated board ended while it was asked to `{command}`: {why}")]
+    Gone {
+        /// What it was asked.
+        command: String,
+        /// What is known.
+        why: String,
+    },
+    /// The emulation itself failed.
+    #[error("the emulated board failed while it was asked to `{command}`:\n{why}")]
+    Failed {
+        /// What it was asked.
+        command: String,
+        /// Its own words.
+        why: String,
+    },
+}
+
+/// An emulated board with the unmodified firmware in its flash.
+#[derive(Debug)]
+pub struct Board {
+    child: Child,
+    commands: ChildStdin,
+    answers: BufReader<ChildStdout>,
+    now: Duration,
+    powered: bool,
+    events: Events,
+    sent: Vec<u8>,
+}
+
+impl Board {
+    /// A board that was just switched on, at emulated time zero, with the radio not connected and no battery voltage.
+    ///
+    /// # Errors
+    /// [`EmulatorError`]: what is missing and how to get it.
+    pub fn start(config: &BoardConfig) -> Result<Self, EmulatorError> {
+        if let Some(missing) = config.missing() {
+            return Err(missing);
+        }
+        let mut child = Command::new("node")
+            .arg(config.scripts.join("serve.mjs"))
+            .arg(&config.firmware)
+            .arg(config.kind.word())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .map_err(EmulatorError::Node)?;
+        let (Some(commands), Some(answers)) = (child.stdin.take(), child.stdout.take()) else {
+            return Err(EmulatorError::Gone {
+                command: "start".to_owned(),
+                why: "it has no standard input and output".to_owned(),
+            });
+        };
+        Ok(Self {
+            child,
+            commands,
+            answers: BufReader::new(answers),
+            now: Duration::ZERO,
+            powered: true,
+            events: Events::default(),
+            sent: Vec::new(),
+        })
+    }
+
+    /// Emulated time since the first power-on; it goes on over resets and power cycles.
+    pub fn now(&self) -> Duration {
+        self.now
+    }
+
+    /// Whether it has power: not after a cut, until [`Self::power_cycle`].
+    pub fn powered(&self) -> bool {
+        self.powered
+    }
+
+    /// Runs until emulated time `until`; an earlier time does nothing.
+    ///
+    /// # Errors
+    /// [`EmulatorError`]; so for all that follow.
+    pub fn run(&mut self, until: Duration) -> Result<(), EmulatorError> {
+        if until <= self.now {
+            return Ok(());
+        }
+        let answer = self.ask(&json!({ "do": "run", "until": until.as_nanos() as f64 }))?;
+        self.sent.extend_from_slice(&answer.uart);
+        self.now = until;
+        self.events.append(answer.events);
+        Ok(())
+    }
+
+    /// Bytes to the board's UART; they arrive one after the other at its baud rate.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn feed(&mut self, bytes: &[u8]) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "feed", "bytes": bytes }))
+    }
+
+    /// The same with a framing error on each byte, as a wrong baud rate or a broken wire makes them.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn feed_broken(&mut self, bytes: &[u8]) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "feed", "bytes": bytes, "bad": true }))
+    }
+
+    /// The radio's STATE pin.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn set_connected(&mut self, up: bool) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "connected", "up": up }))
+    }
+
+    /// Voltage at the battery's ADC pin \[V\], 0 to 3.3.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn set_battery(&mut self, volts: f64) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "battery", "volts": volts }))
+    }
+
+    /// The power goes when so many more bytes of flash have been erased or programmed.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn cut_power_after(&mut self, flash_bytes: u32) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "cut", "flashBytes": flash_bytes }))
+    }
+
+    /// Off and on again: RAM is lost, flash stays.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn power_cycle(&mut self) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "power_cycle" }))
+    }
+
+    /// Changes two bytes of the running code, until the next reset.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn patch(&mut self, address: u32, halfword: u16) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "patch", "address": address, "halfword": halfword }))
+    }
+
+    /// Addresses of the firmware's symbols with `containing` in their names.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn symbols(&mut self, containing: &str) -> Result<BTreeMap<String, u32>, EmulatorError> {
+        let answer = self.ask(&json!({ "do": "symbols", "containing": containing }))?;
+        Ok(answer.symbols)
+    }
+
+    /// Bytes of the address space.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn peek(&mut self, address: u32, count: u32) -> Result<Vec<u8>, EmulatorError> {
+        let answer = self.ask(&json!({ "do": "peek", "address": address, "count": count }))?;
+        Ok(answer.bytes)
+    }
+
+    /// What happened since this was last called.
+    pub fn take_events(&mut self) -> Events {
+        std::mem::take(&mut self.events)
+    }
+
+    /// Takes at most `room` bytes of what the board has sent.
+    pub fn take_sent(&mut self, room: usize, out: &mut Vec<u8>) {
+        let count = room.min(self.sent.len());
+        out.extend(self.sent.drain(..count));
+    }
+
+    /// A command whose answer holds nothing but events.
+    fn perform(&mut self, command: &Value) -> Result<(), EmulatorError> {
+        let answer = self.ask(command)?;
+        self.sent.extend_from_slice(&answer.uart);
+        self.events.append(answer.events);
+        Ok(())
+    }
+
+    fn ask(&mut self, command: &Value) -> Result<Answer, EmulatorError> {
+        let name = || command["do"].as_str().unwrap_or("?").to_owned();
+        let gone = |why: String| EmulatorError::Gone {
+            command: name(),
+            why,
+        };
+        writeln!(self.commands, "{command}")
+            .and_then(|()| self.commands.flush())
+            .map_err(|error| gone(error.to_string()))?;
+        let mut line = String::new();
+        let count = self
+            .answers
+            .read_line(&mut line)
+            .map_err(|error| gone(error.to_string()))?;
+        if count == 0 {
+            return Err(gone("its words on standard error say why".to_owned()));
+        }
+        let answer: Value =
+            serde_json::from_str(&line).map_err(|error| gone(format!("{error} in {line:.200}")))?;
+        if let Some(why) = answer["error"].as_str() {
+            return Err(EmulatorError::Failed {
+                command: name(),
+                why: why.to_owned(),
+            });
+        }
+        let answer: Answer =
+            serde_json::from_value(answer).map_err(|error| gone(error.to_string()))?;
+        self.powered = answer.powered;
+        self.now = self.now.max(nanos(answer.now));
+        Ok(answer)
+    }
+}
+
+impl Drop for Board {
+    fn drop(&mut self) {
+        // It ends by itself when its input closes; a child that hangs must not outlive us.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

@@ -1,0 +1,15 @@
+//! The real firmware, run: the very ELF file that is flashed, on an emulated RP2040 ([rp2040js]), as a [`Device`] in virtual
+//! time. What the twin is to the brain, this is to the whole image: UART, PWM, flash, ADC and watchdog included.
+//!
+//! The emulator is a Node.js program (`board/` beside this crate). It lives only while it is told to run, so sessions over a
+//! [`VirtualPort`](host_link::port::VirtualPort) are as deterministic as with a twin.
+//!
+//! [rp2040js]: https://github.com/wokwi/rp2040js
+
+mod board;
+mod events;
+mod robot;
+
+pub use board::{Board, BoardConfig, BoardKind, EmulatorError};
+pub use events::{Edge, Events, Led, Period, PowerCut, Reset, Servo};
+pub use robot::EmulatedRobot;

@@ -1,0 +1,103 @@
+//! The emulated board in a tank: its pulses drive the twin's servos, and the twin's cameras watch.
+
+use std::time::Duration;
+
+use host_link::port::Device;
+use twin::World;
+
+use crate::{Board, EmulatorError, Events, Period};
+
+/// A robot whose brain is the real firmware.
+#[derive(Debug)]
+pub struct EmulatedRobot {
+    board: Board,
+    world: World,
+    events: Events,
+    failed: Option<EmulatorError>,
+}
+
+impl EmulatedRobot {
+    /// A board in its world, with its radio connected; both clocks must stand at zero.
+    ///
+    /// # Errors
+    /// [`EmulatorError`] when the board does not answer.
+    pub fn new(mut board: Board, world: World) -> Result<Self, EmulatorError> {
+        board.set_connected(true)?;
+        Ok(Self {
+            board,
+            world,
+            events: Events::default(),
+            failed: None,
+        })
+    }
+
+    /// The board.
+    pub fn board_mut(&mut self) -> &mut Board {
+        &mut self.board
+    }
+
+    /// Servos, tank and cameras.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// Servos, tank and cameras.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    /// What the board did since this was last called.
+    pub fn take_events(&mut self) -> Events {
+        std::mem::take(&mut self.events)
+    }
+
+    /// Why the emulator failed, where it did: from then on the robot is silent and stands still.
+    pub fn failure(&self) -> Option<&EmulatorError> {
+        self.failed.as_ref()
+    }
+
+    /// Remembers the first failure: a device has no way to tell it.
+    fn attempt(&mut self, act: impl FnOnce(&mut Self) -> Result<(), EmulatorError>) {
+        if self.failed.is_none() {
+            self.failed = act(self).err();
+        }
+    }
+
+    fn run(&mut self, to: Duration) -> Result<(), EmulatorError> {
+        self.board.run(to)?;
+        let news = self.board.take_events();
+        // The servos see each period's pulses from its start on.
+        for period in &news.periods {
+            self.world.advance(period.at());
+            self.world.set_pulses(pulses_ns(period));
+        }
+        if !self.board.powered() {
+            self.world.set_pulses(None);
+        }
+        self.world.advance(to);
+        self.events.append(news);
+        Ok(())
+    }
+}
+
+impl Device for EmulatedRobot {
+    fn advance(&mut self, to: Duration) {
+        self.attempt(|robot| robot.run(to));
+    }
+
+    fn receive(&mut self, bytes: &[u8]) {
+        self.attempt(|robot| robot.board.feed(bytes));
+    }
+
+    fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
+        self.board.take_sent(room, out);
+    }
+}
+
+/// Both pulses in whole nanoseconds, or none.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 16-bit counts of 320 ns
+fn pulses_ns(period: &Period) -> Option<[u32; 2]> {
+    period
+        .powered()
+        .then(|| period.pulses_us().map(|us| (us * 1000.0).round() as u32))
+}

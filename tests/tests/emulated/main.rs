@@ -1,0 +1,10 @@
+//! The very firmware that is flashed, booted on an emulated RP2040 and driven over its UART by the shipped session.
+//!
+//! Needs the ELF of `cargo xtask firmware` and the emulator of `cargo xtask emulator` (`npm ci` in `emulator/board`); where one
+//! is missing every test here says so and does nothing. `cargo xtask test` provides both.
+
+mod boot;
+mod failsafes;
+mod flash;
+mod rig;
+mod session;
