@@ -100,6 +100,21 @@ fn a_tightening_bound() {
     assert!((square.displacement - swum.displacement.x).abs() < 1e-12);
 }
 
+/// Where the bound comes down to the start of the singular arc, 1.3985 rad, that arc shrinks and vanishes; the gait stays.
+#[test]
+fn a_bound_that_meets_the_start() {
+    let gaits = [
+        1.43, 1.42, 1.415, 1.41, 1.405, 1.4012, 1.4, 1.399, 1.395, 1.39,
+    ]
+    .map(|max| optimum(&DisplacementProblem::new(Swimmer::robot()).with_max_angle(max)));
+    for pair in gaits.windows(2) {
+        let less = pair[0].displacement_over_length - pair[1].displacement_over_length;
+        assert!((0.0..1e-3).contains(&less), "{:?}: {less}", pair[1].bounds);
+    }
+    assert_eq!(kinds(&gaits[0])[0], ArcKind::Singular);
+    assert_eq!(kinds(&gaits[9])[0], ArcKind::Upper);
+}
+
 /// The maximum principle and the direct method meet: gait (a) from a circle, with no knowledge of the arcs.
 #[test]
 fn the_direct_method_climbs_to_gait_a_from_a_circle() {

@@ -91,8 +91,16 @@ impl<'a> Search<'a> {
                 }
                 (Look::Nothing, Look::Nothing) => {}
             }
+            if look == 0
+                && let Look::Miss { lambda4, .. } = here
+            {
+                self.towards_the_end(trunk, (p, lambda4), low, found);
+            }
             before = here;
             last_p = p;
+        }
+        if let Look::Miss { p, lambda4 } = before {
+            self.towards_the_end(trunk, (p, lambda4), high, found);
         }
     }
 
@@ -120,6 +128,21 @@ impl<'a> Search<'a> {
             Fate::Stalled | Fate::TooManyArcs => fates.lost += 1,
         }
         Look::Nothing
+    }
+
+    /// Between the outermost place looked at and the trunk's own end, where its arc shrinks to nothing.
+    fn towards_the_end(
+        &self,
+        trunk: &Trunk,
+        outermost: (f64, f64),
+        end: f64,
+        found: &mut Vec<Candidate>,
+    ) {
+        let last = end + 1e-7 * (outermost.0 - end);
+        match self.miss(trunk, last, COARSE) {
+            Some(lambda4) => self.between(trunk, outermost, (last, lambda4), found),
+            None => self.towards_the_fold(trunk, outermost, end, found),
+        }
     }
 
     /// Between an extremal that ends and one that does not: looks closer at the last ones that end.
@@ -199,7 +222,14 @@ impl<'a> Search<'a> {
     /// Secant method at the middling tolerance: a place with a small `λ₄(t_f)` and the slope there.
     fn secants(&self, trunk: &Trunk, near: f64) -> Option<(f64, f64)> {
         let mut before = (near, self.miss(trunk, near, MIDDLING)?);
-        let mut here = near + 1e-5;
+        // Away from the trunk's end, which may be nearer.
+        let [low, high] = trunk.range();
+        let aside = if near < 0.5 * (low + high) {
+            1e-5
+        } else {
+            -1e-5
+        };
+        let mut here = near + aside;
         for _ in 0..12 {
             let lambda4 = self.miss(trunk, here, MIDDLING)?;
             let slope = (lambda4 - before.1) / (here - before.0);
