@@ -1,4 +1,4 @@
-//! The real firmware, run: the very ELF file that is flashed, on an emulated RP2040 ([rp2040js]), as a [`Device`] in virtual
+//! The real firmware, run: the very ELF file that is flashed, on an emulated RP2040 ([rp2040js]), as a [`Device`](host_link::port::Device) in virtual
 //! time. What the twin is to the brain, this is to the whole image: UART, PWM, flash, ADC and watchdog included.
 //!
 //! The emulator is a Node.js program (`board/` beside this crate). It lives only while it is told to run, so sessions over a
