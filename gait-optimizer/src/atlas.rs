@@ -23,7 +23,6 @@ use swimmer_files::{Bounds, Objective};
 use swimmer_model::{InvalidSwimmer, Model, Swimmer};
 
 use crate::OptimalGait;
-use crate::displacement::of_unit_length;
 use crate::extremal::Walls;
 use crate::region::Region;
 
@@ -178,7 +177,7 @@ pub enum AtlasError {
 /// [`AtlasError`]: what is wrong with the problem. An atlas without any optimum is no error.
 pub fn atlas(problem: &AtlasProblem) -> Result<Atlas, AtlasError> {
     problem.validate()?;
-    let model = Model::new(&of_unit_length(&problem.swimmer))?;
+    let model = Model::new(&problem.swimmer.of_unit_length())?;
     Ok(match problem.objective {
         Objective::Efficiency => pipeline::run(
             problem,

@@ -6,7 +6,7 @@ use swimmer_model::Stroke;
 
 use crate::cycle::{Cycle, QuarterTrace};
 use crate::region::Region;
-pub(crate) use closed_curve::{crossings, turning_number};
+pub(crate) use closed_curve::{crossings, simple_and_turning_once, turning_number};
 
 /// One condition.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -116,23 +116,13 @@ impl Certificate {
                 1e-10,
             ));
         }
-        let turning = turning_number(&cycle.phi);
-        checks.push(Check::at_most(
-            "turning_number_off_one",
-            (turning - 1.0).abs(),
-            1e-9,
-        ));
         // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
         let curve = if region.has_diagonals() {
             &trace.phi
         } else {
             &cycle.phi
         };
-        checks.push(Check::at_most(
-            "self_crossings",
-            crossings(curve) as f64,
-            0.0,
-        ));
+        checks.extend(simple_and_turning_once(&cycle.phi, curve));
         checks.extend(swum_again(stroke, displacement_over_length));
         Self { checks }
     }

@@ -11,7 +11,6 @@
 
 mod grid;
 mod limits;
-mod momentum;
 mod neighbours;
 mod path;
 mod regular;
@@ -22,8 +21,7 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{Gait as _, InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, swim};
 
-use crate::certificate::{Certificate, Check, crossings, turning_number};
-use crate::displacement::of_unit_length;
+use crate::certificate::{Certificate, Check, simple_and_turning_once, turning_number};
 use grid::{Along, Degree, Grid};
 use limits::{Limit, Limits, image};
 use path::Path;
@@ -103,7 +101,7 @@ pub fn certify(
     objective: Objective,
     bounds: &Bounds,
 ) -> Result<Certificate, CertifyError> {
-    let model = Model::new(&of_unit_length(swimmer))?;
+    let model = Model::new(&swimmer.of_unit_length())?;
     let curve = AnyGait::from_file(gait)?;
     if gait.u.len() < GaitFile::FEWEST_SAMPLES || gait.u.last() != Some(&1.0) {
         return Err(CertifyError::TooFew {
@@ -209,14 +207,7 @@ impl<'a> Subject<'a> {
             (Some(first), Some(last)) => (last - first).norm(),
             _ => f64::NAN,
         };
-        let mut checks = vec![
-            Check::at_most("open_rad", gap, GaitFile::CLOSURE),
-            Check::at_most(
-                "turning_number_off_one",
-                (turning_number(&gait.phi) - 1.0).abs(),
-                1e-9,
-            ),
-        ];
+        let mut checks = vec![Check::at_most("open_rad", gap, GaitFile::CLOSURE)];
         // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
         let quarter = gait.u.partition_point(|&u| u <= 0.25 + 1e-12);
         let simple = if self.limits.has_diagonals() {
@@ -224,11 +215,7 @@ impl<'a> Subject<'a> {
         } else {
             &gait.phi
         };
-        checks.push(Check::at_most(
-            "self_crossings",
-            crossings(simple) as f64,
-            0.0,
-        ));
+        checks.extend(simple_and_turning_once(&gait.phi, simple));
         if self.limits.need_quarters() {
             let off = if self.symmetric { 0.0 } else { 1.0 };
             checks.push(Check::at_most("without_the_papers_symmetries", off, 0.0));

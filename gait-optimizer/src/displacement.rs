@@ -12,7 +12,7 @@ use crate::region::Region;
 pub use error::{DisplacementError, Fates};
 use search::{Candidate, Search};
 use swimmer_files::{ArcKind, Bounds, Objective};
-use swimmer_model::{Links, Model, Swimmer, TangentialDrag};
+use swimmer_model::{Links, Model, Swimmer};
 use trunk::trunks;
 
 use crate::cycle::{Cycle, QuarterTrace};
@@ -172,7 +172,7 @@ impl DisplacementProblem {
 /// [`DisplacementError`]: what is wrong with the problem, or why it has no optimum.
 pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, DisplacementError> {
     problem.validate()?;
-    let model = Model::new(&of_unit_length(&problem.swimmer))?;
+    let model = Model::new(&problem.swimmer.of_unit_length())?;
     let found = best(problem, &model, &problem.bounds);
     if !problem.may_touch() || found.as_ref().is_ok_and(|gait| !cut_off(gait)) {
         return found;
@@ -191,7 +191,7 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
 /// images where [`displacement()`] would look for them.
 pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, DisplacementError> {
     problem.validate()?;
-    let model = Model::new(&of_unit_length(&problem.swimmer))?;
+    let model = Model::new(&problem.swimmer.of_unit_length())?;
     let of = |bounds: &Bounds| {
         let region = Region::new(bounds, &problem.swimmer.links);
         let (candidates, _) = candidates(problem, &model, bounds, &region);
@@ -269,26 +269,6 @@ fn best(
         }
         None => DisplacementError::NoOptimum { heading, fates },
     })
-}
-
-/// The same swimmer measured in its own length: L = 1.
-pub(crate) fn of_unit_length(swimmer: &Swimmer<f64>) -> Swimmer<f64> {
-    let length = swimmer.total_length();
-    Swimmer {
-        links: Links {
-            middle: swimmer.links.middle / length,
-            front: swimmer.links.front / length,
-            back: swimmer.links.back / length,
-        },
-        tangential_drag: match swimmer.tangential_drag {
-            TangentialDrag::HalfThickness(thickness) => {
-                TangentialDrag::HalfThickness(thickness / length)
-            }
-            same => same,
-        },
-        sphere_radius: swimmer.sphere_radius / length,
-        ..*swimmer
-    }
 }
 
 /// A candidate as a full cycle with its certificate; none where it cannot even be traced again.

@@ -23,7 +23,6 @@ use swimmer_files::{ArcKind, Bounds, Objective};
 use swimmer_model::{Links, Model, Swimmer};
 
 use crate::cycle::Cycle;
-use crate::displacement::of_unit_length;
 use crate::extremal::wall::Walls;
 use crate::optimal_gait::Solution;
 use crate::{Arc, OptimalGait};
@@ -184,7 +183,7 @@ pub struct EfficiencyFigures {
 /// [`EfficiencyError`]: what is wrong with the problem, or why the branch has no optimum.
 pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, EfficiencyError> {
     problem.validate()?;
-    let model = Model::new(&of_unit_length(&problem.swimmer))?;
+    let model = Model::new(&problem.swimmer.of_unit_length())?;
     let mut best: Option<OptimalGait> = None;
     let mut refused: Option<EfficiencyError> = None;
     for start in chain::starts(&model, problem.branch)? {

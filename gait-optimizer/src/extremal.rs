@@ -34,7 +34,6 @@ use swimmer_files::Bounds;
 use swimmer_model::{Gait, InvalidSwimmer, Model, Swimmer};
 
 use crate::OptimalGait;
-use crate::displacement::of_unit_length;
 
 use equations::shape;
 use guess::Swum;
@@ -119,7 +118,7 @@ pub fn polish_efficiency<G: Gait<f64> + ?Sized>(
     polish_for: &Polish,
     gait: &G,
 ) -> Result<OptimalGait, Unpolished> {
-    let model = Model::new(&of_unit_length(&polish_for.swimmer))?;
+    let model = Model::new(&polish_for.swimmer.of_unit_length())?;
     let walls = Walls::new(&polish_for.bounds, &polish_for.swimmer.links);
     let extremal = polish(&model, &walls, gait, polish_for.symmetric)?;
     let order = gait::Order {

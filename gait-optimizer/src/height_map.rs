@@ -39,7 +39,6 @@ pub use level_curve::LevelCurve;
 use level_curve::level_curves;
 pub(crate) use level_curve::{Level, LevelSearch, OnCurve, level_seeds, passes};
 
-use crate::displacement::of_unit_length;
 use galerkin::Coefficients;
 use legendre::polynomials;
 use space::table;
@@ -118,7 +117,7 @@ impl HeightMap {
     /// [`HeightMapError`]: the swimmer or the square is out of range, or the frame does not converge.
     pub fn new(swimmer: &Swimmer<f64>, half_width: f64) -> Result<Self, HeightMapError> {
         swimmer.validate()?;
-        let model = Model::new(&of_unit_length(swimmer))?;
+        let model = Model::new(&swimmer.of_unit_length())?;
         if !(Self::NARROWEST..=Self::WIDEST).contains(&half_width) {
             return Err(HeightMapError::HalfWidth { value: half_width });
         }

@@ -10,7 +10,8 @@
 //! | module | what lives there |
 //! |---|---|
 //! | `displacement` | the problem, the search for the quarter gait, the result |
-//! | `displacement::height` | the switching function F of the paper, its gradient, the singular control |
+//! | `momentum` | the multipliers as a momentum that the body carries, and the height: what a push of the curve gains |
+//! | `displacement::height` | the same for a quarter: the paper's switching function F, what the costate equations need |
 //! | `height_map` | height functions in minimum-perturbation coordinates, their zero-level curves, the area rule |
 //! | `atlas` | multi-start over closed curves of any symmetry, and which of them are one gait |
 //! | `continuation` | an optimum followed in a parameter: folds, meetings, changes of its arcs |
@@ -23,6 +24,12 @@
 //! | `efficiency` | free Lighthill gaits: Fourier series, shooting, second-order test |
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs |
 //! | `cycle` | from a quarter to the full cycle, at constant power |
+//! | `height_map` | height functions in minimum-perturbation coordinates, zero-level curves, the area rule |
+//! | `loops` | closed curves of most displacement without symmetry: singular arcs and bounds, back to their start |
+//! | `closed_curve` | net displacement, rotation and effort of any closed curve, with exact derivatives |
+//! | `atlas` | every optimum that a seeded multi-start finds, polished and certified |
+//! | `continuation` | optima followed in a parameter, with what happens on the way |
+//! | `sideways` | the loop and its start that move most across the heading |
 //! | `turning` | the simple closed gait that turns most: round a region of the curvature |
 //! | `playable` | what a real robot makes of a gait: timing under servo limits, losses foretold |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
@@ -46,6 +53,7 @@ mod efficiency;
 mod extremal;
 mod height_map;
 mod loops;
+mod momentum;
 mod optimal_gait;
 pub mod playable;
 mod region;

@@ -8,11 +8,9 @@
 //! displacement by itself.
 
 mod flow;
-mod height;
 mod shooting;
 mod trace;
 
 pub(crate) use flow::{Course, Home, Lap, Motion};
-pub(crate) use height::Momentum;
 pub(crate) use shooting::{Closed, Gate, Loop, close};
 pub(crate) use trace::LoopTrace;

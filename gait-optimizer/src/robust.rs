@@ -33,7 +33,6 @@ use swimmer_files::{Bounds, Objective};
 use swimmer_model::{InvalidSwimmer, Model, Swimmer};
 
 use crate::cycle::Cycle;
-use crate::displacement::of_unit_length;
 use crate::optimal_gait::Solution;
 use crate::{
     Branch, Certificate, DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement,
@@ -171,7 +170,7 @@ struct Found {
 impl Ensemble {
     fn new(swimmer: &Swimmer<f64>, uncertainty: &Uncertainty) -> Result<Self, RobustError> {
         uncertainty.validate()?;
-        let model = |swimmer: &Swimmer<f64>| Model::new(&of_unit_length(swimmer));
+        let model = |swimmer: &Swimmer<f64>| Model::new(&swimmer.of_unit_length());
         let swimmers = uncertainty.candidates(swimmer, GRID);
         let normal = uncertainty.normal(swimmer);
         Ok(Self {

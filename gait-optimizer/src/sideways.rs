@@ -24,11 +24,10 @@ pub use error::SidewaysError;
 
 use crate::certificate::{Certificate, Check};
 use crate::cycle::Cycle;
-use crate::displacement::of_unit_length;
 use crate::loops::LoopTrace;
 use crate::optimal_gait::Solution;
 use crate::region::Region;
-use crate::{AtlasProblem, OptimalGait, atlas};
+use crate::{Arc, AtlasProblem, OptimalGait, atlas};
 
 /// What to steer, and how.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,7 +81,7 @@ pub fn sideways(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
         samples: problem.samples,
         ..AtlasProblem::new(problem.swimmer, Objective::Displacement)
     })?;
-    let model = Model::new(&of_unit_length(&problem.swimmer)).map_err(crate::AtlasError::from)?;
+    let model = Model::new(&problem.swimmer.of_unit_length()).map_err(crate::AtlasError::from)?;
     let region = Region::new(&problem.bounds, &problem.swimmer.links);
     let mut found: Vec<Sideways> = Vec::new();
     for optimum in &loops.optima {
@@ -117,20 +116,34 @@ fn finished(
     region: &Region,
     trace: LoopTrace,
 ) -> Option<Sideways> {
-    let stroke = trace.cycle.swum(model)?;
-    let mut checks = trace.conditions(region);
+    let checks = trace.conditions(region);
+    let expected = trace.evidence.along;
+    let tolerance = 1e-9;
+    settled(
+        (problem, model),
+        (trace.cycle, trace.arcs),
+        checks,
+        (expected, tolerance),
+    )
+}
+
+/// A cycle with the conditions of its loop, where it also carries as far across as `expected`, does not rotate, and no other
+/// start on it is better by more than the tolerance.
+fn settled(
+    (problem, model): (&SidewaysProblem, &Model<f64>),
+    (cycle, arcs): (Cycle, Vec<Arc>),
+    mut checks: Vec<Check>,
+    (expected, tolerance): (f64, f64),
+) -> Option<Sideways> {
+    let stroke = cycle.swum(model)?;
     let lateral = stroke.displacement.y.abs();
     checks.extend([
-        Check::at_most(
-            "lateral_swum_again",
-            (lateral - trace.evidence.along).abs(),
-            1e-8,
-        ),
+        Check::at_most("lateral_swum_again", (lateral - expected).abs(), 1e-8),
         Check::at_most("net_rotation_rad", stroke.rotation.abs(), 1e-8),
         Check::at_most(
             "other_start_better",
-            better_start(model, &trace.cycle, &stroke.displacement)?,
-            1e-9,
+            better_start(model, &cycle, &stroke.displacement)?,
+            tolerance,
         ),
     ]);
     let certificate = Certificate::new(checks);
@@ -145,9 +158,9 @@ fn finished(
             swimmer: problem.swimmer,
             bounds: problem.bounds,
             symmetric: false,
-            links_cross: trace.cycle.links_cross(model),
-            arcs: trace.arcs,
-            cycle: trace.cycle,
+            links_cross: cycle.links_cross(model),
+            arcs,
+            cycle,
             stroke,
             certificate,
         }),

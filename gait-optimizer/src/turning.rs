@@ -36,7 +36,6 @@ pub use error::TurningError;
 
 use crate::OptimalGait;
 use crate::cycle::Cycle;
-use crate::displacement::of_unit_length;
 use crate::height_map::legendre::gauss;
 use crate::height_map::{Level, LevelSearch, level_seeds};
 use crate::optimal_gait::{Arc, Solution};
@@ -75,7 +74,7 @@ const STEPS: f64 = 240.0;
 /// # Errors
 /// [`TurningError`]: what is wrong with the problem, or why there is no such gait.
 pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
-    let model = Model::new(&of_unit_length(&problem.swimmer))?;
+    let model = Model::new(&problem.swimmer.of_unit_length())?;
     let bounds = validated(problem)?;
     let region = Region::new(&bounds, &problem.swimmer.links);
     let shore = Shore::new(&region, DIRECTIONS).ok_or(TurningError::Border)?;

@@ -4,7 +4,7 @@ use gait_optimizer::collocation::{CollocationProblem, QuarterGuess, solve};
 use gait_optimizer::{
     ArcKind, Bounds, Branch, EfficiencyError, EfficiencyProblem, OptimalGait, efficiency,
 };
-use swimmer_model::{Links, Model, Swimmer};
+use swimmer_model::{Model, Swimmer};
 
 fn bounded(
     swimmer: Swimmer<f64>,
@@ -22,21 +22,8 @@ fn bounded(
     })
 }
 
-fn of_unit_length(swimmer: Swimmer<f64>) -> Swimmer<f64> {
-    let length = swimmer.total_length();
-    Swimmer {
-        links: Links {
-            middle: swimmer.links.middle / length,
-            front: swimmer.links.front / length,
-            back: swimmer.links.back / length,
-        },
-        sphere_radius: swimmer.sphere_radius / length,
-        ..swimmer
-    }
-}
-
 fn by_collocation(swimmer: Swimmer<f64>, gait: &OptimalGait, max_angle: f64) -> f64 {
-    let model = Model::new(&of_unit_length(swimmer)).unwrap();
+    let model = Model::new(&swimmer.of_unit_length()).unwrap();
     let sign = gait.displacement_over_length.signum();
     let problem = CollocationProblem::new(&model, sign).with_max_angle(max_angle);
     // Every eighth sample, to two digits: a guess, no more.

@@ -126,6 +126,27 @@ impl<T: Scalar> Swimmer<T> {
         self.links.middle + self.links.front + self.links.back
     }
 
+    /// The same swimmer measured in its own length: L = 1, every other quantity unchanged.
+    #[must_use]
+    pub fn of_unit_length(&self) -> Self {
+        let length = self.total_length();
+        Self {
+            links: Links {
+                middle: self.links.middle / length,
+                front: self.links.front / length,
+                back: self.links.back / length,
+            },
+            tangential_drag: match self.tangential_drag {
+                TangentialDrag::HalfThickness(thickness) => {
+                    TangentialDrag::HalfThickness(thickness / length)
+                }
+                same => same,
+            },
+            sphere_radius: self.sphere_radius / length,
+            ..*self
+        }
+    }
+
     /// c_t/μ of the side links, the reference drag of Lighthill's efficiency; the mean of both where they differ.
     pub fn side_drag(&self) -> T {
         let drag = |length| self.tangential_drag.over_viscosity(length);

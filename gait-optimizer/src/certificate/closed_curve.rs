@@ -2,6 +2,21 @@
 
 use nalgebra::Vector2;
 
+use super::Check;
+
+/// A curve that turns once, and of which no two sides cross: `whole` is the closed curve, `simple` the part of it that must not
+/// cross itself (all of it, but for gaits that meet their own images).
+pub(crate) fn simple_and_turning_once(
+    whole: &[Vector2<f64>],
+    simple: &[Vector2<f64>],
+) -> [Check; 2] {
+    let off_one = (turning_number(whole) - 1.0).abs();
+    [
+        Check::at_most("turning_number_off_one", off_one, 1e-9),
+        Check::at_most("self_crossings", crossings(simple) as f64, 0.0),
+    ]
+}
+
 /// How often a closed polygon (last point = first) turns round, counter-clockwise positive.
 pub(crate) fn turning_number(points: &[Vector2<f64>]) -> f64 {
     let sides: Vec<Vector2<f64>> = points

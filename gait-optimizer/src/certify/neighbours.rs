@@ -7,9 +7,11 @@
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_model::Model;
 
+use super::Subject;
 use super::grid::{Along, Degree, Grid};
-use super::momentum::Momentum;
 use super::path::Path;
+use crate::certificate::Check;
+use crate::momentum::Momentum;
 
 /// What is maximised, as far as the Hessian is concerned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,6 +44,22 @@ const WAVES: [usize; 2] = [10, 17];
 const PUSH: f64 = 1e-4;
 /// Eigenvalues below this part of the largest are not told from zero.
 const FLAT: f64 = 1e-5;
+
+impl Subject<'_> {
+    /// How many pushes of the curve would gain, with this multiplier of the rotation; none where no push is free.
+    pub(super) fn ascents(&self, gain: Gain, rotation: f64) -> Option<Check> {
+        let neighbours = Neighbours {
+            model: self.model,
+            grid: &self.grid,
+            shapes: &self.shapes,
+            gain,
+            rotation,
+            symmetric: self.symmetric,
+        };
+        let count = neighbours.ascents()?;
+        Some(Check::at_most("ascent_directions", count as f64, 0.0))
+    }
+}
 
 impl Neighbours<'_> {
     /// How many independent directions lead up; none where the curve cannot be pushed.
@@ -203,7 +221,7 @@ impl Neighbours<'_> {
             .places
             .iter()
             .zip(wave)
-            .map(|(place, push)| momentum.height(place) * push.perp(&place.rate))
+            .map(|(place, push)| place.height(momentum) * push.perp(&place.rate))
             .collect();
         let inside = self.grid.integrals(&gained, 0.0, Degree::Fine);
         let ends = match (path.places.first(), path.places.last(), wave.first()) {

@@ -5,6 +5,7 @@ use swimmer_model::{FirstDerivatives, Model};
 
 use super::grid::{Degree, Grid};
 use super::stencil;
+use crate::momentum::Momentum;
 use crate::runge_kutta::{Point, exact_step};
 
 /// One node of the curve, swum.
@@ -18,6 +19,13 @@ pub(super) struct Place {
     pub(super) pose: [f64; 3],
     /// The root of the power `P = Φ'ᵀWΦ'`.
     pub(super) root_power: f64,
+}
+
+impl Place {
+    /// The height of one choice of the multipliers here.
+    pub(super) fn height(&self, momentum: &Momentum) -> f64 {
+        momentum.at(&self.pose).dot(&self.first.curvature())
+    }
 }
 
 /// The whole cycle.

@@ -8,11 +8,11 @@
 use nalgebra::Vector2;
 
 use super::grid::Along;
-use super::momentum::Momentum;
-use super::neighbours::{Gain, Neighbours};
+use super::neighbours::Gain;
 use super::path::Path;
 use super::{Degree, Openness, Subject, worse};
 use crate::certificate::Check;
+use crate::momentum::Momentum;
 
 impl Subject<'_> {
     /// All checks of an optimum of efficiency.
@@ -63,19 +63,7 @@ impl Subject<'_> {
             1e-12,
         ));
         checks.extend(self.effort_multipliers(&momentum));
-        let neighbours = Neighbours {
-            model: self.model,
-            grid: &self.grid,
-            shapes: &self.shapes,
-            gain: Gain::Efficiency,
-            rotation: momentum.c / length,
-            symmetric: self.symmetric,
-        };
-        checks.extend(
-            neighbours
-                .ascents()
-                .map(|count| Check::at_most("ascent_directions", count as f64, 0.0)),
-        );
+        checks.extend(self.ascents(Gain::Efficiency, momentum.c / length));
         checks
     }
 
@@ -167,7 +155,7 @@ impl Subject<'_> {
                     let power = place.root_power.powi(2);
                     let power_rate = 2.0 * bend.dot(&(w * rate)) + rate.dot(&(along * rate));
                     let faster = along * rate + w * bend - w * rate * (0.5 * power_rate / power);
-                    let height = momentum.height(place) * place.root_power;
+                    let height = place.height(momentum) * place.root_power;
                     let dearer = Vector2::new(rate.dot(&(d1 * rate)), rate.dot(&(d2 * rate))) * 0.5;
                     let push = (faster - dearer + Vector2::new(rate.y, -rate.x) * height) / power;
                     push.dot(&Vector2::new(rate.y, -rate.x)) * side / (rate.norm() * scale)
@@ -213,7 +201,7 @@ impl Balance {
                 let ([d1, d2], rate) = (&place.first.d_power, &place.rate);
                 let dearer = Vector2::new(rate.dot(&(d1 * rate)), rate.dot(&(d2 * rate)));
                 dearer * (0.5 / place.root_power)
-                    - Vector2::new(rate.y, -rate.x) * momentum.height(place)
+                    - Vector2::new(rate.y, -rate.x) * place.height(momentum)
             })
             .collect();
         let integrals = subject.grid.integrals(&forces, Vector2::zeros(), degree);

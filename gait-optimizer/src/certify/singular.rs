@@ -8,10 +8,10 @@ use nalgebra::Vector2;
 use swimmer_files::Objective;
 
 use super::grid::Along;
-use super::momentum::Momentum;
-use super::neighbours::{Gain, Neighbours};
+use super::neighbours::Gain;
 use super::{Degree, Openness, Subject, worse};
 use crate::certificate::Check;
+use crate::momentum::Momentum;
 
 /// What the height does at one node.
 #[derive(Debug, Clone, Copy)]
@@ -66,10 +66,10 @@ impl Subject<'_> {
             .iter()
             .map(|place| {
                 let second = self.model.second_derivatives(&place.phi);
-                let gradient = momentum.gradient(place, &second);
+                let gradient = momentum.height(&second, &place.pose).gradient;
                 let curvature = place.first.curvature();
                 Look {
-                    height: momentum.height(place),
+                    height: place.height(&momentum),
                     gradient,
                     left: Vector2::new(-place.rate.y, place.rate.x) / place.rate.norm(),
                     pose_leverage: 2.0 * curvature.norm(),
@@ -78,19 +78,7 @@ impl Subject<'_> {
             .collect();
         let mut checks = self.on_free_arcs(&looks, open);
         checks.extend(self.on_bounds(&looks, open));
-        let neighbours = Neighbours {
-            model: self.model,
-            grid: &self.grid,
-            shapes: &self.shapes,
-            gain,
-            rotation: momentum.c,
-            symmetric: self.symmetric,
-        };
-        checks.extend(
-            neighbours
-                .ascents()
-                .map(|count| Check::at_most("ascent_directions", count as f64, 0.0)),
-        );
+        checks.extend(self.ascents(gain, momentum.c));
         checks
     }
 
@@ -271,7 +259,7 @@ impl Subject<'_> {
                 .iter()
                 .enumerate()
                 .filter(move |(node, _)| self.along(*node) == along)
-                .map(move |(node, place)| (node, without.height(place), place.first.curvature().z))
+                .map(move |(node, place)| (node, place.height(&without), place.first.curvature().z))
         };
         let (mut across, mut square) = (0.0, 0.0);
         for (_, height, turning) in pairs(Along::Free) {

@@ -5,7 +5,6 @@ use swimmer_model::{Gait, Model};
 use super::follow::Family;
 use super::kept::Kept;
 use super::{ContinuationProblem, OtherSide, Start};
-use crate::displacement::of_unit_length;
 use crate::extremal::continuation::{alike, mirrored, other_side, within_walls};
 use crate::extremal::gait::{Order, gait};
 use crate::extremal::{Extremal, Walls, ascents, polish, polish_chain};
@@ -20,7 +19,7 @@ const FARTHEST: f64 = 2.0;
 
 impl Efficiency<'_> {
     fn model(&self, value: f64) -> Result<Model<f64>, String> {
-        Model::new(&of_unit_length(&self.problem.swimmer_at(value)))
+        Model::new(&self.problem.swimmer_at(value).of_unit_length())
             .map_err(|error| error.to_string())
     }
 

@@ -7,7 +7,9 @@
 //! regular on φ₁ = −φ₂.
 
 use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
-use swimmer_model::{FirstDerivatives, Model, SecondDerivatives};
+use swimmer_model::{FirstDerivatives, Model};
+
+use crate::momentum::{Height, Momentum};
 
 /// State along a quarter gait: φ₁, φ₂, x, y, θ (lengths over L) and the power length ∫√P over the arc.
 pub(crate) type State = [f64; 6];
@@ -20,6 +22,14 @@ pub(crate) fn shape(z: &[f64]) -> Vector2<f64> {
     }
 }
 
+/// x, y, θ of a state.
+pub(crate) fn pose(z: &[f64]) -> [f64; 3] {
+    match z {
+        [_, _, x, y, theta, ..] => [*x, *y, *theta],
+        _ => [0.0; 3],
+    }
+}
+
 /// One choice of the problem's multipliers: all extremals with this λ₃ and this final y.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Extremal<'a> {
@@ -29,13 +39,6 @@ pub(crate) struct Extremal<'a> {
     pub(crate) sign: f64,
     /// `y_f` over L, in `λ₄ = λ₃ (y − y_f)`.
     pub(crate) final_y: f64,
-}
-
-/// The height and how it changes along the two joint angles, with the pose carried along.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Height {
-    pub(crate) value: f64,
-    pub(crate) gradient: Vector2<f64>,
 }
 
 /// What the costate equations need at one state.
@@ -54,15 +57,18 @@ pub(crate) struct Slopes {
 }
 
 impl Extremal<'_> {
-    fn lambda4(&self, z: &[f64; 3]) -> f64 {
-        self.sign * (z[1] - self.final_y)
+    fn momentum(&self) -> Momentum {
+        Momentum {
+            p: Vector2::new(self.sign, 0.0),
+            c: -self.sign * self.final_y,
+        }
     }
 
     /// The height −F at a state.
     #[cfg(test)]
     pub(crate) fn height(&self, phi: &Vector2<f64>, pose: &[f64; 3]) -> f64 {
         let curvature = self.model.first_derivatives(phi).curvature();
-        self.turned(&curvature, pose)
+        self.momentum().at(pose).dot(&curvature)
     }
 
     /// The height −F and its derivative along each joint: total, that is with the θ and y that this joint's motion brings.
@@ -72,9 +78,7 @@ impl Extremal<'_> {
         phi: &Vector2<f64>,
         pose: &[f64; 3],
     ) -> (Height, Matrix3x2<f64>, Matrix2<f64>) {
-        let second = self.model.second_derivatives(phi);
-        let height = self.height_of(&second, pose);
-        (height, second.first.connection, second.first.power)
+        self.momentum().look(self.model, phi, pose)
     }
 
     /// The height with its gradient, and everything that the costate equations need, from one look at the model.
@@ -85,33 +89,9 @@ impl Extremal<'_> {
     ) -> (Height, Slopes) {
         let second = self.model.second_derivatives(phi);
         (
-            self.height_of(&second, pose),
+            self.momentum().height(&second, pose),
             self.slopes_of(&second.first, pose),
         )
-    }
-
-    fn height_of(&self, second: &SecondDerivatives<f64>, pose: &[f64; 3]) -> Height {
-        let connection = second.first.connection;
-        let curvature = second.first.curvature();
-        let [along1, along2] = second.d_curvature();
-        let (sin, cos) = pose[2].sin_cos();
-        let by_theta = self.sign * (-sin * curvature.x - cos * curvature.y);
-        let slope = |along: &Vector3<f64>, joint: usize| {
-            let column = connection.column(joint);
-            let y_rate = sin * column.x + cos * column.y;
-            self.turned(along, pose) + by_theta * column.z + self.sign * curvature.z * y_rate
-        };
-        let gradient = Vector2::new(slope(&along1, 0), slope(&along2, 1));
-        Height {
-            value: self.turned(&curvature, pose),
-            gradient,
-        }
-    }
-
-    /// Row x of the turned curvature times λ₃, plus row θ times λ₄.
-    fn turned(&self, curvature: &Vector3<f64>, pose: &[f64; 3]) -> f64 {
-        let (sin, cos) = pose[2].sin_cos();
-        self.sign * (cos * curvature.x - sin * curvature.y) + self.lambda4(pose) * curvature.z
     }
 
     /// The final y for which the height vanishes at a state; none where every λ₄ or none makes it vanish.
@@ -132,15 +112,8 @@ impl Extremal<'_> {
     }
 
     fn slopes_of(&self, first: &FirstDerivatives<f64>, pose: &[f64; 3]) -> Slopes {
-        let (sin, cos) = pose[2].sin_cos();
-        let lambda4 = self.lambda4(pose);
-        let weigh = |a: &Matrix3x2<f64>| {
-            let column = |j: usize| {
-                let c = a.column(j);
-                self.sign * (cos * c.x - sin * c.y) + lambda4 * c.z
-            };
-            Vector2::new(column(0), column(1))
-        };
+        let mu = self.momentum().at(pose);
+        let weigh = |a: &Matrix3x2<f64>| a.tr_mul(&mu);
         Slopes {
             momentum: weigh(&first.connection),
             by_angle: Matrix2::from_columns(&[
@@ -148,18 +121,10 @@ impl Extremal<'_> {
                 weigh(&first.d_connection[1]),
             ]),
             curvature: first.curvature(),
-            height: self.turned(&first.curvature(), pose),
+            height: mu.dot(&first.curvature()),
             connection: first.connection,
             power: first.power,
         }
-    }
-}
-
-impl Height {
-    /// Direction of the singular arc: along the zero of the height, with the gain on the left, as the generalised
-    /// Legendre–Clebsch condition asks.
-    pub(crate) fn singular_direction(&self) -> Vector2<f64> {
-        Vector2::new(self.gradient.y, -self.gradient.x) / self.gradient.norm()
     }
 }
 

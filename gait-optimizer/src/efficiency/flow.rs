@@ -268,7 +268,7 @@ mod tests {
     #[test]
     fn the_linearisation_is_the_derivative_of_the_rates() {
         for swimmer in [Swimmer::purcell(), Swimmer::robot()] {
-            let model = Model::new(&crate::displacement::of_unit_length(&swimmer)).unwrap();
+            let model = Model::new(&swimmer.of_unit_length()).unwrap();
             let flow = Flow {
                 model: &model,
                 kappa: -4.1,
@@ -304,7 +304,7 @@ mod tests {
 
     #[test]
     fn the_slopes_of_the_power_are_its_derivatives() {
-        let model = Model::new(&crate::displacement::of_unit_length(&Swimmer::robot())).unwrap();
+        let model = Model::new(&Swimmer::robot().of_unit_length()).unwrap();
         let flow = Flow {
             model: &model,
             kappa: -4.1,

@@ -92,13 +92,12 @@ pub(crate) fn raised(coefficients: &[f64], order: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::displacement::of_unit_length;
     use swimmer_model::Swimmer;
 
     /// Gradient and Hessian against central differences, with and without the gauge.
     #[test]
     fn derivatives_are_exact() {
-        let model = Model::new(&of_unit_length(&Swimmer::robot())).unwrap();
+        let model = Model::new(&Swimmer::robot().of_unit_length()).unwrap();
         let grid = Grid::new(48);
         let here = [1.9, 0.2, -0.05, 1.4, 0.3, 0.08];
         for gauge in [0.0, 0.3] {

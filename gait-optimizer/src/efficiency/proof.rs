@@ -5,7 +5,7 @@ use swimmer_model::Stroke;
 use super::second_order::{SecondOrder, legendre};
 use super::shooting::{Polished, RESIDUAL};
 use super::trace::{Deviations, Trace};
-use crate::certificate::{Certificate, Check, crossings, swum_again, turning_number};
+use crate::certificate::{Certificate, Check, simple_and_turning_once, swum_again};
 use crate::cycle::Cycle;
 
 /// What the certificate is made from.
@@ -42,7 +42,6 @@ impl Evidence<'_> {
         let bend = self
             .second_order
             .map_or(f64::NAN, |test| test.bend_at_start);
-        let turning = turning_number(&self.cycle.phi);
         let mut checks = vec![
             Check::at_most("shooting_residual", self.polished.residual, RESIDUAL),
             Check::at_most("off_symmetry_lines_rad", off_lines, 1e-9),
@@ -58,9 +57,8 @@ impl Evidence<'_> {
             ),
             Check::at_least("conjugate_determinant_least", least, 1e-9),
             Check::at_most("bend_at_start", bend, -1e-6),
-            Check::at_most("turning_number_off_one", (turning - 1.0).abs(), 1e-9),
-            Check::at_most("self_crossings", crossings(&self.cycle.phi) as f64, 0.0),
         ];
+        checks.extend(simple_and_turning_once(&self.cycle.phi, &self.cycle.phi));
         checks.extend(swum_again(self.stroke, 4.0 * self.polished.at_end[1]));
         let again = self.stroke.efficiency_constant_power() / self.polished.efficiency();
         checks.push(Check::at_most(

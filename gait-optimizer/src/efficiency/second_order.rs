@@ -129,7 +129,6 @@ mod tests {
     use super::super::shooting::{Final, Polished, last_state, polish};
     use super::super::start::Start;
     use super::*;
-    use crate::displacement::of_unit_length;
     use swimmer_model::{Model, Swimmer};
 
     /// The extremal that multiple shooting finds from an ellipse.
@@ -154,7 +153,7 @@ mod tests {
 
     #[test]
     fn optima_pass() {
-        let model = Model::new(&of_unit_length(&Swimmer::purcell())).unwrap();
+        let model = Model::new(&Swimmer::purcell().of_unit_length()).unwrap();
         let small = extremal(&model, [1.2, 1.2]).at_end;
         assert!((small[0].abs() - 0.840_201_02).abs() < 1e-8);
         assert!((small[2].abs() - 0.507_623_64).abs() < 1e-8);
@@ -171,7 +170,7 @@ mod tests {
     /// Fourier series fitted to it (which knows no costates) climbs away from it.
     #[test]
     fn a_saddle_fails() {
-        let model = Model::new(&of_unit_length(&Swimmer::purcell())).unwrap();
+        let model = Model::new(&Swimmer::purcell().of_unit_length()).unwrap();
         let saddle = extremal(&model, [1.6, 3.6]);
         assert!((saddle.efficiency() - 0.005_709_875_641).abs() < 1e-11);
         let test = tested(&model, &saddle.at_end);
@@ -225,7 +224,7 @@ mod tests {
     /// its sign.
     #[test]
     fn too_long_an_extremal_has_a_focal_point() {
-        let model = Model::new(&of_unit_length(&Swimmer::purcell())).unwrap();
+        let model = Model::new(&Swimmer::purcell().of_unit_length()).unwrap();
         let (flow, last) = last_state(&model, &extremal(&model, [1.2, 1.2]).at_end).unwrap();
         let least = |duration| sweep(flow, &last, duration).unwrap().0;
         assert!(least(1.0) > 0.9);

@@ -2,7 +2,6 @@
 
 use super::equations::Motion;
 use super::*;
-use crate::displacement::of_unit_length;
 use swimmer_files::Bounds;
 use swimmer_model::{Swimmer, SymmetricFourier};
 
@@ -15,7 +14,7 @@ struct Case {
 
 impl Case {
     fn model(&self) -> Model<f64> {
-        Model::new(&of_unit_length(&self.swimmer)).unwrap()
+        Model::new(&self.swimmer.of_unit_length()).unwrap()
     }
 
     fn gait(&self) -> SymmetricFourier<[[f64; 2]; 3]> {

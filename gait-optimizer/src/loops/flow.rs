@@ -3,7 +3,8 @@
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use super::height::{Momentum, State, shape};
+use crate::displacement::height::{State, pose, pose_rates, shape};
+use crate::momentum::Momentum;
 use crate::region::{Bound, Clearance, Piece, Region};
 use crate::runge_kutta::{Point, StepControl, System, controlled_step, exact_step};
 
@@ -91,7 +92,8 @@ impl System<6> for Drive<'_> {
     fn rate(&self, z: &State) -> State {
         let (direction, connection, power) = match &self.motion {
             Motion::Singular => {
-                let (height, connection, power) = self.momentum.height(self.model, z);
+                let (height, connection, power) =
+                    self.momentum.look(self.model, &shape(z), &pose(z));
                 (height.singular_direction(), connection, power)
             }
             along => {
@@ -100,16 +102,8 @@ impl System<6> for Drive<'_> {
                 (along.tangent(&phi), connection, power)
             }
         };
-        let body = connection * direction;
-        let (sin, cos) = z[4].sin_cos();
-        [
-            direction.x,
-            direction.y,
-            cos * body.x - sin * body.y,
-            sin * body.x + cos * body.y,
-            body.z,
-            direction.dot(&(power * direction)).max(0.0).sqrt(),
-        ]
+        let [x, y, theta, speed] = pose_rates(&connection, &power, z[4], &direction);
+        [direction.x, direction.y, x, y, theta, speed]
     }
 }
 
@@ -236,7 +230,9 @@ impl Course<'_> {
         if own.is_some() {
             // The height must rise where a bound is met, or be positive already.
             let ahead = exact_step(drive, &here, 1e-5);
-            let (height, ..) = self.momentum.height(self.model, &ahead.z);
+            let (height, ..) = self
+                .momentum
+                .look(self.model, &shape(&ahead.z), &pose(&ahead.z));
             if height.value < -SLACK {
                 return None;
             }
@@ -309,7 +305,12 @@ impl Course<'_> {
                 .region
                 .bound(index)
                 .map_or(1.0, |bound| bound.margin(&shape(&at.z))),
-            Event::HeightGone => self.momentum.height(self.model, &at.z).0.value,
+            Event::HeightGone => {
+                self.momentum
+                    .look(self.model, &shape(&at.z), &pose(&at.z))
+                    .0
+                    .value
+            }
             Event::PieceEnd => 1.0,
             Event::Home => -(shape(&at.z) - self.start).dot(&self.ahead),
         }

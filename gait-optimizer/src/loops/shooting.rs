@@ -4,7 +4,8 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 use swimmer_model::Model;
 
 use super::flow::{Course, Home, Lap, Motion};
-use super::height::Momentum;
+use crate::displacement::height::{pose, shape};
+use crate::momentum::Momentum;
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
 
@@ -130,7 +131,7 @@ impl Problem<'_> {
         let start = self.start(at);
         let momentum = Momentum::of_zero(self.model, &start, at.angle)?;
         let state = [start.x, start.y, 0.0, 0.0, 0.0, 0.0];
-        let (height, ..) = momentum.height(self.model, &state);
+        let (height, ..) = momentum.look(self.model, &shape(&state), &pose(&state));
         let ahead = height.singular_direction();
         let course = Course {
             model: self.model,
@@ -150,7 +151,7 @@ impl Problem<'_> {
         let miss = Vector3::new(
             off.dot(&self.gate.along),
             end[4],
-            momentum.direction.perp(&Vector2::new(end[2], end[3])),
+            momentum.p.perp(&Vector2::new(end[2], end[3])),
         );
         miss.norm().is_finite().then_some((miss, lap))
     }

@@ -5,10 +5,11 @@ use swimmer_files::{ArcKind, GaitArc};
 use swimmer_model::{Model, Stroke};
 
 use super::flow::{Lap, Leg, Motion};
-use super::height::{Momentum, State, shape};
 use super::shooting::Closed;
-use crate::certificate::{crossings, turning_number};
+use crate::certificate::simple_and_turning_once;
 use crate::cycle::Cycle;
+use crate::displacement::height::{State, pose, pose_rates, shape};
+use crate::momentum::Momentum;
 use crate::region::Region;
 use crate::runge_kutta::{Point, StepControl, System, advance};
 use crate::{Arc, Check};
@@ -62,7 +63,11 @@ struct ByPower<'a> {
 impl ByPower<'_> {
     fn direction(&self, z: &State) -> Vector2<f64> {
         match self.motion {
-            Motion::Singular => self.momentum.height(self.model, z).0.singular_direction(),
+            Motion::Singular => self
+                .momentum
+                .look(self.model, &shape(z), &pose(z))
+                .0
+                .singular_direction(),
             along => along.tangent(&shape(z)),
         }
     }
@@ -72,18 +77,8 @@ impl System<6> for ByPower<'_> {
     fn rate(&self, z: &State) -> State {
         let direction = self.direction(z);
         let (connection, power) = self.model.connection_and_power(&shape(z));
-        let body = connection * direction;
-        let speed = direction.dot(&(power * direction)).max(0.0).sqrt();
-        let (sin, cos) = z[4].sin_cos();
-        [
-            direction.x,
-            direction.y,
-            cos * body.x - sin * body.y,
-            sin * body.x + cos * body.y,
-            body.z,
-            speed,
-        ]
-        .map(|rate| rate / speed)
+        let [x, y, theta, speed] = pose_rates(&connection, &power, z[4], &direction);
+        [direction.x, direction.y, x, y, theta, speed].map(|rate| rate / speed)
     }
 }
 
@@ -99,7 +94,7 @@ impl LoopTrace {
         let legs = lasting(&closed.lap);
         let home = Self::home(model, closed, &legs);
         let (first, state) = home.unwrap_or((0, legs.first()?.from));
-        let momentum = closed.momentum.seen_from(&state);
+        let momentum = closed.momentum.seen_from(&pose(&state));
         let mut route: Vec<(Motion, f64)> = Vec::with_capacity(legs.len() + 1);
         let leg = legs.get(first)?;
         route.push((leg.motion, leg.to[5] - state[5]));
@@ -245,11 +240,7 @@ impl LoopTrace {
             let overstepped = evidence.overstepped;
             checks.push(Check::at_most("bound_overstepped_rad", overstepped, 1e-10));
         }
-        let turning = turning_number(&self.cycle.phi);
-        checks.extend([
-            Check::at_most("turning_number_off_one", (turning - 1.0).abs(), 1e-9),
-            Check::at_most("self_crossings", crossings(&self.cycle.phi) as f64, 0.0),
-        ]);
+        checks.extend(simple_and_turning_once(&self.cycle.phi, &self.cycle.phi));
         checks
     }
 
@@ -343,8 +334,8 @@ impl LoopTrace {
         }
         let moved = Vector2::new(here[2], here[3]);
         evidence.rotation = here[4];
-        evidence.along = momentum.direction.dot(&moved);
-        evidence.across = momentum.direction.perp(&moved);
+        evidence.along = momentum.p.dot(&moved);
+        evidence.across = momentum.p.perp(&moved);
         Some(Self {
             cycle,
             arcs,
@@ -355,7 +346,7 @@ impl LoopTrace {
 
 impl LoopEvidence {
     fn look(&mut self, system: &ByPower<'_>, region: &Region, z: &State) {
-        let (height, ..) = system.momentum.height(system.model, z);
+        let (height, ..) = system.momentum.look(system.model, &shape(z), &pose(z));
         let slope = height.gradient.norm();
         self.overstepped = self.overstepped.max(region.overstepped(&shape(z)));
         if system.motion == Motion::Singular {

@@ -9,7 +9,7 @@ use super::arcs::Arcs;
 use super::fourier::FourierFamily;
 use super::{Ensemble, Values};
 use crate::Check;
-use crate::certificate::{crossings, turning_number};
+use crate::certificate::simple_and_turning_once;
 use crate::cycle::Cycle;
 use crate::region::Region;
 
@@ -75,16 +75,7 @@ pub(super) fn of_curve(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) -> Ve
     if overstepped > f64::NEG_INFINITY {
         checks.push(Check::at_most("bound_overstepped_rad", overstepped, 1e-10));
     }
-    checks.push(Check::at_most(
-        "turning_number_off_one",
-        (turning_number(&cycle.phi) - 1.0).abs(),
-        1e-9,
-    ));
-    checks.push(Check::at_most(
-        "self_crossings",
-        crossings(&cycle.phi) as f64,
-        0.0,
-    ));
+    checks.extend(simple_and_turning_once(&cycle.phi, &cycle.phi));
     checks
 }
 

@@ -144,7 +144,7 @@ fn no_neighbour_has_a_better_mean() {
 
 #[test]
 fn fourier_gradients_are_exact() {
-    let model = Model::new(&of_unit_length(&Swimmer::robot())).unwrap();
+    let model = Model::new(&Swimmer::robot().of_unit_length()).unwrap();
     let family = FourierFamily::around(&model, 1, Branch::Small).unwrap();
     let x = family.start() + DVector::from_vec(vec![0.1, -0.07]);
     let norm = family.gradient_norm(&x, &[(&model, 1.0)]);
@@ -222,7 +222,7 @@ fn two_members_can_hold_the_worst_case() {
         let mut swimmer = Swimmer::<f64>::purcell();
         swimmer.links.middle = middle;
         swimmer.chi = chi;
-        Model::new(&of_unit_length(&swimmer)).unwrap()
+        Model::new(&swimmer.of_unit_length()).unwrap()
     };
     let family = FourierFamily::around(&model(1.0, 2.0), 2, Branch::Small).unwrap();
     let ours = |chi| [model(0.5, 2.0), model(1.8, chi)];

@@ -6,7 +6,8 @@
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use crate::loops::{Course, Lap, LoopTrace, Momentum, Motion};
+use crate::loops::{Course, Lap, LoopTrace, Motion};
+use crate::momentum::Momentum;
 use crate::region::{Bound, Edge, Region};
 use crate::runge_kutta::StepControl;
 
@@ -117,8 +118,8 @@ struct Family<'a> {
 impl Family<'_> {
     fn momentum(&self, rotation: f64) -> Momentum {
         Momentum {
-            direction: Vector2::new(0.0, self.sign),
-            rotation,
+            p: Vector2::new(0.0, self.sign),
+            c: rotation,
         }
     }
 

@@ -1,12 +1,11 @@
 //! Loops of most displacement, started where the heading is square to it or, where none is, as near to it as it gets.
 
-use swimmer_files::{GaitArc, Objective};
+use swimmer_files::GaitArc;
 use swimmer_model::{Gait, Model, Tolerance, trajectory};
 
-use super::{Sideways, SidewaysProblem, better_start};
-use crate::certificate::{Certificate, Check};
+use super::{Sideways, SidewaysProblem, settled};
+use crate::certificate::Check;
 use crate::cycle::Cycle;
-use crate::optimal_gait::Solution;
 use crate::{Arc, OptimalGait};
 
 /// Instants that headings are looked at.
@@ -40,45 +39,17 @@ pub(super) fn turned(
         })
     };
     let cycle = shifted(gait, &any, start.rem_euclid(1.0))?;
-    let stroke = cycle.swum(model)?;
-    let lateral = stroke.displacement.y.abs();
     let across = along_at(model, &any, start.rem_euclid(1.0), d);
     let expected = (d.0 * d.0 + d.1 * d.1 - across * across).max(0.0).sqrt();
-    let mut checks: Vec<Check> = gait
+    let checks: Vec<Check> = gait
         .certificate
         .checks()
         .iter()
         .filter(|check| !matches!(check.name, "displacement_swum_again" | "net_rotation_rad"))
         .copied()
         .collect();
-    checks.extend([
-        Check::at_most(
-            "other_start_better",
-            better_start(model, &cycle, &stroke.displacement)?,
-            1e-8,
-        ),
-        Check::at_most("lateral_swum_again", (lateral - expected).abs(), 1e-8),
-        Check::at_most("net_rotation_rad", stroke.rotation.abs(), 1e-8),
-    ]);
-    let certificate = Certificate::new(checks);
-    if !certificate.pass() {
-        return None;
-    }
-    Some(Sideways {
-        lateral_over_length: lateral,
-        bridged_supremum_over_length: lateral,
-        gait: OptimalGait::new(Solution {
-            objective: Objective::Sideways,
-            swimmer: problem.swimmer,
-            bounds: problem.bounds,
-            symmetric: false,
-            arcs: arcs(&cycle),
-            links_cross: gait.links_cross,
-            cycle,
-            stroke,
-            certificate,
-        }),
-    })
+    let arcs = arcs(&cycle);
+    settled((problem, model), (cycle, arcs), checks, (expected, 1e-8))
 }
 
 /// Where a value changes sign between two places.

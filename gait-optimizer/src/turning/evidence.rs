@@ -5,7 +5,7 @@ use swimmer_files::{AnyGait, ArcKind};
 use swimmer_model::{Gait as _, Model, Stroke, Tolerance, swim};
 
 use super::piece::Piece;
-use crate::certificate::{Certificate, Check, crossings, turning_number};
+use crate::certificate::{Certificate, Check, simple_and_turning_once};
 use crate::cycle::Cycle;
 use crate::height_map::Level;
 use crate::height_map::legendre::gauss;
@@ -83,17 +83,7 @@ pub(super) fn certificate<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
         .map(|phi| region.overstepped(phi))
         .fold(f64::NEG_INFINITY, f64::max);
     checks.push(Check::at_most("bound_overstepped_rad", overstepped, 1e-10));
-    let turns = turning_number(&cycle.phi);
-    checks.push(Check::at_most(
-        "turning_number_off_one",
-        (turns - 1.0).abs(),
-        1e-9,
-    ));
-    checks.push(Check::at_most(
-        "self_crossings",
-        crossings(&cycle.phi) as f64,
-        0.0,
-    ));
+    checks.extend(simple_and_turning_once(&cycle.phi, &cycle.phi));
     let enclosed = enclosed(model, &gait, cycle);
     checks.push(Check::at_most(
         "rotation_off_area_integral_rad",

@@ -1,6 +1,5 @@
 use super::*;
 use crate::cycle::QuarterTrace;
-use crate::displacement::of_unit_length;
 use crate::displacement::trunk::trunks;
 use swimmer_files::Bounds;
 use swimmer_model::{Links, Swimmer, TangentialDrag};
@@ -14,7 +13,7 @@ fn the_second_variation_agrees_with_the_neighbours() {
     for ratio in [0.5, 1.0, 2.5] {
         for chi in [1.2, 2.0, 3.6] {
             for (sphere, max_angle) in [(0.0, 3.0), (0.5, 2.8), (1.0, 3.0), (0.0, 6.2)] {
-                let swimmer = of_unit_length(&Swimmer {
+                let swimmer = Swimmer {
                     links: Links {
                         middle: ratio,
                         front: 1.0,
@@ -23,7 +22,8 @@ fn the_second_variation_agrees_with_the_neighbours() {
                     chi,
                     tangential_drag: TangentialDrag::LogAspect(4.0),
                     sphere_radius: sphere * ratio,
-                });
+                }
+                .of_unit_length();
                 let model = Model::new(&swimmer).unwrap();
                 let bounds = Bounds {
                     max_angle: Some(max_angle),

@@ -1,0 +1,96 @@
+//! The multipliers of net displacement and rotation, as a momentum that the body carries along its path, and the height: what
+//! a push of the curve gains.
+//!
+//! With p dual to the net displacement and c to the net rotation, the momentum in the middle link's own frame is
+//! `μ = (p_x cos θ + p_y sin θ, −p_x sin θ + p_y cos θ, p_x y − p_y x + c)`; its third part is the paper's λ₄ (there
+//! p = (λ₃, 0) and `c = −λ₃ y_f`). A small push of the curve to the right of its motion gains the height h = μ · F(Φ) a unit of
+//! area, F = dA + \[A₁, A₂\]; h is minus the paper's `F = F₁ λ₃ + F₂ λ₄`.
+
+use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
+use swimmer_model::{Model, SecondDerivatives};
+
+/// One choice of the multipliers, in the frame of the curve's first point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Momentum {
+    /// Dual to the displacement.
+    pub(crate) p: Vector2<f64>,
+    /// Dual to the rotation, over L.
+    pub(crate) c: f64,
+}
+
+/// The height and how it changes along the two joint angles, with the pose carried along.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Height {
+    pub(crate) value: f64,
+    pub(crate) gradient: Vector2<f64>,
+}
+
+impl Momentum {
+    /// The momentum with p of length 1 at this angle whose height vanishes at a shape where the pose is the origin; none where
+    /// no multiplier of the rotation makes it vanish.
+    pub(crate) fn of_zero(model: &Model<f64>, phi: &Vector2<f64>, angle: f64) -> Option<Self> {
+        let f = model.first_derivatives(phi).curvature();
+        let (sin, cos) = angle.sin_cos();
+        let c = -(cos * f.x + sin * f.y) / f.z;
+        let p = Vector2::new(cos, sin);
+        c.is_finite().then_some(Self { p, c })
+    }
+
+    /// μ at a pose x, y, θ.
+    pub(crate) fn at(&self, [x, y, theta]: &[f64; 3]) -> Vector3<f64> {
+        let (sin, cos) = theta.sin_cos();
+        let Self { p, c } = self;
+        Vector3::new(
+            p.x * cos + p.y * sin,
+            p.y * cos - p.x * sin,
+            p.x * y - p.y * x + c,
+        )
+    }
+
+    /// The same momentum seen from a pose that is made the origin.
+    pub(crate) fn seen_from(&self, pose: &[f64; 3]) -> Self {
+        let body = self.at(pose);
+        Self {
+            p: body.xy(),
+            c: body.z,
+        }
+    }
+
+    /// The height with its gradient: total, that is with the pose that each joint's motion brings. (The paper's A and B in
+    /// `Ḟ = A u₁ + B u₂` are minus this gradient over λ₃.)
+    pub(crate) fn height(&self, second: &SecondDerivatives<f64>, pose: &[f64; 3]) -> Height {
+        let mu = self.at(pose);
+        let curvature = second.first.curvature();
+        let [along1, along2] = second.d_curvature();
+        // μ̇ of the coadjoint equation for the motion that one joint brings.
+        let slope = |along: &Vector3<f64>, joint: usize| {
+            let body = second.first.connection.column(joint);
+            let push = Vector3::new(mu.y * body.z, -mu.x * body.z, mu.x * body.y - mu.y * body.x);
+            mu.dot(along) + push.dot(&curvature)
+        };
+        Height {
+            value: mu.dot(&curvature),
+            gradient: Vector2::new(slope(&along1, 0), slope(&along2, 1)),
+        }
+    }
+
+    /// Height, connection and power matrix at a shape, from one look at the model.
+    pub(crate) fn look(
+        &self,
+        model: &Model<f64>,
+        phi: &Vector2<f64>,
+        pose: &[f64; 3],
+    ) -> (Height, Matrix3x2<f64>, Matrix2<f64>) {
+        let second = model.second_derivatives(phi);
+        let height = self.height(&second, pose);
+        (height, second.first.connection, second.first.power)
+    }
+}
+
+impl Height {
+    /// Direction of the singular arc: along the zero of the height, with the gain on the left, as the generalised
+    /// Legendre–Clebsch condition asks.
+    pub(crate) fn singular_direction(&self) -> Vector2<f64> {
+        Vector2::new(self.gradient.y, -self.gradient.x) / self.gradient.norm()
+    }
+}
