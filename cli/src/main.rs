@@ -1,6 +1,7 @@
 //! The `swimmer` command: parses, calls, prints, draws. No physics and no protocol live here.
 
 mod arguments;
+mod bounds;
 mod commands;
 mod failure;
 mod interrupt;

@@ -14,13 +14,14 @@ use gait_optimizer::{Atlas as Found, AtlasError, AtlasProblem, Objective, Optimu
 use serde::Serialize;
 use swimmer_files::Bounds;
 
-use crate::arguments::{length, load_swimmer, positive_angle};
+use crate::arguments::load_swimmer;
+use crate::bounds::WholeBounds;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
 use crate::quantity;
 
-use super::optimize::answer::{Arc, Evidence};
+use super::optimize::answer::{Arc, Evidence, arcs};
 
 /// Find every locally optimal gait, with and without the paper's symmetries, each certified
 ///
@@ -35,15 +36,8 @@ pub(crate) struct Atlas {
     /// What the gaits are optimal for
     #[arg(long, value_name = "OBJECTIVE")]
     objective: Aim,
-    /// No joint may turn further than this, either way
-    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
-    max_angle: Option<f64>,
-    /// Links may not cross
-    #[arg(long)]
-    no_overlap: bool,
-    /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
-    #[arg(long, value_name = "LENGTH_M", value_parser = length)]
-    clearance: Option<f64>,
+    #[command(flatten)]
+    bounds: WholeBounds,
     /// How many random starts
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     starts: u32,
@@ -85,12 +79,7 @@ impl Atlas {
             Aim::Displacement => Objective::Displacement,
             Aim::Efficiency => Objective::Efficiency,
         };
-        let mut bounds = Bounds {
-            max_angle: self.max_angle,
-            no_overlap: self.no_overlap || self.clearance.is_some(),
-            clearance: self.clearance.unwrap_or(0.0),
-            ..Bounds::default()
-        };
+        let mut bounds = Bounds::from(self.bounds);
         let order = self.way.map(|way| follow::Order {
             swimmer: file.swimmer,
             objective,
@@ -237,7 +226,7 @@ impl Line {
             rotation_rad: gait.rotation,
             start_angle_rad: gait.start_angle,
             end_angle_rad: gait.end_angle,
-            arcs: gait.arcs.iter().map(Arc::from).collect(),
+            arcs: arcs(gait),
             links_cross: gait.links_cross,
             certificate: (&gait.certificate).into(),
             simple: optimum.simple,

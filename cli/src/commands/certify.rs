@@ -2,14 +2,17 @@
 
 use std::fmt;
 
-use gait_optimizer::{Certificate, CertifyError, Objective, certify};
+use gait_optimizer::{CertifyError, Objective, certify};
 use serde::Serialize;
 use swimmer_files::{Bounds, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
 
-use crate::arguments::{gait, length, load_gait, load_swimmer, positive_angle};
+use crate::arguments::{gait, load_gait, load_swimmer};
+use crate::bounds::QuarterBounds;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity;
+
+use super::optimize::answer::Evidence;
 
 /// Hold a gait against the necessary conditions of an optimum, each with its number and tolerance
 ///
@@ -26,21 +29,8 @@ pub(crate) struct Certify {
     /// displacement, efficiency, turning or sideways
     #[arg(long, value_name = "OBJECTIVE", value_parser = objective)]
     objective: Option<Objective>,
-    /// No joint may turn further than this, either way
-    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
-    max_angle: Option<f64>,
-    /// The leading joint of each quarter must turn at least this far
-    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
-    min_angle: Option<f64>,
-    /// Each quarter stays in its sector, φ₂ ≥ |φ₁|
-    #[arg(long)]
-    sector: bool,
-    /// Links may not cross
-    #[arg(long)]
-    no_overlap: bool,
-    /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
-    #[arg(long, value_name = "LENGTH_M", value_parser = length)]
-    clearance: Option<f64>,
+    #[command(flatten)]
+    bounds: QuarterBounds,
 }
 
 /// Samples that a circle or a square is asked by.
@@ -59,13 +49,7 @@ impl Certify {
                 quantity::gait(&self.gait)
             )));
         }
-        let told = Bounds {
-            max_angle: self.max_angle,
-            min_angle: self.min_angle,
-            sector: self.sector,
-            no_overlap: self.no_overlap || self.clearance.is_some(),
-            clearance: self.clearance.unwrap_or(0.0),
-        };
+        let told = Bounds::from(self.bounds);
         let bounds = if told == Bounds::default() {
             file.bounds
         } else {
@@ -77,7 +61,10 @@ impl Certify {
             swimmer.name,
             quantity::gait(&self.gait)
         );
-        output.answer(&Answer::new(title, &certificate));
+        output.answer(&Answer {
+            title,
+            evidence: (&certificate).into(),
+        });
         if certificate.pass() {
             Ok(())
         } else {
@@ -135,38 +122,14 @@ impl From<CertifyError> for Failure {
 struct Answer {
     #[serde(skip)]
     title: String,
-    pass: bool,
-    checks: Vec<Check>,
-}
-
-#[derive(Debug, Serialize)]
-struct Check {
-    name: &'static str,
-    value: f64,
-    tolerance: f64,
-    pass: bool,
-}
-
-impl Answer {
-    fn new(title: String, certificate: &Certificate) -> Self {
-        let check = |check: &gait_optimizer::Check| Check {
-            name: check.name,
-            value: check.value,
-            tolerance: check.tolerance,
-            pass: check.pass,
-        };
-        Self {
-            title,
-            pass: certificate.pass(),
-            checks: certificate.checks().iter().map(check).collect(),
-        }
-    }
+    #[serde(flatten)]
+    evidence: Evidence,
 }
 
 impl fmt::Display for Answer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut table = quantity::Table::new(["condition", "number", "", "tolerance", ""]);
-        for check in &self.checks {
+        for check in &self.evidence.checks {
             let sign = if check.name.ends_with("_least") {
                 "≥"
             } else {
@@ -180,11 +143,16 @@ impl fmt::Display for Answer {
                 if check.pass { "holds" } else { "FAILS" }.to_owned(),
             ]);
         }
-        let failed = self.checks.iter().filter(|check| !check.pass).count();
+        let failed = self
+            .evidence
+            .checks
+            .iter()
+            .filter(|check| !check.pass)
+            .count();
         let verdict = if failed == 0 {
-            format!("all {} conditions hold", self.checks.len())
+            format!("all {} conditions hold", self.evidence.checks.len())
         } else {
-            format!("{failed} of {} conditions fail", self.checks.len())
+            format!("{failed} of {} conditions fail", self.evidence.checks.len())
         };
         write!(f, "{}\n{table}\n  {verdict}", self.title)
     }

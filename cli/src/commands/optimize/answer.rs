@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use gait_optimizer::Certificate;
+use gait_optimizer::{Certificate, OptimalGait};
 use serde::Serialize;
 
+use super::timing::TimingAnswer;
 use crate::quantity::{self, Rows};
 
 /// One arc of a gait.
@@ -29,15 +30,16 @@ impl From<&gait_optimizer::Arc> for Arc {
 #[derive(Debug, Serialize)]
 pub(crate) struct Evidence {
     pass: bool,
-    checks: Vec<Check>,
+    pub(crate) checks: Vec<Check>,
 }
 
+/// One condition.
 #[derive(Debug, Serialize)]
-struct Check {
-    name: &'static str,
-    value: f64,
-    tolerance: f64,
-    pass: bool,
+pub(crate) struct Check {
+    pub(crate) name: &'static str,
+    pub(crate) value: f64,
+    pub(crate) tolerance: f64,
+    pub(crate) pass: bool,
 }
 
 impl From<&Certificate> for Evidence {
@@ -55,26 +57,106 @@ impl From<&Certificate> for Evidence {
     }
 }
 
-/// X with its unit and over L.
-pub(crate) fn displacement_row(rows: &mut Rows, metres: f64, over_length: f64) {
-    let displacement = quantity::length(metres);
-    rows.row(
-        "displacement X",
-        format!("{displacement} per cycle   X/L = {over_length:.10}"),
-    );
+/// What every answer of a gait with the paper's symmetries tells of its quarter.
+#[derive(Debug, Serialize)]
+pub(crate) struct Quarter {
+    displacement_over_length: f64,
+    displacement_m: f64,
+    start_angle_rad: f64,
+    end_angle_rad: f64,
+    /// In order.
+    arcs: Vec<Arc>,
 }
 
-/// Where the quarter of a doubly symmetric gait starts and ends, and its arcs.
-pub(crate) fn quarter_rows(rows: &mut Rows, start_angle: f64, end_angle: f64, arcs: &[Arc]) {
-    rows.row(
-        "starts at",
-        format!("φ₁ = φ₂ = {}", quantity::angle(start_angle)),
-    )
-    .row(
-        "quarter ends at",
-        format!("φ₂ = −φ₁ = {}", quantity::angle(end_angle)),
-    );
-    arc_rows(rows, arcs);
+impl From<&OptimalGait> for Quarter {
+    fn from(gait: &OptimalGait) -> Self {
+        Self {
+            displacement_over_length: gait.displacement_over_length,
+            displacement_m: gait.displacement,
+            start_angle_rad: gait.start_angle,
+            end_angle_rad: gait.end_angle,
+            arcs: arcs(gait),
+        }
+    }
+}
+
+impl Quarter {
+    /// X with its unit and over L, where the quarter starts and ends, and its arcs.
+    pub(crate) fn rows(&self, rows: &mut Rows) {
+        rows.row(
+            "displacement X",
+            format!(
+                "{} per cycle   X/L = {:.10}",
+                quantity::length(self.displacement_m),
+                self.displacement_over_length
+            ),
+        )
+        .row(
+            "starts at",
+            format!("φ₁ = φ₂ = {}", quantity::angle(self.start_angle_rad)),
+        )
+        .row(
+            "quarter ends at",
+            format!("φ₂ = −φ₁ = {}", quantity::angle(self.end_angle_rad)),
+        );
+        arc_rows(rows, &self.arcs);
+    }
+}
+
+/// What every answer ends with.
+#[derive(Debug, Serialize)]
+pub(crate) struct Closing {
+    /// Share of the cycle in which links cross.
+    links_cross: f64,
+    /// Under the servos' limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    timing: Option<TimingAnswer>,
+    certificate: Evidence,
+    /// From the parsed swimmer to the certified gait.
+    seconds: f64,
+    /// The gait file that was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gait: Option<PathBuf>,
+}
+
+impl Closing {
+    pub(crate) fn new(
+        gait: &OptimalGait,
+        timing: Option<TimingAnswer>,
+        seconds: f64,
+        file: Option<PathBuf>,
+    ) -> Self {
+        Self {
+            links_cross: gait.links_cross,
+            timing,
+            certificate: (&gait.certificate).into(),
+            seconds,
+            gait: file,
+        }
+    }
+
+    /// The timing, crossing links, the certificate's verdict and the file written.
+    pub(crate) fn rows(&self, rows: &mut Rows) {
+        if let Some(timing) = &self.timing {
+            timing.rows(rows);
+        }
+        rows.row("links cross", quantity::crossing(self.links_cross));
+        let checks = self.certificate.checks.len();
+        let verdict = if self.certificate.pass {
+            "hold"
+        } else {
+            "do not all hold"
+        };
+        rows.row("certificate", format!("{checks} conditions {verdict}"));
+        if let Some(path) = &self.gait {
+            rows.row("written to", path.display().to_string());
+        }
+    }
+}
+
+/// The arcs that an answer names.
+pub(crate) fn arcs(gait: &OptimalGait) -> Vec<Arc> {
+    gait.arcs.iter().map(Arc::from).collect()
 }
 
 /// Arcs in order, each with its ends.
@@ -86,25 +168,5 @@ pub(crate) fn arc_rows(rows: &mut Rows, arcs: &[Arc]) {
             format!("{} arc", arc.kind),
             format!("{} to {}", shape(arc.from), shape(arc.to)),
         );
-    }
-}
-
-/// Crossing links, the certificate's verdict and the file written.
-pub(crate) fn closing_rows(
-    rows: &mut Rows,
-    links_cross: f64,
-    certificate: &Evidence,
-    file: Option<&PathBuf>,
-) {
-    rows.row("links cross", quantity::crossing(links_cross));
-    let checks = certificate.checks.len();
-    let verdict = if certificate.pass {
-        "hold"
-    } else {
-        "do not all hold"
-    };
-    rows.row("certificate", format!("{checks} conditions {verdict}"));
-    if let Some(path) = file {
-        rows.row("written to", path.display().to_string());
     }
 }

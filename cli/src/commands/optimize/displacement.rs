@@ -5,19 +5,19 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use gait_optimizer::{
-    DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement, robust_displacement,
+    DisplacementError, DisplacementProblem, Heading, displacement, robust_displacement,
 };
 use serde::Serialize;
-use swimmer_files::Bounds;
 
-use crate::arguments::{length, load_swimmer, positive_angle};
+use crate::arguments::load_swimmer;
+use crate::bounds::QuarterBounds;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::Rows;
 
-use super::answer::{Arc, Evidence, closing_rows, displacement_row, quarter_rows};
+use super::answer::{Closing, Quarter};
 use super::robust::{RobustAnswer, Robustly};
-use super::timing::{ServoTiming, TimingAnswer};
+use super::timing::ServoTiming;
 
 /// Find the gait of most displacement per cycle by the maximum principle, with its certificate
 ///
@@ -28,21 +28,8 @@ pub(crate) struct Displacement {
     /// purcell, robot, robot-slender or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
-    /// No joint may turn further than this, either way
-    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
-    max_angle: Option<f64>,
-    /// The leading joint of each quarter must turn at least this far
-    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
-    min_angle: Option<f64>,
-    /// Each quarter stays in its sector, φ₂ ≥ |φ₁|
-    #[arg(long)]
-    sector: bool,
-    /// Links may not cross
-    #[arg(long)]
-    no_overlap: bool,
-    /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
-    #[arg(long, value_name = "LENGTH_M", value_parser = length)]
-    clearance: Option<f64>,
+    #[command(flatten)]
+    bounds: QuarterBounds,
     /// The sign of X: + or -
     #[arg(long, value_name = "SIGN", value_parser = sign, allow_hyphen_values = true)]
     sign: Option<Heading>,
@@ -61,13 +48,7 @@ impl Displacement {
         let uncertain = self.robustly.load()?;
         let begun = Instant::now();
         let problem = DisplacementProblem {
-            bounds: Bounds {
-                max_angle: self.max_angle,
-                min_angle: self.min_angle,
-                sector: self.sector,
-                no_overlap: self.no_overlap || self.clearance.is_some(),
-                clearance: self.clearance.unwrap_or(0.0),
-            },
+            bounds: self.bounds.into(),
             heading: self.sign,
             ..DisplacementProblem::new(file.swimmer)
         };
@@ -91,8 +72,11 @@ impl Displacement {
         let timing = self
             .timing
             .write(&gait, &file.name, self.output.as_deref())?;
-        let found = Found::new(&file.name, &gait, timing, (seconds, self.output));
-        output.answer(&found);
+        output.answer(&Found {
+            name: file.name,
+            quarter: (&gait).into(),
+            closing: Closing::new(&gait, timing, seconds, self.output),
+        });
         Ok(())
     }
 }
@@ -101,71 +85,17 @@ impl Displacement {
 struct Found {
     #[serde(skip)]
     name: String,
-    displacement_over_length: f64,
-    displacement_m: f64,
-    start_angle_rad: f64,
-    end_angle_rad: f64,
-    /// Of the quarter, in order.
-    arcs: Vec<Arc>,
-    /// Share of the cycle in which links cross.
-    links_cross: f64,
-    /// Under the servos' limit.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    timing: Option<TimingAnswer>,
-    certificate: Evidence,
-    /// From the parsed swimmer to the certified gait.
-    seconds: f64,
-    /// The gait file that was written.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    gait: Option<PathBuf>,
-}
-
-impl Found {
-    fn new(
-        name: &str,
-        gait: &OptimalGait,
-        timing: Option<TimingAnswer>,
-        (seconds, file): (f64, Option<PathBuf>),
-    ) -> Self {
-        Self {
-            name: name.to_owned(),
-            displacement_over_length: gait.displacement_over_length,
-            displacement_m: gait.displacement,
-            start_angle_rad: gait.start_angle,
-            end_angle_rad: gait.end_angle,
-            arcs: gait.arcs.iter().map(Arc::from).collect(),
-            links_cross: gait.links_cross,
-            timing,
-            certificate: (&gait.certificate).into(),
-            seconds,
-            gait: file,
-        }
-    }
+    #[serde(flatten)]
+    quarter: Quarter,
+    #[serde(flatten)]
+    closing: Closing,
 }
 
 impl fmt::Display for Found {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
-        displacement_row(
-            &mut rows,
-            self.displacement_m,
-            self.displacement_over_length,
-        );
-        quarter_rows(
-            &mut rows,
-            self.start_angle_rad,
-            self.end_angle_rad,
-            &self.arcs,
-        );
-        if let Some(timing) = &self.timing {
-            timing.rows(&mut rows);
-        }
-        closing_rows(
-            &mut rows,
-            self.links_cross,
-            &self.certificate,
-            self.gait.as_ref(),
-        );
+        self.quarter.rows(&mut rows);
+        self.closing.rows(&mut rows);
         write!(f, "{}, most displacement\n{rows}", self.name)
     }
 }

@@ -11,14 +11,15 @@ use gait_optimizer::{
 use serde::Serialize;
 use swimmer_files::Bounds;
 
-use crate::arguments::{length, load_swimmer, positive_angle};
+use crate::arguments::load_swimmer;
+use crate::bounds::WholeBounds;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::{self, Rows};
 
-use super::answer::{Arc, Evidence, closing_rows, displacement_row, quarter_rows};
+use super::answer::{Closing, Quarter};
 use super::robust::{RobustAnswer, Robustly};
-use super::timing::{ServoTiming, TimingAnswer};
+use super::timing::ServoTiming;
 
 /// Find a gait of most Lighthill efficiency by the maximum principle, with its certificate
 ///
@@ -34,15 +35,8 @@ pub(crate) struct Efficiency {
     /// What leads to the polish: Fourier series alone, or collocation or multiple shooting from a Fourier gait of low order
     #[arg(long, value_name = "METHOD", default_value = "auto")]
     method: How,
-    /// No joint may turn further than this, either way
-    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
-    max_angle: Option<f64>,
-    /// Links may not cross
-    #[arg(long)]
-    no_overlap: bool,
-    /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
-    #[arg(long, value_name = "LENGTH_M", value_parser = length)]
-    clearance: Option<f64>,
+    #[command(flatten)]
+    bounds: WholeBounds,
     #[command(flatten)]
     robustly: Robustly,
     /// Order of the Fourier series of a robust gait
@@ -78,12 +72,7 @@ impl Efficiency {
         };
         let uncertain = self.robustly.load()?;
         let begun = Instant::now();
-        let bounds = Bounds {
-            max_angle: self.max_angle,
-            no_overlap: self.no_overlap || self.clearance.is_some(),
-            clearance: self.clearance.unwrap_or(0.0),
-            ..Bounds::default()
-        };
+        let bounds = Bounds::from(self.bounds);
         if let Some((uncertainty, over)) = uncertain {
             let found = robust_efficiency(
                 &file.swimmer,
@@ -119,8 +108,8 @@ impl Efficiency {
         let timing = self
             .timing
             .write(&gait, &file.name, self.output.as_deref())?;
-        let found = Found::new(&file.name, &gait, timing, (seconds, self.output));
-        output.answer(&found);
+        let closing = Closing::new(&gait, timing, seconds, self.output);
+        output.answer(&Found::new(file.name, &gait, closing));
         Ok(())
     }
 }
@@ -130,61 +119,35 @@ struct Found {
     #[serde(skip)]
     name: String,
     efficiency: f64,
-    displacement_over_length: f64,
-    displacement_m: f64,
-    start_angle_rad: f64,
-    end_angle_rad: f64,
-    /// Of the quarter, in order.
-    arcs: Vec<Arc>,
+    #[serde(flatten)]
+    quarter: Quarter,
     /// Max-norm of the shooting conditions.
     #[serde(skip_serializing_if = "Option::is_none")]
     residual: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     power_variation: Option<f64>,
-    /// Share of the cycle in which links cross.
-    links_cross: f64,
     /// What led to the start of the polish.
     #[serde(skip_serializing_if = "Option::is_none")]
     method: Option<&'static str>,
     /// The direct method's own value, before the polish.
     #[serde(skip_serializing_if = "Option::is_none")]
     direct_efficiency: Option<f64>,
-    /// Under the servos' limit.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    timing: Option<TimingAnswer>,
-    certificate: Evidence,
-    /// From the parsed swimmer to the certified gait.
-    seconds: f64,
-    /// The gait file that was written.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    gait: Option<PathBuf>,
+    #[serde(flatten)]
+    closing: Closing,
 }
 
 impl Found {
-    fn new(
-        name: &str,
-        gait: &OptimalGait,
-        timing: Option<TimingAnswer>,
-        (seconds, file): (f64, Option<PathBuf>),
-    ) -> Self {
+    fn new(name: String, gait: &OptimalGait, closing: Closing) -> Self {
         let figures = gait.efficiency_figures;
         Self {
-            name: name.to_owned(),
+            name,
             efficiency: gait.efficiency,
-            displacement_over_length: gait.displacement_over_length,
-            displacement_m: gait.displacement,
-            start_angle_rad: gait.start_angle,
-            end_angle_rad: gait.end_angle,
-            arcs: gait.arcs.iter().map(Arc::from).collect(),
+            quarter: gait.into(),
             residual: figures.map(|figures| figures.residual),
             power_variation: figures.map(|figures| figures.power_variation),
-            links_cross: gait.links_cross,
             method: figures.map(|figures| figures.method.word()),
             direct_efficiency: figures.and_then(|figures| figures.direct_efficiency),
-            timing,
-            certificate: (&gait.certificate).into(),
-            seconds,
-            gait: file,
+            closing,
         }
     }
 }
@@ -193,17 +156,7 @@ impl fmt::Display for Found {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
         rows.row("efficiency ξ", format!("{:.12}", self.efficiency));
-        displacement_row(
-            &mut rows,
-            self.displacement_m,
-            self.displacement_over_length,
-        );
-        quarter_rows(
-            &mut rows,
-            self.start_angle_rad,
-            self.end_angle_rad,
-            &self.arcs,
-        );
+        self.quarter.rows(&mut rows);
         if let Some(residual) = self.residual {
             let bound = if residual <= 1e-10 {
                 "at most 1e-10"
@@ -222,15 +175,7 @@ impl fmt::Display for Found {
                 format!("ξ off by {}", quantity::small(deviation)),
             );
         }
-        if let Some(timing) = &self.timing {
-            timing.rows(&mut rows);
-        }
-        closing_rows(
-            &mut rows,
-            self.links_cross,
-            &self.certificate,
-            self.gait.as_ref(),
-        );
+        self.closing.rows(&mut rows);
         write!(f, "{}, most efficiency\n{rows}", self.name)
     }
 }

@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use gait_optimizer::{Over, RobustError, RobustGait, Uncertainty, Values};
 use serde::{Deserialize, Serialize};
 
-use super::answer::{Arc, Evidence, closing_rows, displacement_row, quarter_rows};
+use super::answer::{Closing, Quarter};
 use super::timing::TimingAnswer;
 use crate::failure::{Failure, Outcome};
 use crate::quantity::Rows;
@@ -94,20 +94,12 @@ pub(super) struct RobustAnswer {
     #[serde(skip)]
     title: String,
     /// Of the estimates' swimmer.
-    displacement_over_length: f64,
-    displacement_m: f64,
     efficiency: f64,
-    start_angle_rad: f64,
-    end_angle_rad: f64,
-    arcs: Vec<Arc>,
-    links_cross: f64,
+    #[serde(flatten)]
+    quarter: Quarter,
     robust: Robustness,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    timing: Option<TimingAnswer>,
-    certificate: Evidence,
-    seconds: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    gait: Option<PathBuf>,
+    #[serde(flatten)]
+    closing: Closing,
 }
 
 #[derive(Debug, Serialize)]
@@ -161,13 +153,8 @@ impl RobustAnswer {
         let gait = &found.gait;
         Self {
             title,
-            displacement_over_length: gait.displacement_over_length,
-            displacement_m: gait.displacement,
             efficiency: gait.efficiency,
-            start_angle_rad: gait.start_angle,
-            end_angle_rad: gait.end_angle,
-            arcs: gait.arcs.iter().map(Arc::from).collect(),
-            links_cross: gait.links_cross,
+            quarter: gait.into(),
             robust: Robustness {
                 over: match found.over {
                     Over::Worst => "worst",
@@ -189,10 +176,7 @@ impl RobustAnswer {
                 mean_of: found.members.1,
                 off_branch: found.off_branch(),
             },
-            timing,
-            certificate: (&gait.certificate).into(),
-            seconds,
-            gait: file,
+            closing: Closing::new(gait, timing, seconds, file),
         }
     }
 }
@@ -200,17 +184,7 @@ impl RobustAnswer {
 impl fmt::Display for RobustAnswer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
-        displacement_row(
-            &mut rows,
-            self.displacement_m,
-            self.displacement_over_length,
-        );
-        quarter_rows(
-            &mut rows,
-            self.start_angle_rad,
-            self.end_angle_rad,
-            &self.arcs,
-        );
+        self.quarter.rows(&mut rows);
         let Robustness {
             robust,
             nominal_optimum,
@@ -247,15 +221,7 @@ impl fmt::Display for RobustAnswer {
                 "this gait is better for the estimates, too: it lies on another branch than the nominal optimum",
             );
         }
-        if let Some(timing) = &self.timing {
-            timing.rows(&mut rows);
-        }
-        closing_rows(
-            &mut rows,
-            self.links_cross,
-            &self.certificate,
-            self.gait.as_ref(),
-        );
+        self.closing.rows(&mut rows);
         write!(f, "{}\n{rows}", self.title)
     }
 }

@@ -7,14 +7,14 @@ use std::time::Instant;
 
 use gait_optimizer::{Sideways as Found, SidewaysError, SidewaysProblem, sideways};
 use serde::Serialize;
-use swimmer_files::Bounds;
 
-use crate::arguments::{length, load_swimmer, positive_angle};
+use crate::arguments::load_swimmer;
+use crate::bounds::WholeBounds;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::{self, Rows};
 
-use super::answer::{Arc, Evidence, closing_rows};
+use super::answer::{Arc, Closing, arcs};
 
 /// Find the simple closed gait of most displacement across the heading at its first sample, without net rotation
 ///
@@ -25,15 +25,8 @@ pub(crate) struct Sideways {
     /// purcell, robot, robot-slender or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
-    /// No joint may turn further than this, either way
-    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
-    max_angle: Option<f64>,
-    /// Links may not cross
-    #[arg(long)]
-    no_overlap: bool,
-    /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
-    #[arg(long, value_name = "LENGTH_M", value_parser = length)]
-    clearance: Option<f64>,
+    #[command(flatten)]
+    bounds: WholeBounds,
     /// Write the gait, at constant power, as a gait file
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -44,12 +37,7 @@ impl Sideways {
         let file = load_swimmer(&self.swimmer)?;
         let begun = Instant::now();
         let found = sideways(&SidewaysProblem {
-            bounds: Bounds {
-                max_angle: self.max_angle,
-                no_overlap: self.no_overlap || self.clearance.is_some(),
-                clearance: self.clearance.unwrap_or(0.0),
-                ..Bounds::default()
-            },
+            bounds: self.bounds.into(),
             threads: std::thread::available_parallelism().map_or(1, NonZero::get),
             ..SidewaysProblem::new(file.swimmer)
         })?;
@@ -74,11 +62,8 @@ struct Answer {
     bridged_supremum_over_length: f64,
     rotation_rad: f64,
     arcs: Vec<Arc>,
-    links_cross: f64,
-    certificate: Evidence,
-    seconds: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    gait: Option<PathBuf>,
+    #[serde(flatten)]
+    closing: Closing,
 }
 
 impl Answer {
@@ -90,11 +75,8 @@ impl Answer {
             displacement_over_length: gait.displacement_over_length,
             bridged_supremum_over_length: found.bridged_supremum_over_length,
             rotation_rad: gait.rotation,
-            arcs: gait.arcs.iter().map(Arc::from).collect(),
-            links_cross: gait.links_cross,
-            certificate: (&gait.certificate).into(),
-            seconds,
-            gait: file,
+            arcs: arcs(gait),
+            closing: Closing::new(gait, None, seconds, file),
         }
     }
 }
@@ -117,12 +99,7 @@ impl fmt::Display for Answer {
         )
         .row("net rotation", quantity::angle(self.rotation_rad))
         .row("arcs", self.arcs.len().to_string());
-        closing_rows(
-            &mut rows,
-            self.links_cross,
-            &self.certificate,
-            self.gait.as_ref(),
-        );
+        self.closing.rows(&mut rows);
         write!(f, "{}, most displacement sideways\n{rows}", self.name)
     }
 }

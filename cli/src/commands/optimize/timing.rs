@@ -31,7 +31,7 @@ struct Timed {
 
 /// What the limit costs.
 #[derive(Debug, Serialize)]
-pub(super) struct TimingAnswer {
+pub(crate) struct TimingAnswer {
     period_s: f64,
     /// The shortest period in which such servos can run the gait at all.
     period_min_s: f64,

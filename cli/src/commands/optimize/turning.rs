@@ -8,12 +8,13 @@ use gait_optimizer::{Turning as Found, TurningError, TurningProblem, turning};
 use serde::Serialize;
 use swimmer_files::Bounds;
 
-use crate::arguments::{length, load_swimmer, positive_angle};
+use crate::arguments::load_swimmer;
+use crate::bounds::WholeBounds;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::{self, Rows};
 
-use super::answer::{Arc, Evidence, closing_rows};
+use super::answer::{Arc, Closing, arc_rows, arcs};
 
 /// Find the simple closed gait that turns the swimmer most per cycle, with its certificate
 ///
@@ -24,15 +25,8 @@ pub(crate) struct Turning {
     /// purcell, robot, robot-slender or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
-    /// No joint may turn further than this, either way
-    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
-    max_angle: Option<f64>,
-    /// Links may not cross
-    #[arg(long)]
-    no_overlap: bool,
-    /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
-    #[arg(long, value_name = "LENGTH_M", value_parser = length)]
-    clearance: Option<f64>,
+    #[command(flatten)]
+    bounds: WholeBounds,
     /// Write the gait, at constant power, as a gait file
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -44,12 +38,7 @@ impl Turning {
         let begun = Instant::now();
         let found = turning(&TurningProblem {
             swimmer: file.swimmer,
-            bounds: Bounds {
-                max_angle: self.max_angle,
-                no_overlap: self.no_overlap || self.clearance.is_some(),
-                clearance: self.clearance.unwrap_or(0.0),
-                ..Bounds::default()
-            },
+            bounds: self.bounds.into(),
         })?;
         let seconds = begun.elapsed().as_secs_f64();
         if let Some(path) = &self.output {
@@ -75,14 +64,8 @@ struct Answer {
     lateral_over_length: f64,
     /// Of the cycle, in order.
     arcs: Vec<Arc>,
-    /// Share of the cycle in which links cross.
-    links_cross: f64,
-    certificate: Evidence,
-    /// From the parsed swimmer to the certified gait.
-    seconds: f64,
-    /// The gait file that was written.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    gait: Option<PathBuf>,
+    #[serde(flatten)]
+    closing: Closing,
 }
 
 impl Answer {
@@ -96,11 +79,8 @@ impl Answer {
             regions: found.regions,
             displacement_over_length: gait.displacement_over_length,
             lateral_over_length: gait.lateral_over_length,
-            arcs: gait.arcs.iter().map(Arc::from).collect(),
-            links_cross: gait.links_cross,
-            certificate: (&gait.certificate).into(),
-            seconds,
-            gait: file,
+            arcs: arcs(gait),
+            closing: Closing::new(gait, None, seconds, file),
         }
     }
 }
@@ -131,13 +111,8 @@ impl fmt::Display for Answer {
                 self.displacement_over_length, self.lateral_over_length
             ),
         );
-        super::answer::arc_rows(&mut rows, &self.arcs);
-        closing_rows(
-            &mut rows,
-            self.links_cross,
-            &self.certificate,
-            self.gait.as_ref(),
-        );
+        arc_rows(&mut rows, &self.arcs);
+        self.closing.rows(&mut rows);
         write!(f, "{}, most rotation, {}\n{rows}", self.name, self.bounds)
     }
 }
