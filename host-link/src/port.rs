@@ -3,6 +3,7 @@
 //! A port owns its clock. A serial port's clock is the wall; a virtual port's clock stands still until somebody reads and
 //! waits, so that an hour of link time is tested in a second and twice the same.
 
+mod baud;
 mod faults;
 mod faulty;
 mod frames;
@@ -19,7 +20,7 @@ mod wire;
 use std::io;
 use std::time::Duration;
 
-pub use faults::{Faults, FaultsError, Outage};
+pub use faults::{Faults, FaultsError, FaultsProblem, Outage};
 pub use faulty::{FaultPlan, FaultyPort};
 pub use injector::{FaultCounts, FaultInjector};
 pub use mock::MockPort;

@@ -97,10 +97,7 @@ fn a_disconnection_in_the_middle_of_an_upload_is_bridged() {
     let mut robot = connect("", 5);
     let table = circle(1.1);
     let from = robot.port().now() + MS * 120;
-    robot.port_mut().disconnect(Outage {
-        from,
-        lasting: MS * 4000,
-    });
+    robot.port_mut().disconnect(Outage::once(from, MS * 4000));
     let mut done = Vec::new();
     let info = robot
         .upload(table.bytes(), MINUTE, |progress| {
@@ -121,10 +118,7 @@ fn a_long_disconnection_is_an_error_and_the_next_upload_resumes() {
     let mut robot = connect("", 6);
     let table = circle(1.1);
     let from = robot.port().now() + MS * 150;
-    robot.port_mut().disconnect(Outage {
-        from,
-        lasting: MS * 9000,
-    });
+    robot.port_mut().disconnect(Outage::once(from, MS * 9000));
     let error = upload(&mut robot, table.bytes()).unwrap_err();
     assert!(matches!(error, LinkError::Silent { .. }), "{error}");
     let text = error.to_string();

@@ -10,6 +10,33 @@ pub struct Outage {
     pub from: Duration,
     /// How long it lasts.
     pub lasting: Duration,
+    /// From one beginning to the next; `None`: it happens once.
+    pub every: Option<Duration>,
+}
+
+impl Outage {
+    /// Nothing passes for `lasting` from `from` on, once.
+    pub fn once(from: Duration, lasting: Duration) -> Self {
+        Self {
+            from,
+            lasting,
+            every: None,
+        }
+    }
+
+    /// Nothing passes at this time.
+    pub fn covers(&self, at: Duration) -> bool {
+        let Some(since) = at.checked_sub(self.from) else {
+            return false;
+        };
+        let since = match self.every {
+            Some(every) if !every.is_zero() => {
+                Duration::from_nanos_u128(since.as_nanos() % every.as_nanos())
+            }
+            _ => since,
+        };
+        since < self.lasting
+    }
 }
 
 /// The faults of a link. Chances are per frame and hold in both directions.
@@ -21,18 +48,31 @@ pub struct Faults {
     pub flip: f64,
     /// Chance that a frame arrives twice, 0 to 1.
     pub duplicate: f64,
+    /// Chance that a frame is overtaken by those sent up to [`Faults::LONGEST_DETOUR`] after it, 0 to 1.
+    pub reorder: f64,
     /// Added to the travel time of every frame, each way.
     pub delay: Duration,
     /// Bytes towards the host are held until this many lie ready or the oldest has waited
     /// [`Faults::LONGEST_HOLD`]; 0 for none. Towards the robot a module of this kind does not buffer.
     pub clump: usize,
-    /// A time without any connection.
+    /// Bytes that the module kept from before and lets out again, ahead of everything new, when the traffic begins anew
+    /// after [`Faults::QUIET`] or a disconnection; 0 for none.
+    pub stale: usize,
+    /// The far end speaks and listens at this rate instead of the robot's 115 200 baud.
+    pub baud: Option<u32>,
+    /// Times without any connection.
     pub disconnect: Option<Outage>,
 }
 
 impl Faults {
     /// How long a clumping link holds bytes back at most.
     pub const LONGEST_HOLD: Duration = Duration::from_secs(1);
+    /// How much later than its time a reordered frame arrives at most.
+    pub const LONGEST_DETOUR: Duration = Duration::from_millis(100);
+    /// Silence after which what comes is taken for a new connection: an open session is never silent for so long.
+    pub const QUIET: Duration = Duration::from_millis(300);
+    /// The rate of the robot's line.
+    pub const BAUD: u32 = 115_200;
 
     /// A link without faults.
     pub fn none() -> Self {
@@ -40,22 +80,30 @@ impl Faults {
     }
 }
 
-/// Why a list of faults was not understood.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum FaultsError {
+/// Why a list of faults was not understood, and where in it.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("reading the faults at column {column}: {problem}")]
+pub struct FaultsError {
+    /// Where the item stands, in characters from 1.
+    pub column: usize,
+    /// What is wrong with it.
+    pub problem: FaultsProblem,
+}
+
+/// What is wrong with an item of a list of faults.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum FaultsProblem {
     /// An item that is not `name=value`.
-    #[error(
-        "reading the faults: `{0}` is not of the form name=value; write for example drop=5%,clump=230"
-    )]
+    #[error("`{0}` is not of the form name=value; write for example drop=5%,clump=230")]
     NotAPair(String),
     /// A name that is none of ours.
     #[error(
-        "reading the faults: there is no fault `{0}`; there are drop, flip, duplicate, delay, clump and disconnect"
+        "there is no fault `{0}`; there are drop, flip, duplicate, reorder, delay, clump, stale, baud and disconnect"
     )]
     UnknownName(String),
     /// A chance that is no number from 0 to 1.
     #[error(
-        "reading the faults: {name}={value} is not a chance; write a percentage from 0% to 100% or a number from 0 to 1"
+        "{name}={value} is not a chance; write a percentage from 0% to 100% or a number from 0 to 1"
     )]
     NotAChance {
         /// Which fault.
@@ -63,8 +111,8 @@ pub enum FaultsError {
         /// What stood there.
         value: String,
     },
-    /// A value that is no whole number.
-    #[error("reading the faults: {name}={value} is not a whole number of {unit}")]
+    /// A value that is no whole number, or too large.
+    #[error("{name}={value} is not a whole number of {unit} up to {most}")]
     NotACount {
         /// Which fault.
         name: String,
@@ -72,57 +120,94 @@ pub enum FaultsError {
         value: String,
         /// What is counted.
         unit: &'static str,
+        /// The most that is taken.
+        most: u64,
     },
-    /// A disconnection that is not two times.
+    /// A rate that no serial port has.
+    #[error("baud={0} is no rate of a serial line; write one from 300 to 4000000, as baud=38400")]
+    NotABaudRate(String),
+    /// A disconnection that is not two or three times.
     #[error(
-        "reading the faults: disconnect={0} is not START:LENGTH in milliseconds, as in disconnect=2000:1500"
+        "disconnect={0} is not START:LENGTH or START:LENGTH:EVERY in milliseconds, EVERY longer than LENGTH, as in disconnect=2000:1500"
     )]
     NotAnOutage(String),
     /// The same fault named twice.
-    #[error("reading the faults: `{0}` stands there twice; leave one of them out")]
+    #[error("`{0}` stands there twice; leave one of them out")]
     Twice(String),
 }
+
+/// A day bounds what can be meant by a time, and keeps times addable.
+const MOST_MILLISECONDS: u64 = 86_400_000;
+/// A mebibyte bounds what a module can hold.
+const MOST_BYTES: u64 = 1 << 20;
 
 impl FromStr for Faults {
     type Err = FaultsError;
 
-    /// Reads `drop=5%,flip=0.01,duplicate=2%,delay=100,clump=230,disconnect=2000:1500`; times are in milliseconds.
+    /// Reads `drop=5%,flip=0.01,duplicate=2%,reorder=1%,delay=100,clump=230,stale=400,baud=38400,disconnect=2000:1500`;
+    /// times are in milliseconds.
     fn from_str(text: &str) -> Result<Self, FaultsError> {
         let mut faults = Self::none();
         let mut seen: Vec<&str> = Vec::new();
-        for item in text
-            .split(',')
-            .map(str::trim)
-            .filter(|item| !item.is_empty())
-        {
-            let (name, value) = item
-                .split_once('=')
-                .ok_or_else(|| FaultsError::NotAPair(item.to_owned()))?;
-            let (name, value) = (name.trim(), value.trim());
-            if seen.contains(&name) {
-                return Err(FaultsError::Twice(name.to_owned()));
+        let mut column = 1;
+        for item in text.split(',') {
+            let indent = item.chars().take_while(|c| c.is_whitespace()).count();
+            let at = column + indent;
+            column += item.chars().count() + 1;
+            let item = item.trim();
+            if item.is_empty() {
+                continue;
             }
-            seen.push(name);
-            match name {
-                "drop" => faults.drop = chance(name, value)?,
-                "flip" => faults.flip = chance(name, value)?,
-                "duplicate" => faults.duplicate = chance(name, value)?,
-                "delay" => {
-                    faults.delay = Duration::from_millis(count(name, value, "milliseconds")?);
-                }
-                "clump" => {
-                    let bytes = count(name, value, "bytes")?;
-                    faults.clump = usize::try_from(bytes).unwrap_or(usize::MAX);
-                }
-                "disconnect" => faults.disconnect = Some(outage(value)?),
-                _ => return Err(FaultsError::UnknownName(name.to_owned())),
-            }
+            faults
+                .take(item, &mut seen)
+                .map_err(|problem| FaultsError {
+                    column: at,
+                    problem,
+                })?;
         }
         Ok(faults)
     }
 }
 
-fn chance(name: &str, value: &str) -> Result<f64, FaultsError> {
+impl Faults {
+    fn take<'a>(&mut self, item: &'a str, seen: &mut Vec<&'a str>) -> Result<(), FaultsProblem> {
+        let (name, value) = item
+            .split_once('=')
+            .ok_or_else(|| FaultsProblem::NotAPair(item.to_owned()))?;
+        let (name, value) = (name.trim(), value.trim());
+        if seen.contains(&name) {
+            return Err(FaultsProblem::Twice(name.to_owned()));
+        }
+        seen.push(name);
+        let bytes =
+            || count(name, value, "bytes", MOST_BYTES).map(|n| usize::try_from(n).unwrap_or(0));
+        match name {
+            "drop" => self.drop = chance(name, value)?,
+            "flip" => self.flip = chance(name, value)?,
+            "duplicate" => self.duplicate = chance(name, value)?,
+            "reorder" => self.reorder = chance(name, value)?,
+            "delay" => {
+                let ms = count(name, value, "milliseconds", MOST_MILLISECONDS)?;
+                self.delay = Duration::from_millis(ms);
+            }
+            "clump" => self.clump = bytes()?,
+            "stale" => self.stale = bytes()?,
+            "baud" => {
+                let rate = value
+                    .parse()
+                    .ok()
+                    .filter(|rate| (300..=4_000_000).contains(rate));
+                self.baud =
+                    Some(rate.ok_or_else(|| FaultsProblem::NotABaudRate(value.to_owned()))?);
+            }
+            "disconnect" => self.disconnect = Some(outage(value)?),
+            _ => return Err(FaultsProblem::UnknownName(name.to_owned())),
+        }
+        Ok(())
+    }
+}
+
+fn chance(name: &str, value: &str) -> Result<f64, FaultsProblem> {
     let (digits, scale) = match value.strip_suffix('%') {
         Some(percent) => (percent.trim(), 0.01),
         None => (value, 1.0),
@@ -132,34 +217,42 @@ fn chance(name: &str, value: &str) -> Result<f64, FaultsError> {
         .ok()
         .map(|number| number * scale)
         .filter(|chance| (0.0..=1.0).contains(chance))
-        .ok_or_else(|| FaultsError::NotAChance {
+        .ok_or_else(|| FaultsProblem::NotAChance {
             name: name.to_owned(),
             value: value.to_owned(),
         })
 }
 
-fn count(name: &str, value: &str, unit: &'static str) -> Result<u64, FaultsError> {
-    // A day in milliseconds bounds what can be meant, and keeps times addable.
+fn count(name: &str, value: &str, unit: &'static str, most: u64) -> Result<u64, FaultsProblem> {
     value
         .parse::<u64>()
         .ok()
-        .filter(|&number| number <= 86_400_000)
-        .ok_or_else(|| FaultsError::NotACount {
+        .filter(|&number| number <= most)
+        .ok_or_else(|| FaultsProblem::NotACount {
             name: name.to_owned(),
             value: value.to_owned(),
             unit,
+            most,
         })
 }
 
-fn outage(value: &str) -> Result<Outage, FaultsError> {
-    let bad = || FaultsError::NotAnOutage(value.to_owned());
-    let (from, lasting) = value.split_once(':').ok_or_else(bad)?;
-    let milliseconds =
-        |text: &str| count("disconnect", text.trim(), "milliseconds").map_err(|_| bad());
-    Ok(Outage {
-        from: Duration::from_millis(milliseconds(from)?),
-        lasting: Duration::from_millis(milliseconds(lasting)?),
-    })
+fn outage(value: &str) -> Result<Outage, FaultsProblem> {
+    let bad = || FaultsProblem::NotAnOutage(value.to_owned());
+    let times = value
+        .split(':')
+        .map(|text| count("disconnect", text.trim(), "milliseconds", MOST_MILLISECONDS))
+        .map(|ms| ms.map(Duration::from_millis))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|_| bad())?;
+    match times[..] {
+        [from, lasting] => Ok(Outage::once(from, lasting)),
+        [from, lasting, every] if every > lasting => Ok(Outage {
+            from,
+            lasting,
+            every: Some(every),
+        }),
+        _ => Err(bad()),
+    }
 }
 
 #[cfg(test)]
@@ -188,28 +281,45 @@ mod tests {
         let faults: Faults = "disconnect=2000:1500".parse().unwrap();
         assert_eq!(
             faults.disconnect,
-            Some(Outage {
-                from: Duration::from_secs(2),
-                lasting: Duration::from_millis(1500)
-            })
+            Some(Outage::once(
+                Duration::from_secs(2),
+                Duration::from_millis(1500)
+            ))
         );
+        let again: Faults = "disconnect=1000:200:500".parse().unwrap();
+        let outage = again.disconnect.unwrap();
+        let cut: Vec<u64> = (0..2000)
+            .step_by(100)
+            .filter(|&ms| outage.covers(Duration::from_millis(ms)))
+            .collect();
+        assert_eq!(cut, [1000, 1100, 1500, 1600]);
     }
 
     #[test]
-    fn each_mistake_has_its_sentence() {
-        for (text, word) in [
-            ("drop", "name=value"),
-            ("loss=5%", "there is no fault `loss`"),
-            ("drop=150%", "not a chance"),
-            ("drop=-1", "not a chance"),
-            ("drop=nan", "not a chance"),
-            ("clump=2.5", "whole number of bytes"),
-            ("delay=99999999999999999999", "whole number of milliseconds"),
-            ("disconnect=5", "START:LENGTH"),
-            ("drop=1%,drop=2%", "twice"),
+    fn each_mistake_has_its_place_and_its_sentence() {
+        for (text, column, word) in [
+            ("drop", 1, "name=value"),
+            ("loss=5%", 1, "there is no fault `loss`"),
+            ("drop=150%", 1, "not a chance"),
+            ("flip=1%, drop=-1", 10, "not a chance"),
+            ("drop=nan", 1, "not a chance"),
+            ("clump=2.5", 1, "whole number of bytes up to 1048576"),
+            ("stale=1048577", 1, "whole number of bytes"),
+            (
+                "delay=99999999999999999999",
+                1,
+                "whole number of milliseconds",
+            ),
+            ("delay=1,baud=12", 9, "from 300 to 4000000"),
+            ("disconnect=5", 1, "START:LENGTH"),
+            ("disconnect=5:6:6", 1, "EVERY longer than LENGTH"),
+            ("drop=1%,,drop=2%", 10, "twice"),
         ] {
-            let error = text.parse::<Faults>().unwrap_err().to_string();
+            let error = text.parse::<Faults>().unwrap_err();
+            assert_eq!(error.column, column, "{text}: {error}");
+            let error = error.to_string();
             assert!(error.contains(word), "{text}: {error}");
+            assert!(error.contains(&format!("column {column}:")), "{error}");
         }
     }
 }

@@ -6,6 +6,7 @@ use std::time::Duration;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
+use super::baud::misread;
 use super::faults::{Faults, Outage};
 use super::frames::FrameCutter;
 
@@ -20,6 +21,12 @@ pub struct FaultCounts {
     pub flipped: u64,
     /// Frames that came out twice.
     pub duplicated: u64,
+    /// Frames that others overtook, or may have.
+    pub detoured: u64,
+    /// Bytes from before that came out again.
+    pub stale_bytes: u64,
+    /// Frames that another baud rate made noise of.
+    pub misread: u64,
     /// Frames lost to a disconnection.
     pub cut_off: u64,
 }
@@ -35,6 +42,9 @@ pub struct FaultInjector {
     /// Arrived bytes that the clumping link still holds.
     held: VecDeque<u8>,
     held_since: Duration,
+    /// The last bytes carried, for a module that lets them out again.
+    carried: VecDeque<u8>,
+    last_push: Option<Duration>,
     counts: FaultCounts,
 }
 
@@ -48,6 +58,8 @@ impl FaultInjector {
             under_way: VecDeque::new(),
             held: VecDeque::new(),
             held_since: Duration::ZERO,
+            carried: VecDeque::new(),
+            last_push: None,
             counts: FaultCounts::default(),
         }
     }
@@ -64,11 +76,16 @@ impl FaultInjector {
 
     /// Takes bytes that were sent at `now`.
     pub fn push(&mut self, now: Duration, bytes: &[u8]) {
+        if bytes.is_empty() {
+            return;
+        }
+        self.let_out_stale(now);
         let Self {
             faults,
             rng,
             cutter,
             under_way,
+            carried,
             counts,
             ..
         } = self;
@@ -77,6 +94,7 @@ impl FaultInjector {
             // Every frame draws the same numbers whatever becomes of it: a fault more does not shift all later ones.
             let (drop, flip, twice): (f64, f64, f64) = (rng.random(), rng.random(), rng.random());
             let bit = rng.random_range(0..frame.len() * 8);
+            let (reorder, detour): (f64, f64) = (rng.random(), rng.random());
             if cut(faults, now) || cut(faults, now + faults.delay) {
                 counts.cut_off += 1;
                 return;
@@ -89,13 +107,38 @@ impl FaultInjector {
                 counts.flipped += 1;
                 frame[bit / 8] ^= 1 << (bit % 8);
             }
-            let arrival = now + faults.delay;
+            if let Some(baud) = faults.baud.filter(|&baud| baud != Faults::BAUD) {
+                counts.misread += 1;
+                *frame = misread(frame, Faults::BAUD, baud);
+            }
+            let mut arrival = now + faults.delay;
+            if reorder < faults.reorder {
+                counts.detoured += 1;
+                arrival += Faults::LONGEST_DETOUR.mul_f64(detour);
+            }
+            carried.extend(frame.iter());
+            carried.drain(..carried.len().saturating_sub(faults.stale));
             if twice < faults.duplicate {
                 counts.duplicated += 1;
-                under_way.push_back((arrival, frame.clone()));
+                insert(under_way, arrival, frame.clone());
             }
-            under_way.push_back((arrival, frame.clone()));
+            insert(under_way, arrival, frame.clone());
         });
+    }
+
+    /// The traffic begins anew: what the module kept comes out first.
+    fn let_out_stale(&mut self, now: Duration) {
+        let anew = self.last_push.is_some_and(|last| {
+            now.saturating_sub(last) >= Faults::QUIET || cut(&self.faults, last)
+        });
+        let cut_now = cut(&self.faults, now);
+        self.last_push = Some(now);
+        if self.faults.stale == 0 || !anew || cut_now {
+            return;
+        }
+        let kept: Vec<u8> = self.carried.iter().copied().collect();
+        self.counts.stale_bytes += kept.len() as u64;
+        insert(&mut self.under_way, now + self.faults.delay, kept);
     }
 
     /// When [`pop`](Self::pop) will next have something, if nothing more goes in.
@@ -136,9 +179,13 @@ impl FaultInjector {
 }
 
 fn cut(faults: &Faults, at: Duration) -> bool {
-    faults
-        .disconnect
-        .is_some_and(|outage| at >= outage.from && at < outage.from + outage.lasting)
+    faults.disconnect.is_some_and(|outage| outage.covers(at))
+}
+
+/// Keeps the order of arrival, and that of sending among equals.
+fn insert(under_way: &mut VecDeque<(Duration, Vec<u8>)>, arrival: Duration, frame: Vec<u8>) {
+    let place = under_way.partition_point(|(at, _)| *at <= arrival);
+    under_way.insert(place, (arrival, frame));
 }
 
 #[cfg(test)]
@@ -240,5 +287,55 @@ mod tests {
         // Sent at 80 and 150; what was under way at 100 is lost.
         assert_eq!(out.len(), 10);
         assert_eq!(injector.counts().cut_off, 3);
+    }
+
+    #[test]
+    fn reordered_frames_are_overtaken_and_none_is_lost() {
+        let mut injector = injector("reorder=30%,delay=20");
+        let sent: Vec<[u8; 2]> = (1..=200).map(|byte| [byte, 0]).collect();
+        for (frame, ms) in sent.iter().zip(0..) {
+            injector.push(MS * 10 * ms, frame);
+        }
+        let mut out = Vec::new();
+        injector.pop(MS * 5000, &mut out);
+        let mut arrived: Vec<u8> = out.chunks_exact(2).map(|frame| frame[0]).collect();
+        let overtaken = arrived.windows(2).filter(|pair| pair[1] < pair[0]).count();
+        assert!(overtaken > 10, "{overtaken}");
+        assert!(injector.counts().detoured > 30, "{:?}", injector.counts());
+        arrived.sort_unstable();
+        assert_eq!(arrived, (1..=200).collect::<Vec<u8>>());
+    }
+
+    #[test]
+    fn old_bytes_come_first_after_a_silence_or_an_outage() {
+        let mut injector = injector("stale=6,disconnect=1000:100");
+        let mut out = Vec::new();
+        let mut at = |ms, byte| {
+            out.clear();
+            injector.push(MS * ms, &[byte, byte, 0]);
+            injector.pop(MS * ms, &mut out);
+            out.clone()
+        };
+        assert_eq!(at(0, 1), [1, 1, 0]);
+        assert_eq!(at(100, 2), [2, 2, 0]);
+        assert_eq!(at(200, 3), [3, 3, 0]);
+        // Silence.
+        assert_eq!(at(500, 4), [2, 2, 0, 3, 3, 0, 4, 4, 0]);
+        assert_eq!(at(799, 5), [5, 5, 0]);
+        assert_eq!(at(950, 6), [6, 6, 0]);
+        assert!(at(1050, 7).is_empty());
+        // The outage, though never silent.
+        assert_eq!(at(1100, 8), [5, 5, 0, 6, 6, 0, 8, 8, 0]);
+        assert_eq!(injector.counts().stale_bytes, 12);
+    }
+
+    #[test]
+    fn another_baud_rate_leaves_noise() {
+        let mut injector = injector("baud=57600");
+        injector.push(MS, &frames(20));
+        let mut out = Vec::new();
+        injector.pop(MS, &mut out);
+        assert!(!out.is_empty() && out != frames(20), "{out:?}");
+        assert_eq!(injector.counts().misread, 20);
     }
 }
