@@ -1,7 +1,9 @@
 // The swimmer's board: an emulated RP2040 with its flash, the servos' pins, the battery's divider, the HC-05's STATE pin, and
 // the mains switch. Time is emulated time in nanoseconds and never the machine's.
 
+import fs from 'node:fs';
 import { RP2040 } from 'rp2040js';
+import { noise, paint, unpainted } from './ram.mjs';
 import { fillGaps } from './shims.mjs';
 
 const FLASH_START = 0x10000000;
@@ -11,6 +13,8 @@ const SECTOR = 4096, PAGE = 256;
 const ERASE_NS = 45e6, PROGRAM_NS = 0.4e6;
 /** Both servos hang on PWM slice 0. */
 const SLICE = 0;
+/** The firmware's control task runs in this exception: 16 + SWI_IRQ_1. */
+const CONTROL = 16 + 27;
 export const PINS = { front: 16, back: 17, state: { 'nano-connect': 25, pico: 22 }, led: { 'nano-connect': 6, pico: 25 } };
 
 /** Thrown inside the emulation when the power goes. */
@@ -21,13 +25,14 @@ export class Board {
     this.kind = kind;
     this.flash = new Uint8Array(FLASH_SIZE).fill(0xff);
     for (const { address, bytes } of elf.segments) this.flash.set(bytes, address - FLASH_START);
+    this.stack = { bottom: elf.symbols._stack_end, top: elf.symbols._stack_start };
     this.connected = false;
     this.battery = 0;
     this.before = 0;
     this.events = emptyEvents();
     this.flashBytesLeft = Infinity;
     this.powered = true;
-    this.start({ reason: 0, scratch: new Uint32Array(8) });
+    this.powerOn();
   }
 
   /** Emulated time since the first power-on [ns]; it goes on over resets and power cycles. */
@@ -40,8 +45,8 @@ export class Board {
     return events;
   }
 
-  /** Bytes towards the board, at its baud rate. */
-  feed(bytes, bad) { if (this.powered) this.mcu.uart[0].feed(bytes, bad); }
+  /** Characters towards the board, at its baud rate; above the byte the error bits of the UART's data register. */
+  feed(characters) { if (this.powered) this.mcu.uart[0].feed(characters); }
 
   /** The HC-05's STATE pin. */
   setConnected(connected) {
@@ -63,7 +68,26 @@ export class Board {
     this.before = this.now;
     this.powered = true;
     this.flashBytesLeft = Infinity;
-    this.start({ reason: 0, scratch: new Uint32Array(8) });
+    this.powerOn();
+  }
+
+  powerOn() { this.start({ reason: 0, scratch: new Uint32Array(8), ram: null }); }
+
+  /** The whole flash chip, to a file. */
+  saveFlash(path) { fs.writeFileSync(path, this.flash); }
+
+  /** Another flash chip is soldered in, with what such a file holds; then the power comes on. */
+  loadFlash(path) {
+    const image = fs.readFileSync(path);
+    if (image.length !== FLASH_SIZE) throw new Error(`${path}: ${image.length} bytes instead of ${FLASH_SIZE}`);
+    this.flash.set(image);
+    this.powerCycle();
+  }
+
+  /** Bytes of the stack that were never written since the power came on, and its size. */
+  stackLeft() {
+    const { bottom, top } = this.stack;
+    return { left: unpainted(this.mcu.sram, bottom, top), size: top - bottom };
   }
 
   /** Two bytes of code in flash, as a fault would change them: the copy that runs, not the one that survives. */
@@ -84,7 +108,7 @@ export class Board {
       if (this.reset) {
         this.events.resets.push({ at: this.now, reason: this.reset.reason });
         this.before = this.now;
-        this.start(this.reset);
+        this.start({ ...this.reset, ram: this.mcu.sram });
       }
     }
     if (!this.powered) this.before += Math.max(0, until - this.now);
@@ -96,14 +120,20 @@ export class Board {
     let cycle = 1e9 / this.mcu.clkSys;
     let count = 0;
     while (clock.nanosCounter < end && !this.reset) {
+      if (clock.nanosCounter < this.stalledUntil) {
+        clock.tick(Math.min(this.stalledUntil, end) - clock.nanosCounter);
+        continue;
+      }
       if (core.waiting) {
         const next = clock.nanosToNextAlarm, left = end - clock.nanosCounter;
         clock.tick(next > 0 && next < left ? next : Math.max(left, 1));
         continue;
       }
       if (core.registers[15] < 0x4000) this.trap(core);
+      const inControl = core.IPSR === CONTROL;
       const cycles = core.executeInstruction();
       this.busy += cycles;
+      if (inControl) this.control += cycles;
       clock.tick(cycles * cycle);
       count = (count + 1) & 0x3ff;
       if (count === 0) cycle = 1e9 / this.mcu.clkSys; // the firmware sets its clock up once, early
@@ -117,12 +147,20 @@ export class Board {
     core.registers[15] = core.registers[14] & ~1;
   }
 
-  /** The chip comes out of reset as its boot ROM leaves it: at the second-stage loader. */
-  start({ reason, scratch }) {
+  /** The chip comes out of reset as its boot ROM leaves it: at the second-stage loader. RAM outlives all but the power. */
+  start({ reason, scratch, ram }) {
     this.reset = null;
     this.busy = 0;
+    this.control = 0;
+    this.stalledUntil = 0;
     const mcu = new RP2040();
     this.mcu = mcu;
+    if (ram) {
+      mcu.sram.set(ram);
+    } else {
+      noise(mcu.sram);
+      paint(mcu.sram, this.stack.bottom, this.stack.top);
+    }
     this.traps = fillGaps(mcu, {
       onByte: (byte) => this.events.uart.push(byte),
       onReset: (reset) => { this.reset = reset; },
@@ -150,9 +188,11 @@ export class Board {
       wrap();
       const [front, back] = [slice.alarmA.target, slice.alarmB.target];
       this.events.periods.push({
-        at: this.now, front, back, top: slice.timer.top, divider: slice.timer.prescaler, clock: mcu.clkSys, busy: this.busy,
+        at: this.now, front, back, top: slice.timer.top, divider: slice.timer.prescaler, clock: mcu.clkSys,
+        busy: this.busy, control: this.control,
       });
       this.busy = 0;
+      this.control = 0;
     };
     slice.wrap = latched;
     slice.alarmBottom.callback = latched;
@@ -166,7 +206,7 @@ export class Board {
     for (let at = offset; at < offset + count; at += SECTOR) {
       // The cells of a sector that loses power while it is erased may hold anything: here they are half done.
       this.spend(SECTOR, (done) => this.store(at, new Uint8Array(done).fill(0xff)));
-      this.mcu.clock.tick(ERASE_NS);
+      this.stall(ERASE_NS);
       this.events.erased += 1;
     }
   }
@@ -177,10 +217,13 @@ export class Board {
       // Programming only clears bits.
       const cleared = page.map((byte, i) => byte & this.flash[offset + start + i]);
       this.spend(page.length, (done) => this.store(offset + start, cleared.subarray(0, done)));
-      this.mcu.clock.tick(PROGRAM_NS * (page.length / PAGE));
+      this.stall(PROGRAM_NS * (page.length / PAGE));
       this.events.programmed += 1;
     }
   }
+
+  /** The program stands still while its flash is busy; everything else goes on, the UART too. */
+  stall(ns) { this.stalledUntil = Math.max(this.stalledUntil, this.mcu.clock.nanos) + ns; }
 
   /** Does a flash operation of so many bytes, or as much of it as the power lasts for. */
   spend(count, perform) {

@@ -17,10 +17,13 @@ const board = new Board(elf, kind);
 /** Each command: what it does; its result is merged into the answer. */
 const commands = {
   run: ({ until }) => { board.run(until); },
-  feed: ({ bytes, bad }) => { board.feed(bytes, bad); },
+  feed: ({ characters }) => { board.feed(characters); },
   connected: ({ up }) => { board.setConnected(up); },
   battery: ({ volts }) => { board.setBattery(volts); },
   cut: ({ flashBytes }) => { board.cutPowerAfter(flashBytes); },
+  save_flash: ({ path }) => { board.saveFlash(path); },
+  load_flash: ({ path }) => { board.loadFlash(path); },
+  stack: () => ({ stack: board.stackLeft() }),
   power_cycle: () => { board.powerCycle(); },
   patch: ({ address, halfword }) => { board.patch(address, halfword); },
   symbols: ({ containing }) => ({

@@ -2,7 +2,9 @@
 // the RP2040 has it (datasheet section 4.2): 32-deep FIFOs, levels, the receive timeout, overrun, characters that take time.
 
 const SECOND = 1e9;
-const RX = 0x10, TX = 0x20, RX_TIMEOUT = 0x40, FRAMING = 0x80, OVERRUN = 0x400;
+const RX = 0x10, TX = 0x20, RX_TIMEOUT = 0x40, OVERRUN = 0x400;
+/** Error bits of a character in the data register (framing, parity, break), one place to the left of its interrupts'. */
+const CHARACTER_ERRORS = 0x700;
 const ENABLED_RX = 0x201;
 const LEVELS = [4, 8, 16, 24, 28];
 const IDENTITY = { 0xfe0: 0x11, 0xfe4: 0x10, 0xfe8: 0x34, 0xfec: 0, 0xff0: 0x0d, 0xff4: 0xf0, 0xff8: 0x05, 0xffc: 0xb1 };
@@ -25,9 +27,9 @@ export class Pl011 {
     this.idle = mcu.clock.createAlarm(() => this.received.length && this.raise(RX_TIMEOUT));
   }
 
-  /** Bytes on the wire towards the board; they arrive one character time apart. `bad` ones arrive with a framing error. */
-  feed(bytes, bad = false) {
-    for (const byte of bytes) this.wire.push(bad ? byte | 0x100 : byte);
+  /** Characters on the wire towards the board, with the error bits of the data register; one character time apart. */
+  feed(characters) {
+    for (const character of characters) this.wire.push(character);
     this.nextArrival();
   }
 
@@ -64,7 +66,7 @@ export class Pl011 {
       } else {
         this.received.push(byte | (this.overran ? 0x800 : 0));
         this.overran = false;
-        if (byte & 0x100) this.raise(FRAMING);
+        if (byte & CHARACTER_ERRORS) this.raise((byte & CHARACTER_ERRORS) >> 1);
       }
       if (this.received.length >= this.receiveLevel) this.raise(RX);
       this.idle.schedule((32 * SECOND) / this.baud);

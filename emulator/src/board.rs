@@ -9,7 +9,8 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
-use crate::events::{Answer, Events, nanos};
+use crate::events::{Answer, Events, Stack, nanos};
+use crate::line::Character;
 
 /// Which board the firmware was built for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -203,15 +204,19 @@ impl Board {
     /// # Errors
     /// As [`Self::run`].
     pub fn feed(&mut self, bytes: &[u8]) -> Result<(), EmulatorError> {
-        self.perform(&json!({ "do": "feed", "bytes": bytes }))
+        self.perform(&json!({ "do": "feed", "characters": bytes }))
     }
 
-    /// The same with a framing error on each byte, as a wrong baud rate or a broken wire makes them.
+    /// The same with what a UART can find wrong with each: see [`heard`](crate::heard) for a wrong baud rate.
     ///
     /// # Errors
     /// As [`Self::run`].
-    pub fn feed_broken(&mut self, bytes: &[u8]) -> Result<(), EmulatorError> {
-        self.perform(&json!({ "do": "feed", "bytes": bytes, "bad": true }))
+    pub fn feed_characters(&mut self, characters: &[Character]) -> Result<(), EmulatorError> {
+        let characters: Vec<u16> = characters
+            .iter()
+            .map(|heard| heard.data_register())
+            .collect();
+        self.perform(&json!({ "do": "feed", "characters": characters }))
     }
 
     /// The radio's STATE pin.
@@ -236,6 +241,31 @@ impl Board {
     /// As [`Self::run`].
     pub fn cut_power_after(&mut self, flash_bytes: u32) -> Result<(), EmulatorError> {
         self.perform(&json!({ "do": "cut", "flashBytes": flash_bytes }))
+    }
+
+    /// Writes all that the flash chip holds to a file.
+    ///
+    /// # Errors
+    /// As [`Self::run`]; the file cannot be written.
+    pub fn save_flash(&mut self, path: &Path) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "save_flash", "path": path }))
+    }
+
+    /// Switches on with the flash chip that such a file holds.
+    ///
+    /// # Errors
+    /// As [`Self::run`]; the file cannot be read or is none of a whole chip.
+    pub fn load_flash(&mut self, path: &Path) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "load_flash", "path": path }))
+    }
+
+    /// How much of its stack the firmware has used since the power came on.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn stack(&mut self) -> Result<Stack, EmulatorError> {
+        let answer = self.ask(&json!({ "do": "stack" }))?;
+        Ok(answer.stack)
     }
 
     /// Off and on again: RAM is lost, flash stays.

@@ -20,8 +20,9 @@ pub struct Period {
     divider: f64,
     /// System clock \[Hz\].
     clock: f64,
-    /// Cycles that the core was awake since the period before.
+    /// Cycles that the core was awake since the period before, and of these in the control task.
     busy: u64,
+    control: u64,
 }
 
 impl Period {
@@ -43,6 +44,11 @@ impl Period {
     /// How long the core was awake in the period before it \[ms at 125 MHz\].
     pub fn busy_ms(&self) -> f64 {
         self.busy as f64 / 125e3
+    }
+
+    /// How much of that the control task took: its tick and the bytes that came \[ms at 125 MHz\].
+    pub fn control_ms(&self) -> f64 {
+        self.control as f64 / 125e3
     }
 
     /// Whether both servos get pulses.
@@ -165,6 +171,22 @@ impl Events {
     }
 }
 
+/// The firmware's stack.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+pub struct Stack {
+    /// Bytes never written since the power came on.
+    pub left: u32,
+    /// Bytes there are.
+    pub size: u32,
+}
+
+impl Stack {
+    /// Most bytes that were in use, but for what was reserved and never written.
+    pub fn used(&self) -> u32 {
+        self.size - self.left
+    }
+}
+
 /// The board's answer to a command.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Answer {
@@ -175,6 +197,8 @@ pub(crate) struct Answer {
     pub(crate) events: Events,
     #[serde(default)]
     pub(crate) bytes: Vec<u8>,
+    #[serde(default)]
+    pub(crate) stack: Stack,
     #[serde(default)]
     pub(crate) symbols: BTreeMap<String, u32>,
 }

@@ -8,8 +8,10 @@
 
 mod board;
 mod events;
+mod line;
 mod robot;
 
 pub use board::{Board, BoardConfig, BoardKind, EmulatorError};
-pub use events::{Edge, Events, Led, Period, PowerCut, Reset, Servo};
+pub use events::{Edge, Events, Led, Period, PowerCut, Reset, Servo, Stack};
+pub use line::{Character, heard};
 pub use robot::EmulatedRobot;

@@ -6,5 +6,7 @@
 mod boot;
 mod failsafes;
 mod flash;
+mod promise;
+mod radio;
 mod rig;
 mod session;
