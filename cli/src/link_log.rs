@@ -1,21 +1,137 @@
-//! Frames seen on a port, as the link log keeps them.
+//! Frames seen on a port, as the link log keeps them: each with the host's clock and, once a ping has come back, the robot's.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use host_link::port::{Direction, TracedFrame};
-use swimmer_files::{LinkFrame, LinkLogError};
+use host_link::session::{ClockFit, ClockSamples};
+use link_protocol::{Decoder, Message};
+use swimmer_files::{LinkFrame, LinkLogError, LinkLogWriter};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, Outcome};
 
-/// A frame as it crossed the port.
-pub(crate) fn link_frame(frame: &TracedFrame<'_>) -> LinkFrame {
-    LinkFrame {
-        direction: match frame.direction {
-            Direction::ToRobot => swimmer_files::Direction::ToRobot,
-            Direction::ToHost => swimmer_files::Direction::FromRobot,
-        },
-        host_time_ns: u64::try_from(frame.at.as_nanos()).unwrap_or(u64::MAX),
-        robot_time_us: None,
-        bytes: frame.bytes.to_vec(),
+/// What a traced port shows its frames to.
+pub(crate) type Sink = Box<dyn FnMut(TracedFrame<'_>) + Send>;
+
+/// Writes a link log while others talk. Dropped before [`Recorder::finish`], it finishes all the same: what led to a failure
+/// is what a log is for.
+pub(crate) struct Recorder(Arc<Mutex<Recording>>);
+
+struct Recording {
+    path: PathBuf,
+    writer: Option<LinkLogWriter>,
+    frames: u64,
+    failed: Option<LinkLogError>,
+    samples: ClockSamples,
+    clock: Option<ClockFit>,
+}
+
+impl Recorder {
+    /// Starts a log.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`] where the file exists, [`Failure::Tried`] where it cannot be made.
+    pub(crate) fn create(path: &Path) -> Outcome<Self> {
+        if path.exists() {
+            return Err(Failure::BadInput(format!(
+                "{} exists; name a new file for the link log",
+                path.display()
+            )));
+        }
+        Ok(Self(Arc::new(Mutex::new(Recording {
+            path: path.to_path_buf(),
+            writer: Some(LinkLogWriter::create(path)?),
+            frames: 0,
+            failed: None,
+            samples: ClockSamples::default(),
+            clock: None,
+        }))))
     }
+
+    /// What the port shows its frames to.
+    pub(crate) fn sink(&self) -> Sink {
+        let recording = Arc::clone(&self.0);
+        Box::new(move |frame| locked(&recording).add(&frame))
+    }
+
+    /// Closes the log and gives it its name; returns the number of frames.
+    ///
+    /// # Errors
+    /// When the disk refused a frame or the end.
+    pub(crate) fn finish(self) -> Outcome<u64> {
+        let mut recording = locked(&self.0);
+        let finished = recording.finish();
+        finished.map(|()| recording.frames).map_err(Failure::from)
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        let mut recording = locked(&self.0);
+        if recording.writer.is_some() {
+            match recording.finish() {
+                Ok(()) => eprintln!("The link log is in {}.", recording.path.display()),
+                Err(error) => eprintln!("{}", Failure::from(error)),
+            }
+        }
+    }
+}
+
+fn locked(recording: &Mutex<Recording>) -> MutexGuard<'_, Recording> {
+    recording.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Recording {
+    fn add(&mut self, frame: &TracedFrame<'_>) {
+        let Some(writer) = &mut self.writer else {
+            return;
+        };
+        let told = match (frame.direction, message(frame.bytes)) {
+            (Direction::ToHost, Some(Message::Pong(pong))) => {
+                self.samples.push(&pong, frame.at);
+                self.clock = self.samples.fit();
+                Some(pong.sent_us)
+            }
+            (Direction::ToHost, Some(Message::Telemetry(telemetry))) => Some(telemetry.robot_us),
+            _ => None,
+        };
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        // saturates; a robot is up for less than 2^53 µs
+        let estimated = self
+            .clock
+            .map(|clock| (clock.robot_time(frame.at).max(0.0) * 1e6) as u64);
+        let frame = LinkFrame {
+            direction: match frame.direction {
+                Direction::ToRobot => swimmer_files::Direction::ToRobot,
+                Direction::ToHost => swimmer_files::Direction::FromRobot,
+            },
+            host_time_ns: u64::try_from(frame.at.as_nanos()).unwrap_or(u64::MAX),
+            robot_time_us: told.or(estimated),
+            bytes: frame.bytes.to_vec(),
+        };
+        if self.failed.is_none() {
+            self.failed = writer.write(&frame).err();
+            self.frames += 1;
+        }
+    }
+
+    fn finish(&mut self) -> Result<(), LinkLogError> {
+        let writer = self.writer.take();
+        match (self.failed.take(), writer) {
+            (Some(error), _) => Err(error),
+            (None, Some(writer)) => writer.finish(),
+            (None, None) => Ok(()),
+        }
+    }
+}
+
+/// The message of a frame, where it is sound.
+fn message(bytes: &[u8]) -> Option<Message> {
+    let mut decoder = Decoder::new();
+    bytes
+        .iter()
+        .find_map(|&byte| decoder.push(byte))
+        .and_then(|received| received.message.ok())
 }
 
 impl From<LinkLogError> for Failure {

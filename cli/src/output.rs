@@ -48,6 +48,11 @@ impl Output {
     }
 }
 
+/// Something worth knowing that is no part of the answer: standard error.
+pub(crate) fn aside(text: &str) {
+    eprintln!("{text}");
+}
+
 /// The JSON document that stands for a failure.
 pub(crate) fn error_document(reason: &str) -> String {
     document(&serde_json::json!({ "error": reason }))

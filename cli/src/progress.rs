@@ -26,6 +26,11 @@ impl Progress {
         )
     }
 
+    /// A bar of one whole, whose share is set with [`Self::at_share`].
+    pub(crate) fn of_a_whole() -> Self {
+        Self::drawn(ProgressBar::new(1000), "{bar:28} {wide_msg}")
+    }
+
     fn drawn(bar: ProgressBar, template: &str) -> Self {
         if !std::io::stderr().is_terminal() {
             return Self(ProgressBar::hidden());
@@ -45,6 +50,12 @@ impl Progress {
     /// One step is done.
     pub(crate) fn step(&self) {
         self.0.inc(1);
+    }
+
+    /// This share of the whole is done.
+    pub(crate) fn at_share(&self, share: f64) {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 1000; saturates
+        self.0.set_position((1000.0 * share) as u64);
     }
 
     /// So much is done.

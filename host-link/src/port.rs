@@ -8,6 +8,7 @@ mod faults;
 mod faulty;
 mod frames;
 mod injector;
+mod listed;
 mod mock;
 #[cfg(unix)]
 mod pty;
@@ -23,6 +24,7 @@ use std::time::Duration;
 pub use faults::{Faults, FaultsError, FaultsProblem, Outage};
 pub use faulty::{FaultPlan, FaultyPort};
 pub use injector::{FaultCounts, FaultInjector};
+pub use listed::{ListedPort, serial_ports};
 pub use mock::MockPort;
 #[cfg(unix)]
 pub use pty::{PtyError, PtyPort};

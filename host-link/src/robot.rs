@@ -1,7 +1,7 @@
 //! A robot as a program uses it: blocking calls over any port. Everything is decided in the [`Session`]; this moves its
 //! bytes and waits.
 
-mod finish;
+pub mod finish;
 mod requests;
 
 use std::ops::ControlFlow;

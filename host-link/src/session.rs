@@ -36,14 +36,13 @@ use link_protocol::{
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-pub use clock_fit::ClockFit;
+pub use clock_fit::{ClockFit, ClockSamples};
 pub use counters::LinkCounters;
 pub use error::{LinkError, cause_in_words};
 pub use event::{Event, Ticket};
 pub(crate) use receive::firmware_name;
 pub use upload::{UploadPhase, UploadProgress};
 
-use clock_fit::ClockSamples;
 use round_trip::RoundTrip;
 use under_way::{Greeting, Link, Owner, Pending, Upload, describe};
 use upload::Window;

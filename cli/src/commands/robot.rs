@@ -1,10 +1,14 @@
 //! `swimmer robot`: talks to a robot over a port, or to a fresh twin for the length of the command.
 
+mod access;
 mod answers;
 mod configure;
+mod find;
+mod holder;
 mod info;
 mod listening;
 mod motion;
+mod playing;
 mod port;
 mod upload;
 
@@ -13,8 +17,10 @@ use std::path::PathBuf;
 use host_link::LinkError;
 use swimmer_files::GaitSpec;
 
+use self::access::Access;
 use self::answers::Doing;
-use self::port::{Pace, connect};
+use self::holder::Ask;
+use self::port::Pace;
 pub(crate) use self::upload::table_of;
 use crate::arguments::{angle, gait, positive_angle, seconds};
 use crate::failure::{Failure, Outcome};
@@ -28,9 +34,8 @@ use crate::output::Output;
 #[derive(Debug, clap::Args)]
 #[command(subcommand_value_name = "ACTION", subcommand_help_heading = "Actions")]
 pub(crate) struct Robot {
-    /// Serial port, pseudo-terminal, tcp:HOST:PORT, or `twin`
-    #[arg(long, value_name = "PORT", global = true)]
-    port: Option<String>,
+    #[command(flatten)]
+    access: Access,
     #[command(subcommand)]
     action: Action,
 }
@@ -121,6 +126,9 @@ struct Play {
     /// Return once the robot plays; it plays on to its end without the link
     #[arg(long, requires = "cycles")]
     detach: bool,
+    /// Start nothing: wait for the end of the play that goes on detached, as if it had not been; Ctrl-C stops it
+    #[arg(long, conflicts_with_all = ["gait", "cycles", "period", "detach", "swimmer", "force"])]
+    attach: bool,
 }
 
 #[derive(Debug, clap::Args)]
@@ -160,29 +168,33 @@ struct Log {
 impl Robot {
     /// Does what was asked of the robot.
     pub(crate) fn run(self, output: Output) -> Outcome {
-        let port = self.port.as_deref();
+        let access = &self.access;
         match &self.action {
-            Action::Info => info::run(port, output),
-            Action::Status => status(port, output),
-            Action::Configure(arguments) => configure::configure(port, arguments, output),
-            Action::Upload(arguments) => upload::run(port, arguments, output),
-            Action::Arm(arguments) => motion::arm(port, arguments, output),
-            Action::Play(arguments) => motion::play(port, arguments, output),
-            Action::Pause(arguments) => motion::pause(port, arguments, output),
-            Action::Resume => motion::resume(port, output),
-            Action::Stop => motion::stop(port, false, output),
-            Action::Estop => motion::stop(port, true, output),
-            Action::Trim(arguments) => configure::trim(port, arguments, output),
-            Action::Watch(arguments) => listening::watch(port, arguments, output),
-            Action::Log(arguments) => listening::log(port, arguments, output),
+            Action::Info => info::run(access, output),
+            Action::Status => status(access, output),
+            Action::Configure(arguments) => configure::configure(access, arguments, output),
+            Action::Upload(arguments) => upload::run(access, arguments, output),
+            Action::Arm(arguments) => motion::arm(access, arguments, output),
+            Action::Play(arguments) => motion::play(access, arguments, output),
+            Action::Pause(arguments) => motion::pause(access, arguments, output),
+            Action::Resume => motion::resume(access, output),
+            Action::Stop => motion::stop(access, false, output),
+            Action::Estop => motion::stop(access, true, output),
+            Action::Trim(arguments) => configure::trim(access, arguments, output),
+            Action::Watch(arguments) => listening::watch(access, arguments, output),
+            Action::Log(arguments) => listening::log(access, arguments, output),
         }
     }
 }
 
-fn status(port: Option<&str>, output: Output) -> Outcome {
-    let mut robot = connect(port, Pace::AsFastAsPossible)?;
-    output.answer(&Doing::new(&robot.status()?));
-    Ok(())
+fn status(access: &Access, output: Output) -> Outcome {
+    if let Some(relayed) = access.ask_holder(Ask::Status)? {
+        output.answer(&relayed.told());
+        return Ok(());
+    }
+    let mut line = access.connect("swimmer robot status", Pace::AsFastAsPossible)?;
+    output.answer(&Doing::new(&line.robot.status()?));
+    line.close()
 }
 
 impl From<LinkError> for Failure {

@@ -83,3 +83,51 @@ pub(crate) fn interrupt(child: &std::process::Child) {
     let id = rustix::process::Pid::from_child(child);
     rustix::process::kill_process(id, rustix::process::Signal::INT).expect("the process lives");
 }
+
+/// A `swimmer twin` process; interrupted and waited for at the end, so that none outlives its test.
+#[cfg(unix)]
+pub(crate) struct TwinProcess {
+    child: std::process::Child,
+    link: std::path::PathBuf,
+}
+
+#[cfg(unix)]
+impl TwinProcess {
+    pub(crate) fn start(folder: &Path, more: &[&str]) -> Self {
+        let mut words = vec!["twin", "--pty", "robot"];
+        words.extend(more);
+        let child = command(folder, &words)
+            .stdout(std::process::Stdio::null())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        let twin = Self {
+            child,
+            link: folder.join("robot"),
+        };
+        let patience = std::time::Instant::now() + std::time::Duration::from_secs(20);
+        while !twin.link.exists() {
+            assert!(
+                std::time::Instant::now() < patience,
+                "the twin made no link {}",
+                twin.link.display()
+            );
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+        twin
+    }
+
+    /// Ctrl-C, then the exit status.
+    pub(crate) fn interrupt(&mut self) -> Option<i32> {
+        interrupt(&self.child);
+        self.child.wait().unwrap().code()
+    }
+}
+
+#[cfg(unix)]
+impl Drop for TwinProcess {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

@@ -8,5 +8,9 @@ mod numbers;
 mod output_discipline;
 mod paper;
 #[cfg(unix)]
+mod port_errors;
+#[cfg(unix)]
+mod port_in_use;
+#[cfg(unix)]
 mod pseudo_terminal;
 mod tracks;

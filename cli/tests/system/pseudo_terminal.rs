@@ -1,57 +1,11 @@
 //! The shipped binary on both sides of a real pseudo-terminal: `swimmer twin --pty` there, `swimmer robot` here.
 
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Stdio};
+use std::process::Stdio;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::binary::{command, interrupt, number, swimmer_in};
-
-/// A `swimmer twin` process; interrupted and waited for at the end, so that none outlives its test.
-struct TwinProcess {
-    child: Child,
-    link: PathBuf,
-}
-
-impl TwinProcess {
-    fn start(folder: &Path, more: &[&str]) -> Self {
-        let mut words = vec!["twin", "--pty", "robot"];
-        words.extend(more);
-        let child = command(folder, &words)
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let twin = Self {
-            child,
-            link: folder.join("robot"),
-        };
-        let patience = Instant::now() + Duration::from_secs(20);
-        while !twin.link.exists() {
-            assert!(
-                Instant::now() < patience,
-                "the twin made no link {}",
-                twin.link.display()
-            );
-            sleep(Duration::from_millis(20));
-        }
-        twin
-    }
-
-    /// Ctrl-C, then the exit status.
-    fn interrupt(&mut self) -> Option<i32> {
-        interrupt(&self.child);
-        self.child.wait().unwrap().code()
-    }
-}
-
-impl Drop for TwinProcess {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
+use crate::binary::{TwinProcess, command, interrupt, number, swimmer_in};
 
 fn upload_play_and_stop(faults: &[&str]) {
     let folder = tempfile::tempdir().unwrap();

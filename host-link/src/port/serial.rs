@@ -24,14 +24,12 @@ pub enum OpenError {
         path: String,
     },
     /// The user may not.
-    #[error(
-        "opening {path}: permission denied; the port belongs to the group `{group}`: add yourself with `sudo usermod -aG {group} $USER`, then log out and in again"
-    )]
+    #[error("opening {path}: permission denied; {}", permission_advice(group.as_deref()))]
     NoPermission {
         /// The port's path.
         path: String,
-        /// Name of the group that owns it, or its number.
-        group: String,
+        /// Name of the group that may open it, or its number; none where only its owner may.
+        group: Option<String>,
     },
     /// Nothing there.
     #[error(
@@ -94,26 +92,41 @@ fn explain(path: &str, error: &serialport::Error) -> OpenError {
     }
 }
 
-/// Name of the group that owns a device, its number where the system knows no name.
+fn permission_advice(group: Option<&str>) -> String {
+    match group {
+        Some(group) => format!(
+            "the port belongs to the group `{group}`: add yourself with `sudo usermod -aG {group} $USER`, then log out and in again"
+        ),
+        None => {
+            "only its owner may open it: as that user, or after `sudo chmod a+rw` on it".to_owned()
+        }
+    }
+}
+
+/// Name of the group that may open a device, its number where the system knows no name.
 #[cfg(unix)]
-fn owning_group(path: &str) -> String {
+fn owning_group(path: &str) -> Option<String> {
     use std::os::unix::fs::MetadataExt;
+    const GROUP_MAY_WRITE: u32 = 0o020;
     let Ok(metadata) = std::fs::metadata(path) else {
-        return "dialout".to_owned();
+        return Some("dialout".to_owned());
     };
+    if metadata.mode() & GROUP_MAY_WRITE == 0 {
+        return None;
+    }
     let number = metadata.gid().to_string();
     let groups = std::fs::read_to_string("/etc/group").unwrap_or_default();
-    groups
+    let name = groups
         .lines()
         .map(|line| line.split(':').collect::<Vec<_>>())
         .find(|fields| fields.get(2) == Some(&number.as_str()))
-        .and_then(|fields| fields.first().map(|name| (*name).to_owned()))
-        .unwrap_or(number)
+        .and_then(|fields| fields.first().map(|name| (*name).to_owned()));
+    Some(name.unwrap_or(number))
 }
 
 #[cfg(not(unix))]
-fn owning_group(_path: &str) -> String {
-    "of its users".to_owned()
+fn owning_group(_path: &str) -> Option<String> {
+    None
 }
 
 #[cfg(unix)]
@@ -187,14 +200,28 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn the_group_of_a_port_has_a_name() {
-        // The root of the file system belongs to group 0, which is `root` or `wheel` where it is named at all.
-        assert!(["root", "wheel", "0"].contains(&owning_group("/").as_str()));
-        let denied = serialport::Error::new(
-            serialport::ErrorKind::Io(io::ErrorKind::PermissionDenied),
-            "denied",
+    fn a_forbidden_port_names_the_group_that_may() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("port");
+        std::fs::write(&path, "").unwrap();
+        let told = |mode: u32| {
+            std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode)).unwrap();
+            let denied = serialport::Error::new(
+                serialport::ErrorKind::Io(io::ErrorKind::PermissionDenied),
+                "denied",
+            );
+            explain(path.to_str().unwrap(), &denied).to_string()
+        };
+        let open_to_group = told(0o660);
+        assert!(
+            open_to_group.contains("sudo usermod -aG ") && open_to_group.contains("$USER"),
+            "{open_to_group}"
         );
-        let text = explain("/", &denied).to_string();
-        assert!(text.contains("belongs to the group"), "{text}");
+        let owner_only = told(0o600);
+        assert!(
+            owner_only.contains("only its owner") && !owner_only.contains("usermod"),
+            "{owner_only}"
+        );
     }
 }

@@ -56,7 +56,7 @@ impl<P: Port> Robot<P> {
 }
 
 /// The play is over, one way or another.
-fn at_rest(state: StateName, cause: StopCause) -> bool {
+pub fn at_rest(state: StateName, cause: StopCause) -> bool {
     match state {
         StateName::Stopped | StateName::EStopped | StateName::Stopping | StateName::Settling => {
             true
@@ -66,7 +66,11 @@ fn at_rest(state: StateName, cause: StopCause) -> bool {
     }
 }
 
-fn finished(status: Status) -> Result<Status, LinkError> {
+/// The status of a robot at rest as the result of its play.
+///
+/// # Errors
+/// [`LinkError::StoppedEarly`] where it did not come to the end of the last cycle.
+pub fn finished(status: Status) -> Result<Status, LinkError> {
     if status.cause == StopCause::Finished {
         return Ok(status);
     }

@@ -47,15 +47,15 @@ struct Sample {
     trip: f64,
 }
 
-/// Collects pongs.
+/// Collects pongs, for a session or for whoever watches one.
 #[derive(Debug, Default)]
-pub(crate) struct ClockSamples {
+pub struct ClockSamples {
     samples: VecDeque<Sample>,
 }
 
 impl ClockSamples {
     /// Takes a pong that arrived at `now` on the host's clock. Returns its time under way.
-    pub(crate) fn push(&mut self, pong: &Pong, now: Duration) -> Option<Duration> {
+    pub fn push(&mut self, pong: &Pong, now: Duration) -> Option<Duration> {
         let sent = Duration::from_micros(pong.host_us);
         let stay = Duration::from_micros(pong.sent_us.checked_sub(pong.received_us)?);
         let trip = now.checked_sub(sent)?.checked_sub(stay)?;
@@ -71,12 +71,12 @@ impl ClockSamples {
     }
 
     /// Forgets everything: the robot has restarted, or the port's clock is another.
-    pub(crate) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.samples.clear();
     }
 
     /// The line through the quickest half of the pings; `None` before the first.
-    pub(crate) fn fit(&self) -> Option<ClockFit> {
+    pub fn fit(&self) -> Option<ClockFit> {
         let mut quickest: Vec<Sample> = self.samples.iter().copied().collect();
         quickest.sort_by(|a, b| a.trip.total_cmp(&b.trip));
         let shortest = quickest.first()?.trip;

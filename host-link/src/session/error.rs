@@ -177,7 +177,9 @@ pub enum LinkError {
 fn no_answer_advice(counters: &LinkCounters) -> &'static str {
     match (counters.bytes_received, counters.received.ok) {
         (0, _) => "; is the robot on and paired, and is this its port?",
-        (_, 0) => "; bytes come but none make sense: is the baud rate right?",
+        (_, 0) => {
+            "; bytes come but none make sense: is this the robot's port, and is its Bluetooth module set to 115200 baud (AT+UART=115200,0,0)?"
+        }
         _ => "; the link is bad: bring the robot nearer and try again",
     }
 }

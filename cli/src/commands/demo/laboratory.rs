@@ -2,22 +2,19 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use gait_player::GaitTable;
-use host_link::port::{TracedFrame, TracedPort};
+use host_link::port::TracedPort;
 use host_link::{LinkError, Robot};
 use link_protocol::{StateName, TableInfo};
-use swimmer_files::{LinkLogError, LinkLogWriter, ServoFile, SwimmerFile};
+use swimmer_files::{ServoFile, SwimmerFile};
 use twin::{TwinPort, WireSpeed, configuration};
 
 use crate::commands::twin::virtual_robot;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::link_log::link_frame;
-
-type Sink = Box<dyn FnMut(TracedFrame<'_>) + Send>;
+use crate::link_log::{Recorder, Sink};
 
 /// An upload takes less than a second; this is for a robot that never answers.
 const PATIENCE: Duration = Duration::from_mins(1);
@@ -27,13 +24,8 @@ const TO_REST: Duration = Duration::from_secs(5);
 /// A robot in a virtual tank with cameras over it, reached only through its link; every frame on the link is logged.
 pub(super) struct Laboratory {
     robot: Robot<TracedPort<TwinPort, Sink>>,
-    log: Arc<Mutex<Log>>,
+    log: Recorder,
     interrupt: Interrupt,
-}
-
-struct Log {
-    writer: Option<LinkLogWriter>,
-    failed: Option<LinkLogError>,
 }
 
 impl Laboratory {
@@ -44,21 +36,10 @@ impl Laboratory {
         log: &Path,
         interrupt: Interrupt,
     ) -> Outcome<Self> {
-        let log = Arc::new(Mutex::new(Log {
-            writer: Some(LinkLogWriter::create(log)?),
-            failed: None,
-        }));
-        let sink: Sink = {
-            let log = Arc::clone(&log);
-            Box::new(move |frame| {
-                log.lock()
-                    .unwrap_or_else(PoisonError::into_inner)
-                    .add(&frame);
-            })
-        };
+        let log = Recorder::create(log)?;
         let port = TracedPort::new(
             TwinPort::new(virtual_robot(truth, seed)?, WireSpeed::robot()),
-            sink,
+            log.sink(),
         );
         let robot = Robot::connect(port, seed)?;
         Ok(Self {
@@ -121,22 +102,7 @@ impl Laboratory {
     /// Lets the robot go and closes the link log.
     pub(super) fn close(self) -> Outcome {
         drop(self.robot);
-        let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(error) = log.failed.take() {
-            return Err(error.into());
-        }
-        match log.writer.take() {
-            Some(writer) => Ok(writer.finish()?),
-            None => Ok(()),
-        }
-    }
-}
-
-impl Log {
-    fn add(&mut self, frame: &TracedFrame<'_>) {
-        if let (None, Some(writer)) = (&self.failed, &mut self.writer) {
-            self.failed = writer.write(&link_frame(frame)).err();
-        }
+        self.log.finish().map(|_| ())
     }
 }
 

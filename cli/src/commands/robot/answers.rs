@@ -16,6 +16,30 @@ pub(super) struct Done {
     pub(super) sentence: String,
 }
 
+/// What a stop leaves.
+pub(super) const STOPPED: &str = "Stopped: the pulses are off.";
+/// What an e-stop leaves.
+pub(super) const E_STOPPED: &str =
+    "E-stopped: the pulses are off; only `swimmer robot arm --clear-estop` ends it.";
+
+impl Done {
+    /// The pulses are off after a stop.
+    pub(super) fn at_rest() -> Self {
+        Self {
+            state: "stopped",
+            sentence: STOPPED.into(),
+        }
+    }
+
+    /// The robot is at rest after a command that held it.
+    pub(super) fn stopped() -> Self {
+        Self {
+            state: "stopped",
+            sentence: "Stopped.".into(),
+        }
+    }
+}
+
 impl fmt::Display for Done {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.sentence)

@@ -8,8 +8,9 @@ use swimmer_files::ServoFile;
 use swimmer_model::Swimmer;
 use twin::configuration;
 
+use super::access::Access;
 use super::answers::Trims;
-use super::port::{Pace, connect};
+use super::port::Pace;
 use super::{Configure, Trim};
 use crate::arguments::load_swimmer;
 use crate::failure::Outcome;
@@ -36,9 +37,10 @@ impl fmt::Display for Configured {
 }
 
 /// `swimmer robot configure`: limits come from the command line, else from the file's `[servo]` table, else stay.
-pub(super) fn configure(port: Option<&str>, arguments: &Configure, output: Output) -> Outcome {
+pub(super) fn configure(access: &Access, arguments: &Configure, output: Output) -> Outcome {
     let file = load_swimmer(&arguments.swimmer)?;
-    let mut robot = connect(port, Pace::AsFastAsPossible)?;
+    let mut line = access.connect("swimmer robot configure", Pace::AsFastAsPossible)?;
+    let robot = &mut line.robot;
     let present = robot.configuration()?;
     let servo = file.servo;
     #[allow(clippy::cast_possible_truncation)] // the wire's precision
@@ -64,12 +66,13 @@ pub(super) fn configure(port: Option<&str>, arguments: &Configure, output: Outpu
         max_angle_rad: wanted.max_angle,
         max_rate_rad_s: wanted.max_rate,
     });
-    Ok(())
+    line.close()
 }
 
 /// `swimmer robot trim`: sets what was named, then shows both.
-pub(super) fn trim(port: Option<&str>, arguments: &Trim, output: Output) -> Outcome {
-    let mut robot = connect(port, Pace::AsFastAsPossible)?;
+pub(super) fn trim(access: &Access, arguments: &Trim, output: Output) -> Outcome {
+    let mut line = access.connect("swimmer robot trim", Pace::AsFastAsPossible)?;
+    let robot = &mut line.robot;
     for (joint, angle) in [
         (Joint::Front, arguments.front),
         (Joint::Back, arguments.back),
@@ -82,7 +85,7 @@ pub(super) fn trim(port: Option<&str>, arguments: &Trim, output: Output) -> Outc
         robot.servo(Joint::Front)?.trim,
         robot.servo(Joint::Back)?.trim,
     ));
-    Ok(())
+    line.close()
 }
 
 /// Whether the robot's configuration is this swimmer's body, to the wire's precision; its limits do not matter.

@@ -7,15 +7,17 @@ use link_protocol::{
 };
 use serde::Serialize;
 
+use super::access::Access;
 use super::answers::{Gait, gait_line};
-use super::port::{Pace, connect};
+use super::port::Pace;
 use crate::failure::Outcome;
 use crate::output::Output;
 use crate::quantity::{self, Rows};
 
 /// Asks the robot who it is.
-pub(super) fn run(port: Option<&str>, output: Output) -> Outcome {
-    let mut robot = connect(port, Pace::AsFastAsPossible)?;
+pub(super) fn run(access: &Access, output: Output) -> Outcome {
+    let mut line = access.connect("swimmer robot info", Pace::AsFastAsPossible)?;
+    let robot = &mut line.robot;
     let (configuration, table, counters) =
         (robot.configuration()?, robot.table()?, robot.counters()?);
     output.answer(&Info::new(
@@ -24,7 +26,7 @@ pub(super) fn run(port: Option<&str>, output: Output) -> Outcome {
         table.as_ref(),
         &counters,
     ));
-    Ok(())
+    line.close()
 }
 
 /// Who is there.

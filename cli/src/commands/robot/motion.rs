@@ -3,25 +3,29 @@
 
 use std::fmt;
 use std::ops::ControlFlow;
-use std::time::Duration;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
+use host_link::robot::finish::{at_rest, finished};
 use host_link::{LinkError, Robot};
 use link_protocol::{StateName, Status, Telemetry};
 use serde::Serialize;
 
-use super::answers::{Done, cause, state};
-use super::port::{AnyPort, Pace, connect, open, session_seed};
+use super::access::{Access, LOOK_AGAIN, Line, Reached};
+use super::answers::{Done, E_STOPPED, STOPPED, cause, state};
+use super::holder::{Ask, Relayed};
+use super::playing::{self, Playing};
+use super::port::{AnyPort, Pace, session_seed};
 use super::upload::before_play;
 use super::{Arm, Pause, Play};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::output::Output;
-use crate::progress::Progress;
 
 /// Longest time from a stop to pulses off: a second of ramp, half a second of rest, and some for the link.
 const TO_REST: Duration = Duration::from_secs(5);
-/// A hold that only Ctrl-C ends.
-const FOR_EVER: Duration = Duration::from_secs(u32::MAX as u64);
+/// Time after which the status is asked for when no telemetry tells it.
+const QUIET: Duration = Duration::from_secs(1);
 
 /// How a play ended.
 #[derive(Debug, Serialize)]
@@ -32,6 +36,8 @@ struct Played {
     cycles: u32,
     period_s: f64,
     detached: bool,
+    /// Time to the end of the last cycle; 0 at the end, `null` for a play without end.
+    remaining_s: Option<f64>,
 }
 
 impl Played {
@@ -42,6 +48,7 @@ impl Played {
             cycles: status.cycle,
             period_s: f64::from(status.period_us) * 1e-6,
             detached,
+            remaining_s: Playing::of(status).remaining_s(),
         }
     }
 }
@@ -49,9 +56,12 @@ impl Played {
 impl fmt::Display for Played {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.detached {
+            let end = self.remaining_s.map_or_else(String::new, |seconds| {
+                format!(" for another {}", playing::duration(seconds))
+            });
             return write!(
                 f,
-                "The robot plays on by itself; `swimmer robot stop` ends it."
+                "The robot plays on by itself{end}; `swimmer robot play --attach` waits for its end, `swimmer robot stop` ends it."
             );
         }
         write!(
@@ -63,88 +73,151 @@ impl fmt::Display for Played {
 }
 
 /// `swimmer robot arm`: power on, and hold the link until Ctrl-C.
-pub(super) fn arm(port: Option<&str>, arm: &Arm, output: Output) -> Outcome {
+pub(super) fn arm(access: &Access, arm: &Arm, output: Output) -> Outcome {
     let interrupt = Interrupt::install()?;
-    let mut robot = connect(port, Pace::RealTime)?;
-    robot.arm(arm.clear_estop)?;
+    let mut line = access.connect("swimmer robot arm", Pace::RealTime)?;
+    line.robot.arm(arm.clear_estop)?;
     output.line("Armed: the servos hold their pose. Ctrl-C stops.");
-    hold(&mut robot, &interrupt)?;
-    output.answer(&Done {
-        state: "stopped",
-        sentence: "Stopped.".into(),
-    });
-    Ok(())
+    hold(&mut line, &interrupt)?;
+    output.answer(&Done::stopped());
+    line.close()
 }
 
 /// `swimmer robot play`: arms, starts softly and waits for the end of the last cycle.
-pub(super) fn play(port: Option<&str>, play: &Play, output: Output) -> Outcome {
+pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
     let interrupt = Interrupt::install()?;
+    if play.attach {
+        let mut line = access.connect("swimmer robot play --attach", Pace::RealTime)?;
+        attach(&mut line, &interrupt, output)?;
+        return line.close();
+    }
     let pace = if play.cycles.is_some() && !play.detach {
         Pace::AsFastAsPossible
     } else {
         Pace::RealTime
     };
-    let mut robot = connect(port, pace)?;
+    let mut line = access.connect("swimmer robot play", pace)?;
     if let Some(gait) = &play.gait {
-        before_play(&mut robot, gait, &play.owner, &interrupt)?;
+        before_play(&mut line, gait, &play.owner, &interrupt)?;
     }
     let cycles = play.cycles.unwrap_or(0);
+    let robot = &mut line.robot;
     let begun = robot
         .arm(false)
         .and_then(|()| robot.play(cycles, Duration::from_secs_f64(play.period), play.detach));
-    stopped_on_failure(&mut robot, begun)?;
+    stopped_on_failure(robot, begun)?;
     if play.detach {
         let status = robot.status()?;
         output.answer(&Played::new(&status, true));
+        return line.close();
+    }
+    output.line(&match play.cycles {
+        Some(cycles) => format!(
+            "Playing {cycles} cycles of {} s: {} and the start. Ctrl-C stops.",
+            play.period,
+            playing::duration(f64::from(cycles) * play.period)
+        ),
+        None => "Playing without end. Ctrl-C stops.".to_owned(),
+    });
+    wait(&mut line, &interrupt, output)?;
+    line.close()
+}
+
+/// Waits for the end of a play that began detached.
+fn attach(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
+    let status = line.robot.status()?;
+    if at_rest(status.state, status.cause) {
+        if status.cycles == 0 && status.period_us == 0 {
+            return Err(Failure::Tried(
+                "nothing to attach to: the robot has played nothing since its start".to_owned(),
+            ));
+        }
+        // It has ended before we came; how it ended is the answer all the same.
+        output.answer(&Played::new(&finished(status)?, false));
         return Ok(());
     }
-    if cycles == 0 {
-        output.line("Playing without end. Ctrl-C stops.");
-    }
-    wait(&mut robot, &interrupt, output)
+    output.line(&format!(
+        "The robot is {}: {}. Ctrl-C stops it.",
+        state(status.state),
+        Playing::of(&status)
+    ));
+    wait(line, interrupt, output)
 }
 
 /// `swimmer robot pause`: holds the pose, and the link until Ctrl-C unless detached.
-pub(super) fn pause(port: Option<&str>, pause: &Pause, output: Output) -> Outcome {
+pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
+    if let Some(relayed) = access.ask_holder(Ask::Pause)? {
+        output.answer(&relayed.told());
+        return Ok(());
+    }
     let interrupt = Interrupt::install()?;
-    let mut robot = connect(port, Pace::RealTime)?;
-    robot.pause(pause.detach)?;
+    let mut line = access.connect("swimmer robot pause", Pace::RealTime)?;
+    line.robot.pause(pause.detach)?;
     if pause.detach {
         let sentence = "Paused: the robot holds its pose for at most 60 s, then stops; `swimmer robot resume` goes on.";
         output.answer(&Done {
             state: "paused",
             sentence: sentence.into(),
         });
-        return Ok(());
+        return line.close();
     }
     output.line("Paused: the robot holds its pose. Ctrl-C stops.");
-    hold(&mut robot, &interrupt)?;
-    output.answer(&Done {
-        state: "stopped",
-        sentence: "Stopped.".into(),
-    });
-    Ok(())
+    hold(&mut line, &interrupt)?;
+    output.answer(&Done::stopped());
+    line.close()
 }
 
 /// `swimmer robot resume`: goes on and waits for the end of the last cycle.
-pub(super) fn resume(port: Option<&str>, output: Output) -> Outcome {
+pub(super) fn resume(access: &Access, output: Output) -> Outcome {
+    if let Some(relayed) = access.ask_holder(Ask::Resume)? {
+        output.answer(&relayed.told());
+        return Ok(());
+    }
     let interrupt = Interrupt::install()?;
-    let mut robot = connect(port, Pace::RealTime)?;
-    robot.resume()?;
-    wait(&mut robot, &interrupt, output)
+    let mut line = access.connect("swimmer robot resume", Pace::RealTime)?;
+    line.robot.resume()?;
+    wait(&mut line, &interrupt, output)?;
+    line.close()
 }
 
-/// `swimmer robot stop` and `estop`: act first, ask afterwards.
-pub(super) fn stop(port: Option<&str>, estop: bool, output: Output) -> Outcome {
-    let port = Robot::stop_at_once(open(port, Pace::AsFastAsPossible)?, session_seed(), estop)?;
-    // The stop is done; how it goes on is only good to know.
-    let state_now =
-        Robot::connect(port, session_seed()).and_then(|mut robot| wait_for_rest(&mut robot));
-    let sentence = match (&state_now, estop) {
-        (Ok(StateName::EStopped), _) => {
-            "E-stopped: the pulses are off; only `swimmer robot arm --clear-estop` ends it."
+/// `swimmer robot stop` and `estop`: act first, ask afterwards. Where another `swimmer` has the port, it passes the stop on.
+pub(super) fn stop(access: &Access, estop: bool, output: Output) -> Outcome {
+    let ask = if estop { Ask::EStop } else { Ask::Stop };
+    let begun = Instant::now();
+    let mut robot = loop {
+        if let Some(relayed) = access.ask_holder(ask)?
+            && let Some(at_rest) = rest_by_holder(access, relayed)
+        {
+            output.answer(&at_rest.told());
+            return Ok(());
         }
-        (Ok(StateName::Stopped), _) => "Stopped: the pulses are off.",
+        match access.reach_named(Pace::AsFastAsPossible)? {
+            Some(Reached::Free(opened)) => {
+                let port = Robot::stop_at_once(opened.port, session_seed(), estop)?;
+                // The stop is done; how it goes on is only good to know.
+                break Robot::connect(port, session_seed());
+            }
+            // Another process has just taken the port: it can be asked now.
+            Some(Reached::Held(_)) if begun.elapsed() < TO_REST => sleep(LOOK_AGAIN),
+            Some(Reached::Held(held_by)) => return Err(Failure::Tried(held_by.to_string())),
+            None => {
+                let (_, mut robot) = access.find(Pace::AsFastAsPossible)?;
+                if estop {
+                    robot.estop()?;
+                } else {
+                    robot.stop()?;
+                }
+                break Ok(robot);
+            }
+        }
+    };
+    let state_now = match &mut robot {
+        Ok(robot) => wait_for_rest(robot).ok(),
+        Err(_) => None,
+    };
+    let sentence = match (&state_now, estop) {
+        (Some(StateName::EStopped), _) => E_STOPPED,
+        (Some(StateName::Stopped), _) => STOPPED,
         (_, false) => "The robot acknowledged the stop.",
         (_, true) => "The robot acknowledged the e-stop.",
     };
@@ -156,74 +229,83 @@ pub(super) fn stop(port: Option<&str>, estop: bool, output: Output) -> Outcome {
     Ok(())
 }
 
-/// Keeps the link until Ctrl-C, then stops the robot.
-fn hold(robot: &mut Robot<AnyPort>, interrupt: &Interrupt) -> Outcome {
-    let mut ended = None;
-    let held = robot.listen(FOR_EVER, |telemetry| {
-        ended = telemetry.filter(|telemetry| is_off(telemetry)).copied();
-        if interrupt.requested() || ended.is_some() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
+/// The stop is passed on; follows the robot to its rest. `None`: the holder ended first, and the port is free to see for
+/// ourselves.
+fn rest_by_holder(access: &Access, stopped: Relayed) -> Option<Relayed> {
+    let begun = Instant::now();
+    let mut last = stopped;
+    while !matches!(last.state(), "stopped" | "e-stopped") && begun.elapsed() < TO_REST {
+        sleep(LOOK_AGAIN);
+        match access.ask_holder(Ask::Status) {
+            Ok(Some(status)) if status.state() == "stopped" => last = Relayed::of(&Done::at_rest()),
+            Ok(Some(_)) => {}
+            Ok(None) => return None,
+            Err(_) => break,
         }
-    });
-    stopped_on_failure(robot, held)?;
-    if let Some(telemetry) = ended {
-        return Err(Failure::Tried(format!(
-            "the robot stopped by itself: {}",
-            cause(telemetry.cause)
-        )));
     }
-    robot.stop()?;
-    wait_for_rest(robot)?;
-    Ok(())
+    Some(last)
+}
+
+/// Keeps the link until Ctrl-C, then stops the robot.
+fn hold(line: &mut Line, interrupt: &Interrupt) -> Outcome {
+    loop {
+        let news = line.beat();
+        let news = stopped_on_failure(&mut line.robot, news)?;
+        if let Some(telemetry) = news.filter(is_off) {
+            return Err(Failure::Tried(format!(
+                "the robot stopped: {}",
+                host_link::session::cause_in_words(telemetry.cause)
+            )));
+        }
+        if interrupt.requested() {
+            line.robot.stop()?;
+            wait_for_rest(&mut line.robot)?;
+            return Ok(());
+        }
+    }
 }
 
 /// Waits for the end of the last cycle, with progress; Ctrl-C stops the robot.
-fn wait(robot: &mut Robot<AnyPort>, interrupt: &Interrupt, output: Output) -> Outcome {
-    let progress = Progress::of_steps(1000);
-    let finished = robot.wait_until_finished(|telemetry| {
-        if let Some(telemetry) = telemetry {
-            let done = f64::from(telemetry.cycle) + f64::from(telemetry.phase) / 65_536.0;
-            if telemetry.cycles > 0 {
-                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-                // between 0 and 1000
-                progress.at((1000.0 * done / f64::from(telemetry.cycles)) as u64);
-                progress.doing(format!(
-                    "{}: cycle {done:.2} of {}",
-                    state(telemetry.state),
-                    telemetry.cycles
-                ));
-            } else {
-                progress.doing(format!("{}: cycle {done:.2}", state(telemetry.state)));
-            }
-        }
+fn wait(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
+    let status = line.robot.status()?;
+    let mut shown = playing::Shown::new(Playing::of(&status));
+    let mut quiet = Duration::ZERO;
+    loop {
+        let news = line.beat();
+        let news = stopped_on_failure(&mut line.robot, news)?;
         if interrupt.requested() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    });
-    drop(progress);
-    match finished {
-        Ok(status) => {
-            output.answer(&Played::new(&status, false));
-            Ok(())
-        }
-        Err(LinkError::Interrupted { .. }) => {
-            wait_for_rest(robot)?;
-            let status = robot.status()?;
-            Err(Failure::Tried(format!(
+            drop(shown);
+            line.robot.stop()?;
+            wait_for_rest(&mut line.robot)?;
+            let status = line.robot.status()?;
+            return Err(Failure::Tried(format!(
                 "Ctrl-C: the robot was stopped after {} whole cycles",
                 status.cycle
-            )))
+            )));
         }
-        Err(error) => stopped_on_failure(robot, Err(error)),
+        let over = if let Some(telemetry) = &news {
+            quiet = Duration::ZERO;
+            shown.tell(telemetry);
+            at_rest(telemetry.state, telemetry.cause)
+        } else {
+            quiet += super::access::BEAT;
+            quiet >= QUIET
+        };
+        if over {
+            quiet = Duration::ZERO;
+            let status = line.robot.status();
+            let status = stopped_on_failure(&mut line.robot, status)?;
+            if at_rest(status.state, status.cause) {
+                drop(shown);
+                output.answer(&Played::new(&finished(status)?, false));
+                return Ok(());
+            }
+        }
     }
 }
 
 /// Passes a result on; a failure stops the robot first, as far as the link still allows.
-fn stopped_on_failure(robot: &mut Robot<AnyPort>, result: Result<(), LinkError>) -> Outcome {
+fn stopped_on_failure<T>(robot: &mut Robot<AnyPort>, result: Result<T, LinkError>) -> Outcome<T> {
     if result.is_err() {
         let _ = robot.stop();
     }
@@ -231,7 +313,7 @@ fn stopped_on_failure(robot: &mut Robot<AnyPort>, result: Result<(), LinkError>)
 }
 
 /// Waits until the pulses are off.
-fn wait_for_rest(robot: &mut Robot<AnyPort>) -> Result<StateName, LinkError> {
+pub(super) fn wait_for_rest(robot: &mut Robot<AnyPort>) -> Result<StateName, LinkError> {
     robot.listen(TO_REST, |telemetry| {
         if telemetry.is_some_and(is_off) {
             ControlFlow::Break(())

@@ -4,11 +4,12 @@ use std::io;
 use std::thread::sleep;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use host_link::port::{SerialPort, TcpPort};
-use host_link::{Port, Robot};
+use host_link::Port;
+use host_link::port::{OpenError, SerialPort, TcpPort};
 
+use super::holder::program_with;
 use crate::commands::twin::fresh_twin;
-use crate::failure::{Failure, Outcome};
+use crate::failure::Failure;
 
 /// Any port.
 pub(super) type AnyPort = Box<dyn Port>;
@@ -25,17 +26,43 @@ pub(super) enum Pace {
     RealTime,
 }
 
+/// The name of a fresh robot in a virtual tank.
+pub(super) const FRESH_TWIN: &str = "twin";
+
+/// A port, opened.
+pub(super) struct Opened {
+    pub(super) port: AnyPort,
+    /// What it was named by.
+    pub(super) name: String,
+}
+
+/// Why a port is not open.
+pub(super) enum NotOpen {
+    /// Somebody else has it, perhaps only for the moment of a short command.
+    Busy(Failure),
+    /// Waiting helps nothing.
+    Failed(Failure),
+}
+
+impl From<Failure> for NotOpen {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(failure)
+    }
+}
+
 /// Opens what `--port` names. `pace` matters only for a fresh twin.
 ///
 /// # Errors
-/// [`Failure::BadInput`] when nothing was named, [`Failure::Tried`] when it cannot be opened.
-pub(super) fn open(name: Option<&str>, pace: Pace) -> Outcome<AnyPort> {
-    let Some(name) = name else {
-        return Err(Failure::BadInput(
-            "name the robot's port: --port with a serial port, a pseudo-terminal, tcp:HOST:PORT, or `twin`".to_owned(),
-        ));
-    };
-    if name == "twin" {
+/// [`NotOpen`], with [`Failure::Tried`].
+pub(super) fn open(name: &str, pace: Pace) -> Result<Opened, NotOpen> {
+    Ok(Opened {
+        port: any_port(name, pace)?,
+        name: name.to_owned(),
+    })
+}
+
+fn any_port(name: &str, pace: Pace) -> Result<AnyPort, NotOpen> {
+    if name == FRESH_TWIN {
         let port = fresh_twin()?;
         return Ok(match pace {
             Pace::AsFastAsPossible => Box::new(port),
@@ -47,17 +74,18 @@ pub(super) fn open(name: Option<&str>, pace: Pace) -> Outcome<AnyPort> {
             .map_err(|error| Failure::Tried(format!("cannot connect to the robot at {address}: {error}; is `swimmer twin --tcp` running?")))?;
         return Ok(Box::new(port));
     }
-    Ok(Box::new(
-        SerialPort::open(name, BAUD).map_err(|error| Failure::tried(&error))?,
-    ))
-}
-
-/// Opens the port and greets the robot.
-///
-/// # Errors
-/// As [`open`], and [`Failure::Tried`] when no robot answers or it speaks another protocol.
-pub(super) fn connect(name: Option<&str>, pace: Pace) -> Outcome<Robot<AnyPort>> {
-    Ok(Robot::connect(open(name, pace)?, session_seed())?)
+    match SerialPort::open(name, BAUD) {
+        Ok(port) => Ok(Box::new(port)),
+        Err(error @ OpenError::Busy { .. }) => {
+            let by = program_with(name)
+                .map_or_else(String::new, |program| format!("; {program} has it"));
+            Err(NotOpen::Busy(Failure::Tried(format!(
+                "{error}{by}. To stop the robot now, end that program: half a second later the robot stops by itself, unless \
+                 it plays detached; then, or in doubt, switch its power off"
+            ))))
+        }
+        Err(error) => Err(Failure::tried(&error).into()),
+    }
 }
 
 /// Differs between runs: the time and the process.

@@ -5,15 +5,16 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use gait_player::GaitTable;
-use host_link::{Port as _, Robot};
+use host_link::{LinkError, Port as _, Robot};
 use link_protocol::{MAX_KNOTS, TableInfo};
 use serde::Serialize;
 use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
 use swimmer_model::Gait as _;
 
+use super::access::{Access, Line};
 use super::answers::Gait;
 use super::configure::is_configured_as;
-use super::port::{AnyPort, Pace, connect};
+use super::port::{AnyPort, Pace};
 use super::{Owner, Upload};
 use crate::arguments::{load_gait, load_swimmer};
 use crate::failure::{Failure, Outcome};
@@ -46,14 +47,14 @@ impl fmt::Display for Uploaded {
 }
 
 /// `swimmer robot upload`.
-pub(super) fn run(port: Option<&str>, arguments: &Upload, output: Output) -> Outcome {
+pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcome {
     let interrupt = Interrupt::install()?;
     let gait = Prepared::new(&arguments.gait)?;
-    let mut robot = connect(port, Pace::AsFastAsPossible)?;
-    arguments.owner.check(&gait, &mut robot)?;
-    let begun = robot.port().now();
-    let info = send(&mut robot, &gait, &interrupt)?;
-    let seconds = robot.port().now().saturating_sub(begun).as_secs_f64();
+    let mut line = access.connect("swimmer robot upload", Pace::AsFastAsPossible)?;
+    arguments.owner.check(&gait, &mut line.robot)?;
+    let begun = line.robot.port().now();
+    let info = send(&mut line, &gait, &interrupt)?;
+    let seconds = line.robot.port().now().saturating_sub(begun).as_secs_f64();
     let bytes = gait.table.bytes().len();
     output.answer(&Uploaded {
         gait: Gait::new(&info),
@@ -61,19 +62,19 @@ pub(super) fn run(port: Option<&str>, arguments: &Upload, output: Output) -> Out
         seconds,
         name: gait.name,
     });
-    Ok(())
+    line.close()
 }
 
 /// Uploads the gait of a play.
 pub(super) fn before_play(
-    robot: &mut Robot<AnyPort>,
+    line: &mut Line,
     gait: &GaitSpec,
     owner: &Owner,
     interrupt: &Interrupt,
 ) -> Outcome {
     let gait = Prepared::new(gait)?;
-    owner.check(&gait, robot)?;
-    send(robot, &gait, interrupt)?;
+    owner.check(&gait, &mut line.robot)?;
+    send(line, &gait, interrupt)?;
     Ok(())
 }
 
@@ -161,17 +162,24 @@ pub(crate) fn table_of(gait: &AnyGait) -> Result<GaitTable, gait_player::table::
     })
 }
 
-fn send(robot: &mut Robot<AnyPort>, gait: &Prepared, interrupt: &Interrupt) -> Outcome<TableInfo> {
+fn send(line: &mut Line, gait: &Prepared, interrupt: &Interrupt) -> Outcome<TableInfo> {
     let bytes = gait.table.bytes();
     let progress = Progress::of_bytes(bytes.len() as u64);
     progress.doing(format!("uploading {}", gait.name));
-    let info = robot.upload(bytes, PATIENCE, |step| {
-        progress.at(step.done as u64);
-        if interrupt.requested() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
+    loop {
+        let (robot, holder) = line.split();
+        let sent = robot.upload(bytes, PATIENCE, |step| {
+            progress.at(step.done as u64);
+            if interrupt.requested() || holder.asked() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        });
+        match sent {
+            // Another process asks; the upload goes on where it was.
+            Err(LinkError::Interrupted { .. }) if !interrupt.requested() => holder.serve(robot),
+            sent => return Ok(sent?),
         }
-    })?;
-    Ok(info)
+    }
 }

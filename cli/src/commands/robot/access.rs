@@ -1,0 +1,239 @@
+//! How a command reaches its robot: the port that was named, or the one where a robot answers; who else holds it; the log.
+
+use std::path::PathBuf;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use host_link::port::{ListedPort, TracedPort, serial_ports};
+use host_link::{LinkError, Robot};
+use link_protocol::Telemetry;
+
+use super::find::{self, Answer};
+use super::holder::{Ask, HeldBy, Holder, Relayed};
+use super::port::{AnyPort, NotOpen, Opened, Pace, open, session_seed};
+use crate::failure::{Failure, Outcome};
+use crate::link_log::Recorder;
+use crate::output::aside;
+
+/// Where the robot is, and what is kept of the talk with it.
+#[derive(Debug, clap::Args)]
+pub(super) struct Access {
+    /// Serial port, pseudo-terminal, tcp:HOST:PORT, or `twin`; of several (A,B,C) the one where a robot answers. Left out:
+    /// the one USB or Bluetooth serial port where a robot answers
+    #[arg(long, value_name = "PORT", global = true, value_delimiter = ',')]
+    port: Vec<String>,
+    /// Also write every frame on the wire, both ways, to this MCAP file; nothing may be there yet
+    #[arg(long, value_name = "FILE.mcap", global = true)]
+    log: Option<PathBuf>,
+}
+
+/// A greeted robot, with all that a command needs beside it.
+pub(super) struct Line {
+    pub(super) robot: Robot<AnyPort>,
+    holder: Holder,
+    recorder: Option<Recorder>,
+    /// The robot's clock at the telemetry seen last, µs.
+    seen_us: Option<u64>,
+}
+
+/// A port that was named.
+pub(super) enum Reached {
+    /// It is ours.
+    Free(Opened),
+    /// Another `swimmer` has it.
+    Held(HeldBy),
+}
+
+/// A short command of another process has the port for about so long.
+pub(super) const A_MOMENT: Duration = Duration::from_secs(1);
+/// Time between two looks at a port that is taken.
+pub(super) const LOOK_AGAIN: Duration = Duration::from_millis(50);
+/// How often a waiting command looks up: for Ctrl-C, for what other processes ask, for the end.
+pub(super) const BEAT: Duration = Duration::from_millis(20);
+
+impl Access {
+    /// The same access with another log.
+    pub(super) fn logging_to(&self, log: PathBuf) -> Self {
+        Self {
+            port: self.port.clone(),
+            log: Some(log),
+        }
+    }
+
+    /// Reaches the robot and greets it. `command` is what other processes are told.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`] where no port was named and none or several can be meant, [`Failure::Tried`] when the port
+    /// cannot be opened or no robot answers.
+    pub(super) fn connect(&self, command: &str, pace: Pace) -> Outcome<Line> {
+        let recorder = self.log.as_deref().map(Recorder::create).transpose()?;
+        if let [name] = self.port.as_slice() {
+            let opened = reach_alone(name, pace)?;
+            let port = traced(opened.port, recorder.as_ref());
+            // From here on the port is ours: others are told, also while the robot is being greeted.
+            let holder = Holder::announce(&opened.name, command);
+            let robot = Robot::connect(port, session_seed())?;
+            return Ok(Line::new(robot, holder, recorder));
+        }
+        let (name, robot) = self.find(pace)?;
+        let holder = Holder::announce(&name, command);
+        let mut robot = robot.map_port(|port| traced(port, recorder.as_ref()));
+        if recorder.is_some() {
+            // The greeting belongs to the log: without it nobody can tell which session follows.
+            robot.reconnect()?;
+        }
+        Ok(Line::new(robot, holder, recorder))
+    }
+
+    /// The port that was named, without a greeting; `None` where it must be looked for.
+    ///
+    /// # Errors
+    /// [`Failure::Tried`] when the port cannot be opened.
+    pub(super) fn reach_named(&self, pace: Pace) -> Outcome<Option<Reached>> {
+        match self.port.as_slice() {
+            [name] => reach(name, pace).map(Some),
+            _ => Ok(None),
+        }
+    }
+
+    /// Passes something on to the process that holds the robot's port, where there is one. `None`: the port is free.
+    ///
+    /// # Errors
+    /// What that process says.
+    pub(super) fn ask_holder(&self, ask: Ask) -> Outcome<Option<Relayed>> {
+        let held = if let [name] = self.port.as_slice() {
+            HeldBy::of(name)
+        } else {
+            let candidates = self.candidates().into_iter();
+            let mut held = candidates.filter_map(|port| HeldBy::of(&port.path));
+            // Of several it cannot be told which one is meant.
+            held.next().filter(|_| held.next().is_none())
+        };
+        match held {
+            Some(held_by) => held_by.ask(ask),
+            None => Ok(None),
+        }
+    }
+
+    fn candidates(&self) -> Vec<ListedPort> {
+        if self.port.is_empty() {
+            // Where the system does not know what is behind a port, nothing is sent there unasked.
+            let known = serial_ports().into_iter();
+            return known.filter(|port| !port.about.is_empty()).collect();
+        }
+        let named = self.port.iter().map(|path| ListedPort {
+            path: path.clone(),
+            about: String::new(),
+        });
+        named.collect()
+    }
+
+    /// The one candidate where a robot answers, greeted; says which.
+    pub(super) fn find(&self, pace: Pace) -> Outcome<(String, Robot<AnyPort>)> {
+        let (port, robot) = find::choose(find::greet_all(self.candidates(), pace))?;
+        aside(&format!("The robot is at {port}."));
+        Ok((port.path, robot))
+    }
+}
+
+/// Opens what was named, unless another `swimmer` has it. A port that somebody has only for a moment is waited for.
+///
+/// # Errors
+/// [`Failure::Tried`] when it cannot be opened.
+fn reach(name: &str, pace: Pace) -> Outcome<Reached> {
+    let begun = Instant::now();
+    loop {
+        if let Some(held_by) = HeldBy::of(name) {
+            return Ok(Reached::Held(held_by));
+        }
+        match open(name, pace) {
+            Ok(opened) => return Ok(Reached::Free(opened)),
+            Err(NotOpen::Busy(_)) if begun.elapsed() < A_MOMENT => sleep(LOOK_AGAIN),
+            Err(NotOpen::Busy(failure) | NotOpen::Failed(failure)) => return Err(failure),
+        }
+    }
+}
+
+/// [`reach`], for what needs the port for itself: another `swimmer` may be about to end.
+fn reach_alone(name: &str, pace: Pace) -> Outcome<Opened> {
+    let begun = Instant::now();
+    loop {
+        match reach(name, pace)? {
+            Reached::Free(opened) => return Ok(opened),
+            Reached::Held(_) if begun.elapsed() < A_MOMENT => sleep(LOOK_AGAIN),
+            Reached::Held(held_by) => return Err(Failure::Tried(held_by.to_string())),
+        }
+    }
+}
+
+/// Greets whoever is behind a candidate.
+pub(super) fn greet(name: &str, pace: Pace) -> Answer {
+    let greeted =
+        reach_alone(name, pace).and_then(|opened| Ok(Robot::connect(opened.port, session_seed())?));
+    greeted.map_err(|failure| failure.to_string())
+}
+
+fn traced(port: AnyPort, recorder: Option<&Recorder>) -> AnyPort {
+    match recorder {
+        Some(recorder) => Box::new(TracedPort::new(port, recorder.sink())),
+        None => port,
+    }
+}
+
+impl Line {
+    fn new(robot: Robot<AnyPort>, holder: Holder, recorder: Option<Recorder>) -> Self {
+        Self {
+            robot,
+            holder,
+            recorder,
+            seen_us: None,
+        }
+    }
+
+    /// Lives on for a moment: listens, and does what other processes ask of the robot. Returns telemetry that is new.
+    ///
+    /// # Errors
+    /// The link's.
+    pub(super) fn beat(&mut self) -> Result<Option<Telemetry>, LinkError> {
+        self.robot
+            .listen(BEAT, |_| std::ops::ControlFlow::Continue(()))?;
+        self.holder.serve(&mut self.robot);
+        let news = self
+            .robot
+            .telemetry()
+            .copied()
+            .filter(|telemetry| self.seen_us.is_none_or(|seen| telemetry.robot_us > seen));
+        if let Some(telemetry) = &news {
+            self.seen_us = Some(telemetry.robot_us);
+        }
+        Ok(news)
+    }
+
+    /// Whether another process waits for something, for calls that cannot [`beat`](Self::beat).
+    pub(super) fn split(&mut self) -> (&mut Robot<AnyPort>, &mut Holder) {
+        (&mut self.robot, &mut self.holder)
+    }
+
+    /// Lets the robot go and closes the log, if there is one.
+    ///
+    /// # Errors
+    /// Where the log could not be written.
+    pub(super) fn close(self) -> Outcome {
+        self.close_log().map(|_| ())
+    }
+
+    /// [`close`](Self::close), and how many frames the log holds.
+    ///
+    /// # Errors
+    /// As there.
+    pub(super) fn close_log(self) -> Outcome<Option<u64>> {
+        let Self {
+            robot, recorder, ..
+        } = self;
+        drop(robot);
+        match recorder {
+            Some(recorder) => recorder.finish().map(Some),
+            None => Ok(None),
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Where the system has no local sockets: nobody is told, nobody can be asked.
+
+use std::fmt;
+
+use host_link::Robot;
+
+use super::super::port::AnyPort;
+use super::relay::{Ask, Relayed};
+use crate::failure::Outcome;
+
+/// Holds the port without telling.
+pub(in super::super) struct Holder;
+
+impl Holder {
+    /// Tells nobody.
+    pub(in super::super) fn announce(_port: &str, _command: &str) -> Self {
+        Self
+    }
+
+    /// Nobody asks.
+    pub(in super::super) fn asked(&mut self) -> bool {
+        false
+    }
+
+    /// Nobody asks.
+    pub(in super::super) fn serve(&mut self, _robot: &mut Robot<AnyPort>) {}
+}
+
+/// Another `swimmer`, which cannot be known here.
+pub(in super::super) enum HeldBy {}
+
+impl HeldBy {
+    /// Nobody is known.
+    pub(in super::super) fn of(_port: &str) -> Option<Self> {
+        None
+    }
+
+    /// Cannot be.
+    pub(in super::super) fn ask(&self, _ask: Ask) -> Outcome<Option<Relayed>> {
+        match *self {}
+    }
+}
+
+impl fmt::Display for HeldBy {
+    fn fmt(&self, _f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {}
+    }
+}

@@ -1,0 +1,115 @@
+//! What may be asked of the holder of a port, and the line that it answers with.
+
+use std::fmt;
+
+use clap::ValueEnum;
+use host_link::{LinkError, Robot};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::super::answers::{Doing, Done, E_STOPPED, state};
+use super::super::port::AnyPort;
+use crate::output::Answer;
+
+/// Something that the holder of the port does for another process. The word is the line on the socket.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "lowercase")]
+pub(in super::super) enum Ask {
+    /// Drop the pulses.
+    EStop,
+    /// Ramp to neutral.
+    Stop,
+    /// Hold the pose.
+    Pause,
+    /// Go on.
+    Resume,
+    /// Say what the robot does.
+    Status,
+}
+
+impl Ask {
+    /// Does it; the robot's word comes back.
+    pub(super) fn of(self, robot: &mut Robot<AnyPort>) -> Relayed {
+        let done = |robot: &mut Robot<AnyPort>, sentence: &str| {
+            let state = state(robot.status()?.state);
+            Ok(Relayed::of(&Done {
+                state,
+                sentence: sentence.to_owned(),
+            }))
+        };
+        let answered: Result<Relayed, LinkError> = match self {
+            Self::EStop => robot.estop().and_then(|()| done(robot, E_STOPPED)),
+            Self::Stop => robot.stop().and_then(|()| {
+                done(
+                    robot,
+                    "Stopping: the robot ramps to neutral, then the pulses go off.",
+                )
+            }),
+            Self::Pause => robot.pause(false).and_then(|()| {
+                done(
+                    robot,
+                    "Paused: the robot holds its pose; `swimmer robot resume` goes on.",
+                )
+            }),
+            Self::Resume => robot.resume().and_then(|()| done(robot, "Resumed.")),
+            Self::Status => robot
+                .status()
+                .map(|status| Relayed::of(&Doing::new(&status))),
+        };
+        answered.unwrap_or_else(|error| Relayed {
+            done: false,
+            text: error.to_string(),
+            answer: Value::Null,
+        })
+    }
+}
+
+/// An answer that crossed the socket: for people and for scripts, or why there is none.
+#[derive(Debug, Serialize, Deserialize)]
+pub(in super::super) struct Relayed {
+    pub(super) done: bool,
+    pub(super) text: String,
+    pub(super) answer: Value,
+}
+
+impl Relayed {
+    /// An answer, to be sent.
+    pub(in super::super) fn of(answer: &impl Answer) -> Self {
+        Self {
+            done: true,
+            text: answer.to_string(),
+            answer: serde_json::to_value(answer).unwrap_or(Value::Null),
+        }
+    }
+
+    /// The state that the robot is in, by the answer.
+    pub(in super::super) fn state(&self) -> &str {
+        self.answer
+            .get("state")
+            .and_then(Value::as_str)
+            .unwrap_or_default()
+    }
+
+    /// The answer as the holder gave it, to be given again.
+    pub(in super::super) fn told(self) -> Told {
+        Told {
+            answer: self.answer,
+            text: self.text,
+        }
+    }
+}
+
+/// An answer at second hand.
+#[derive(Debug, Serialize)]
+pub(in super::super) struct Told {
+    #[serde(flatten)]
+    answer: Value,
+    #[serde(skip)]
+    text: String,
+}
+
+impl fmt::Display for Told {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}

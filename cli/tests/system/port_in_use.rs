@@ -1,0 +1,198 @@
+//! One program has the port; what a second one of the same user can do then: stop the robot, above all.
+
+use std::path::Path;
+use std::process::{Child, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::binary::{Ran, TwinProcess, command, interrupt, swimmer_in};
+
+/// A twin, and a play of many cycles that holds its port.
+struct Scene {
+    folder: tempfile::TempDir,
+    _twin: TwinProcess,
+    play: Child,
+}
+
+impl Scene {
+    fn playing() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let twin = TwinProcess::start(folder.path(), &[]);
+        swimmer_in(
+            folder.path(),
+            &["robot", "upload", "circle:30deg", "--port", "robot"],
+        )
+        .with_status(0);
+        let words = [
+            "robot", "play", "--cycles", "60", "--period", "2", "--port", "robot",
+        ];
+        let play = command(folder.path(), &words)
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let scene = Self {
+            folder,
+            _twin: twin,
+            play,
+        };
+        scene.wait_for("playing");
+        scene
+    }
+
+    fn robot(&self, words: &[&str]) -> Ran {
+        let words = [&["robot"], words, &["--port", "robot"]].concat();
+        swimmer_in(self.folder.path(), &words)
+    }
+
+    fn status(&self) -> Value {
+        self.robot(&["status", "--json"]).with_status(0).json()
+    }
+
+    fn wait_for(&self, state: &str) {
+        let patience = Instant::now() + Duration::from_secs(20);
+        loop {
+            let status = self.status();
+            if status["state"] == state {
+                return;
+            }
+            assert!(Instant::now() < patience, "never {state}: {status:#}");
+            sleep(Duration::from_millis(100));
+        }
+    }
+
+    /// How the play ended, and what it said of it.
+    fn play_ended(mut self) -> (Option<i32>, String) {
+        let status = self.play.wait().unwrap().code();
+        let mut text = String::new();
+        std::io::Read::read_to_string(&mut self.play.stderr.take().unwrap(), &mut text).unwrap();
+        (status, text)
+    }
+}
+
+impl Drop for Scene {
+    fn drop(&mut self) {
+        let _ = self.play.kill();
+        let _ = self.play.wait();
+    }
+}
+
+#[test]
+fn a_stop_reaches_the_robot_through_the_play_that_holds_the_port() {
+    let scene = Scene::playing();
+    let stopped = scene.robot(&["stop"]).with_status(0);
+    assert!(
+        stopped.stdout.contains("Stopped: the pulses are off."),
+        "{stopped}"
+    );
+    assert_eq!(scene.status()["state"], "stopped");
+    let (status, said) = scene.play_ended();
+    assert_eq!(status, Some(1), "{said}");
+    assert!(said.contains("a stop was requested"), "{said}");
+}
+
+#[test]
+fn an_estop_does_too_and_stays_latched() {
+    let scene = Scene::playing();
+    let stopped = scene.robot(&["estop", "--json"]).with_status(0).json();
+    assert_eq!(stopped["state"], "e-stopped", "{stopped:#}");
+    assert_eq!(scene.status()["state"], "e-stopped");
+    let (status, said) = scene.play_ended();
+    assert_eq!(status, Some(1), "{said}");
+}
+
+#[test]
+fn a_pause_and_a_resume_keep_the_play_that_holds_the_port_waiting() {
+    let mut scene = Scene::playing();
+    scene.robot(&["pause"]).with_status(0);
+    assert_eq!(scene.status()["state"], "paused");
+    scene.robot(&["resume"]).with_status(0);
+    scene.wait_for("playing");
+    assert!(scene.play.try_wait().unwrap().is_none(), "the play goes on");
+    interrupt(&scene.play);
+    let (status, said) = scene.play_ended();
+    assert_eq!(status, Some(1), "{said}");
+    assert!(said.contains("Ctrl-C: the robot was stopped"), "{said}");
+}
+
+#[test]
+fn what_needs_the_port_for_itself_is_told_who_has_it_and_how_to_stop() {
+    let scene = Scene::playing();
+    let refused = scene.robot(&["info"]).with_status(1);
+    for words in [
+        "`swimmer robot play` (process ",
+        "`swimmer robot stop --port robot`",
+    ] {
+        assert!(refused.stderr.contains(words), "{refused}");
+    }
+    // The holder is known by every name of its port.
+    let device = std::fs::read_link(scene.folder.path().join("robot")).unwrap();
+    let words = ["robot", "stop", "--port", device.to_str().unwrap()];
+    swimmer_in(scene.folder.path(), &words).with_status(0);
+}
+
+/// A program that is none of ours: it cannot be asked, so the sentence must do.
+#[test]
+fn a_foreign_program_with_the_port_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let _twin = TwinProcess::start(folder.path(), &[]);
+    let path = folder.path().join("robot");
+    let port = host_link::port::SerialPort::open(path.to_str().unwrap(), 115_200).unwrap();
+    let denied = stop(folder.path()).with_status(1);
+    for words in [
+        "another program has the port open",
+        "(process ",
+        "switch its power off",
+    ] {
+        assert!(denied.stderr.contains(words), "{denied}");
+    }
+    drop(port);
+    stop(folder.path()).with_status(0);
+}
+
+fn stop(folder: &Path) -> Ran {
+    swimmer_in(folder, &["robot", "stop", "--port", "robot"])
+}
+
+#[test]
+fn a_detached_play_is_attached_to_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let _twin = TwinProcess::start(folder.path(), &[]);
+    let robot = |words: &[&str]| {
+        let words = [&["robot"], words, &["--port", "robot", "--json"]].concat();
+        swimmer_in(folder.path(), &words)
+    };
+    let nothing = robot(&["play", "--attach"]).with_status(1);
+    assert!(nothing.stderr.contains("nothing to attach to"), "{nothing}");
+    let begun = Instant::now();
+    let detached = robot(&[
+        "play",
+        "--gait",
+        "circle:30deg",
+        "--cycles",
+        "2",
+        "--period",
+        "2",
+        "--detach",
+    ])
+    .with_status(0)
+    .json();
+    assert_eq!(detached["remaining_s"], 4.0, "{detached:#}");
+    for _ in 0..2 {
+        // The second time it has ended already; the answer is the same.
+        let played = robot(&["play", "--attach"]).with_status(0).json();
+        assert_eq!(
+            (&played["cycles"], &played["cause"]),
+            (&2.into(), &"finished".into()),
+            "{played:#}"
+        );
+        assert_eq!(played["remaining_s"], 0.0, "{played:#}");
+        assert!(
+            begun.elapsed() >= Duration::from_secs(4),
+            "{:?}",
+            begun.elapsed()
+        );
+    }
+}
