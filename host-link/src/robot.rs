@@ -4,6 +4,8 @@
 pub mod finish;
 mod requests;
 
+pub use finish::time_left;
+
 use std::ops::ControlFlow;
 use std::time::Duration;
 

@@ -6,7 +6,8 @@ mod tank_less;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use host_link::port::FaultyPort;
+use host_link::port::{FaultyPort, Outage};
+use host_link::robot::time_left;
 use host_link::{LinkError, Port, Robot};
 use link_protocol::{StateName, StopCause};
 use tank_less::{Line, circle, configuration, connect, faulty, upload};
@@ -153,6 +154,53 @@ fn a_stop_works_without_a_greeting() {
         port.inner().device().output.unwrap().state,
         StateName::EStopped
     );
+}
+
+/// Plays three cycles of eight seconds; the link is cut for a while from 3 s after the start on.
+fn play_through_an_outage(
+    detached: bool,
+    lasting: Duration,
+) -> (Result<link_protocol::Status, LinkError>, Duration) {
+    let mut robot = connect("", 12);
+    upload(&mut robot, circle(1.0).bytes()).unwrap();
+    robot.arm(false).unwrap();
+    robot.play(3, MS * 8000, detached).unwrap();
+    let status = robot.status().unwrap();
+    assert_eq!(time_left(&status), Some(MS * 24_000));
+    let began = robot.port().now();
+    let outage = Outage::once(began + MS * 3000, lasting);
+    robot.port_mut().disconnect(outage);
+    let end = robot.wait_until_finished(|_| ControlFlow::Continue(()));
+    let took = robot.port().now().abs_diff(began);
+    (end, took)
+}
+
+#[test]
+fn a_detached_play_is_found_again_and_seen_to_its_end() {
+    for lasting in [MS * 4000, MS * 20_000, MS * 45_000] {
+        let (end, took) = play_through_an_outage(true, lasting);
+        let end = end.unwrap();
+        assert_eq!((end.cause, end.cycle), (StopCause::Finished, 3));
+        // The end of the play, or of the outage and of one wait between two greetings.
+        let latest = (MS * 26_500).max(lasting + MS * 8000);
+        assert!(took > MS * 24_000 && took < latest, "{took:?}");
+    }
+    // Its end is known: a robot that is not there half a minute later is given up.
+    let (end, took) = play_through_an_outage(true, MS * 600_000);
+    let error = end.unwrap_err();
+    assert!(matches!(error, LinkError::NoAnswer { .. }), "{error}");
+    assert!(took > MS * 54_000 && took < MS * 70_000, "{took:?}");
+}
+
+#[test]
+fn a_play_that_lost_its_link_is_told_to_have_stopped() {
+    let (end, took) = play_through_an_outage(false, MS * 4000);
+    let error = end.unwrap_err();
+    let LinkError::StoppedEarly { cause, cycle, .. } = error else {
+        panic!("{error}")
+    };
+    assert_eq!((cause, cycle), (StopCause::LinkLost, 0));
+    assert!(took < MS * 12_000, "{took:?}");
 }
 
 /// A caller that waits for the robot to stop must not take word from before it was armed for the present.

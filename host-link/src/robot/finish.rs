@@ -1,20 +1,51 @@
-//! Waiting for the end of a play.
+//! Waiting for the end of a play, over a link that comes and goes: a robot that is no longer heard is looked for, greeted
+//! anew and asked what became of the play. It may have gone on (detached), stopped by itself, or restarted.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use link_protocol::{StateName, Status, StopCause, Telemetry};
+use link_protocol::{Flags, Reply, Request, StateName, Status, StopCause, Telemetry};
 
 use super::{BEAT, Robot};
 use crate::port::Port;
-use crate::session::{Event, LinkError};
+use crate::session::{Event, LinkError, Ticket};
 
 /// Time after which the status is asked for when no telemetry tells it.
 const QUIET: Duration = Duration::from_secs(1);
+/// How long a robot that does not answer is looked for; one that plays detached until so long after its end.
+const SEARCH: Duration = Duration::from_secs(30);
+
+/// Time until the last cycle of a play is done; `None` where nothing plays, or without end. A pause and the soft start are
+/// not counted: nobody knows when a pause ends, and a soft start takes two seconds at most.
+pub fn time_left(status: &Status) -> Option<Duration> {
+    let playing = matches!(
+        status.state,
+        StateName::Starting | StateName::Playing | StateName::Paused
+    );
+    if !playing || status.cycles == 0 {
+        return None;
+    }
+    // In 2⁻¹⁶ of a cycle.
+    let done = u64::from(status.cycle) << 16 | u64::from(status.phase);
+    let left = (u64::from(status.cycles) << 16).saturating_sub(done);
+    let us = u128::from(left) * u128::from(status.period_us) >> 16;
+    Some(Duration::from_micros(u64::try_from(us).unwrap_or(u64::MAX)))
+}
+
+/// What is known, and what was asked to know more.
+struct Watch {
+    /// When the robot last told something, on the port's clock.
+    told: Duration,
+    /// Until when a silent robot is looked for.
+    search_until: Duration,
+    asked: Option<Ticket>,
+    greeted: Option<Ticket>,
+}
 
 impl<P: Port> Robot<P> {
     /// Waits until the robot has played its last cycle. `watch` sees each telemetry, at least every 20 ms of the port's
-    /// clock, and may break off, which stops the robot.
+    /// clock, and may break off, which stops the robot. Where the link is lost meanwhile, the robot is looked for for 30 s,
+    /// one that plays detached until 30 s after its end.
     ///
     /// Returns the status at the end.
     ///
@@ -26,31 +57,89 @@ impl<P: Port> Robot<P> {
         mut watch: impl FnMut(Option<&Telemetry>) -> ControlFlow<()>,
     ) -> Result<Status, LinkError> {
         let doing = "waiting for the end of the play";
-        let mut told = self.port.now();
         // What was said before the play began tells nothing about its end.
         self.latest = None;
+        let now = self.port.now();
+        let mut known = Watch {
+            told: now,
+            search_until: now + SEARCH,
+            asked: Some(self.session.request(now, Request::Status)),
+            greeted: None,
+        };
         loop {
             let beat = self.port.now() + BEAT;
-            let news = matches!(self.step(beat, doing)?, Some(Event::Telemetry { .. }));
+            let event = self.step(beat, doing)?;
             if watch(self.latest.as_ref()).is_break() {
                 self.stop()?;
                 return Err(LinkError::Interrupted { doing });
             }
-            let now = self.port.now();
-            let over = match &self.latest {
-                Some(telemetry) if news => {
-                    told = now;
-                    at_rest(telemetry.state, telemetry.cause)
-                }
-                _ => now.saturating_sub(told) >= QUIET,
-            };
-            if over {
-                told = now;
-                let status = self.status()?;
-                if at_rest(status.state, status.cause) {
-                    return finished(status);
+            if let Some(status) = self.learn(event, &mut known)? {
+                return finished(status);
+            }
+        }
+    }
+
+    /// Takes an event; gives the status where the play is over.
+    fn learn(
+        &mut self,
+        event: Option<Event>,
+        known: &mut Watch,
+    ) -> Result<Option<Status>, LinkError> {
+        let now = self.port.now();
+        match event {
+            Some(Event::Telemetry { telemetry, .. }) => {
+                known.told = now;
+                known.search_until = known.search_until.max(now + SEARCH);
+                if at_rest(telemetry.state, telemetry.cause) {
+                    self.ask_status(known);
                 }
             }
+            Some(Event::Answered { ticket, reply }) if known.asked == Some(ticket) => {
+                known.asked = None;
+                known.told = now;
+                if let Reply::Status(status) = reply {
+                    if at_rest(status.state, status.cause) {
+                        return Ok(Some(status));
+                    }
+                    let alone = status.flags.contains(Flags::DETACHED);
+                    let left = time_left(&status).filter(|_| alone).unwrap_or_default();
+                    known.search_until = now + left + SEARCH;
+                }
+            }
+            Some(Event::Connected { ticket, .. }) if known.greeted == Some(ticket) => {
+                known.greeted = None;
+                if let Some(hello) = self.session.hello() {
+                    self.hello = *hello;
+                }
+                self.ask_status(known);
+            }
+            Some(Event::Failed { ticket, error })
+                if known.asked == Some(ticket) || known.greeted == Some(ticket) =>
+            {
+                let lost = matches!(
+                    error,
+                    LinkError::NoAnswer { .. }
+                        | LinkError::SessionLost { .. }
+                        | LinkError::NotConnected { .. }
+                );
+                if !lost || now >= known.search_until {
+                    return Err(error);
+                }
+                known.asked = None;
+                known.greeted = Some(self.session.connect(now));
+            }
+            _ => {
+                if now.saturating_sub(known.told) >= QUIET {
+                    self.ask_status(known);
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    fn ask_status(&mut self, known: &mut Watch) {
+        if known.asked.is_none() && known.greeted.is_none() {
+            known.asked = Some(self.session.request(self.port.now(), Request::Status));
         }
     }
 }
