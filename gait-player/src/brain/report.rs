@@ -64,7 +64,8 @@ impl Brain {
         })
     }
 
-    pub(super) fn counters(&self) -> Counters {
+    /// What was received, refused and dropped since the start.
+    pub fn counters(&self) -> Counters {
         Counters {
             frames: self.decoder.counters(),
             dropped: self.outbox.dropped(),

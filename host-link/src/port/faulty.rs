@@ -84,6 +84,12 @@ impl<P: Port> FaultyPort<P> {
         self.read.disconnect(outage);
     }
 
+    /// Other faults from now on. What is under way already keeps its fate.
+    pub fn set_plan(&mut self, plan: FaultPlan) {
+        self.written.set_faults(plan.written);
+        self.read.set_faults(plan.read);
+    }
+
     /// Passes on what is due at `now`.
     fn settle(&mut self, now: Duration) -> io::Result<()> {
         let mut due = Vec::new();

@@ -69,6 +69,11 @@ impl FaultInjector {
         self.counts
     }
 
+    /// Other faults from now on. What is under way already keeps its fate; what a clumping link held comes out.
+    pub fn set_faults(&mut self, faults: Faults) {
+        self.faults = faults;
+    }
+
     /// Cuts the link for a while from `outage.from` on; what is under way then is lost too.
     pub fn disconnect(&mut self, outage: Outage) {
         self.faults.disconnect = Some(outage);
@@ -144,15 +149,22 @@ impl FaultInjector {
     /// When [`pop`](Self::pop) will next have something, if nothing more goes in.
     pub fn next_release(&self) -> Option<Duration> {
         let arrival = self.under_way.front().map(|(at, _)| *at);
-        if self.faults.clump == 0 || self.held.is_empty() {
+        if self.held.is_empty() {
             return arrival;
         }
-        let patience = self.held_since + Faults::LONGEST_HOLD;
+        let patience = if self.faults.clump == 0 {
+            self.held_since
+        } else {
+            self.held_since + Faults::LONGEST_HOLD
+        };
         Some(arrival.map_or(patience, |at| at.min(patience)))
     }
 
     /// Appends to `out` the bytes that have come through by `now`.
     pub fn pop(&mut self, now: Duration, out: &mut Vec<u8>) {
+        if self.faults.clump == 0 {
+            out.extend(self.held.drain(..));
+        }
         while let Some((at, _)) = self.under_way.front()
             && *at <= now
         {

@@ -1,6 +1,7 @@
 //! The real brain behind a virtual wire, without servos or a tank: what the link does, and nothing else.
 #![allow(dead_code)] // each test uses its part
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -10,8 +11,8 @@ use gait_player::{Boot, Brain, BrainConfig, GaitTable, Identity, Inputs, Limits,
 use host_link::port::{Device, FaultPlan, Faults, FaultyPort, VirtualPort, WireSpeed};
 use host_link::{LinkError, Robot as HostRobot};
 use link_protocol::{
-    Board, Configuration, FirmwareVersion, MAX_ENCODED, Message, Request, ResetReason,
-    ServoSettings, TableInfo, TangentialDrag,
+    Board, Configuration, FirmwareVersion, MAX_ENCODED, Message, Reply, Request, ResetReason,
+    ServoSettings, StateName, TableInfo, TangentialDrag,
 };
 
 /// A brain and its clock.
@@ -25,7 +26,14 @@ pub(crate) struct Robot {
     pub(crate) powered: Duration,
     /// When the first and the last piece of an upload came.
     pub(crate) pieces: (Duration, Duration),
+    /// Times each request acted, by session and number; stops, which act always, are left out.
+    pub(crate) acts: BTreeMap<(u16, u16), u32>,
+    /// Checksums of the tables that commits made active or promised to, in order.
+    pub(crate) committed: Vec<u32>,
+    /// Distances of the set-points from neutral while playing, in 0.01 rad: a circle has one.
+    pub(crate) radii: BTreeSet<i64>,
     decoder: link_protocol::Decoder,
+    said: link_protocol::Decoder,
 }
 
 struct Flash {
@@ -76,7 +84,32 @@ impl Robot {
             output: None,
             powered: Duration::ZERO,
             pieces: (Duration::ZERO, Duration::ZERO),
+            acts: BTreeMap::new(),
+            committed: Vec::new(),
+            radii: BTreeSet::new(),
             decoder: link_protocol::Decoder::new(),
+            said: link_protocol::Decoder::new(),
+        }
+    }
+
+    /// Looks at a whole frame before the brain's answer to it.
+    fn witness(&mut self, received: &link_protocol::Received, acted: bool) {
+        let Ok(Message::Request(request)) = &received.message else {
+            return;
+        };
+        if acted && !matches!(request, Request::Stop | Request::EStop) {
+            let header = received.header;
+            *self
+                .acts
+                .entry((header.session, header.sequence))
+                .or_default() += 1;
+        }
+        if let Request::Chunk(chunk) = request {
+            let now = Duration::from_micros(self.now_us);
+            self.pieces.1 = now;
+            if chunk.offset == 0 {
+                self.pieces.0 = now;
+            }
         }
     }
 }
@@ -139,6 +172,12 @@ impl Device for Robot {
                 link_up: true,
             };
             let output = self.brain.tick(self.now_us, &inputs);
+            if output.state == StateName::Playing {
+                let [front, back] = output.setpoint.map(f64::from);
+                #[allow(clippy::cast_possible_truncation)] // a few radians
+                self.radii
+                    .insert((front.hypot(back) * 100.0).round() as i64);
+            }
             if output.pulses_ns.is_some() {
                 self.powered = Duration::from_micros(self.now_us);
             }
@@ -153,17 +192,13 @@ impl Device for Robot {
 
     fn receive(&mut self, bytes: &[u8]) {
         for &byte in bytes {
-            if let Some(received) = self.decoder.push(byte)
-                && let Ok(Message::Request(Request::Chunk(chunk))) = received.message
-            {
-                let now = Duration::from_micros(self.now_us);
-                self.pieces.1 = now;
-                if chunk.offset == 0 {
-                    self.pieces.0 = now;
-                }
+            let before = self.brain.counters().acted;
+            self.brain.receive(self.now_us, &[byte]);
+            if let Some(received) = self.decoder.push(byte) {
+                let acted = self.brain.counters().acted != before;
+                self.witness(&received, acted);
             }
         }
-        self.brain.receive(self.now_us, bytes);
     }
 
     fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
@@ -171,6 +206,14 @@ impl Device for Robot {
         let room = room.min(bytes.len());
         let count = self.brain.transmit(&mut bytes[..room]);
         out.extend_from_slice(&bytes[..count]);
+        for &byte in &bytes[..count] {
+            if let Some(received) = self.said.push(byte)
+                && let Ok(Message::Reply(Reply::Table(Some(table)))) = received.message
+                && self.committed.last() != Some(&table.crc32)
+            {
+                self.committed.push(table.crc32);
+            }
+        }
     }
 }
 
