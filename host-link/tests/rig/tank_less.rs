@@ -24,7 +24,7 @@ pub(crate) struct Robot {
     pub(crate) output: Option<Output>,
     /// When pulses were last on.
     pub(crate) powered: Duration,
-    /// When the first and the last piece of an upload came.
+    /// When the first piece of an upload first came, and the last one last.
     pub(crate) pieces: (Duration, Duration),
     /// Times each request acted, by session and number; stops, which act always, are left out.
     pub(crate) acts: BTreeMap<(u16, u16), u32>,
@@ -107,7 +107,7 @@ impl Robot {
         if let Request::Chunk(chunk) = request {
             let now = Duration::from_micros(self.now_us);
             self.pieces.1 = now;
-            if chunk.offset == 0 {
+            if chunk.offset == 0 && self.pieces.0.is_zero() {
                 self.pieces.0 = now;
             }
         }
