@@ -36,6 +36,8 @@
 
 mod battery;
 mod config;
+#[cfg(test)]
+mod enumeration;
 mod motion;
 mod outbox;
 mod persist;
@@ -69,6 +71,7 @@ use tables::{Swap, Tables};
 use work::Work;
 
 /// The brain. About 6 kB; no heap.
+#[derive(Clone)]
 pub struct Brain {
     identity: Identity,
     boot: Boot,

@@ -8,8 +8,8 @@ const WELL_FOR_US: u64 = 5_000_000;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Battery {
     last_mv: Option<u16>,
-    below_since: Option<u64>,
-    well_since: Option<u64>,
+    pub(super) below_since: Option<u64>,
+    pub(super) well_since: Option<u64>,
     latched: bool,
 }
 

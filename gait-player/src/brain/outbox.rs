@@ -13,6 +13,7 @@ const BYTES_A_TICK: usize = 100;
 const MAX_SAVED: usize = 3 * MAX_ENCODED;
 
 /// Bytes on their way out.
+#[derive(Clone)]
 pub(crate) struct Outbox {
     bytes: Deque<u8, ROOM>,
     saved: usize,

@@ -12,6 +12,7 @@ const HEADER: usize = 24;
 const RETRY_US: u64 = 1_000_000;
 
 /// What is stored, and how far the rest is.
+#[derive(Clone)]
 pub(crate) struct Persist {
     /// Slot and generation of the newest whole table.
     newest: Option<(usize, u32)>,

@@ -8,12 +8,14 @@ use link_protocol::{MAX_BODY, Reply};
 pub(crate) const LEASE_US: u64 = 460_000;
 
 /// The open session.
+#[derive(Clone)]
 pub(crate) struct Session {
     open: Option<Open>,
     next: u16,
-    heard_us: Option<u64>,
+    pub(super) heard_us: Option<u64>,
 }
 
+#[derive(Clone)]
 struct Open {
     number: u16,
     host_nonce: u32,

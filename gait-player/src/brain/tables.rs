@@ -6,6 +6,7 @@ use crate::table::{KNOT_BYTES, MIN_KNOTS};
 use link_protocol::{Begin, Chunk, MAX_TABLE, Refusal, TableInfo};
 
 /// The tables and the upload.
+#[derive(Clone)]
 pub(crate) struct Tables {
     pair: [GaitTable; 2],
     active: Option<Active>,
@@ -14,6 +15,7 @@ pub(crate) struct Tables {
 }
 
 /// What is known of the active table.
+#[derive(Clone)]
 struct Active {
     index: usize,
     crc32: u32,
