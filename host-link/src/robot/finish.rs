@@ -26,9 +26,9 @@ pub fn time_left(status: &Status) -> Option<Duration> {
         return None;
     }
     // In 2⁻¹⁶ of a cycle.
-    let done = u64::from(status.cycle) << 16 | u64::from(status.phase);
+    let done = (u64::from(status.cycle) << 16) | u64::from(status.phase);
     let left = (u64::from(status.cycles) << 16).saturating_sub(done);
-    let us = u128::from(left) * u128::from(status.period_us) >> 16;
+    let us = (u128::from(left) * u128::from(status.period_us)) >> 16;
     Some(Duration::from_micros(u64::try_from(us).unwrap_or(u64::MAX)))
 }
 
