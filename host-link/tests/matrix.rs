@@ -64,10 +64,11 @@ fn the_matrix_of_upload_times() {
             let _ = writeln!(text);
         }
     }
-    let text: String = text
-        .lines()
-        .map(|line| format!("{}\n", line.trim_end()))
-        .collect();
+    let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
+    let text = lines.join(
+        "
+",
+    );
     insta::assert_snapshot!(text);
 }
 

@@ -12,6 +12,8 @@ use std::collections::{BTreeMap, BTreeSet, HashSet, VecDeque};
 use std::convert::Infallible;
 use std::vec::Vec;
 
+use ResetReason::{Crash, Pin, PowerOn, Watchdog};
+
 /// Something that happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Event {
@@ -127,7 +129,6 @@ fn events(requests: &[Request]) -> Vec<Event> {
     for (ticks, kept_alive) in [(1, false), (7, true), (26, false), (26, true), (52, true)] {
         events.push(Event::Pass { ticks, kept_alive });
     }
-    use ResetReason::{Crash, Pin, PowerOn, Watchdog};
     events.extend([PowerOn, Watchdog, Crash, Pin].map(Event::Reset));
     events
 }
@@ -409,7 +410,7 @@ impl World {
             progress,
             detached: state.detached(),
             cycles: state.play().map_or(0, |play| play.request.cycles),
-            at_neutral: brain.commanded == [0.0; 2],
+            at_neutral: brain.commanded.iter().all(|angle| angle.abs() < 1e-6),
             session: (
                 brain.session.number() != 0,
                 brain.session.silent(self.now_us),
