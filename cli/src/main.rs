@@ -12,6 +12,7 @@ mod paper;
 mod progress;
 mod quantity;
 mod report;
+mod virtual_robot;
 
 use std::process::ExitCode;
 

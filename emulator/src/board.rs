@@ -43,20 +43,6 @@ pub struct BoardConfig {
 }
 
 impl BoardConfig {
-    /// The Nano's board of a checkout: scripts in `emulator/board`, firmware in `target/firmware-images`.
-    pub fn of_checkout(root: &Path, kind: BoardKind) -> Self {
-        Self {
-            scripts: root.join("emulator/board"),
-            firmware: root.join(format!(
-                "target/firmware-images/firmware-{}.elf",
-                kind.word()
-            )),
-            kind,
-        }
-    }
-}
-
-impl BoardConfig {
     /// The first thing that is needed and not there: firmware, script, emulator or Node.js.
     pub fn missing(&self) -> Option<EmulatorError> {
         let script = self.scripts.join("serve.mjs");

@@ -1,9 +1,10 @@
 //! The emulated board in a tank: its pulses drive the twin's servos, and the twin's cameras watch.
 
+use std::error::Error;
 use std::time::Duration;
 
 use host_link::port::Device;
-use twin::World;
+use twin::{VirtualRobot, World};
 
 use crate::{Board, EmulatorError, Events, Period};
 
@@ -36,24 +37,9 @@ impl EmulatedRobot {
         &mut self.board
     }
 
-    /// Servos, tank and cameras.
-    pub fn world(&self) -> &World {
-        &self.world
-    }
-
-    /// Servos, tank and cameras.
-    pub fn world_mut(&mut self) -> &mut World {
-        &mut self.world
-    }
-
     /// What the board did since this was last called.
     pub fn take_events(&mut self) -> Events {
         std::mem::take(&mut self.events)
-    }
-
-    /// Why the emulator failed, where it did: from then on the robot is silent and stands still.
-    pub fn failure(&self) -> Option<&EmulatorError> {
-        self.failed.as_ref()
     }
 
     /// Remembers the first failure: a device has no way to tell it.
@@ -91,6 +77,22 @@ impl Device for EmulatedRobot {
 
     fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
         self.board.take_sent(room, out);
+    }
+
+    fn failure(&self) -> Option<&(dyn Error + Send + Sync + 'static)> {
+        self.failed
+            .as_ref()
+            .map(|error| error as &(dyn Error + Send + Sync))
+    }
+}
+
+impl VirtualRobot for EmulatedRobot {
+    fn world(&self) -> &World {
+        &self.world
+    }
+
+    fn world_mut(&mut self) -> &mut World {
+        &mut self.world
     }
 }
 

@@ -1,34 +1,34 @@
-//! The twin in real time, behind ports that programs open: a pseudo-terminal, TCP, or both.
+//! A virtual robot in real time, behind ports that programs open: a pseudo-terminal, TCP, or both.
 
 use std::io;
 use std::time::Duration;
 
 use host_link::Port;
-use host_link::port::Device;
 
-use crate::Twin;
+use crate::VirtualRobot;
 
 /// How long one turn waits for bytes, over all ports together: what a request waits at most before the brain sees it.
 const TURN: Duration = Duration::from_millis(2);
 /// Bytes a turn may send: about four times what a line at 115 200 baud carries meanwhile.
 const ROOM: usize = 96;
 
-/// Most that the twin's clock moves in one turn. On a machine that stalls the twin stalls too, like any simulation, and does
-/// not find its lease run out with the host's bytes still unread.
-const LONGEST_STEP: Duration = Duration::from_millis(100);
+/// Most that the robot's clock moves in one turn: a tick of its brain. Where the machine stalls, or is slower than what it
+/// carries, the robot's time lags behind the ports', like any simulation's: it does not find its lease run out with the
+/// host's bytes still unread.
+const LONGEST_STEP: Duration = Duration::from_millis(20);
 
 /// Lives with the ports' clock until `go_on` says no: it is asked every few milliseconds. What comes from any port reaches
-/// the brain; what the brain sends goes to all of them.
+/// the robot; what the robot sends goes to all of them.
 ///
-/// The twin's clock follows that of the first port, from wherever the twin is now, but for stalls of the machine. Without
-/// ports it returns at once.
+/// The robot's clock follows that of the first port, from wherever the robot is now, but never catches up on what it missed.
+/// Without ports it returns at once.
 ///
 /// # Errors
-/// A port that failed for good; clients that come and go are no failure.
-pub fn serve(
-    twin: &mut Twin,
+/// A port or a robot that failed for good; clients that come and go are no failure.
+pub fn serve<R: VirtualRobot + ?Sized>(
+    robot: &mut R,
     ports: &mut [&mut dyn Port],
-    mut go_on: impl FnMut(&Twin) -> bool,
+    mut go_on: impl FnMut(&R) -> bool,
 ) -> io::Result<()> {
     let Some(first) = ports.first() else {
         return Ok(());
@@ -37,21 +37,24 @@ pub fn serve(
     let wait = TURN / u32::try_from(ports.len()).unwrap_or(u32::MAX);
     let mut buf = [0; 512];
     let mut out = Vec::new();
-    while go_on(twin) {
+    while go_on(robot) {
         for index in 0..ports.len() {
             let Some(port) = ports.get_mut(index) else {
                 break;
             };
             let count = port.read(&mut buf, wait)?;
             let now = ports.first().map_or(last, |port| Port::now(*port));
-            twin.advance(twin.now() + now.saturating_sub(last).min(LONGEST_STEP));
+            robot.advance(robot.world().now() + now.saturating_sub(last).min(LONGEST_STEP));
             last = now;
             if let Some(bytes) = buf.get(..count).filter(|bytes| !bytes.is_empty()) {
-                twin.receive(bytes);
+                robot.receive(bytes);
             }
         }
+        if let Some(failure) = robot.failure() {
+            return Err(io::Error::other(failure.to_string()));
+        }
         out.clear();
-        twin.transmit(ROOM, &mut out);
+        robot.transmit(ROOM, &mut out);
         if !out.is_empty() {
             for port in &mut *ports {
                 port.write(&out)?;

@@ -11,6 +11,7 @@ use swimmer_model::{InvalidSwimmer, Pose};
 use crate::camera::TrackError;
 use crate::config::TwinConfig;
 use crate::flash::VirtualFlash;
+use crate::virtual_robot::VirtualRobot;
 use crate::world::{CycleStart, Recording, World};
 
 /// A robot in a virtual tank.
@@ -147,6 +148,16 @@ impl Twin {
         }
         self.output = Some(output);
         self.next_tick_us += u64::from(TICK_US);
+    }
+}
+
+impl VirtualRobot for Twin {
+    fn world(&self) -> &World {
+        &self.world
+    }
+
+    fn world_mut(&mut self) -> &mut World {
+        &mut self.world
     }
 }
 

@@ -26,6 +26,7 @@ use crate::new_folder::NewFolder;
 use crate::output::Output;
 use crate::progress::Progress;
 use crate::report;
+use crate::virtual_robot::{Carrier, EmulatedBoard, VirtualLine};
 
 /// Run the whole loop on a virtual robot and leave a report
 ///
@@ -44,8 +45,10 @@ pub(crate) struct Demo {
     #[arg(long, value_name = "SWIMMER", default_value = "robot")]
     swimmer: String,
     /// What carries the robot's brain
-    #[arg(long, value_name = "ROBOT", default_value = "twin", value_parser = ["twin"])]
-    robot: String,
+    #[arg(long, value_enum, value_name = "ROBOT", default_value = "twin")]
+    robot: Carrier,
+    #[command(flatten)]
+    board: EmulatedBoard,
 }
 
 /// Amplitudes of the circles, degrees.
@@ -78,7 +81,8 @@ impl Demo {
             None => NewFolder::start_free("demo-out")?,
         };
         let interrupt = Interrupt::install()?;
-        let round = Round::new(truth, self.seed, folder.draft(), interrupt)?.go()?;
+        let line = self.robot.line(&truth, self.seed, &self.board)?;
+        let round = Round::new(truth, line, self.seed, folder.draft(), interrupt)?.go()?;
         let page = report::page(&picture::report(&round)?)?;
         write_atomically(&folder.draft().join(REPORT), page.as_bytes())?;
         let place = folder.place().to_owned();
@@ -116,7 +120,13 @@ struct Finished {
 }
 
 impl<'a> Round<'a> {
-    fn new(truth: SwimmerFile, seed: u64, draft: &'a Path, interrupt: Interrupt) -> Outcome<Self> {
+    fn new(
+        truth: SwimmerFile,
+        line: VirtualLine,
+        seed: u64,
+        draft: &'a Path,
+        interrupt: Interrupt,
+    ) -> Outcome<Self> {
         let servo = truth.servo.unwrap_or_default();
         let start = SwimmerFile {
             name: format!("{}, drag not known yet", truth.name),
@@ -131,7 +141,7 @@ impl<'a> Round<'a> {
         start.save(&draft.join(START))?;
         let circles = circles(servo.max_angle).count() as u64;
         let progress = Progress::of_steps(circles + 4);
-        let laboratory = Laboratory::open(&truth, seed, &draft.join(LINK_LOG), interrupt)?;
+        let laboratory = Laboratory::open(line, seed, &draft.join(LINK_LOG), interrupt)?;
         Ok(Self {
             truth,
             servo,

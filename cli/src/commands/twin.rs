@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use host_link::Port;
 use host_link::port::{FaultPlan, Faults, FaultyPort, TcpPort};
 use serde::Serialize;
-use swimmer_files::SwimmerFile;
-use twin::{TrackError, TwinConfig, TwinPort, WireSpeed, serve};
+use twin::{TrackError, VirtualRobot as _, serve};
 
 use crate::arguments::load_swimmer;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::output::Output;
+use crate::virtual_robot::{Carrier, EmulatedBoard};
 
 /// Be a robot in a virtual tank, in real time, until Ctrl-C
 ///
@@ -40,23 +40,29 @@ pub(crate) struct Twin {
     /// Write what the virtual cameras see as a Motive file
     #[arg(long, value_name = "FILE.csv")]
     track: Option<PathBuf>,
+    /// What carries the robot's brain
+    #[arg(long, value_enum, value_name = "ROBOT", default_value = "twin")]
+    robot: Carrier,
+    #[command(flatten)]
+    board: EmulatedBoard,
 }
 
 #[derive(Debug, Serialize)]
 struct Lived {
     seconds: f64,
-    cycles: usize,
+    /// An emulated robot tells of its cycles by its LED alone, which also says other things.
+    cycles: Option<usize>,
     track: Option<String>,
     frames: Option<u64>,
 }
 
 impl fmt::Display for Lived {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "The twin lived {:.1} s and began {} cycles.",
-            self.seconds, self.cycles
-        )?;
+        write!(f, "The robot lived {:.1} s", self.seconds)?;
+        if let Some(cycles) = self.cycles {
+            write!(f, " and began {cycles} cycles")?;
+        }
+        write!(f, ".")?;
         if let (Some(track), Some(frames)) = (&self.track, self.frames) {
             write!(f, " {frames} frames are in {track}.")?;
         }
@@ -68,7 +74,10 @@ impl Twin {
     /// Lives until Ctrl-C.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let file = load_swimmer(&self.swimmer)?;
-        let mut robot = virtual_robot(&file, self.seed)?;
+        let mut robot = self
+            .robot
+            .line(&file, self.seed, &self.board)?
+            .into_device();
         let interrupt = Interrupt::install()?;
         let mut ports: Vec<Box<dyn Port>> = Vec::new();
         if let Some(link) = &self.pty {
@@ -95,19 +104,18 @@ impl Twin {
             ));
         }
         if let Some(track) = &self.track {
-            robot.start_recording(track)?;
+            robot.world_mut().start_recording(track)?;
         }
         let mut borrowed: Vec<&mut dyn Port> = ports
             .iter_mut()
             .map(|port| port.as_mut() as &mut dyn Port)
             .collect();
-        serve(&mut robot, &mut borrowed, |_| !interrupt.requested()).map_err(|error| {
-            Failure::Tried(format!("the twin's port failed: {error}; start it again"))
-        })?;
-        let recording = robot.finish_recording()?;
+        serve(&mut robot, &mut borrowed, |_| !interrupt.requested())
+            .map_err(|error| Failure::Tried(format!("the robot ended: {error}; start it again")))?;
+        let recording = robot.world_mut().finish_recording()?;
         output.answer(&Lived {
-            seconds: robot.now().as_secs_f64(),
-            cycles: robot.cycle_starts().len(),
+            seconds: robot.world().now().as_secs_f64(),
+            cycles: (self.robot == Carrier::Twin).then(|| robot.world().cycle_starts().len()),
             track: recording
                 .as_ref()
                 .map(|recording| recording.path.display().to_string()),
@@ -126,25 +134,6 @@ impl Twin {
             self.seed,
         ))
     }
-}
-
-/// A robot in a virtual tank, just switched on.
-///
-/// # Errors
-/// [`Failure::BadInput`] when the file describes no swimmer.
-pub(crate) fn virtual_robot(file: &SwimmerFile, seed: u64) -> Outcome<twin::Twin> {
-    twin::Twin::new(TwinConfig::new(file, seed)).map_err(|error| {
-        Failure::BadInput(format!("the swimmer `{}` cannot swim: {error}", file.name))
-    })
-}
-
-/// A fresh twin of the paper's robot in virtual time, for commands that want a robot for their own length.
-///
-/// # Errors
-/// None that happens: the preset swims.
-pub(crate) fn fresh_twin() -> Outcome<TwinPort> {
-    let file = load_swimmer("robot")?;
-    Ok(TwinPort::new(virtual_robot(&file, 1)?, WireSpeed::robot()))
 }
 
 #[cfg(unix)]

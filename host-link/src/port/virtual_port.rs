@@ -1,5 +1,6 @@
 //! A port with a simulated device behind it: waiting on the port is what lets the device live.
 
+use std::error::Error;
 use std::io;
 use std::time::Duration;
 
@@ -16,6 +17,29 @@ pub trait Device: Send {
 
     /// Appends to `out` at most `room` bytes of what the device has to send.
     fn transmit(&mut self, room: usize, out: &mut Vec<u8>);
+
+    /// Why it went out of order for good, where it did: from then on it is silent and stands still.
+    fn failure(&self) -> Option<&(dyn Error + Send + Sync + 'static)> {
+        None
+    }
+}
+
+impl<D: Device + ?Sized> Device for Box<D> {
+    fn advance(&mut self, to: Duration) {
+        (**self).advance(to);
+    }
+
+    fn receive(&mut self, bytes: &[u8]) {
+        (**self).receive(bytes);
+    }
+
+    fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
+        (**self).transmit(room, out);
+    }
+
+    fn failure(&self) -> Option<&(dyn Error + Send + Sync + 'static)> {
+        (**self).failure()
+    }
 }
 
 /// The host's end of a serial line to a [`Device`], in virtual time.
@@ -51,6 +75,17 @@ impl<D: Device> VirtualPort<D> {
     /// The device at the far end.
     pub fn device_mut(&mut self) -> &mut D {
         &mut self.device
+    }
+
+    /// Puts another device in the place of this one, with the line as it is: one in a box, say.
+    pub fn map_device<E: Device>(self, wrap: impl FnOnce(D) -> E) -> VirtualPort<E> {
+        VirtualPort {
+            device: wrap(self.device),
+            now: self.now,
+            to_device: self.to_device,
+            to_host: self.to_host,
+            ready: self.ready,
+        }
     }
 
     /// Ends the line and gives the device back.
@@ -90,6 +125,9 @@ impl<D: Device> Port for VirtualPort<D> {
         let end = self.now + timeout;
         while self.ready.is_empty() && self.now < end {
             self.turn(end);
+        }
+        if let Some(failure) = self.device.failure() {
+            return Err(io::Error::other(failure.to_string()));
         }
         let count = buf.len().min(self.ready.len());
         buf[..count].copy_from_slice(&self.ready[..count]);

@@ -1,14 +1,14 @@
 //! A laboratory around the emulated board.
 
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use emulator::{Board, BoardConfig, BoardKind, EmulatedRobot, Events, Period};
 use gait_player::GaitTable;
 use gait_player::servo::ServoMap;
 use host_link::Robot;
-use host_link::port::{VirtualPort, WireSpeed};
+use host_link::port::{Device as _, VirtualPort, WireSpeed};
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 use swimmer_model::Gait as _;
 use twin::{TwinConfig, World, configuration};
@@ -17,11 +17,12 @@ pub(crate) type Port = VirtualPort<EmulatedRobot>;
 
 /// What is needed, or none with a loud word about what is missing.
 pub(crate) fn config() -> Option<BoardConfig> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?;
-    let mut config = BoardConfig::of_checkout(root, BoardKind::NanoConnect);
-    if let Some(target) = std::env::var_os("CARGO_TARGET_DIR") {
-        config.firmware = Path::new(&target).join("firmware-images/firmware-nano-connect.elf");
-    }
+    let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+    let config = BoardConfig::of_checkout(
+        Path::new(env!("CARGO_MANIFEST_DIR")),
+        target.as_deref(),
+        BoardKind::NanoConnect,
+    );
     match config.missing() {
         None => Some(config),
         Some(missing) => {

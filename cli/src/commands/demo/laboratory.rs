@@ -9,12 +9,12 @@ use host_link::port::TracedPort;
 use host_link::{LinkError, Robot};
 use link_protocol::{StateName, TableInfo};
 use swimmer_files::{ServoFile, SwimmerFile};
-use twin::{TwinPort, WireSpeed, configuration};
+use twin::{VirtualRobot as _, configuration};
 
-use crate::commands::twin::virtual_robot;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::link_log::{Recorder, Sink};
+use crate::virtual_robot::VirtualLine;
 
 /// An upload takes less than a second; this is for a robot that never answers.
 const PATIENCE: Duration = Duration::from_mins(1);
@@ -23,25 +23,21 @@ const TO_REST: Duration = Duration::from_secs(5);
 
 /// A robot in a virtual tank with cameras over it, reached only through its link; every frame on the link is logged.
 pub(super) struct Laboratory {
-    robot: Robot<TracedPort<TwinPort, Sink>>,
+    robot: Robot<TracedPort<VirtualLine, Sink>>,
     log: Recorder,
     interrupt: Interrupt,
 }
 
 impl Laboratory {
-    /// Switches the robot on and greets it. `truth` is what the tank knows and nobody else.
+    /// Greets the robot behind `line`.
     pub(super) fn open(
-        truth: &SwimmerFile,
+        line: VirtualLine,
         seed: u64,
         log: &Path,
         interrupt: Interrupt,
     ) -> Outcome<Self> {
         let log = Recorder::create(log)?;
-        let port = TracedPort::new(
-            TwinPort::new(virtual_robot(truth, seed)?, WireSpeed::robot()),
-            log.sink(),
-        );
-        let robot = Robot::connect(port, seed)?;
+        let robot = Robot::connect(TracedPort::new(line, log.sink()), seed)?;
         Ok(Self {
             robot,
             log,
@@ -70,6 +66,7 @@ impl Laboratory {
             .port_mut()
             .inner_mut()
             .device_mut()
+            .world_mut()
             .start_recording(track)?;
         let interrupt = self.interrupt.clone();
         let robot = &mut self.robot;
@@ -90,6 +87,7 @@ impl Laboratory {
             .port_mut()
             .inner_mut()
             .device_mut()
+            .world_mut()
             .finish_recording()?;
         // The robot ramps to neutral; only then does it take orders again.
         robot.listen(TO_REST, |telemetry| match telemetry {

@@ -10,21 +10,24 @@ use link_protocol::Telemetry;
 
 use super::find::{self, Answer};
 use super::holder::{Ask, HeldBy, Holder, Relayed};
-use super::port::{AnyPort, NotOpen, Opened, Pace, open, session_seed};
+use super::port::{AnyPort, Means, NotOpen, Opened, Pace, open, session_seed};
 use crate::failure::{Failure, Outcome};
 use crate::link_log::Recorder;
 use crate::output::aside;
+use crate::virtual_robot::EmulatedBoard;
 
 /// Where the robot is, and what is kept of the talk with it.
 #[derive(Debug, clap::Args)]
 pub(super) struct Access {
-    /// Serial port, pseudo-terminal, tcp:HOST:PORT, or `twin`; of several (A,B,C) the one where a robot answers. Left out:
+    /// Serial port, pseudo-terminal, tcp:HOST:PORT, `twin` or `emulator`; of several (A,B,C) the one where a robot answers. Left out:
     /// the one USB or Bluetooth serial port where a robot answers
     #[arg(long, value_name = "PORT", global = true, value_delimiter = ',')]
     port: Vec<String>,
     /// Also write every frame on the wire, both ways, to this MCAP file; nothing may be there yet
     #[arg(long, value_name = "FILE.mcap", global = true)]
     log: Option<PathBuf>,
+    #[command(flatten)]
+    board: EmulatedBoard,
 }
 
 /// A greeted robot, with all that a command needs beside it.
@@ -57,6 +60,14 @@ impl Access {
         Self {
             port: self.port.clone(),
             log: Some(log),
+            board: self.board.clone(),
+        }
+    }
+
+    fn means(&self, pace: Pace) -> Means {
+        Means {
+            pace,
+            board: self.board.clone(),
         }
     }
 
@@ -68,7 +79,7 @@ impl Access {
     pub(super) fn connect(&self, command: &str, pace: Pace) -> Outcome<Line> {
         let recorder = self.log.as_deref().map(Recorder::create).transpose()?;
         if let [name] = self.port.as_slice() {
-            let opened = reach_alone(name, pace)?;
+            let opened = reach_alone(name, &self.means(pace))?;
             let port = traced(opened.port, recorder.as_ref());
             // From here on the port is ours: others are told, also while the robot is being greeted.
             let holder = Holder::announce(&opened.name, command);
@@ -91,7 +102,7 @@ impl Access {
     /// [`Failure::Tried`] when the port cannot be opened.
     pub(super) fn reach_named(&self, pace: Pace) -> Outcome<Option<Reached>> {
         match self.port.as_slice() {
-            [name] => reach(name, pace).map(Some),
+            [name] => reach(name, &self.means(pace)).map(Some),
             _ => Ok(None),
         }
     }
@@ -130,7 +141,7 @@ impl Access {
 
     /// The one candidate where a robot answers, greeted; says which.
     pub(super) fn find(&self, pace: Pace) -> Outcome<(String, Robot<AnyPort>)> {
-        let (port, robot) = find::choose(find::greet_all(self.candidates(), pace))?;
+        let (port, robot) = find::choose(find::greet_all(self.candidates(), &self.means(pace)))?;
         aside(&format!("The robot is at {port}."));
         Ok((port.path, robot))
     }
@@ -140,13 +151,13 @@ impl Access {
 ///
 /// # Errors
 /// [`Failure::Tried`] when it cannot be opened.
-fn reach(name: &str, pace: Pace) -> Outcome<Reached> {
+fn reach(name: &str, means: &Means) -> Outcome<Reached> {
     let begun = Instant::now();
     loop {
         if let Some(held_by) = HeldBy::of(name) {
             return Ok(Reached::Held(held_by));
         }
-        match open(name, pace) {
+        match open(name, means) {
             Ok(opened) => return Ok(Reached::Free(opened)),
             Err(NotOpen::Busy(_)) if begun.elapsed() < A_MOMENT => sleep(LOOK_AGAIN),
             Err(NotOpen::Busy(failure) | NotOpen::Failed(failure)) => return Err(failure),
@@ -155,10 +166,10 @@ fn reach(name: &str, pace: Pace) -> Outcome<Reached> {
 }
 
 /// [`reach`], for what needs the port for itself: another `swimmer` may be about to end.
-fn reach_alone(name: &str, pace: Pace) -> Outcome<Opened> {
+fn reach_alone(name: &str, means: &Means) -> Outcome<Opened> {
     let begun = Instant::now();
     loop {
-        match reach(name, pace)? {
+        match reach(name, means)? {
             Reached::Free(opened) => return Ok(opened),
             Reached::Held(_) if begun.elapsed() < A_MOMENT => sleep(LOOK_AGAIN),
             Reached::Held(held_by) => return Err(Failure::Tried(held_by.to_string())),
@@ -167,9 +178,9 @@ fn reach_alone(name: &str, pace: Pace) -> Outcome<Opened> {
 }
 
 /// Greets whoever is behind a candidate.
-pub(super) fn greet(name: &str, pace: Pace) -> Answer {
-    let greeted =
-        reach_alone(name, pace).and_then(|opened| Ok(Robot::connect(opened.port, session_seed())?));
+pub(super) fn greet(name: &str, means: &Means) -> Answer {
+    let greeted = reach_alone(name, means)
+        .and_then(|opened| Ok(Robot::connect(opened.port, session_seed())?));
     greeted.map_err(|failure| failure.to_string())
 }
 

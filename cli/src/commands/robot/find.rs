@@ -8,7 +8,7 @@ use host_link::Robot;
 use host_link::port::ListedPort;
 
 use super::access::greet;
-use super::port::{AnyPort, Pace};
+use super::port::{AnyPort, Means};
 use crate::failure::{Failure, Outcome};
 
 /// Time for a greeting where several ports are tried: a Bluetooth link takes a second or two to come up.
@@ -20,16 +20,16 @@ const PATIENTLY: Duration = Duration::from_secs(20);
 pub(super) type Answer<T = Robot<AnyPort>> = Result<T, String>;
 
 /// Greets every port. Nobody is moved by a greeting; a device that is no robot sees a few bytes.
-pub(super) fn greet_all(ports: Vec<ListedPort>, pace: Pace) -> Vec<(ListedPort, Answer)> {
+pub(super) fn greet_all(ports: Vec<ListedPort>, means: &Means) -> Vec<(ListedPort, Answer)> {
     let patience = if ports.len() == 1 { PATIENTLY } else { BRIEFLY };
     let until = Instant::now() + patience;
     let (sender, answers) = mpsc::channel();
     for (index, port) in ports.iter().enumerate() {
-        let (sender, path) = (sender.clone(), port.path.clone());
+        let (sender, path, means) = (sender.clone(), port.path.clone(), means.clone());
         // A port that never opens keeps its thread; the command does not wait for it.
         thread::spawn(move || {
             // Nobody listens any more where the time was up.
-            let _ = sender.send((index, greet(&path, pace)));
+            let _ = sender.send((index, greet(&path, &means)));
         });
     }
     drop(sender);
@@ -77,7 +77,7 @@ pub(super) fn choose<T>(answers: Vec<(ListedPort, Answer<T>)>) -> Outcome<(Liste
         Some(found) => Ok(found),
         None if reasons.is_empty() => Err(Failure::BadInput(
             "this computer has no USB or Bluetooth serial port; name the robot's port: --port with a serial port, a \
-             pseudo-terminal, tcp:HOST:PORT, or `twin`"
+             pseudo-terminal, tcp:HOST:PORT, `twin` or `emulator`"
                 .to_owned(),
         )),
         None => Err(Failure::Tried(format!(

@@ -8,8 +8,9 @@ use host_link::Port;
 use host_link::port::{OpenError, SerialPort, TcpPort};
 
 use super::holder::program_with;
-use crate::commands::twin::fresh_twin;
+use crate::arguments::load_swimmer;
 use crate::failure::Failure;
+use crate::virtual_robot::{Carrier, EmulatedBoard};
 
 /// Any port.
 pub(super) type AnyPort = Box<dyn Port>;
@@ -17,7 +18,7 @@ pub(super) type AnyPort = Box<dyn Port>;
 /// The speed of the robot's Bluetooth module.
 const BAUD: u32 = 115_200;
 
-/// How a fresh twin keeps time.
+/// How a fresh virtual robot keeps time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pace {
     /// As fast as it can: for what ends by itself.
@@ -26,8 +27,21 @@ pub(super) enum Pace {
     RealTime,
 }
 
-/// The name of a fresh robot in a virtual tank.
-pub(super) const FRESH_TWIN: &str = "twin";
+/// The names of fresh robots in a virtual tank, and what carries them.
+const FRESH: [(&str, Carrier); 2] = [("twin", Carrier::Twin), ("emulator", Carrier::Emulator)];
+
+/// What carries the fresh robot of this name, if it is one's.
+pub(super) fn fresh(name: &str) -> Option<Carrier> {
+    let mut fresh = FRESH.into_iter();
+    fresh.find_map(|(known, carrier)| (known == name).then_some(carrier))
+}
+
+/// What a fresh virtual robot is made with; other ports do not ask.
+#[derive(Debug, Clone)]
+pub(super) struct Means {
+    pub(super) pace: Pace,
+    pub(super) board: EmulatedBoard,
+}
 
 /// A port, opened.
 pub(super) struct Opened {
@@ -50,21 +64,21 @@ impl From<Failure> for NotOpen {
     }
 }
 
-/// Opens what `--port` names. `pace` matters only for a fresh twin.
+/// Opens what `--port` names.
 ///
 /// # Errors
-/// [`NotOpen`], with [`Failure::Tried`].
-pub(super) fn open(name: &str, pace: Pace) -> Result<Opened, NotOpen> {
+/// [`NotOpen`], with [`Failure::Tried`], or [`Failure::BadInput`] where what an emulated robot needs is missing.
+pub(super) fn open(name: &str, means: &Means) -> Result<Opened, NotOpen> {
     Ok(Opened {
-        port: any_port(name, pace)?,
+        port: any_port(name, means)?,
         name: name.to_owned(),
     })
 }
 
-fn any_port(name: &str, pace: Pace) -> Result<AnyPort, NotOpen> {
-    if name == FRESH_TWIN {
-        let port = fresh_twin()?;
-        return Ok(match pace {
+fn any_port(name: &str, means: &Means) -> Result<AnyPort, NotOpen> {
+    if let Some(carrier) = fresh(name) {
+        let port = carrier.line(&load_swimmer("robot")?, 1, &means.board)?;
+        return Ok(match means.pace {
             Pace::AsFastAsPossible => Box::new(port),
             Pace::RealTime => Box::new(Paced::new(port)),
         });

@@ -12,7 +12,7 @@ use clap::ValueEnum;
 use host_link::Robot;
 use link_protocol::crc32c;
 
-use super::super::port::{AnyPort, FRESH_TWIN};
+use super::super::port::{AnyPort, fresh};
 use super::relay::{Ask, Relayed};
 use crate::failure::{Failure, Outcome};
 
@@ -194,9 +194,9 @@ fn note(socket: &Path) -> PathBuf {
     socket.with_extension("holder")
 }
 
-/// A short name for a port, the same for all its aliases. A fresh twin has no other user.
+/// A short name for a port, the same for all its aliases. A fresh virtual robot has no other user.
 fn socket_name(port: &str) -> Option<String> {
-    if port == FRESH_TWIN {
+    if fresh(port).is_some() {
         return None;
     }
     let path = Path::new(port);
@@ -235,7 +235,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn aliases_of_a_port_have_one_socket_and_a_fresh_twin_has_none() {
+    fn aliases_of_a_port_have_one_socket_and_a_fresh_robot_has_none() {
         let folder = tempfile::tempdir().unwrap();
         let port = folder.path().join("port");
         fs::write(&port, "").unwrap();
@@ -246,6 +246,7 @@ mod tests {
         assert_eq!(name(&port), name(&alias));
         assert_ne!(socket_name("/dev/rfcomm0"), socket_name("/dev/rfcomm1"));
         assert_eq!(socket_name("twin"), None);
+        assert_eq!(socket_name("emulator"), None);
     }
 
     #[test]

@@ -1,0 +1,115 @@
+//! Robots that need no hardware: the twin, whose brain runs here, and the emulated one, whose brain is the firmware's image on
+//! an emulated chip. Both swim in the same tank and hang on the same line.
+
+use std::env;
+use std::path::PathBuf;
+
+use emulator::{Board, BoardConfig, BoardKind, EmulatedRobot, EmulatorError, commission};
+use host_link::port::{VirtualPort, WireSpeed};
+use swimmer_files::SwimmerFile;
+use twin::{Twin, TwinConfig, VirtualRobot, World};
+
+use crate::failure::{Failure, Outcome};
+
+/// The host's end of a line to a robot that needs no hardware, in virtual time.
+pub(crate) type VirtualLine = VirtualPort<Box<dyn VirtualRobot>>;
+
+/// What carries the brain of a robot that needs no hardware.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Carrier {
+    /// This machine: the brain alone
+    Twin,
+    /// An emulated RP2040: the very firmware that is flashed
+    Emulator,
+}
+
+/// Which firmware the emulated robot runs, and on what.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Emulated robot")]
+pub(crate) struct EmulatedBoard {
+    /// Board of the emulated robot
+    #[arg(
+        long,
+        value_enum,
+        value_name = "BOARD",
+        default_value = "nano-connect",
+        global = true
+    )]
+    board: BoardName,
+    /// Firmware of the emulated robot; left out: what `cargo xtask firmware` built in this checkout
+    #[arg(long, value_name = "FILE.elf", global = true)]
+    firmware: Option<PathBuf>,
+    /// Folder with the emulator that `cargo xtask emulator` set up; left out: emulator/board of this checkout
+    #[arg(long, value_name = "DIR", global = true)]
+    emulator: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum BoardName {
+    NanoConnect,
+    Pico,
+}
+
+impl Carrier {
+    /// A line to a robot that was just switched on, in a tank where `file` is the truth, set up as its laboratory does it.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`] when the file describes no swimmer or what an emulated board needs is missing,
+    /// [`Failure::Tried`] when the emulated board fails or its firmware refuses the file's servos.
+    pub(crate) fn line(
+        self,
+        file: &SwimmerFile,
+        seed: u64,
+        board: &EmulatedBoard,
+    ) -> Outcome<VirtualLine> {
+        let config = TwinConfig::new(file, seed);
+        let no_swimmer =
+            |error| Failure::BadInput(format!("the swimmer `{}` cannot swim: {error}", file.name));
+        match self {
+            Self::Twin => {
+                let twin = Twin::new(config).map_err(no_swimmer)?;
+                Ok(VirtualPort::new(Box::new(twin), WireSpeed::robot()))
+            }
+            Self::Emulator => {
+                let world = World::new(&config).map_err(no_swimmer)?;
+                let robot = EmulatedRobot::new(Board::start(&board.config()?)?, world)?;
+                let line = commission(robot, &config)?;
+                Ok(line.map_device(|robot| Box::new(robot) as Box<dyn VirtualRobot>))
+            }
+        }
+    }
+}
+
+impl EmulatedBoard {
+    /// Where everything is: as named, else in the checkout around the working directory.
+    fn config(&self) -> Outcome<BoardConfig> {
+        let here = env::current_dir().map_err(|error| {
+            Failure::Tried(format!(
+                "cannot tell the working directory: {error}; go to one that exists"
+            ))
+        })?;
+        let target = env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
+        let kind = match self.board {
+            BoardName::NanoConnect => BoardKind::NanoConnect,
+            BoardName::Pico => BoardKind::Pico,
+        };
+        let mut config = BoardConfig::of_checkout(&here, target.as_deref(), kind);
+        if let Some(firmware) = &self.firmware {
+            config.firmware.clone_from(firmware);
+        }
+        if let Some(emulator) = &self.emulator {
+            config.scripts.clone_from(emulator);
+        }
+        Ok(config)
+    }
+}
+
+impl From<EmulatorError> for Failure {
+    /// What is not there can be named or installed; everything else was tried.
+    fn from(error: EmulatorError) -> Self {
+        match error {
+            EmulatorError::Missing { .. } | EmulatorError::Node(_) => Self::bad_input(&error),
+            EmulatorError::Gone { .. } | EmulatorError::Failed { .. } => Self::tried(&error),
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! Where a checkout of the sources keeps what an emulated board needs.
+
+use std::path::{Path, PathBuf};
+
+use crate::{BoardConfig, BoardKind};
+
+/// The scripts' folder in a checkout.
+const SCRIPTS: &str = "emulator/board";
+/// The images' folder in cargo's target folder; `cargo xtask firmware` leaves them there.
+const IMAGES: &str = "firmware-images";
+
+impl BoardConfig {
+    /// A board of the checkout that `place` lies in, or of `place` itself where it lies in none: scripts in `emulator/board`,
+    /// firmware in `firmware-images` of `target`, or of the checkout's own `target` folder. What is not there
+    /// [`missing`](Self::missing) tells.
+    pub fn of_checkout(place: &Path, target: Option<&Path>, kind: BoardKind) -> Self {
+        let root = place
+            .ancestors()
+            .find(|folder| folder.join(SCRIPTS).join("serve.mjs").is_file())
+            .unwrap_or(place);
+        let target = target.map_or_else(|| root.join("target"), PathBuf::from);
+        Self {
+            scripts: root.join(SCRIPTS),
+            firmware: target
+                .join(IMAGES)
+                .join(format!("firmware-{}.elf", kind.word())),
+            kind,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_deep_in_a_checkout_finds_the_scripts() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+        let deep = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+        let config = BoardConfig::of_checkout(&deep, None, BoardKind::Pico);
+        assert_eq!(config.scripts, root.join("emulator/board"));
+        assert_eq!(
+            config.firmware,
+            root.join("target/firmware-images/firmware-pico.elf")
+        );
+    }
+
+    #[test]
+    fn outside_a_checkout_the_scripts_are_missing() {
+        let place = std::env::temp_dir();
+        let config = BoardConfig::of_checkout(&place, Some(&place), BoardKind::NanoConnect);
+        assert_eq!(
+            config.firmware,
+            place.join("firmware-images/firmware-nano-connect.elf")
+        );
+        assert!(config.missing().is_some());
+    }
+}
