@@ -13,6 +13,9 @@ use crate::toolchain::ChipToolchain;
 /// Crates that also run on the chip.
 const ON_THE_CHIP: [&str; 3] = ["swimmer-model", "link-protocol", "gait-player"];
 
+/// The fuzz targets' own workspace.
+const FUZZ: &str = "fuzz/Cargo.toml";
+
 /// Takes all steps, cheap ones first, goes on after one that fails, and prints how long each took.
 ///
 /// # Errors
@@ -24,6 +27,10 @@ pub(crate) fn all() -> Outcome {
         run(
             &mut cargo(["fmt", "--all", "--check"]),
             "run `cargo fmt --all`",
+        )?;
+        run(
+            &mut cargo(["fmt", "--check", "--manifest-path", FUZZ]),
+            &format!("run `cargo fmt --manifest-path {FUZZ}`"),
         )
     });
     if let Some(toolchain) = toolchain {
@@ -40,6 +47,15 @@ pub(crate) fn all() -> Outcome {
         run(
             cargo(["clippy", "--workspace", "--all-targets"]).args(["--", "-D", "warnings"]),
             "mend what clippy names above",
+        )
+    });
+    steps.take("fuzz targets, checked", || {
+        run(
+            // Named, libFuzzer is not compiled: it takes a C++ compiler and a minute, and nothing is linked here.
+            cargo(["clippy", "--manifest-path", FUZZ, "--all-targets"])
+                .args(["--", "-D", "warnings"])
+                .env("CUSTOM_LIBFUZZER_PATH", "target/libfuzzer.a"),
+            "mend the targets under fuzz/",
         )
     });
     steps.take("documentation", || {

@@ -7,6 +7,7 @@ mod disk;
 mod emulator;
 mod failure;
 mod firmware;
+mod fuzz;
 mod image;
 mod run;
 mod soak;
@@ -50,6 +51,14 @@ enum Chore {
         #[arg(default_value = "../shared/bench")]
         peers: PathBuf,
     },
+    /// Runs each fuzz target for a minute (libFuzzer, by cargo-fuzz, which it installs under target/tools).
+    Fuzz {
+        /// One target instead of all.
+        target: Option<String>,
+        /// How long each runs.
+        #[arg(long, default_value_t = 60)]
+        seconds: u32,
+    },
     /// Runs the tests that are too long for every change (those marked `#[ignore]`).
     Soak {
         /// Only tests with this in their names.
@@ -85,6 +94,7 @@ fn perform(chore: Chore) -> Outcome {
         Chore::Flash { board } => firmware::flash(&ChipToolchain::find_or_make()?, board),
         Chore::Emulator => emulator::install(),
         Chore::Bench { peers } => bench::run_all(&peers),
+        Chore::Fuzz { target, seconds } => fuzz::run_targets(target.as_deref(), seconds),
         Chore::Soak { filter } => soak::run_ignored(filter.as_deref()),
     }
 }
