@@ -3,6 +3,7 @@
 //!
 //! A state machine without I/O ([`session::Session`]) decides; the shell ([`Robot`]) moves its bytes.
 
+pub mod hc05;
 pub mod port;
 pub mod robot;
 pub mod session;

@@ -4,6 +4,7 @@ mod access;
 mod answers;
 mod configure;
 mod find;
+mod hc05;
 mod holder;
 mod info;
 mod listening;
@@ -69,6 +70,7 @@ enum Action {
     Watch(Watch),
     /// Write every frame on the wire, both ways, as MCAP, until Ctrl-C
     Log(Log),
+    Hc05(hc05::Hc05),
 }
 
 #[derive(Debug, clap::Args)]
@@ -184,6 +186,7 @@ impl Robot {
             Action::Trim(arguments) => configure::trim(access, arguments, output),
             Action::Watch(arguments) => listening::watch(access, arguments, output),
             Action::Log(arguments) => listening::log(access, arguments, output),
+            Action::Hc05(arguments) => hc05::run(access, arguments, output),
         }
     }
 }

@@ -4,6 +4,8 @@
 mod binary;
 mod certify;
 mod demo;
+#[cfg(unix)]
+mod hc05;
 mod numbers;
 mod output_discipline;
 mod paper;

@@ -71,6 +71,14 @@ impl Access {
         }
     }
 
+    /// The one port that was named, where nothing is to be logged: for what is no robot and speaks no frames.
+    pub(super) fn bare_port(&self) -> Option<&str> {
+        match self.port.as_slice() {
+            [name] if self.log.is_none() => Some(name),
+            _ => None,
+        }
+    }
+
     /// Reaches the robot and greets it. `command` is what other processes are told.
     ///
     /// # Errors

@@ -16,7 +16,7 @@ use crate::virtual_robot::{Carrier, EmulatedBoard};
 pub(super) type AnyPort = Box<dyn Port>;
 
 /// The speed of the robot's Bluetooth module.
-const BAUD: u32 = 115_200;
+pub(super) const BAUD: u32 = 115_200;
 
 /// How a fresh virtual robot keeps time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

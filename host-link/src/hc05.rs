@@ -1,0 +1,188 @@
+//! Setting up the HC-05 once, through a USB serial adapter, with the AT commands that its makers share: speed, name, PIN.
+//!
+//! [`Dialogue`] decides what to say next and knows bytes and times only; [`converse`] moves them over a [`Port`]. What is
+//! set already is left alone, and what was set is read back, because modules of some makers say OK and keep nothing.
+
+mod answer;
+mod dialogue;
+mod error;
+
+use std::fmt;
+use std::time::Duration;
+
+use crate::Port;
+
+pub use dialogue::{Action, Dialogue};
+pub use error::{Hc05Error, WantedError};
+
+/// Speed of the module's AT mode when KEY was held as it got its power \[baud\].
+pub const AT_BAUD: u32 = 38_400;
+/// Speeds that the module and the robot's UART share \[baud\].
+pub const BAUDS: [u32; 7] = [9_600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800];
+/// Longest name that all makers' modules take.
+const MAX_NAME: usize = 31;
+
+/// What the module is to be; `None` leaves it as it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Wanted {
+    name: Option<String>,
+    pin: Option<String>,
+    baud: u32,
+}
+
+impl Wanted {
+    /// A speed (one of [`BAUDS`]), a name of 1 to 31 printable ASCII characters and a PIN of 4 to 16 digits.
+    ///
+    /// # Errors
+    /// [`WantedError`] where the module would not take it.
+    pub fn new(baud: u32, name: Option<String>, pin: Option<String>) -> Result<Self, WantedError> {
+        if !BAUDS.contains(&baud) {
+            return Err(WantedError::Baud { baud });
+        }
+        // A quote or a comma ends a name on some modules and belongs to it on others.
+        let plain = |c: char| (c.is_ascii_graphic() || c == ' ') && c != '"' && c != ',';
+        if let Some(name) = &name
+            && !((1..=MAX_NAME).contains(&name.len()) && name.chars().all(plain))
+        {
+            return Err(WantedError::Name(name.clone()));
+        }
+        if let Some(pin) = &pin
+            && !((4..=16).contains(&pin.len()) && pin.chars().all(|c| c.is_ascii_digit()))
+        {
+            return Err(WantedError::Pin(pin.clone()));
+        }
+        Ok(Self { name, pin, baud })
+    }
+}
+
+/// What the module said of itself; `None` where it would not.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Module {
+    /// Version of its firmware, as `2.0-20100601`.
+    pub version: Option<String>,
+    /// 0 waits to be called (as the robot must), 1 calls, 2 echoes.
+    pub role: Option<u8>,
+    /// The name that a computer sees.
+    pub name: Option<String>,
+    /// The PIN that pairing asks for.
+    pub pin: Option<String>,
+    /// Speed, stop bits and parity of its data mode.
+    pub uart: Option<Uart>,
+}
+
+/// Speed, stop bits and parity as the module counts them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Uart {
+    /// Speed \[baud\].
+    pub baud: u32,
+    /// 0: one stop bit, 1: two.
+    pub stop: u8,
+    /// 0: none, 1: odd, 2: even.
+    pub parity: u8,
+}
+
+impl Uart {
+    /// As the robot's UART speaks: one stop bit, no parity.
+    pub const fn at(baud: u32) -> Self {
+        Self {
+            baud,
+            stop: 0,
+            parity: 0,
+        }
+    }
+}
+
+impl fmt::Display for Uart {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{},{}", self.baud, self.stop, self.parity)
+    }
+}
+
+/// One thing that can be set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Setting {
+    /// Waits to be called.
+    Role,
+    /// Name.
+    Name,
+    /// PIN.
+    Pin,
+    /// Speed, stop bits, parity.
+    Uart,
+}
+
+impl Setting {
+    /// Its word in answers.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Role => "role",
+            Self::Name => "name",
+            Self::Pin => "pin",
+            Self::Uart => "uart",
+        }
+    }
+}
+
+/// What the dialogue came to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Outcome {
+    /// The module as it was found.
+    pub before: Module,
+    /// As it was left.
+    pub after: Module,
+    /// What was not as wanted when it was found, in the order in which it is set.
+    pub differed: Vec<Setting>,
+}
+
+/// Sets the module up, or with `only_check` asks it only.
+///
+/// # Errors
+/// [`Hc05Error`]: each thing that goes wrong at a bench with its own advice.
+pub fn converse(
+    port: &mut impl Port,
+    wanted: &Wanted,
+    only_check: bool,
+) -> Result<Outcome, Hc05Error> {
+    let mut dialogue = Dialogue::new(wanted.clone(), only_check);
+    let mut bytes = [0; 256];
+    loop {
+        match dialogue.poll(port.now()) {
+            Action::Send(command) => port
+                .write(command.as_bytes())
+                .map_err(|source| Hc05Error::Port { source })?,
+            Action::WaitUntil(until) => {
+                let timeout = until
+                    .saturating_sub(port.now())
+                    .max(Duration::from_millis(1));
+                let count = port
+                    .read(&mut bytes, timeout)
+                    .map_err(|source| Hc05Error::Port { source })?;
+                dialogue.receive(&bytes[..count]);
+            }
+            Action::Done(outcome) => return outcome,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_no_module_takes_is_refused_before_anything_is_sent() {
+        let with = |name: &str| Wanted::new(115_200, Some(name.to_owned()), None);
+        assert!(with("swimmer 1").is_ok() && with(&"x".repeat(31)).is_ok());
+        for bad in ["", "a\"b", "a,b", "a\r\nAT+ORGL", "näme", &"x".repeat(32)] {
+            assert_eq!(with(bad), Err(WantedError::Name(bad.to_owned())));
+        }
+        let pin = |pin: &str| Wanted::new(115_200, None, Some(pin.to_owned()));
+        assert!(pin("1234").is_ok() && pin("1234567890123456").is_ok());
+        for bad in ["", "123", "12a4", "12345678901234567"] {
+            assert_eq!(pin(bad), Err(WantedError::Pin(bad.to_owned())));
+        }
+        assert_eq!(
+            Wanted::new(115_201, None, None),
+            Err(WantedError::Baud { baud: 115_201 })
+        );
+    }
+}

@@ -1,0 +1,102 @@
+//! What the module sends, line by line.
+
+/// Longest line that is kept; noise of a wrong speed has no ends of lines.
+const MAX_LINE: usize = 128;
+
+/// A line's meaning.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Line {
+    /// The command is done.
+    Ok,
+    /// It is not; the module's code (hexadecimal digits), empty where it gives none.
+    Error(String),
+    /// `+KEY:value`, or `KEY:value` as some makers write.
+    Value(String),
+    /// Neither.
+    Other(String),
+}
+
+impl Line {
+    fn read(text: &str) -> Self {
+        let upper = text.to_ascii_uppercase();
+        if upper == "OK" {
+            return Self::Ok;
+        }
+        if let Some(code) = upper
+            .strip_prefix("ERROR")
+            .or_else(|| upper.strip_prefix("FAIL"))
+        {
+            return Self::Error(code.trim_matches([':', '(', ')', ' ']).to_owned());
+        }
+        let keyed = text.strip_prefix('+').unwrap_or(text);
+        match keyed.split_once(':') {
+            Some((key, value))
+                if !key.is_empty() && key.chars().all(|c| c.is_ascii_uppercase()) =>
+            {
+                Self::Value(value.trim().to_owned())
+            }
+            _ => Self::Other(text.to_owned()),
+        }
+    }
+}
+
+/// Cuts bytes into lines and counts those that are text of no module.
+#[derive(Debug, Default)]
+pub(super) struct Lines {
+    line: Vec<u8>,
+}
+
+impl Lines {
+    /// Takes a byte; the line that it ended, where it ended one.
+    pub(super) fn push(&mut self, byte: u8) -> Option<Line> {
+        if byte != b'\n' && byte != b'\r' {
+            if self.line.len() < MAX_LINE {
+                self.line.push(byte);
+            }
+            return None;
+        }
+        let text = String::from_utf8_lossy(&self.line).trim().to_owned();
+        self.line.clear();
+        (!text.is_empty()).then(|| Line::read(&text))
+    }
+
+    /// Forgets half a line.
+    pub(super) fn clear(&mut self) {
+        self.line.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_all_makers_are_read() {
+        let read = |text: &str| {
+            let mut lines = Lines::default();
+            text.bytes()
+                .filter_map(|byte| lines.push(byte))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(
+            read("+UART:9600,0,0\r\nOK\r\n"),
+            [Line::Value("9600,0,0".to_owned()), Line::Ok]
+        );
+        assert_eq!(
+            read("VERSION:3.0-20170601\n"),
+            [Line::Value("3.0-20170601".to_owned())]
+        );
+        assert_eq!(
+            read("+PIN:\"1234\"\r"),
+            [Line::Value("\"1234\"".to_owned())]
+        );
+        assert_eq!(read("ERROR:(1D)\r\n"), [Line::Error("1D".to_owned())]);
+        assert_eq!(read("ERROR\r\n"), [Line::Error(String::new())]);
+        assert_eq!(read("FAIL\r\n"), [Line::Error(String::new())]);
+        assert_eq!(
+            read("AT+NAME=a:b\r\n"),
+            [Line::Other("AT+NAME=a:b".to_owned())]
+        );
+        assert_eq!(read("\r\n\r\n"), []);
+    }
+}

@@ -1,0 +1,341 @@
+//! The dialogue with the module as a state machine: one command at a time, each answered by OK, by an error, or by nobody.
+
+use std::mem::take;
+use std::time::Duration;
+
+use super::answer::{Line, Lines};
+use super::{Hc05Error, Module, Outcome, Setting, Uart, Wanted};
+
+/// How long an answer is waited for. Asking for its name takes some modules most of a second.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// The first `AT` may meet the rest of an earlier line and a module that still starts.
+const KNOCKS: u32 = 4;
+/// Between an answer and the next command: some makers' modules miss one that comes sooner.
+const REST: Duration = Duration::from_millis(50);
+
+/// What the caller does next.
+#[derive(Debug)]
+pub enum Action {
+    /// Send this.
+    Send(String),
+    /// Nothing until bytes come or the port's clock shows this.
+    WaitUntil(Duration),
+    /// It is over; asked again, it waits for ever.
+    Done(Result<Outcome, Hc05Error>),
+}
+
+/// A command and what its answer leads to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Step {
+    Knock(u32),
+    Version,
+    Ask(Setting),
+    Set(Setting, Quotes),
+    AskAgain(Setting),
+    Reset,
+}
+
+/// Makers disagree on whether a PIN stands in quotes; a module that takes the other style for granted refuses, or keeps
+/// the quotes as part of the PIN. How it writes its own PIN tells which to try first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Quotes {
+    First(bool),
+    Other(bool),
+}
+
+impl Quotes {
+    fn on(self) -> bool {
+        let (Self::First(on) | Self::Other(on)) = self;
+        on
+    }
+}
+
+/// How a command was answered.
+#[derive(Debug)]
+enum Answer {
+    Ok(Option<String>),
+    Error(String),
+    Silence,
+}
+
+/// The dialogue.
+#[derive(Debug)]
+pub struct Dialogue {
+    wanted: Wanted,
+    only_check: bool,
+    step: Step,
+    /// When the present command was sent.
+    sent: Option<Duration>,
+    not_before: Duration,
+    now: Duration,
+    lines: Lines,
+    value: Option<String>,
+    /// Bytes since the first command, and whether our own came back.
+    heard: usize,
+    echoed: bool,
+    quotes: bool,
+    before: Module,
+    after: Module,
+    differed: Vec<Setting>,
+    to_set: Vec<Setting>,
+    to_ask_again: Vec<Setting>,
+    over: Option<Result<Outcome, Hc05Error>>,
+    told: bool,
+}
+
+/// In the order in which they are asked, set and read back; the speed last, so that a failure before it leaves the module
+/// as the computer knows it.
+const SETTINGS: [Setting; 4] = [Setting::Role, Setting::Name, Setting::Pin, Setting::Uart];
+
+impl Dialogue {
+    /// A dialogue at its start.
+    pub fn new(wanted: Wanted, only_check: bool) -> Self {
+        Self {
+            wanted,
+            only_check,
+            step: Step::Knock(1),
+            sent: None,
+            not_before: Duration::ZERO,
+            now: Duration::ZERO,
+            lines: Lines::default(),
+            value: None,
+            heard: 0,
+            echoed: false,
+            quotes: false,
+            before: Module::default(),
+            after: Module::default(),
+            differed: Vec::new(),
+            to_set: Vec::new(),
+            to_ask_again: Vec::new(),
+            over: None,
+            told: false,
+        }
+    }
+
+    /// What to do at this time of the port's clock.
+    pub fn poll(&mut self, now: Duration) -> Action {
+        self.now = now;
+        if let Some(sent) = self.sent
+            && self.over.is_none()
+            && now >= sent + PATIENCE
+        {
+            self.answered(&Answer::Silence);
+        }
+        if let Some(over) = self.over.take() {
+            self.told = true;
+            return Action::Done(over);
+        }
+        if self.told {
+            return Action::WaitUntil(Duration::MAX);
+        }
+        match self.sent {
+            Some(sent) => Action::WaitUntil(sent + PATIENCE),
+            None if now < self.not_before => Action::WaitUntil(self.not_before),
+            None => {
+                self.sent = Some(now);
+                self.lines.clear();
+                Action::Send(self.command() + "\r\n")
+            }
+        }
+    }
+
+    /// Takes bytes that came.
+    pub fn receive(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.heard += 1;
+            let line = self.lines.push(byte);
+            // What comes before a command belongs to none.
+            if self.sent.is_none() || self.over.is_some() {
+                continue;
+            }
+            match line {
+                Some(Line::Ok) => {
+                    let value = take(&mut self.value);
+                    self.answered(&Answer::Ok(value));
+                }
+                Some(Line::Error(code)) => self.answered(&Answer::Error(code)),
+                Some(Line::Value(value)) => self.value = Some(value),
+                Some(Line::Other(text)) => self.echoed |= text == self.command(),
+                None => {}
+            }
+        }
+    }
+
+    fn command(&self) -> String {
+        let key = |setting| match setting {
+            Setting::Role => "ROLE",
+            Setting::Name => "NAME",
+            Setting::Pin => "PSWD",
+            Setting::Uart => "UART",
+        };
+        match self.step {
+            Step::Knock(_) => "AT".to_owned(),
+            Step::Version => "AT+VERSION?".to_owned(),
+            Step::Ask(setting) | Step::AskAgain(setting) => format!("AT+{}?", key(setting)),
+            Step::Set(setting, quotes) => {
+                let value = self.value_wanted(setting).unwrap_or_default();
+                let quote = if quotes.on() { "\"" } else { "" };
+                format!("AT+{}={quote}{value}{quote}", key(setting))
+            }
+            Step::Reset => "AT+RESET".to_owned(),
+        }
+    }
+
+    fn value_wanted(&self, setting: Setting) -> Option<String> {
+        match setting {
+            Setting::Role => Some("0".to_owned()),
+            Setting::Name => self.wanted.name.clone(),
+            Setting::Pin => self.wanted.pin.clone(),
+            Setting::Uart => Some(Uart::at(self.wanted.baud).to_string()),
+        }
+    }
+
+    /// The present command is answered: goes on to the next.
+    fn answered(&mut self, answer: &Answer) {
+        match self.follow(answer) {
+            Ok(Some(step)) => self.step = step,
+            Ok(None) => {
+                self.over = Some(Ok(Outcome {
+                    before: take(&mut self.before),
+                    after: take(&mut self.after),
+                    differed: take(&mut self.differed),
+                }));
+            }
+            Err(error) => self.over = Some(Err(error)),
+        }
+        self.sent = None;
+        self.value = None;
+        self.not_before = self.now + REST;
+    }
+
+    /// The step after this one; none at the end.
+    fn follow(&mut self, answer: &Answer) -> Result<Option<Step>, Hc05Error> {
+        match (self.step, answer) {
+            (Step::Knock(_), Answer::Ok(_)) => Ok(Some(Step::Version)),
+            (Step::Knock(tries), _) if tries < KNOCKS => Ok(Some(Step::Knock(tries + 1))),
+            (Step::Knock(tries), Answer::Error(code)) => Err(Hc05Error::NoAtMode {
+                code: code.clone(),
+                tries,
+            }),
+            (Step::Knock(tries), Answer::Silence) => Err(match (self.heard, self.echoed) {
+                (_, true) => Hc05Error::Echo,
+                (0, false) => Hc05Error::Silent { tries },
+                (bytes, false) => Hc05Error::Noise { bytes },
+            }),
+            // A module that restarts may have no time left to say OK.
+            (Step::Reset, Answer::Ok(_) | Answer::Silence) => Ok(None),
+            (_, Answer::Silence) => Err(Hc05Error::Stopped {
+                command: self.command(),
+            }),
+            (Step::Version, answer) => {
+                if let Answer::Ok(value) = answer {
+                    self.before.version.clone_from(value);
+                }
+                Ok(Some(Step::Ask(SETTINGS[0])))
+            }
+            (Step::Ask(setting), answer) => {
+                if let Answer::Ok(Some(value)) = answer {
+                    self.quotes |= setting == Setting::Pin && value.starts_with('"');
+                    self.before.learn(setting, value);
+                }
+                let next = SETTINGS.iter().position(|&known| known == setting);
+                Ok(next
+                    .and_then(|at| SETTINGS.get(at + 1))
+                    .map_or_else(|| self.all_asked(), |&setting| Some(Step::Ask(setting))))
+            }
+            (Step::Set(setting @ Setting::Pin, Quotes::First(on)), Answer::Error(_)) => {
+                Ok(Some(Step::Set(setting, Quotes::Other(!on))))
+            }
+            (Step::Set(..), Answer::Ok(_)) => Ok(Some(self.next_to_set())),
+            (Step::AskAgain(setting), Answer::Ok(Some(value))) => {
+                self.after.learn(setting, value);
+                self.kept(setting)?;
+                Ok(Some(self.next_to_ask_again()))
+            }
+            // What it would not tell before it need not tell after.
+            (Step::AskAgain(_), _) => Ok(Some(self.next_to_ask_again())),
+            (Step::Set(..) | Step::Reset, Answer::Error(code)) => Err(Hc05Error::Refused {
+                command: self.command(),
+                code: code.clone(),
+            }),
+        }
+    }
+
+    /// Everything is known: finds what differs; none where nothing is to be done.
+    fn all_asked(&mut self) -> Option<Step> {
+        self.after = self.before.clone();
+        self.differed = SETTINGS
+            .into_iter()
+            .filter(|&setting| {
+                let wanted = self.value_wanted(setting);
+                let found = self.before.value(setting);
+                // A role that is not told is the maker's, which waits.
+                wanted.is_some()
+                    && found != wanted
+                    && !(setting == Setting::Role && found.is_none())
+            })
+            .collect();
+        if self.only_check || self.differed.is_empty() {
+            return None;
+        }
+        self.to_set = self.differed.iter().rev().copied().collect();
+        self.to_ask_again.clone_from(&self.to_set);
+        Some(self.next_to_set())
+    }
+
+    fn next_to_set(&mut self) -> Step {
+        let quotes = |setting| Quotes::First(setting == Setting::Pin && self.quotes);
+        match self.to_set.pop() {
+            Some(setting) => Step::Set(setting, quotes(setting)),
+            None => self.next_to_ask_again(),
+        }
+    }
+
+    fn next_to_ask_again(&mut self) -> Step {
+        self.to_ask_again.pop().map_or(Step::Reset, Step::AskAgain)
+    }
+
+    fn kept(&self, setting: Setting) -> Result<(), Hc05Error> {
+        let (wanted, found) = (self.value_wanted(setting), self.after.value(setting));
+        if wanted == found {
+            return Ok(());
+        }
+        Err(Hc05Error::NotKept {
+            setting: setting.word(),
+            wanted: wanted.unwrap_or_default(),
+            found: found.unwrap_or_else(|| "nothing".to_owned()),
+        })
+    }
+}
+
+impl Module {
+    /// Takes the value of an answer.
+    fn learn(&mut self, setting: Setting, value: &str) {
+        let bare = value.trim_matches('"').to_owned();
+        match setting {
+            Setting::Role => self.role = bare.parse().ok(),
+            Setting::Name => self.name = Some(bare),
+            Setting::Pin => self.pin = Some(bare),
+            Setting::Uart => self.uart = uart(&bare),
+        }
+    }
+
+    /// The value as it would be set.
+    fn value(&self, setting: Setting) -> Option<String> {
+        match setting {
+            Setting::Role => self.role.map(|role| role.to_string()),
+            Setting::Name => self.name.clone(),
+            Setting::Pin => self.pin.clone(),
+            Setting::Uart => self.uart.map(|uart| uart.to_string()),
+        }
+    }
+}
+
+fn uart(value: &str) -> Option<Uart> {
+    let mut parts = value.split(',').map(str::trim);
+    Some(Uart {
+        baud: parts.next()?.parse().ok()?,
+        stop: parts.next()?.parse().ok()?,
+        parity: parts.next()?.parse().ok()?,
+    })
+}
