@@ -179,31 +179,44 @@ impl Brain {
         }
     }
 
-    /// Takes what was stored: settings and the newest whole table. Call once, before the first tick. What is not valid
-    /// is as if it were not there.
+    /// Takes what was stored: settings and the newest whole table, each where it can be read. Call once, before the first
+    /// tick. What is not valid is as if it were not there, and is told by [`link_protocol::Flags::STORAGE_FAILED`] until
+    /// something is stored again.
     ///
     /// # Errors
-    /// The storage could not be read; the brain works without.
+    /// Something stored could not be read; the brain works without.
     pub fn load<S: Storage>(&mut self, storage: &mut S) -> Result<(), S::Error> {
         let mut bytes = [0; MAX_SETTINGS];
-        let settings = storage.load_settings(&mut bytes).map(|len| {
-            let bytes = bytes.get(..len?)?;
-            let settings = Settings::decode(bytes, &self.firmware_limits)?;
-            let model =
-                settings::check_configuration(&settings.configuration, &self.firmware_limits)
-                    .ok()?;
-            Some((settings, model))
+        let stored = storage.load_settings(&mut bytes);
+        let settings = stored.map(|len| {
+            if let Some(len) = len
+                && !self.restore(bytes.get(..len).unwrap_or_default())
+            {
+                self.persist.lost();
+            }
         });
-        if let Ok(Some((settings, model))) = settings {
-            self.settings = settings;
-            self.model = model;
-            self.limits = self.firmware_limits.tightened(&settings.configuration);
-        }
-        let table = self.persist.load(storage, self.tables.buffers());
-        if let Ok(Some(index)) = table {
+        let (newest, slots) = self.persist.load(storage, self.tables.buffers());
+        if let Some(index) = newest {
             self.tables.activate_loaded(index);
         }
-        settings.map(|_| ()).and(table.map(|_| ()))
+        let outcome = settings.and(slots);
+        if outcome.is_err() {
+            self.persist.lost();
+        }
+        outcome
+    }
+
+    /// Takes stored settings; false where they are none that the limits allow.
+    fn restore(&mut self, bytes: &[u8]) -> bool {
+        let Some(settings) = Settings::decode(bytes, &self.firmware_limits) else {
+            return false;
+        };
+        let model = settings::check_configuration(&settings.configuration, &self.firmware_limits);
+        let Ok(model) = model else { return false };
+        self.settings = settings;
+        self.model = model;
+        self.limits = self.firmware_limits.tightened(&settings.configuration);
+        true
     }
 
     /// Takes bytes from the link: any bytes, in any split. Acts at once, but pulses change only in [`Self::tick`].

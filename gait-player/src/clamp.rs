@@ -29,6 +29,11 @@ impl Clamp {
         self.last = None;
     }
 
+    /// The last pulses \[ns\]; `None` while they are off.
+    pub(crate) fn last(&self) -> Option<[u32; 2]> {
+        self.last
+    }
+
     /// The pulses for wanted angles \[rad\].
     pub(crate) fn apply(
         &mut self,

@@ -8,6 +8,9 @@ pub const NEUTRAL: [f32; 2] = [0.0; 2];
 
 /// A soft start takes at least this long where it moves at all, µs, so that the tank stays calm.
 const GENTLE_US: f32 = 1.0e6;
+/// And no longer than this, through neutral too: the operator is promised it. Where the limits leave no time for the
+/// ease, it is given up before the time is.
+const LONGEST_US: f32 = 2.0e6;
 
 /// A way in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,33 +24,32 @@ struct Leg {
     from: [f32; 2],
     to: [f32; 2],
     duration_us: u32,
-    eased: bool,
+    /// Share of the eased profile, 0 to 1; the rest goes at a constant rate.
+    ease: f32,
 }
 
 impl Ramp {
-    /// A soft start: eased at both ends, never faster than the limits allow, about a second where they allow it.
+    /// A soft start: eased at both ends, never faster than the limits allow, about a second where they allow it, at most
+    /// two within limits that [`link_protocol::Configuration`] may have.
     pub fn soft(from: [f32; 2], to: [f32; 2], via_neutral: bool, limits: &Limits) -> Self {
-        if via_neutral {
-            let second = Leg::soft(NEUTRAL, to, limits);
-            Self {
-                first: Leg::soft(from, NEUTRAL, limits),
-                second: Some(second),
-            }
-        } else {
-            Self {
-                first: Leg::soft(from, to, limits),
-                second: None,
-            }
+        let corner = if via_neutral { NEUTRAL } else { to };
+        let wanted_us = Leg::wanted_us(from, corner, limits) + Leg::wanted_us(corner, to, limits);
+        let shrink = (LONGEST_US / wanted_us).min(1.0);
+        Self {
+            first: Leg::soft(from, corner, shrink, limits),
+            second: via_neutral.then(|| Leg::soft(corner, to, shrink, limits)),
         }
     }
 
-    /// The way to neutral at the full rate: what every stop takes.
+    /// The way to neutral at the full rate: what every stop takes. It is not checked for crossing, because it must begin
+    /// at once; within [`Limits::ROBOT`]'s largest angle no such way brings the side links nearer than where it starts
+    /// (`tests/crossing.rs`).
     pub fn to_neutral(from: [f32; 2], limits: &Limits) -> Self {
         let first = Leg {
             from,
             to: NEUTRAL,
-            duration_us: whole_ticks(distance(from, NEUTRAL) / limits.max_rate * 1e6),
-            eased: false,
+            duration_us: whole_ticks(fastest_us(from, NEUTRAL, limits)),
+            ease: 0.0,
         };
         Self {
             first,
@@ -74,19 +76,33 @@ impl Ramp {
 }
 
 impl Leg {
-    fn soft(from: [f32; 2], to: [f32; 2], limits: &Limits) -> Self {
+    /// Time that a soft leg would take, µs.
+    fn wanted_us(from: [f32; 2], to: [f32; 2], limits: &Limits) -> f32 {
         // The eased profile s = t²(3 - 2t) is 1.5 times as fast in its middle as on average.
-        let fastest_us = 1.5 * distance(from, to) / limits.max_rate * 1e6;
-        let wanted_us = if fastest_us > 0.0 {
-            fastest_us.max(GENTLE_US.min(3.0 * fastest_us))
+        let eased_us = 1.5 * fastest_us(from, to, limits);
+        eased_us.max(GENTLE_US.min(3.0 * eased_us))
+    }
+
+    /// A soft leg that takes this share of the time it would.
+    fn soft(from: [f32; 2], to: [f32; 2], shrink: f32, limits: &Limits) -> Self {
+        let (fastest_us, wanted_us) = (
+            fastest_us(from, to, limits),
+            Self::wanted_us(from, to, limits),
+        );
+        let duration_us = if shrink < 1.0 {
+            // Rounded down, so that two legs together keep the promise.
+            let ticks = libm::floorf(shrink * wanted_us / TICK_US as f32 + 1e-3);
+            (ticks as u32 * TICK_US).max(whole_ticks(fastest_us))
         } else {
-            0.0
+            whole_ticks(wanted_us)
         };
+        // A share `e` of ease is 1 + e/2 times as fast in its middle as on average.
+        let spare = duration_us as f32 / fastest_us - 1.0;
         Self {
             from,
             to,
-            duration_us: whole_ticks(wanted_us),
-            eased: true,
+            duration_us,
+            ease: (2.0 * spare).clamp(0.0, 1.0),
         }
     }
 
@@ -95,11 +111,7 @@ impl Leg {
             return self.to;
         }
         let t = elapsed_us as f32 / self.duration_us as f32;
-        let s = if self.eased {
-            t * t * (3.0 - 2.0 * t)
-        } else {
-            t
-        };
+        let s = t + self.ease * t * (t * (3.0 - 2.0 * t) - 1.0);
         core::array::from_fn(|joint| self.from[joint] + s * (self.to[joint] - self.from[joint]))
     }
 }
@@ -107,6 +119,11 @@ impl Leg {
 /// The larger of both joints' ways, rad.
 fn distance(from: [f32; 2], to: [f32; 2]) -> f32 {
     libm::fmaxf(libm::fabsf(to[0] - from[0]), libm::fabsf(to[1] - from[1]))
+}
+
+/// Time at the full rate, µs.
+fn fastest_us(from: [f32; 2], to: [f32; 2], limits: &Limits) -> f32 {
+    distance(from, to) / limits.max_rate * 1e6
 }
 
 /// Rounded up to whole ticks: a ramp's end falls on a tick and the last step is no longer than the others.
@@ -146,6 +163,19 @@ mod tests {
         #[test]
         fn a_start_from_neutral_takes_at_most_two_seconds(c in -2.8_f32..2.8, d in -2.8_f32..2.8) {
             prop_assert!(Ramp::soft(NEUTRAL, [c, d], false, &Limits::ROBOT).duration_us() <= 2_000_000);
+        }
+
+        /// From anywhere, through neutral too, with the tightest pair of limits that Configure allows.
+        #[test]
+        fn every_soft_start_takes_at_most_two_seconds(
+            ends in prop::array::uniform4(-1.0_f32..=1.0), corners in any::<bool>(), via in any::<bool>(),
+            max_angle in 0.01_f32..2.8, needs_s in 0.1_f32..=1.0
+        ) {
+            let limits = Limits { max_angle, max_rate: max_angle / needs_s, ..Limits::ROBOT };
+            let [a, b, c, d] = ends.map(|end| max_angle * if corners { end.signum() } else { end });
+            let ramp = Ramp::soft([a, b], [c, d], via, &limits);
+            prop_assert!(ramp.duration_us() <= 2_000_000, "{}", ramp.duration_us());
+            prop_assert!(largest_step(&ramp) <= limits.max_step() * 1.002, "{}", largest_step(&ramp) / limits.max_step());
         }
     }
 

@@ -195,3 +195,73 @@ fn an_arm_during_a_stop_holds_where_it_is() {
     bench.done(play(1, 5_000_000));
     bench.until(StateName::Playing, 2 * SECOND);
 }
+
+/// A trim shifts what the present pulses stand for; a stop right after it must still reach neutral in time, and stand
+/// there for its half second.
+#[test]
+fn a_trim_does_not_stretch_the_stop_after_it() {
+    for (max_angle, max_rate, trims) in [(2.8, 3.5, [5_000, -5_000]), (0.1, 0.1, [400, -550])] {
+        let mut bench = Bench::new();
+        let Reply::Configuration(configuration) = bench.ask(Request::Configuration) else {
+            panic!()
+        };
+        bench.done(Request::Configure(Configuration {
+            max_angle,
+            max_rate,
+            ..configuration
+        }));
+        bench.done(ARM);
+        bench.tick();
+        for trim in trims {
+            bench.done(Request::Trim {
+                joint: Joint::Back,
+                trim,
+            });
+            bench.run(SECOND);
+        }
+        bench.done(Request::Trim {
+            joint: Joint::Back,
+            trim: trims[0],
+        });
+        bench.done(Request::Stop);
+        let took = bench.until(StateName::Settling, 20 * SECOND);
+        let longest = f64::from(max_angle / max_rate) * 1e6 + TICK as f64;
+        assert!(took as f64 <= longest, "{took} µs, {longest} allowed");
+        let outputs = bench.run(SECOND / 2 - TICK);
+        assert!(
+            outputs
+                .windows(2)
+                .all(|pair| pair[0].pulses_ns == pair[1].pulses_ns),
+            "still moving at neutral"
+        );
+    }
+}
+
+/// One that would leave the present pulses outside the largest angle is refused while they are on.
+#[test]
+fn a_trim_that_no_stop_could_undo_in_time_is_refused_while_powered() {
+    let mut bench = Bench::new();
+    let Reply::Configuration(configuration) = bench.ask(Request::Configuration) else {
+        panic!()
+    };
+    bench.done(Request::Configure(Configuration {
+        max_angle: 0.1,
+        max_rate: 0.1,
+        ..configuration
+    }));
+    let trim = |trim| Request::Trim {
+        joint: Joint::Front,
+        trim,
+    };
+    bench.done(trim(-5_000));
+    bench.done(ARM);
+    bench.tick();
+    assert_eq!(
+        bench.refused(trim(5_000)),
+        Refusal::WrongState(StateName::Holding)
+    );
+    bench.done(trim(-4_100));
+    bench.done(Request::Stop);
+    bench.until(StateName::Stopped, 3 * SECOND);
+    bench.done(trim(5_000));
+}

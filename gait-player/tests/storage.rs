@@ -15,6 +15,10 @@ struct Flash {
     settings: Option<Vec<u8>>,
     /// The settings' own store refuses to write.
     settings_broken: bool,
+    /// It cannot be read either.
+    settings_unreadable: bool,
+    /// This slot cannot be read.
+    unreadable: Option<usize>,
     /// Bytes until the power is cut.
     left: usize,
     spent: usize,
@@ -30,6 +34,8 @@ impl Flash {
             slots: [slot.clone(), slot],
             settings: None,
             settings_broken: false,
+            settings_unreadable: false,
+            unreadable: None,
             left: usize::MAX,
             spent: 0,
         }
@@ -46,6 +52,9 @@ impl Storage for Flash {
     type Error = PowerCut;
 
     fn read(&mut self, slot: usize, offset: usize, bytes: &mut [u8]) -> Result<(), PowerCut> {
+        if self.unreadable == Some(slot) {
+            return Err(PowerCut);
+        }
         bytes.copy_from_slice(&self.slots[slot][offset..offset + bytes.len()]);
         Ok(())
     }
@@ -69,6 +78,9 @@ impl Storage for Flash {
     }
 
     fn load_settings(&mut self, bytes: &mut [u8; MAX_SETTINGS]) -> Result<Option<usize>, PowerCut> {
+        if self.settings_unreadable {
+            return Err(PowerCut);
+        }
         Ok(self.settings.as_ref().map(|settings| {
             bytes[..settings.len()].copy_from_slice(settings);
             settings.len()
@@ -82,6 +94,7 @@ impl Storage for Flash {
             return Err(PowerCut);
         }
         self.settings = Some(bytes.to_vec());
+        self.settings_unreadable = false;
         Ok(())
     }
 }
@@ -280,4 +293,56 @@ fn a_table_committed_in_the_middle_of_a_store_is_the_one_that_is_stored() {
         boot(&mut flash).status().table.unwrap().crc32,
         circle(0.4).crc32()
     );
+}
+
+#[test]
+fn a_slot_that_cannot_be_read_leaves_the_other_ones_table() {
+    let mut flash = Flash::new();
+    let mut bench = boot(&mut flash);
+    let tables = [circle(1.0), circle(1.2)];
+    for table in &tables {
+        bench.upload(table);
+        serve(&mut bench, &mut flash).unwrap();
+    }
+    for (slot, table) in tables.iter().enumerate() {
+        flash.unreadable = Some(1 - slot);
+        let mut brain = Brain::new(config());
+        assert_eq!(brain.load(&mut flash), Err(PowerCut), "it is told");
+        let mut bench = Bench::around(brain);
+        bench.greet(1);
+        assert_eq!(stored(&mut bench), Some((table.crc32(), true)));
+        assert!(bench.status().flags.contains(Flags::STORAGE_FAILED));
+    }
+}
+
+/// Settings that cannot be read, or read as none that the limits allow: the robot says so until somebody sets it anew,
+/// and that is stored.
+#[test]
+fn settings_that_are_lost_are_told_and_set_anew() {
+    for unreadable in [true, false] {
+        let mut flash = Flash::new();
+        flash.settings = Some(vec![0xA5; 40]);
+        flash.settings_unreadable = unreadable;
+        let mut brain = Brain::new(config());
+        assert_eq!(brain.load(&mut flash).is_err(), unreadable);
+        let mut bench = Bench::around(brain);
+        bench.greet(1);
+        assert!(bench.status().flags.contains(Flags::STORAGE_FAILED));
+        bench.run(5 * SECOND);
+        assert!(
+            !bench.output.storage_wanted && bench.status().flags.contains(Flags::STORAGE_FAILED)
+        );
+        bench.done(Request::Trim {
+            joint: Joint::Back,
+            trim: 77,
+        });
+        serve(&mut bench, &mut flash).unwrap();
+        assert!(!bench.status().flags.contains(Flags::STORAGE_FAILED));
+        let mut bench = boot(&mut flash);
+        let Reply::Servo(servo) = bench.ask(Request::Servo(Joint::Back)) else {
+            panic!()
+        };
+        assert_eq!(servo.trim, 77);
+        assert!(!bench.status().flags.contains(Flags::STORAGE_FAILED));
+    }
 }

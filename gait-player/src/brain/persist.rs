@@ -21,6 +21,8 @@ pub(crate) struct Persist {
     /// The last try to store them failed: a table goes first.
     settings_failed: bool,
     failed_us: Option<u64>,
+    /// What was stored could not be read, and nothing was stored since.
+    lost: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +41,7 @@ impl Persist {
             settings_unsaved: false,
             settings_failed: false,
             failed_us: None,
+            lost: false,
         }
     }
 
@@ -68,15 +71,21 @@ impl Persist {
     }
 
     pub(crate) fn failed(&self) -> bool {
-        self.failed_us.is_some()
+        self.lost || self.failed_us.is_some()
     }
 
-    /// Reads both slots into both buffers; returns which holds the newest whole table.
+    /// What was stored could not be read.
+    pub(crate) fn lost(&mut self) {
+        self.lost = true;
+    }
+
+    /// Reads both slots into both buffers; returns which holds the newest whole table, and what kept a slot from being
+    /// read: it does not keep the other.
     pub(crate) fn load<S: Storage>(
         &mut self,
         storage: &mut S,
         buffers: &mut [GaitTable; SLOTS],
-    ) -> Result<Option<usize>, S::Error> {
+    ) -> (Option<usize>, Result<(), S::Error>) {
         let mut outcome = Ok(());
         for (slot, buffer) in buffers.iter_mut().enumerate() {
             match read_slot(storage, slot, buffer) {
@@ -91,7 +100,7 @@ impl Persist {
                 Err(error) => outcome = Err(error),
             }
         }
-        outcome.map(|()| self.newest.map(|(slot, _)| slot))
+        (self.newest.map(|(slot, _)| slot), outcome)
     }
 
     /// One step.
@@ -104,6 +113,7 @@ impl Persist {
     ) -> Result<(), S::Error> {
         let result = self.try_step(storage, table, settings);
         self.failed_us = if result.is_err() { Some(now_us) } else { None };
+        self.lost &= result.is_err();
         if result.is_err() && self.step != Step::Idle {
             // Nothing is known of the slot now.
             self.step = Step::Erase;

@@ -4,6 +4,7 @@ use super::state::State;
 use super::work::Work;
 use super::{Brain, count, settings};
 use crate::route::Route;
+use crate::servo::ServoMap;
 use crate::table::check::Checker;
 use link_protocol::{
     Arm, BodyError, Header, Hello, Joint, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Ping, Play,
@@ -168,24 +169,7 @@ impl Brain {
                 self.set_servo(*joint, *settings);
                 DONE
             }
-            Request::Trim { joint, trim } => {
-                if matches!(
-                    self.state,
-                    State::Stopped | State::EStopped | State::Holding { .. } | State::Paused { .. }
-                ) {
-                    settings::check_trim(*trim)?;
-                    self.set_servo(
-                        *joint,
-                        ServoSettings {
-                            trim: *trim,
-                            ..self.settings.servos[joint.index()]
-                        },
-                    );
-                    DONE
-                } else {
-                    Err(Refusal::WrongState(self.state.name()))
-                }
-            }
+            Request::Trim { joint, trim } => self.trim(*joint, *trim),
             Request::Begin(begin) => {
                 self.only_idle()?;
                 let offset = self.tables.begin(header.sequence, *begin)?;
@@ -242,6 +226,31 @@ impl Brain {
     fn set_servo(&mut self, joint: Joint, settings: ServoSettings) {
         self.settings.servos[joint.index()] = settings;
         self.persist.settings_changed();
+    }
+
+    /// Sets a trim. While the pulses are on they stand for another angle from then on, and the joint moves back from there
+    /// no faster than allowed; where that angle would lie beyond the largest, no stop could reach neutral in its time.
+    fn trim(&mut self, joint: Joint, trim: i16) -> Outcome {
+        if !matches!(
+            self.state,
+            State::Stopped | State::EStopped | State::Holding { .. } | State::Paused { .. }
+        ) {
+            return Err(Refusal::WrongState(self.state.name()));
+        }
+        settings::check_trim(trim)?;
+        let settings = ServoSettings {
+            trim,
+            ..self.settings.servos[joint.index()]
+        };
+        if let Some(pulses_ns) = self.clamp.last() {
+            let angle = ServoMap::from(settings).angle(pulses_ns[joint.index()]);
+            if libm::fabsf(angle) > self.limits.max_angle {
+                return Err(Refusal::WrongState(self.state.name()));
+            }
+            self.commanded[joint.index()] = angle;
+        }
+        self.set_servo(joint, settings);
+        DONE
     }
 
     fn commit(&mut self, header: Header, upload: u16) -> Outcome {
