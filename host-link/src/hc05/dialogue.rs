@@ -79,8 +79,15 @@ pub struct Dialogue {
     differed: Vec<Setting>,
     to_set: Vec<Setting>,
     to_ask_again: Vec<Setting>,
-    over: Option<Result<Outcome, Hc05Error>>,
-    told: bool,
+    end: End,
+}
+
+/// Whether the dialogue is over.
+#[derive(Debug)]
+enum End {
+    NotYet,
+    Now(Result<Outcome, Hc05Error>),
+    Told,
 }
 
 /// In the order in which they are asked, set and read back; the speed last, so that a failure before it leaves the module
@@ -107,8 +114,7 @@ impl Dialogue {
             differed: Vec::new(),
             to_set: Vec::new(),
             to_ask_again: Vec::new(),
-            over: None,
-            told: false,
+            end: End::NotYet,
         }
     }
 
@@ -116,17 +122,14 @@ impl Dialogue {
     pub fn poll(&mut self, now: Duration) -> Action {
         self.now = now;
         if let Some(sent) = self.sent
-            && self.over.is_none()
             && now >= sent + PATIENCE
         {
             self.answered(&Answer::Silence);
         }
-        if let Some(over) = self.over.take() {
-            self.told = true;
-            return Action::Done(over);
-        }
-        if self.told {
-            return Action::WaitUntil(Duration::MAX);
+        match std::mem::replace(&mut self.end, End::Told) {
+            End::NotYet => self.end = End::NotYet,
+            End::Now(outcome) => return Action::Done(outcome),
+            End::Told => return Action::WaitUntil(Duration::MAX),
         }
         match self.sent {
             Some(sent) => Action::WaitUntil(sent + PATIENCE),
@@ -145,7 +148,7 @@ impl Dialogue {
             self.heard += 1;
             let line = self.lines.push(byte);
             // What comes before a command belongs to none.
-            if self.sent.is_none() || self.over.is_some() {
+            if self.sent.is_none() {
                 continue;
             }
             match line {
@@ -195,13 +198,13 @@ impl Dialogue {
         match self.follow(answer) {
             Ok(Some(step)) => self.step = step,
             Ok(None) => {
-                self.over = Some(Ok(Outcome {
+                self.end = End::Now(Ok(Outcome {
                     before: take(&mut self.before),
                     after: take(&mut self.after),
                     differed: take(&mut self.differed),
                 }));
             }
-            Err(error) => self.over = Some(Err(error)),
+            Err(error) => self.end = End::Now(Err(error)),
         }
         self.sent = None;
         self.value = None;
