@@ -7,7 +7,7 @@ use host_link::port::SerialPort;
 use serde::Serialize;
 
 use super::access::Access;
-use super::port::{BAUD, FRESH_TWIN};
+use super::port::{BAUD, is_a_path};
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::Rows;
@@ -44,7 +44,7 @@ pub(super) fn run(access: &Access, arguments: &Hc05, output: Output) -> Outcome 
         arguments.pin.clone(),
     )?;
     let path = match access.bare_port() {
-        Some(path) if path != FRESH_TWIN && !path.starts_with("tcp:") => path,
+        Some(path) if is_a_path(path) => path,
         _ => {
             return Err(Failure::BadInput(
                 "name the one USB serial adapter that the HC-05 hangs on: --port with its serial port, as /dev/ttyUSB0 or COM5; without --log, for no frames pass"

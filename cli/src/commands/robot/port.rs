@@ -30,6 +30,11 @@ pub(super) enum Pace {
 /// The names of fresh robots in a virtual tank, and what carries them.
 const FRESH: [(&str, Carrier); 2] = [("twin", Carrier::Twin), ("emulator", Carrier::Emulator)];
 
+/// Whether it names a serial port or a pseudo-terminal.
+pub(super) fn is_a_path(name: &str) -> bool {
+    !name.starts_with("tcp:") && FRESH.iter().all(|(fresh, _)| *fresh != name)
+}
+
 /// What carries the fresh robot of this name, if it is one's.
 pub(super) fn fresh(name: &str) -> Option<Carrier> {
     let mut fresh = FRESH.into_iter();
