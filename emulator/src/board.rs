@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Duration;
 
+use host_link::port::Character;
 use serde_json::{Value, json};
 
 use crate::events::{Answer, Events, Stack, nanos};
-use crate::line::Character;
 
 /// Which board the firmware was built for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -193,15 +193,12 @@ impl Board {
         self.perform(&json!({ "do": "feed", "characters": bytes }))
     }
 
-    /// The same with what a UART can find wrong with each: see [`heard`](crate::heard) for a wrong baud rate.
+    /// The same with what a UART can find wrong with each: see [`heard`](host_link::port::heard) for a wrong baud rate.
     ///
     /// # Errors
     /// As [`Self::run`].
     pub fn feed_characters(&mut self, characters: &[Character]) -> Result<(), EmulatorError> {
-        let characters: Vec<u16> = characters
-            .iter()
-            .map(|heard| heard.data_register())
-            .collect();
+        let characters: Vec<u16> = characters.iter().copied().map(data_register).collect();
         self.perform(&json!({ "do": "feed", "characters": characters }))
     }
 
@@ -338,6 +335,11 @@ impl Board {
         self.now = self.now.max(nanos(answer.now));
         Ok(answer)
     }
+}
+
+/// A character with the error bits of the PL011's data register.
+fn data_register(heard: Character) -> u16 {
+    u16::from(heard.byte) | u16::from(heard.framing) << 8 | u16::from(heard.silent) << 10
 }
 
 impl Drop for Board {

@@ -10,11 +10,9 @@ mod board;
 mod checkout;
 mod commission;
 mod events;
-mod line;
 mod robot;
 
 pub use board::{Board, BoardConfig, BoardKind, EmulatorError};
 pub use commission::commission;
 pub use events::{Edge, Events, Led, Period, PowerCut, Reset, Servo, Stack};
-pub use line::{Character, heard};
 pub use robot::EmulatedRobot;

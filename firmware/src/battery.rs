@@ -11,7 +11,7 @@ use portable_atomic::{AtomicU16, Ordering};
 /// divider is soldered, the pin is not read and the battery is reported as not measured.
 const DIVIDER_MILLI: Option<u32> = divider(option_env!("SWIMMER_BATTERY_DIVIDER_MILLI"));
 /// ADC reference [mV]: the boards' 3.3 V rail.
-const REFERENCE_MV: u32 = 3300;
+const REFERENCE_MV: u64 = 3300;
 /// A reading that never occurs: the ADC has 12 bits.
 const NONE: u16 = u16::MAX;
 /// Samples a second: twenty a control tick, each 2 µs of the CPU.
@@ -42,8 +42,8 @@ pub(crate) fn lowest_mv() -> Option<u16> {
     if reading == NONE {
         return None;
     }
-    let pin_uv = u32::from(reading) * (REFERENCE_MV * 1000 / 4096);
-    u16::try_from(u64::from(pin_uv) * u64::from(DIVIDER_MILLI?) / 1_000_000).ok()
+    let pack_uv = u64::from(reading) * REFERENCE_MV * u64::from(DIVIDER_MILLI?) / 4096;
+    u16::try_from(pack_uv / 1000).ok()
 }
 
 /// Reads the build-time setting; anything but a number of 1000 or more stops the build.

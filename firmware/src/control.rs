@@ -45,6 +45,8 @@ pub(crate) async fn control(mut control: Control) {
                 .brain
                 .receive(now_us(), bytes.get(..count).unwrap_or_default()),
         }
+        // Before the answer leaves: an e-stop that was acknowledged outlives a reset that comes before the next tick.
+        control.watchdog.keep(control.brain.kept());
         control.hand_over_bytes();
     }
 }
@@ -58,7 +60,6 @@ impl Control {
         let output = self.brain.tick(now_us(), &inputs);
         self.servos.set(output.pulses_ns);
         self.led.set(output.led);
-        self.watchdog.keep(output.kept);
         self.watchdog.feed();
         if output.storage_wanted
             && let Err(error) = self.brain.serve_storage(now_us(), &mut self.storage)

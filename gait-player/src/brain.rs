@@ -292,6 +292,11 @@ impl Brain {
         clamped.pulses_ns
     }
 
+    /// [`Output::kept`] as it is now: an e-stop that was just received is in it before its answer is sent.
+    pub fn kept(&self) -> u32 {
+        self.resets.word()
+    }
+
     /// Takes bytes to be sent; returns how many.
     pub fn transmit(&mut self, out: &mut [u8]) -> usize {
         self.outbox.take(out)

@@ -21,6 +21,7 @@ mod wire;
 use std::io;
 use std::time::Duration;
 
+pub use baud::{Character, heard};
 pub use faults::{Faults, FaultsError, FaultsProblem, Outage};
 pub use faulty::{FaultPlan, FaultyPort};
 pub use injector::{FaultCounts, FaultInjector};

@@ -9,6 +9,9 @@ use crate::run::{command, run, target_folder, works};
 use crate::toolchain::{ChipToolchain, TARGET};
 use crate::uf2;
 
+/// Read by `firmware/src/battery.rs`.
+const DIVIDER: &str = "SWIMMER_BATTERY_DIVIDER_MILLI";
+
 /// The boards of `firmware/src/board.rs`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Board {
@@ -29,26 +32,60 @@ impl Board {
             Self::Pico => "pico",
         }
     }
+}
 
-    /// Chooses the board on a cargo command line.
-    pub(crate) fn select(self, cargo: &mut Command) -> &mut Command {
-        cargo.args([
-            "-p",
-            "firmware",
-            "--no-default-features",
-            "--features",
-            self.feature(),
-        ])
+/// One image that can be built.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Variant {
+    pub(crate) board: Board,
+    /// How many times the pack's voltage is above the pin's, in thousandths; none: no divider is soldered.
+    pub(crate) battery_divider_milli: Option<u32>,
+}
+
+impl Variant {
+    /// What the tests boot: both boards as they are, and the Nano with a divider, so that its battery can be low.
+    pub(crate) const TESTED: [Self; 3] = [
+        Self {
+            board: Board::NanoConnect,
+            battery_divider_milli: Some(4700),
+        },
+        Self::plain(Board::NanoConnect),
+        Self::plain(Board::Pico),
+    ];
+
+    pub(crate) const fn plain(board: Board) -> Self {
+        Self {
+            board,
+            battery_divider_milli: None,
+        }
+    }
+
+    /// Chooses it on a cargo command line.
+    fn select(self, cargo: &mut Command) -> &mut Command {
+        cargo.args(["-p", "firmware", "--no-default-features"]);
+        cargo.args(["--features", self.board.feature()]);
+        match self.battery_divider_milli {
+            Some(milli) => cargo.env(DIVIDER, milli.to_string()),
+            None => cargo.env_remove(DIVIDER),
+        }
+    }
+
+    fn name(self) -> String {
+        let board = self.board.feature();
+        match self.battery_divider_milli {
+            Some(milli) => format!("{board}-divider-{milli}"),
+            None => board.to_owned(),
+        }
     }
 }
 
-/// Builds one board's image, weighs it, and leaves `firmware-BOARD.elf` and `.uf2` in `target/firmware-images`.
+/// Builds one image, weighs it, and leaves `firmware-NAME.elf` and `.uf2` in `target/firmware-images`.
 ///
 /// # Errors
 /// When the build fails or the image takes more flash or RAM than promised.
-pub(crate) fn build(toolchain: &ChipToolchain, board: Board) -> Outcome {
+pub(crate) fn build(toolchain: &ChipToolchain, variant: Variant) -> Outcome {
     run(
-        board.select(&mut toolchain.cargo("build")),
+        variant.select(&mut toolchain.cargo("build")),
         "mend what the compiler names above",
     )?;
     let target = target_folder()?;
@@ -57,13 +94,13 @@ pub(crate) fn build(toolchain: &ChipToolchain, board: Board) -> Outcome {
     let image = Image::from_elf(&bytes)?;
     let images = target.join("firmware-images");
     make_folder(&images)?;
-    let name = format!("firmware-{}", board.feature());
+    let name = format!("firmware-{}", variant.name());
     for (ending, content) in [("elf", &bytes), ("uf2", &uf2::from_segments(image.flash))] {
         let path = images.join(&name).with_extension(ending);
         write(&path, content)?;
         println!("{}", path.display());
     }
-    println!("{}: {}", board.feature(), image.footprint);
+    println!("{}: {}", variant.name(), image.footprint);
     image.footprint.check()
 }
 
@@ -71,7 +108,7 @@ pub(crate) fn build(toolchain: &ChipToolchain, board: Board) -> Outcome {
 ///
 /// # Errors
 /// When probe-rs is missing, finds no probe, or the build fails.
-pub(crate) fn flash(toolchain: &ChipToolchain, board: Board) -> Outcome {
+pub(crate) fn flash(toolchain: &ChipToolchain, variant: Variant) -> Outcome {
     if !works(command("probe-rs").arg("--version")) {
         return Err(Failure::new(
             "looking for `probe-rs`",
@@ -79,13 +116,13 @@ pub(crate) fn flash(toolchain: &ChipToolchain, board: Board) -> Outcome {
             format!(
                 "install it as https://probe.rs/docs/getting-started/installation says; or flash without a probe: \
                  `cargo xtask firmware --board {0}`, plug the board in with its BOOTSEL button held (Nano: press reset \
-                 twice), and copy target/firmware-images/firmware-{0}.uf2 onto the drive RPI-RP2",
-                board.feature()
+                 twice), and copy the .uf2 file that it names onto the drive RPI-RP2",
+                variant.board.feature()
             ),
         ));
     }
     run(
-        board.select(&mut toolchain.cargo("run")),
+        variant.select(&mut toolchain.cargo("run")),
         "check the probe's cable and `probe-rs list`",
     )
 }

@@ -21,7 +21,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use failure::{Failure, Outcome};
-use firmware::Board;
+use firmware::{Board, Variant};
 use toolchain::ChipToolchain;
 
 /// The project's own chores.
@@ -37,11 +37,17 @@ enum Chore {
         /// One board instead of all.
         #[arg(long)]
         board: Option<Board>,
+        /// A divider is soldered to the battery pin: how many times the pack's voltage is above the pin's, in thousandths.
+        #[arg(long, value_name = "MILLI", value_parser = clap::value_parser!(u32).range(1000..))]
+        battery_divider: Option<u32>,
     },
     /// Flashes the firmware through a debug probe and shows its log (probe-rs).
     Flash {
         #[arg(long, default_value = "nano-connect")]
         board: Board,
+        /// As for `firmware`.
+        #[arg(long, value_name = "MILLI", value_parser = clap::value_parser!(u32).range(1000..))]
+        battery_divider: Option<u32>,
     },
     /// Installs the RP2040 emulator that boots the firmware in tests (npm).
     Emulator,
@@ -84,14 +90,30 @@ fn perform(chore: Chore) -> Outcome {
             println!("{}", ChipToolchain::find_or_make()?.describe());
             Ok(())
         }
-        Chore::Firmware { board } => {
+        Chore::Firmware {
+            board,
+            battery_divider: battery_divider_milli,
+        } => {
             let toolchain = ChipToolchain::find_or_make()?;
             let boards = board.map_or(Board::ALL.to_vec(), |board| vec![board]);
             boards
                 .into_iter()
-                .try_for_each(|board| firmware::build(&toolchain, board))
+                .map(|board| Variant {
+                    board,
+                    battery_divider_milli,
+                })
+                .try_for_each(|variant| firmware::build(&toolchain, variant))
         }
-        Chore::Flash { board } => firmware::flash(&ChipToolchain::find_or_make()?, board),
+        Chore::Flash {
+            board,
+            battery_divider: battery_divider_milli,
+        } => {
+            let variant = Variant {
+                board,
+                battery_divider_milli,
+            };
+            firmware::flash(&ChipToolchain::find_or_make()?, variant)
+        }
         Chore::Emulator => emulator::install(),
         Chore::Bench { peers } => bench::run_all(&peers),
         Chore::Fuzz { target, seconds } => fuzz::run_targets(target.as_deref(), seconds),
@@ -128,5 +150,8 @@ mod tests {
         assert!(Chore::try_parse_from(["xtask", "firmware", "--board", "pico"]).is_ok());
         assert!(Chore::try_parse_from(["xtask", "flash", "--board", "nano-connect"]).is_ok());
         assert!(Chore::try_parse_from(["xtask", "flash", "--board", "uno"]).is_err());
+        let divider = |milli| ["xtask", "firmware", "--battery-divider", milli];
+        assert!(Chore::try_parse_from(divider("4700")).is_ok());
+        assert!(Chore::try_parse_from(divider("470")).is_err());
     }
 }

@@ -4,18 +4,18 @@
 use super::{Brain, Swap};
 use crate::ramp::Ramp;
 use crate::route::{Decision, Route};
-use crate::table::check::{Checker, Facts};
+use crate::table::check::{CLEARANCE_WORK, Checker, Facts};
 use link_protocol::{CrossingPlace, Header, Play, Refusal, Reply};
 
 use super::state::{Progress, State};
 
-/// Units of work a tick while pulses are on; a unit takes about 0.2 ms of the chip (24 units made a tick of 5.4 ms in an
-/// emulator, of which 0.84 ms are the tick itself). One look at a way is the least that gets on.
-const POWERED_WORK: u32 = LOOK_WORK;
-/// Units while they are off and nothing waits for the tick.
-const IDLE_WORK: u32 = 90;
+/// Units of work a tick while pulses are on. A unit takes up to 0.22 ms of the chip and a tick 1.1 ms without any, so that
+/// both stay below the promised 2 ms (the emulated board measures it).
+const POWERED_WORK: u32 = 3;
+/// Units while they are off and nothing waits for the tick: 16 ms.
+const IDLE_WORK: u32 = 70;
 /// Units of one look at a way.
-const LOOK_WORK: u32 = 10;
+const LOOK_WORK: u32 = CLEARANCE_WORK;
 
 /// What is being worked on.
 #[derive(Clone, Debug)]

@@ -17,7 +17,7 @@ const RATE_SLACK: f32 = 1.005;
 const CLOSING_FACTOR: f32 = 2.0;
 const CLOSING_SLACK: f32 = 20.0;
 /// Units of work of one evaluation of the clearance; an interval's angles and slopes are one unit.
-const CLEARANCE_WORK: u32 = 10;
+pub(crate) const CLEARANCE_WORK: u32 = 2;
 /// Share of the margin that may be given up between two looks at the clearance.
 const GIVEN_UP: f32 = 0.5;
 

@@ -4,9 +4,28 @@
 /// Bits of a byte on the line: start, eight of data, stop.
 const BITS: u64 = 10;
 
-/// Bytes that a receiver at `read_baud` hears when `bytes` are sent at `sent_baud`, the line idle before and after. A byte
-/// without its stop bit is dropped, as a driver drops it.
+/// A character as a serial receiver hears it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Character {
+    /// Its eight bits.
+    pub byte: u8,
+    /// No stop bit where one should be: a framing error.
+    pub framing: bool,
+    /// Nothing but zeros, the stop bit too: a break.
+    pub silent: bool,
+}
+
+/// Bytes that a receiver at `read_baud` hears when `bytes` are sent at `sent_baud`. A byte without its stop bit is dropped,
+/// as a driver drops it.
 pub(crate) fn misread(bytes: &[u8], sent_baud: u32, read_baud: u32) -> Vec<u8> {
+    heard(bytes, sent_baud, read_baud)
+        .into_iter()
+        .filter_map(|heard| (!heard.framing).then_some(heard.byte))
+        .collect()
+}
+
+/// Characters that a receiver at `read_baud` hears when `bytes` are sent at `sent_baud`, the line idle before and after.
+pub fn heard(bytes: &[u8], sent_baud: u32, read_baud: u32) -> Vec<Character> {
     let (sent, read) = (u64::from(sent_baud.max(1)), u64::from(read_baud.max(1)));
     // Time in units in which a sent bit takes 2 * `read` and a read bit 2 * `sent`, so that halves are whole.
     let (sent_bit, read_bit) = (2 * read, 2 * sent);
@@ -39,9 +58,13 @@ pub(crate) fn misread(bytes: &[u8], sent_baud: u32, read_baud: u32) -> Vec<u8> {
             time = (time / sent_bit + 1) * sent_bit;
             continue;
         }
-        if sample(9) {
-            heard.push((0..8).fold(0, |byte, bit| byte | u8::from(sample(bit + 1)) << bit));
-        }
+        let byte = (0..8).fold(0, |byte, bit| byte | u8::from(sample(bit + 1)) << bit);
+        let framing = !sample(9);
+        heard.push(Character {
+            byte,
+            framing,
+            silent: framing && byte == 0,
+        });
         // The receiver looks for the next edge from the middle of the stop bit on; a line still low must rise first.
         time += 9 * read_bit + read_bit / 2;
         while time < end && !level(time) {
@@ -70,6 +93,12 @@ mod tests {
         // Twice the rate: each bit is read twice; low for 18 of the receiver's bits has no stop bit.
         assert_eq!(misread(&[0x00], 115_200, 230_400), Vec::<u8>::new());
         assert_eq!(misread(&[0xFF], 115_200, 230_400), [0xFE]);
+    }
+
+    #[test]
+    fn a_slow_zero_is_a_break() {
+        let heard = heard(&[0], 9_600, 115_200);
+        assert!(heard.len() == 1 && heard[0].silent, "{heard:?}");
     }
 
     #[test]

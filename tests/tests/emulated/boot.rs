@@ -1,85 +1,59 @@
-//! From power to the first answer, and what a reset leaves.
+//! From power to the first answer, on both boards.
 
 use std::time::Duration;
 
-use host_link::Port as _;
 use link_protocol::{Board, ResetReason, StateName};
 
-use crate::rig;
+use crate::promise::seen;
+use crate::rig::{self, Image};
 
 /// Power to the answered greeting: under 200 ms.
 #[test]
 fn a_board_answers_hello_soon_after_power() {
-    let Some(port) = rig::port() else { return };
-    let robot = host_link::Robot::connect(port, 1).unwrap();
-    let took = robot.port().now();
-    println!("boot to Hello's answer: {} ms", took.as_millis());
-    assert!(took < Duration::from_millis(200), "{took:?}");
-    let info = robot.info();
-    assert_eq!(info.board, Board::NanoRp2040Connect);
-    assert_eq!(info.reset_reason, ResetReason::PowerOn);
+    for (image, name, board) in [
+        (Image::Nano, "Nano", Board::NanoRp2040Connect),
+        (Image::Pico, "Pico", Board::Pico),
+    ] {
+        let Some(port) = rig::port(image) else { return };
+        let mut robot = host_link::Robot::connect(port, 1).unwrap();
+        let took = host_link::Port::now(robot.port());
+        assert!(took < Duration::from_millis(200), "{name}: {took:?}");
+        let info = robot.info();
+        assert_eq!(info.board, board);
+        assert_eq!(info.reset_reason, ResetReason::PowerOn);
+        assert_eq!(robot.status().unwrap().state, StateName::Stopped);
+        seen(
+            &format!("power to the answered greeting, {name}"),
+            &format!("{} ms, Stopped, reason `power on`", took.as_millis()),
+        );
+    }
 }
 
-/// R7: whichever task hangs, the chip resets within half a second, into Stopped, without pulses, with the reason told.
+/// The Pico's pins and clock: what differs between the boards is only wiring.
 #[test]
-fn a_hung_task_resets_the_board() {
-    let Some(mut robot) = rig::robot() else {
+fn the_pico_pulses_and_keeps_silent_like_the_nano() {
+    let Some(mut robot) = rig::robot_of(Image::Pico) else {
         return;
     };
-    let board = robot.port_mut().device_mut().board_mut();
-    let tasks = board.symbols("TaskStorage").unwrap();
-    let polls: Vec<u32> = tasks
-        .into_iter()
-        .filter_map(|(name, address)| name.contains("4poll").then_some(address))
-        .collect();
-    assert!(polls.len() >= 3, "{polls:?}");
-    let mut hung = 0;
-    for poll in polls {
-        robot.arm(false).unwrap();
-        rig::pass(&mut robot, Duration::from_millis(100));
-        assert!(
-            rig::events(&mut robot)
-                .periods
-                .iter()
-                .any(emulator::Period::powered)
-        );
-        let board = robot.port_mut().device_mut().board_mut();
-        let before = board.now();
-        board.patch(poll, BRANCH_TO_ITSELF).unwrap();
-        robot.port_mut().write(&[0; 4]).unwrap(); // something to do for a task that waits for bytes
-        rig::pass(&mut robot, Duration::from_secs(1));
-        let events = rig::events(&mut robot);
-        let Some(reset) = events.resets.first() else {
-            println!("{poll:#x} is not polled any more: a task that ended");
-            robot.stop().unwrap();
-            continue;
-        };
-        hung += 1;
-        let after = reset.at().checked_sub(before).unwrap();
-        println!(
-            "task at {poll:#x} hung: reset after {} ms",
-            after.as_millis()
-        );
-        assert!(after <= Duration::from_millis(500), "{after:?}");
-        let later = events
-            .periods
-            .iter()
-            .filter(|period| period.at() > reset.at());
-        assert!(later.clone().count() > 0);
-        assert!(
-            later.clone().all(|period| !period.powered()),
-            "pulses after the reset"
-        );
-        robot.reconnect().unwrap();
-        assert_eq!(robot.info().reset_reason, ResetReason::Watchdog);
-        assert_eq!(robot.status().unwrap().state, StateName::Stopped);
-        // R8: three resets in 60 s would latch; a clear is an explicit act.
-        rig::pass(&mut robot, Duration::from_secs(61));
-        robot.reconnect().unwrap();
-        robot.clear_resets().unwrap();
+    robot.arm(false).unwrap();
+    rig::live(&mut robot, Duration::from_millis(200));
+    let events = rig::events(&mut robot);
+    let powered = events.periods.iter().filter(|period| period.powered());
+    assert!(powered.clone().count() >= 8);
+    for period in powered {
+        assert!((period.length_us() - 20_000.0).abs() < 1e-9);
+        assert!(rig::angles(period).iter().all(|angle| angle.abs() < 5e-3));
     }
-    assert!(hung >= 3, "only {hung} tasks were still alive");
+    // Held, the LED is lit: on the Pico's pin, too.
+    assert!(events.led.last().is_some_and(|led| led.on));
+    rig::board_of(&mut robot).set_connected(false).unwrap();
+    rig::pass(&mut robot, Duration::from_millis(20));
+    let mut bytes = [0; 4096];
+    let mut sent = || host_link::Port::read(robot.port_mut(), &mut bytes, Duration::ZERO).unwrap();
+    sent();
+    let silent = sent();
+    rig::pass(&mut robot, Duration::from_millis(300));
+    let mut bytes = [0; 4096];
+    let later = host_link::Port::read(robot.port_mut(), &mut bytes, Duration::ZERO).unwrap();
+    assert_eq!((silent, later), (0, 0), "bytes to an unconnected radio");
 }
-
-/// Thumb's `b .`
-const BRANCH_TO_ITSELF: u16 = 0xe7fe;

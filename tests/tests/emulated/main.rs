@@ -3,10 +3,13 @@
 //! Needs the ELF of `cargo xtask firmware` and the emulator of `cargo xtask emulator` (`npm ci` in `emulator/board`); where one
 //! is missing every test here says so and does nothing. `cargo xtask test` provides both.
 
+mod battery;
 mod boot;
 mod failsafes;
 mod flash;
+mod load;
 mod promise;
 mod radio;
+mod resets;
 mod rig;
 mod session;

@@ -3,16 +3,15 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use emulator::{Character, heard};
 use gait_player::GaitTable;
-use host_link::port::{FaultPlan, FaultyPort};
+use host_link::port::{Character, FaultPlan, FaultyPort, heard};
 use host_link::{Port as _, Robot};
 use link_protocol::{Header, Hello, MAX_ENCODED, Message, Request, SCHEMA_KEY, StateName, encode};
 
 use crate::promise::seen;
 use crate::rig::{self, Port};
 
-const BAUD: f64 = 115_200.0;
+const BAUD: u32 = 115_200;
 
 /// Bytes that the board has sent in this time.
 fn sent_within(robot: &mut Robot<Port>, time: Duration) -> usize {
@@ -74,7 +73,7 @@ fn a_wrong_baud_rate_and_a_broken_line_do_nothing() {
     rig::pass(&mut robot, Duration::from_millis(100));
     rig::events(&mut robot);
     let estop = frame(&Message::Request(Request::EStop)).repeat(20);
-    let lines: Vec<(String, Vec<Character>)> = [9_600.0, 38_400.0, 57_600.0, 230_400.0]
+    let lines: Vec<(String, Vec<Character>)> = [9_600, 38_400, 57_600, 230_400]
         .map(|baud| (format!("{baud} baud"), heard(&estop, baud, BAUD)))
         .into_iter()
         .chain([

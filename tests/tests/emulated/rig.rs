@@ -7,22 +7,40 @@ use std::time::Duration;
 use emulator::{Board, BoardConfig, BoardKind, EmulatedRobot, Events, Period};
 use gait_player::GaitTable;
 use gait_player::servo::ServoMap;
-use host_link::Robot;
 use host_link::port::{Device as _, VirtualPort, WireSpeed};
+use host_link::{LinkError, Port as _, Robot};
+use link_protocol::{Refusal, StateName};
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 use swimmer_model::Gait as _;
 use twin::{TwinConfig, World, configuration};
 
 pub(crate) type Port = VirtualPort<EmulatedRobot>;
 
+/// An image that `cargo xtask test` builds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Image {
+    /// The Nano's.
+    Nano,
+    /// The Nano's with a divider of 4.7 at its battery pin.
+    NanoDivider,
+    /// The Pico's.
+    Pico,
+}
+
 /// What is needed, or none with a loud word about what is missing.
-pub(crate) fn config() -> Option<BoardConfig> {
+fn config(image: Image) -> Option<BoardConfig> {
+    let (kind, divider) = match image {
+        Image::Nano => (BoardKind::NanoConnect, None),
+        Image::NanoDivider => (BoardKind::NanoConnect, Some("divider-4700")),
+        Image::Pico => (BoardKind::Pico, None),
+    };
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
-    let config = BoardConfig::of_checkout(
-        Path::new(env!("CARGO_MANIFEST_DIR")),
-        target.as_deref(),
-        BoardKind::NanoConnect,
-    );
+    let mut config = BoardConfig::of_checkout(here, target.as_deref(), kind);
+    if let Some(divider) = divider {
+        let name = format!("firmware-{}-{divider}.elf", kind.word());
+        config.firmware.set_file_name(name);
+    }
     match config.missing() {
         None => Some(config),
         Some(missing) => {
@@ -33,26 +51,87 @@ pub(crate) fn config() -> Option<BoardConfig> {
 }
 
 /// A board that was just switched on.
-pub(crate) fn board() -> Option<Board> {
-    Some(Board::start(&config()?).unwrap())
+pub(crate) fn board(image: Image) -> Option<Board> {
+    Some(Board::start(&config(image)?).unwrap())
 }
 
 /// The robot of the paper with a board behind a line of 115 200 baud.
-pub(crate) fn port() -> Option<Port> {
+pub(crate) fn port(image: Image) -> Option<Port> {
     let file = SwimmerFile::preset("robot").unwrap();
     let world = World::new(&TwinConfig::new(&file, 1)).unwrap();
-    let robot = EmulatedRobot::new(board()?, world).unwrap();
+    let robot = EmulatedRobot::new(board(image)?, world).unwrap();
     Some(VirtualPort::new(robot, WireSpeed::robot()))
 }
 
-/// The same, greeted and configured.
+/// The Nano's, greeted and configured.
 pub(crate) fn robot() -> Option<Robot<Port>> {
-    let mut robot = Robot::connect(port()?, 1).unwrap();
+    robot_of(Image::Nano)
+}
+
+/// Any image's, greeted and configured.
+pub(crate) fn robot_of(image: Image) -> Option<Robot<Port>> {
+    let mut port = port(image)?;
+    set_pack(port.device_mut().board_mut(), 5.0);
+    let mut robot = Robot::connect(port, 1).unwrap();
     let file = SwimmerFile::preset("robot").unwrap();
     robot
         .configure(configuration(&file.swimmer, &ServoFile::default()))
         .unwrap();
     Some(robot)
+}
+
+/// The board under a robot.
+pub(crate) fn board_of(robot: &mut Robot<Port>) -> &mut Board {
+    robot.port_mut().device_mut().board_mut()
+}
+
+/// The pack's voltage \[V\], through a divider of 4.7.
+pub(crate) fn set_pack(board: &mut Board, volts: f64) {
+    board.set_battery(volts / 4.7).unwrap();
+}
+
+/// Lets time pass with the session alive.
+pub(crate) fn live(robot: &mut Robot<Port>, time: Duration) {
+    robot.listen(time, |_| ControlFlow::Continue(())).unwrap();
+}
+
+/// Lives until telemetry tells of a state.
+pub(crate) fn live_until(robot: &mut Robot<Port>, state: StateName) {
+    robot
+        .listen(Duration::from_secs(20), |telemetry| match telemetry {
+            Some(telemetry) if telemetry.state == state => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        })
+        .unwrap();
+    let told = robot.telemetry().map(|telemetry| telemetry.state);
+    assert_eq!(told, Some(state));
+}
+
+/// Thumb's `b .`: a task whose first instruction this is hangs.
+const BRANCH_TO_ITSELF: u16 = 0xe7fe;
+
+/// Where the firmware's tasks begin.
+pub(crate) fn tasks(robot: &mut Robot<Port>) -> Vec<u32> {
+    let symbols = board_of(robot).symbols("TaskStorage").unwrap();
+    let polls = symbols
+        .into_iter()
+        .filter_map(|(name, address)| name.contains("4poll").then_some(address));
+    polls.collect()
+}
+
+/// Hangs one task, and lets time pass until the watchdog has had its say.
+pub(crate) fn hang(robot: &mut Robot<Port>, task: u32) {
+    board_of(robot).patch(task, BRANCH_TO_ITSELF).unwrap();
+    robot.port_mut().write(&[0; 4]).unwrap(); // something to do for a task that waits for bytes
+    pass(robot, Duration::from_millis(600));
+}
+
+/// What a request was refused for.
+pub(crate) fn refusal<T: std::fmt::Debug>(outcome: Result<T, LinkError>) -> Refusal {
+    match outcome {
+        Err(LinkError::Refused { refusal, .. }) => refusal,
+        other => panic!("not refused: {other:?}"),
+    }
 }
 
 /// 512 knots of a circle.
@@ -89,4 +168,15 @@ pub(crate) fn angles(period: &Period) -> [f64; 2] {
     period
         .pulses_us()
         .map(|us| (us - f64::from(centre_ns) * 1e-3) * slope)
+}
+
+/// When the pulses began to move as only a stop moves them: faster than any gait or soft start of these tests.
+pub(crate) fn ramp_begins(periods: &[Period]) -> Duration {
+    /// Largest step of an angle in 20 ms that is none of a stop \[rad\].
+    const GENTLE: f64 = 0.05;
+    let moved = periods.windows(2).find(|pair| {
+        let [then, now] = [angles(&pair[0]), angles(&pair[1])];
+        pair[0].powered() && pair[1].powered() && (0..2).any(|i| (now[i] - then[i]).abs() > GENTLE)
+    });
+    moved.expect("no ramp")[1].at()
 }
