@@ -2,14 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use swimmer_files::{AnyGait, Campaign, FileError, PointName, Reflectors, SwimmerFile};
+use swimmer_files::{
+    AnyGait, Campaign, FileError, PointName, Reflectors, SwimmerFile, TrackSettings,
+};
 use swimmer_model::{InvalidSwimmer, Swimmer};
 
 use crate::cycles::{Clock, CycleError, Cycles, Projection};
 use crate::fit::{self, Fit, FitError, FitOptions, Observation};
 use crate::poses::{self, PoseError, PoseOptions, PoseTrack};
 use crate::prediction::{JointPath, PredictionError};
-use crate::tracks::{TableOptions, TrackError, TrackFile, read_tracks_with};
+use crate::tracks::{TrackError, TrackFile, TrackOptions, read_tracks_with};
 
 /// One run, read.
 #[derive(Debug, Clone)]
@@ -39,13 +41,10 @@ impl CampaignData {
     /// # Errors
     /// [`CalibrateError`] for the first file that cannot be read.
     pub fn load(campaign: &Campaign) -> Result<Self, CalibrateError> {
+        let options = track_options(&campaign.reflectors, &campaign.tracks);
         let read = |run: &swimmer_files::CampaignRun| {
-            let bytes = std::fs::read(&run.track).map_err(|cause| CalibrateError::Open {
-                file: run.track.clone(),
-                cause: cause.to_string(),
-            })?;
             Ok(RunData {
-                track: read_tracks_with(&bytes, &run.track, &table_options(&campaign.reflectors))?,
+                track: load_tracks(&run.track, &options)?,
                 file: run.track.clone(),
                 gait: run.gait.load()?,
                 gait_name: run.gait.to_string(),
@@ -62,26 +61,41 @@ impl CampaignData {
     }
 }
 
-/// What the reflectors say about the columns of a plain table.
-pub fn table_options(reflectors: &Reflectors) -> TableOptions {
+/// What reflectors and settings of a campaign say about its tracks.
+pub fn track_options(reflectors: &Reflectors, settings: &TrackSettings) -> TrackOptions {
     let pair = |point: &PointName| match point {
         PointName::Columns(x, y) => Some([x.clone(), y.clone()]),
         PointName::Named(_) | PointName::Auto => None,
     };
-    TableOptions {
+    TrackOptions {
+        metres_per_unit: settings.scale,
+        rate_hz: settings.rate_hz,
+        axes: settings.axes,
+        likelihood: settings.likelihood,
         pairs: [&reflectors.front, &reflectors.back]
             .into_iter()
             .filter_map(|r| pair(&r.point))
             .collect(),
-        ..TableOptions::default()
     }
+}
+
+/// Opens and reads a tracking file, one line at a time.
+///
+/// # Errors
+/// [`CalibrateError`] when it cannot be opened or read.
+pub fn load_tracks(file: &Path, options: &TrackOptions) -> Result<TrackFile, CalibrateError> {
+    let stream = std::fs::File::open(file).map_err(|cause| CalibrateError::Open {
+        file: file.to_owned(),
+        cause: cause.to_string(),
+    })?;
+    Ok(read_tracks_with(stream, file, options)?)
 }
 
 /// Why there is no calibration.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
     /// A tracking file cannot be opened.
-    #[error("cannot read {}: {cause}", file.display())]
+    #[error("cannot read {}: {cause}; check the path and its permissions", file.display())]
     Open {
         /// The file.
         file: PathBuf,
@@ -129,7 +143,10 @@ impl CalibrateError {
         match self {
             Self::Open { .. } | Self::Track(_) | Self::File(_) | Self::Prediction { .. } => true,
             Self::Poses { cause, .. } => {
-                matches!(cause, PoseError::NoPoint { .. } | PoseError::SamePlace)
+                matches!(
+                    cause,
+                    PoseError::NoPoint { .. } | PoseError::SamePlace | PoseError::NoScale { .. }
+                )
             }
             Self::Fit(cause) => matches!(cause, FitError::Level { .. } | FitError::Swimmer(_)),
             Self::Cycles { .. } => false,
@@ -368,15 +385,11 @@ pub fn load_run(
     file: &Path,
     gait: &swimmer_files::GaitSpec,
     period_s: f64,
+    options: &TrackOptions,
 ) -> Result<RunData, CalibrateError> {
-    let bytes = std::fs::read(file).map_err(|cause| CalibrateError::Open {
-        file: file.to_owned(),
-        cause: cause.to_string(),
-    })?;
-    let track = read_tracks_with(&bytes, file, &TableOptions::default())?;
     Ok(RunData {
         file: file.to_owned(),
-        track,
+        track: load_tracks(file, options)?,
         gait: gait.load()?,
         gait_name: gait.to_string(),
         period_s,

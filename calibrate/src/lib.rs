@@ -20,7 +20,7 @@ pub mod tracks;
 
 pub use campaign::{
     CalibrateError, CampaignData, CampaignFit, RunData, RunResult, calibrate_campaign,
-    calibrate_run, load_run, table_options,
+    calibrate_run, load_run, load_tracks, track_options,
 };
 pub use cycles::{Cycle, CycleError, CycleWarning, Cycles, LeftOut, Statistics};
 pub use fit::{Fit, FitError, FitOptions, FitWarning, Intervals, RunResidual, c_t_form};
@@ -29,6 +29,6 @@ pub use poses::{
 };
 pub use prediction::{PredictedCycle, PredictionError, joint_path, predict};
 pub use tracks::{
-    PointKind, TableOptions, TrackError, TrackFile, TrackFormat, TrackPoint, TrackProblem,
+    PointKind, TrackError, TrackFile, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
     TrackWarning, Unit, read_tracks, read_tracks_with,
 };

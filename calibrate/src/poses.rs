@@ -56,6 +56,17 @@ pub enum PoseError {
         /// The names that are there.
         points: String,
     },
+    /// Nobody said how long the track's unit is.
+    #[error(
+        "the track's lengths are in `{unit}`; say how many metres that is (`scale` under [tracks] in the campaign, or --scale){}",
+        scale.map_or(String::new(), |scale| format!("; by the reflectors' distance it is {scale:.6e}"))
+    )]
+    NoScale {
+        /// The unit.
+        unit: crate::Unit,
+        /// The scale at which the reflectors' distance is right, where they can be told.
+        scale: Option<f64>,
+    },
     /// Both reflectors are at the same place on the link.
     #[error("both reflectors sit at the same place of the link, so they show no heading")]
     SamePlace,
@@ -232,7 +243,7 @@ pub fn poses(
         .flat_map(|row| [row.front, row.back])
         .collect();
     let distance = followed.report.distance_m;
-    let plane = Plane::fit(&points);
+    let plane = Plane::fit(&points, track.axes);
     let mut warnings = Vec::new();
     if (distance / followed.expected_m - 1.0).abs() > 0.02 {
         warnings.push(PoseWarning::Distance {

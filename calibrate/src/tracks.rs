@@ -1,7 +1,21 @@
 //! Tracking files: which format is it, what does it hold, where is each point in each frame?
 //!
-//! Read: the wide Motive export (format 1.2 to 1.25) by the meaning of its headers, and a plain table with named columns.
-//! Every other format that is recognised is named ([`TrackError::NotReadYet`]).
+//! Which format it is, the first lines say and never the file's name:
+//!
+//! | format | [`TrackFile::format`] | reader |
+//! |---|---|---|
+//! | Motive CSV 1.2 to 1.25, also saved again from a spreadsheet | `motive-1.23` | `wide` |
+//! | Motive CSV without its header | `motive-without-header` | `headerless` |
+//! | record lines of Tracking Tools 2.x and Motive 1.x | `trackingtools-1.0`, `motive-1.1` | `records` |
+//! | Tracker (video), one track, several, side by side | `tracker` | `tracker` |
+//! | DeepLabCut CSV, one animal or several | `deeplabcut` | `deeplabcut` |
+//! | TRC | `trc` | `trc` |
+//! | Qualisys TSV | `qtm` | `qtm` |
+//! | Vicon Nexus CSV | `vicon` | `vicon` |
+//! | a table with named columns | `table` | `table` |
+//!
+//! Files go by line by line; what is kept are the places of points, so memory grows with those alone. A unit that the file
+//! does not say is never guessed: [`Unit::Pixel`] and [`Unit::Unknown`] need a scale before there can be poses.
 //!
 //! What [`TrackFile::points`] lists: every group of columns that holds a position — measured markers, unlabeled ones,
 //! rigid bodies and their solved markers —, in the order of the file, keyed by type, name and ID together, also when it is
@@ -9,183 +23,79 @@
 //! point is missing; runs at the beginning and at the end count as well, a jump in the frame number does not (it is a
 //! [`TrackWarning::FrameJumps`]).
 
+mod deeplabcut;
 mod detect;
 mod error;
+mod grid;
+mod headerless;
 mod lines;
 mod number;
+mod options;
+mod point;
+mod qtm;
+mod records;
+mod source;
 mod table;
-mod text;
+mod tracker;
+mod trc;
+mod unit;
+mod vicon;
+mod warning;
 mod wide;
 
 use std::fmt;
+use std::io::Read;
 use std::path::Path;
 
-use nalgebra::Vector3;
+use swimmer_files::Axes;
 
-pub use error::{Place, TrackError, TrackProblem, TrackWarning};
-pub use table::TableOptions;
+pub use error::{Place, TrackError, TrackProblem};
+pub use options::TrackOptions;
+pub use point::{PointKind, TrackPoint};
+pub use unit::Unit;
+pub use warning::TrackWarning;
+
+use detect::Detected;
+use grid::Body;
+use lines::Lines;
+use source::Source;
 
 /// The format of a file that was read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum TrackFormat {
-    /// Wide Motive export; the text is its `Format Version`.
+    /// Wide Motive export, or the record lines of Motive 1.x; the text is the version.
     Motive(String),
+    /// Wide Motive export with its header switched off.
+    MotiveWithoutHeader,
+    /// Record lines of Tracking Tools.
+    TrackingTools,
+    /// Tracker, the video tool.
+    Tracker,
+    /// `DeepLabCut`.
+    DeepLabCut,
+    /// TRC.
+    Trc,
+    /// Qualisys Track Manager.
+    Qtm,
+    /// Vicon Nexus.
+    Vicon,
     /// A table with named columns.
     Table,
 }
 
 impl fmt::Display for TrackFormat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Motive(version) => write!(f, "motive-{version}"),
-            Self::Table => f.write_str("table"),
-        }
-    }
-}
-
-/// The unit of length in the file; positions in [`TrackPoint`] are metres whatever it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Unit {
-    /// Metres.
-    Metre,
-    /// Centimetres.
-    Centimetre,
-    /// Millimetres.
-    Millimetre,
-    /// Anything else (pixels), with the metres per unit that the user gave.
-    Scaled(f64),
-}
-
-impl Unit {
-    /// Metres per unit.
-    pub fn metres(self) -> f64 {
-        match self {
-            Self::Metre => 1.0,
-            Self::Centimetre => 0.01,
-            Self::Millimetre => 0.001,
-            Self::Scaled(metres) => metres,
-        }
-    }
-
-    /// The unit of a name such as `Meters`, `mm` or `cm`.
-    fn from_name(name: &str) -> Option<Self> {
-        Some(match name.trim().to_ascii_lowercase().as_str() {
-            "m" | "meter" | "meters" | "metre" | "metres" => Self::Metre,
-            "cm" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => Self::Centimetre,
-            "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => Self::Millimetre,
-            _ => return None,
-        })
-    }
-}
-
-impl fmt::Display for Unit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Metre => f.write_str("m"),
-            Self::Centimetre => f.write_str("cm"),
-            Self::Millimetre => f.write_str("mm"),
-            Self::Scaled(metres) => write!(f, "{metres} m"),
-        }
-    }
-}
-
-/// What a group of columns is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum PointKind {
-    /// A measured marker that the tracker has a name for.
-    Marker,
-    /// A measured marker without a name of its own.
-    Unlabeled,
-    /// The pivot of a rigid body: solved, not measured.
-    RigidBody,
-    /// A marker where the solved rigid body says it is: vanishes with the body, and not blank when the marker is hidden.
-    RigidBodyMarker,
-    /// Any other type, kept but never used for poses unless it is named.
-    Other,
-}
-
-impl PointKind {
-    /// Whether a camera saw this point itself.
-    pub fn is_measured(self) -> bool {
-        matches!(self, Self::Marker | Self::Unlabeled)
-    }
-}
-
-impl fmt::Display for PointKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Marker => "marker",
-            Self::Unlabeled => "unlabeled",
-            Self::RigidBody => "rigid-body",
-            Self::RigidBodyMarker => "rigid-body-marker",
-            Self::Other => "other",
+            Self::Motive(version) => return write!(f, "motive-{version}"),
+            Self::MotiveWithoutHeader => "motive-without-header",
+            Self::TrackingTools => "trackingtools-1.0",
+            Self::Tracker => "tracker",
+            Self::DeepLabCut => "deeplabcut",
+            Self::Trc => "trc",
+            Self::Qtm => "qtm",
+            Self::Vicon => "vicon",
+            Self::Table => "table",
         })
-    }
-}
-
-/// One point and where it was in every row.
-#[derive(Debug, Clone)]
-pub struct TrackPoint {
-    /// Its name, as in the file (without quotes).
-    pub name: String,
-    /// What it is.
-    pub kind: PointKind,
-    /// Its ID in the file; empty where the file has none.
-    pub id: String,
-    /// The names of its columns in a plain table (x, y and perhaps z); empty otherwise.
-    pub columns: Vec<String>,
-    /// One entry a row \[m\]; NaN where it is missing.
-    positions: Vec<[f64; 3]>,
-}
-
-impl TrackPoint {
-    pub(crate) fn new(name: String, kind: PointKind, id: String, columns: Vec<String>) -> Self {
-        Self {
-            name,
-            kind,
-            id,
-            columns,
-            positions: Vec::new(),
-        }
-    }
-
-    /// Where the point was in this row \[m\], in the file's own axes; `None` where it is missing.
-    pub fn position(&self, row: usize) -> Option<Vector3<f64>> {
-        let [x, y, z] = *self.positions.get(row)?;
-        (!x.is_nan()).then(|| Vector3::new(x, y, z))
-    }
-
-    /// In how many rows it is there.
-    pub fn present(&self) -> usize {
-        self.positions.iter().filter(|p| !p[0].is_nan()).count()
-    }
-
-    /// How many runs of rows it is missing in.
-    pub fn gaps(&self) -> usize {
-        self.gap_lengths().0
-    }
-
-    /// The longest run of rows that it is missing in.
-    pub fn longest_gap(&self) -> usize {
-        self.gap_lengths().1
-    }
-
-    fn gap_lengths(&self) -> (usize, usize) {
-        let (mut gaps, mut longest, mut run) = (0, 0, 0);
-        for [x, ..] in &self.positions {
-            if x.is_nan() {
-                gaps += usize::from(run == 0);
-                run += 1;
-                longest = longest.max(run);
-            } else {
-                run = 0;
-            }
-        }
-        (gaps, longest)
-    }
-
-    fn push(&mut self, position: Option<[f64; 3]>) {
-        self.positions.push(position.unwrap_or([f64::NAN; 3]));
     }
 }
 
@@ -194,14 +104,17 @@ impl TrackPoint {
 pub struct TrackFile {
     /// Its format.
     pub format: TrackFormat,
-    /// Rows a second: the export rate of a Motive file, the median of the time steps of a table.
+    /// Rows a second: as the header says, else by the median of the time steps; 0 for a single row without either.
     pub rate_hz: f64,
     /// The unit of length in the file.
     pub unit: Unit,
     /// The frame number of each row (the row's own number in a table without a frame column).
     pub frame_numbers: Vec<u64>,
-    /// The time of each row \[s\]: frame number over rate in a Motive file, the time column in a table.
+    /// The time of each row \[s\]: frame number over rate where the header gives one (time columns are rounded), else the
+    /// file's own stamps.
     pub times: Vec<f64>,
+    /// Which of the file's axes are the tank's x and y, where the user or the format (images: y runs down) says so.
+    pub axes: Option<Axes>,
     /// Every group of columns with positions, in the order of the file.
     pub points: Vec<TrackPoint>,
     /// What the reader noticed; none of it made a number wrong.
@@ -223,28 +136,109 @@ impl TrackFile {
     }
 }
 
-/// Reads a tracking file whose columns, if it is a table, explain themselves.
+/// What a reader hands over.
+struct Draft {
+    format: TrackFormat,
+    /// Where the header says it.
+    rate_hz: Option<f64>,
+    unit: Unit,
+    /// Whether these are places in an image, whose y runs down.
+    image: bool,
+    body: Body,
+    /// From the header, and from holding it against the rows.
+    warnings: Vec<TrackWarning>,
+}
+
+impl Draft {
+    fn finish(mut self, options: &TrackOptions) -> TrackFile {
+        let mut warnings = std::mem::take(&mut self.body.warnings);
+        warnings.extend(self.warnings);
+        let rate_hz = self.rate_hz.unwrap_or_else(|| {
+            let median = median_rate(&self.body.times, &mut warnings);
+            // Real stamps of numbered frames: their mean is surer than the median of what jitters.
+            let numbered = self.format != TrackFormat::Table && self.format != TrackFormat::Tracker;
+            mean_rate(&self.body).filter(|_| numbered).unwrap_or(median)
+        });
+        let down = self.image.then_some(Axes::IMAGE);
+        if down.is_some() && options.axes.is_none() && self.format == TrackFormat::Table {
+            warnings.push(TrackWarning::PixelsDown);
+        }
+        TrackFile {
+            format: self.format,
+            rate_hz,
+            unit: self.unit,
+            frame_numbers: self.body.frame_numbers,
+            times: self.body.times,
+            axes: options.axes.or(down),
+            points: self.body.points,
+            warnings,
+        }
+    }
+}
+
+/// Frames over time between the first and the last.
+fn mean_rate(body: &Body) -> Option<f64> {
+    let frames = body.frame_numbers.last()? - body.frame_numbers.first()?;
+    let span = body.times.last()? - body.times.first()?;
+    (span > 0.0).then(|| frames as f64 / span)
+}
+
+/// The median rate \[Hz\]; 0 for a single row.
+fn median_rate(times: &[f64], warnings: &mut Vec<TrackWarning>) -> f64 {
+    let step = |pair: &[f64]| match pair {
+        [before, after] => after - before,
+        _ => 0.0,
+    };
+    let mut steps: Vec<f64> = times.windows(2).map(step).collect();
+    steps.sort_by(f64::total_cmp);
+    let (Some(shortest), Some(longest), Some(median)) =
+        (steps.first(), steps.last(), steps.get(steps.len() / 2))
+    else {
+        return 0.0;
+    };
+    if longest - shortest > 0.01 * median {
+        warnings.push(TrackWarning::UnevenTimes {
+            shortest: *shortest,
+            longest: *longest,
+        });
+    }
+    1.0 / median
+}
+
+/// Reads a tracking file that explains itself.
 ///
 /// `file` is only for the messages.
 ///
 /// # Errors
-/// [`TrackError`]: a format that is recognised but not read yet, a file that is none, or a broken one with line and column.
+/// [`TrackError`]: a file that is none, or a broken one with line and column.
 pub fn read_tracks(bytes: &[u8], file: &Path) -> Result<TrackFile, TrackError> {
-    read_tracks_with(bytes, file, &TableOptions::default())
+    read_tracks_with(bytes, file, &TrackOptions::default())
 }
 
-/// The same, with what the user knows about the columns of a plain table.
+/// The same from any stream, with what the user knows and the file does not say.
 ///
 /// # Errors
-/// As [`read_tracks`].
+/// As [`read_tracks`], and what the stream answers.
 pub fn read_tracks_with(
-    bytes: &[u8],
+    bytes: impl Read,
     file: &Path,
-    options: &TableOptions,
+    options: &TrackOptions,
 ) -> Result<TrackFile, TrackError> {
-    let text = text::decode(bytes).map_err(|format| TrackError::not_read(file, format))?;
-    match detect::detect(&text, file)? {
-        detect::Detected::Wide(delimiter) => wide::read(&text, file, delimiter),
-        detect::Detected::Table(layout) => table::read(&text, file, &layout, options),
-    }
+    let text = match source::open(bytes).map_err(|cause| TrackError::read(file, 1, &cause))? {
+        Source::Text(text) => text,
+        Source::Binary(format) => return Err(TrackError::not_read(file, format)),
+    };
+    let mut lines = Lines::open(text, file)?;
+    let draft = match detect::detect(&lines, file)? {
+        Detected::Wide(delimiter) => wide::read(&mut lines, file, delimiter, options),
+        Detected::Headerless(delimiter) => headerless::read(&mut lines, file, delimiter, options),
+        Detected::Records(delimiter) => records::read(&mut lines, file, delimiter, options),
+        Detected::Tracker(delimiter) => tracker::read(&mut lines, file, delimiter, options),
+        Detected::DeepLabCut(delimiter) => deeplabcut::read(&mut lines, file, delimiter, options),
+        Detected::Trc => trc::read(&mut lines, file, options),
+        Detected::Qtm => qtm::read(&mut lines, file, options),
+        Detected::Vicon(delimiter) => vicon::read(&mut lines, file, delimiter, options),
+        Detected::Table(layout) => table::read(&mut lines, file, &layout, options),
+    }?;
+    Ok(draft.finish(options))
 }

@@ -535,10 +535,28 @@ fn half_a_position_is_no_position() {
 }
 
 #[test]
-fn an_export_without_header_is_named() {
-    let data = &SAMPLE[SAMPLE.find("0,0.000000").unwrap()..];
-    match read(data) {
-        Err(TrackError::NotReadYet { format, .. }) => assert_eq!(format, "motive-without-header"),
-        other => panic!("{other:?}"),
-    }
+fn an_export_without_header_needs_a_scale_and_tells_rotations_from_places() {
+    // Rule 5. Nothing says that the first four columns are a quaternion, but they look like one.
+    let sample = SAMPLE.replace("0.1,0.2,0.3,0.9", "0.0,0.6,0.0,0.8");
+    let data = &sample[sample.find("0,0.000000").unwrap()..];
+    let (line, column, problem) = broken(data);
+    assert_eq!(
+        (line, column, problem),
+        (1, 12, TrackProblem::LooksLikeRotation)
+    );
+    let two = |columns: usize| {
+        (0..4)
+            .map(|k| format!("{k},{:.6}{}\n", k as f64 / 120.0, ",1.5".repeat(columns)))
+            .collect::<String>()
+    };
+    assert_eq!(
+        broken(&two(7)),
+        (1, 1, TrackProblem::Triples { columns: 7 })
+    );
+    let file = read(&two(6)).unwrap();
+    assert_eq!(
+        (file.rate_hz, file.points.len(), file.unit.metres()),
+        (120.0, 2, None)
+    );
+    assert_eq!(file.warnings, [TrackWarning::NoHeader]);
 }

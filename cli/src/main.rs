@@ -11,6 +11,7 @@ mod output;
 mod paper;
 mod progress;
 mod quantity;
+mod recording;
 mod report;
 mod virtual_robot;
 

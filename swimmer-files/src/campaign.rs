@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::place::read_text;
-use crate::{FileError, GaitSpec, SwimmerFile};
+use crate::{Axes, FileError, GaitSpec, SwimmerFile};
 
 /// A campaign, with its swimmer read and its paths resolved.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,8 +15,23 @@ pub struct Campaign {
     pub swimmer: SwimmerFile,
     /// The two reflectors on the middle link.
     pub reflectors: Reflectors,
+    /// What the tracking files do not say themselves.
+    pub tracks: TrackSettings,
     /// The runs, in the file's order.
     pub runs: Vec<CampaignRun>,
+}
+
+/// What the tracking files of a campaign do not say themselves (the `[tracks]` table).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct TrackSettings {
+    /// `scale`: metres per unit of the files (per pixel).
+    pub scale: Option<f64>,
+    /// `rate_hz`: rows a second, for files with frame numbers and no times.
+    pub rate_hz: Option<f64>,
+    /// `axes`: which of the files' axes are the tank's x and y, as `x,-y`.
+    pub axes: Option<Axes>,
+    /// `likelihood`: the least that counts.
+    pub likelihood: Option<f64>,
 }
 
 /// The two reflectors on the middle link.
@@ -65,7 +80,18 @@ struct RawCampaign {
     swimmer: Spanned<String>,
     reflectors: RawReflectors,
     #[serde(default)]
+    tracks: RawTracks,
+    #[serde(default)]
     run: Vec<RawRun>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawTracks {
+    scale: Option<Spanned<f64>>,
+    rate_hz: Option<Spanned<f64>>,
+    axes: Option<Spanned<String>>,
+    likelihood: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -141,6 +167,7 @@ impl Campaign {
                 "no [[run]]: a campaign needs at least one".to_owned(),
             ));
         }
+        let tracks = track_settings(raw.tracks, &error)?;
         let runs = raw
             .run
             .into_iter()
@@ -149,9 +176,35 @@ impl Campaign {
         Ok(Self {
             swimmer,
             reflectors,
+            tracks,
             runs,
         })
     }
+}
+
+fn track_settings(
+    raw: RawTracks,
+    error: &impl Fn(usize, String) -> FileError,
+) -> Result<TrackSettings, FileError> {
+    let positive = |value: Option<Spanned<f64>>, name: &str| {
+        let Some(value) = value else { return Ok(None) };
+        let number = *value.get_ref();
+        if number.is_finite() && number > 0.0 {
+            return Ok(Some(number));
+        }
+        let problem = format!("{name} = {number} must be a positive number");
+        Err(error(value.span().start, problem))
+    };
+    let axes = raw.axes.map(|axes| {
+        let parsed = axes.get_ref().parse();
+        parsed.map_err(|cause| error(axes.span().start, cause))
+    });
+    Ok(TrackSettings {
+        scale: positive(raw.scale, "scale")?,
+        rate_hz: positive(raw.rate_hz, "rate_hz")?,
+        axes: axes.transpose()?,
+        likelihood: positive(raw.likelihood, "likelihood")?,
+    })
 }
 
 fn reflector(

@@ -9,12 +9,13 @@
 //! | swimmer file (TOML) or preset | [`SwimmerFile`], [`Fluid`], [`ServoFile`], [`SwimmerHash`] |
 //! | gait on the command line or in a campaign | [`GaitSpec`], [`AnyGait`] |
 //! | gait file (plain text) | [`GaitFile`], [`GaitArc`], [`ArcKind`], [`Bounds`], [`Objective`] |
-//! | campaign file (TOML) | [`Campaign`], [`CampaignRun`], [`Reflectors`] |
+//! | campaign file (TOML) | [`Campaign`], [`CampaignRun`], [`Reflectors`], [`TrackSettings`], [`Axes`] |
 //! | link log (MCAP) | [`LinkLogWriter`], [`LinkFrame`], [`read_link_log`] |
 
 mod angle;
 mod any_gait;
 mod atomic;
+mod axes;
 mod campaign;
 mod gait_file;
 mod gait_spec;
@@ -27,7 +28,8 @@ mod toml_text;
 pub use angle::{AngleError, parse_angle};
 pub use any_gait::AnyGait;
 pub use atomic::write_atomically;
-pub use campaign::{Campaign, CampaignRun, PointName, Reflector, Reflectors};
+pub use axes::Axes;
+pub use campaign::{Campaign, CampaignRun, PointName, Reflector, Reflectors, TrackSettings};
 pub use gait_file::{ArcKind, Bounds, GaitArc, GaitFile, Objective};
 pub use gait_spec::{GaitSpec, GaitSpecError};
 pub use hash::SwimmerHash;

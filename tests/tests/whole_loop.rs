@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Duration;
 
-use calibrate::{calibrate_run, load_run, predict, usual_reflectors};
+use calibrate::{TrackOptions, calibrate_run, load_run, predict, usual_reflectors};
 use gait_player::GaitTable;
 use host_link::port::{FaultPlan, FaultyPort};
 use host_link::{Port, Robot};
@@ -53,7 +53,7 @@ fn play<P: Port>(robot: &mut Robot<P>, gait: &AnyGait, cycles: u32) -> link_prot
 
 fn tracked_x(track: &Path, gait: &str, file: &SwimmerFile) -> f64 {
     let spec: GaitSpec = gait.parse().unwrap();
-    let run = load_run(track, &spec, PERIOD_S).unwrap();
+    let run = load_run(track, &spec, PERIOD_S, &TrackOptions::default()).unwrap();
     let reflectors = usual_reflectors(&run.track, &file.swimmer);
     calibrate_run(&run, &reflectors, file)
         .unwrap()

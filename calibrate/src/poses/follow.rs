@@ -94,6 +94,13 @@ pub(super) fn follow(
     if !(expected_m.is_finite() && expected_m > 0.0) {
         return Err(PoseError::SamePlace);
     }
+    if track.unit.metres().is_none() {
+        let scale = search::scale(track, reflectors, expected_m);
+        return Err(PoseError::NoScale {
+            unit: track.unit,
+            scale,
+        });
+    }
     let mut search = prepare(track, reflectors, expected_m, options)?;
     // First with wide limits, then with limits that fit this recording's noise: a ghost must not pass for a lost reflector.
     let (rows, _) = walk(&search);

@@ -2,6 +2,7 @@
 //! say so.
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector2, Vector3};
+use swimmer_files::Axes;
 
 /// A plane with its own x and y.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,15 +18,16 @@ pub struct Plane {
     /// Whether the points determine it; if not, it is the coordinate plane that they leave least.
     pub fitted: bool,
     /// Which of the file's axes x and y are nearest to, and which the normal: `(x, y) = (Z, X), normal Y`.
-    pub map: &'static str,
+    pub map: String,
 }
 
 /// Spread along the plane's second direction over that across it, below which the points do not show the plane.
 const DETERMINED: f64 = 3.0;
 
 impl Plane {
-    /// The plane of least squares. With Y up (Motive) x is nearest to Z and y to X, with Z up they are X and Y.
-    pub fn fit(points: &[Vector3<f64>]) -> Self {
+    /// The plane of least squares. With Y up (Motive) x is nearest to Z and y to X, with Z up they are X and Y; `axes` say
+    /// otherwise.
+    pub fn fit(points: &[Vector3<f64>], axes: Option<Axes>) -> Self {
         let count = points.len().max(1) as f64;
         let centre = points.iter().sum::<Vector3<f64>>() / count;
         let mut covariance = Matrix3::zeros();
@@ -48,22 +50,27 @@ impl Plane {
                 .unwrap_or(2);
             Vector3::ith(flattest, 1.0)
         };
-        Self::new(
-            normal,
-            normal.dot(&(covariance * normal)).max(0.0).sqrt(),
-            fitted,
-        )
+        let rms_m = normal.dot(&(covariance * normal)).max(0.0).sqrt();
+        let up = normal.iamax();
+        // Right-handed: the third axis follows from the first two.
+        let axes = axes.filter(|axes| axes.x.0 != up && axes.y.0 != up);
+        let axes = axes.unwrap_or(Axes {
+            x: ((up + 1) % 3, false),
+            y: ((up + 2) % 3, false),
+        });
+        Self::new(normal, rms_m, fitted, axes)
     }
 
-    fn new(normal: Vector3<f64>, rms_m: f64, fitted: bool) -> Self {
-        let up = normal.iamax();
-        let normal = normal * normal[up].signum();
-        let next = Vector3::ith((up + 1) % 3, 1.0);
-        let x = (next - normal * normal.dot(&next)).normalize();
-        let map = match up {
-            0 => "(x, y) = (Y, Z), normal X",
-            1 => "(x, y) = (Z, X), normal Y",
-            _ => "(x, y) = (X, Y), normal Z",
+    fn new(normal: Vector3<f64>, rms_m: f64, fitted: bool, axes: Axes) -> Self {
+        let [ex, ey] =
+            [axes.x, axes.y].map(|(axis, down)| Vector3::ith(axis, if down { -1.0 } else { 1.0 }));
+        let up = ex.cross(&ey);
+        let normal = normal * normal.dot(&up).signum();
+        let x = (ex - normal * normal.dot(&ex)).normalize();
+        let letters = |v: Vector3<f64>| {
+            let axis = v.iamax();
+            let letter = ["X", "Y", "Z"].get(axis).copied().unwrap_or("?");
+            format!("{}{letter}", if v[axis] < 0.0 { "-" } else { "" })
         };
         Self {
             normal,
@@ -71,7 +78,12 @@ impl Plane {
             y: normal.cross(&x),
             rms_m,
             fitted,
-            map,
+            map: format!(
+                "(x, y) = ({}, {}), normal {}",
+                letters(ex),
+                letters(ey),
+                letters(up)
+            ),
         }
     }
 
@@ -94,7 +106,7 @@ mod tests {
 
     #[test]
     fn y_up_is_seen_from_above() {
-        let plane = Plane::fit(&ring(|x, y| Vector3::new(y, 0.04, x)));
+        let plane = Plane::fit(&ring(|x, y| Vector3::new(y, 0.04, x)), None);
         assert!(plane.fitted && plane.rms_m < 1e-12);
         let p = plane.project(&Vector3::new(2.0, 0.04, 1.0));
         assert!((p - Vector2::new(1.0, 2.0)).norm() < 1e-12, "{p}");
@@ -103,21 +115,35 @@ mod tests {
 
     #[test]
     fn z_up_and_x_up() {
-        let plane = Plane::fit(&ring(|x, y| Vector3::new(x, y, 1.0)));
+        let plane = Plane::fit(&ring(|x, y| Vector3::new(x, y, 1.0)), None);
         assert!(
             (plane.project(&Vector3::new(1.0, 2.0, 1.0)) - Vector2::new(1.0, 2.0)).norm() < 1e-12
         );
-        let plane = Plane::fit(&ring(|x, y| Vector3::new(-1.0, x, y)));
+        let plane = Plane::fit(&ring(|x, y| Vector3::new(-1.0, x, y)), None);
         assert!(
             (plane.project(&Vector3::new(-1.0, 1.0, 2.0)) - Vector2::new(1.0, 2.0)).norm() < 1e-12
         );
     }
 
     #[test]
+    fn the_user_may_know_the_axes() {
+        // An image: y runs down, and the robot is seen from above.
+        let points = ring(|x, y| Vector3::new(x, -y, 0.0));
+        let plane = Plane::fit(&points, Some(Axes::IMAGE));
+        assert!(
+            (plane.project(&Vector3::new(1.0, -2.0, 0.0)) - Vector2::new(1.0, 2.0)).norm() < 1e-12
+        );
+        assert_eq!(plane.map, "(x, y) = (X, -Y), normal -Z");
+        // Axes that do not lie in the plane cannot be meant.
+        let plane = Plane::fit(&points, "z,x".parse().ok());
+        assert_eq!(plane.map, "(x, y) = (X, Y), normal Z");
+    }
+
+    #[test]
     fn a_tilted_plane_keeps_lengths() {
         let tilt = nalgebra::Rotation3::from_euler_angles(0.2, 0.0, 0.1);
         let points = ring(|x, y| tilt * Vector3::new(y, 0.5, x));
-        let plane = Plane::fit(&points);
+        let plane = Plane::fit(&points, None);
         let (a, b) = (points[3], points[40]);
         assert!(((plane.project(&a) - plane.project(&b)).norm() - (a - b).norm()).abs() < 1e-12);
     }
@@ -133,7 +159,7 @@ mod tests {
                 )
             })
             .collect();
-        let plane = Plane::fit(&points);
+        let plane = Plane::fit(&points, None);
         assert!(!plane.fitted);
         assert_eq!(plane.map, "(x, y) = (Y, Z), normal X");
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::lines::{Cell, Delimiter, Line, lines, split};
+use super::lines::{Cell, Delimiter, Line, Lines, split};
 use super::number::{Number, number};
 use super::{TrackError, TrackProblem};
 
@@ -11,6 +11,20 @@ use super::{TrackError, TrackProblem};
 pub(super) enum Detected {
     /// Wide Motive export.
     Wide(Delimiter),
+    /// The same without its header.
+    Headerless(Delimiter),
+    /// Record lines of Tracking Tools and early Motive.
+    Records(Delimiter),
+    /// Tracker's text.
+    Tracker(Delimiter),
+    /// `DeepLabCut`'s CSV.
+    DeepLabCut(Delimiter),
+    /// TRC.
+    Trc,
+    /// Qualisys' TSV.
+    Qtm,
+    /// Vicon's CSV.
+    Vicon(Delimiter),
     /// A table with named columns.
     Table(TableLayout),
 }
@@ -36,25 +50,24 @@ const RECORD_WORDS: [&str; 7] = [
 ];
 
 /// # Errors
-/// [`TrackError::NotReadYet`] with the name of a format that is recognised, else what keeps the file from being one.
-pub(super) fn detect(text: &str, file: &Path) -> Result<Detected, TrackError> {
-    let mut head = lines(text).filter(|line| !line.is_blank());
+/// What keeps the file from being any known format.
+pub(super) fn detect(lines: &Lines<'_>, file: &Path) -> Result<Detected, TrackError> {
+    let mut head = lines.head().filter(|line| !line.is_blank());
     let Some(first) = head.next() else {
         return Err(TrackError::Empty {
             file: file.to_owned(),
         });
     };
-    let second = head.next();
     if let Some(delimiter) = wide_delimiter(&first) {
         return Ok(Detected::Wide(delimiter));
     }
-    if let Some(format) = named_format(text, &first, second.as_ref(), file) {
-        return Err(TrackError::NotReadYet {
-            file: file.to_owned(),
-            format,
-        });
+    if let Some(delimiter) = records_delimiter(lines, &first) {
+        return Ok(Detected::Records(delimiter));
     }
-    table(text, &first, file)
+    match by_first_lines(&first, &head.collect::<Vec<_>>(), file) {
+        Some(found) => Ok(found),
+        None => table(lines, &first, file),
+    }
 }
 
 fn wide_delimiter(first: &Line<'_>) -> Option<Delimiter> {
@@ -76,60 +89,58 @@ fn wide_delimiter(first: &Line<'_>) -> Option<Delimiter> {
     }
 }
 
-/// The name of a format that is recognised and not read.
-fn named_format(
-    text: &str,
-    first: &Line<'_>,
-    second: Option<&Line<'_>>,
-    file: &Path,
-) -> Option<String> {
+/// Formats that their first two or three lines give away.
+fn by_first_lines(first: &Line<'_>, below: &[Line<'_>], file: &Path) -> Option<Detected> {
     let delimiter = Delimiter::of(first.text);
-    let (mut cells, mut below) = (Vec::new(), Vec::new());
-    split(first, delimiter, file, &mut cells).ok()?;
-    if let Some(second) = second {
-        // A broken second line is the reader's to report.
-        let _ = split(second, Delimiter::of(second.text), file, &mut below);
-    }
+    let cells = split(first, delimiter, file).ok()?;
     let word = cells.first()?.raw;
     let alone = cells.iter().skip(1).all(|cell| cell.raw.is_empty());
-    let fixed = match word {
-        "scorer" => Some("deeplabcut"),
-        "PathFileType" => Some("trc"),
-        "NO_OF_FRAMES" => Some("qtm"),
-        "Trajectories" | "Model Outputs" | "Segments" | "Joints" | "Devices" if alone => {
-            Some("vicon")
+    Some(match word {
+        "scorer" => Detected::DeepLabCut(delimiter),
+        "PathFileType" => Detected::Trc,
+        "NO_OF_FRAMES" => Detected::Qtm,
+        "Trajectories" if alone => {
+            Detected::Vicon(Delimiter::of(below.get(1).map_or("", |line| line.text)))
         }
-        _ if word.to_ascii_lowercase().starts_with("#multi:") => Some("tracker"),
-        _ if is_tracker(&cells, &below) => Some("tracker"),
-        _ if is_headerless(&cells) => Some("motive-without-header"),
-        _ => None,
-    };
-    fixed
-        .map(str::to_owned)
-        .or_else(|| record_lines(text, word))
+        _ if word.to_ascii_lowercase().starts_with("#multi:") => {
+            Detected::Tracker(Delimiter::of(below.get(1).map_or("", |line| line.text)))
+        }
+        _ => {
+            let second = below.first()?;
+            let delimiter_below = Delimiter::of(second.text);
+            // A broken second line is the reader's to report.
+            let titles = split(second, delimiter_below, file).unwrap_or_default();
+            if is_tracker(&cells, &titles) {
+                Detected::Tracker(delimiter_below)
+            } else if is_headerless(&cells, delimiter) {
+                Detected::Headerless(delimiter)
+            } else {
+                return None;
+            }
+        }
+    })
 }
 
-/// The version of the record-line family, from its `info,version` line or from its words.
-fn record_lines(text: &str, word: &str) -> Option<String> {
-    if !RECORD_WORDS.contains(&word) {
-        return None;
-    }
+/// What separates the fields of record lines, where these are such: the character behind the first word.
+fn records_delimiter(lines: &Lines<'_>, first: &Line<'_>) -> Option<Delimiter> {
+    let text = first.text.trim_start_matches(['"', ' ']);
+    let word = RECORD_WORDS.iter().find(|word| text.starts_with(**word))?;
+    let rest = text.get(word.len()..)?.trim_start_matches('"');
+    let delimiter = match rest.chars().next() {
+        Some(',') => Delimiter::Comma,
+        Some(';') => Delimiter::Semicolon,
+        Some('\t') => Delimiter::Tab,
+        None if word.ends_with("handed") => {
+            let second = lines.head().filter(|line| !line.is_blank()).nth(1);
+            Delimiter::of(second.map_or("", |line| line.text))
+        }
+        _ => return None,
+    };
     // `frame` alone also heads plain tables; the family's `frame` line carries numbers.
-    let head: Vec<_> = lines(text).take(400).map(|line| line.text.trim()).collect();
-    if word == "frame"
-        && !head.iter().any(|line| {
-            line.starts_with("frame,") && line.as_bytes().get(6).is_some_and(u8::is_ascii_digit)
-        })
-    {
-        return None;
-    }
-    let version = head
-        .iter()
-        .find_map(|line| line.strip_prefix("info,version,"));
-    Some(match version {
-        Some(version) => format!("motive-{}", version.trim().trim_matches(',')),
-        None => "trackingtools-1.0".to_owned(),
-    })
+    let numbered = rest
+        .get(1..)
+        .is_some_and(|rest| rest.trim_start().starts_with(|c: char| c.is_ascii_digit()));
+    (*word != "frame" || numbered).then_some(delimiter)
 }
 
 /// Tracker (video) text: a track's name alone over `t x y`, or blocks of them side by side.
@@ -144,8 +155,9 @@ fn is_tracker(cells: &[Cell<'_>], below: &[Cell<'_>]) -> bool {
 }
 
 /// Rows of frame, time and positions from the first line on: a Motive export with its header switched off.
-fn is_headerless(cells: &[Cell<'_>]) -> bool {
-    let numeric = |cell: &Cell<'_>| number(cell.raw, false) != Number::Wrong;
+fn is_headerless(cells: &[Cell<'_>], delimiter: Delimiter) -> bool {
+    let comma = delimiter.allows_decimal_comma();
+    let numeric = |cell: &Cell<'_>| number(cell.raw, comma) != Number::Wrong;
     cells.len() >= 5
         && cells.iter().all(numeric)
         && cells.iter().take(2).all(|cell| !cell.raw.is_empty())
@@ -155,21 +167,20 @@ fn is_headerless(cells: &[Cell<'_>]) -> bool {
 }
 
 /// A table: the first line that is no comment names the columns, and one of them is the time or the frame.
-fn table(text: &str, first: &Line<'_>, file: &Path) -> Result<Detected, TrackError> {
+fn table(lines: &Lines<'_>, first: &Line<'_>, file: &Path) -> Result<Detected, TrackError> {
     let unrecognised = || TrackError::Unrecognised {
         file: file.to_owned(),
         beginning: first.text.trim().chars().take(40).collect(),
     };
     let mut comment = None;
-    for line in lines(text).filter(|line| !line.is_blank()).take(100) {
+    for line in lines.head().filter(|line| !line.is_blank()).take(100) {
         let stripped = line.text.trim_start();
         if stripped.starts_with(['#', '%']) {
             comment = Some(line);
             continue;
         }
         let delimiter = Delimiter::of(line.text);
-        let mut cells = Vec::new();
-        split(&line, delimiter, file, &mut cells)?;
+        let cells = split(&line, delimiter, file)?;
         if cells.get(1).is_some_and(|cell| cell.is("Type")) {
             return Err(line.error(
                 file,

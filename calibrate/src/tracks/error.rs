@@ -1,6 +1,7 @@
 //! What can be wrong with a tracking file, and where.
 
 use std::fmt;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// A place in a file, 1-based; the column counts characters.
@@ -31,21 +32,31 @@ pub enum TrackError {
         /// What is wrong.
         problem: TrackProblem,
     },
-    /// A format that is recognised, but that no reader exists for yet.
+    /// A format that is recognised, but that there is no reader for.
     #[error(
-        "{}: this is a `{format}` file, which is not read yet; export it as a Motive CSV (format 1.21 to 1.25) or as a table \
-         with named columns such as t,x1,y1,x2,y2", file.display()
+        "{}: this is a `{format}` file, which is not read; export it as text: Motive CSV, TRC, QTM TSV, or a table with named \
+         columns such as t,x1,y1,x2,y2", file.display()
     )]
-    NotReadYet {
+    NotRead {
         /// The file.
         file: PathBuf,
         /// The format's name.
         format: String,
     },
+    /// The file could not be read to its end.
+    #[error("{}:{line}: {cause}", file.display())]
+    Stream {
+        /// The file.
+        file: PathBuf,
+        /// The line that was being read.
+        line: usize,
+        /// The system's reason.
+        cause: String,
+    },
     /// Nothing that is known begins like this.
     #[error(
-        "{}:1:1: no known tracking format begins with `{beginning}`; read are Motive CSV exports (format 1.21 to 1.25) and \
-         tables with named columns such as t,x1,y1,x2,y2", file.display()
+        "{}:1:1: no known tracking format begins with `{beginning}`; read are CSV exports of Motive and Tracking Tools, Tracker, \
+         DeepLabCut, TRC, QTM and Vicon, and tables with named columns such as t,x1,y1,x2,y2", file.display()
     )]
     Unrecognised {
         /// The file.
@@ -63,9 +74,17 @@ pub enum TrackError {
 
 impl TrackError {
     pub(super) fn not_read(file: &Path, format: &str) -> Self {
-        Self::NotReadYet {
+        Self::NotRead {
             file: file.to_owned(),
             format: format.to_owned(),
+        }
+    }
+
+    pub(super) fn read(file: &Path, line: usize, cause: &io::Error) -> Self {
+        Self::Stream {
+            file: file.to_owned(),
+            line,
+            cause: cause.to_string(),
         }
     }
 
@@ -154,14 +173,6 @@ pub enum TrackProblem {
         /// The unit's name.
         text: String,
     },
-    /// A table's columns are in a unit whose length only the user knows.
-    #[error("column `{column}` is in `{unit}`; give its length in metres (scale)")]
-    ScaleNeeded {
-        /// The column.
-        column: String,
-        /// Its unit.
-        unit: String,
-    },
     /// A frame rate is no positive number.
     #[error("`{text}` is not a frame rate in hertz")]
     Rate {
@@ -202,91 +213,68 @@ pub enum TrackProblem {
         /// The name.
         name: String,
     },
+    /// Frame numbers alone do not say when.
+    #[error(
+        "the rows have frame numbers but no times; say how many frames a second there are (`rate_hz` under [tracks] in the \
+         campaign, or --rate)"
+    )]
+    NoRate,
+    /// A line that no recording has.
+    #[error("this line is longer than {megabytes} MiB; no tracking file has such lines")]
+    LineTooLong {
+        /// The limit \[MiB\].
+        megabytes: usize,
+    },
+    /// A record's fields are not as many as its own counts ask for.
+    #[error(
+        "this `{word}` record has {fields} fields where its own counts ask for {expected}; it was cut, or its counts are wrong"
+    )]
+    FieldCount {
+        /// The record's first word.
+        word: String,
+        /// Fields that are there.
+        fields: usize,
+        /// Fields that its counts ask for.
+        expected: usize,
+    },
+    /// A line that begins with no record word.
+    #[error(
+        "`{text}` begins no record; the words are comment, righthanded, lefthanded, info, trackable, rigidbody and frame"
+    )]
+    UnknownRecord {
+        /// How it begins.
+        text: String,
+    },
+    /// A field that counts or numbers something is no whole number.
+    #[error("`{text}` is no whole number, in the field of the {field}")]
+    NotACount {
+        /// The field's text.
+        text: String,
+        /// What it is.
+        field: &'static str,
+    },
+    /// A version of the record family that nobody has seen.
+    #[error("record lines of version {version} are not known; known are 1.0 and 1.1")]
+    RecordVersion {
+        /// The version.
+        version: String,
+    },
+    /// Without a header, columns can only be taken three by three.
+    #[error(
+        "without a header the columns behind frame and time can only be positions, three each, but there are {columns}; export \
+         the file again with its header"
+    )]
+    Triples {
+        /// Columns behind frame and time.
+        columns: usize,
+    },
+    /// Without a header, four columns are a quaternion in every row.
+    #[error(
+        "without a header nothing says what columns are, and these four look like a rotation, not like positions; export the file \
+         again with its header"
+    )]
+    LooksLikeRotation,
     /// A header and nothing below it.
     #[error("no data follow this header")]
     NoData,
-}
-
-/// What a reader noticed without being stopped by it.
-#[derive(Debug, Clone, PartialEq)]
-pub enum TrackWarning {
-    /// A format version that no sample was seen of.
-    UnseenVersion(String),
-    /// Frame numbers jump: how often, and how many frames are left out in all.
-    FrameJumps {
-        /// How many jumps.
-        jumps: usize,
-        /// Frames that are not in the file.
-        frames: u64,
-    },
-    /// The header's count of frames is not the count of rows.
-    FrameCount {
-        /// What the header says.
-        header: u64,
-        /// Rows with data.
-        rows: usize,
-    },
-    /// The time column runs at another rate than the header says; the header's rate was used.
-    TimeColumn {
-        /// The header's rate \[Hz\].
-        header_hz: f64,
-        /// The time column's rate \[Hz\].
-        column_hz: f64,
-    },
-    /// Positions with one axis blank were taken as missing.
-    HalfBlank {
-        /// How many.
-        count: usize,
-        /// The first line with one.
-        first_line: usize,
-    },
-    /// The last line was cut and left out.
-    LastLineCut {
-        /// Its number.
-        line: usize,
-    },
-    /// The time steps of a table differ by more than a hundredth.
-    UnevenTimes {
-        /// The shortest \[s\].
-        shortest: f64,
-        /// The longest \[s\].
-        longest: f64,
-    },
-}
-
-impl fmt::Display for TrackWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::UnseenVersion(version) => {
-                write!(
-                    f,
-                    "format version {version} was never seen; it was read by the meaning of its headers"
-                )
-            }
-            Self::FrameJumps { jumps, frames } => {
-                write!(
-                    f,
-                    "the frame number jumps {jumps} times, over {frames} frames that are not in the file"
-                )
-            }
-            Self::FrameCount { header, rows } => {
-                write!(f, "the header says {header} frames, the file has {rows}")
-            }
-            Self::TimeColumn {
-                header_hz,
-                column_hz,
-            } => write!(
-                f,
-                "the header says {header_hz} frames a second, the time column {column_hz:.4}; the header's rate was used"
-            ),
-            Self::HalfBlank { count, first_line } => write!(
-                f,
-                "{count} positions with a blank axis were taken as missing, the first on line {first_line}"
-            ),
-            Self::LastLineCut { line } => write!(f, "line {line}, the last, was cut and left out"),
-            Self::UnevenTimes { shortest, longest } => {
-                write!(f, "time steps range from {shortest:.6} s to {longest:.6} s")
-            }
-        }
-    }
 }

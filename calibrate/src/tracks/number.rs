@@ -11,7 +11,78 @@ pub(super) enum Number {
     Wrong,
 }
 
+/// Which decimal sign a file uses. The first number that has one settles it: `1,234` is 1.234 in a file of decimal commas,
+/// and in one of decimal points somebody's thousand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Decimals {
+    /// Points only: the comma stands between cells.
+    Point,
+    /// A comma may be one; not yet seen.
+    Open,
+    /// Commas.
+    Comma,
+}
+
+impl Decimals {
+    /// What a cell says; may settle the sign.
+    pub(super) fn number(&mut self, text: &str) -> Number {
+        if *self == Self::Point {
+            return number(text, false);
+        }
+        if *self == Self::Open {
+            match text.bytes().find(|b| matches!(b, b'.' | b',')) {
+                Some(b'.') => *self = Self::Point,
+                Some(_) => *self = Self::Comma,
+                None => {}
+            }
+            return number(text, true);
+        }
+        if text.contains('.') && matches!(number(text, false), Number::Finite(_)) {
+            return Number::Wrong;
+        }
+        number(text, true)
+    }
+}
+
+/// Powers of ten that are exact in double precision, as far as needed.
+const POWERS: [f64; 16] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+];
+
+/// Numbers of at most 15 digits without an exponent, which is nearly all: the digits and the power of ten are exact, so one
+/// division rounds correctly.
+fn plain(bytes: &[u8]) -> Option<f64> {
+    let (negative, digits) = match bytes.split_first()? {
+        (b'-', rest) => (true, rest),
+        _ => (false, bytes),
+    };
+    if digits.len() > 16 {
+        return None;
+    }
+    let (mut value, mut count, mut point) = (0_u64, 0, None);
+    for byte in digits {
+        match byte {
+            b'0'..=b'9' => {
+                value = value * 10 + u64::from(byte - b'0');
+                count += 1;
+            }
+            b'.' if point.is_none() => point = Some(count),
+            _ => return None,
+        }
+    }
+    if count == 0 || count > 15 {
+        return None;
+    }
+    let scale = POWERS.get(point.map_or(0, |point| count - point))?;
+    let value = value as f64 / scale;
+    Some(if negative { -value } else { value })
+}
+
+/// What a cell says when a comma is a decimal sign (`decimal_comma`) or is none.
 pub(super) fn number(text: &str, decimal_comma: bool) -> Number {
+    if let Some(value) = plain(text.as_bytes()) {
+        return Number::Finite(value);
+    }
     let text = text.trim();
     if text.is_empty() {
         return Number::Missing;
@@ -31,19 +102,45 @@ pub(super) fn number(text: &str, decimal_comma: bool) -> Number {
 
 #[cfg(test)]
 mod tests {
-    use super::{Number, number};
+    use super::{Decimals, Number, number};
+    use proptest::prelude::*;
 
     #[test]
     fn what_is_missing_and_what_is_wrong() {
         for text in ["", "  ", "NaN", "NAN", "1.#QNAN0", "-1.#IND00"] {
             assert_eq!(number(text, false), Number::Missing, "{text}");
         }
-        for text in ["inf", "1e999", "12:30", "x", "1,5", "0x10"] {
+        for text in [
+            "inf", "1e999", "12:30", "x", "1,5", "0x10", "-", ".", "-.", "1.2.3", "--1",
+        ] {
             assert_eq!(number(text, false), Number::Wrong, "{text}");
         }
         assert_eq!(number(" 1.5e-3", false), Number::Finite(1.5e-3));
         assert_eq!(number("1,5", true), Number::Finite(1.5));
         assert_eq!(number("1.5", true), Number::Finite(1.5));
         assert_eq!(number("1,234,5", true), Number::Wrong);
+    }
+
+    #[test]
+    fn the_first_decimal_sign_holds_for_the_file() {
+        let mut decimals = Decimals::Open;
+        assert_eq!(decimals.number("12"), Number::Finite(12.0));
+        assert_eq!(decimals.number("0,5"), Number::Finite(0.5));
+        assert_eq!(decimals.number("0.5"), Number::Wrong);
+        let mut decimals = Decimals::Open;
+        assert_eq!(decimals.number("0.5"), Number::Finite(0.5));
+        assert_eq!(decimals.number("1,234"), Number::Wrong);
+        assert_eq!(decimals.number("NaN"), Number::Missing);
+    }
+
+    proptest! {
+        #[test]
+        fn the_short_way_reads_what_the_long_way_reads(text in "-?[0-9]{0,9}(\\.[0-9]{0,9})?") {
+            let long = text.parse::<f64>().map_or(
+                if text.is_empty() { Number::Missing } else { Number::Wrong },
+                Number::Finite,
+            );
+            prop_assert_eq!(number(&text, false), long);
+        }
     }
 }

@@ -2,46 +2,52 @@
 //! places, and so do people who save it again from a spreadsheet.
 
 mod header;
-mod rows;
 
 use std::path::Path;
 
-use super::lines::{Delimiter, lines};
-use super::{TrackError, TrackFile, TrackFormat, TrackWarning};
+use super::grid::{self, Clock, Columns, Grid};
+use super::lines::{Delimiter, Lines};
+use super::{Draft, TrackError, TrackFormat, TrackOptions, TrackWarning};
 
 /// Versions that a sample or a reader's source was seen of.
 const SEEN: [&str; 6] = ["1.2", "1.21", "1.22", "1.23", "1.24", "1.25"];
 
 /// # Errors
 /// [`TrackError::Broken`] with line and column.
-pub(super) fn read(text: &str, file: &Path, delimiter: Delimiter) -> Result<TrackFile, TrackError> {
-    let mut lines = lines(text);
-    let header = header::read(&mut lines, file, delimiter)?;
-    let mut warnings = Vec::new();
+pub(super) fn read(
+    lines: &mut Lines<'_>,
+    file: &Path,
+    delimiter: Delimiter,
+    options: &TrackOptions,
+) -> Result<Draft, TrackError> {
+    let header = header::read(&mut lines.head(), file, delimiter)?;
+    let (unit, metres, overridden) = options.unit(header.unit);
+    let mut warnings: Vec<TrackWarning> = overridden.into_iter().collect();
     if !SEEN.contains(&header.version.as_str()) {
         warnings.push(TrackWarning::UnseenVersion(header.version.clone()));
     }
-    let rows = rows::read(lines, file, delimiter, &header, &mut warnings)?;
-    if let Some(total) = header
-        .frames
-        .filter(|total| *total != rows.frame_numbers.len() as u64)
-    {
-        warnings.push(TrackWarning::FrameCount {
-            header: total,
-            rows: rows.frame_numbers.len(),
-        });
-    }
-    Ok(TrackFile {
+    let body = grid::read(
+        lines,
+        file,
+        Grid {
+            clock: Clock::Numbered {
+                frame: 0,
+                first: 0,
+                rate_hz: header.rate_hz,
+                time: Some(1),
+            },
+            metres,
+            columns: header.columns.into_iter().map(Columns::of).collect(),
+            ..Grid::under(header.axis_line, delimiter, header.width, header.points)
+        },
+    )?;
+    warnings.extend(TrackWarning::frame_count(header.frames, body.times.len()));
+    Ok(Draft {
         format: TrackFormat::Motive(header.version),
-        rate_hz: header.rate_hz,
-        unit: header.unit,
-        times: rows
-            .frame_numbers
-            .iter()
-            .map(|frame| *frame as f64 / header.rate_hz)
-            .collect(),
-        frame_numbers: rows.frame_numbers,
-        points: rows.points,
+        rate_hz: Some(header.rate_hz),
+        unit,
+        image: false,
+        body,
         warnings,
     })
 }

@@ -16,7 +16,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use swimmer_files::{
     AnyGait, Campaign, CampaignRun, GaitSpec, PointName, Reflector, Reflectors, ServoFile,
-    SwimmerFile,
+    SwimmerFile, TrackSettings,
 };
 use swimmer_model::{Gait, Model, Pose, Swimmer};
 
@@ -332,6 +332,7 @@ pub(crate) fn campaign(
     let campaign = Campaign {
         swimmer: known(&tank.swimmer, tank.servo),
         reflectors,
+        tracks: TrackSettings::default(),
         runs: listed.collect(),
     };
     (campaign, calibrate::CampaignData { runs })

@@ -4,8 +4,8 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use calibrate::{
-    CalibrateError, CampaignData, CampaignFit, FitOptions, RunResult, c_t_form, calibrate_campaign,
-    calibrate_run, load_run, usual_reflectors,
+    CalibrateError, CampaignData, CampaignFit, FitOptions, RunResult, TrackOptions, c_t_form,
+    calibrate_campaign, calibrate_run, load_run, usual_reflectors,
 };
 use serde::Serialize;
 use swimmer_files::{Campaign, GaitSpec, SwimmerFile, write_atomically};
@@ -15,6 +15,7 @@ use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::{Output, document};
 use crate::quantity::{self, Rows, Table};
+use crate::recording::Recording;
 
 /// Turn tracks into poses, cycles and fitted drag parameters
 ///
@@ -41,6 +42,8 @@ pub(crate) struct Calibrate {
     /// Write the fitted swimmer file and the fit into this folder
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    recording: Recording,
 }
 
 /// The cycles of one run, and what they brought.
@@ -244,8 +247,9 @@ pub(crate) fn single_run(
     gait: &GaitSpec,
     period_s: f64,
     swimmer: &SwimmerFile,
+    options: &TrackOptions,
 ) -> Outcome<RunCycles> {
-    let data = load_run(track, gait, period_s)?;
+    let data = load_run(track, gait, period_s, options)?;
     let reflectors = usual_reflectors(&data.track, &swimmer.swimmer);
     let found = calibrate_run(&data, &reflectors, swimmer)?;
     Ok(RunCycles {
@@ -299,7 +303,10 @@ impl Calibrate {
             ("--period", self.period.is_some()),
             ("--swimmer", self.swimmer.is_some()),
         ];
-        if let Some((flag, _)) = single_only.iter().find(|(_, given)| *given) {
+        let flag = single_only
+            .iter()
+            .find_map(|(flag, given)| given.then_some(*flag));
+        if let Some(flag) = flag.or(self.recording.given()) {
             return Err(Failure::BadInput(format!(
                 "{flag} goes with a single tracking file; a campaign names all that itself"
             )));
@@ -334,7 +341,13 @@ impl Calibrate {
                 "-o goes with a campaign: a single run is not fitted".to_owned(),
             ));
         }
-        let run = single_run(&self.file, gait, period_s, &load_swimmer(swimmer)?)?;
+        let run = single_run(
+            &self.file,
+            gait,
+            period_s,
+            &load_swimmer(swimmer)?,
+            &self.recording.options(),
+        )?;
         let warnings = run_warnings(&run.found, Path::new(""));
         output.answer(&RunsAnswer {
             runs: vec![run.answer],

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use calibrate::{PredictedCycle, predict};
+use calibrate::{PredictedCycle, TrackOptions, predict};
 use gait_optimizer::{DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement};
 use host_link::LinkError;
 use link_protocol::Refusal;
@@ -182,6 +182,7 @@ impl<'a> Round<'a> {
             },
             period_s,
             &fitted,
+            &TrackOptions::default(),
         )?;
         self.laboratory.close()?;
         Ok(Finished {

@@ -3,19 +3,21 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use calibrate::{TrackError, TrackFile, read_tracks};
+use calibrate::{TrackError, TrackFile, load_tracks};
 use serde::Serialize;
-use swimmer_files::FileError;
 
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::{Rows, Table};
+use crate::recording::Recording;
 
 /// Say what a tracking file holds: format, rate, unit, frames, points and their gaps
 #[derive(Debug, clap::Args)]
 pub(crate) struct Tracks {
     /// The tracking file
     file: PathBuf,
+    #[command(flatten)]
+    recording: Recording,
 }
 
 #[derive(Debug, Serialize)]
@@ -69,13 +71,7 @@ impl fmt::Display for Holdings {
 impl Tracks {
     /// Reads the file and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
-        let bytes = std::fs::read(&self.file).map_err(|source| {
-            Failure::from(FileError::Read {
-                path: self.file.clone(),
-                source,
-            })
-        })?;
-        let tracks = read_tracks(&bytes, &self.file)?;
+        let tracks = load_tracks(&self.file, &self.recording.options())?;
         output.answer(&Holdings::new(self.file.display().to_string(), &tracks));
         Ok(())
     }

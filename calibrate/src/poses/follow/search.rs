@@ -103,7 +103,20 @@ impl Search<'_> {
             .pool
             .iter()
             .filter_map(|i| Some((*i, self.track.points.get(*i)?.position(row)?)));
-        out.extend(seen.take(MOST_CANDIDATES));
+        for (point, place) in seen {
+            // Record lines tell of a body's marker twice, in its own record and in the frame's list: it is one candidate.
+            if let Some(same) = out.iter_mut().find(|(_, there)| *there == place) {
+                if self.is_label(point) {
+                    same.0 = point;
+                }
+            } else if out.len() < MOST_CANDIDATES {
+                out.push((point, place));
+            }
+        }
+    }
+
+    fn is_label(&self, point: usize) -> bool {
+        self.fronts.contains(&point) || self.backs.contains(&point)
     }
 
     fn fits(&self, a: &Vector3<f64>, b: &Vector3<f64>) -> bool {
@@ -201,7 +214,7 @@ pub(super) fn prepare<'a>(
         reach: REACH.0 * expected_m,
     };
     if !search.fronts.is_empty() && !search.backs.is_empty() {
-        if let Some(measured_m) = labelled_distance(&search) {
+        if let Some(measured_m) = median_distance(track, &search.fronts, &search.backs) {
             if (measured_m / expected_m - 1.0).abs() > options.distance_tolerance {
                 return Err(PoseError::Distance {
                     measured_m,
@@ -217,15 +230,26 @@ pub(super) fn prepare<'a>(
     Ok(search)
 }
 
-/// Median distance of the labelled points.
-fn labelled_distance(search: &Search<'_>) -> Option<f64> {
+/// The scale at which the named points, or the only two, have the reflectors' distance.
+pub(super) fn scale(track: &TrackFile, reflectors: &Reflectors, expected_m: f64) -> Option<f64> {
+    let fronts = labelled(track, &reflectors.front, "front").ok()?;
+    let backs = labelled(track, &reflectors.back, "back").ok()?;
+    let distance = match (fronts.as_slice(), backs.as_slice()) {
+        ([], _) | (_, []) if track.points.len() == 2 => median_distance(track, &[0], &[1]),
+        _ => median_distance(track, &fronts, &backs),
+    };
+    distance.map(|distance| expected_m / distance)
+}
+
+/// Median distance of two points that may go by several names.
+fn median_distance(track: &TrackFile, fronts: &[usize], backs: &[usize]) -> Option<f64> {
     let first = |which: &[usize], row| {
         which
             .iter()
-            .find_map(|i| search.track.points.get(*i)?.position(row))
+            .find_map(|i| track.points.get(*i)?.position(row))
     };
-    let distance = |row| Some((first(&search.fronts, row)? - first(&search.backs, row)?).norm());
-    median((0..search.track.frames()).filter_map(distance))
+    let distance = |row| Some((first(fronts, row)? - first(backs, row)?).norm());
+    median((0..track.frames()).filter_map(distance))
 }
 
 fn median(values: impl Iterator<Item = f64>) -> Option<f64> {

@@ -2,80 +2,19 @@
 
 use std::path::Path;
 
-use super::TableOptions;
 use crate::tracks::detect::TableLayout;
-use crate::tracks::lines::{Cell, Line, cell_at, split};
-use crate::tracks::number::{Number, number};
-use crate::tracks::{PointKind, TrackError, TrackPoint, TrackProblem, Unit};
-
-/// Where the time comes from.
-pub(super) enum Clock {
-    Time {
-        column: usize,
-        seconds: f64,
-        frame: Option<usize>,
-    },
-    Frame {
-        column: usize,
-        rate_hz: f64,
-    },
-}
-
-impl Clock {
-    pub(super) fn read(
-        &self,
-        cells: &[Cell<'_>],
-        line: &Line<'_>,
-        file: &Path,
-        comma: bool,
-        row: usize,
-    ) -> Result<(u64, f64), TrackError> {
-        let cell = |column: usize| cell_at(cells, column);
-        let frame = |column| {
-            let cell = cell(column);
-            let wrong = || {
-                line.error(
-                    file,
-                    cell.at,
-                    TrackProblem::NotAFrameNumber {
-                        text: cell.text().into_owned(),
-                    },
-                )
-            };
-            cell.raw.parse::<u64>().map_err(|_| wrong())
-        };
-        match self {
-            Self::Frame { column, rate_hz } => {
-                let frame = frame(*column)?;
-                Ok((frame, frame as f64 / rate_hz))
-            }
-            Self::Time {
-                column,
-                seconds,
-                frame: frame_column,
-            } => {
-                let cell = cell(*column);
-                let Number::Finite(time) = number(cell.raw, comma) else {
-                    let (text, name) = (cell.text().into_owned(), "time".to_owned());
-                    return Err(line.error(
-                        file,
-                        cell.at,
-                        TrackProblem::NotANumber { text, cell: name },
-                    ));
-                };
-                Ok((frame_column.map_or(Ok(row as u64), frame)?, time * seconds))
-            }
-        }
-    }
-}
+use crate::tracks::grid::{Clock, Columns};
+use crate::tracks::lines::{Cell, Line, split};
+use crate::tracks::{PointKind, TrackError, TrackOptions, TrackPoint, TrackProblem, Unit};
 
 pub(super) struct Header {
     pub(super) width: usize,
     pub(super) clock: Clock,
-    pub(super) unit: Unit,
+    /// The unit that the columns' names say; `None` where they say none.
+    pub(super) unit: Option<Unit>,
     pub(super) points: Vec<TrackPoint>,
-    /// Two or three columns for each point.
-    pub(super) columns: Vec<Vec<usize>>,
+    /// For each point.
+    pub(super) columns: Vec<Columns>,
 }
 
 /// A column's name, taken apart.
@@ -91,13 +30,12 @@ impl Header {
         line: Line<'_>,
         file: &Path,
         layout: &TableLayout,
-        options: &TableOptions,
+        options: &TrackOptions,
     ) -> Result<Self, TrackError> {
         let text = line.text.trim_start_matches([' ', '#', '%']);
         let shift = line.text.len() - text.len();
         let trimmed = Line { text, ..line };
-        let mut cells = Vec::new();
-        split(&trimmed, layout.delimiter, file, &mut cells)?;
+        let mut cells = split(&trimmed, layout.delimiter, file)?;
         // A delimiter at the end of the header makes no column.
         while cells.last().is_some_and(|cell| cell.raw.is_empty()) {
             cells.pop();
@@ -110,7 +48,7 @@ impl Header {
                 problem,
             )
         };
-        let clock = clock(&names, options).ok_or_else(|| error(0, TrackProblem::NoTime))?;
+        let clock = clock(&names, options).map_err(|problem| error(0, problem))?;
         let mut groups = Vec::new();
         for pair in &options.pairs {
             let find = |wanted: &String| {
@@ -173,7 +111,7 @@ impl Header {
         if groups.is_empty() {
             return Err(error(0, TrackProblem::NoPoints));
         }
-        let unit = unit(&names, &groups, options, &error)?;
+        let unit = unit(&names, &groups, &error)?;
         let whole = |column: &usize| {
             names
                 .get(*column)
@@ -192,8 +130,18 @@ impl Header {
             clock,
             unit,
             points: groups.iter().map(point).collect(),
-            columns: groups.into_iter().map(|(_, columns)| columns).collect(),
+            columns: groups
+                .into_iter()
+                .map(|(_, columns)| places(&columns))
+                .collect(),
         })
+    }
+}
+
+fn places(columns: &[usize]) -> Columns {
+    Columns {
+        axes: [0, 1, 2].map(|axis| columns.get(axis).copied()),
+        likelihood: None,
     }
 }
 
@@ -218,7 +166,7 @@ fn name<'a>(cell: &Cell<'a>) -> Name<'a> {
     }
 }
 
-fn clock(names: &[Name<'_>], options: &TableOptions) -> Option<Clock> {
+fn clock(names: &[Name<'_>], options: &TrackOptions) -> Result<Clock, TrackProblem> {
     let find = |words: &[&str]| {
         names.iter().position(|name| {
             words
@@ -227,20 +175,21 @@ fn clock(names: &[Name<'_>], options: &TableOptions) -> Option<Clock> {
         })
     };
     let frame = find(&["frame", "frame#", "frames"]);
-    if let Some(column) = find(&["t", "time", "seconds", "timestamp", "time_stamp"]) {
-        let milliseconds = names
-            .get(column)
-            .is_some_and(|name| name.unit == Some("ms"));
-        return Some(Clock::Time {
-            column,
+    if let Some(time) = find(&["t", "time", "seconds", "timestamp", "time_stamp"]) {
+        let milliseconds = names.get(time).is_some_and(|name| name.unit == Some("ms"));
+        return Ok(Clock::Stamped {
+            time,
             seconds: if milliseconds { 1e-3 } else { 1.0 },
             frame,
         });
     }
-    let rate_hz = options
-        .rate_hz
-        .filter(|rate| *rate > 0.0 && rate.is_finite())?;
-    frame.map(|column| Clock::Frame { column, rate_hz })
+    let frame = frame.ok_or(TrackProblem::NoTime)?;
+    Ok(Clock::Numbered {
+        frame,
+        first: 0,
+        rate_hz: options.rate().ok_or(TrackProblem::NoRate)?,
+        time: None,
+    })
 }
 
 type Stems = Vec<(String, [Option<usize>; 3])>;
@@ -299,20 +248,13 @@ fn axis_and_stem(bare: &str) -> Option<(usize, &str)> {
     ends.then(|| (index, rest.trim_end_matches(separators)))
 }
 
-/// One unit for all columns with positions.
+/// One unit for all columns with positions, where their names say one.
 fn unit(
     names: &[Name<'_>],
     groups: &[(String, Vec<usize>)],
-    options: &TableOptions,
     error: &impl Fn(usize, TrackProblem) -> TrackError,
-) -> Result<Unit, TrackError> {
-    if let Some(metres) = options
-        .metres_per_unit
-        .filter(|metres| metres.is_finite() && *metres > 0.0)
-    {
-        return Ok(Unit::Scaled(metres));
-    }
-    let mut unit = None;
+) -> Result<Option<Unit>, TrackError> {
+    let mut unit: Option<Option<Unit>> = None;
     for index in groups
         .iter()
         .flat_map(|(_, columns)| columns.iter().copied())
@@ -321,24 +263,16 @@ fn unit(
             continue;
         };
         let named = match name.unit {
-            None => Unit::Metre,
-            Some(text) if text.starts_with("px") || text.starts_with("pixel") => {
-                let (column, unit) = (name.whole.clone(), text.to_owned());
-                return Err(error(index, TrackProblem::ScaleNeeded { column, unit }));
-            }
-            Some(text) => Unit::from_name(text).ok_or_else(|| {
-                error(
-                    index,
-                    TrackProblem::UnknownUnit {
-                        text: text.to_owned(),
-                    },
-                )
-            })?,
+            None => None,
+            Some(text) => Some(Unit::from_name(text).ok_or_else(|| {
+                let text = text.to_owned();
+                error(index, TrackProblem::UnknownUnit { text })
+            })?),
         };
         if *unit.get_or_insert(named) != named {
-            let text = format!("{named} beside another unit");
+            let text = format!("{} beside another unit", name.unit.unwrap_or("none"));
             return Err(error(index, TrackProblem::UnknownUnit { text }));
         }
     }
-    Ok(unit.unwrap_or(Unit::Metre))
+    Ok(unit.flatten())
 }

@@ -33,14 +33,13 @@ pub(super) fn read<'a>(
     delimiter: Delimiter,
 ) -> Result<Header, TrackError> {
     let mut above: Vec<(Line<'a>, Vec<Cell<'a>>)> = Vec::new();
-    let mut cells = Vec::new();
     let mut last = None;
     for line in lines {
         last = Some(line);
         if line.is_blank() {
             continue;
         }
-        split(&line, delimiter, file, &mut cells)?;
+        let cells = split(&line, delimiter, file)?;
         if cells.first().is_some_and(|cell| cell.is("Frame")) {
             return assemble(&above, (line, &cells), file, delimiter);
         }
@@ -48,7 +47,7 @@ pub(super) fn read<'a>(
         if above.len() > 40 {
             break;
         }
-        above.push((line, cells.clone()));
+        above.push((line, cells));
     }
     let line = above.first().map(|(line, _)| *line).or(last);
     Err(line.map_or_else(
@@ -325,19 +324,10 @@ fn points(
 
 fn kind_of(word: &str, name: &str) -> PointKind {
     match word.to_ascii_lowercase().as_str() {
-        "marker" if is_unlabeled(name) => PointKind::Unlabeled,
-        "marker" => PointKind::Marker,
+        "marker" => PointKind::of_marker(name),
         "unlabeled marker" => PointKind::Unlabeled,
         "rigid body" => PointKind::RigidBody,
         "rigid body marker" => PointKind::RigidBodyMarker,
         _ => PointKind::Other,
     }
-}
-
-/// `Unlabeled:108` (1.21), `Unlabeled 2278` (1.23 on), `Marker-49813`, alone or after an asset's name and a colon.
-fn is_unlabeled(name: &str) -> bool {
-    let digits = |rest: &str| !rest.is_empty() && rest.bytes().all(|b| b.is_ascii_digit());
-    name.strip_prefix("Unlabeled")
-        .is_some_and(|rest| digits(rest.trim_start_matches([' ', ':', '-'])))
-        || name.strip_prefix("Marker-").is_some_and(digits)
 }

@@ -1,0 +1,419 @@
+//! Rows of a clock and positions under a header that has been read: what most formats are below their first lines, and the
+//! hot loop of reading.
+
+use std::path::Path;
+
+use super::lines::{Cells, Delimiter, Line, Lines};
+use super::number::{Decimals, Number};
+use super::{TrackError, TrackPoint, TrackProblem, TrackWarning};
+
+/// Where a row's time comes from.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Clock {
+    /// Frame number over rate: the time column is rounded, and is only held against it.
+    Numbered {
+        frame: usize,
+        /// The frame number at time zero.
+        first: u64,
+        rate_hz: f64,
+        time: Option<usize>,
+    },
+    /// Stamps of a time column, with the seconds in its unit.
+    Stamped {
+        time: usize,
+        seconds: f64,
+        frame: Option<usize>,
+    },
+    /// One row after another.
+    Counted { rate_hz: f64 },
+}
+
+/// Columns of one point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Columns {
+    /// x, y and perhaps z.
+    pub(super) axes: [Option<usize>; 3],
+    /// How sure the tracker was.
+    pub(super) likelihood: Option<usize>,
+}
+
+impl Columns {
+    pub(super) fn of(axes: [usize; 3]) -> Self {
+        Self {
+            axes: axes.map(Some),
+            likelihood: None,
+        }
+    }
+}
+
+/// What a header said about the rows below it.
+pub(super) struct Grid {
+    pub(super) delimiter: Delimiter,
+    /// Cells in a row; blank ones may follow.
+    pub(super) width: usize,
+    /// The header's last line, which the rows follow; 0 where there is no header.
+    pub(super) header_line: usize,
+    pub(super) clock: Clock,
+    /// Metres per unit; 1 where nobody knows.
+    pub(super) metres: f64,
+    pub(super) points: Vec<TrackPoint>,
+    /// For each point.
+    pub(super) columns: Vec<Columns>,
+    /// The least likelihood that counts.
+    pub(super) likelihood: f64,
+    /// Whether a point at the very origin is a missing one (QTM).
+    pub(super) origin_is_missing: bool,
+    /// Whether lines that begin with # or % are comments.
+    pub(super) comments: bool,
+    /// Whether a blank line ends the section (Vicon).
+    pub(super) section: bool,
+}
+
+impl Grid {
+    /// Rows that follow this line, with nothing particular about them; one row after another until a clock is put in.
+    pub(super) fn under(
+        header_line: usize,
+        delimiter: Delimiter,
+        width: usize,
+        points: Vec<TrackPoint>,
+    ) -> Self {
+        Self {
+            delimiter,
+            width,
+            header_line,
+            clock: Clock::Counted { rate_hz: 1.0 },
+            metres: 1.0,
+            points,
+            columns: Vec::new(),
+            likelihood: 0.0,
+            origin_is_missing: false,
+            comments: false,
+            section: false,
+        }
+    }
+}
+
+/// The rows, read.
+pub(super) struct Body {
+    pub(super) frame_numbers: Vec<u64>,
+    pub(super) times: Vec<f64>,
+    pub(super) points: Vec<TrackPoint>,
+    pub(super) warnings: Vec<TrackWarning>,
+}
+
+/// # Errors
+/// [`TrackError::Broken`] with line and column.
+pub(super) fn read(lines: &mut Lines<'_>, file: &Path, grid: Grid) -> Result<Body, TrackError> {
+    lines.skip_past(grid.header_line);
+    let mut reader = Reader {
+        decimals: if grid.delimiter.allows_decimal_comma() {
+            Decimals::Open
+        } else {
+            Decimals::Point
+        },
+        file,
+        places: vec![None; grid.points.len()],
+        cells: Cells::default(),
+        notes: Notes::default(),
+        body: Body {
+            frame_numbers: Vec::new(),
+            times: Vec::new(),
+            points: Vec::new(),
+            warnings: Vec::new(),
+        },
+        last_decimals: 0,
+        grid,
+    };
+    let mut last_line = reader.grid.header_line.max(1);
+    while let Some(line) = lines.next()? {
+        last_line = line.number;
+        if line.is_blank() {
+            if reader.grid.section && !reader.body.times.is_empty() {
+                break;
+            }
+            continue;
+        }
+        if reader.grid.comments && line.text.trim_start().starts_with(['#', '%']) {
+            continue;
+        }
+        match reader.row(&line) {
+            Ok(()) => {}
+            Err(_) if !line.ended && !reader.body.times.is_empty() => {
+                let line = line.number;
+                reader
+                    .body
+                    .warnings
+                    .push(TrackWarning::LastLineCut { line });
+                break;
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    if reader.body.times.is_empty() {
+        let line = Line {
+            number: last_line,
+            text: "",
+            ended: true,
+        };
+        return Err(line.error(file, 0, TrackProblem::NoData));
+    }
+    Ok(reader.finish())
+}
+
+struct Reader<'f> {
+    grid: Grid,
+    file: &'f Path,
+    decimals: Decimals,
+    cells: Cells,
+    places: Vec<Option<[f64; 3]>>,
+    notes: Notes,
+    body: Body,
+    last_decimals: usize,
+}
+
+impl Reader<'_> {
+    /// A row, taken whole or not at all.
+    fn row(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+        self.cells.split(line, self.grid.delimiter, self.file)?;
+        let width = self.grid.width;
+        if self.cells.len() < width || self.cells.any_from(line, width) {
+            let problem = TrackProblem::RowLength {
+                cells: self.cells.len(),
+                expected: width,
+            };
+            return Err(line.error(self.file, line.text.len(), problem));
+        }
+        let (frame, time) = self.clock(line)?;
+        let mut places = std::mem::take(&mut self.places);
+        for (index, place) in places.iter_mut().enumerate() {
+            *place = self.place(line, index)?;
+        }
+        let decimals = decimals(self.cells.last(line).map_or("", |cell| cell.raw));
+        if !line.ended && decimals < self.last_decimals {
+            // Its number may have lost digits; the caller knows that the file ends here.
+            return Err(line.error(self.file, line.text.len(), TrackProblem::NoData));
+        }
+        self.last_decimals = decimals;
+        let row = self.body.times.len();
+        if let (Some(previous), Clock::Numbered { .. }) =
+            (self.body.frame_numbers.last(), self.grid.clock)
+        {
+            self.notes.jumped(frame - previous - 1);
+        }
+        self.body.frame_numbers.push(frame);
+        self.body.times.push(time);
+        for (point, place) in self.grid.points.iter_mut().zip(&places) {
+            if let Some(place) = place {
+                point.push(row, place.map(|value| value * self.grid.metres));
+            }
+        }
+        self.places = places;
+        Ok(())
+    }
+
+    fn clock(&mut self, line: &Line<'_>) -> Result<(u64, f64), TrackError> {
+        let row = self.body.times.len() as u64;
+        let (frame, time) = match self.grid.clock {
+            Clock::Counted { rate_hz } => return Ok((row, row as f64 / rate_hz)),
+            Clock::Numbered {
+                frame,
+                first,
+                rate_hz,
+                time,
+            } => {
+                let number = self.frame(line, frame)?;
+                if let Some(previous) = self.body.frame_numbers.last().copied()
+                    && number <= previous
+                {
+                    let problem = TrackProblem::FrameOrder {
+                        previous,
+                        frame: number,
+                    };
+                    return Err(line.error(self.file, 0, problem));
+                }
+                if let Some(text) = time.and_then(|time| self.cells.text(line, time))
+                    && let Number::Finite(time) = self.decimals.number(text)
+                {
+                    self.notes.time(number, time);
+                }
+                (number, (number as f64 - first as f64) / rate_hz)
+            }
+            Clock::Stamped {
+                time,
+                seconds,
+                frame,
+            } => {
+                let cell = self.cells.at(line, time);
+                let Number::Finite(stamp) = self.decimals.number(cell.raw) else {
+                    let problem = TrackProblem::NotANumber {
+                        text: cell.text().into_owned(),
+                        cell: "time".to_owned(),
+                    };
+                    return Err(line.error(self.file, cell.at, problem));
+                };
+                let number = frame.map_or(Ok(row), |column| self.frame(line, column))?;
+                (number, stamp * seconds)
+            }
+        };
+        if let Some(previous) = self.body.times.last().copied()
+            && time <= previous
+        {
+            let problem = TrackProblem::TimeOrder { previous, time };
+            return Err(line.error(self.file, 0, problem));
+        }
+        Ok((frame, time))
+    }
+
+    fn frame(&self, line: &Line<'_>, column: usize) -> Result<u64, TrackError> {
+        let cell = self.cells.at(line, column);
+        cell.raw.parse().map_err(|_| {
+            let text = cell.text().into_owned();
+            line.error(self.file, cell.at, TrackProblem::NotAFrameNumber { text })
+        })
+    }
+
+    fn place(&mut self, line: &Line<'_>, index: usize) -> Result<Option<[f64; 3]>, TrackError> {
+        let Some(columns) = self.grid.columns.get(index).copied() else {
+            return Ok(None);
+        };
+        let mut place = [0.0; 3];
+        let (mut blank, mut asked) = (0, 0);
+        for (axis, value) in place.iter_mut().enumerate() {
+            let Some(column) = columns.axes.get(axis).copied().flatten() else {
+                continue;
+            };
+            asked += 1;
+            match self
+                .decimals
+                .number(self.cells.text(line, column).unwrap_or(""))
+            {
+                Number::Finite(finite) => *value = finite,
+                Number::Missing => blank += 1,
+                Number::Wrong => return Err(self.not_a_number(line, column, index, axis)),
+            }
+        }
+        if blank > 0 {
+            if blank < asked {
+                self.notes.half_blank(line.number);
+            }
+            return Ok(None);
+        }
+        if let Some(column) = columns.likelihood {
+            match self
+                .decimals
+                .number(self.cells.text(line, column).unwrap_or(""))
+            {
+                Number::Finite(value) if value >= self.grid.likelihood => {}
+                Number::Wrong => return Err(self.not_a_number(line, column, index, 3)),
+                _ => {
+                    self.notes.unlikely += 1;
+                    return Ok(None);
+                }
+            }
+        }
+        let at_origin = place.iter().all(|value| *value == 0.0);
+        Ok((!(self.grid.origin_is_missing && at_origin)).then_some(place))
+    }
+
+    fn not_a_number(
+        &self,
+        line: &Line<'_>,
+        column: usize,
+        index: usize,
+        axis: usize,
+    ) -> TrackError {
+        let cell = self.cells.at(line, column);
+        let point = self.grid.points.get(index);
+        let named = point.and_then(|point| point.columns.get(axis)).cloned();
+        let name = named.unwrap_or_else(|| {
+            let what = ["Position X", "Position Y", "Position Z", "likelihood"];
+            let point = point.map_or("", |point| &point.name);
+            format!("{point}, {}", what.get(axis).unwrap_or(&""))
+        });
+        let problem = TrackProblem::NotANumber {
+            text: cell.text().into_owned(),
+            cell: name,
+        };
+        line.error(self.file, cell.at, problem)
+    }
+
+    fn finish(mut self) -> Body {
+        let rows = self.body.times.len();
+        for point in &mut self.grid.points {
+            point.finish(rows);
+        }
+        let rate_hz = match self.grid.clock {
+            Clock::Numbered { rate_hz, .. } => Some(rate_hz),
+            _ => None,
+        };
+        self.notes
+            .tell(rate_hz, self.grid.likelihood, &mut self.body.warnings);
+        Body {
+            points: self.grid.points,
+            ..self.body
+        }
+    }
+}
+
+/// What follows the decimal sign, an exponent too, in characters: programs write all numbers of a column alike.
+pub(super) fn decimals(text: &str) -> usize {
+    text.rsplit_once(['.', ','])
+        .map_or(0, |(_, digits)| digits.len())
+}
+
+/// What is worth a warning at the end.
+#[derive(Default)]
+struct Notes {
+    jumps: usize,
+    skipped: u64,
+    half_blank: Option<(usize, usize)>,
+    unlikely: usize,
+    first_time: Option<(u64, f64)>,
+    last_time: Option<(u64, f64)>,
+}
+
+impl Notes {
+    fn jumped(&mut self, skipped: u64) {
+        self.jumps += usize::from(skipped > 0);
+        self.skipped = self.skipped.saturating_add(skipped);
+    }
+
+    fn half_blank(&mut self, line: usize) {
+        self.half_blank.get_or_insert((0, line)).0 += 1;
+    }
+
+    fn time(&mut self, frame: u64, time: f64) {
+        self.first_time.get_or_insert((frame, time));
+        self.last_time = Some((frame, time));
+    }
+
+    fn tell(&self, rate_hz: Option<f64>, threshold: f64, warnings: &mut Vec<TrackWarning>) {
+        if self.jumps > 0 {
+            warnings.push(TrackWarning::FrameJumps {
+                jumps: self.jumps,
+                frames: self.skipped,
+            });
+        }
+        if let Some((count, first_line)) = self.half_blank {
+            warnings.push(TrackWarning::HalfBlank { count, first_line });
+        }
+        if self.unlikely > 0 {
+            warnings.push(TrackWarning::Unlikely {
+                count: self.unlikely,
+                threshold,
+            });
+        }
+        if let (Some((f0, t0)), Some((f1, t1)), Some(rate_hz)) =
+            (self.first_time, self.last_time, rate_hz)
+        {
+            let (frames, time) = ((f1 - f0) as f64, t1 - t0);
+            // Two rounded times may be a unit of their last digit off, whatever the span.
+            if f1 > f0 && (time - frames / rate_hz).abs() > 1e-3 * (1.0 + frames / rate_hz) {
+                warnings.push(TrackWarning::TimeColumn {
+                    header_hz: rate_hz,
+                    column_hz: frames / time,
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! One point of a tracking file and where it was.
+
+use std::fmt;
+
+use nalgebra::Vector3;
+
+/// What a group of columns is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PointKind {
+    /// A measured marker that the tracker has a name for.
+    Marker,
+    /// A measured marker without a name of its own.
+    Unlabeled,
+    /// The pivot of a rigid body: solved, not measured.
+    RigidBody,
+    /// A marker where the solved rigid body says it is: vanishes with the body, and not blank when the marker is hidden.
+    RigidBodyMarker,
+    /// Any other type, kept but never used for poses unless it is named.
+    Other,
+}
+
+impl PointKind {
+    /// What a marker of this name is.
+    pub(super) fn of_marker(name: &str) -> Self {
+        if is_unlabeled(name) {
+            Self::Unlabeled
+        } else {
+            Self::Marker
+        }
+    }
+
+    /// Whether a camera saw this point itself.
+    pub fn is_measured(self) -> bool {
+        matches!(self, Self::Marker | Self::Unlabeled)
+    }
+}
+
+impl fmt::Display for PointKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Marker => "marker",
+            Self::Unlabeled => "unlabeled",
+            Self::RigidBody => "rigid-body",
+            Self::RigidBodyMarker => "rigid-body-marker",
+            Self::Other => "other",
+        })
+    }
+}
+
+/// `Unlabeled:108` (1.21), `Unlabeled 2278` (1.23 on), `Marker-49813`, alone or after an asset's name and a colon.
+fn is_unlabeled(name: &str) -> bool {
+    let digits = |rest: &str| !rest.is_empty() && rest.bytes().all(|b| b.is_ascii_digit());
+    name.strip_prefix("Unlabeled")
+        .is_some_and(|rest| digits(rest.trim_start_matches([' ', ':', '-'])))
+        || name.strip_prefix("Marker-").is_some_and(digits)
+}
+
+/// One point and where it was in every row.
+#[derive(Debug, Clone)]
+pub struct TrackPoint {
+    /// Its name, as in the file (without quotes).
+    pub name: String,
+    /// What it is.
+    pub kind: PointKind,
+    /// Its ID in the file; empty where the file has none.
+    pub id: String,
+    /// The names of its columns in a plain table (x, y and perhaps z); empty otherwise.
+    pub columns: Vec<String>,
+    /// First row and first place of each run of rows in which it is there. Markers come and go: what is missing costs nothing.
+    runs: Vec<(usize, usize)>,
+    /// The places of all runs \[m\].
+    places: Vec<[f64; 3]>,
+    /// Rows of the file.
+    rows: usize,
+}
+
+impl TrackPoint {
+    pub(crate) fn new(name: String, kind: PointKind, id: String, columns: Vec<String>) -> Self {
+        Self {
+            name,
+            kind,
+            id,
+            columns,
+            runs: Vec::new(),
+            places: Vec::new(),
+            rows: 0,
+        }
+    }
+
+    /// Where the point was in this row \[m\], in the file's own axes; `None` where it is missing.
+    pub fn position(&self, row: usize) -> Option<Vector3<f64>> {
+        let index = self.runs.partition_point(|(start, _)| *start <= row);
+        let (start, first) = *self.runs.get(index.checked_sub(1)?)?;
+        let place = first + (row - start);
+        let end = self.runs.get(index).map_or(self.places.len(), |run| run.1);
+        (place < end).then(|| self.places.get(place).copied().map(Vector3::from))?
+    }
+
+    /// In how many rows it is there.
+    pub fn present(&self) -> usize {
+        self.places.len()
+    }
+
+    /// How many runs of rows it is missing in.
+    pub fn gaps(&self) -> usize {
+        self.missing().count()
+    }
+
+    /// The longest run of rows that it is missing in.
+    pub fn longest_gap(&self) -> usize {
+        self.missing().max().unwrap_or(0)
+    }
+
+    /// Lengths of the runs of rows that it is missing in.
+    fn missing(&self) -> impl Iterator<Item = usize> {
+        let next_place = |index: usize| self.runs.get(index).map_or(self.places.len(), |run| run.1);
+        let ends = self
+            .runs
+            .iter()
+            .enumerate()
+            .map(move |(index, (start, first))| start + next_place(index + 1) - first);
+        let starts = self.runs.iter().map(|(start, _)| *start);
+        starts
+            .chain([self.rows])
+            .zip(std::iter::once(0).chain(ends))
+            .map(|(start, before)| start - before)
+            .filter(|length| *length > 0)
+    }
+
+    /// It was there in this row; rows come in order, and the first place in a row holds.
+    pub(super) fn push(&mut self, row: usize, place: [f64; 3]) {
+        if row < self.rows {
+            return;
+        }
+        let next = self
+            .runs
+            .last()
+            .map(|(start, first)| start + self.places.len() - first);
+        if next != Some(row) {
+            self.runs.push((row, self.places.len()));
+        }
+        self.places.push(place);
+        self.rows = row + 1;
+    }
+
+    /// So many rows has the file.
+    pub(super) fn finish(&mut self, rows: usize) {
+        self.rows = rows;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_and_gaps() {
+        let mut point = TrackPoint::new("p".into(), PointKind::Marker, String::new(), Vec::new());
+        for row in [2, 3, 6, 7, 8] {
+            point.push(row, [row as f64, 0.0, 0.0]);
+        }
+        point.finish(12);
+        let seen: Vec<Option<f64>> = (0..13)
+            .map(|row| point.position(row).map(|p| p.x))
+            .collect();
+        let at = |x: f64| Some(x);
+        let none = None;
+        assert_eq!(
+            seen,
+            [
+                none,
+                none,
+                at(2.0),
+                at(3.0),
+                none,
+                none,
+                at(6.0),
+                at(7.0),
+                at(8.0),
+                none,
+                none,
+                none,
+                none
+            ]
+        );
+        assert_eq!(
+            (point.present(), point.gaps(), point.longest_gap()),
+            (5, 3, 3)
+        );
+        let mut never = TrackPoint::new("n".into(), PointKind::Marker, String::new(), Vec::new());
+        never.finish(4);
+        assert_eq!(
+            (never.present(), never.gaps(), never.longest_gap()),
+            (0, 1, 4)
+        );
+    }
+}

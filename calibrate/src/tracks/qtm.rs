@@ -1,0 +1,128 @@
+//! Qualisys Track Manager's TSV: `KEY<tab>value` lines, a row of column names (which the export may leave out), millimetres.
+
+use std::path::Path;
+
+use super::grid::{self, Clock, Columns, Grid};
+use super::lines::{Cell, Delimiter, Line, Lines, cell_at, split};
+use super::number::{Number, number};
+use super::{
+    Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
+    TrackWarning, Unit,
+};
+
+/// # Errors
+/// [`TrackError::Broken`] with line and column.
+pub(super) fn read(
+    lines: &mut Lines<'_>,
+    file: &Path,
+    options: &TrackOptions,
+) -> Result<Draft, TrackError> {
+    let delimiter = Delimiter::Tab;
+    let mut head: Vec<(Line<'_>, Vec<Cell<'_>>)> = Vec::new();
+    for line in lines.head().filter(|line| !line.is_blank()) {
+        let cells = split(&line, delimiter, file)?;
+        let first = cell_at(&cells, 0);
+        // Keys begin with a letter, rows with a number or a blank.
+        if !first.raw.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            break;
+        }
+        head.push((line, cells));
+    }
+    let Some((last, _)) = head.last() else {
+        return Err(TrackError::Empty {
+            file: file.to_owned(),
+        });
+    };
+    let find = |key: &'static str| {
+        let row = head.iter().find(|(_, cells)| cell_at(cells, 0).is(key));
+        row.ok_or_else(|| last.error(file, 0, TrackProblem::NoKey { key }))
+    };
+    let (line, cells) = find("FREQUENCY")?;
+    let rate = cell_at(cells, 1);
+    let rate_hz = match number(rate.raw, true) {
+        Number::Finite(value) if value > 0.0 => value,
+        _ => {
+            let text = rate.text().into_owned();
+            return Err(line.error(file, rate.at, TrackProblem::Rate { text }));
+        }
+    };
+    let (names_line, names) = find("MARKER_NAMES")?;
+    let names: Vec<String> = names
+        .iter()
+        .skip(1)
+        .filter(|cell| !cell.raw.is_empty())
+        .map(|cell| cell.text().into_owned())
+        .collect();
+    if names.is_empty() {
+        return Err(names_line.error(file, 0, TrackProblem::NoPoints));
+    }
+    let titles = head.last().filter(|(_, cells)| {
+        cells
+            .iter()
+            .any(|cell| names.iter().any(|name| cell.raw == format!("{name} X")))
+    });
+    let (frame, time, columns) = match titles {
+        Some((line, cells)) => {
+            let column = |title: &str| cells.iter().position(|cell| cell.raw == title);
+            let mut columns = Vec::with_capacity(names.len());
+            for name in &names {
+                let mut axes = [0; 3];
+                for (place, axis) in axes.iter_mut().zip(['X', 'Y', 'Z']) {
+                    *place = column(&format!("{name} {axis}")).ok_or_else(|| {
+                        let point = name.clone();
+                        line.error(file, 0, TrackProblem::MissingAxis { point, axis })
+                    })?;
+                }
+                columns.push(Columns::of(axes));
+            }
+            (column("Frame"), column("Time"), columns)
+        }
+        None => (
+            None,
+            None,
+            (0..names.len())
+                .map(|index| Columns::of([0, 1, 2].map(|axis| axis + 3 * index)))
+                .collect(),
+        ),
+    };
+    let used = columns.iter().flat_map(|columns| columns.axes).flatten();
+    let width = used.max().map_or(0, |last| last + 1);
+    let total = find("NO_OF_FRAMES")
+        .ok()
+        .and_then(|(_, cells)| cell_at(cells, 1).raw.parse().ok());
+    let points = names
+        .into_iter()
+        .map(|name| {
+            let kind = PointKind::of_marker(&name);
+            TrackPoint::new(name, kind, String::new(), Vec::new())
+        })
+        .collect();
+    let (unit, metres, overridden) = options.unit(Unit::Millimetre);
+    let grid = Grid {
+        clock: match frame {
+            // Frame numbers begin at 1.
+            Some(frame) => Clock::Numbered {
+                frame,
+                first: 1,
+                rate_hz,
+                time,
+            },
+            None => Clock::Counted { rate_hz },
+        },
+        metres,
+        columns,
+        origin_is_missing: true,
+        ..Grid::under(last.number, delimiter, width, points)
+    };
+    let body = grid::read(lines, file, grid)?;
+    let mut warnings: Vec<TrackWarning> = overridden.into_iter().collect();
+    warnings.extend(TrackWarning::frame_count(total, body.times.len()));
+    Ok(Draft {
+        format: TrackFormat::Qtm,
+        rate_hz: Some(rate_hz),
+        unit,
+        image: false,
+        body,
+        warnings,
+    })
+}

@@ -1,0 +1,329 @@
+//! Record lines: Tracking Tools 2.x (1.0) and Motive 1.x (1.1). The first word says what a line is, and its own counts say how
+//! many fields it has; every line is held against them.
+//!
+//! The same word (`trackable`, `rigidbody`) defines a body before the first frame, and tells more about one after it. What a
+//! body's record calls its point cloud are measured places under the body's names; its solved places are kept from the last
+//! sight of the body, so they count only while it is tracked. Markers of a frame have no identity in version 1.0 (their order
+//! changes from frame to frame): they are listed by their place in the list, and following ignores those names.
+
+mod record;
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::grid::Body;
+use super::lines::{Cells, Delimiter, Line, Lines};
+use super::number::Number;
+use super::{
+    Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
+    TrackWarning, Unit,
+};
+use record::Record;
+
+/// Markers that a frame, or bodies that a file may have; more is a broken count.
+const MOST: usize = 100_000;
+
+/// # Errors
+/// [`TrackError::Broken`] with line and column.
+pub(super) fn read(
+    lines: &mut Lines<'_>,
+    file: &Path,
+    delimiter: Delimiter,
+    options: &TrackOptions,
+) -> Result<Draft, TrackError> {
+    let (unit, metres, overridden) = options.unit(Unit::Metre);
+    let mut reader = Reader::new(metres);
+    reader.warnings.extend(overridden);
+    let mut cells = Cells::default();
+    let mut last_line = 1;
+    while let Some(line) = lines.next()? {
+        last_line = line.number;
+        if line.is_blank() {
+            continue;
+        }
+        let record = Record::read(&line, delimiter, file, &mut cells);
+        match record.and_then(|record| reader.take(&record)) {
+            Ok(()) => {}
+            Err(_) if !line.ended && !reader.times.is_empty() => {
+                let line = line.number;
+                reader.warnings.push(TrackWarning::LastLineCut { line });
+                break;
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    if reader.times.is_empty() {
+        let line = Line {
+            number: last_line,
+            text: "",
+            ended: true,
+        };
+        return Err(line.error(file, 0, TrackProblem::NoData));
+    }
+    Ok(reader.finish(unit))
+}
+
+/// A rigid body and the points that tell of it.
+struct RigidBody {
+    pivot: usize,
+    solved: Vec<usize>,
+    measured: Vec<usize>,
+}
+
+struct Reader {
+    metres: f64,
+    /// Fields of a frame's marker and of a solved one: 4 and 3 in version 1.0, 5 and 4 in 1.1.
+    strides: (usize, usize),
+    version: String,
+    left_handed: bool,
+    frames: Option<u64>,
+    frame_numbers: Vec<u64>,
+    times: Vec<f64>,
+    points: Vec<TrackPoint>,
+    bodies: HashMap<String, RigidBody>,
+    /// Points of a frame's markers: by place in the list (1.0) or by number (1.1).
+    markers: HashMap<String, usize>,
+    warnings: Vec<TrackWarning>,
+}
+
+impl Reader {
+    fn new(metres: f64) -> Self {
+        Self {
+            metres,
+            strides: (4, 3),
+            version: "1.0".to_owned(),
+            left_handed: false,
+            frames: None,
+            frame_numbers: Vec::new(),
+            times: Vec::new(),
+            points: Vec::new(),
+            bodies: HashMap::new(),
+            markers: HashMap::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    fn take(&mut self, record: &Record<'_>) -> Result<(), TrackError> {
+        match record.word() {
+            "comment" | "righthanded" => Ok(()),
+            "lefthanded" => {
+                self.left_handed = true;
+                Ok(())
+            }
+            "info" => self.info(record),
+            "frame" => self.frame(record),
+            "trackable" | "rigidbody" if self.times.is_empty() => self.definition(record),
+            "trackable" | "rigidbody" => self.extended(record),
+            _ => Err(record.unknown()),
+        }
+    }
+
+    fn info(&mut self, record: &Record<'_>) -> Result<(), TrackError> {
+        match record.cell(1).raw {
+            "version" => {
+                let version = record.cell(2).raw.replace(',', ".");
+                self.strides = match version.as_str() {
+                    "1.0" | "1" => (4, 3),
+                    "1.1" => (5, 4),
+                    _ => return Err(record.error(2, TrackProblem::RecordVersion { version })),
+                };
+                self.version = version;
+            }
+            "framecount" => self.frames = record.cell(2).raw.parse().ok(),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// name, id, n, n × (x, y, z in the body's own axes)
+    fn definition(&mut self, record: &Record<'_>) -> Result<(), TrackError> {
+        let markers = record.count(3, "markers")?;
+        record.expect(4 + 3 * markers)?;
+        let name = record.cell(1).text().into_owned();
+        let id = record.cell(2).raw.to_owned();
+        self.body(&name, &id, markers);
+        Ok(())
+    }
+
+    fn body(&mut self, name: &str, id: &str, markers: usize) {
+        let mut add = |name: String, kind, id: &str| {
+            self.points
+                .push(TrackPoint::new(name, kind, id.to_owned(), Vec::new()));
+            self.points.len() - 1
+        };
+        let pivot = add(name.to_owned(), PointKind::RigidBody, id);
+        let called = |number: usize| format!("{name}:Marker{number}");
+        let solved = (1..=markers)
+            .map(|number| add(called(number), PointKind::RigidBodyMarker, id))
+            .collect();
+        let measured = (1..=markers)
+            .map(|number| add(called(number), PointKind::Marker, id))
+            .collect();
+        self.bodies.insert(
+            id.to_owned(),
+            RigidBody {
+                pivot,
+                solved,
+                measured,
+            },
+        );
+    }
+
+    /// index, time, bodies, bodies × (id, x, y, z, quaternion, Euler angles), markers, markers × (x, y, z, id[, name])
+    fn frame(&mut self, record: &Record<'_>) -> Result<(), TrackError> {
+        let number = record.frame_number(1)?;
+        let time = record.time(2)?;
+        let bodies = record.count(3, "bodies")?;
+        let markers_at = 4 + 11 * bodies;
+        let markers = record.count(markers_at, "markers")?;
+        let stride = self.strides.0;
+        record.expect(markers_at + 1 + stride * markers)?;
+        if let Some(previous) = self.frame_numbers.last().copied()
+            && number <= previous
+        {
+            let frame = number;
+            return Err(record.error(1, TrackProblem::FrameOrder { previous, frame }));
+        }
+        if let Some(previous) = self.times.last().copied()
+            && time <= previous
+        {
+            return Err(record.error(2, TrackProblem::TimeOrder { previous, time }));
+        }
+        let mut seen: Vec<(usize, [f64; 3])> = Vec::with_capacity(bodies + markers);
+        for body in 0..bodies {
+            let at = 4 + 11 * body;
+            let id = record.cell(at).raw.to_owned();
+            if !self.bodies.contains_key(&id) {
+                self.body(&format!("body {id}"), &id, 0);
+            }
+            let pivot = self.bodies.get(&id).map(|body| body.pivot);
+            if let (Some(pivot), Some(place)) = (pivot, record.place(at + 1)?) {
+                seen.push((pivot, place));
+            }
+        }
+        for marker in 0..markers {
+            let at = markers_at + 1 + stride * marker;
+            let place = record.place(at)?;
+            let point = self.marker(record, at, marker);
+            seen.extend(place.map(|place| (point, place)));
+        }
+        let row = self.times.len();
+        self.frame_numbers.push(number);
+        self.times.push(time);
+        self.push(row, &seen);
+        Ok(())
+    }
+
+    /// The point of a frame's marker: in version 1.0 by its place in the list, in 1.1 by its number.
+    fn marker(&mut self, record: &Record<'_>, at: usize, index: usize) -> usize {
+        let numbered = self.strides.0 == 5;
+        let id = if numbered {
+            record.cell(at + 3).raw.to_owned()
+        } else {
+            (index + 1).to_string()
+        };
+        if let Some(point) = self.markers.get(&id) {
+            return *point;
+        }
+        let name = if numbered {
+            record.cell(at + 4).text().into_owned()
+        } else {
+            format!("Unlabeled {id}")
+        };
+        let kind = PointKind::of_marker(&name);
+        self.points
+            .push(TrackPoint::new(name, kind, id.clone(), Vec::new()));
+        self.markers.insert(id, self.points.len() - 1);
+        self.points.len() - 1
+    }
+
+    /// index, time, name, id, frames since it was tracked, n, n × solved (x, y, z[, id]), n × point cloud (x, y, z), n × tracked,
+    /// n × quality, mean error
+    fn extended(&mut self, record: &Record<'_>) -> Result<(), TrackError> {
+        let number = record.frame_number(1)?;
+        let id = record.cell(4).raw.to_owned();
+        let since = record.count(5, "frames since it was tracked")?;
+        let markers = record.count(6, "markers")?;
+        let stride = self.strides.1;
+        let cloud_at = 7 + stride * markers;
+        record.expect(cloud_at + 5 * markers + 1)?;
+        if self.frame_numbers.last() != Some(&number) {
+            let previous = self.frame_numbers.last().copied().unwrap_or(0);
+            let frame = number;
+            return Err(record.error(1, TrackProblem::FrameOrder { previous, frame }));
+        }
+        let known = self.bodies.get(&id).map(|body| body.measured.len());
+        if known.is_none_or(|known| known < markers) {
+            let name = record.cell(3).text().into_owned();
+            self.body(&name, &id, markers);
+        }
+        let mut seen = Vec::with_capacity(2 * markers);
+        for marker in 0..markers {
+            let Some(body) = self.bodies.get(&id) else {
+                break;
+            };
+            let (solved, measured) = (body.solved.get(marker), body.measured.get(marker));
+            if let (Some(point), Some(place), 0) =
+                (solved, record.place(7 + stride * marker)?, since)
+            {
+                seen.push((*point, place));
+            }
+            if let (Some(point), Some(place)) = (measured, record.place(cloud_at + 3 * marker)?) {
+                seen.push((*point, place));
+            }
+        }
+        self.push(self.times.len() - 1, &seen);
+        Ok(())
+    }
+
+    fn push(&mut self, row: usize, seen: &[(usize, [f64; 3])]) {
+        for (index, place) in seen {
+            if let Some(point) = self.points.get_mut(*index) {
+                let [x, y, z] = place.map(|value| value * self.metres);
+                point.push(row, [x, y, if self.left_handed { -z } else { z }]);
+            }
+        }
+    }
+
+    fn finish(mut self, unit: Unit) -> Draft {
+        let rows = self.times.len();
+        for point in &mut self.points {
+            point.finish(rows);
+        }
+        if self.left_handed {
+            self.warnings.push(TrackWarning::LeftHanded);
+        }
+        let (mut jumps, mut skipped) = (0, 0);
+        for pair in self.frame_numbers.windows(2) {
+            if let [before, after] = pair {
+                jumps += usize::from(after - before > 1);
+                skipped += after - before - 1;
+            }
+        }
+        if jumps > 0 {
+            self.warnings.push(TrackWarning::FrameJumps {
+                jumps,
+                frames: skipped,
+            });
+        }
+        self.warnings
+            .extend(TrackWarning::frame_count(self.frames, rows));
+        Draft {
+            format: if self.version == "1.0" || self.version == "1" {
+                TrackFormat::TrackingTools
+            } else {
+                TrackFormat::Motive(self.version)
+            },
+            rate_hz: None,
+            unit,
+            image: false,
+            body: Body {
+                frame_numbers: self.frame_numbers,
+                times: self.times,
+                points: self.points,
+                warnings: Vec::new(),
+            },
+            warnings: self.warnings,
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! One record line and its fields.
+
+use std::path::Path;
+
+use super::{MOST, Number};
+use crate::tracks::lines::{Cell, Cells, Delimiter, Line};
+use crate::tracks::number::number;
+use crate::tracks::{TrackError, TrackProblem};
+
+pub(super) struct Record<'r> {
+    line: Line<'r>,
+    cells: &'r Cells,
+    file: &'r Path,
+    comma: bool,
+}
+
+impl<'r> Record<'r> {
+    pub(super) fn read(
+        line: &Line<'r>,
+        delimiter: Delimiter,
+        file: &'r Path,
+        cells: &'r mut Cells,
+    ) -> Result<Self, TrackError> {
+        // Comments may hold anything, quotes left open too.
+        if line.text.trim_start().starts_with("comment") {
+            cells.split(
+                &Line {
+                    text: "comment",
+                    ..*line
+                },
+                delimiter,
+                file,
+            )?;
+        } else {
+            cells.split(line, delimiter, file)?;
+        }
+        Ok(Self {
+            line: *line,
+            cells,
+            file,
+            comma: delimiter.allows_decimal_comma(),
+        })
+    }
+
+    pub(super) fn word(&self) -> &'r str {
+        self.cell(0).raw
+    }
+
+    pub(super) fn cell(&self, field: usize) -> Cell<'r> {
+        self.cells.at(&self.line, field)
+    }
+
+    pub(super) fn error(&self, field: usize, problem: TrackProblem) -> TrackError {
+        self.line.error(self.file, self.cell(field).at, problem)
+    }
+
+    pub(super) fn unknown(&self) -> TrackError {
+        let text = self.word().chars().take(40).collect();
+        self.error(0, TrackProblem::UnknownRecord { text })
+    }
+
+    /// That so many fields are there, and nothing behind them.
+    pub(super) fn expect(&self, expected: usize) -> Result<(), TrackError> {
+        if self.cells.len() < expected || self.cells.any_from(&self.line, expected) {
+            let problem = TrackProblem::FieldCount {
+                word: self.word().to_owned(),
+                fields: self.cells.len(),
+                expected,
+            };
+            return Err(self.line.error(self.file, self.line.text.len(), problem));
+        }
+        Ok(())
+    }
+
+    /// How many there are of something.
+    pub(super) fn count(&self, at: usize, field: &'static str) -> Result<usize, TrackError> {
+        let cell = self.cell(at);
+        cell.raw
+            .parse()
+            .ok()
+            .filter(|count| field.starts_with("frames") || *count <= MOST)
+            .ok_or_else(|| {
+                let text = cell.text().into_owned();
+                self.error(at, TrackProblem::NotACount { text, field })
+            })
+    }
+
+    pub(super) fn frame_number(&self, at: usize) -> Result<u64, TrackError> {
+        let cell = self.cell(at);
+        cell.raw.parse().map_err(|_| {
+            let text = cell.text().into_owned();
+            self.error(at, TrackProblem::NotAFrameNumber { text })
+        })
+    }
+
+    pub(super) fn time(&self, at: usize) -> Result<f64, TrackError> {
+        match number(self.cell(at).raw, self.comma) {
+            Number::Finite(time) => Ok(time),
+            _ => Err(self.not_a_number(at, "time")),
+        }
+    }
+
+    /// Three coordinates; `None` where any of them is missing.
+    pub(super) fn place(&self, at: usize) -> Result<Option<[f64; 3]>, TrackError> {
+        let mut place = [0.0; 3];
+        let mut missing = false;
+        for ((value, field), axis) in place.iter_mut().zip(at..).zip(["x", "y", "z"]) {
+            let text = self.cells.text(&self.line, field).unwrap_or("");
+            match number(text, self.comma) {
+                Number::Finite(finite) => *value = finite,
+                Number::Missing => missing = true,
+                Number::Wrong => return Err(self.not_a_number(field, axis)),
+            }
+        }
+        Ok((!missing).then_some(place))
+    }
+
+    fn not_a_number(&self, at: usize, what: &str) -> TrackError {
+        let problem = TrackProblem::NotANumber {
+            text: self.cell(at).text().into_owned(),
+            cell: what.to_owned(),
+        };
+        self.error(at, problem)
+    }
+}

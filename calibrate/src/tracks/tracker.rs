@@ -1,0 +1,311 @@
+//! Text of Tracker, the video tool: one track under its name, several under `#multi:`, or exports pasted side by side, each
+//! with times of its own. What the lengths are, only the user knows: Tracker writes what its calibration stick was told.
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::grid::{Body, decimals};
+use super::lines::{Cell, Cells, Delimiter, Line, Lines, cell_at, split};
+use super::number::{Decimals, Number};
+use super::{
+    Draft, Place, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
+    TrackWarning, Unit,
+};
+
+/// Times that differ by less than this share of the usual step are the same frame, written by two tracks.
+const SAME_FRAME: f64 = 0.25;
+
+/// When and where a track was.
+type Seen = (f64, [f64; 3]);
+
+/// Columns of one track, and what they said.
+struct Track {
+    name: String,
+    time: usize,
+    /// x and y; `None` for a track of other quantities.
+    place: Option<[usize; 2]>,
+    seen: Vec<Seen>,
+}
+
+/// # Errors
+/// [`TrackError::Broken`] with line and column.
+pub(super) fn read(
+    lines: &mut Lines<'_>,
+    file: &Path,
+    delimiter: Delimiter,
+    options: &TrackOptions,
+) -> Result<Draft, TrackError> {
+    let (unit, metres, _) = options.unit(Unit::Unknown);
+    let mut reader = Reader::begin(lines, file, delimiter)?;
+    let mut last_line = reader.header_line;
+    lines.skip_past(last_line);
+    while let Some(line) = lines.next()? {
+        last_line = line.number;
+        if line.is_blank() {
+            continue;
+        }
+        match reader.row(&line) {
+            Ok(()) => {}
+            Err(_) if !line.ended && !reader.times.is_empty() => {
+                let line = line.number;
+                reader.warnings.push(TrackWarning::LastLineCut { line });
+                break;
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    if reader.times.is_empty() {
+        let line = Line {
+            number: last_line,
+            text: "",
+            ended: true,
+        };
+        return Err(line.error(file, 0, TrackProblem::NoData));
+    }
+    Ok(Draft {
+        format: TrackFormat::Tracker,
+        rate_hz: None,
+        unit,
+        image: false,
+        body: merge(reader.times, reader.tracks, metres),
+        warnings: reader.warnings,
+    })
+}
+
+struct Reader<'f> {
+    file: &'f Path,
+    delimiter: Delimiter,
+    decimals: Decimals,
+    header_line: usize,
+    width: usize,
+    /// Columns of times, each with its last one.
+    clocks: Vec<(usize, f64)>,
+    tracks: Vec<Track>,
+    warnings: Vec<TrackWarning>,
+    cells: Cells,
+    /// All times, of whatever column.
+    times: Vec<f64>,
+    last_decimals: usize,
+}
+
+impl<'f> Reader<'f> {
+    /// Reads names and columns.
+    fn begin(lines: &Lines<'_>, file: &'f Path, delimiter: Delimiter) -> Result<Self, TrackError> {
+        let multi = |line: &Line<'_>| line.text.to_ascii_lowercase().starts_with("#multi:");
+        let mut rows = lines.head().filter(|line| !line.is_blank() && !multi(line));
+        let (Some(names), Some(titles)) = (rows.next(), rows.next()) else {
+            return Err(TrackError::Broken {
+                place: Place {
+                    file: file.to_owned(),
+                    line: 2,
+                    column: 1,
+                },
+                problem: TrackProblem::NoHeaderRow { row: "`t x y`" },
+            });
+        };
+        let name_cells = split(&names, delimiter, file)?;
+        let mut cells = split(&titles, delimiter, file)?;
+        while cells.last().is_some_and(|cell| cell.raw.is_empty()) {
+            cells.pop();
+        }
+        let mut reader = Self {
+            file,
+            delimiter,
+            decimals: if delimiter.allows_decimal_comma() {
+                Decimals::Open
+            } else {
+                Decimals::Point
+            },
+            header_line: titles.number,
+            width: cells.len(),
+            clocks: Vec::new(),
+            tracks: Vec::new(),
+            warnings: Vec::new(),
+            cells: Cells::default(),
+            times: Vec::new(),
+            last_decimals: 0,
+        };
+        let starts: Vec<usize> = (0..name_cells.len())
+            .filter(|column| !cell_at(&name_cells, *column).raw.is_empty())
+            .collect();
+        for (index, start) in starts.iter().copied().enumerate() {
+            let end = starts.get(index + 1).copied().unwrap_or(cells.len());
+            let name = cell_at(&name_cells, start).text().into_owned();
+            reader.track(name, start..end, &cells, &titles)?;
+        }
+        if reader.tracks.is_empty() {
+            return Err(names.error(file, 0, TrackProblem::NoPoints));
+        }
+        Ok(reader)
+    }
+
+    fn track(
+        &mut self,
+        name: String,
+        range: Range<usize>,
+        cells: &[Cell<'_>],
+        line: &Line<'_>,
+    ) -> Result<(), TrackError> {
+        let find = |title: &str| {
+            range
+                .clone()
+                .find(|column| cell_at(cells, *column).is(title))
+        };
+        // Tracks under `#multi:` share the first column's time.
+        let shared = cells.first().filter(|cell| cell.is("t")).map(|_| 0);
+        let Some(time) = find("t").or(shared) else {
+            return Err(line.error(self.file, 0, TrackProblem::NoTime));
+        };
+        if self.clocks.iter().all(|(column, _)| *column != time) {
+            self.clocks.push((time, f64::NEG_INFINITY));
+        }
+        let place = match (find("x"), find("y")) {
+            (Some(x), Some(y)) => Some([x, y]),
+            (None, None) => {
+                let titles = range.filter_map(|column| cells.get(column).map(|cell| cell.raw));
+                let titles: Vec<&str> = titles.filter(|title| !title.is_empty()).collect();
+                self.warnings.push(TrackWarning::NoPositions {
+                    track: name.clone(),
+                    columns: titles.join(", "),
+                });
+                None
+            }
+            (x, _) => {
+                let axis = if x.is_some() { 'y' } else { 'x' };
+                let problem = TrackProblem::MissingAxis { point: name, axis };
+                return Err(line.error(self.file, 0, problem));
+            }
+        };
+        self.tracks.push(Track {
+            name,
+            time,
+            place,
+            seen: Vec::new(),
+        });
+        Ok(())
+    }
+
+    /// A row, taken whole or not at all.
+    fn row(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+        self.cells.split(line, self.delimiter, self.file)?;
+        if self.cells.len() < self.width || self.cells.any_from(line, self.width) {
+            let problem = TrackProblem::RowLength {
+                cells: self.cells.len(),
+                expected: self.width,
+            };
+            return Err(line.error(self.file, line.text.len(), problem));
+        }
+        let mut stamps = Vec::with_capacity(self.clocks.len());
+        for index in 0..self.clocks.len() {
+            let Some((column, previous)) = self.clocks.get(index).copied() else {
+                continue;
+            };
+            let stamp = self.value(line, column, "time")?;
+            if let Some(time) = stamp.filter(|time| *time <= previous) {
+                let at = self.cells.at(line, column).at;
+                let problem = TrackProblem::TimeOrder { previous, time };
+                return Err(line.error(self.file, at, problem));
+            }
+            stamps.push(stamp);
+        }
+        let mut places = Vec::with_capacity(self.tracks.len());
+        for index in 0..self.tracks.len() {
+            let Some(Track {
+                time,
+                place: Some([x, y]),
+                ..
+            }) = self.tracks.get(index)
+            else {
+                places.push(None);
+                continue;
+            };
+            let (time, x, y) = (*time, *x, *y);
+            let stamp = self.clocks.iter().position(|(column, _)| *column == time);
+            let stamp = stamp.and_then(|clock| stamps.get(clock).copied().flatten());
+            let place = (self.value(line, x, "x")?, self.value(line, y, "y")?);
+            places.push(match (stamp, place) {
+                (Some(time), (Some(x), Some(y))) => Some((time, [x, y, 0.0])),
+                (None, (None, None)) | (Some(_), _) => None,
+                (None, _) => {
+                    let problem = TrackProblem::NotANumber {
+                        text: String::new(),
+                        cell: "time".to_owned(),
+                    };
+                    let at = self.cells.at(line, time).at;
+                    return Err(line.error(self.file, at, problem));
+                }
+            });
+        }
+        let decimals = decimals(self.cells.last(line).map_or("", |cell| cell.raw));
+        if !line.ended && decimals < self.last_decimals {
+            // Its number may have lost digits; the caller knows that the file ends here.
+            return Err(line.error(self.file, line.text.len(), TrackProblem::NoData));
+        }
+        self.last_decimals = decimals;
+        for ((_, last), stamp) in self.clocks.iter_mut().zip(&stamps) {
+            *last = stamp.unwrap_or(*last);
+        }
+        self.times.extend(stamps.into_iter().flatten());
+        for (track, place) in self.tracks.iter_mut().zip(places) {
+            track.seen.extend(place);
+        }
+        Ok(())
+    }
+
+    fn value(
+        &mut self,
+        line: &Line<'_>,
+        column: usize,
+        what: &str,
+    ) -> Result<Option<f64>, TrackError> {
+        let cell = self.cells.at(line, column);
+        match self.decimals.number(cell.raw) {
+            Number::Finite(value) => Ok(Some(value)),
+            Number::Missing => Ok(None),
+            Number::Wrong => {
+                let problem = TrackProblem::NotANumber {
+                    text: cell.text().into_owned(),
+                    cell: what.to_owned(),
+                };
+                Err(line.error(self.file, cell.at, problem))
+            }
+        }
+    }
+}
+
+/// One row for each time that any track has.
+fn merge(mut times: Vec<f64>, tracks: Vec<Track>, metres: f64) -> Body {
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    let mut steps: Vec<f64> = times
+        .windows(2)
+        .filter_map(|pair| Some(pair.last()? - pair.first()?))
+        .collect();
+    steps.sort_by(f64::total_cmp);
+    // Two roundings of one time are far nearer than frames: the upper half of the steps are between frames.
+    let step = steps.get(steps.len() * 3 / 4).copied().unwrap_or(0.0);
+    let mut rows: Vec<f64> = Vec::with_capacity(times.len());
+    for time in times {
+        if rows
+            .last()
+            .is_none_or(|last| time - last > SAME_FRAME * step)
+        {
+            rows.push(time);
+        }
+    }
+    let points = tracks.into_iter().map(|track| {
+        let mut point = TrackPoint::new(track.name, PointKind::Marker, String::new(), Vec::new());
+        for (time, place) in track.seen {
+            let row = rows.partition_point(|row| *row <= time).saturating_sub(1);
+            point.push(row, place.map(|value| value * metres));
+        }
+        point.finish(rows.len());
+        point
+    });
+    Body {
+        frame_numbers: (0..rows.len() as u64).collect(),
+        points: points.collect(),
+        times: rows,
+        warnings: Vec::new(),
+    }
+}
