@@ -5,6 +5,7 @@ use swimmer_files::Axes;
 
 /// What a recording does not say itself.
 #[derive(Debug, Clone, Default, clap::Args)]
+#[allow(clippy::doc_markdown)] // the help is for people: DeepLabCut, not `DeepLabCut`
 pub(crate) struct Recording {
     /// Metres per unit of the recording (per pixel), where it does not say its unit
     #[arg(long, value_name = "METRES", value_parser = positive)]

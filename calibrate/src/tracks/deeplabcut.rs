@@ -44,6 +44,57 @@ pub(super) fn read(
             _ => part,
         }
     };
+    let (points, columns) = parts_and_columns(coords_line, coords, name, file)?;
+    if points.is_empty() {
+        return Err(coords_line.error(file, 0, TrackProblem::NoPoints));
+    }
+    let rate_hz = options.need_rate(coords_line, file)?;
+    let header_line = rows
+        .iter()
+        .filter(|(_, cells)| is_header(cells))
+        .map(|(line, _)| line.number);
+    let (unit, metres, _) = options.unit(Unit::Pixel);
+    let grid = Grid {
+        clock: Clock::Numbered {
+            frame: 0,
+            first: 0,
+            rate_hz,
+            time: None,
+        },
+        metres,
+        columns,
+        likelihood: options.least_likelihood(),
+        ..Grid::under(
+            header_line.max().unwrap_or(coords_line.number),
+            delimiter,
+            coords.len(),
+            points,
+        )
+    };
+    let warnings: Vec<TrackWarning> = Vec::new();
+    Ok(Draft {
+        format: TrackFormat::DeepLabCut,
+        rate_hz: Some(rate_hz),
+        unit,
+        image: true,
+        body: grid::read(lines, file, grid)?,
+        warnings,
+    })
+}
+
+fn is_header(cells: &[Cell<'_>]) -> bool {
+    ["scorer", "individuals", "bodyparts", "coords"]
+        .iter()
+        .any(|label| cell_at(cells, 0).is(label))
+}
+
+/// The parts in order, and each one's columns.
+fn parts_and_columns(
+    coords_line: &Line<'_>,
+    coords: &[Cell<'_>],
+    name: impl Fn(usize) -> String,
+    file: &Path,
+) -> Result<(Vec<TrackPoint>, Vec<Columns>), TrackError> {
     let (mut points, mut columns): (Vec<TrackPoint>, Vec<Columns>) = (Vec::new(), Vec::new());
     for (column, coordinate) in coords.iter().enumerate().skip(1) {
         let name = name(column);
@@ -87,45 +138,5 @@ pub(super) fn read(
             }
         }
     }
-    if points.is_empty() {
-        return Err(coords_line.error(file, 0, TrackProblem::NoPoints));
-    }
-    let rate_hz = options.need_rate(coords_line, file)?;
-    let header_line = rows
-        .iter()
-        .filter(|(_, cells)| is_header(cells))
-        .map(|(line, _)| line.number);
-    let (unit, metres, _) = options.unit(Unit::Pixel);
-    let grid = Grid {
-        clock: Clock::Numbered {
-            frame: 0,
-            first: 0,
-            rate_hz,
-            time: None,
-        },
-        metres,
-        columns,
-        likelihood: options.least_likelihood(),
-        ..Grid::under(
-            header_line.max().unwrap_or(coords_line.number),
-            delimiter,
-            coords.len(),
-            points,
-        )
-    };
-    let warnings: Vec<TrackWarning> = Vec::new();
-    Ok(Draft {
-        format: TrackFormat::DeepLabCut,
-        rate_hz: Some(rate_hz),
-        unit,
-        image: true,
-        body: grid::read(lines, file, grid)?,
-        warnings,
-    })
-}
-
-fn is_header(cells: &[Cell<'_>]) -> bool {
-    ["scorer", "individuals", "bodyparts", "coords"]
-        .iter()
-        .any(|label| cell_at(cells, 0).is(label))
+    Ok((points, columns))
 }

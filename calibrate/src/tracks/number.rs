@@ -1,5 +1,10 @@
 //! Numbers as tracking files write them: blank and NaN are missing, and a decimal comma is one where the delimiter allows it.
 
+use std::path::Path;
+
+use super::lines::{Cell, Line};
+use super::{TrackError, TrackProblem};
+
 /// What a cell that should hold a number says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Number {
@@ -97,6 +102,25 @@ pub(super) fn number(text: &str, decimal_comma: bool) -> Number {
         Ok(value) if value.is_nan() => Number::Missing,
         Err(_) if text.contains(".#QNAN") || text.contains(".#IND") => Number::Missing,
         _ => Number::Wrong,
+    }
+}
+
+/// A header's rate \[Hz\].
+///
+/// # Errors
+/// [`TrackProblem::Rate`] for anything but a positive number.
+pub(super) fn rate(
+    cell: &Cell<'_>,
+    line: &Line<'_>,
+    file: &Path,
+    decimal_comma: bool,
+) -> Result<f64, TrackError> {
+    match number(cell.raw, decimal_comma) {
+        Number::Finite(rate) if rate > 0.0 => Ok(rate),
+        _ => {
+            let text = cell.text().into_owned();
+            Err(line.error(file, cell.at, TrackProblem::Rate { text }))
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::grid::{self, Clock, Columns, Grid};
 use super::lines::{Cell, Delimiter, Line, Lines, cell_at, split};
-use super::number::{Number, number};
+use super::number;
 use super::{
     Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
     TrackWarning, Unit,
@@ -39,13 +39,7 @@ pub(super) fn read(
     };
     let (line, cells) = find("FREQUENCY")?;
     let rate = cell_at(cells, 1);
-    let rate_hz = match number(rate.raw, true) {
-        Number::Finite(value) if value > 0.0 => value,
-        _ => {
-            let text = rate.text().into_owned();
-            return Err(line.error(file, rate.at, TrackProblem::Rate { text }));
-        }
-    };
+    let rate_hz = number::rate(&rate, line, file, true)?;
     let (names_line, names) = find("MARKER_NAMES")?;
     let names: Vec<String> = names
         .iter()
@@ -61,30 +55,7 @@ pub(super) fn read(
             .iter()
             .any(|cell| names.iter().any(|name| cell.raw == format!("{name} X")))
     });
-    let (frame, time, columns) = match titles {
-        Some((line, cells)) => {
-            let column = |title: &str| cells.iter().position(|cell| cell.raw == title);
-            let mut columns = Vec::with_capacity(names.len());
-            for name in &names {
-                let mut axes = [0; 3];
-                for (place, axis) in axes.iter_mut().zip(['X', 'Y', 'Z']) {
-                    *place = column(&format!("{name} {axis}")).ok_or_else(|| {
-                        let point = name.clone();
-                        line.error(file, 0, TrackProblem::MissingAxis { point, axis })
-                    })?;
-                }
-                columns.push(Columns::of(axes));
-            }
-            (column("Frame"), column("Time"), columns)
-        }
-        None => (
-            None,
-            None,
-            (0..names.len())
-                .map(|index| Columns::of([0, 1, 2].map(|axis| axis + 3 * index)))
-                .collect(),
-        ),
-    };
+    let (frame, time, columns) = columns(titles, &names, file)?;
     let used = columns.iter().flat_map(|columns| columns.axes).flatten();
     let width = used.max().map_or(0, |last| last + 1);
     let total = find("NO_OF_FRAMES")
@@ -125,4 +96,33 @@ pub(super) fn read(
         body,
         warnings,
     })
+}
+
+/// Columns of the frame, of the time, and of each marker: by their titles, or without any in the order of the names.
+type Places = (Option<usize>, Option<usize>, Vec<Columns>);
+
+fn columns(
+    titles: Option<&(Line<'_>, Vec<Cell<'_>>)>,
+    names: &[String],
+    file: &Path,
+) -> Result<Places, TrackError> {
+    let Some((line, cells)) = titles else {
+        let ordered = (0..names.len())
+            .map(|index| Columns::of([0, 1, 2].map(|axis| axis + 3 * index)))
+            .collect();
+        return Ok((None, None, ordered));
+    };
+    let column = |title: &str| cells.iter().position(|cell| cell.raw == title);
+    let mut columns = Vec::with_capacity(names.len());
+    for name in names {
+        let mut axes = [0; 3];
+        for (place, axis) in axes.iter_mut().zip(['X', 'Y', 'Z']) {
+            *place = column(&format!("{name} {axis}")).ok_or_else(|| {
+                let point = name.clone();
+                line.error(file, 0, TrackProblem::MissingAxis { point, axis })
+            })?;
+        }
+        columns.push(Columns::of(axes));
+    }
+    Ok((column("Frame"), column("Time"), columns))
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::grid::{self, Clock, Columns, Grid};
 use super::lines::{Cell, Delimiter, Lines, cell_at, split};
-use super::number::{Number, number};
+use super::number;
 use super::{
     Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
     TrackWarning, Unit,
@@ -44,13 +44,7 @@ pub(super) fn read(
             .ok_or_else(|| keys.error(file, 0, TrackProblem::NoKey { key }))
     };
     let rate = find("DataRate")?;
-    let rate_hz = match number(rate.raw, delimiter.allows_decimal_comma()) {
-        Number::Finite(value) if value > 0.0 => value,
-        _ => {
-            let text = rate.text().into_owned();
-            return Err(values.error(file, rate.at, TrackProblem::Rate { text }));
-        }
-    };
+    let rate_hz = number::rate(&rate, values, file, delimiter.allows_decimal_comma())?;
     let cell = find("Units")?;
     let own = Unit::from_name(cell.raw).ok_or_else(|| {
         let text = cell.text().into_owned();

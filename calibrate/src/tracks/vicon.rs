@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::grid::{self, Clock, Columns, Grid};
 use super::lines::{Cell, Delimiter, Line, Lines, cell_at, split};
-use super::number::{Number, number};
+use super::number;
 use super::{
     Draft, Place, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
     TrackWarning, Unit,
@@ -36,13 +36,7 @@ pub(super) fn read(
         });
     };
     let rate = cell_at(&split(rate_line, delimiter, file)?, 0);
-    let rate_hz = match number(rate.raw, delimiter.allows_decimal_comma()) {
-        Number::Finite(value) if value > 0.0 => value,
-        _ => {
-            let text = rate.text().into_owned();
-            return Err(rate_line.error(file, rate.at, TrackProblem::Rate { text }));
-        }
-    };
+    let rate_hz = number::rate(&rate, rate_line, file, delimiter.allows_decimal_comma())?;
     let name_cells = split(names, delimiter, file)?;
     let axis_cells = split(axes, delimiter, file)?;
     let unit_cells = split(units, delimiter, file)?;

@@ -49,32 +49,7 @@ impl Header {
             )
         };
         let clock = clock(&names, options).map_err(|problem| error(0, problem))?;
-        let mut groups = Vec::new();
-        for pair in &options.pairs {
-            let find = |wanted: &String| {
-                let found = names.iter().position(|name| name.whole == *wanted);
-                let columns = || {
-                    names
-                        .iter()
-                        .map(|name| name.whole.as_str())
-                        .collect::<Vec<_>>()
-                        .join(", ")
-                };
-                found.ok_or_else(|| {
-                    error(
-                        0,
-                        TrackProblem::NoColumn {
-                            name: wanted.clone(),
-                            columns: columns(),
-                        },
-                    )
-                })
-            };
-            groups.push((
-                pair.join(","),
-                pair.iter().map(find).collect::<Result<Vec<_>, _>>()?,
-            ));
-        }
+        let mut groups = pairs(&names, options, &error)?;
         for (name, axes) in stems(&names, &error)? {
             match axes {
                 [Some(x), Some(y), z] => {
@@ -136,6 +111,30 @@ impl Header {
                 .collect(),
         })
     }
+}
+
+/// The points that the user named by their columns.
+fn pairs(
+    names: &[Name<'_>],
+    options: &TrackOptions,
+    error: &impl Fn(usize, TrackProblem) -> TrackError,
+) -> Result<Vec<(String, Vec<usize>)>, TrackError> {
+    let find = |wanted: &String| {
+        let found = names.iter().position(|name| name.whole == *wanted);
+        found.ok_or_else(|| {
+            let columns: Vec<&str> = names.iter().map(|name| name.whole.as_str()).collect();
+            let problem = TrackProblem::NoColumn {
+                name: wanted.clone(),
+                columns: columns.join(", "),
+            };
+            error(0, problem)
+        })
+    };
+    let pair = |pair: &[String; 2]| {
+        let columns = pair.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+        Ok((pair.join(","), columns))
+    };
+    options.pairs.iter().map(pair).collect()
 }
 
 fn places(columns: &[usize]) -> Columns {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::tracks::lines::{Cell, Delimiter, Line, split};
-use crate::tracks::number::{Number, number};
+use crate::tracks::number;
 use crate::tracks::{PointKind, TrackError, TrackPoint, TrackProblem, Unit};
 
 /// What the head says.
@@ -163,16 +163,7 @@ impl<'a> Keys<'_, 'a> {
 
     fn rate(&self) -> Result<f64, TrackError> {
         let cell = self.need("Export Frame Rate")?;
-        match number(cell.raw, self.comma) {
-            Number::Finite(rate) if rate > 0.0 => Ok(rate),
-            _ => Err(self.line.error(
-                self.file,
-                cell.at,
-                TrackProblem::Rate {
-                    text: cell.text().into_owned(),
-                },
-            )),
-        }
+        number::rate(&cell, self.line, self.file, self.comma)
     }
 
     fn unit(&self) -> Result<Unit, TrackError> {
