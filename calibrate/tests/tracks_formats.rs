@@ -15,13 +15,13 @@ fn front(row: usize) -> [f64; 2] {
 }
 
 fn back(row: usize) -> Option<[f64; 2]> {
-    (row != 3 && row != 4).then(|| [0.029 + 0.002 * row as f64, 0.25 - 0.001 * row as f64])
+    (row != 3 && row != 4).then_some([0.029 + 0.002 * row as f64, 0.25 - 0.001 * row as f64])
 }
 
 fn third(row: usize) -> Option<[f64; 2]> {
     (5..=8)
         .contains(&row)
-        .then(|| [0.5 + 0.001 * row as f64, 0.4])
+        .then_some([0.5 + 0.001 * row as f64, 0.4])
 }
 
 /// How a format writes the motion.
@@ -79,6 +79,7 @@ impl Sample {
 }
 
 /// Every file of the folder.
+#[allow(clippy::too_many_lines)] // a table
 fn samples() -> Vec<Sample> {
     let (m, cm, mm) = (Unit::Metre, Unit::Centimetre, Unit::Millimetre);
     let motive = ["robot:Front", "robot:Back", "Unlabeled 7"];

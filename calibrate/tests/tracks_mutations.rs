@@ -545,9 +545,11 @@ fn an_export_without_header_needs_a_scale_and_tells_rotations_from_places() {
         (1, 12, TrackProblem::LooksLikeRotation)
     );
     let two = |columns: usize| {
-        (0..4)
-            .map(|k| format!("{k},{:.6}{}\n", k as f64 / 120.0, ",1.5".repeat(columns)))
-            .collect::<String>()
+        let rows = (0..4).map(|k| format!("{k},{:.6}", f64::from(k) / 120.0));
+        let ended: Vec<String> = rows
+            .map(|row| row + &",1.5".repeat(columns) + "\n")
+            .collect();
+        ended.concat()
     };
     assert_eq!(
         broken(&two(7)),

@@ -454,7 +454,10 @@ mod tests {
 
     #[test]
     fn lines_behind_the_head_come_as_well() {
-        let text: String = (1..=1000).map(|i| format!("{i}\n")).collect();
+        let text = (1..=1000)
+            .map(|i| i.to_string() + "\n")
+            .collect::<Vec<_>>()
+            .concat();
         let mut lines = of(&text);
         lines.skip_past(7);
         let mut expected = 8;
