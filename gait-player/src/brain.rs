@@ -124,6 +124,7 @@ impl Brain {
         let mut settings = Settings {
             configuration,
             servos,
+            key: None,
         };
         let model =
             settings::check_configuration(&configuration, &firmware_limits).unwrap_or_else(|_| {
@@ -149,7 +150,7 @@ impl Brain {
             storage_wanted: false,
         };
         Self {
-            session: Session::new(boot.session_seed),
+            session: Session::new(boot.session_seed, boot.nonce),
             identity,
             boot,
             buffer,
@@ -208,6 +209,8 @@ impl Brain {
 
     /// Takes stored settings; false where they are none that the limits allow.
     fn restore(&mut self, bytes: &[u8]) -> bool {
+        // Limits that have changed must not open the robot.
+        self.settings.key = Settings::stored_key(bytes);
         let Some(settings) = Settings::decode(bytes, &self.firmware_limits) else {
             return false;
         };
@@ -223,7 +226,12 @@ impl Brain {
     pub fn receive(&mut self, now_us: u64, bytes: &[u8]) {
         for &byte in bytes {
             if let Some(received) = self.decoder.push(byte) {
-                self.handle(now_us, received);
+                let admission = self.session.admit(
+                    received.header.session,
+                    self.decoder.signed_bytes(),
+                    received.signature.as_ref(),
+                );
+                self.handle(now_us, received, admission);
             }
         }
     }

@@ -31,7 +31,8 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use link_protocol::{
-    Begin, Decoder, Header, HelloReply, MAX_ENCODED, Message, Request, crc32c, encode,
+    Begin, Decoder, Header, HelloReply, Key, MAX_CHUNK, MAX_ENCODED, MAX_SIGNED_CHUNK, Message,
+    Request, Seal, crc32c, encode, encode_signed,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -62,6 +63,8 @@ pub struct SessionConfig {
     /// Bytes per second that the slowest part of the way carries: chunks are not sent faster, so that a stop never waits
     /// behind more than one.
     pub bytes_per_second: f64,
+    /// The key shared with the robot: every frame but the greeting is signed with it.
+    pub key: Option<Key>,
 }
 
 impl SessionConfig {
@@ -70,6 +73,7 @@ impl SessionConfig {
         Self {
             seed,
             bytes_per_second: 11_520.0,
+            key: None,
         }
     }
 }
@@ -84,6 +88,10 @@ pub struct Session {
     link: Link,
     /// The session number of the last open session: a stop goes out under it.
     number: u16,
+    /// Signs the frames of that session.
+    seal: Option<Seal>,
+    /// Frames signed in it.
+    signed: u64,
     sequence: u16,
     next_ticket: u64,
     queue: VecDeque<(Ticket, Request)>,
@@ -119,6 +127,8 @@ impl Session {
             outgoing: Vec::new(),
             link: Link::Closed,
             number: 0,
+            seal: None,
+            signed: 0,
             sequence,
             next_ticket: 0,
             queue: VecDeque::new(),
@@ -222,12 +232,27 @@ impl Session {
             phase: UploadPhase::Begin,
             due: true,
             number: 0,
-            window: Window::new(table.len(), 0),
+            window: self.window(table.len(), 0),
             renewed: 0,
         });
         self.last_heard = now;
         self.poll(now);
         ticket
+    }
+
+    /// Signs with another key, or none, from the next session on.
+    pub fn set_key(&mut self, key: Option<Key>) {
+        self.config.key = key;
+    }
+
+    /// A window of pieces as large as frames have room for.
+    fn window(&self, total: usize, wanted: usize) -> Window {
+        let piece = if self.config.key.is_some() {
+            MAX_SIGNED_CHUNK
+        } else {
+            MAX_CHUNK
+        };
+        Window::new(total, wanted, piece)
     }
 
     /// Breaks the upload off, without an event. The robot keeps what has arrived and the table it plays.
@@ -287,8 +312,16 @@ impl Session {
     /// Encodes a message into the outgoing bytes; returns its length on the wire.
     fn send(&mut self, sequence: u16, message: &Message, now: Duration) -> usize {
         let mut frame = [0; MAX_ENCODED];
+        let header = Header::new(self.number, sequence);
+        let encoded = match &self.seal {
+            Some(seal) if !matches!(message, Message::Hello(_)) => {
+                self.signed += 1;
+                encode_signed(header, message, seal, self.signed, &mut frame)
+            }
+            _ => encode(header, message, &mut frame),
+        };
         // Every message of the protocol fits a frame; one that did not would be lost and asked again.
-        let Ok(len) = encode(Header::new(self.number, sequence), message, &mut frame) else {
+        let Ok(len) = encoded else {
             return 0;
         };
         self.outgoing

@@ -39,7 +39,7 @@ fn noise_without_a_frame_asks_for_the_baud_rate() {
     script.session.receive(MS, &[0xE0, 0x1C, 0, 0xFF, 0, 3]);
     script.run_to(MS * 20_000);
     let error = script.outcome(ticket).unwrap().unwrap_err();
-    assert!(error.contains("baud rate"), "{error}");
+    assert!(error.contains("115200 baud"), "{error}");
 }
 
 #[test]

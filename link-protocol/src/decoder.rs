@@ -61,6 +61,8 @@ const MAX_COBS: usize = MAX_RAW + 1;
 pub struct Decoder {
     state: State,
     bytes: [u8; MAX_COBS],
+    /// Of the frame received last, the bytes that its signature covers; 0 where it has none.
+    covered: usize,
     counters: DecodeCounters,
 }
 
@@ -78,6 +80,7 @@ impl Decoder {
         Self {
             state: State::Collecting(0),
             bytes: [0; MAX_COBS],
+            covered: 0,
             counters: DecodeCounters {
                 ok: 0,
                 bad_crc: 0,
@@ -92,6 +95,12 @@ impl Decoder {
     /// What was counted so far.
     pub fn counters(&self) -> DecodeCounters {
         self.counters
+    }
+
+    /// What the signature of the frame that came last covers: all before its tag. Empty where it was not signed; holds
+    /// until the next byte.
+    pub fn signed_bytes(&self) -> &[u8] {
+        self.bytes.get(..self.covered).unwrap_or_default()
     }
 
     /// Takes one byte; gives a frame where this byte completed one whose CRC is right.
@@ -134,6 +143,11 @@ impl Decoder {
             sequence: u16::from_le_bytes([q0, q1]),
         };
         let (body, signature) = split_signature(kind, body);
+        self.covered = if signature.is_some() {
+            len.saturating_sub(TRAILER + Signature::TAG)
+        } else {
+            0
+        };
         let message = match body {
             Some(body) => Message::decode_body(version, kind & !KIND_SIGNED, body),
             None => Err(BodyError::Malformed),

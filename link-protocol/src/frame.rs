@@ -66,7 +66,7 @@ impl Kind {
 }
 
 /// What a signed frame carries between body and CRC: a counter that only grows, and a truncated keyed tag over header,
-/// body and counter. No version 1 message needs it.
+/// body and counter ([`crate::Seal`]). A robot without a key reads past it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Signature {
     /// Never repeats under one key; 48 bits.
@@ -78,6 +78,14 @@ pub struct Signature {
 impl Signature {
     /// Bytes in the frame.
     pub const LEN: usize = 14;
+    /// Bytes of the tag: the last of a signature.
+    pub const TAG: usize = 8;
+
+    /// The counter as it stands in the frame.
+    pub(crate) fn counter_bytes(counter: u64) -> [u8; 6] {
+        let [c0, c1, c2, c3, c4, c5, _, _] = counter.to_le_bytes();
+        [c0, c1, c2, c3, c4, c5]
+    }
 
     pub(crate) fn from_bytes(bytes: [u8; Self::LEN]) -> Self {
         let [c0, c1, c2, c3, c4, c5, tag @ ..] = bytes;
@@ -89,10 +97,17 @@ impl Signature {
 
     pub(crate) fn to_bytes(self) -> [u8; Self::LEN] {
         let mut bytes = [0; Self::LEN];
-        bytes[..6].copy_from_slice(&self.counter.to_le_bytes()[..6]);
+        bytes[..6].copy_from_slice(&Self::counter_bytes(self.counter));
         bytes[6..].copy_from_slice(&self.tag);
         bytes
     }
+}
+
+/// The header as it stands in the frame.
+pub(crate) fn header_bytes(header: Header, kind: u8) -> [u8; HEADER] {
+    let [s0, s1] = header.session.to_le_bytes();
+    let [q0, q1] = header.sequence.to_le_bytes();
+    [header.version, s0, s1, q0, q1, kind]
 }
 
 /// Why a frame could not be encoded.
@@ -140,10 +155,7 @@ pub fn encode_body(
         return Err(EncodeError::BodyTooLong);
     }
     let mut raw = [0; MAX_RAW];
-    raw[0] = header.version;
-    raw[1..3].copy_from_slice(&header.session.to_le_bytes());
-    raw[3..5].copy_from_slice(&header.sequence.to_le_bytes());
-    raw[5] = kind & !KIND_SIGNED;
+    raw[..HEADER].copy_from_slice(&header_bytes(header, kind & !KIND_SIGNED));
     raw[HEADER..HEADER + body.len()].copy_from_slice(body);
     if let Some(signature) = signature {
         raw[5] |= KIND_SIGNED;

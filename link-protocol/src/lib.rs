@@ -19,10 +19,11 @@
 //! for ever, in frames of any version, so that two ends that do not match can say so. Enum variants are only appended.
 //! `tests/golden/v1.txt` holds the bytes of every message of version 1; it is never edited.
 //!
-//! # Room for authentication
+//! # Authentication
 //!
 //! The top bit of `kind` is [`KIND_SIGNED`]: such a frame carries a [`Signature`] (monotonic counter and truncated
-//! keyed tag) between body and CRC. Version 1 robots without a key read past it; unsigned frames are unchanged by it.
+//! keyed tag) between body and CRC. Robots without a key read past it; unsigned frames are unchanged by it. What signs and
+//! verifies is a [`Seal`].
 #![cfg_attr(not(test), no_std)]
 
 mod checksum;
@@ -34,6 +35,7 @@ mod message;
 mod refusal;
 mod reply;
 mod request;
+mod seal;
 mod telemetry;
 
 pub use checksum::{Checksum, crc32c};
@@ -45,6 +47,7 @@ pub use message::{BodyError, Message};
 pub use refusal::{CrossingPlace, Refusal};
 pub use reply::{Counters, Reply, Status, TableInfo};
 pub use request::{Arm, Begin, Chunk, Play, Request};
+pub use seal::{Binding, Key, Seal, encode_signed};
 pub use telemetry::{Flags, Ping, Pong, Pose, StateName, StopCause, Telemetry};
 
 /// Lowest protocol version this crate understands.
@@ -63,6 +66,8 @@ pub const MAX_BODY: usize = MAX_RAW - HEADER - TRAILER;
 pub const MAX_ENCODED: usize = MAX_RAW + 3;
 /// Most bytes of table data in one [`Chunk`].
 pub const MAX_CHUNK: usize = 104;
+/// The same where the frame is signed. A whole number of knots is not needed: pieces may split one.
+pub const MAX_SIGNED_CHUNK: usize = MAX_CHUNK - Signature::LEN;
 /// Most knots of a gait table; a knot is two i16 of [`ANGLE_UNIT_RAD`], four bytes.
 pub const MAX_KNOTS: usize = 512;
 /// Most bytes of a gait table.
@@ -71,6 +76,10 @@ pub const MAX_TABLE: usize = 4 * MAX_KNOTS;
 pub const ANGLE_UNIT_RAD: f32 = 1e-4;
 /// Top bit of the kind byte: the frame carries a [`Signature`].
 pub const KIND_SIGNED: u8 = 0x80;
-/// Identifies the set of messages by their structure: two ends with the same key read the same fields.
-pub const SCHEMA_KEY: [u8; 8] =
+/// Identifies the set of messages by their structure: two ends with the same key read the same fields. It is that of
+/// version 1 as it was frozen ([`postcard_schema`]'s key of all messages then); variants appended since change no byte of
+/// what was there, and an end that does not know one says so ([`Refusal::NotUnderstood`]).
+pub const SCHEMA_KEY: [u8; 8] = [0xC7, 0x47, 0x8B, 0x1F, 0x03, 0x22, 0x6B, 0x44];
+/// The structure of all messages as they are now, appended variants too: for the golden files, never on the wire.
+pub const SCHEMA_NOW: [u8; 8] =
     postcard_schema::key::Key::for_path::<message::Schemas>("swimmer/link/v1").to_bytes();

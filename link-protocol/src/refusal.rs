@@ -124,6 +124,10 @@ pub enum Refusal {
     /// The robot is busy with an earlier request that is not answered yet, or a stop cut its check of a table short: ask
     /// again.
     Busy,
+    /// The robot has a key, and the frame is not signed. A stop needs no signature.
+    KeyNeeded,
+    /// The frame is signed, but not with the robot's key for this session.
+    WrongKey,
 }
 
 impl Refusal {
@@ -155,6 +159,8 @@ impl Refusal {
             Self::BadValue { .. } => 22,
             Self::SlowToNeutral { .. } => 23,
             Self::Busy => 24,
+            Self::KeyNeeded => 25,
+            Self::WrongKey => 26,
         }
     }
 }
@@ -296,6 +302,14 @@ impl core::fmt::Display for Refusal {
             Self::Busy => write!(
                 f,
                 "the robot is still busy with an earlier request: try again"
+            ),
+            Self::KeyNeeded => write!(
+                f,
+                "the robot has a key, and this was not signed: give it with --key FILE (stop and estop need none)"
+            ),
+            Self::WrongKey => write!(
+                f,
+                "this was signed with another key than the robot's: give the right one with --key FILE (stop and estop need none)"
             ),
         }
     }

@@ -1,6 +1,6 @@
 //! What a host may ask of the robot. Variants are only appended.
 
-use crate::{Configuration, Joint, MAX_CHUNK, ServoSettings};
+use crate::{Configuration, Joint, Key, MAX_CHUNK, ServoSettings};
 use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -65,6 +65,9 @@ pub enum Request {
     CrashMessage,
     /// Names the table that is active. Answered by [`crate::Reply::Table`].
     Table,
+    /// Sets, changes or removes the shared key; only while Stopped; in force from the next session on. A robot with a key
+    /// takes it only signed with that key. The new key crosses the wire in the clear: send it over a cable.
+    SetKey(Option<Key>),
 }
 
 /// Opens an upload.
@@ -85,7 +88,7 @@ pub struct Chunk {
     pub upload: u16,
     /// Where the piece starts, bytes.
     pub offset: u16,
-    /// The piece. Frames that carry a signature leave room for 90 bytes.
+    /// The piece. Frames that carry a signature leave room for [`crate::MAX_SIGNED_CHUNK`] bytes.
     pub data: Vec<u8, MAX_CHUNK>,
 }
 

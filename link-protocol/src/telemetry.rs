@@ -64,6 +64,8 @@ impl Flags {
     pub const CYCLE_FLASH: Self = Self(64);
     /// The last storage operation failed.
     pub const STORAGE_FAILED: Self = Self(128);
+    /// A shared key is set: from the next session on only signed frames act, but for stops.
+    pub const KEY_SET: Self = Self(256);
 
     /// All bits of `other` are set.
     pub fn contains(self, other: Self) -> bool {

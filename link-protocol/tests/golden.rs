@@ -2,10 +2,14 @@
 #![allow(missing_docs)]
 mod samples;
 
-use link_protocol::{Decoder, SCHEMA_KEY, Signature, encode_body};
+use link_protocol::{
+    Binding, Decoder, SCHEMA_KEY, SCHEMA_NOW, Seal, Signature, encode_body, encode_signed,
+};
 use std::fmt::Write as _;
 
 const GOLDEN: &str = include_str!("golden/v1.txt");
+/// What came since: appended variants, and frames signed with a real key.
+const APPENDED: &str = include_str!("golden/v1-appended.txt");
 
 fn hex(bytes: &[u8]) -> String {
     bytes.iter().fold(String::new(), |mut text, byte| {
@@ -17,7 +21,7 @@ fn hex(bytes: &[u8]) -> String {
 #[test]
 fn version_1_is_frozen() {
     let mut now = String::new();
-    for (name, message) in samples::messages() {
+    for (name, message) in samples::frozen() {
         let _ = writeln!(now, "{name}: {}", hex(&samples::frame(&message)));
     }
     let _ = writeln!(now, "schema key: {}", hex(&SCHEMA_KEY));
@@ -42,7 +46,7 @@ fn version_1_is_frozen() {
 #[test]
 fn what_the_goldens_hold_decodes_to_what_was_meant() {
     let mut lines = GOLDEN.lines();
-    for (name, message) in samples::messages() {
+    for (name, message) in samples::frozen() {
         let (golden_name, digits) = lines.next().unwrap().split_once(": ").unwrap();
         assert_eq!(golden_name, name);
         let mut decoder = Decoder::new();
@@ -58,4 +62,38 @@ fn what_the_goldens_hold_decodes_to_what_was_meant() {
         );
         assert_eq!(received[0].message, Ok(message), "{name}");
     }
+}
+
+/// Lines are appended here, and only the last one changes.
+#[test]
+fn what_was_appended_is_frozen_too() {
+    let mut now = String::new();
+    for (name, message) in samples::appended() {
+        let _ = writeln!(now, "{name}: {}", hex(&samples::frame(&message)));
+    }
+    let seal = Seal::new(
+        &samples::KEY,
+        Binding {
+            boot_nonce: 0xCAFE_F00D,
+            session: 0xBEEF,
+            host_nonce: 0x1234_5678,
+        },
+    );
+    let header = link_protocol::Header {
+        version: 1,
+        session: 0xBEEF,
+        sequence: 300,
+    };
+    for (name, message) in samples::messages() {
+        let mut out = [0; link_protocol::MAX_ENCODED];
+        if name.starts_with("request/arm") || name == "keep-alive" || name == "ping" {
+            let len = encode_signed(header, &message, &seal, 0x0605_0403_0201, &mut out).unwrap();
+            let _ = writeln!(now, "signed {name}: {}", hex(&out[1..len]));
+        }
+    }
+    let _ = writeln!(now, "structure of all messages: {}", hex(&SCHEMA_NOW));
+    assert!(
+        now == APPENDED,
+        "the bytes of what was appended to version 1 changed; they are now\n{now}"
+    );
 }

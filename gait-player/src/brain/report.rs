@@ -27,7 +27,7 @@ impl Brain {
             reset_reason: self.boot.reset_reason,
             crash_message: !self.boot.crash_message.is_empty(),
             session,
-            boot_nonce: self.boot.nonce,
+            boot_nonce: self.session.boot_nonce(),
             limits: RobotLimits {
                 max_angle: self.limits.max_angle,
                 max_rate: self.limits.max_rate,
@@ -83,6 +83,7 @@ impl Brain {
             .with(Flags::UNSAVED, self.persist.unsaved())
             .with(Flags::CYCLE_FLASH, self.cycle_flash())
             .with(Flags::STORAGE_FAILED, self.persist.failed())
+            .with(Flags::KEY_SET, self.settings.key.is_some())
     }
 
     /// Cycles done, cycles asked for, fraction of the cycle in 2⁻¹⁶.

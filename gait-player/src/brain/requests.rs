@@ -11,7 +11,7 @@ use link_protocol::{
     Pong, Received, Refusal, Reply, Request, ServoSettings, StopCause,
 };
 
-use super::session::Order;
+use super::session::{Admission, Order};
 
 /// What a request comes to.
 type Outcome = Result<Option<Reply>, Refusal>;
@@ -21,14 +21,16 @@ const DONE: Outcome = Ok(Some(Reply::Done));
 const LATER: Outcome = Ok(None);
 
 impl Brain {
-    pub(super) fn handle(&mut self, now_us: u64, received: Received) {
+    pub(super) fn handle(&mut self, now_us: u64, received: Received, admission: Admission) {
         let header = received.header;
         match received.message {
             Ok(Message::Hello(hello)) => self.greet(header, &hello),
-            Ok(Message::Request(request)) => self.request(now_us, header, &request),
-            Ok(Message::KeepAlive) => self.hear(now_us, header),
+            Ok(Message::Request(request)) => self.request(now_us, header, &request, admission),
+            Ok(Message::KeepAlive) => {
+                self.hear(now_us, admission);
+            }
             Ok(Message::Ping(Ping { host_us })) => {
-                if self.session.hear(now_us, header.session) {
+                if self.hear(now_us, admission) {
                     let pong = Pong {
                         host_us,
                         received_us: now_us,
@@ -38,8 +40,6 @@ impl Brain {
                         Header::new(header.session, header.sequence),
                         &Message::Pong(pong),
                     );
-                } else {
-                    count(&mut self.counted.stale);
                 }
             }
             // What only robots send is another robot, or an echo; an unknown kind asks for nothing known.
@@ -70,7 +70,8 @@ impl Brain {
             hello.protocol_min <= PROTOCOL_CURRENT && hello.protocol_current >= PROTOCOL_MIN;
         // Session 0: none. The reply says why.
         let session = if understood {
-            self.session.greet(hello.host_nonce)
+            self.session
+                .greet(hello.host_nonce, self.settings.key.as_ref())
         } else {
             0
         };
@@ -81,14 +82,18 @@ impl Brain {
         );
     }
 
-    fn hear(&mut self, now_us: u64, header: Header) {
-        if !self.session.hear(now_us, header.session) {
+    /// True where the frame is ours, and so keeps the link alive.
+    fn hear(&mut self, now_us: u64, admission: Admission) -> bool {
+        let ours = admission == Admission::Ours;
+        if ours {
+            self.session.hear(now_us);
+        } else {
             count(&mut self.counted.stale);
         }
+        ours
     }
 
-    fn request(&mut self, now_us: u64, header: Header, request: &Request) {
-        let ours = self.session.hear(now_us, header.session);
+    fn request(&mut self, now_us: u64, header: Header, request: &Request, admission: Admission) {
         // These act whatever else holds. Where their number is the next one, it takes its place in the order.
         if matches!(request, Request::Stop | Request::EStop) {
             if *request == Request::Stop {
@@ -96,20 +101,16 @@ impl Brain {
             } else {
                 self.estop();
             }
+            let ours = admission == Admission::Ours;
             if ours {
+                self.session.hear(now_us);
                 self.session.order(header.sequence);
             }
             count(&mut self.counted.acted);
-            return self.finish(header, Reply::Done);
+            return self.answer_stop(header, ours);
         }
-        if !ours {
-            count(&mut self.counted.stale);
-            return self.refuse(
-                header,
-                Refusal::StaleSession {
-                    open: self.session.number(),
-                },
-            );
+        if !self.hear(now_us, admission) {
+            return self.turn_away(header, admission);
         }
         if let Request::Chunk(chunk) = request {
             // Acts by its offset, whatever the order, and keeps no reply.
@@ -146,6 +147,29 @@ impl Brain {
             Ok(None) => count(&mut self.counted.acted),
             Err(refusal) => self.finish(header, Reply::Refused(refusal)),
         }
+    }
+
+    /// A stop is answered to whoever sent it; only ours has a place in the order, where its answer is kept.
+    fn answer_stop(&mut self, header: Header, ours: bool) {
+        if ours {
+            self.finish(header, Reply::Done);
+        } else {
+            self.reply(header, Reply::Done);
+        }
+    }
+
+    /// Says why a request may not act.
+    fn turn_away(&mut self, header: Header, admission: Admission) {
+        let refusal = match admission {
+            // What came twice was answered once: a second answer would only undo it.
+            Admission::Ours | Admission::Replayed => return,
+            Admission::Foreign => Refusal::StaleSession {
+                open: self.session.number(),
+            },
+            Admission::Unsigned => Refusal::KeyNeeded,
+            Admission::WrongKey => Refusal::WrongKey,
+        };
+        self.refuse(header, refusal);
     }
 
     fn act(&mut self, now_us: u64, header: Header, request: &Request) -> Outcome {
@@ -205,6 +229,12 @@ impl Brain {
             },
             Request::CrashMessage => Ok(Some(Reply::CrashMessage(self.boot.crash_message.clone()))),
             Request::Table => Ok(Some(Reply::Table(self.table_info()))),
+            Request::SetKey(key) => {
+                self.only_stopped()?;
+                self.settings.key = *key;
+                self.persist.settings_changed();
+                DONE
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 
 use crate::storage::MAX_SETTINGS;
 use crate::{Limits, servo::ServoMap};
-use link_protocol::{Configuration, Refusal, ServoSettings, TangentialDrag};
+use link_protocol::{Configuration, Key, Refusal, ServoSettings, TangentialDrag};
 use serde::{Deserialize, Serialize};
 use swimmer_model::{Links, Model, Swimmer};
 
@@ -17,19 +17,33 @@ const MAX_TO_NEUTRAL_MS: f32 = 1_000.0;
 pub(crate) struct Settings {
     pub(crate) configuration: Configuration,
     pub(crate) servos: [ServoSettings; 2],
+    /// Stands behind the rest of the record, and only where there is one: a record without is what it was before keys.
+    #[serde(skip)]
+    pub(crate) key: Option<Key>,
 }
 
 impl Settings {
     /// The record for storage.
     pub(crate) fn encode<'a>(&self, bytes: &'a mut [u8; MAX_SETTINGS]) -> Option<&'a mut [u8]> {
-        postcard::to_slice(self, bytes).ok()
+        match &self.key {
+            Some(key) => postcard::to_slice(&(self, key), bytes).ok(),
+            None => postcard::to_slice(self, bytes).ok(),
+        }
+    }
+
+    /// The key of a record, whatever else it holds: limits that have changed must not open the robot.
+    pub(crate) fn stored_key(bytes: &[u8]) -> Option<Key> {
+        let (_, key) = postcard::take_from_bytes::<Self>(bytes).ok()?;
+        key.try_into().ok().map(Key)
     }
 
     /// Reads a record; `None` where it is none that these limits allow.
     pub(crate) fn decode(bytes: &[u8], limits: &Limits) -> Option<Self> {
-        let (settings, []) = postcard::take_from_bytes::<Self>(bytes).ok()? else {
+        let (mut settings, rest) = postcard::take_from_bytes::<Self>(bytes).ok()?;
+        settings.key = Self::stored_key(bytes);
+        if settings.key.is_none() && !rest.is_empty() {
             return None;
-        };
+        }
         check_configuration(&settings.configuration, limits).ok()?;
         settings
             .servos

@@ -1,15 +1,20 @@
 //! One method for each request: the numbers of the program turned into those of the wire, the answer's kind checked.
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use link_protocol::{
-    ANGLE_UNIT_RAD, Arm, Configuration, Counters, Joint, Play, Reply, Request, ServoSettings,
-    Status, TableInfo,
+    ANGLE_UNIT_RAD, Arm, Configuration, Counters, Flags, Joint, Key, Play, Reply, Request,
+    ServoSettings, Status, TableInfo,
 };
 
 use super::Robot;
 use crate::port::Port;
 use crate::session::LinkError;
+
+/// Times that a robot is asked whether it has stored something, and the time between.
+const STORE_LOOKS: u32 = 25;
+const STORE_LOOK: Duration = Duration::from_millis(200);
 
 impl<P: Port> Robot<P> {
     /// What the robot is doing.
@@ -193,6 +198,26 @@ impl<P: Port> Robot<P> {
             Reply::Table(table) => Ok(table),
             reply => Err(wrong(doing, &reply)),
         }
+    }
+
+    /// Sets, changes or removes the key that the robot asks for, waits until it is stored, and greets with it. The key
+    /// crosses the wire in the clear: over a cable, at the bench.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] unless the robot is stopped, or where it has another key; [`LinkError::NotStored`] where it
+    /// keeps the key only until its power is cut; and the link's.
+    pub fn set_key(&mut self, key: Option<Key>) -> Result<(), LinkError> {
+        let doing = "setting the key";
+        self.order(Request::SetKey(key), doing)?;
+        self.session.set_key(key);
+        self.reconnect()?;
+        for _ in 0..STORE_LOOKS {
+            if !self.status()?.flags.contains(Flags::UNSAVED) {
+                return Ok(());
+            }
+            self.listen(STORE_LOOK, |_| ControlFlow::Continue(()))?;
+        }
+        Err(LinkError::NotStored { doing })
     }
 
     /// A request that is answered by Done and nothing else.

@@ -166,6 +166,14 @@ pub enum LinkError {
         /// What else holds.
         flags: Flags,
     },
+    /// The robot did it, but its storage did not take it.
+    #[error(
+        "while {doing}: done, but the robot could not store it, so it is gone when the power is cut: look at its status and try again"
+    )]
+    NotStored {
+        /// What was being done.
+        doing: &'static str,
+    },
     /// The caller broke off.
     #[error("while {doing}: broken off by the operator")]
     Interrupted {

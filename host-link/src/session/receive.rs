@@ -3,12 +3,12 @@
 use std::time::Duration;
 
 use link_protocol::{
-    FirmwareVersion, HelloReply, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Received, Refusal, Reply,
-    Request, SCHEMA_KEY,
+    Binding, FirmwareVersion, HelloReply, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Received,
+    Refusal, Reply, Request, SCHEMA_KEY, Seal,
 };
 
 use super::error::LinkError;
-use super::upload::{UploadPhase, Window};
+use super::upload::UploadPhase;
 use super::{Event, Link, Owner, Pending, Session, describe};
 
 /// Wait before a robot that is busy is asked again.
@@ -94,6 +94,11 @@ impl Session {
             return;
         }
         let ticket = greeting.ticket;
+        let binding = Binding {
+            boot_nonce: reply.boot_nonce,
+            session: reply.session,
+            host_nonce: greeting.nonce,
+        };
         if greeting.tries == 1 {
             self.trip.sample(now.saturating_sub(greeting.first_sent));
         }
@@ -117,6 +122,8 @@ impl Session {
             self.disown_pending(reply.session);
         }
         self.number = reply.session;
+        self.seal = self.config.key.map(|key| Seal::new(&key, binding));
+        self.signed = 0;
         self.last_robot_us = None;
         self.pings = 0;
         self.counters.sessions += 1;
@@ -217,20 +224,23 @@ impl Session {
 
     /// An answer to Begin or Commit.
     fn upload_answered(&mut self, request: &Request, reply: Reply) {
+        let Some(total) = self.upload.as_ref().map(|upload| upload.table.len()) else {
+            return;
+        };
+        let window = |wanted: u16| self.window(total, wanted.into());
+        let window = match &reply {
+            Reply::Wanted { offset, .. } => window(*offset),
+            Reply::Refused(Refusal::Incomplete { wanted }) => window(*wanted),
+            _ => window(0),
+        };
         let Some(upload) = &mut self.upload else {
             return;
         };
         let doing = "uploading the gait";
         match (request, reply) {
-            (
-                Request::Begin(_),
-                Reply::Wanted {
-                    upload: number,
-                    offset,
-                },
-            ) => {
+            (Request::Begin(_), Reply::Wanted { upload: number, .. }) => {
                 upload.number = number;
-                upload.window = Window::new(upload.table.len(), offset.into());
+                upload.window = window;
                 self.chunks_or_commit();
             }
             (Request::Commit { .. }, Reply::Table(Some(table))) => {
@@ -238,8 +248,8 @@ impl Session {
                 self.upload = None;
                 self.events.push_back(Event::Uploaded { ticket, table });
             }
-            (Request::Commit { .. }, Reply::Refused(Refusal::Incomplete { wanted })) => {
-                upload.window = Window::new(upload.table.len(), wanted.into());
+            (Request::Commit { .. }, Reply::Refused(Refusal::Incomplete { .. })) => {
+                upload.window = window;
                 self.chunks_or_commit();
             }
             (Request::Commit { .. }, Reply::Refused(refusal @ Refusal::NoUpload)) => {

@@ -81,5 +81,6 @@ pub(super) fn describe(request: &Request) -> &'static str {
         Request::ClearResets => "clearing the latch of resets",
         Request::CrashMessage => "asking for the crash message",
         Request::Table => "asking for the table",
+        Request::SetKey(_) => "setting the key",
     }
 }

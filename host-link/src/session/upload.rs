@@ -6,8 +6,6 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use link_protocol::MAX_CHUNK;
-
 /// How far an upload is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UploadPhase {
@@ -48,6 +46,8 @@ struct InFlight {
 #[derive(Debug)]
 pub(crate) struct Window {
     total: usize,
+    /// Bytes of a piece.
+    piece: usize,
     /// Everything before is on the robot.
     wanted: usize,
     /// Where the next piece starts.
@@ -60,10 +60,11 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    /// A table of `total` bytes of which the robot wants those from `wanted` on.
-    pub(crate) fn new(total: usize, wanted: usize) -> Self {
+    /// A table of `total` bytes of which the robot wants those from `wanted` on, in pieces of `piece` bytes.
+    pub(crate) fn new(total: usize, wanted: usize, piece: usize) -> Self {
         Self {
             total,
+            piece: piece.max(1),
             wanted: wanted.min(total),
             next: wanted.min(total),
             furthest: wanted.min(total),
@@ -89,12 +90,12 @@ impl Window {
 
     /// The next piece to send, if the table has one left.
     pub(crate) fn next_piece(&self) -> Option<std::ops::Range<usize>> {
-        (self.next < self.total).then(|| self.next..self.total.min(self.next + MAX_CHUNK))
+        (self.next < self.total).then(|| self.next..self.total.min(self.next + self.piece))
     }
 
     /// Notes that [`next_piece`](Self::next_piece) was sent. Returns whether it had been sent before.
     pub(crate) fn sent(&mut self, sequence: u16, cost: usize, now: Duration) -> bool {
-        let end = self.total.min(self.next + MAX_CHUNK);
+        let end = self.total.min(self.next + self.piece);
         let fresh = self.next >= self.furthest;
         self.in_flight.push_back(InFlight {
             sequence,
@@ -159,6 +160,7 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use link_protocol::MAX_CHUNK;
 
     const NOW: Duration = Duration::from_secs(1);
 
@@ -172,7 +174,7 @@ mod tests {
 
     #[test]
     fn answers_move_the_window_and_later_ones_include_earlier() {
-        let mut window = Window::new(300, 0);
+        let mut window = Window::new(300, 0, MAX_CHUNK);
         send_all(&mut window, 10);
         assert_eq!(window.in_flight(), 3 * 124);
         // The first answer was lost; the second covers it.
@@ -186,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_gap_goes_back_once() {
-        let mut window = Window::new(500, 0);
+        let mut window = Window::new(500, 0, MAX_CHUNK);
         send_all(&mut window, 0);
         window.answered(0, 104, NOW);
         // Piece 1 is lost: 2, 3 and 4 come behind a gap.
@@ -204,7 +206,7 @@ mod tests {
 
     #[test]
     fn a_late_answer_saves_sending_again() {
-        let mut window = Window::new(500, 0);
+        let mut window = Window::new(500, 0, MAX_CHUNK);
         send_all(&mut window, 0);
         window.go_back();
         assert_eq!(window.next_piece(), Some(0..104));
@@ -214,8 +216,8 @@ mod tests {
 
     #[test]
     fn resumes_in_the_middle() {
-        let window = Window::new(2048, 1040);
+        let window = Window::new(2048, 1040, MAX_CHUNK);
         assert_eq!(window.next_piece(), Some(1040..1144));
-        assert!(Window::new(10, 9999).complete());
+        assert!(Window::new(10, 9999, MAX_CHUNK).complete());
     }
 }

@@ -326,6 +326,29 @@ fn replies() -> std::vec::Vec<(&'static str, Reply)> {
 
 /// Every message with a name.
 pub(crate) fn messages() -> std::vec::Vec<(&'static str, Message)> {
+    let mut all = frozen();
+    all.extend(appended());
+    all
+}
+
+/// What was appended to version 1 since it was frozen.
+pub(crate) fn appended() -> std::vec::Vec<(&'static str, Message)> {
+    let refused = |refusal| Message::Reply(Reply::Refused(refusal));
+    vec![
+        (
+            "request/set key",
+            Message::Request(Request::SetKey(Some(KEY))),
+        ),
+        ("request/no key", Message::Request(Request::SetKey(None))),
+        ("refused/key needed", refused(Refusal::KeyNeeded)),
+        ("refused/wrong key", refused(Refusal::WrongKey)),
+    ]
+}
+
+pub(crate) const KEY: Key = Key(*b"not a secret key");
+
+/// What version 1 was when it was frozen.
+pub(crate) fn frozen() -> std::vec::Vec<(&'static str, Message)> {
     let mut all = vec![
         ("hello", Message::Hello(hello())),
         ("hello reply", Message::HelloReply(hello_reply())),

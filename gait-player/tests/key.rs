@@ -1,0 +1,276 @@
+//! A robot with a shared key: only what is signed for its session acts, once; stops act always.
+#![allow(missing_docs)]
+mod bench;
+
+use bench::*;
+use gait_player::storage::{MAX_SETTINGS, PAGE, Storage};
+use gait_player::{Boot, Brain, BrainConfig};
+use link_protocol::*;
+use std::convert::Infallible;
+
+const KEY: Key = Key(*b"sixteen letters!");
+
+/// A host with a key: what it sends, and what an adversary recorded of it.
+struct Host {
+    bench: Bench,
+    seal: Seal,
+    counter: u64,
+    recorded: Vec<Vec<u8>>,
+}
+
+impl Host {
+    /// A robot with a key and a table, greeted.
+    fn new() -> Self {
+        let mut bench = Bench::new();
+        bench.upload(&circle(1.2));
+        bench.done(Request::SetKey(Some(KEY)));
+        // The session in which it was set goes on as it was.
+        bench.status();
+        Self::greet(bench, &KEY, 9)
+    }
+
+    fn greet(mut bench: Bench, key: &Key, host_nonce: u32) -> Self {
+        bench.keep_alive = false;
+        let reply = bench.greet(host_nonce);
+        let binding = Binding {
+            boot_nonce: reply.boot_nonce,
+            session: reply.session,
+            host_nonce,
+        };
+        Self {
+            seal: Seal::new(key, binding),
+            counter: 0,
+            recorded: Vec::new(),
+            bench,
+        }
+    }
+
+    fn say(&mut self, sequence: u16, message: &Message) {
+        self.counter += 1;
+        let mut frame = [0; MAX_ENCODED];
+        let header = Header::new(self.bench.session, sequence);
+        let len = encode_signed(header, message, &self.seal, self.counter, &mut frame).unwrap();
+        self.recorded.push(frame[..len].to_vec());
+        self.bench.brain.receive(self.bench.now_us, &frame[..len]);
+        self.bench.drain();
+    }
+
+    fn ask(&mut self, request: Request) -> Reply {
+        let before = self.bench.replies.len();
+        self.bench.sequence = self.bench.sequence.wrapping_add(1);
+        self.say(self.bench.sequence, &Message::Request(request));
+        for _ in 0..200 {
+            if let Some((_, reply)) = self.bench.replies.get(before) {
+                return reply.clone();
+            }
+            self.run(TICK);
+        }
+        panic!("no reply within 4 s");
+    }
+
+    /// Ticks, with signed keep-alives.
+    fn run(&mut self, us: u64) {
+        for tick in 0..us / TICK {
+            if tick % 2 == 0 {
+                self.say(0, &Message::KeepAlive);
+            }
+            self.bench.tick();
+        }
+    }
+
+    fn state(&self) -> StateName {
+        self.bench.output.state
+    }
+}
+
+const TICK: u64 = gait_player::TICK_US as u64;
+
+#[test]
+fn what_is_signed_acts_and_what_is_not_is_refused_with_advice() {
+    let mut host = Host::new();
+    assert_eq!(host.ask(ARM), Reply::Done);
+    host.run(SECOND);
+    assert_eq!(host.state(), StateName::Holding);
+    for request in [
+        ARM,
+        play(1, 5_000_000),
+        Request::Status,
+        Request::SetKey(None),
+    ] {
+        assert_eq!(host.bench.refused(request), Refusal::KeyNeeded);
+    }
+    // Signed keep-alives came for a second, so the link is alive; unsigned ones do not keep it so.
+    host.bench.keep_alive = true;
+    host.bench.run(SECOND);
+    assert_eq!(
+        host.bench.telemetry.last().unwrap().cause,
+        StopCause::LinkLost
+    );
+    let Reply::Counters(counters) = host.ask(Request::Counters) else {
+        panic!()
+    };
+    // Four requests and 25 keep-alives.
+    assert_eq!(counters.stale, 29);
+}
+
+#[test]
+fn stops_need_no_signature_and_take_no_place() {
+    for (stop, state) in [
+        (Request::Stop, StateName::Stopping),
+        (Request::EStop, StateName::EStopped),
+    ] {
+        let mut host = Host::new();
+        assert_eq!(host.ask(ARM), Reply::Done);
+        assert_eq!(host.ask(play(0, 5_000_000)), Reply::Done);
+        host.run(2 * SECOND);
+        assert_eq!(host.state(), StateName::Playing);
+        // A number far ahead: the next request of the host is none the worse for it.
+        let header = Header::new(host.bench.session, host.bench.sequence + 1000);
+        host.bench.send(header, &Message::Request(stop));
+        host.bench.tick();
+        assert_eq!(host.state(), state);
+        assert!(matches!(host.ask(Request::Status), Reply::Status(_)));
+    }
+}
+
+#[test]
+fn another_key_is_told_to_be_wrong() {
+    let host = Host::new();
+    let mut stranger = Host::greet(host.bench, &Key([0; 16]), 10);
+    for request in [ARM, Request::Status, Request::SetKey(None)] {
+        assert_eq!(stranger.ask(request), Reply::Refused(Refusal::WrongKey));
+    }
+    assert_eq!(stranger.ask(Request::Stop), Reply::Done);
+}
+
+/// Everything that was ever said, again: in the same session, in a later one, after a reset.
+#[test]
+fn a_recording_moves_nothing() {
+    let mut host = Host::new();
+    assert_eq!(host.ask(ARM), Reply::Done);
+    assert_eq!(host.ask(play(0, 5_000_000)), Reply::Done);
+    host.run(3 * SECOND);
+    assert_eq!(host.ask(Request::Stop), Reply::Done);
+    host.run(3 * SECOND);
+    assert_eq!(host.state(), StateName::Stopped);
+    let recorded = host.recorded.clone();
+    assert!(recorded.len() > 100);
+    let mut bench = host.bench;
+    let mut stored = Memory::default();
+    bench
+        .brain
+        .serve_storage(bench.now_us, &mut stored)
+        .unwrap();
+    for round in 0..3 {
+        if round == 1 {
+            bench.greet(77);
+        }
+        if round == 2 {
+            // After a reset that draws another nonce; the numbers of sessions are the same ones again.
+            let boot = Boot::power_on(0xBEEF, bench.session);
+            let mut brain = Brain::new(BrainConfig::robot(IDENTITY, boot));
+            brain.load(&mut stored).unwrap();
+            bench = Bench::around(brain);
+            let reply = bench.greet(9);
+            assert_eq!(reply.session, bench.session);
+        }
+        for frame in &recorded {
+            bench.brain.receive(bench.now_us, frame);
+            bench.tick();
+            assert_eq!(bench.output.pulses_ns, None, "round {round}");
+            assert_eq!(bench.output.state, StateName::Stopped, "round {round}");
+        }
+    }
+}
+
+#[test]
+fn a_key_is_set_only_while_stopped_and_changed_only_with_the_old_one() {
+    let mut bench = Bench::new();
+    bench.done(ARM);
+    let refused = bench.refused(Request::SetKey(Some(KEY)));
+    assert_eq!(refused, Refusal::WrongState(StateName::Holding));
+    let mut host = Host::new();
+    let new = Key([5; 16]);
+    assert_eq!(host.ask(Request::SetKey(Some(new))), Reply::Done);
+    let mut host = Host::greet(host.bench, &new, 11);
+    assert_eq!(host.ask(Request::SetKey(None)), Reply::Done);
+    // Signatures are read past where there is no key.
+    let mut host = Host::greet(host.bench, &KEY, 12);
+    assert_eq!(host.ask(ARM), Reply::Done);
+    assert!(!host.bench.status().flags.contains(Flags::KEY_SET));
+}
+
+/// Settings alone, as a flash holds them.
+#[derive(Default)]
+struct Memory {
+    settings: Vec<u8>,
+}
+
+impl Storage for Memory {
+    type Error = Infallible;
+
+    fn read(&mut self, _: usize, _: usize, bytes: &mut [u8]) -> Result<(), Infallible> {
+        bytes.fill(0xFF);
+        Ok(())
+    }
+
+    fn erase(&mut self, _: usize) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn program(&mut self, _: usize, _: usize, _: &[u8; PAGE]) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn load_settings(
+        &mut self,
+        bytes: &mut [u8; MAX_SETTINGS],
+    ) -> Result<Option<usize>, Infallible> {
+        bytes[..self.settings.len()].copy_from_slice(&self.settings);
+        Ok((!self.settings.is_empty()).then_some(self.settings.len()))
+    }
+
+    fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Infallible> {
+        self.settings = bytes.to_vec();
+        Ok(())
+    }
+}
+
+#[test]
+fn a_key_outlives_a_power_cut_and_limits_that_have_changed() {
+    let mut memory = Memory::default();
+    let mut bench = Bench::new();
+    bench.done(Request::SetServo {
+        joint: Joint::Front,
+        settings: config().servos[0],
+    });
+    bench.run(SECOND);
+    bench
+        .brain
+        .serve_storage(bench.now_us, &mut memory)
+        .unwrap();
+    let before = memory.settings.clone();
+    bench.done(Request::SetKey(Some(KEY)));
+    bench.run(SECOND);
+    bench
+        .brain
+        .serve_storage(bench.now_us, &mut memory)
+        .unwrap();
+    // Behind a record that is otherwise what it was before there were keys.
+    assert_eq!(memory.settings, [&before[..], &KEY.0].concat());
+    for max_angle in [2.8, 1.0] {
+        let mut config = config();
+        config.limits.max_angle = max_angle;
+        let mut brain = Brain::new(config);
+        brain.load(&mut memory).unwrap();
+        let mut bench = Bench::around(brain);
+        bench.greet(3);
+        assert_eq!(bench.refused(ARM), Refusal::KeyNeeded, "{max_angle}");
+    }
+    memory.settings = before;
+    let mut brain = Brain::new(config());
+    brain.load(&mut memory).unwrap();
+    let mut bench = Bench::around(brain);
+    bench.greet(3);
+    bench.done(ARM);
+}
