@@ -1,4 +1,4 @@
-//! Who may drive: frames signed with a shared key (MAVLink 2's scheme: a truncated keyed tag over header, body and a counter
+//! Who may drive: frames signed with a shared key (the scheme of `MAVLink` 2: a truncated keyed tag over header, body and a counter
 //! that only grows). The tag is `SipHash-2-4`, a keyed hash made for short messages: its key has 128 bits and its tag
 //! just the 64 that a frame has room for, and it is small and quick on a chip without a multiplier for 64 bits.
 //!
@@ -62,7 +62,7 @@ impl Seal {
 
     /// The signature of a frame. `counter` (48 bits) must be above that of every frame signed before in this session.
     pub fn sign(&self, header: Header, kind: Kind, body: &[u8], counter: u64) -> Signature {
-        let mut hasher = self.keyed.clone();
+        let mut hasher = self.keyed;
         hasher.write(&header_bytes(header, kind as u8 | KIND_SIGNED));
         hasher.write(body);
         hasher.write(&Signature::counter_bytes(counter));
@@ -75,7 +75,7 @@ impl Seal {
     /// Whether a frame was signed with this key for this session. `signed` are its bytes before the tag:
     /// [`crate::Decoder::signed_bytes`].
     pub fn verifies(&self, signed: &[u8], signature: &Signature) -> bool {
-        let mut hasher = self.keyed.clone();
+        let mut hasher = self.keyed;
         hasher.write(signed);
         // One comparison of 64 bits: how long it takes tells nothing.
         hasher.finish() ^ u64::from_le_bytes(signature.tag) == 0
