@@ -28,10 +28,10 @@ fn signed(message: &Message, seal: &Seal, counter: u64) -> Vec<u8> {
     out[..len].to_vec()
 }
 
-/// The vector of SipHash's authors: key 00 … 0f, input 00 … 0e, of which the first ten bytes are the binding here.
+/// The vector of the authors of `SipHash`: key 00 … 0f, input 00 … 0e, of which the first ten bytes are the binding here.
 #[test]
 fn the_tag_is_siphash_2_4() {
-    let key = Key(core::array::from_fn(|place| place as u8));
+    let key = Key([0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
     let binding = Binding {
         boot_nonce: 0x0302_0100,
         session: 0x0504,
