@@ -17,6 +17,7 @@ export function fillGaps(mcu, { onByte, onReset, flash, warn }) {
   interruptController(mcu.core, mcu.ppb);
   sendEvent(mcu, warn);
   watchdog(mcu.peripherals[0x40058], onReset);
+  mcu.pwm.channels.forEach(({ timer }) => counting(timer));
   return bootRom(mcu, flash);
 }
 
@@ -90,6 +91,18 @@ function watchdog(dog, onReset) {
     dog.timer.enable = false;
     onReset({ reason: dog.reason, scratch: Uint32Array.from(dog.scratchData) });
   };
+}
+
+// Gap: a PWM counter is rounded to a whole count when its divider or top is written, even with what they already are, and
+// so drifts under a program that writes all of a slice's registers at every tick. What does not change changes nothing.
+function counting(timer) {
+  for (const name of ['prescaler', 'top']) {
+    const { get, set } = Object.getOwnPropertyDescriptor(Object.getPrototypeOf(timer), name);
+    Object.defineProperty(timer, name, {
+      get() { return get.call(this); },
+      set(value) { if (value !== get.call(this)) set.call(this, value); },
+    });
+  }
 }
 
 // Gap: no boot ROM. A stub with the header and function table that programs look into; its functions trap into the emulator.

@@ -5,9 +5,12 @@
 
 mod battery;
 mod boot;
+mod endurance;
 mod failsafes;
 mod flash;
+mod frames;
 mod load;
+mod noise;
 mod promise;
 mod radio;
 mod resets;

@@ -1,0 +1,191 @@
+//! R1 and R4 on the whole image: whatever frames come, no reset, no pulse outside the window, and Stop still works.
+
+use std::time::Duration;
+
+use emulator::Board;
+use gait_player::Limits;
+use link_protocol::{Decoder, Header, Message, Reply, Request, StateName, Status};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use crate::frames::{Frames, encoded};
+use crate::promise::seen;
+use crate::rig::{self, Image};
+
+/// Frames that go to the board at once; they take about a tenth of a second on the line.
+const BATCH: usize = 64;
+/// So often the robot is greeted anew, for noise may have opened a session or used up numbers.
+const GREETED_EVERY: usize = 4;
+/// So often it is told to stop.
+const STOPPED_EVERY: usize = 128;
+const MS: Duration = Duration::from_millis(1);
+/// A character at 115 200 baud.
+const BYTE: Duration = Duration::from_nanos(86_806);
+
+#[test]
+fn a_few_thousand_frames_of_noise_do_no_harm() {
+    noise(4_000);
+}
+
+#[test]
+#[ignore = "a million frames on the emulated UART: about half an hour"]
+fn a_million_frames_of_noise_do_no_harm() {
+    noise(1_000_000);
+}
+
+/// What came of it.
+#[derive(Default)]
+struct Tally {
+    bytes: usize,
+    periods: usize,
+    powered: usize,
+    shortest_us: f64,
+    longest_us: f64,
+    stops: usize,
+}
+
+struct Storm {
+    board: Board,
+    decoder: Decoder,
+    frames: Frames,
+    status: Option<Status>,
+    acted: u32,
+    tally: Tally,
+}
+
+fn noise(count: usize) {
+    let Some(board) = rig::board(Image::Nano) else {
+        return;
+    };
+    let mut storm = Storm {
+        board,
+        decoder: Decoder::new(),
+        frames: Frames::new(ChaCha8Rng::seed_from_u64(11)),
+        status: None,
+        acted: 0,
+        tally: Tally {
+            shortest_us: f64::INFINITY,
+            ..Tally::default()
+        },
+    };
+    storm.board.set_connected(true).unwrap();
+    storm.live(100 * MS);
+    for batch in 0..count.div_ceil(BATCH) {
+        if batch % GREETED_EVERY == 0 {
+            let hello = storm.frames.hello();
+            storm.send(&hello);
+            storm.live(10 * MS); // its answer tells the session
+        }
+        let bytes: Vec<u8> = (0..BATCH).flat_map(|_| storm.frames.next()).collect();
+        storm.tally.bytes += bytes.len();
+        storm.send(&bytes);
+        if batch % STOPPED_EVERY == STOPPED_EVERY - 1 {
+            storm.stop();
+        }
+    }
+    storm.stop();
+    let bad = storm.decoder.counters().bad();
+    assert_eq!(bad, 0, "the robot sent broken frames");
+    let Tally {
+        bytes,
+        periods,
+        powered,
+        shortest_us,
+        longest_us,
+        stops,
+    } = storm.tally;
+    assert!(
+        powered * 10 > periods,
+        "powered in {powered} of {periods} periods only"
+    );
+    seen(
+        &format!(
+            "R1, R4: {count} frames, mutated, random in a whole frame, or valid ({bytes} bytes)"
+        ),
+        &format!(
+            "no reset; {} requests acted; pulses on in {:.0} % of {periods} periods, all between {shortest_us:.0} and \
+             {longest_us:.0} µs; Stop answered and obeyed {stops} times of {stops}",
+            storm.acted,
+            100.0 * powered as f64 / periods as f64,
+        ),
+    );
+}
+
+impl Storm {
+    /// Sends bytes and lives until they have arrived.
+    fn send(&mut self, bytes: &[u8]) {
+        self.board.feed(bytes).unwrap();
+        self.live(BYTE * u32::try_from(bytes.len() + 4).unwrap());
+    }
+
+    fn live(&mut self, time: Duration) {
+        let until = self.board.now() + time;
+        self.board.run(until).unwrap();
+        let events = self.board.take_events();
+        assert!(events.resets.is_empty(), "reset: {:?}", events.resets);
+        let window =
+            [Limits::ROBOT.pulse_min_ns, Limits::ROBOT.pulse_max_ns].map(|ns| f64::from(ns) * 1e-3);
+        for period in &events.periods {
+            self.tally.periods += 1;
+            // Both or none.
+            let [front, back] = period.pulses_us();
+            assert_eq!(front > 0.0, back > 0.0, "{period:?}");
+            if !period.powered() {
+                continue;
+            }
+            self.tally.powered += 1;
+            for us in [front, back] {
+                // Half a step of the counter.
+                assert!(us >= window[0] - 0.16 && us <= window[1] + 0.16, "{us} µs");
+                self.tally.shortest_us = self.tally.shortest_us.min(us);
+                self.tally.longest_us = self.tally.longest_us.max(us);
+            }
+        }
+        let mut bytes = Vec::new();
+        self.board.take_sent(usize::MAX, &mut bytes);
+        for byte in bytes {
+            if let Some(received) = self.decoder.push(byte) {
+                self.hear(&received.message.expect("a whole message"));
+            }
+        }
+    }
+
+    fn hear(&mut self, message: &Message) {
+        match message {
+            Message::HelloReply(reply) if reply.session != 0 => self.frames.greeted(reply.session),
+            Message::Reply(Reply::Status(status)) => self.status = Some(*status),
+            Message::Reply(Reply::Wanted { upload, .. }) => self.frames.upload(*upload),
+            Message::Reply(Reply::Counters(counters)) => self.acted = counters.acted,
+            _ => {}
+        }
+    }
+
+    /// Stop, of no session at all: within a tick the robot is on its way, and the pulses go in time.
+    fn stop(&mut self) {
+        self.send(&encoded(0, 0, &Message::Request(Request::Stop)));
+        self.live(20 * MS);
+        let hello = self.frames.hello();
+        self.send(&hello);
+        self.live(20 * MS);
+        self.status = None;
+        let asked =
+            [Request::Status, Request::Counters].map(|request| self.frames.request(request));
+        self.send(&asked.concat());
+        self.live(20 * MS);
+        let state = self
+            .status
+            .as_ref()
+            .expect("no answer after the noise")
+            .state;
+        let stopped = matches!(
+            state,
+            StateName::Stopped | StateName::EStopped | StateName::Stopping | StateName::Settling
+        );
+        assert!(stopped, "{state:?} after a Stop");
+        self.live(1_600 * MS);
+        let before = self.tally.powered;
+        self.live(100 * MS);
+        assert_eq!(self.tally.powered, before, "pulses 1.6 s after a Stop");
+        self.tally.stops += 1;
+    }
+}
