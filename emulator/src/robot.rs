@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::time::Duration;
 
-use host_link::port::Device;
+use host_link::port::{Device, WireSpeed};
 use twin::{VirtualRobot, World};
 
 use crate::{Board, EmulatorError, Events, Period};
@@ -14,6 +14,7 @@ pub struct EmulatedRobot {
     board: Board,
     world: World,
     events: Events,
+    heard: Duration,
     failed: Option<EmulatorError>,
 }
 
@@ -28,6 +29,7 @@ impl EmulatedRobot {
             board,
             world,
             events: Events::default(),
+            heard: Duration::ZERO,
             failed: None,
         })
     }
@@ -40,6 +42,11 @@ impl EmulatedRobot {
     /// What the board did since this was last called.
     pub fn take_events(&mut self) -> Events {
         std::mem::take(&mut self.events)
+    }
+
+    /// When the last byte that came over the line was in the board's UART.
+    pub fn last_heard(&self) -> Duration {
+        self.heard
     }
 
     /// Remembers the first failure: a device has no way to tell it.
@@ -72,6 +79,8 @@ impl Device for EmulatedRobot {
     }
 
     fn receive(&mut self, bytes: &[u8]) {
+        let count = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
+        self.heard = self.heard.max(self.board.now()) + WireSpeed::robot().byte_time() * count;
         self.attempt(|robot| robot.board.feed(bytes));
     }
 

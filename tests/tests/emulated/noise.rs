@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use emulator::Board;
 use gait_player::Limits;
-use link_protocol::{Decoder, Header, Message, Reply, Request, StateName, Status};
+use link_protocol::{Decoder, Message, Reply, Request, StateName, Status};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

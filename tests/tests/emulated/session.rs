@@ -5,15 +5,16 @@ use std::time::Duration;
 
 use emulator::{Edge, Period, Servo};
 use gait_player::servo::ServoMap;
-use gait_player::{GaitTable, TICK_US};
+use gait_player::{GaitTable, Limits, TICK_US};
 use link_protocol::StateName;
 
+use crate::promise::seen;
 use crate::rig;
 
 const PERIOD_US: u32 = 10_000_000;
 const PERIOD: Duration = Duration::from_micros(PERIOD_US as u64);
 
-/// R11, R15 and the frame of all promises: three cycles of a 512-knot table.
+/// R4, R15 and the frame of all promises: three cycles of a 512-knot table, paused and resumed, then stopped.
 #[test]
 fn three_cycles_come_out_as_pulses() {
     let Some(mut robot) = rig::robot() else {
@@ -28,6 +29,11 @@ fn three_cycles_come_out_as_pulses() {
         .unwrap();
     rig::pass(&mut robot, Duration::from_secs(3));
     let events = rig::events(&mut robot);
+    assert!(
+        events.resets.is_empty() && events.lost == 0,
+        "{:?}",
+        events.resets
+    );
 
     // Exactly 20 000 µs, both channels together, edges within 1 µs of the registers.
     let powered: Vec<Period> = events
@@ -43,59 +49,88 @@ fn three_cycles_come_out_as_pulses() {
     );
     let jitter = spacing_jitter_us(&powered);
     let (edge, apart) = edges_against_registers(&events.edges, &powered);
-    println!(
-        "period 20 000 µs, jitter {jitter:.3} µs; edges within {edge:.2} µs; channels apart {apart:.3} µs"
-    );
-    assert!(jitter < 1.0 && edge < 1.0 && apart < 0.1);
-
-    // Never outside the window, and what the table says.
-    let window = |us: f64| (600.0..=2400.0).contains(&us);
     assert!(
-        powered
-            .iter()
-            .all(|period| period.pulses_us().into_iter().all(window))
+        jitter < 0.01 && edge < 1.0 && apart < 0.1,
+        "{jitter} {edge} {apart}"
+    );
+    seen(
+        "period of both servos",
+        &format!(
+            "20 000 µs by the registers, spacing off by {jitter:.2} µs, both rise within {apart:.2} µs, edges within \
+             {edge:.2} µs of the registers"
+        ),
     );
     let rms = rms_against_table(&powered, &table, 3);
-    println!("pulses against the table: {rms:.3}° RMS");
     assert!(rms <= 0.5, "{rms}");
-
-    let busiest = powered.iter().map(Period::busy_ms).fold(0.0, f64::max);
-    println!("busiest tick: {busiest:.2} ms at 125 MHz");
-    assert!(busiest <= 2.0, "{busiest}");
-    assert!(events.resets.is_empty() && events.lost == 0, "{events:?}");
+    seen(
+        "R15, pulses against a 512-knot table, three cycles",
+        &format!("{rms:.3}° RMS"),
+    );
 }
 
+/// R4: the widest gait that is allowed, as fast as it may, paused and stopped in full motion.
 #[test]
-fn pause_resume_and_stop() {
+fn the_fastest_widest_gait_stays_within_window_and_rate() {
     let Some(mut robot) = rig::robot() else {
         return;
     };
-    rig::upload(&mut robot, &rig::circle(40.0));
+    // Both joints together up to 160.4°, where a straight way crosses nothing; 2.8 rad at 3.5 rad/s are 5.1 s a cycle.
+    let table = GaitTable::from_fn(512, |u| {
+        let angle = 2.8 * (std::f64::consts::TAU * u).sin();
+        [angle, -angle]
+    })
+    .unwrap();
+    rig::upload(&mut robot, &table);
+    let shortest = robot.table().unwrap().unwrap().min_period_us;
     robot.arm(false).unwrap();
-    robot.play(0, PERIOD, false).unwrap();
-    let until = |robot: &mut host_link::Robot<rig::Port>, state: StateName| {
-        robot
-            .listen(Duration::from_secs(10), |telemetry| match telemetry {
-                Some(telemetry) if telemetry.state == state => ControlFlow::Break(()),
-                _ => ControlFlow::Continue(()),
-            })
-            .unwrap();
-        assert_eq!(robot.status().unwrap().state, state);
-    };
-    until(&mut robot, StateName::Playing);
+    robot
+        .play(0, Duration::from_micros(shortest.into()), false)
+        .unwrap();
+    rig::live_until(&mut robot, StateName::Playing);
+    rig::live(&mut robot, Duration::from_millis(6_500));
     robot.pause(false).unwrap();
-    until(&mut robot, StateName::Paused);
+    rig::live_until(&mut robot, StateName::Paused);
     robot.resume().unwrap();
-    until(&mut robot, StateName::Playing);
+    rig::live(&mut robot, Duration::from_millis(2_700));
     robot.stop().unwrap();
-    until(&mut robot, StateName::Stopped);
-    rig::events(&mut robot);
-    rig::pass(&mut robot, Duration::from_millis(100));
+    rig::live_until(&mut robot, StateName::Stopped);
+    let periods = rig::events(&mut robot).periods;
+    let (mut shortest, mut longest, mut step) = (f64::INFINITY, 0.0f64, 0.0f64);
+    for pair in periods.windows(2) {
+        let [then, now] = [pair[0].pulses_us(), pair[1].pulses_us()];
+        if !pair[1].powered() {
+            continue;
+        }
+        for joint in 0..2 {
+            shortest = shortest.min(now[joint]);
+            longest = longest.max(now[joint]);
+            if pair[0].powered() {
+                step = step.max((now[joint] - then[joint]).abs());
+            }
+        }
+    }
+    let limits = Limits::ROBOT;
+    let step_limit = f64::from(limits.max_step() / ServoMap::ROBOT.slope_rad_per_us);
+    // Compare values are whole steps of 0.32 µs.
+    assert!(step <= step_limit + 0.32, "{step} of {step_limit}");
     assert!(
-        rig::events(&mut robot)
-            .periods
-            .iter()
-            .all(|period| !period.powered())
+        shortest >= f64::from(limits.pulse_min_ns) * 1e-3 - 0.16,
+        "{shortest}"
+    );
+    assert!(
+        longest <= f64::from(limits.pulse_max_ns) * 1e-3 + 0.16,
+        "{longest}"
+    );
+    assert!(
+        longest - shortest > 200.0,
+        "hardly moved: {shortest} to {longest}"
+    );
+    seen(
+        "R4, ±2.8 rad at 3.5 rad/s, paused, resumed, stopped",
+        &format!(
+            "pulses of {shortest:.1} to {longest:.1} µs (window 1300 to 1700), largest step {step:.2} µs (limit \
+             {step_limit:.2} and the counter's 0.32)"
+        ),
     );
 }
 
