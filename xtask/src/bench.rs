@@ -16,7 +16,12 @@ const YAPSS: &str = "yapss==0.2.3";
 /// Its script among the peers.
 const YAPSS_SCRIPT: &str = "yap.py";
 /// The newest at the time of writing, pinned so that ratios can be compared over time.
-const PACKAGES: [&str; 3] = ["numpy==2.4.6", "scipy==1.17.1", "casadi==3.8.2"];
+const PACKAGES: [&str; 4] = [
+    "numpy==2.4.6",
+    "scipy==1.17.1",
+    "casadi==3.8.2",
+    "pandas==3.1.1",
+];
 /// Libraries under `NumPy` that would take all processors.
 const ONE_THREAD: [&str; 3] = ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"];
 
@@ -31,7 +36,7 @@ struct Comparison {
     peers: &'static [(&'static str, &'static str)],
 }
 
-const COMPARISONS: [Comparison; 6] = [
+const COMPARISONS: [Comparison; 7] = [
     Comparison {
         what: "A and W at one shape",
         ours: "f64/connection and power",
@@ -117,6 +122,15 @@ const COMPARISONS: [Comparison; 6] = [
                 "shooting robot large",
                 "SciPy shooting from a guess right to 1e-4",
             ),
+        ],
+    },
+    Comparison {
+        what: "a wide Motive file of 20 000 frames and ten markers (5.6 MB), text to positions",
+        ours: "reading/wide, ten markers",
+        by: "calibrate, with its header understood",
+        peers: &[
+            ("reading csv", "Python's csv module and float()"),
+            ("reading pandas", "pandas.read_csv"),
         ],
     },
 ];
@@ -240,8 +254,8 @@ fn environment(place: &Path) -> Outcome<PathBuf> {
             next,
         );
         match installed {
-            Err(failure) if module == "casadi" => {
-                println!("\n!!!! CasADi NOT COMPARED !!!!\n{failure}");
+            Err(failure) if module == "casadi" || module == "pandas" => {
+                println!("\n!!!! {module} NOT COMPARED !!!!\n{failure}");
             }
             outcome => outcome?,
         }

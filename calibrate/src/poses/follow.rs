@@ -1,7 +1,8 @@
 //! Two reflectors followed through swaps, ghosts and drop-outs.
 //!
-//! In every row all measured points are candidates, whatever they are called. Chosen is the ordered pair nearest to where
-//! constant velocity puts both reflectors, among the pairs whose distance is right. A label that moves to the other
+//! In every row all measured points are candidates, whatever they are called, except those that are nearer to a point that was
+//! no reflector a row ago than to where constant velocity puts the reflectors: they are that other point still. Chosen is the
+//! ordered pair nearest to the predicted places, among the pairs whose distance is right. A label that moves to the other
 //! reflector, or to a ghost, thus changes nothing. After a gap in which a reflector could have covered half of the distance
 //! between both, the order could be exchanged unseen: there a new segment begins, and only the labels can say which end is
 //! which. Where they cannot, the segment is left out.
@@ -14,7 +15,7 @@ use swimmer_files::{PointName, Reflectors};
 use super::{PoseError, PoseOptions};
 use crate::TrackFile;
 pub(super) use search::is_called;
-use search::{REACH, Search, prepare};
+use search::{Candidate, REACH, Search, prepare};
 
 /// How following went.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,9 +103,9 @@ pub(super) fn follow(
         });
     }
     let mut search = prepare(track, reflectors, expected_m, options)?;
-    // First with wide limits, then with limits that fit this recording's noise: a ghost must not pass for a lost reflector.
+    // The first pass tells the distance, and how much it and predictions vary.
     let (rows, _) = walk(&search);
-    search.tighten(&rows);
+    search.learn(&rows);
     let (rows, starts) = walk(&search);
     if rows.is_empty() {
         return Err(PoseError::NoPair {
@@ -125,63 +126,79 @@ pub(super) fn follow(
     Ok(followed)
 }
 
+/// What is known of the row before.
+struct State {
+    time: f64,
+    front: Motion,
+    back: Motion,
+}
+
 /// Through all rows; returns them with the index in them at which each segment starts.
 fn walk(search: &Search<'_>) -> (Vec<Row>, Vec<usize>) {
     let (mut rows, mut starts): (Vec<Row>, Vec<usize>) = (Vec::new(), Vec::new());
-    let mut state: Option<(f64, Motion, Motion)> = None;
+    let mut state: Option<State> = None;
     let mut top_speed: f64 = 0.0;
     let mut candidates = Vec::new();
+    // Points of the row before that are no reflectors.
+    let mut others: Vec<Vector3<f64>> = Vec::new();
     for (row, time) in search.track.times.iter().copied().enumerate() {
         search.candidates(row, &mut candidates);
-        if candidates.len() < 2 {
-            continue;
-        }
         let longest = if top_speed > 0.0 {
             search.distance / (2.0 * top_speed)
         } else {
             FIRST_GAP_S
         };
-        state = state.filter(|(then, ..)| time - then <= longest.max(2.5 / search.track.rate_hz));
+        state = state.filter(|s| time - s.time <= longest.max(2.5 / search.track.rate_hz));
         let found = match &state {
             None => search.begin(&candidates),
-            Some((then, front, back)) => {
-                // Beyond the usual step from frame to frame, what a turn at top speed could add.
-                let speed = if top_speed > 0.0 {
-                    top_speed
-                } else {
-                    search.distance / FIRST_GAP_S
-                };
-                let blind = (time - then - 1.5 / search.track.rate_hz).max(0.0);
-                let reach = (search.reach + 2.0 * speed * blind).min(REACH.1 * search.distance);
-                let (front, back) = (front.after(time - then), back.after(time - then));
-                search.best(&candidates, |f, b| {
-                    let miss = (f.1 - front).norm_squared() + (b.1 - back).norm_squared();
-                    (miss < reach * reach).then_some(miss)
-                })
-            }
+            Some(state) => next(search, state, time, top_speed, &candidates, &others),
         };
-        let Some((front, back)) = found else { continue };
-        let miss = state.as_ref().map(|(then, f, b)| {
-            let dt = time - then;
-            (front.1 - f.after(dt))
-                .norm()
-                .hypot((back.1 - b.after(dt)).norm())
-        });
-        state = Some(match state {
-            None => {
-                starts.push(rows.len());
-                (time, Motion::new(front.1), Motion::new(back.1))
+        let Some((front, back)) = found else {
+            // Who is another point stays one; who is new may yet be a reflector.
+            match &state {
+                None => others.clear(),
+                Some(state) => {
+                    let (f, b) = state.predict(time);
+                    let still = |at: &Vector3<f64>| is_other(at, &f, &b, &others);
+                    others = candidates.iter().map(|c| c.1).filter(still).collect();
+                }
             }
-            Some((then, f, b)) => {
+            continue;
+        };
+        others.clear();
+        let is_chosen = |point: usize| point == front.0 || point == back.0;
+        others.extend(candidates.iter().filter(|c| !is_chosen(c.0)).map(|c| c.1));
+        let miss = state.as_ref().map(|state| {
+            let (f, b) = state.predict(time);
+            (front.1 - f).norm().hypot((back.1 - b).norm())
+        });
+        state = Some(
+            if let Some(State {
+                time: then,
+                front: f,
+                back: b,
+            }) = state
+            {
                 let (f, b) = (f.moved(front.1, time - then), b.moved(back.1, time - then));
                 // Noise alone is fast from one frame to the next; the smoothed velocity after some time is not.
                 let old_enough = starts.last().is_some_and(|start| rows.len() - start > 50);
                 if old_enough {
                     top_speed = top_speed.max(f.velocity.norm()).max(b.velocity.norm());
                 }
-                (time, f, b)
-            }
-        });
+                State {
+                    time,
+                    front: f,
+                    back: b,
+                }
+            } else {
+                starts.push(rows.len());
+                State {
+                    time,
+                    front: Motion::new(front.1),
+                    back: Motion::new(back.1),
+                }
+            },
+        );
         rows.push(Row {
             index: row,
             front: front.1,
@@ -191,6 +208,58 @@ fn walk(search: &Search<'_>) -> (Vec<Row>, Vec<usize>) {
         });
     }
     (rows, starts)
+}
+
+impl State {
+    fn predict(&self, time: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let dt = time - self.time;
+        (self.front.after(dt), self.back.after(dt))
+    }
+}
+
+/// Whether a candidate is nearer to a point that was no reflector than to where the reflectors ought to be.
+fn is_other(
+    at: &Vector3<f64>,
+    front: &Vector3<f64>,
+    back: &Vector3<f64>,
+    others: &[Vector3<f64>],
+) -> bool {
+    let own = (at - front).norm_squared().min((at - back).norm_squared());
+    others.iter().any(|other| (at - other).norm_squared() < own)
+}
+
+/// The pair that goes on from a known state.
+fn next(
+    search: &Search<'_>,
+    state: &State,
+    time: f64,
+    top_speed: f64,
+    candidates: &[Candidate],
+    others: &[Vector3<f64>],
+) -> Option<(Candidate, Candidate)> {
+    let (front, back) = state.predict(time);
+    let blind = (time - state.time - 1.5 / search.track.rate_hz).max(0.0);
+    let (tolerance, reach) = if blind > 0.0 {
+        // Beyond the usual step from frame to frame, what a turn at top speed could add.
+        let speed = if top_speed > 0.0 {
+            top_speed
+        } else {
+            search.distance / FIRST_GAP_S
+        };
+        let reach = search.after_gap.1 + 2.0 * speed * blind;
+        (search.after_gap.0, reach.min(REACH.1 * search.distance))
+    } else {
+        (search.tolerance, REACH.0 * search.distance)
+    };
+    let own: Vec<Candidate> = candidates
+        .iter()
+        .filter(|c| !is_other(&c.1, &front, &back, others))
+        .copied()
+        .collect();
+    search.best(&own, tolerance, |f, b| {
+        let miss = (f.1 - front).norm_squared() + (b.1 - back).norm_squared();
+        (miss < reach * reach).then_some(miss)
+    })
 }
 
 /// Lets the labels of each segment decide which end is the front, and counts.

@@ -138,7 +138,8 @@ pub enum TrackProblem {
     },
     /// A row has not as many cells as the header.
     #[error(
-        "this row has {cells} cells where the header has {expected}; it was cut or two rows ran together"
+        "this row has {cells} cells where the header and the other rows have {expected}; it was cut, two rows ran together, or a \
+         cell was lost or put in"
     )]
     RowLength {
         /// Cells in the row.
@@ -219,6 +220,11 @@ pub enum TrackProblem {
          campaign, or --rate)"
     )]
     NoRate,
+    /// The file ends in the middle of its only row, or seems to.
+    #[error(
+        "the file ends here without a line's end, so this row's last number may have lost digits; end the line if it is whole"
+    )]
+    MayBeCut,
     /// A line that no recording has.
     #[error("this line is longer than {megabytes} MiB; no tracking file has such lines")]
     LineTooLong {

@@ -122,6 +122,7 @@ pub(super) fn read(lines: &mut Lines<'_>, file: &Path, grid: Grid) -> Result<Bod
             warnings: Vec::new(),
         },
         last_decimals: 0,
+        extent: None,
         grid,
     };
     let mut last_line = reader.grid.header_line.max(1);
@@ -169,30 +170,28 @@ struct Reader<'f> {
     notes: Notes,
     body: Body,
     last_decimals: usize,
+    extent: Option<usize>,
 }
 
 impl Reader<'_> {
     /// A row, taken whole or not at all.
     fn row(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
         self.cells.split(line, self.grid.delimiter, self.file)?;
-        let width = self.grid.width;
-        if self.cells.len() < width || self.cells.any_from(line, width) {
-            let problem = TrackProblem::RowLength {
-                cells: self.cells.len(),
-                expected: width,
-            };
-            return Err(line.error(self.file, line.text.len(), problem));
-        }
+        row_length(
+            line,
+            &self.cells,
+            self.grid.width,
+            &mut self.extent,
+            self.file,
+        )?;
         let (frame, time) = self.clock(line)?;
         let mut places = std::mem::take(&mut self.places);
         for (index, place) in places.iter_mut().enumerate() {
             *place = self.place(line, index)?;
         }
         let decimals = decimals(self.cells.last(line).map_or("", |cell| cell.raw));
-        if !line.ended && decimals < self.last_decimals {
-            // Its number may have lost digits; the caller knows that the file ends here.
-            return Err(line.error(self.file, line.text.len(), TrackProblem::NoData));
-        }
+        let first = self.body.times.is_empty();
+        may_be_cut(line, first || decimals < self.last_decimals, self.file)?;
         self.last_decimals = decimals;
         let row = self.body.times.len();
         if let (Some(previous), Clock::Numbered { .. }) =
@@ -353,6 +352,39 @@ impl Reader<'_> {
             ..self.body
         }
     }
+}
+
+/// That a row has the cells that the header asks for and not one more than the rows before it, blank ones too: a cell that was
+/// lost or put in shifts all that follow.
+pub(super) fn row_length(
+    line: &Line<'_>,
+    cells: &Cells,
+    width: usize,
+    extent: &mut Option<usize>,
+    file: &Path,
+) -> Result<(), TrackError> {
+    let expected = if cells.len() < width || cells.any_from(line, width) {
+        width
+    } else {
+        *extent.get_or_insert(cells.len())
+    };
+    if cells.len() == expected && cells.len() >= width {
+        return Ok(());
+    }
+    let problem = TrackProblem::RowLength {
+        cells: cells.len(),
+        expected,
+    };
+    Err(line.error(file, line.text.len(), problem))
+}
+
+/// An error where the file ends in this row without a line's end, and it is shorter than it ought to be: its last number may
+/// have lost digits.
+pub(super) fn may_be_cut(line: &Line<'_>, shorter: bool, file: &Path) -> Result<(), TrackError> {
+    if line.ended || !shorter {
+        return Ok(());
+    }
+    Err(line.error(file, line.text.len(), TrackProblem::MayBeCut))
 }
 
 /// What follows the decimal sign, an exponent too, in characters: programs write all numbers of a column alike.

@@ -59,7 +59,7 @@ pub(super) fn read(
             return Err(first.error(file, at, TrackProblem::LooksLikeRotation));
         }
     }
-    // Rate: frames over time between the first and the last row that was looked at, unless it was given.
+    // Rate: frames over time between the first and the last row that was looked at.
     let clock = |cells: &[Cell<'_>]| Some((value(cells, 0)?, value(cells, 1)?));
     let ends = (
         clock(cells),
@@ -71,10 +71,12 @@ pub(super) fn read(
         }
         _ => None,
     };
-    let rate_hz = match options.rate().or(told) {
+    let rate_hz = match told {
         Some(rate) => rate,
         None => options.need_rate(first, file)?,
     };
+    // The frame at time zero: 0 in Motive, 1 elsewhere.
+    let first = clock(cells).map_or(0.0, |(frame, time)| frame - (time * rate_hz).round());
     let (unit, metres, _) = options.unit(Unit::Unknown);
     let point = |index: usize| {
         let name = format!("column {}", 3 * index + 3);
@@ -83,7 +85,7 @@ pub(super) fn read(
     let grid = Grid {
         clock: Clock::Numbered {
             frame: 0,
-            first: 0,
+            first: u64::from(first > 0.5),
             rate_hz,
             time: Some(1),
         },

@@ -18,7 +18,7 @@ use super::{
     Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
     TrackWarning, Unit,
 };
-use record::Record;
+use record::{Place, Record};
 
 /// Markers that a frame, or bodies that a file may have; more is a broken count.
 const MOST: usize = 100_000;
@@ -83,6 +83,7 @@ struct Reader {
     bodies: HashMap<String, RigidBody>,
     /// Points of a frame's markers: by place in the list (1.0) or by number (1.1).
     markers: HashMap<String, usize>,
+    half_blank: Option<(usize, usize)>,
     warnings: Vec<TrackWarning>,
 }
 
@@ -99,6 +100,7 @@ impl Reader {
             points: Vec::new(),
             bodies: HashMap::new(),
             markers: HashMap::new(),
+            half_blank: None,
             warnings: Vec::new(),
         }
     }
@@ -197,13 +199,13 @@ impl Reader {
                 self.body(&format!("body {id}"), &id, 0);
             }
             let pivot = self.bodies.get(&id).map(|body| body.pivot);
-            if let (Some(pivot), Some(place)) = (pivot, record.place(at + 1)?) {
+            if let (Some(pivot), Some(place)) = (pivot, self.place(record, at + 1)?) {
                 seen.push((pivot, place));
             }
         }
         for marker in 0..markers {
             let at = markers_at + 1 + stride * marker;
-            let place = record.place(at)?;
+            let place = self.place(record, at)?;
             let point = self.marker(record, at, marker);
             seen.extend(place.map(|place| (point, place)));
         }
@@ -212,6 +214,17 @@ impl Reader {
         self.times.push(time);
         self.push(row, &seen);
         Ok(())
+    }
+
+    fn place(&mut self, record: &Record<'_>, at: usize) -> Result<Option<[f64; 3]>, TrackError> {
+        Ok(match record.place(at)? {
+            Place::Seen(place) => Some(place),
+            Place::Missing => None,
+            Place::HalfBlank => {
+                self.half_blank.get_or_insert((0, record.line())).0 += 1;
+                None
+            }
+        })
     }
 
     /// The point of a frame's marker: in version 1.0 by its place in the list, in 1.1 by its number.
@@ -262,14 +275,19 @@ impl Reader {
             let Some(body) = self.bodies.get(&id) else {
                 break;
             };
-            let (solved, measured) = (body.solved.get(marker), body.measured.get(marker));
+            let (solved, measured) = (
+                body.solved.get(marker).copied(),
+                body.measured.get(marker).copied(),
+            );
             if let (Some(point), Some(place), 0) =
-                (solved, record.place(7 + stride * marker)?, since)
+                (solved, self.place(record, 7 + stride * marker)?, since)
             {
-                seen.push((*point, place));
+                seen.push((point, place));
             }
-            if let (Some(point), Some(place)) = (measured, record.place(cloud_at + 3 * marker)?) {
-                seen.push((*point, place));
+            if let (Some(point), Some(place)) =
+                (measured, self.place(record, cloud_at + 3 * marker)?)
+            {
+                seen.push((point, place));
             }
         }
         self.push(self.times.len() - 1, &seen);
@@ -292,6 +310,10 @@ impl Reader {
         }
         if self.left_handed {
             self.warnings.push(TrackWarning::LeftHanded);
+        }
+        if let Some((count, first_line)) = self.half_blank {
+            let warning = TrackWarning::HalfBlank { count, first_line };
+            self.warnings.push(warning);
         }
         let (mut jumps, mut skipped) = (0, 0);
         for pair in self.frame_numbers.windows(2) {

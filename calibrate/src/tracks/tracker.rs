@@ -4,7 +4,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::grid::{Body, decimals};
+use super::grid::{Body, decimals, may_be_cut, row_length};
 use super::lines::{Cell, Cells, Delimiter, Line, Lines, cell_at, split};
 use super::number::{Decimals, Number};
 use super::{
@@ -62,6 +62,10 @@ pub(super) fn read(
         };
         return Err(line.error(file, 0, TrackProblem::NoData));
     }
+    if let Some((count, first_line)) = reader.half_blank {
+        let warning = TrackWarning::HalfBlank { count, first_line };
+        reader.warnings.push(warning);
+    }
     Ok(Draft {
         format: TrackFormat::Tracker,
         rate_hz: None,
@@ -86,6 +90,8 @@ struct Reader<'f> {
     /// All times, of whatever column.
     times: Vec<f64>,
     last_decimals: usize,
+    extent: Option<usize>,
+    half_blank: Option<(usize, usize)>,
 }
 
 impl<'f> Reader<'f> {
@@ -124,6 +130,8 @@ impl<'f> Reader<'f> {
             cells: Cells::default(),
             times: Vec::new(),
             last_decimals: 0,
+            extent: None,
+            half_blank: None,
         };
         let starts: Vec<usize> = (0..name_cells.len())
             .filter(|column| !cell_at(&name_cells, *column).raw.is_empty())
@@ -188,13 +196,7 @@ impl<'f> Reader<'f> {
     /// A row, taken whole or not at all.
     fn row(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
         self.cells.split(line, self.delimiter, self.file)?;
-        if self.cells.len() < self.width || self.cells.any_from(line, self.width) {
-            let problem = TrackProblem::RowLength {
-                cells: self.cells.len(),
-                expected: self.width,
-            };
-            return Err(line.error(self.file, line.text.len(), problem));
-        }
+        row_length(line, &self.cells, self.width, &mut self.extent, self.file)?;
         let mut stamps = Vec::with_capacity(self.clocks.len());
         for index in 0..self.clocks.len() {
             let Some((column, previous)) = self.clocks.get(index).copied() else {
@@ -209,6 +211,7 @@ impl<'f> Reader<'f> {
             stamps.push(stamp);
         }
         let mut places = Vec::with_capacity(self.tracks.len());
+        let mut half_blank = false;
         for index in 0..self.tracks.len() {
             let Some(Track {
                 time,
@@ -225,7 +228,11 @@ impl<'f> Reader<'f> {
             let place = (self.value(line, x, "x")?, self.value(line, y, "y")?);
             places.push(match (stamp, place) {
                 (Some(time), (Some(x), Some(y))) => Some((time, [x, y, 0.0])),
-                (None, (None, None)) | (Some(_), _) => None,
+                (None | Some(_), (None, None)) => None,
+                (Some(_), _) => {
+                    half_blank = true;
+                    None
+                }
                 (None, _) => {
                     let problem = TrackProblem::NotANumber {
                         text: String::new(),
@@ -237,11 +244,12 @@ impl<'f> Reader<'f> {
             });
         }
         let decimals = decimals(self.cells.last(line).map_or("", |cell| cell.raw));
-        if !line.ended && decimals < self.last_decimals {
-            // Its number may have lost digits; the caller knows that the file ends here.
-            return Err(line.error(self.file, line.text.len(), TrackProblem::NoData));
-        }
+        let first = self.times.is_empty();
+        may_be_cut(line, first || decimals < self.last_decimals, self.file)?;
         self.last_decimals = decimals;
+        if half_blank {
+            self.half_blank.get_or_insert((0, line.number)).0 += 1;
+        }
         for ((_, last), stamp) in self.clocks.iter_mut().zip(&stamps) {
             *last = stamp.unwrap_or(*last);
         }

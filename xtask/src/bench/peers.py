@@ -104,6 +104,41 @@ def lighthill_times():
     return found
 
 
+def wide_text(frames=20_000, markers=10):
+    """The file of calibrate's bench, to the byte."""
+    axes = range(3 * markers)
+
+    def row(cell):
+        return "".join("," + cell(i) for i in axes)
+    lines = ["Format Version,1.23,Export Frame Rate,100,Length Units,Meters,Coordinate Space,Global", "",
+             ",Type" + row(lambda i: "Marker"), ",Name" + row(lambda i: f"Marker {i // 3}"),
+             "," + row(lambda i: "Position"), "Frame,Time (Seconds)" + row(lambda i: "XYZ"[i % 3])]
+    lines += [f"{frame},{frame / 100:.6f}" + row(lambda i: f"{(frame * 7919 + i * 104729) % 4000000 / 1e6 - 2:.6f}")
+              for frame in range(frames)]
+    return "\n".join(lines) + "\n"
+
+
+def reading_times():
+    """A wide Motive file from text to arrays of positions: the csv module, and pandas."""
+    import csv
+    import io
+    text = wide_text()
+
+    def by_csv():
+        rows = csv.reader(io.StringIO(text))
+        for _ in range(6):
+            next(rows)
+        return np.array([[float(cell) for cell in row] for row in rows])
+    found = {"reading bytes": len(text), "reading csv": best_of(by_csv)}
+    try:
+        import pandas
+    except ImportError as missing:
+        print(f"pandas is not here: {missing}", file=sys.stderr)
+        return found
+    found["reading pandas"] = best_of(lambda: pandas.read_csv(io.StringIO(text), skiprows=6, header=None).to_numpy())
+    return found
+
+
 def main():
     swimmer = purcell()
     phi1, phi2 = np.random.default_rng(1).uniform(-2, 2, (2, POINTS))
@@ -116,6 +151,7 @@ def main():
         "casadi_batch": casadi_batch,
         "quarter_cycle": seconds(lambda: integrate_path(path, swimmer, breaks)),
         **lighthill_times(),
+        **reading_times(),
         "displacement_over_length": 4 * float(integrate_path(path, swimmer, breaks)["dx"]),
     }))
 

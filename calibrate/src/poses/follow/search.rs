@@ -9,10 +9,10 @@ use super::Row;
 use crate::poses::{PoseError, PoseOptions};
 use crate::{TrackFile, TrackPoint};
 
-/// How far both reflectors together may be from their predicted places, over their distance, before it is known how far
-/// they usually are; and never further than this in the end, or they could be exchanged.
-pub(super) const REACH: (f64, f64) = (0.1, 0.45);
-/// Limits of the second pass over the medians of the first: six standard deviations of a distance, ten of a prediction.
+/// How far both reflectors together may be from their predicted places from one row to the next, over their distance; and after
+/// a gap, or they could be exchanged.
+pub(super) const REACH: (f64, f64) = (0.3, 0.45);
+/// Limits after a gap over the medians of a first pass: six standard deviations of a distance, ten of a prediction.
 const TIGHTER: (f64, f64) = (9.0, 8.0);
 /// More candidates than this in a row are cut off: no recording has them, and the search is quadratic.
 const MOST_CANDIDATES: usize = 64;
@@ -90,7 +90,9 @@ pub(super) struct Search<'a> {
     pub(super) backs: Vec<usize>,
     pub(super) distance: f64,
     pub(super) tolerance: f64,
-    pub(super) reach: f64,
+    /// Limits after a gap, when a ghost may stand where a reflector is expected: of the distance, and of both together to
+    /// their predicted places \[m\].
+    pub(super) after_gap: (f64, f64),
 }
 
 /// A candidate of a row: which point, and where.
@@ -119,12 +121,13 @@ impl Search<'_> {
         self.fronts.contains(&point) || self.backs.contains(&point)
     }
 
-    fn fits(&self, a: &Vector3<f64>, b: &Vector3<f64>) -> bool {
-        ((a - b).norm() - self.distance).abs() < self.tolerance
+    fn fits(&self, a: &Vector3<f64>, b: &Vector3<f64>, tolerance: f64) -> bool {
+        ((a - b).norm() - self.distance).abs() < tolerance
     }
 
-    /// Limits from the distances and the misses of predictions that were met.
-    pub(super) fn tighten(&mut self, rows: &[Row]) {
+    /// Limits after a gap from the distances and the misses of predictions that were met: there a ghost must not pass for a
+    /// lost reflector. From row to row such limits would lose real reflectors, whose distances have long tails.
+    pub(super) fn learn(&mut self, rows: &[Row]) {
         let distances = rows.iter().map(|row| (row.front - row.back).norm());
         let Some(distance) = median(distances.clone()) else {
             return;
@@ -132,31 +135,41 @@ impl Search<'_> {
         let deviation = median(distances.map(|d| (d - distance).abs())).unwrap_or(0.0);
         let miss = median(rows.iter().filter_map(|row| row.miss)).unwrap_or(0.0);
         self.distance = distance;
-        self.tolerance =
-            (TIGHTER.0 * deviation).clamp(2e-3 * distance, self.tolerance.max(2e-3 * distance));
-        self.reach = (TIGHTER.1 * miss).clamp(5e-3 * distance, REACH.0 * distance);
+        let widest = self.tolerance.max(2e-3 * distance);
+        self.after_gap = (
+            (TIGHTER.0 * deviation).clamp(2e-3 * distance, widest),
+            (TIGHTER.1 * miss).clamp(5e-3 * distance, 0.1 * distance),
+        );
+    }
+
+    /// How many labels of a chosen pair agree with the choice, and how many contradict it.
+    fn votes(&self, front: usize, back: usize) -> (f64, f64) {
+        let says = |which: &[usize], i| f64::from(u8::from(which.contains(&i)));
+        (
+            says(&self.fronts, front) + says(&self.backs, back),
+            says(&self.fronts, back) + says(&self.backs, front),
+        )
     }
 
     /// Whether the labels of a chosen pair agree with the choice.
     pub(super) fn labels(&self, front: usize, back: usize) -> Option<bool> {
-        let says = |which: &[usize], i| which.contains(&i);
-        let agrees = usize::from(says(&self.fronts, front)) + usize::from(says(&self.backs, back));
-        let contradicts =
-            usize::from(says(&self.fronts, back)) + usize::from(says(&self.backs, front));
-        (agrees != contradicts).then_some(agrees > contradicts)
+        let (agrees, contradicts) = self.votes(front, back);
+        let most = agrees.total_cmp(&contradicts);
+        most.is_ne().then_some(most.is_gt())
     }
 
     /// The best ordered pair by a cost that may refuse it.
     pub(super) fn best(
         &self,
         candidates: &[Candidate],
+        tolerance: f64,
         cost: impl Fn(&Candidate, &Candidate) -> Option<f64>,
     ) -> Option<(Candidate, Candidate)> {
         let mut best: Option<(f64, Candidate, Candidate)> = None;
         for front in candidates {
             for back in candidates
                 .iter()
-                .filter(|back| back.0 != front.0 && self.fits(&front.1, &back.1))
+                .filter(|back| back.0 != front.0 && self.fits(&front.1, &back.1, tolerance))
             {
                 if let Some(cost) = cost(front, back)
                     .filter(|cost| best.as_ref().is_none_or(|(least, ..)| cost < least))
@@ -170,16 +183,10 @@ impl Search<'_> {
 
     /// Where nothing is known of the past: labels first, then the better distance.
     pub(super) fn begin(&self, candidates: &[Candidate]) -> Option<(Candidate, Candidate)> {
-        self.best(candidates, |front, back| {
+        self.best(candidates, self.tolerance, |front, back| {
             let misfit = ((front.1 - back.1).norm() - self.distance).abs() / self.tolerance;
-            Some(
-                misfit
-                    + match self.labels(front.0, back.0) {
-                        Some(true) => 0.0,
-                        None => 2.0,
-                        Some(false) => 4.0,
-                    },
-            )
+            let (agrees, contradicts) = self.votes(front.0, back.0);
+            Some(misfit + 2.0 - agrees + contradicts)
         })
     }
 }
@@ -211,7 +218,7 @@ pub(super) fn prepare<'a>(
         backs,
         distance: expected_m,
         tolerance,
-        reach: REACH.0 * expected_m,
+        after_gap: (tolerance, 0.1 * expected_m),
     };
     if !search.fronts.is_empty() && !search.backs.is_empty() {
         if let Some(measured_m) = median_distance(track, &search.fronts, &search.backs) {
@@ -270,7 +277,7 @@ fn find_labels(search: &mut Search<'_>) {
         search.candidates(row, &mut candidates);
         for (index, (i, a)) in candidates.iter().enumerate() {
             for (j, b) in candidates.iter().skip(index + 1) {
-                if search.fits(a, b) && allowed(search, *i, *j) {
+                if search.fits(a, b, search.tolerance) && allowed(search, *i, *j) {
                     *counts.entry((*i, *j)).or_default() += 1;
                 }
             }

@@ -7,6 +7,16 @@ use crate::tracks::lines::{Cell, Cells, Delimiter, Line};
 use crate::tracks::number::number;
 use crate::tracks::{TrackError, TrackProblem};
 
+/// What three coordinates say.
+pub(super) enum Place {
+    /// All three are there.
+    Seen([f64; 3]),
+    /// None is.
+    Missing,
+    /// One or two are.
+    HalfBlank,
+}
+
 pub(super) struct Record<'r> {
     line: Line<'r>,
     cells: &'r Cells,
@@ -100,19 +110,27 @@ impl<'r> Record<'r> {
         }
     }
 
-    /// Three coordinates; `None` where any of them is missing.
-    pub(super) fn place(&self, at: usize) -> Result<Option<[f64; 3]>, TrackError> {
+    /// Three coordinates; nothing where any of them is missing.
+    pub(super) fn place(&self, at: usize) -> Result<Place, TrackError> {
         let mut place = [0.0; 3];
-        let mut missing = false;
+        let mut missing = 0;
         for ((value, field), axis) in place.iter_mut().zip(at..).zip(["x", "y", "z"]) {
             let text = self.cells.text(&self.line, field).unwrap_or("");
             match number(text, self.comma) {
                 Number::Finite(finite) => *value = finite,
-                Number::Missing => missing = true,
+                Number::Missing => missing += 1,
                 Number::Wrong => return Err(self.not_a_number(field, axis)),
             }
         }
-        Ok((!missing).then_some(place))
+        Ok(match missing {
+            0 => Place::Seen(place),
+            3 => Place::Missing,
+            _ => Place::HalfBlank,
+        })
+    }
+
+    pub(super) fn line(&self) -> usize {
+        self.line.number
     }
 
     fn not_a_number(&self, at: usize, what: &str) -> TrackError {
