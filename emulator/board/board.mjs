@@ -15,6 +15,8 @@ const ERASE_NS = 45e6, PROGRAM_NS = 0.4e6;
 const SLICE = 0;
 /** The firmware's control task runs in this exception: 16 + SWI_IRQ_1. */
 const CONTROL = 16 + 27;
+/** Bits of VREG_AND_CHIP_RESET.CHIP_RESET: what the chip as a whole was last reset by. */
+const HAD_POR = 0x100, HAD_RUN = 0x10000;
 export const PINS = { front: 16, back: 17, state: { 'nano-connect': 25, pico: 22 }, led: { 'nano-connect': 6, pico: 25 } };
 
 /** Thrown inside the emulation when the power goes. */
@@ -69,6 +71,12 @@ export class Board {
     this.powered = true;
     this.flashBytesLeft = Infinity;
     this.powerOn();
+  }
+
+  /** The reset pin: the scratch registers are lost, RAM is not, and the chip knows. */
+  pinReset() {
+    this.before = this.now;
+    this.start({ reason: 0, scratch: new Uint32Array(8), ram: this.mcu.sram, chipReset: HAD_RUN });
   }
 
   powerOn() { this.start({ reason: 0, scratch: new Uint32Array(8), ram: null }); }
@@ -148,7 +156,7 @@ export class Board {
   }
 
   /** The chip comes out of reset as its boot ROM leaves it: at the second-stage loader. RAM outlives all but the power. */
-  start({ reason, scratch, ram }) {
+  start({ reason, scratch, ram, chipReset = HAD_POR }) {
     this.reset = null;
     this.busy = 0;
     this.control = 0;
@@ -171,6 +179,7 @@ export class Board {
     const dog = mcu.peripherals[0x40058];
     dog.reason = reason;
     dog.scratchData.set(scratch);
+    mcu.peripherals[0x40064].writeUint32(8, chipReset);
     this.setConnected(this.connected);
     this.setBattery(this.battery);
     this.watchPulses();

@@ -25,6 +25,7 @@ const commands = {
   load_flash: ({ path }) => { board.loadFlash(path); },
   stack: () => ({ stack: board.stackLeft() }),
   power_cycle: () => { board.powerCycle(); },
+  pin_reset: () => { board.pinReset(); },
   patch: ({ address, halfword }) => { board.patch(address, halfword); },
   symbols: ({ containing }) => ({
     symbols: Object.fromEntries(Object.entries(elf.symbols).filter(([name]) => name.includes(containing))),

@@ -16,6 +16,7 @@ export function fillGaps(mcu, { onByte, onReset, flash, warn }) {
   blocksThatAreMissing(mcu);
   interruptController(mcu.core, mcu.ppb);
   sendEvent(mcu, warn);
+  undefinedInstructions(mcu);
   watchdog(mcu.peripherals[0x40058], onReset);
   mcu.pwm.channels.forEach(({ timer }) => counting(timer));
   return bootRom(mcu, flash);
@@ -81,6 +82,15 @@ function sendEvent(mcu, warn) {
     info(_, message) { if (message === 'SEV') mcu.core.eventRegistered = true; },
     warn: (part, message) => warn(`${part}: ${message}`),
     error: (part, message) => warn(`${part}: error: ${message}`),
+  };
+}
+
+// Gap: an undefined instruction waits for a debugger; without one it is a hard fault, at its own address.
+function undefinedInstructions(mcu) {
+  const HARD_FAULT = 3;
+  mcu.onBreak = () => {
+    mcu.core.registers[15] -= mcu.core.breakRewind;
+    mcu.core.exceptionEntry(HARD_FAULT);
   };
 }
 

@@ -259,6 +259,14 @@ impl Board {
         self.perform(&json!({ "do": "power_cycle" }))
     }
 
+    /// The reset pin: RAM stays, the watchdog's scratch registers do not.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn pin_reset(&mut self) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "pin_reset" }))
+    }
+
     /// Changes two bytes of the running code, until the next reset.
     ///
     /// # Errors

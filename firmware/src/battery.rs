@@ -7,9 +7,18 @@ use embassy_rp::peripherals::{ADC, PIN_26};
 use embassy_time::{Duration, Ticker};
 use portable_atomic::{AtomicU16, Ordering};
 
-/// How many times the pack's voltage is above the pin's, in thousandths (4700 = a 37 kΩ / 10 kΩ divider). `None`: no
-/// divider is soldered, the pin is not read and the battery is reported as not measured.
-const DIVIDER_MILLI: Option<u32> = divider(option_env!("SWIMMER_BATTERY_DIVIDER_MILLI"));
+use crate::build_setting::number;
+
+/// How many times the pack's voltage is above the pin's, in thousandths (3200 = 22 kΩ over 10 kΩ). `None`: no divider is
+/// soldered, the pin is not read and the battery is reported as not measured.
+const DIVIDER_MILLI: Option<u32> = number(option_env!("SWIMMER_BATTERY_DIVIDER_MILLI"));
+const _: () = assert!(
+    match DIVIDER_MILLI {
+        Some(milli) => milli >= 1000,
+        None => true,
+    },
+    "SWIMMER_BATTERY_DIVIDER_MILLI must be 1000 or more: a divider does not raise the voltage"
+);
 /// ADC reference [mV]: the boards' 3.3 V rail.
 const REFERENCE_MV: u64 = 3300;
 /// A reading that never occurs: the ADC has 12 bits.
@@ -44,15 +53,4 @@ pub(crate) fn lowest_mv() -> Option<u16> {
     }
     let pack_uv = u64::from(reading) * REFERENCE_MV * u64::from(DIVIDER_MILLI?) / 4096;
     u16::try_from(pack_uv / 1000).ok()
-}
-
-/// Reads the build-time setting; anything but a number of 1000 or more stops the build.
-const fn divider(setting: Option<&str>) -> Option<u32> {
-    let Some(text) = setting else { return None };
-    match u32::from_str_radix(text, 10) {
-        Ok(milli) if milli >= 1000 => Some(milli),
-        _ => panic!(
-            "SWIMMER_BATTERY_DIVIDER_MILLI must be a whole number of thousandths, 1000 or more"
-        ),
-    }
 }

@@ -1,5 +1,6 @@
 //! Which pin does what, on both boards (one truth; the wiring table of the README is this file in words).
 
+use crate::build_setting::number;
 use embassy_rp::Peri;
 use embassy_rp::Peripherals;
 use embassy_rp::gpio::AnyPin;
@@ -14,6 +15,9 @@ compile_error!(
 #[cfg(not(any(feature = "nano-connect", feature = "pico")))]
 compile_error!("no board chosen: add `--features nano-connect` or `--features pico`");
 
+/// GPIO of the HC-05's STATE where it is not the board's usual one.
+const STATE_PIN: Option<u32> = number(option_env!("SWIMMER_STATE_PIN"));
+
 /// What the boards share and where they differ (LED and STATE pin only).
 pub(crate) struct Board {
     /// The serial link to the HC-05: UART0.
@@ -22,7 +26,7 @@ pub(crate) struct Board {
     pub(crate) link_tx: Peri<'static, PIN_0>,
     /// RX from the HC-05's TXD: GPIO1 (Nano D0, Pico GP1).
     pub(crate) link_rx: Peri<'static, PIN_1>,
-    /// The HC-05's STATE, high while connected: Nano D2 = GPIO25, Pico GP22.
+    /// The HC-05's STATE, high while connected: Nano D2 = GPIO25, Pico GP22, unless [`STATE_PIN`] names another.
     pub(crate) link_state: Peri<'static, AnyPin>,
     /// Both servos on one slice, so that they switch in the same period.
     pub(crate) servo_slice: Peri<'static, PWM_SLICE0>,
@@ -45,10 +49,24 @@ pub(crate) struct Board {
 impl Board {
     /// Sorts the chip's peripherals by what they do on this board.
     pub(crate) fn new(p: Peripherals) -> Self {
+        const {
+            assert!(
+                matches!(STATE_PIN, None | Some(15 | 18..=21)),
+                "SWIMMER_STATE_PIN must be 15, 18, 19, 20 or 21: those are free on both boards"
+            );
+        }
         #[cfg(feature = "nano-connect")]
-        let (link_state, led) = (p.PIN_25.into(), p.PIN_6.into());
+        let (usual, led) = (p.PIN_25.into(), p.PIN_6.into());
         #[cfg(not(feature = "nano-connect"))]
-        let (link_state, led) = (p.PIN_22.into(), p.PIN_25.into());
+        let (usual, led) = (p.PIN_22.into(), p.PIN_25.into());
+        let link_state = match STATE_PIN {
+            Some(15) => p.PIN_15.into(),
+            Some(18) => p.PIN_18.into(),
+            Some(19) => p.PIN_19.into(),
+            Some(20) => p.PIN_20.into(),
+            Some(21) => p.PIN_21.into(),
+            _ => usual,
+        };
         Self {
             uart: p.UART0,
             link_tx: p.PIN_0,

@@ -6,6 +6,7 @@ use embassy_rp::watchdog::ResetReason as WatchdogReset;
 use gait_player::{Boot, BrainConfig, Identity};
 use link_protocol::{Board, FirmwareVersion, ResetReason};
 
+use crate::survivors;
 use crate::uart::RECEIVE_BUFFER;
 use crate::watchdog::Watchdog;
 
@@ -46,8 +47,12 @@ fn boot(watchdog: &mut Watchdog) -> Boot {
         reset_reason,
         nonce: random.next_u32() ^ starts,
         session_seed: random.next_u32() as u16 ^ (starts as u16).rotate_left(8),
-        kept: watchdog.kept(),
-        crash_message: heapless::String::new(),
+        // The scratch register is empty after the reset pin: an e-stop must outlive that too.
+        kept: match watchdog.kept() {
+            0 => survivors::kept(),
+            word => word,
+        },
+        crash_message: survivors::take_note().message(),
     }
 }
 

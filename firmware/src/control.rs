@@ -9,6 +9,7 @@ use crate::battery;
 use crate::led::Led;
 use crate::servos::Servos;
 use crate::storage::FlashStorage;
+use crate::survivors;
 use crate::uart::{RECEIVED, TO_SEND};
 use crate::watchdog::Watchdog;
 
@@ -47,6 +48,7 @@ pub(crate) async fn control(mut control: Control) {
         }
         // Before the answer leaves: an e-stop that was acknowledged outlives a reset that comes before the next tick.
         control.watchdog.keep(control.brain.kept());
+        survivors::keep(control.brain.kept());
         control.hand_over_bytes();
     }
 }

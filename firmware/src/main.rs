@@ -24,7 +24,11 @@ mod board;
 #[cfg(target_os = "none")]
 mod boot;
 #[cfg(target_os = "none")]
+mod build_setting;
+#[cfg(target_os = "none")]
 mod control;
+#[cfg(target_os = "none")]
+mod crash;
 #[cfg(target_os = "none")]
 mod led;
 #[cfg(target_os = "none")]
@@ -33,6 +37,8 @@ mod servos;
 mod start;
 #[cfg(target_os = "none")]
 mod storage;
+#[cfg(target_os = "none")]
+mod survivors;
 #[cfg(target_os = "none")]
 mod uart;
 #[cfg(target_os = "none")]

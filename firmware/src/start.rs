@@ -6,7 +6,6 @@ use embassy_executor::{InterruptExecutor, Spawner};
 use embassy_rp::interrupt;
 use embassy_rp::interrupt::{InterruptExt, Priority};
 use gait_player::Brain;
-use panic_probe as _;
 use static_cell::StaticCell;
 
 use crate::board::Board;

@@ -137,10 +137,17 @@ impl Storage for FlashStorage {
 
     fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Error> {
         let mut buffer = [0; MAX_SETTINGS + 32];
-        block_on(
-            self.settings()
-                .store_item(&mut buffer, &SETTINGS_KEY, &bytes),
-        )
-        .map_err(Error::Settings)
+        let mut settings = self.settings();
+        let mut store = |settings: &mut SettingsMap<'_>| {
+            block_on(settings.store_item(&mut buffer, &SETTINGS_KEY, &bytes))
+        };
+        match store(&mut settings) {
+            // Nothing in there can be read any more: what is new is better than nothing.
+            Err(sequential_storage::Error::Corrupted { .. }) => {
+                block_on(settings.erase_all()).map_err(Error::Settings)?;
+                store(&mut settings).map_err(Error::Settings)
+            }
+            outcome => outcome.map_err(Error::Settings),
+        }
     }
 }

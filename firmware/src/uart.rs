@@ -14,8 +14,17 @@ use embassy_sync::pipe::Pipe;
 use embedded_io_async::{Read, Write};
 use static_cell::StaticCell;
 
-/// What the HC-05 is set to with `AT+UART=115200,0,0`.
-const BAUD: u32 = 115_200;
+use crate::build_setting::number;
+
+/// What the HC-05 is set to by `swimmer robot hc05`.
+const BAUD: u32 = match number(option_env!("SWIMMER_LINK_BAUD")) {
+    Some(baud) => baud,
+    None => 115_200,
+};
+const _: () = assert!(
+    BAUD >= 9_600 && BAUD <= 460_800,
+    "SWIMMER_LINK_BAUD must lie between 9600 and 460800"
+);
 /// The receiver's ring, and as much again in the pipe behind it.
 const RECEIVE_RING: usize = 1024;
 /// Bytes that may wait for the brain: what Hello advertises, and what the host keeps in flight at most.

@@ -14,7 +14,8 @@ use portable_atomic::{AtomicBool, Ordering};
 const TIMEOUT: Duration = Duration::from_millis(430);
 /// Ticks in a row without a beat that are forgiven: 40 ms.
 const PATIENCE: u8 = 2;
-/// The scratch registers we use; the boot ROM has 4 to 7. They outlive every reset but those of power and reset pin.
+/// The scratch registers we use; the boot ROM has 4 to 7. They outlive every reset but those of power and reset pin
+/// (`survivors.rs` has what must outlive the pin too).
 const KEPT: usize = 0;
 const STARTS: usize = 1;
 

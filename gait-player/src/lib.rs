@@ -18,6 +18,7 @@
 pub mod brain;
 mod clamp;
 pub mod clearance;
+mod crash;
 pub mod limits;
 mod odometer;
 pub mod playback;
@@ -28,6 +29,7 @@ pub mod storage;
 pub mod table;
 
 pub use brain::{Boot, Brain, BrainConfig, Identity, Inputs, Output};
+pub use crash::CrashNote;
 pub use limits::Limits;
 pub use table::GaitTable;
 

@@ -115,8 +115,8 @@ pub(crate) fn flash(toolchain: &ChipToolchain, variant: Variant) -> Outcome {
             "it is not there",
             format!(
                 "install it as https://probe.rs/docs/getting-started/installation says; or flash without a probe: \
-                 `cargo xtask firmware --board {0}`, plug the board in with its BOOTSEL button held (Nano: press reset \
-                 twice), and copy the .uf2 file that it names onto the drive RPI-RP2",
+                 `cargo xtask firmware --board {0}`, plug the board in with its BOOTSEL button held (Nano: REC \
+                 joined to GND), and copy the .uf2 file that it names onto the drive RPI-RP2",
                 variant.board.feature()
             ),
         ));

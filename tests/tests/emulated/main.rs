@@ -5,6 +5,7 @@
 
 mod battery;
 mod boot;
+mod crash;
 mod endurance;
 mod failsafes;
 mod flash;

@@ -1,0 +1,147 @@
+//! What a crash leaves for the next start: where and why, in memory that a reset spares. Under a checksum, because after a
+//! power cut the same memory holds anything.
+
+use core::fmt::{self, Write as _};
+
+use heapless::String;
+use link_protocol::crc32c;
+
+/// Bytes of the message, as the wire carries it.
+const ROOM: usize = 96;
+/// A place keeps the end of its path: the file's name says more than where the sources lay.
+const PATH: usize = 32;
+
+/// A note in memory that no start-up code clears. Any bits are one, most are none that was written.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct CrashNote {
+    len: u32,
+    text: [u8; ROOM],
+    crc32: u32,
+}
+
+impl CrashNote {
+    /// No crash.
+    pub const NONE: Self = Self {
+        len: 0,
+        text: [0; ROOM],
+        crc32: 0,
+    };
+
+    /// `PATH:LINE: MESSAGE`, cut off where it is too long.
+    pub fn panicked(file: &str, line: u32, message: impl fmt::Display) -> Self {
+        let mut start = file.len().saturating_sub(PATH);
+        while !file.is_char_boundary(start) {
+            start += 1;
+        }
+        let tail = file.get(start..).unwrap_or_default();
+        // A whole name of a folder, where there is one.
+        let tail = match tail.split_once('/') {
+            Some((_, rest)) if start > 0 => rest,
+            _ => tail,
+        };
+        Self::of(format_args!("{tail}:{line}: {message}"))
+    }
+
+    /// The processor gave up at this address; `caller` is where that function was called from.
+    pub fn faulted(address: u32, caller: u32) -> Self {
+        Self::of(format_args!(
+            "hard fault at {address:#010x}, called from {caller:#010x}"
+        ))
+    }
+
+    fn of(words: fmt::Arguments<'_>) -> Self {
+        let mut text = Cut(String::new());
+        // It only fails where a `Display` does: then what there is.
+        let _ = text.write_fmt(words);
+        let mut note = Self {
+            len: text.0.len() as u32,
+            ..Self::NONE
+        };
+        note.text[..text.0.len()].copy_from_slice(text.0.as_bytes());
+        note.crc32 = note.checksum();
+        note
+    }
+
+    /// The message; empty where none was written.
+    pub fn message(&self) -> String<ROOM> {
+        let bytes = self.text.get(..self.len as usize).unwrap_or_default();
+        if self.crc32 != self.checksum() {
+            return String::new();
+        }
+        core::str::from_utf8(bytes)
+            .ok()
+            .and_then(|text| String::try_from(text).ok())
+            .unwrap_or_default()
+    }
+
+    /// Over length and text; never 0, so that cleared memory is no note.
+    fn checksum(&self) -> u32 {
+        let mut bytes = [0; ROOM + 4];
+        bytes[..ROOM].copy_from_slice(&self.text);
+        bytes[ROOM..].copy_from_slice(&self.len.to_le_bytes());
+        crc32c(&bytes).max(1)
+    }
+}
+
+/// Takes what there is room for.
+struct Cut(String<ROOM>);
+
+impl fmt::Write for Cut {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        for letter in text.chars() {
+            if self.0.push(letter).is_err() {
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_panic_is_told_with_its_place() {
+        let note = CrashNote::panicked("gait-player/src/brain/motion.rs", 97, "no table");
+        assert_eq!(
+            note.message(),
+            "gait-player/src/brain/motion.rs:97: no table"
+        );
+        let file = "/home/somebody/.cargo/registry/src/index-0123/embassy-rp-0.10.0/src/flash.rs";
+        let note = CrashNote::panicked(file, 7, format_args!("{} of {}", 3, 2));
+        assert_eq!(note.message(), "embassy-rp-0.10.0/src/flash.rs:7: 3 of 2");
+        assert_eq!(
+            CrashNote::faulted(0x1000_0d24, 0x1000_0101).message(),
+            "hard fault at 0x10000d24, called from 0x10000101"
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_comes_back_as_far_as_it_fits(file in "\\PC{0,80}", line: u32, message in "\\PC{0,200}") {
+            let told = CrashNote::panicked(&file, line, &message).message();
+            let whole = format!(":{line}: {message}");
+            let shown = told.find(&whole[..whole.floor_char_boundary(9)]);
+            prop_assert!(shown.is_some() || told.len() + 4 > ROOM, "{told}");
+        }
+
+        /// What power leaves in memory is no message; nor is one with a flipped bit.
+        #[test]
+        fn noise_is_no_message(len: u32, text in prop::array::uniform32(any::<u8>()), crc32: u32, bit in 0..(32_usize * 8)) {
+            let mut noise = CrashNote { len, crc32, ..CrashNote::NONE };
+            noise.text[..32].copy_from_slice(&text);
+            prop_assert!(noise.message().is_empty());
+            let mut note = CrashNote::of(format_args!("a note of forty letters, and of four more"));
+            note.text[bit / 8] ^= 1 << (bit % 8);
+            prop_assert!(note.message().is_empty());
+        }
+    }
+
+    #[test]
+    fn cleared_memory_is_no_message() {
+        assert_eq!(CrashNote::NONE.message(), "");
+    }
+}

@@ -1,0 +1,167 @@
+//! What a crash leaves: the pulses end at once, and the next greeting tells the place and the words.
+
+use std::time::Duration;
+
+use emulator::Board;
+use host_link::Robot;
+use link_protocol::{ResetReason, StateName};
+
+use crate::rig::{self, Port};
+
+/// Flash that holds code.
+const CODE: std::ops::Range<u32> = 0x1000_0100..0x1002_0000;
+/// Thumb's `udf #0`: a hard fault.
+const UNDEFINED: u16 = 0xde00;
+
+/// An armed robot, and the address of code that runs whenever anything does: what polls the tasks.
+fn armed() -> Option<(Robot<Port>, u32)> {
+    let mut robot = rig::robot()?;
+    robot.arm(false).unwrap();
+    rig::pass(&mut robot, Duration::from_millis(100));
+    let poll = symbol(board(&mut robot), "raw8Executor4poll");
+    Some((robot, poll))
+}
+
+fn board(robot: &mut Robot<Port>) -> &mut Board {
+    robot.port_mut().device_mut().board_mut()
+}
+
+/// Lets the crash happen; the pulses end within a tick and a period. Returns what the robot then tells.
+fn told_after(robot: &mut Robot<Port>) -> String {
+    rig::events(robot);
+    let before = board(robot).now();
+    rig::pass(robot, Duration::from_millis(300));
+    let events = rig::events(robot);
+    let [reset] = events.resets[..] else {
+        panic!("{:?}", events.resets)
+    };
+    let took = reset.at().saturating_sub(before);
+    assert!(took < Duration::from_millis(40), "{took:?}");
+    let mut later = events.periods.iter().filter(|p| p.at() > reset.at());
+    assert!(later.all(|period| !period.powered()));
+    robot.reconnect().unwrap();
+    let info = *robot.info();
+    assert_eq!(info.reset_reason, ResetReason::Crash);
+    assert!(info.crash_message);
+    assert_eq!(robot.status().unwrap().state, StateName::Stopped);
+    robot.crash_message().unwrap()
+}
+
+#[test]
+fn a_panic_tells_its_place_and_words() {
+    let Some((mut robot, poll)) = armed() else {
+        return;
+    };
+    let board_now = board(&mut robot);
+    let target = symbol(board_now, "panic_bounds_check");
+    let code = code(board_now);
+    // Where an index is found out of bounds: `ldr r2, =place; bl panic_bounds_check`.
+    let site = (2..code.len() - 1)
+        .find(|&at| {
+            code[at - 1] & 0xff00 == 0x4a00
+                && branch_target(at, code[at], code[at + 1]) == Some(target)
+        })
+        .map(|at| CODE.start + 2 * (at as u32 - 1))
+        .expect("a place that checks an index");
+    for (half, word) in (0..).zip(branch(poll, site)) {
+        board_now.patch(poll + 2 * half, word).unwrap();
+    }
+    let message = told_after(&mut robot);
+    println!("a panic: {message}");
+    let (place, words) = message.split_once(": ").unwrap();
+    let (file, line) = place.rsplit_once(':').unwrap();
+    assert!(
+        file.contains(".rs") && line.parse::<u32>().is_ok(),
+        "{message}"
+    );
+    assert!(words.starts_with("index out of bounds"), "{message}");
+    // Told for this start alone.
+    board(&mut robot).pin_reset().unwrap();
+    rig::pass(&mut robot, Duration::from_millis(300));
+    robot.reconnect().unwrap();
+    assert!(!robot.info().crash_message);
+    assert_eq!(robot.info().reset_reason, ResetReason::Pin);
+}
+
+#[test]
+fn a_hard_fault_tells_its_address() {
+    let Some((mut robot, poll)) = armed() else {
+        return;
+    };
+    board(&mut robot).patch(poll, UNDEFINED).unwrap();
+    let message = told_after(&mut robot);
+    println!("a hard fault: {message}");
+    let expected = format!("hard fault at {poll:#010x}, called from 0x");
+    assert!(message.starts_with(&expected), "{message}, not {expected}");
+    // Power leaves noise where the message was.
+    board(&mut robot).power_cycle().unwrap();
+    rig::pass(&mut robot, Duration::from_millis(300));
+    robot.reconnect().unwrap();
+    assert!(!robot.info().crash_message);
+    assert_eq!(robot.crash_message().unwrap(), "");
+}
+
+/// R6, for the pin that the chip's own registers do not outlive: pressing reset clears no e-stop, power does.
+#[test]
+fn an_estop_outlives_the_reset_pin() {
+    let Some((mut robot, _)) = armed() else {
+        return;
+    };
+    robot.estop().unwrap();
+    rig::pass(&mut robot, Duration::from_millis(100));
+    for _ in 0..2 {
+        board(&mut robot).pin_reset().unwrap();
+        rig::pass(&mut robot, Duration::from_millis(300));
+        robot.reconnect().unwrap();
+        assert_eq!(robot.info().reset_reason, ResetReason::Pin);
+        assert_eq!(robot.status().unwrap().state, StateName::EStopped);
+        assert!(robot.arm(false).is_err());
+    }
+    board(&mut robot).power_cycle().unwrap();
+    rig::pass(&mut robot, Duration::from_millis(300));
+    robot.reconnect().unwrap();
+    assert_eq!(robot.info().reset_reason, ResetReason::PowerOn);
+    assert_eq!(robot.status().unwrap().state, StateName::Stopped);
+}
+
+fn symbol(board: &mut Board, name: &str) -> u32 {
+    let found = board.symbols(name).unwrap();
+    *found.values().next().unwrap_or_else(|| panic!("no {name}")) & !1
+}
+
+/// The code, in half words.
+fn code(board: &mut Board) -> Vec<u16> {
+    let bytes = board.peek(CODE.start, CODE.end - CODE.start).unwrap();
+    bytes
+        .chunks_exact(2)
+        .map(|pair| u16::from_le_bytes([pair[0], pair[1]]))
+        .collect()
+}
+
+/// Where Thumb's `bl`, at this half word of the code, leads.
+fn branch_target(at: usize, first: u16, second: u16) -> Option<u32> {
+    if first & 0xf800 != 0xf000 || second & 0xd000 != 0xd000 {
+        return None;
+    }
+    let bit = |word: u16, place: u32| i32::from(word >> place & 1);
+    let sign = bit(first, 10);
+    let high = |j: i32| 1 - (j ^ sign);
+    let offset = -sign << 24
+        | high(bit(second, 13)) << 23
+        | high(bit(second, 11)) << 22
+        | i32::from(first & 0x3ff) << 12
+        | i32::from(second & 0x7ff) << 1;
+    let here = CODE.start + 2 * u32::try_from(at).ok()? + 4;
+    Some(here.wrapping_add_signed(offset))
+}
+
+/// Thumb's `bl` from one address to another.
+fn branch(from: u32, to: u32) -> [u16; 2] {
+    let offset = to.wrapping_sub(from + 4);
+    let bit = |place: u32| (offset >> place & 1) as u16;
+    let sign = bit(24);
+    let low = |place: u32| 1 - (bit(place) ^ sign);
+    let first = 0xf000 | sign << 10 | (offset >> 12 & 0x3ff) as u16;
+    let second = 0xd000 | low(23) << 13 | low(22) << 11 | (offset >> 1 & 0x7ff) as u16;
+    [first, second]
+}
