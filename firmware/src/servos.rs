@@ -1,10 +1,9 @@
 //! Two servos on one PWM slice: pulses in nanoseconds in, compare values out.
 //!
-//! PWM rather than PIO. One step of the counter is 0.32 µs, so a pulse is off by 0.16 µs at most and by 0.09 µs RMS; at
-//! the HS-785HB's 1.57 °/µs that is 0.25° at most and 0.15° RMS, inside the promised 0.5° RMS and far below the servo's
-//! own dead band of 5 to 8 µs (8 to 12°). PIO would bring the step down to 24 ns, which no such servo can follow, and
-//! would give up what the slice has for nothing: both compare values sit in one register that is latched at the wrap,
-//! so both servos switch in the same period and no pulse is ever cut or doubled.
+//! PWM rather than PIO: the README has the numbers. Its steps of 0.32 µs (0.50°) are inside what is promised and a small
+//! part of what the servo itself loses, and the slice gives for nothing what a PIO program would have to earn: both compare
+//! values sit in one register that is latched at the wrap, so both servos switch in the same period and no pulse is ever
+//! cut or doubled.
 
 use embassy_rp::Peri;
 use embassy_rp::peripherals::{PIN_16, PIN_17, PWM_SLICE0};

@@ -126,3 +126,36 @@ pub(crate) fn flash(toolchain: &ChipToolchain, variant: Variant) -> Outcome {
         "check the probe's cable and `probe-rs list`",
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    /// The pins are written in code, in the README's table and in the picture: all three say the same.
+    #[test]
+    fn the_picture_and_the_table_name_the_pins_of_the_code() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware");
+        let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+        let (code, table, picture) = (read("src/board.rs"), read("README.md"), read("wiring.svg"));
+        // Field, the Nano's header pin, the GPIO that both boards take.
+        for (field, header, gpio) in [
+            ("link_tx", "D1", 0),
+            ("link_rx", "D0", 1),
+            ("servo_front", "D4", 16),
+            ("servo_back", "D5", 17),
+            ("battery", "A0", 26),
+        ] {
+            let declared = format!("{field}: Peri<'static, PIN_{gpio}>");
+            assert!(code.contains(&declared), "{declared}");
+            let row = format!("| {header} = GPIO{gpio} | GP{gpio} |");
+            assert!(table.contains(&row), "{row}");
+            assert!(picture.contains(&format!("= GPIO{gpio}</text>")), "{gpio}");
+            assert!(picture.contains(&format!(">GP{gpio}, pin ")), "{gpio}");
+        }
+        // STATE and LED differ.
+        assert!(code.contains("(p.PIN_25.into(), p.PIN_6.into())"));
+        assert!(code.contains("(p.PIN_22.into(), p.PIN_25.into())"));
+        assert!(table.contains("| D2 = GPIO25 | GP22 |") && table.contains("| GPIO6 | GP25 |"));
+        assert!(picture.contains("D2 = GPIO25</text>") && picture.contains(">GP22, pin "));
+    }
+}

@@ -6,6 +6,7 @@ use emulator::Board;
 use host_link::Robot;
 use link_protocol::{ResetReason, StateName};
 
+use crate::promise::seen;
 use crate::rig::{self, Port};
 
 /// Flash that holds code.
@@ -26,8 +27,8 @@ fn board(robot: &mut Robot<Port>) -> &mut Board {
     robot.port_mut().device_mut().board_mut()
 }
 
-/// Lets the crash happen; the pulses end within a tick and a period. Returns what the robot then tells.
-fn told_after(robot: &mut Robot<Port>) -> String {
+/// Lets the crash happen; the pulses end within a tick and a period. Returns after how many ms, and what the robot tells.
+fn told_after(robot: &mut Robot<Port>) -> (u128, String) {
     rig::events(robot);
     let before = board(robot).now();
     rig::pass(robot, Duration::from_millis(300));
@@ -44,7 +45,7 @@ fn told_after(robot: &mut Robot<Port>) -> String {
     assert_eq!(info.reset_reason, ResetReason::Crash);
     assert!(info.crash_message);
     assert_eq!(robot.status().unwrap().state, StateName::Stopped);
-    robot.crash_message().unwrap()
+    (took.as_millis(), robot.crash_message().unwrap())
 }
 
 #[test]
@@ -56,17 +57,18 @@ fn a_panic_tells_its_place_and_words() {
     let target = symbol(board_now, "panic_bounds_check");
     let code = code(board_now);
     // Where an index is found out of bounds: `ldr r2, =place; bl panic_bounds_check`.
-    let site = (2..code.len() - 1)
-        .find(|&at| {
-            code[at - 1] & 0xff00 == 0x4a00
-                && branch_target(at, code[at], code[at + 1]) == Some(target)
+    let site = (CODE.start..)
+        .step_by(2)
+        .zip(code.windows(3))
+        .find(|(at, words)| {
+            words[0] & 0xff00 == 0x4a00 && branch_target(at + 2, words[1], words[2]) == Some(target)
         })
-        .map(|at| CODE.start + 2 * (at as u32 - 1))
+        .map(|(at, _)| at)
         .expect("a place that checks an index");
     for (half, word) in (0..).zip(branch(poll, site)) {
         board_now.patch(poll + 2 * half, word).unwrap();
     }
-    let message = told_after(&mut robot);
+    let (ms, message) = told_after(&mut robot);
     println!("a panic: {message}");
     let (place, words) = message.split_once(": ").unwrap();
     let (file, line) = place.rsplit_once(':').unwrap();
@@ -75,6 +77,12 @@ fn a_panic_tells_its_place_and_words() {
         "{message}"
     );
     assert!(words.starts_with("index out of bounds"), "{message}");
+    seen(
+        "R7, a panic",
+        &format!(
+            "reset after {ms} ms, Stopped, no pulses, reason `crash`; file, line and words are told"
+        ),
+    );
     // Told for this start alone.
     board(&mut robot).pin_reset().unwrap();
     rig::pass(&mut robot, Duration::from_millis(300));
@@ -89,10 +97,14 @@ fn a_hard_fault_tells_its_address() {
         return;
     };
     board(&mut robot).patch(poll, UNDEFINED).unwrap();
-    let message = told_after(&mut robot);
+    let (ms, message) = told_after(&mut robot);
     println!("a hard fault: {message}");
     let expected = format!("hard fault at {poll:#010x}, called from 0x");
     assert!(message.starts_with(&expected), "{message}, not {expected}");
+    seen(
+        "R7, a hard fault",
+        &format!("reset after {ms} ms, Stopped, no pulses, reason `crash`; the address is told"),
+    );
     // Power leaves noise where the message was.
     board(&mut robot).power_cycle().unwrap();
     rig::pass(&mut robot, Duration::from_millis(300));
@@ -122,6 +134,10 @@ fn an_estop_outlives_the_reset_pin() {
     robot.reconnect().unwrap();
     assert_eq!(robot.info().reset_reason, ResetReason::PowerOn);
     assert_eq!(robot.status().unwrap().state, StateName::Stopped);
+    seen(
+        "R6, e-stop, then the reset pin twice, then a power cycle",
+        "e-stopped still; Stopped after the power cycle",
+    );
 }
 
 fn symbol(board: &mut Board, name: &str) -> u32 {
@@ -138,8 +154,8 @@ fn code(board: &mut Board) -> Vec<u16> {
         .collect()
 }
 
-/// Where Thumb's `bl`, at this half word of the code, leads.
-fn branch_target(at: usize, first: u16, second: u16) -> Option<u32> {
+/// Where Thumb's `bl` at this address leads.
+fn branch_target(at: u32, first: u16, second: u16) -> Option<u32> {
     if first & 0xf800 != 0xf000 || second & 0xd000 != 0xd000 {
         return None;
     }
@@ -151,8 +167,7 @@ fn branch_target(at: usize, first: u16, second: u16) -> Option<u32> {
         | high(bit(second, 11)) << 22
         | i32::from(first & 0x3ff) << 12
         | i32::from(second & 0x7ff) << 1;
-    let here = CODE.start + 2 * u32::try_from(at).ok()? + 4;
-    Some(here.wrapping_add_signed(offset))
+    Some((at + 4).wrapping_add_signed(offset))
 }
 
 /// Thumb's `bl` from one address to another.

@@ -17,3 +17,4 @@ mod radio;
 mod resets;
 mod rig;
 mod session;
+mod settings;
