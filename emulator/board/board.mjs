@@ -3,7 +3,9 @@
 
 import fs from 'node:fs';
 import { RP2040 } from 'rp2040js';
+import { quicken } from './quick.mjs';
 import { noise, paint, unpainted } from './ram.mjs';
+import { Rtt } from './rtt.mjs';
 import { fillGaps } from './shims.mjs';
 
 const FLASH_START = 0x10000000;
@@ -28,6 +30,7 @@ export class Board {
     this.flash = new Uint8Array(FLASH_SIZE).fill(0xff);
     for (const { address, bytes } of elf.segments) this.flash.set(bytes, address - FLASH_START);
     this.stack = { bottom: elf.symbols._stack_end, top: elf.symbols._stack_start };
+    this.logBlock = elf.symbols._SEGGER_RTT;
     this.connected = false;
     this.battery = 0;
     this.before = 0;
@@ -103,36 +106,54 @@ export class Board {
     new DataView(this.mcu.flash.buffer, this.mcu.flash.byteOffset).setUint16((address & ~1) - FLASH_START, halfword, true);
   }
 
-  /** Runs until emulated time `until` [ns] or until the power is cut. */
-  run(until) {
-    while (this.powered && this.now < until) {
+  /** Runs until emulated time `until` [ns], or until the power is cut, or for `afterByte` from the first byte that it sends. */
+  run(until, afterByte = Infinity) {
+    this.until = until;
+    this.afterByte = afterByte;
+    while (this.powered && this.now < this.until) {
       try {
-        this.runUntilReset(until);
+        this.runUntilReset();
       } catch (thrown) {
         if (!(thrown instanceof PowerCut)) throw thrown;
         this.powered = false;
         this.events.power_cuts.push({ at: this.now });
       }
+      this.takeLog();
       if (this.reset) {
         this.events.resets.push({ at: this.now, reason: this.reset.reason });
         this.before = this.now;
         this.start({ ...this.reset, ram: this.mcu.sram });
       }
     }
-    if (!this.powered) this.before += Math.max(0, until - this.now);
+    if (!this.powered) this.before += Math.max(0, this.until - this.now);
   }
 
-  runUntilReset(until) {
+  /** A character has left the UART. */
+  send(byte) {
+    this.until = Math.min(this.until, this.now + this.afterByte);
+    this.events.uart.push(byte);
+    this.events.uart_at.push(this.now);
+  }
+
+  /** What the firmware has logged; it has a ring for no more than a kilobyte. */
+  takeLog() {
+    const bytes = this.log.take();
+    if (bytes) this.events.log.push({ at: this.now, bytes });
+  }
+
+  runUntilReset() {
     const { core, clock } = this.mcu;
-    const end = until - this.before;
     let cycle = 1e9 / this.mcu.clkSys;
     let count = 0;
-    while (clock.nanosCounter < end && !this.reset) {
+    while (!this.reset) {
+      const end = this.until - this.before;
+      if (clock.nanosCounter >= end) break;
       if (clock.nanosCounter < this.stalledUntil) {
         clock.tick(Math.min(this.stalledUntil, end) - clock.nanosCounter);
         continue;
       }
       if (core.waiting) {
+        this.takeLog();
         const next = clock.nanosToNextAlarm, left = end - clock.nanosCounter;
         clock.tick(next > 0 && next < left ? next : Math.max(left, 1));
         continue;
@@ -142,9 +163,14 @@ export class Board {
       const cycles = core.executeInstruction();
       this.busy += cycles;
       if (inControl) this.control += cycles;
-      clock.tick(cycles * cycle);
+      const now = clock.nanosCounter + cycles * cycle, alarm = clock.nextAlarm;
+      if (alarm !== null && alarm.nanos <= now) clock.tick(cycles * cycle);
+      else clock.nanosCounter = now; // what a tick without an alarm does
       count = (count + 1) & 0x3ff;
-      if (count === 0) cycle = 1e9 / this.mcu.clkSys; // the firmware sets its clock up once, early
+      if (count === 0) {
+        cycle = 1e9 / this.mcu.clkSys; // the firmware sets its clock up once, early
+        this.takeLog();
+      }
     }
   }
 
@@ -170,7 +196,7 @@ export class Board {
       paint(mcu.sram, this.stack.bottom, this.stack.top);
     }
     this.traps = fillGaps(mcu, {
-      onByte: (byte) => this.events.uart.push(byte),
+      onByte: (byte) => this.send(byte),
       onReset: (reset) => { this.reset = reset; },
       flash: { erase: (at, count) => this.erase(at, count), program: (at, bytes) => this.program(at, bytes) },
       warn: (text) => { this.events.warnings[text] = (this.events.warnings[text] ?? 0) + 1; },
@@ -183,6 +209,8 @@ export class Board {
     this.setConnected(this.connected);
     this.setBattery(this.battery);
     this.watchPulses();
+    quicken(mcu);
+    this.log = new Rtt(mcu, this.logBlock);
     mcu.core.VTOR = 0;
     mcu.core.PC = FLASH_START;
     mcu.core.LR = 0;
@@ -249,5 +277,5 @@ export class Board {
 }
 
 function emptyEvents() {
-  return { uart: [], periods: [], edges: [], led: [], resets: [], power_cuts: [], warnings: {}, erased: 0, programmed: 0 };
+  return { uart: [], uart_at: [], log: [], periods: [], edges: [], led: [], resets: [], power_cuts: [], warnings: {}, erased: 0, programmed: 0 };
 }

@@ -16,7 +16,7 @@ const board = new Board(elf, kind);
 
 /** Each command: what it does; its result is merged into the answer. */
 const commands = {
-  run: ({ until }) => { board.run(until); },
+  run: ({ until, afterByte }) => { board.run(until, afterByte); },
   feed: ({ characters }) => { board.feed(characters); },
   connected: ({ up }) => { board.setConnected(up); },
   battery: ({ volts }) => { board.setBattery(volts); },

@@ -1,7 +1,7 @@
 //! The emulated board as a child process that is driven command by command; it lives only while a command runs, so the caller
 //! owns its time.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -11,6 +11,10 @@ use host_link::port::Character;
 use serde_json::{Value, json};
 
 use crate::events::{Answer, Events, Stack, nanos};
+use crate::log::Log;
+
+/// A float in nanoseconds is exact for so long that this is plenty.
+const ROUNDING: Duration = Duration::from_nanos(10);
 
 /// Which board the firmware was built for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -123,7 +127,9 @@ pub struct Board {
     now: Duration,
     powered: bool,
     events: Events,
-    sent: Vec<u8>,
+    /// What left the UART, and when.
+    sent: VecDeque<(Duration, u8)>,
+    log: Log,
 }
 
 impl Board {
@@ -135,6 +141,7 @@ impl Board {
         if let Some(missing) = config.missing() {
             return Err(missing);
         }
+        let log = Log::of_firmware(&config.firmware);
         let mut child = Command::new("node")
             .arg(config.scripts.join("serve.mjs"))
             .arg(&config.firmware)
@@ -156,7 +163,8 @@ impl Board {
             now: Duration::ZERO,
             powered: true,
             events: Events::default(),
-            sent: Vec::new(),
+            sent: VecDeque::new(),
+            log,
         })
     }
 
@@ -175,13 +183,41 @@ impl Board {
     /// # Errors
     /// [`EmulatorError`]; so for all that follow.
     pub fn run(&mut self, until: Duration) -> Result<(), EmulatorError> {
+        self.run_command(
+            until,
+            &json!({ "do": "run", "until": until.as_nanos() as f64 }),
+        )
+    }
+
+    /// The same, but not for longer than `after_byte` from the first byte that it sends.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_past_byte(
+        &mut self,
+        until: Duration,
+        after_byte: Duration,
+    ) -> Result<(), EmulatorError> {
+        let command = json!({
+            "do": "run", "until": until.as_nanos() as f64, "afterByte": after_byte.as_nanos() as f64,
+        });
+        self.run_command(until, &command)
+    }
+
+    fn run_command(&mut self, until: Duration, command: &Value) -> Result<(), EmulatorError> {
         if until <= self.now {
             return Ok(());
         }
-        let answer = self.ask(&json!({ "do": "run", "until": until.as_nanos() as f64 }))?;
-        self.sent.extend_from_slice(&answer.uart);
-        self.now = until;
-        self.events.append(answer.events);
+        let before = self.now;
+        let answer = self.ask(command)?;
+        // It ends with the instruction that reaches the time: a little later, or, by rounding, sooner.
+        let reached = nanos(answer.now);
+        self.now = if reached + ROUNDING >= until {
+            until
+        } else {
+            reached.max(before)
+        };
+        self.take_in(answer);
         Ok(())
     }
 
@@ -298,17 +334,25 @@ impl Board {
         std::mem::take(&mut self.events)
     }
 
-    /// Takes at most `room` bytes of what the board has sent.
-    pub fn take_sent(&mut self, room: usize, out: &mut Vec<u8>) {
-        let count = room.min(self.sent.len());
-        out.extend(self.sent.drain(..count));
+    /// Takes at most `room` bytes of what the board has sent until `now`.
+    pub fn take_sent(&mut self, now: Duration, room: usize, out: &mut Vec<u8>) {
+        let sent = self.sent.iter().take_while(|(at, _)| *at <= now).count();
+        out.extend(self.sent.drain(..sent.min(room)).map(|(_, byte)| byte));
+    }
+
+    fn take_in(&mut self, answer: Answer) {
+        let times = answer.uart_at.into_iter().map(nanos);
+        self.sent.extend(times.zip(answer.uart));
+        self.events.append(answer.events);
+        for chunk in &answer.log {
+            self.events.log.extend(self.log.read(chunk));
+        }
     }
 
     /// A command whose answer holds nothing but events.
     fn perform(&mut self, command: &Value) -> Result<(), EmulatorError> {
         let answer = self.ask(command)?;
-        self.sent.extend_from_slice(&answer.uart);
-        self.events.append(answer.events);
+        self.take_in(answer);
         Ok(())
     }
 

@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use serde::Deserialize;
 
+use crate::log::{Chunk, LogLine};
+
 /// One period of the servos' PWM slice, as its registers stood when the counter wrapped: exact, without the emulator's
 /// rounding of edges.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
@@ -152,6 +154,9 @@ pub struct Events {
     pub lost: u64,
     /// What the emulator had to say, and how often.
     pub warnings: BTreeMap<String, u32>,
+    /// The firmware's log.
+    #[serde(skip)]
+    pub log: Vec<LogLine>,
 }
 
 impl Events {
@@ -165,6 +170,7 @@ impl Events {
         self.erased += later.erased;
         self.programmed += later.programmed;
         self.lost = later.lost;
+        self.log.extend(later.log);
         for (warning, count) in later.warnings {
             *self.warnings.entry(warning).or_default() += count;
         }
@@ -193,6 +199,8 @@ pub(crate) struct Answer {
     pub(crate) now: f64,
     pub(crate) powered: bool,
     pub(crate) uart: Vec<u8>,
+    pub(crate) uart_at: Vec<f64>,
+    pub(crate) log: Vec<Chunk>,
     #[serde(flatten)]
     pub(crate) events: Events,
     #[serde(default)]

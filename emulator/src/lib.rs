@@ -10,9 +10,11 @@ mod board;
 mod checkout;
 mod commission;
 mod events;
+mod log;
 mod robot;
 
 pub use board::{Board, BoardConfig, BoardKind, EmulatorError};
 pub use commission::commission;
 pub use events::{Edge, Events, Led, Period, PowerCut, Reset, Servo, Stack};
+pub use log::{LogLevel, LogLine};
 pub use robot::EmulatedRobot;

@@ -1,21 +1,47 @@
 //! The emulated board in a tank: its pulses drive the twin's servos, and the twin's cameras watch.
 
+use std::collections::VecDeque;
 use std::error::Error;
+use std::fmt;
 use std::time::Duration;
 
 use host_link::port::{Device, WireSpeed};
 use twin::{VirtualRobot, World};
 
-use crate::{Board, EmulatorError, Events, Period};
+use crate::{Board, EmulatorError, Events, LogLine, Period};
 
 /// A robot whose brain is the real firmware.
 #[derive(Debug)]
 pub struct EmulatedRobot {
     board: Board,
     world: World,
+    /// How far the robot has lived; the board may be ahead, within `quiet`.
+    now: Duration,
+    quiet: Quiet,
+    /// Pulses that the world has not seen yet.
+    ahead: VecDeque<Period>,
+    /// When the board's power went.
+    dark_from: Duration,
     events: Events,
     heard: Duration,
+    keeps_events: bool,
+    reader: Option<LogReader>,
     failed: Option<EmulatorError>,
+}
+
+/// Until when nothing arrives, and how long what is sent takes to where it can be answered.
+#[derive(Debug, Clone, Copy, Default)]
+struct Quiet {
+    until: Duration,
+    travel: Duration,
+}
+
+struct LogReader(Box<dyn FnMut(&LogLine) + Send>);
+
+impl fmt::Debug for LogReader {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("LogReader")
+    }
 }
 
 impl EmulatedRobot {
@@ -28,10 +54,30 @@ impl EmulatedRobot {
         Ok(Self {
             board,
             world,
+            now: Duration::ZERO,
+            quiet: Quiet::default(),
+            ahead: VecDeque::new(),
+            dark_from: Duration::ZERO,
             events: Events::default(),
             heard: Duration::ZERO,
+            keeps_events: true,
+            reader: None,
             failed: None,
         })
+    }
+
+    /// Shows every line of the firmware's log to `reader`, when it is written.
+    #[must_use]
+    pub fn with_log_reader(mut self, reader: impl FnMut(&LogLine) + Send + 'static) -> Self {
+        self.reader = Some(LogReader(Box::new(reader)));
+        self
+    }
+
+    /// Keeps no events: for a robot that lives long with nobody to take them.
+    #[must_use]
+    pub fn without_events(mut self) -> Self {
+        self.keeps_events = false;
+        self
     }
 
     /// The board.
@@ -57,19 +103,36 @@ impl EmulatedRobot {
     }
 
     fn run(&mut self, to: Duration) -> Result<(), EmulatorError> {
-        self.board.run(to)?;
-        let news = self.board.take_events();
-        // The servos see each period's pulses from its start on.
-        for period in &news.periods {
-            self.world.advance(period.at());
-            self.world.set_pulses(pulses_ns(period));
+        while self.board.now() < to {
+            let Quiet { until, travel } = self.quiet;
+            self.board.run_past_byte(until.max(to), travel)?;
+            self.take_news();
         }
-        if !self.board.powered() {
+        // The servos see each period's pulses from its start on.
+        while let Some(period) = self.ahead.pop_front_if(|period| period.at() <= to) {
+            self.world.advance(period.at());
+            self.world.set_pulses(pulses_ns(&period));
+        }
+        if !self.board.powered() && self.dark_from <= to {
             self.world.set_pulses(None);
         }
         self.world.advance(to);
-        self.events.append(news);
+        self.now = self.now.max(to);
         Ok(())
+    }
+
+    fn take_news(&mut self) {
+        let news = self.board.take_events();
+        self.ahead.extend(news.periods.iter().copied());
+        if let Some(cut) = news.power_cuts.last() {
+            self.dark_from = cut.at();
+        }
+        if let Some(LogReader(read)) = &mut self.reader {
+            news.log.iter().for_each(read);
+        }
+        if self.keeps_events {
+            self.events.append(news);
+        }
     }
 }
 
@@ -85,7 +148,11 @@ impl Device for EmulatedRobot {
     }
 
     fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
-        self.board.take_sent(room, out);
+        self.board.take_sent(self.now, room, out);
+    }
+
+    fn expect_quiet(&mut self, until: Duration, travel: Duration) {
+        self.quiet = Quiet { until, travel };
     }
 
     fn failure(&self) -> Option<&(dyn Error + Send + Sync + 'static)> {

@@ -18,6 +18,12 @@ pub trait Device: Send {
     /// Appends to `out` at most `room` bytes of what the device has to send.
     fn transmit(&mut self, room: usize, out: &mut Vec<u8>);
 
+    /// Before it is advanced: nothing will arrive before `until`, nor before what it sends has been under way for `travel`.
+    /// A device may live ahead within these limits and hand out what it sends when its time has come; most need not.
+    fn expect_quiet(&mut self, until: Duration, travel: Duration) {
+        let _ = (until, travel);
+    }
+
     /// Why it went out of order for good, where it did: from then on it is silent and stands still.
     fn failure(&self) -> Option<&(dyn Error + Send + Sync + 'static)> {
         None
@@ -35,6 +41,10 @@ impl<D: Device + ?Sized> Device for Box<D> {
 
     fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
         (**self).transmit(room, out);
+    }
+
+    fn expect_quiet(&mut self, until: Duration, travel: Duration) {
+        (**self).expect_quiet(until, travel);
     }
 
     fn failure(&self) -> Option<&(dyn Error + Send + Sync + 'static)> {
@@ -104,6 +114,10 @@ impl<D: Device> VirtualPort<D> {
     fn turn(&mut self, end: Duration) {
         self.now = (self.now + TURN).min(end);
         let mut bytes = Vec::new();
+        // Nobody writes before this read ends: at `end`, or when the next byte is there.
+        let next = [&self.to_device, &self.to_host].map(Wire::next_arrival);
+        let quiet = next.into_iter().flatten().fold(end, Duration::min);
+        self.device.expect_quiet(quiet, self.to_host.latency());
         self.device.advance(self.now);
         self.to_device.pop(self.now, &mut bytes);
         if !bytes.is_empty() {

@@ -74,6 +74,11 @@ impl Wire {
             .unwrap_or(usize::MAX)
     }
 
+    /// Travel time of a byte after its last bit has left.
+    pub fn latency(&self) -> Duration {
+        self.speed.latency
+    }
+
     /// When the next byte arrives.
     pub fn next_arrival(&self) -> Option<Duration> {
         self.under_way.front().map(|(at, _)| *at)
