@@ -2,14 +2,19 @@
 //! an emulated chip. Both swim in the same tank and hang on the same line.
 
 use std::env;
-use std::path::PathBuf;
+use std::fs::File;
+use std::io::{ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
 
-use emulator::{Board, BoardConfig, BoardKind, EmulatedRobot, EmulatorError, commission};
+use emulator::{
+    Board, BoardConfig, BoardKind, EmulatedRobot, EmulatorError, LogLevel, LogLine, commission,
+};
 use host_link::port::{VirtualPort, WireSpeed};
 use swimmer_files::SwimmerFile;
 use twin::{Twin, TwinConfig, VirtualRobot, World};
 
 use crate::failure::{Failure, Outcome};
+use crate::output::aside;
 
 /// The host's end of a line to a robot that needs no hardware, in virtual time.
 pub(crate) type VirtualLine = VirtualPort<Box<dyn VirtualRobot>>;
@@ -42,6 +47,10 @@ pub(crate) struct EmulatedBoard {
     /// Folder with the emulator that `cargo xtask emulator` set up; left out: emulator/board of this checkout
     #[arg(long, value_name = "DIR", global = true)]
     emulator: Option<PathBuf>,
+    /// Write the log of the emulated robot's firmware here, with emulated times; nothing may be there yet. Warnings and
+    /// errors in it are shown anyway
+    #[arg(long, value_name = "FILE", global = true)]
+    firmware_log: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -72,7 +81,9 @@ impl Carrier {
             }
             Self::Emulator => {
                 let world = World::new(&config).map_err(no_swimmer)?;
-                let robot = EmulatedRobot::new(Board::start(&board.config()?)?, world)?;
+                let robot = EmulatedRobot::new(Board::start(&board.config()?)?, world)?
+                    .with_log_reader(log_reader(board.firmware_log.as_deref())?)
+                    .without_events();
                 let line = commission(robot, &config)?;
                 Ok(line.map_device(|robot| Box::new(robot) as Box<dyn VirtualRobot>))
             }
@@ -102,6 +113,34 @@ impl EmulatedBoard {
         }
         Ok(config)
     }
+}
+
+/// What becomes of a line of the firmware's log: all go to `file`, those that matter to whoever looks on.
+fn log_reader(file: Option<&Path>) -> Outcome<impl FnMut(&LogLine) + Send + 'static> {
+    let mut file = file.map(new_log).transpose()?;
+    Ok(move |line: &LogLine| {
+        if line.level >= LogLevel::Warn {
+            aside(&format!("The firmware says: {line}"));
+        }
+        if let Some(open) = &mut file
+            && let Err(error) = writeln!(open, "{line}")
+        {
+            aside(&format!("The firmware's log ends here: {error}"));
+            file = None;
+        }
+    })
+}
+
+fn new_log(place: &Path) -> Outcome<File> {
+    let shown = place.display();
+    File::create_new(place).map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists => Failure::BadInput(format!(
+            "{shown} exists; name a new file for the firmware's log"
+        )),
+        _ => Failure::Tried(format!(
+            "cannot write the firmware's log to {shown}: {error}; does its folder exist and may you write there?"
+        )),
+    })
 }
 
 impl From<EmulatorError> for Failure {

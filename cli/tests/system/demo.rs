@@ -69,6 +69,20 @@ fn the_papers_robot_and_what_the_demo_leaves_behind() {
     }
 }
 
+/// The same with the real firmware in the middle.
+#[test]
+#[ignore = "emulates three quarters of an hour of the chip: minutes"]
+fn the_papers_robot_with_its_firmware() {
+    let Some(board) = crate::emulated::board() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let mut words = vec!["--robot", "emulator"];
+    words.extend(board.iter().map(String::as_str));
+    let found = demo(folder.path(), &words, (0.0692, 3.598));
+    assert_eq!(found["played_cycles"], 8);
+}
+
 #[test]
 fn another_seed_and_another_swimmer() {
     let folder = tempfile::tempdir().unwrap();

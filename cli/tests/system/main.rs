@@ -4,6 +4,7 @@
 mod binary;
 mod certify;
 mod demo;
+mod emulated;
 #[cfg(unix)]
 mod hc05;
 mod numbers;

@@ -3,6 +3,7 @@
 //! Needs the ELF of `cargo xtask firmware` and the emulator of `cargo xtask emulator` (`npm ci` in `emulator/board`); where one
 //! is missing every test here says so and does nothing. `cargo xtask test` provides both.
 
+mod ahead;
 mod battery;
 mod boot;
 mod crash;
@@ -11,6 +12,7 @@ mod failsafes;
 mod flash;
 mod frames;
 mod load;
+mod log;
 mod noise;
 mod promise;
 mod radio;

@@ -57,10 +57,16 @@ pub(crate) fn board(image: Image) -> Option<Board> {
 
 /// The robot of the paper with a board behind a line of 115 200 baud.
 pub(crate) fn port(image: Image) -> Option<Port> {
+    Some(VirtualPort::new(device(image)?, WireSpeed::robot()))
+}
+
+/// The robot of the paper with a board that was just switched on.
+pub(crate) fn device(image: Image) -> Option<EmulatedRobot> {
     let file = SwimmerFile::preset("robot").unwrap();
     let world = World::new(&TwinConfig::new(&file, 1)).unwrap();
     let robot = EmulatedRobot::new(board(image)?, world).unwrap();
-    Some(VirtualPort::new(robot, WireSpeed::robot()))
+    // What a failing test shows.
+    Some(robot.with_log_reader(|line| eprintln!("firmware: {line}")))
 }
 
 /// The Nano's, greeted and configured.
