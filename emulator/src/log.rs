@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 use std::time::Duration;
 
-use defmt_decoder::{DecodeError, Table};
+use defmt_decoder::{DecodeError, Frame, Table};
 use serde::Deserialize;
 
 use crate::events::nanos;
@@ -111,7 +111,7 @@ impl Log {
             match decoder.decode() {
                 Ok(frame) => lines.push(LogLine {
                     at,
-                    level: level(frame.level().map(|level| level.as_str())),
+                    level: level(&frame),
                     text: frame.display_message().to_string(),
                 }),
                 Err(DecodeError::UnexpectedEof) => return lines,
@@ -142,13 +142,16 @@ fn warning(at: Duration, text: String) -> LogLine {
 }
 
 /// Plain prints have no level.
-fn level(name: Option<&str>) -> LogLevel {
-    match name {
-        Some("trace") => LogLevel::Trace,
-        Some("debug") => LogLevel::Debug,
-        Some("warn") => LogLevel::Warn,
-        Some("error") => LogLevel::Error,
-        _ => LogLevel::Info,
+fn level(frame: &Frame<'_>) -> LogLevel {
+    let Some(level) = frame.level() else {
+        return LogLevel::Info;
+    };
+    match level.as_str() {
+        "trace" => LogLevel::Trace,
+        "debug" => LogLevel::Debug,
+        "info" => LogLevel::Info,
+        "warn" => LogLevel::Warn,
+        _ => LogLevel::Error,
     }
 }
 

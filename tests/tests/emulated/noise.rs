@@ -142,7 +142,8 @@ impl Storm {
             }
         }
         let mut bytes = Vec::new();
-        self.board.take_sent(usize::MAX, &mut bytes);
+        let now = self.board.now();
+        self.board.take_sent(now, usize::MAX, &mut bytes);
         for byte in bytes {
             if let Some(received) = self.decoder.push(byte) {
                 self.hear(&received.message.expect("a whole message"));
