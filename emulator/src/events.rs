@@ -33,6 +33,11 @@ impl Period {
         nanos(self.at)
     }
 
+    /// Compare values of front and back servo: pulses in steps of the counter.
+    pub fn compares(&self) -> [u32; 2] {
+        [self.front, self.back]
+    }
+
     /// Pulses of front and back servo \[µs\]; 0 for none.
     pub fn pulses_us(&self) -> [f64; 2] {
         [self.front, self.back].map(|compare| f64::from(compare) * self.step_us())

@@ -52,7 +52,7 @@ fn plays_in_time(cycles: u32) {
             events.resets
         );
         for period in events.periods.iter().filter(|period| period.powered()) {
-            counts.push(period.pulses_us().map(count));
+            counts.push(period.compares());
             at.push(period.at());
         }
     }
@@ -109,9 +109,4 @@ fn expected(table: &GaitTable, cycles: u32) -> Vec<[u32; 2]> {
         .map(tick)
         .collect::<Vec<_>>()
         .repeat(cycles as usize)
-}
-
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts of a 16-bit counter
-fn count(us: f64) -> u32 {
-    (us * 1e3 / f64::from(STEP_NS)).round() as u32
 }

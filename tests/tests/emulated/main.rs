@@ -18,5 +18,6 @@ mod promise;
 mod radio;
 mod resets;
 mod rig;
+mod scenario;
 mod session;
 mod settings;
