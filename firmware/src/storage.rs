@@ -46,6 +46,8 @@ pub(crate) enum Error {
     Flash(FlashError),
     /// The settings map could not be read or written.
     Settings(sequential_storage::Error<FlashError>),
+    /// There is something where the settings are, but no settings can be made of it.
+    SettingsLost,
     /// The brain asked for a slot or a page that there is not.
     NoSuchPlace,
 }
@@ -83,6 +85,18 @@ impl FlashStorage {
 
     fn slot(&self, slot: usize) -> Result<Range<u32>, Error> {
         self.slots.get(slot).cloned().ok_or(Error::NoSuchPlace)
+    }
+
+    /// Nothing was ever written where the settings are.
+    fn settings_are_blank(&mut self) -> Result<bool, Error> {
+        let mut bytes = [0; PAGE];
+        for start in self.settings.clone().step_by(PAGE) {
+            self.flash.blocking_read(start, &mut bytes)?;
+            if bytes.iter().any(|byte| *byte != 0xFF) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     fn settings(&mut self) -> SettingsMap<'_> {
@@ -129,10 +143,15 @@ impl Storage for FlashStorage {
                 .fetch_item::<&[u8]>(&mut buffer, &SETTINGS_KEY),
         )
         .map_err(Error::Settings)?;
-        Ok(found.and_then(|found| {
+        let found = found.and_then(|found| {
             bytes.get_mut(..found.len())?.copy_from_slice(found);
             Some(found.len())
-        }))
+        });
+        // The map reads past what it does not understand: then it has none, which is not the same as none yet.
+        if found.is_none() && !self.settings_are_blank()? {
+            return Err(Error::SettingsLost);
+        }
+        Ok(found)
     }
 
     fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Error> {
