@@ -3,16 +3,19 @@
 mod bench;
 mod check;
 mod debian;
+mod deny;
 mod disk;
 mod emulator;
 mod failure;
 mod firmware;
 mod fuzz;
 mod image;
+mod mutants;
 mod run;
 mod soak;
 mod steps;
 mod toolchain;
+mod tools;
 mod uf2;
 
 use std::path::PathBuf;
@@ -64,6 +67,20 @@ enum Chore {
         /// How long each runs.
         #[arg(long, default_value_t = 60)]
         seconds: u32,
+    },
+    /// Holds licences, sources and versions of all dependencies against deny.toml (cargo-deny).
+    Deny {
+        /// Installs cargo-deny under target/tools where it is not there.
+        #[arg(long)]
+        install: bool,
+    },
+    /// Breaks the code that protects in many small ways and lists what no test notices (cargo-mutants).
+    Mutants {
+        /// One crate instead of all.
+        package: Option<String>,
+        /// Installs cargo-mutants under target/tools where it is not there.
+        #[arg(long)]
+        install: bool,
     },
     /// Runs the tests that are too long for every change (those marked `#[ignore]`).
     Soak {
@@ -117,6 +134,8 @@ fn perform(chore: Chore) -> Outcome {
         Chore::Emulator => emulator::install(),
         Chore::Bench { peers } => bench::run_all(&peers),
         Chore::Fuzz { target, seconds } => fuzz::run_targets(target.as_deref(), seconds),
+        Chore::Deny { install } => deny::check(install),
+        Chore::Mutants { package, install } => mutants::hunt(package.as_deref(), install),
         Chore::Soak { filter } => soak::run_ignored(filter.as_deref()),
     }
 }

@@ -7,6 +7,7 @@ mod find;
 mod hc05;
 mod holder;
 mod info;
+mod key;
 mod listening;
 mod motion;
 mod playing;
@@ -71,6 +72,7 @@ enum Action {
     /// Write every frame on the wire, both ways, as MCAP, until Ctrl-C
     Log(Log),
     Hc05(hc05::Hc05),
+    Key(key::KeyChange),
 }
 
 #[derive(Debug, clap::Args)]
@@ -187,6 +189,7 @@ impl Robot {
             Action::Watch(arguments) => listening::watch(access, arguments, output),
             Action::Log(arguments) => listening::log(access, arguments, output),
             Action::Hc05(arguments) => hc05::run(access, arguments, output),
+            Action::Key(arguments) => key::run(access, arguments, output),
         }
     }
 }

@@ -5,12 +5,14 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use host_link::port::{ListedPort, TracedPort, serial_ports};
+use host_link::session::SessionConfig;
 use host_link::{LinkError, Robot};
 use link_protocol::Telemetry;
 
 use super::find::{self, Answer};
 use super::holder::{Ask, HeldBy, Holder, Relayed};
-use super::port::{AnyPort, Means, NotOpen, Opened, Pace, open, session_seed};
+use super::key::KeyFile;
+use super::port::{AnyPort, Means, NotOpen, Opened, Pace, open};
 use crate::failure::{Failure, Outcome};
 use crate::link_log::Recorder;
 use crate::output::aside;
@@ -26,6 +28,8 @@ pub(super) struct Access {
     /// Also write every frame on the wire, both ways, to this MCAP file; nothing may be there yet
     #[arg(long, value_name = "FILE.mcap", global = true)]
     log: Option<PathBuf>,
+    #[command(flatten)]
+    key: KeyFile,
     #[command(flatten)]
     board: EmulatedBoard,
 }
@@ -60,15 +64,35 @@ impl Access {
         Self {
             port: self.port.clone(),
             log: Some(log),
+            key: self.key.clone(),
             board: self.board.clone(),
         }
     }
 
-    fn means(&self, pace: Pace) -> Means {
-        Means {
-            pace,
+    /// The same access for a stop, which needs no key and must not fail for one.
+    pub(super) fn for_a_stop(&self) -> Self {
+        Self {
+            port: self.port.clone(),
+            log: self.log.clone(),
+            key: self.key.if_readable(),
             board: self.board.clone(),
         }
+    }
+
+    /// A session with the robot that has not begun yet.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`] where the file that was named holds no key.
+    pub(super) fn session(&self) -> Outcome<SessionConfig> {
+        self.key.session()
+    }
+
+    fn means(&self, pace: Pace) -> Outcome<Means> {
+        Ok(Means {
+            pace,
+            session: self.session()?,
+            board: self.board.clone(),
+        })
     }
 
     /// The one port that was named, where nothing is to be logged: for what is no robot and speaks no frames.
@@ -87,11 +111,12 @@ impl Access {
     pub(super) fn connect(&self, command: &str, pace: Pace) -> Outcome<Line> {
         let recorder = self.log.as_deref().map(Recorder::create).transpose()?;
         if let [name] = self.port.as_slice() {
-            let opened = reach_alone(name, &self.means(pace))?;
+            let means = self.means(pace)?;
+            let opened = reach_alone(name, &means)?;
             let port = traced(opened.port, recorder.as_ref());
             // From here on the port is ours: others are told, also while the robot is being greeted.
             let holder = Holder::announce(&opened.name, command);
-            let robot = Robot::connect(port, session_seed())?;
+            let robot = Robot::connect_with(port, means.session)?;
             return Ok(Line::new(robot, holder, recorder));
         }
         let (name, robot) = self.find(pace)?;
@@ -110,7 +135,7 @@ impl Access {
     /// [`Failure::Tried`] when the port cannot be opened.
     pub(super) fn reach_named(&self, pace: Pace) -> Outcome<Option<Reached>> {
         match self.port.as_slice() {
-            [name] => reach(name, &self.means(pace)).map(Some),
+            [name] => reach(name, &self.means(pace)?).map(Some),
             _ => Ok(None),
         }
     }
@@ -149,7 +174,7 @@ impl Access {
 
     /// The one candidate where a robot answers, greeted; says which.
     pub(super) fn find(&self, pace: Pace) -> Outcome<(String, Robot<AnyPort>)> {
-        let (port, robot) = find::choose(find::greet_all(self.candidates(), &self.means(pace)))?;
+        let (port, robot) = find::choose(find::greet_all(self.candidates(), &self.means(pace)?))?;
         aside(&format!("The robot is at {port}."));
         Ok((port.path, robot))
     }
@@ -188,7 +213,7 @@ fn reach_alone(name: &str, means: &Means) -> Outcome<Opened> {
 /// Greets whoever is behind a candidate.
 pub(super) fn greet(name: &str, means: &Means) -> Answer {
     let greeted = reach_alone(name, means)
-        .and_then(|opened| Ok(Robot::connect(opened.port, session_seed())?));
+        .and_then(|opened| Ok(Robot::connect_with(opened.port, means.session)?));
     greeted.map_err(|failure| failure.to_string())
 }
 

@@ -221,6 +221,7 @@ fn flags(flags: Flags) -> Vec<&'static str> {
         (Flags::SWAP_PENDING, "swap pending"),
         (Flags::UNSAVED, "unsaved"),
         (Flags::STORAGE_FAILED, "storage failed"),
+        (Flags::KEY_SET, "key set"),
     ]
     .into_iter()
     .filter_map(|(flag, name)| flags.contains(flag).then_some(name))

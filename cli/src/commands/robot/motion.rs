@@ -183,6 +183,7 @@ pub(super) fn resume(access: &Access, output: Output) -> Outcome {
 /// `swimmer robot stop` and `estop`: act first, ask afterwards. Where another `swimmer` has the port, it passes the stop on.
 pub(super) fn stop(access: &Access, estop: bool, output: Output) -> Outcome {
     let ask = if estop { Ask::EStop } else { Ask::Stop };
+    let access = &access.for_a_stop();
     let begun = Instant::now();
     let mut robot = loop {
         if let Some(relayed) = access.ask_holder(ask)?
@@ -195,7 +196,7 @@ pub(super) fn stop(access: &Access, estop: bool, output: Output) -> Outcome {
             Some(Reached::Free(opened)) => {
                 let port = Robot::stop_at_once(opened.port, session_seed(), estop)?;
                 // The stop is done; how it goes on is only good to know.
-                break Robot::connect(port, session_seed());
+                break Robot::connect_with(port, access.session()?);
             }
             // Another process has just taken the port: it can be asked now.
             Some(Reached::Held(_)) if begun.elapsed() < TO_REST => sleep(LOOK_AGAIN),

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use host_link::Port;
 use host_link::port::{OpenError, SerialPort, TcpPort};
+use host_link::session::SessionConfig;
 
 use super::holder::program_with;
 use crate::arguments::load_swimmer;
@@ -41,10 +42,12 @@ pub(super) fn fresh(name: &str) -> Option<Carrier> {
     fresh.find_map(|(known, carrier)| (known == name).then_some(carrier))
 }
 
-/// What a fresh virtual robot is made with; other ports do not ask.
+/// What a robot is greeted with, and a fresh virtual one made with.
 #[derive(Debug, Clone)]
 pub(super) struct Means {
     pub(super) pace: Pace,
+    /// How the robot is greeted.
+    pub(super) session: SessionConfig,
     pub(super) board: EmulatedBoard,
 }
 

@@ -1,0 +1,235 @@
+//! `swimmer robot --key` and `swimmer robot key`: the secret that a robot may share with its hosts, kept in a file.
+
+use std::fmt;
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use host_link::LinkError;
+use host_link::session::SessionConfig;
+use link_protocol::Key;
+use serde::Serialize;
+
+use super::access::Access;
+use super::port::{Pace, session_seed};
+use crate::failure::{Failure, Outcome};
+use crate::output::Output;
+
+/// What stands over the key in a file of ours.
+const HEAD: &str =
+    "# The key of a swimmer robot: who has it can drive the robot. Keep it secret.\n";
+
+/// The key that a robot asks for.
+#[derive(Debug, Clone, clap::Args)]
+pub(super) struct KeyFile {
+    /// Sign what is sent with the key in this file, for a robot that has one; stop and estop need none
+    #[arg(long, value_name = "FILE", global = true)]
+    key: Option<PathBuf>,
+}
+
+/// Set or remove the key that the robot shares with its hosts
+///
+/// A robot with a key does only what is signed with it, but stops for anybody. The key is stored on the robot and crosses
+/// the wire in the clear: set it at the bench over a cable. A robot that has a key already must be told with --key.
+#[derive(Debug, clap::Args)]
+#[command(subcommand_value_name = "ACTION", subcommand_help_heading = "Actions")]
+pub(super) struct KeyChange {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Action {
+    /// Give the robot the key in FILE; where there is no FILE, one with a random key is made
+    Set {
+        /// 32 hexadecimal digits
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+    },
+    /// Take the robot's key away: whoever reaches it can drive it again
+    Clear,
+}
+
+#[derive(Debug, Serialize)]
+struct Changed {
+    key_set: bool,
+    file: Option<String>,
+}
+
+impl fmt::Display for Changed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.file {
+            Some(file) => write!(
+                f,
+                "The robot has the key in {file}: give --key {file} from now on, and keep a copy. Without it only erasing \
+                 the robot's flash helps."
+            ),
+            None => write!(
+                f,
+                "The robot has no key: whoever reaches its port can drive it."
+            ),
+        }
+    }
+}
+
+impl KeyFile {
+    /// A new session, signed where a key was named.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`] where the file holds no key.
+    pub(super) fn session(&self) -> Outcome<SessionConfig> {
+        Ok(SessionConfig {
+            key: self.key.as_deref().map(read).transpose()?,
+            ..SessionConfig::new(session_seed())
+        })
+    }
+
+    /// The same, without a key that cannot be read: nothing may stand in the way of a stop.
+    pub(super) fn if_readable(&self) -> Self {
+        let key = self.key.clone().filter(|file| read(file).is_ok());
+        Self { key }
+    }
+}
+
+/// `swimmer robot key set|clear`.
+pub(super) fn run(access: &Access, change: &KeyChange, output: Output) -> Outcome {
+    let mut line = access.connect("swimmer robot key", Pace::AsFastAsPossible)?;
+    let answer = match &change.action {
+        Action::Clear => {
+            line.robot.set_key(None)?;
+            Changed {
+                key_set: false,
+                file: None,
+            }
+        }
+        Action::Set { file } => {
+            let (key, made) = read_or_make(file)?;
+            if let Err(error) = line.robot.set_key(Some(key)) {
+                // Refused, the robot certainly does not have it. Otherwise it may, and then the file is all there is.
+                if made && matches!(error, LinkError::Refused { .. }) {
+                    let _ = fs::remove_file(file);
+                }
+                return Err(error.into());
+            }
+            Changed {
+                key_set: true,
+                file: Some(file.display().to_string()),
+            }
+        }
+    };
+    output.answer(&answer);
+    line.close()
+}
+
+fn read(file: &Path) -> Outcome<Key> {
+    let text = fs::read_to_string(file).map_err(|error| {
+        Failure::BadInput(format!("reading the key in {}: {error}", file.display()))
+    })?;
+    parse(&text)
+        .map_err(|problem| Failure::BadInput(format!("the key in {}{problem}", file.display())))
+}
+
+/// 32 hexadecimal digits in one line; lines that begin with # are remarks.
+fn parse(text: &str) -> Result<Key, String> {
+    let advice = "write 32 hexadecimal digits in one line, or let `swimmer robot key set FILE` make a new file";
+    let mut lines = text
+        .lines()
+        .enumerate()
+        .map(|(number, line)| (number + 1, line.trim()))
+        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    let (number, digits) = lines
+        .next()
+        .ok_or_else(|| format!(": there is none; {advice}"))?;
+    if let Some((number, _)) = lines.next() {
+        return Err(format!(
+            ", line {number}: there is a second one; leave one out"
+        ));
+    }
+    if let Some(column) = digits.chars().position(|c| !c.is_ascii_hexdigit()) {
+        let column = column + 1;
+        return Err(format!(
+            ", line {number}, column {column}: not a hexadecimal digit; {advice}"
+        ));
+    }
+    let count = digits.len();
+    u128::from_str_radix(digits, 16)
+        .ok()
+        .filter(|_| count == 2 * Key::LEN)
+        .map(|key| Key(key.to_be_bytes()))
+        .ok_or_else(|| format!(", line {number}: {count} digits; {advice}"))
+}
+
+/// The key of a file, and whether the file was made for it just now.
+fn read_or_make(file: &Path) -> Outcome<(Key, bool)> {
+    if file.exists() {
+        return Ok((read(file)?, false));
+    }
+    let mut bytes = [0; Key::LEN];
+    getrandom::fill(&mut bytes).map_err(|error| {
+        Failure::Tried(format!(
+            "making a key: the system gives no random numbers ({error}); write 32 hexadecimal digits into {} yourself",
+            file.display()
+        ))
+    })?;
+    let text = format!("{HEAD}{:032x}\n", u128::from_be_bytes(bytes));
+    write_secret(file, &text)
+        .map_err(|error| Failure::BadInput(format!("making {}: {error}", file.display())))?;
+    Ok((Key(bytes), true))
+}
+
+/// Makes a file that nobody else may read, where the system knows such.
+fn write_secret(file: &Path, text: &str) -> io::Result<()> {
+    let mut options = fs::OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    options.open(file)?.write_all(text.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_is_32_digits_and_a_mistake_has_its_place() {
+        let digits = "000102030405060708090a0b0c0d0e0F";
+        let key = Key(core::array::from_fn(|place| u8::try_from(place).unwrap()));
+        assert_eq!(parse(&format!("{HEAD}\n  {digits}\n")), Ok(key));
+        for (text, part) in [
+            ("# nothing\n", "there is none"),
+            ("00\n", ", line 1: 2 digits"),
+            ("\n00010203g", ", line 2, column 9"),
+            ("00\n11\n", ", line 2: there is a second"),
+            (&digits.repeat(2), ": 64 digits"),
+            ("+0000102030405060708090a0b0c0d0e", "column 1"),
+        ] {
+            let error = parse(text).unwrap_err();
+            assert!(error.contains(part), "{text:?}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_new_file_holds_a_new_key_and_is_read_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let (one, two) = (folder.path().join("one"), folder.path().join("two"));
+        let (key, made) = read_or_make(&one).unwrap();
+        assert!(made);
+        assert_eq!(read_or_make(&one).unwrap(), (key, false));
+        assert_ne!(read_or_make(&two).unwrap().0, key);
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            let mode = fs::metadata(&one).unwrap().permissions().mode();
+            assert_eq!(mode & 0o777, 0o600);
+        }
+    }
+
+    #[test]
+    fn a_key_that_cannot_be_read_stands_in_no_stop_s_way() {
+        let named = KeyFile {
+            key: Some("no/such/key".into()),
+        };
+        assert!(named.session().is_err());
+        assert_eq!(named.if_readable().session().unwrap().key, None);
+    }
+}

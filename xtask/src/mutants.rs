@@ -1,0 +1,57 @@
+//! `cargo xtask mutants`: promise R14. Breaks the code that protects, one small change at a time, and lists the changes
+//! that no test notices.
+
+use crate::failure::{Failure, Outcome};
+use crate::run::{run, target_folder};
+use crate::tools::MUTANTS;
+
+/// What protects: which crate, and which of its files.
+const GUARDS: [(&str, &[&str]); 2] = [
+    (
+        "link-protocol",
+        &[
+            "link-protocol/src/decoder.rs",
+            "link-protocol/src/frame.rs",
+            "link-protocol/src/seal.rs",
+        ],
+    ),
+    (
+        "gait-player",
+        &[
+            "gait-player/src/brain/session.rs",
+            "gait-player/src/clamp.rs",
+        ],
+    ),
+];
+
+/// Tries every mutant of one crate's guards, or of all; their lists are under target/mutants.
+///
+/// # Errors
+/// One survives, or cargo-mutants is not there.
+pub(crate) fn hunt(only: Option<&str>, install: bool) -> Outcome {
+    let chosen: Vec<_> = GUARDS
+        .iter()
+        .filter(|(package, _)| only.is_none_or(|only| only == *package))
+        .collect();
+    if chosen.is_empty() {
+        return Err(Failure::new(
+            format!("looking for the guards of `{}`", only.unwrap_or_default()),
+            "that crate has none",
+            format!("name one of {:?}", GUARDS.map(|(package, _)| package)),
+        ));
+    }
+    for (package, files) in chosen {
+        let mut mutants = MUTANTS.cargo(install)?;
+        mutants
+            .args(["--package", package, "--output"])
+            .arg(target_folder()?.join("mutants").join(package));
+        for file in *files {
+            mutants.args(["--file", file]);
+        }
+        run(
+            &mut mutants,
+            "mend the tests for each that was missed, or say why it does not matter",
+        )?;
+    }
+    Ok(())
+}

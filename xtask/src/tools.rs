@@ -1,0 +1,74 @@
+//! Tools for chores that no change waits for: looked for in PATH and under target/tools, installed there only where asked.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::Command;
+
+use crate::failure::{Failure, Outcome};
+use crate::run::{command, run, target_folder, works};
+
+/// A program that cargo installs.
+#[derive(Clone, Copy)]
+pub(crate) struct Tool {
+    /// Its package, `cargo-something`.
+    package: &'static str,
+    /// The version these chores were tried with.
+    version: &'static str,
+}
+
+/// Holds the dependencies against deny.toml.
+pub(crate) const DENY: Tool = Tool {
+    package: "cargo-deny",
+    version: "0.20.2",
+};
+/// Breaks the code in many small ways and counts what no test notices.
+pub(crate) const MUTANTS: Tool = Tool {
+    package: "cargo-mutants",
+    version: "27.1.0",
+};
+
+impl Tool {
+    /// A `cargo` that finds the tool, with its name as the first argument.
+    ///
+    /// # Errors
+    /// It is not installed and was not to be: the command that installs it is named.
+    pub(crate) fn cargo(self, install: bool) -> Outcome<Command> {
+        let tools = target_folder()?.join("tools");
+        let path = search_path(&tools)?;
+        let subcommand = self.package.trim_start_matches("cargo-");
+        let cargo = || {
+            let mut cargo = command("cargo");
+            cargo.arg(subcommand).env("PATH", &path);
+            cargo
+        };
+        if works(cargo().arg("--version")) {
+            return Ok(cargo());
+        }
+        let Self { package, version } = self;
+        if !install {
+            return Err(Failure::new(
+                format!("looking for {package}"),
+                "it is not installed",
+                format!(
+                    "`cargo install --locked {package} --version {version} --root {}`, or repeat the command with --install",
+                    tools.display()
+                ),
+            ));
+        }
+        run(
+            command("cargo")
+                .args(["install", "--locked", package, "--version", version])
+                .arg("--root")
+                .arg(&tools),
+            "check the network, and repeat the command",
+        )?;
+        Ok(cargo())
+    }
+}
+
+fn search_path(tools: &std::path::Path) -> Outcome<OsString> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let folders = std::iter::once(tools.join("bin")).chain(std::env::split_paths(&path));
+    std::env::join_paths(folders.collect::<Vec<PathBuf>>())
+        .map_err(|why| Failure::new("naming the folder of tools", why, "mend PATH"))
+}
