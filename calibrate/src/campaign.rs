@@ -235,7 +235,7 @@ impl<'a> Run<'a> {
     ) -> Result<f64, CalibrateError> {
         let (_, heading) = self.path.predict(swimmer, projection)?;
         self.clock
-            .start(&heading)
+            .start(&self.poses, &heading)
             .map_err(|cause| CalibrateError::Cycles {
                 file: self.data.file.clone(),
                 cause,

@@ -23,6 +23,8 @@ use clock::Bin;
 pub(crate) use curve::{Curve, Harmonics, Projection};
 pub use statistics::Statistics;
 
+/// Times that a start is refined: each leaves the square of the error before.
+const REFINEMENTS: usize = 2;
 /// More cycles than any recording has.
 const MOST_CYCLES: u32 = 20_000;
 /// Share of a cycle's samples that may be missing.
@@ -157,6 +159,8 @@ pub struct Cycles {
     pub delta_theta: Statistics,
     /// What to know.
     pub warnings: Vec<CycleWarning>,
+    /// Mean harmonics of the heading, from the cycles' starts.
+    pub(crate) heading: Harmonics,
 }
 
 /// What does not depend on where a cycle starts: found once a run.
@@ -207,8 +211,22 @@ impl Clock {
         })
     }
 
-    /// A start of a cycle \[s\], matched with the model's heading.
-    pub(crate) fn start(&self, model: &Harmonics) -> Result<f64, CycleError> {
+    /// A start of a cycle \[s\], matched with the model's heading: roughly from averages, then from the cycles' own curves,
+    /// which are drawn as the model's is.
+    pub(crate) fn start(&self, track: &PoseTrack, model: &Harmonics) -> Result<f64, CycleError> {
+        let mut start = self.rough_start(model)?;
+        for _ in 0..REFINEMENTS {
+            // Why there are no cycles, the caller will hear when it asks for them.
+            let Ok(cycles) = self.cycles(track, start) else {
+                break;
+            };
+            let shift = clock::shift(&cycles.heading, model).unwrap_or(0.0);
+            start += (shift - shift.round()) * self.period_s;
+        }
+        Ok(start)
+    }
+
+    fn rough_start(&self, model: &Harmonics) -> Result<f64, CycleError> {
         let none = CycleError::NoPhase {
             period_s: self.period_s,
         };
@@ -249,6 +267,7 @@ impl Clock {
                 samples
                     .iter()
                     .map(|s| ((s.time_s - start) / period, s.pose)),
+                1.0 / (period * track.rate_hz),
             );
             match curve.filter(|_| missing <= MOST_MISSING) {
                 Some((curve, residual)) => drawn.push((start, missing, curve, residual)),
@@ -266,6 +285,7 @@ impl Clock {
             });
         };
         let lone = lone.own_step();
+        let heading = mean_heading(&drawn);
         let cycles: Vec<Cycle> = drawn
             .iter()
             .enumerate()
@@ -287,8 +307,23 @@ impl Clock {
             cycles,
             left_out,
             warnings,
+            heading,
         })
     }
+}
+
+fn mean_heading(drawn: &[(f64, f64, Curve, f64)]) -> Harmonics {
+    let mut mean = Harmonics::default();
+    for (.., curve, _) in drawn {
+        for (mean, here) in mean
+            .iter_mut()
+            .flatten()
+            .zip(curve.heading_harmonics().iter().flatten())
+        {
+            *mean += here / drawn.len() as f64;
+        }
+    }
+    mean
 }
 
 /// Samples that were seen in \[start, start + period).

@@ -23,6 +23,7 @@
 //! point is missing; runs at the beginning and at the end count as well, a jump in the frame number does not (it is a
 //! [`TrackWarning::FrameJumps`]).
 
+mod cells;
 mod deeplabcut;
 mod detect;
 mod error;

@@ -251,6 +251,11 @@ fn harmonic_fit(
 pub(super) fn cycle_start(bins: &[Bin], period_s: f64, model: &Harmonics) -> Option<f64> {
     let zero_s = bins.first()?.time_s;
     let (measured, _) = harmonic_fit(bins, period_s, zero_s, HARMONICS)?;
+    Some(zero_s + shift(&measured, model)? * period_s)
+}
+
+/// By how much of a period the model must be moved for its θ to match the measured one best.
+pub(super) fn shift(measured: &[[f64; 2]], model: &Harmonics) -> Option<f64> {
     // θ(t) = Σ c cos hω(t − zero) + s sin …; the model runs from its start: shift ψ = ω (start − zero).
     // Overlap Σ Re(conj(M) C e^{ihψ}) with C = c − is.
     let products: Vec<(f64, f64)> = measured
@@ -284,7 +289,7 @@ pub(super) fn cycle_start(bins: &[Bin], period_s: f64, model: &Harmonics) -> Opt
         }
         psi -= (slope(psi) / curvature).clamp(-TAU / 360.0, TAU / 360.0);
     }
-    Some(zero_s + psi / TAU * period_s)
+    Some(psi / TAU)
 }
 
 fn sum(

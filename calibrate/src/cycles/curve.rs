@@ -48,19 +48,25 @@ fn coordinates(pose: &Pose<f64>) -> [f64; 3] {
 impl Curve {
     /// The curve of least squares and the root mean square distance of the samples' positions from it \[m\]; `None` where
     /// the samples do not determine it.
+    ///
+    /// `spacing` is that of the samples, in u. Weights near both ends make sums over samples the integrals over the cycle that
+    /// a prediction's sums are too, wherever in the cycle the first sample falls.
     pub(crate) fn fit(
         samples: impl Iterator<Item = (f64, Pose<f64>)> + Clone,
+        spacing: f64,
     ) -> Option<(Self, f64)> {
+        let places: Vec<f64> = samples.clone().map(|(u, _)| u).collect();
+        let weights = weights(&places, spacing, MEASURED_END);
         let mut gram = DMatrix::<f64>::zeros(TERMS, TERMS);
         let mut right = DMatrix::<f64>::zeros(TERMS, 3);
         // Sums of numbers near zero keep more digits.
         let centre = samples.clone().next()?.1;
         let centre = coordinates(&centre);
         let mut count = 0.0;
-        for (u, pose) in samples.clone() {
+        for ((u, pose), weight) in samples.clone().zip(&weights) {
             let row = basis(u);
             let values = coordinates(&pose);
-            for (i, a) in row.iter().enumerate() {
+            for (i, a) in row.iter().map(|a| weight * a).enumerate() {
                 for (j, b) in row.iter().enumerate().take(i + 1) {
                     gram[(i, j)] += a * b;
                 }
@@ -157,6 +163,58 @@ fn in_frame(heading: f64, moved: Vector2<f64>, rotation: f64) -> Pose<f64> {
     )
 }
 
+/// Samples near an end of a measured cycle whose weights differ from 1: more would weigh noise unevenly.
+const MEASURED_END: usize = 3;
+/// The same of a predicted cycle, whose samples are fewer and have no noise.
+const PREDICTED_END: usize = 4;
+
+/// Weights by which sums over evenly spaced samples are integrals from 0 to 1, to the order `end` in the spacing (Euler
+/// and Maclaurin). Ends where samples are missing or uneven keep weights of 1.
+fn weights(places: &[f64], spacing: f64, end: usize) -> Vec<f64> {
+    let mut weights = vec![1.0; places.len()];
+    let even = |places: &mut dyn Iterator<Item = f64>| {
+        let near: Vec<f64> = places.take(end.max(2)).collect();
+        let steps = near.windows(2).all(|pair| {
+            let step = pair.iter().rev().copied().reduce(|b, a| b - a);
+            step.is_some_and(|step| (step / spacing - 1.0).abs() < 0.01)
+        });
+        let lead = near.first().copied().unwrap_or(1.0) / spacing;
+        // A sample at the very end may be rounded to either side of it.
+        (near.len() == end.max(2) && steps && (-0.01..=1.01).contains(&lead)).then_some(lead)
+    };
+    if places.len() < 4 * end {
+        return weights;
+    }
+    let corrections = |lead| end_corrections(lead, end);
+    let left = even(&mut places.iter().copied()).and_then(corrections);
+    let right = even(&mut places.iter().rev().map(|u| 1.0 - u)).and_then(corrections);
+    for (weight, correction) in weights.iter_mut().zip(left.unwrap_or_default()) {
+        *weight += correction;
+    }
+    for (weight, correction) in weights.iter_mut().rev().zip(right.unwrap_or_default()) {
+        *weight += correction;
+    }
+    weights
+}
+
+/// Corrections c with Σ cⱼ (α + j)ᵐ = B(α)/(m + 1), B the Bernoulli polynomial of degree m + 1: what the first samples at
+/// α, α + 1, … spacings from an end lack for the integral.
+fn end_corrections(lead: f64, count: usize) -> Option<Vec<f64>> {
+    let a = lead;
+    let right = [
+        a - 0.5,
+        (a * a - a) / 2.0 + 1.0 / 12.0,
+        (a * a * a - 1.5 * a * a + 0.5 * a) / 3.0,
+        (a.powi(4) - 2.0 * a.powi(3) + a * a - 1.0 / 30.0) / 4.0,
+    ];
+    let right = DVector::from_iterator(count, right.into_iter().take(count));
+    let powers = DMatrix::from_fn(count, count, |m, j| {
+        (a + j as f64).powi(i32::try_from(m).unwrap_or(0))
+    });
+    let solution = powers.lu().solve(&right)?;
+    Some(solution.iter().copied().collect())
+}
+
 /// Half of max − min, each refined by a parabola through its neighbours.
 fn half_range(values: &[f64]) -> f64 {
     let extreme = |sign: f64| {
@@ -188,11 +246,16 @@ pub(crate) struct Projection {
 impl Projection {
     pub(crate) fn new() -> Self {
         let rows = DMatrix::from_fn(PREDICTED, TERMS, |i, j| basis(Self::place(i))[j]);
-        let gram = rows.tr_mul(&rows);
+        let places: Vec<f64> = Self::places().collect();
+        let weights = weights(&places, 1.0 / PREDICTED as f64, PREDICTED_END);
+        let weighted = DMatrix::from_fn(PREDICTED, TERMS, |i, j| {
+            rows[(i, j)] * weights.get(i).copied().unwrap_or(1.0)
+        });
+        let gram = rows.tr_mul(&weighted);
         // The Gram matrix of harmonics on an even grid is as well-conditioned as they come.
         let matrix = gram.cholesky().map_or_else(
             || DMatrix::zeros(TERMS, PREDICTED),
-            |c| c.solve(&rows.transpose()),
+            |c| c.solve(&weighted.transpose()),
         );
         Self { matrix }
     }
@@ -242,7 +305,7 @@ mod tests {
             .map(|i| f64::from(i) / 700.0)
             .filter(|u| (u * 37.0).sin() < 0.9)
             .map(|u| (u, wave(u)));
-        let (curve, rms) = Curve::fit(samples).unwrap();
+        let (curve, rms) = Curve::fit(samples, 1.0 / 700.0).unwrap();
         assert!(rms < 1e-14);
         for u in [0.0, 0.3, 0.99] {
             assert!((curve.at(u).position() - wave(u).position()).norm() < 1e-13);
@@ -284,8 +347,24 @@ mod tests {
     }
 
     #[test]
+    fn sums_are_integrals_wherever_the_first_sample_falls() {
+        for (end, tolerance) in [(MEASURED_END, 1e-8), (PREDICTED_END, 1e-10)] {
+            for lead in [0.0, 0.3, 0.5, 0.999] {
+                let places: Vec<f64> = (0..300).map(|i| (f64::from(i) + lead) / 300.0).collect();
+                let sum: f64 = places
+                    .iter()
+                    .zip(weights(&places, 1.0 / 300.0, end))
+                    .map(|(u, weight)| weight * (3.0 * u).exp() / 300.0)
+                    .sum();
+                let off = sum / ((3_f64.exp() - 1.0) / 3.0) - 1.0;
+                assert!(off.abs() < tolerance, "{end} at {lead}: {off:.1e}");
+            }
+        }
+    }
+
+    #[test]
     fn too_few_samples_draw_no_curve() {
-        assert!(Curve::fit((0..20).map(|i| (f64::from(i) / 20.0, wave(0.0)))).is_none());
-        assert!(Curve::fit((0..200).map(|_| (0.5, wave(0.5)))).is_none());
+        assert!(Curve::fit((0..20).map(|i| (f64::from(i) / 20.0, wave(0.0))), 0.05).is_none());
+        assert!(Curve::fit((0..200).map(|_| (0.5, wave(0.5))), 0.005).is_none());
     }
 }

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::lines::{Cell, Delimiter, Line, Lines, split};
+use super::cells::{Cell, split};
+use super::lines::{Delimiter, Line, Lines};
 use super::number::{Number, number};
 use super::{TrackError, TrackProblem};
 

@@ -1,11 +1,15 @@
 //! Rows of a clock and positions under a header that has been read: what most formats are below their first lines, and the
 //! hot loop of reading.
 
+mod notes;
+
 use std::path::Path;
 
-use super::lines::{Cells, Delimiter, Line, Lines};
+use super::cells::Cells;
+use super::lines::{Delimiter, Line, Lines};
 use super::number::{Decimals, Number};
 use super::{TrackError, TrackPoint, TrackProblem, TrackWarning};
+use notes::Notes;
 
 /// Where a row's time comes from.
 #[derive(Debug, Clone, Copy)]
@@ -391,61 +395,4 @@ pub(super) fn may_be_cut(line: &Line<'_>, shorter: bool, file: &Path) -> Result<
 pub(super) fn decimals(text: &str) -> usize {
     text.rsplit_once(['.', ','])
         .map_or(0, |(_, digits)| digits.len())
-}
-
-/// What is worth a warning at the end.
-#[derive(Default)]
-struct Notes {
-    jumps: usize,
-    skipped: u64,
-    half_blank: Option<(usize, usize)>,
-    unlikely: usize,
-    first_time: Option<(u64, f64)>,
-    last_time: Option<(u64, f64)>,
-}
-
-impl Notes {
-    fn jumped(&mut self, skipped: u64) {
-        self.jumps += usize::from(skipped > 0);
-        self.skipped = self.skipped.saturating_add(skipped);
-    }
-
-    fn half_blank(&mut self, line: usize) {
-        self.half_blank.get_or_insert((0, line)).0 += 1;
-    }
-
-    fn time(&mut self, frame: u64, time: f64) {
-        self.first_time.get_or_insert((frame, time));
-        self.last_time = Some((frame, time));
-    }
-
-    fn tell(&self, rate_hz: Option<f64>, threshold: f64, warnings: &mut Vec<TrackWarning>) {
-        if self.jumps > 0 {
-            warnings.push(TrackWarning::FrameJumps {
-                jumps: self.jumps,
-                frames: self.skipped,
-            });
-        }
-        if let Some((count, first_line)) = self.half_blank {
-            warnings.push(TrackWarning::HalfBlank { count, first_line });
-        }
-        if self.unlikely > 0 {
-            warnings.push(TrackWarning::Unlikely {
-                count: self.unlikely,
-                threshold,
-            });
-        }
-        if let (Some((f0, t0)), Some((f1, t1)), Some(rate_hz)) =
-            (self.first_time, self.last_time, rate_hz)
-        {
-            let (frames, time) = ((f1 - f0) as f64, t1 - t0);
-            // Two rounded times may be a unit of their last digit off, whatever the span.
-            if f1 > f0 && (time - frames / rate_hz).abs() > 1e-3 * (1.0 + frames / rate_hz) {
-                warnings.push(TrackWarning::TimeColumn {
-                    header_hz: rate_hz,
-                    column_hz: frames / time,
-                });
-            }
-        }
-    }
 }

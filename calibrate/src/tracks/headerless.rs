@@ -3,8 +3,9 @@
 
 use std::path::Path;
 
+use super::cells::{Cell, split};
 use super::grid::{self, Clock, Columns, Grid};
-use super::lines::{Cell, Delimiter, Line, Lines, split};
+use super::lines::{Delimiter, Line, Lines};
 use super::number::{Number, number};
 use super::{
     Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,

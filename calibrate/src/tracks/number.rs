@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::lines::{Cell, Line};
+use super::cells::Cell;
+use super::lines::Line;
 use super::{TrackError, TrackProblem};
 
 /// What a cell that should hold a number says.

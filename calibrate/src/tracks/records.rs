@@ -11,8 +11,9 @@ mod record;
 use std::collections::HashMap;
 use std::path::Path;
 
+use super::cells::Cells;
 use super::grid::Body;
-use super::lines::{Cells, Delimiter, Line, Lines};
+use super::lines::{Delimiter, Line, Lines};
 use super::number::Number;
 use super::{
     Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,

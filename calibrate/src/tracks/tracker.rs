@@ -4,8 +4,9 @@
 use std::ops::Range;
 use std::path::Path;
 
+use super::cells::{Cell, Cells, cell_at, split};
 use super::grid::{Body, decimals, may_be_cut, row_length};
-use super::lines::{Cell, Cells, Delimiter, Line, Lines, cell_at, split};
+use super::lines::{Delimiter, Line, Lines};
 use super::number::{Decimals, Number};
 use super::{
     Draft, Place, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use super::cells::{Cell, cell_at, split};
 use super::grid::{self, Clock, Columns, Grid};
-use super::lines::{Cell, Delimiter, Lines, cell_at, split};
+use super::lines::{Delimiter, Lines};
 use super::number;
 use super::{
     Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,

@@ -41,6 +41,8 @@ pub(crate) struct Tank {
     pub(crate) seed: u64,
     /// Rest before and after, s.
     pub(crate) rest_s: f64,
+    /// Steps of the midpoint rule from frame to frame.
+    pub(crate) steps: u32,
 }
 
 impl Tank {
@@ -59,6 +61,7 @@ impl Tank {
             ghosts: true,
             seed: 1,
             rest_s: 1.3,
+            steps: 5,
         }
     }
 
@@ -102,7 +105,7 @@ impl Tank {
         });
         let mut shafts = [ServoPlant::new(0.0); 2];
         // Steps that fit into frames and into ticks of 20 ms.
-        let per_frame = 5;
+        let per_frame = self.steps;
         let dt = 1.0 / (self.rate_hz * f64::from(per_frame));
         // Ticks begin with the cycle, as the brain's do.
         let tick_of = |t: f64| {

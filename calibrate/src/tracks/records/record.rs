@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::{MOST, Number};
-use crate::tracks::lines::{Cell, Cells, Delimiter, Line};
+use crate::tracks::cells::{Cell, Cells};
+use crate::tracks::lines::{Delimiter, Line};
 use crate::tracks::number::number;
 use crate::tracks::{TrackError, TrackProblem};
 

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use crate::tracks::cells::{Cell, split};
 use crate::tracks::detect::TableLayout;
 use crate::tracks::grid::{Clock, Columns};
-use crate::tracks::lines::{Cell, Line, split};
+use crate::tracks::lines::Line;
 use crate::tracks::{PointKind, TrackError, TrackOptions, TrackPoint, TrackProblem, Unit};
 
 pub(super) struct Header {

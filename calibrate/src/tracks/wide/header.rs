@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use crate::tracks::lines::{Cell, Delimiter, Line, split};
+use crate::tracks::cells::{Cell, split};
+use crate::tracks::lines::{Delimiter, Line};
 use crate::tracks::number;
 use crate::tracks::{PointKind, TrackError, TrackPoint, TrackProblem, Unit};
 
