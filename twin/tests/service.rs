@@ -8,11 +8,11 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use host_link::port::{FaultPlan, FaultyPort, PtyPort, SerialPort, TcpPort};
+use host_link::port::{Device, FaultPlan, FaultyPort, PtyPort, SerialPort, TcpPort};
 use host_link::{LinkError, Port, Robot};
 use link_protocol::StateName;
 use play::{circle, robot, table};
-use twin::{Twin, TwinConfig, TwinPort, WireSpeed, serve};
+use twin::{Twin, TwinConfig, TwinPort, VirtualRobot, WireSpeed, World, serve};
 
 /// Ends the service even where the host's part panics.
 struct End<'a>(&'a AtomicBool);
@@ -123,4 +123,57 @@ fn a_table_survives_a_power_cut_with_its_flash() {
     )
     .unwrap();
     assert_eq!(robot.table().unwrap().unwrap().crc32, gait.crc32());
+}
+
+/// A robot that the machine is too slow for: what it lives takes four times as long.
+struct Slow(Twin);
+
+impl Device for Slow {
+    fn advance(&mut self, to: Duration) {
+        std::thread::sleep(4 * to.saturating_sub(self.0.now()));
+        self.0.advance(to);
+    }
+
+    fn receive(&mut self, bytes: &[u8]) {
+        self.0.receive(bytes);
+    }
+
+    fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
+        self.0.transmit(room, out);
+    }
+}
+
+impl VirtualRobot for Slow {
+    fn world(&self) -> &World {
+        self.0.world()
+    }
+
+    fn world_mut(&mut self) -> &mut World {
+        self.0.world_mut()
+    }
+}
+
+#[test]
+fn a_robot_slower_than_its_clock_lags_and_does_not_lose_its_lease() {
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("robot");
+    let mut pty = PtyPort::open(Some(&link)).unwrap();
+    let mut slow = Slow(Twin::new(TwinConfig::new(&robot(), 3)).unwrap());
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let served = scope.spawn(|| {
+            let mut ports: [&mut dyn Port; 1] = [&mut pty];
+            serve(&mut slow, &mut ports, |_| !done.load(Ordering::Relaxed)).unwrap();
+        });
+        let end = End(&done);
+        let port = SerialPort::open(link.to_str().unwrap(), 115_200).unwrap();
+        let mut robot = Robot::connect(port, 1).unwrap();
+        robot.arm(false).unwrap();
+        robot
+            .listen(Duration::from_secs(2), |_| ControlFlow::Continue(()))
+            .unwrap();
+        assert_eq!(robot.status().unwrap().state, StateName::Holding);
+        drop(end);
+        served.join().unwrap();
+    });
 }
