@@ -1,13 +1,30 @@
 //! `cargo xtask soak`: the tests that take too long for every change.
 
+use crate::emulator;
 use crate::failure::Outcome;
+use crate::firmware::{self, Variant};
 use crate::run::{cargo, run};
+use crate::toolchain::ChipToolchain;
+
+/// Provides what the tests of the booted firmware need, as far as it can be had: without it they say that they are skipped.
+fn prepare() {
+    let images = || {
+        let toolchain = ChipToolchain::find_or_make()?;
+        Variant::TESTED
+            .into_iter()
+            .try_for_each(|variant| firmware::build(&toolchain, variant))
+    };
+    if let Err(failure) = emulator::install().and_then(|()| images()) {
+        println!("\n!!!! THE FIRMWARE WILL NOT BE BOOTED IN TESTS !!!!\n{failure}");
+    }
+}
 
 /// Runs every test marked `#[ignore]`, in release, one after the other, with what it prints.
 ///
 /// # Errors
 /// When one fails.
 pub(crate) fn run_ignored(filter: Option<&str>) -> Outcome {
+    prepare();
     let mut test = cargo(["test", "--workspace", "--release", "--no-fail-fast"]);
     // No doctests: an example marked `ignore` is not meant to run.
     test.args(["--lib", "--bins", "--tests"]).args(filter);

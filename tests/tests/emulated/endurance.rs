@@ -6,7 +6,7 @@ use gait_player::servo::ServoMap;
 use gait_player::{GaitTable, TICK_US};
 use link_protocol::StateName;
 
-use crate::promise::seen;
+use crate::promise::{seen, seen_in_soak};
 use crate::rig;
 
 const PERIOD_US: u32 = 10_000_000;
@@ -16,16 +16,16 @@ const STEP_NS: u32 = 320;
 #[test]
 #[ignore = "an hour of play on the emulated board: about a quarter of an hour"]
 fn an_hour_of_play_keeps_time() {
-    plays_in_time(360);
+    plays_in_time(360, seen_in_soak);
 }
 
 #[test]
 fn half_a_minute_of_play_keeps_time() {
-    plays_in_time(3);
+    plays_in_time(3, seen);
 }
 
 /// A detached play: the board needs nobody, so it runs on its own.
-fn plays_in_time(cycles: u32) {
+fn plays_in_time(cycles: u32, tell: fn(&str, &str)) {
     let Some(mut robot) = rig::robot() else {
         return;
     };
@@ -55,17 +55,15 @@ fn plays_in_time(cycles: u32) {
             counts.push(period.compares());
             at.push(period.at());
         }
+        if minute % 6 == 5 {
+            let (ticks, drift) = (at.len(), drift(&at).as_secs_f64() * 1e6);
+            let stack = board.stack().unwrap().used();
+            println!("{ticks} periods: drift {drift:.2} µs, deepest stack {stack} bytes, no reset");
+        }
     }
     let stack = board.stack().unwrap();
 
-    // Every period 20 ms after the one before: counted from the first, the last is where it should be.
-    let off = |(number, time): (usize, &Duration)| {
-        let due =
-            at[0] + Duration::from_micros(u64::from(TICK_US)) * u32::try_from(number).unwrap();
-        due.abs_diff(*time)
-    };
-    let drift = at.iter().enumerate().map(off).max().unwrap();
-    assert!(drift < Duration::from_micros(1), "{drift:?}");
+    let drift = drift(&at);
     // Every tick of every cycle, in its place.
     let expected = expected(&table, cycles);
     let begin = counts
@@ -83,7 +81,7 @@ fn plays_in_time(cycles: u32) {
     assert_eq!(robot.status().unwrap().state, StateName::Stopped);
     let late = robot.counters().unwrap().late_ticks - late;
     assert_eq!(late, 0);
-    seen(
+    tell(
         &format!(
             "R15, {cycles} cycles of 10 s played detached ({} ticks)",
             expected.len()
@@ -96,6 +94,17 @@ fn plays_in_time(cycles: u32) {
             stack.size
         ),
     );
+}
+
+/// Every period is 20 ms after the one before: counted from the first, how far is any from where it should be?
+fn drift(at: &[Duration]) -> Duration {
+    let tick = Duration::from_micros(u64::from(TICK_US));
+    let off = |(number, time): (usize, &Duration)| {
+        (at[0] + tick * u32::try_from(number).unwrap()).abs_diff(*time)
+    };
+    let drift = at.iter().enumerate().map(off).max().unwrap();
+    assert!(drift < Duration::from_micros(1), "{drift:?}");
+    drift
 }
 
 fn expected(table: &GaitTable, cycles: u32) -> Vec<[u32; 2]> {

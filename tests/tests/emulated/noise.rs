@@ -9,7 +9,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::frames::{Frames, encoded};
-use crate::promise::seen;
+use crate::promise::{seen, seen_in_soak};
 use crate::rig::{self, Image};
 
 /// Frames that go to the board at once; they take about a tenth of a second on the line.
@@ -24,13 +24,13 @@ const BYTE: Duration = Duration::from_nanos(86_806);
 
 #[test]
 fn a_few_thousand_frames_of_noise_do_no_harm() {
-    noise(4_000);
+    noise(4_000, seen);
 }
 
 #[test]
 #[ignore = "a million frames on the emulated UART: about half an hour"]
 fn a_million_frames_of_noise_do_no_harm() {
-    noise(1_000_000);
+    noise(1_000_000, seen_in_soak);
 }
 
 /// What came of it.
@@ -53,7 +53,8 @@ struct Storm {
     tally: Tally,
 }
 
-fn noise(count: usize) {
+/// Sends so many frames; tells at each tenth what came of it so far, and at the end.
+fn noise(count: usize, tell: fn(&str, &str)) {
     let Some(board) = rig::board(Image::Nano) else {
         return;
     };
@@ -70,7 +71,8 @@ fn noise(count: usize) {
     };
     storm.board.set_connected(true).unwrap();
     storm.live(100 * MS);
-    for batch in 0..count.div_ceil(BATCH) {
+    let batches = count.div_ceil(BATCH);
+    for batch in 0..batches {
         if batch % GREETED_EVERY == 0 {
             let hello = storm.frames.hello();
             storm.send(&hello);
@@ -82,36 +84,49 @@ fn noise(count: usize) {
         if batch % STOPPED_EVERY == STOPPED_EVERY - 1 {
             storm.stop();
         }
+        if batch % (batches / 10) == batches / 10 - 1 {
+            println!("{} frames: {}", (batch + 1) * BATCH, storm.told());
+        }
     }
     storm.stop();
-    let bad = storm.decoder.counters().bad();
-    assert_eq!(bad, 0, "the robot sent broken frames");
-    let Tally {
-        bytes,
-        periods,
-        powered,
-        shortest_us,
-        longest_us,
-        stops,
-    } = storm.tally;
     assert!(
-        powered * 10 > periods,
-        "powered in {powered} of {periods} periods only"
+        storm.tally.powered * 10 > storm.tally.periods,
+        "{}",
+        storm.told()
     );
-    seen(
+    let bytes = storm.tally.bytes;
+    tell(
         &format!(
             "R1, R4: {count} frames, mutated, random in a whole frame, or valid ({bytes} bytes)"
         ),
-        &format!(
-            "no reset; {} requests acted; pulses on in {:.0} % of {periods} periods, all between {shortest_us:.0} and \
-             {longest_us:.0} µs; Stop answered and obeyed {stops} times of {stops}",
-            storm.acted,
-            100.0 * powered as f64 / periods as f64,
-        ),
+        &storm.told(),
     );
 }
 
 impl Storm {
+    /// What came of it so far, in words.
+    fn told(&self) -> String {
+        let Tally {
+            periods,
+            powered,
+            shortest_us,
+            longest_us,
+            stops,
+            ..
+        } = self.tally;
+        assert_eq!(
+            self.decoder.counters().bad(),
+            0,
+            "the robot sent broken frames"
+        );
+        format!(
+            "no reset; {} requests acted; pulses on in {:.0} % of {periods} periods, all between {shortest_us:.0} and \
+             {longest_us:.0} µs; Stop answered and obeyed {stops} times of {stops}",
+            self.acted,
+            100.0 * powered as f64 / periods as f64,
+        )
+    }
+
     /// Sends bytes and lives until they have arrived.
     fn send(&mut self, bytes: &[u8]) {
         self.board.feed(bytes).unwrap();
