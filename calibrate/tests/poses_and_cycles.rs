@@ -4,8 +4,11 @@
 
 mod tank;
 
+use std::path::Path;
+
 use calibrate::{
-    CalibrateError, CycleError, CycleWarning, LeftOut, PoseError, PoseOptions, calibrate_run, poses,
+    CalibrateError, CycleError, CycleWarning, LeftOut, PoseError, PoseOptions, TrackOptions,
+    calibrate_run, poses, read_tracks_with,
 };
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, PointName};
@@ -386,4 +389,74 @@ fn a_recording_that_ends_with_the_play_keeps_its_last_cycle() {
         .unwrap()
         .cycles;
     assert_eq!((cycles.cycles.len(), cycles.left_out.len()), (4, 1));
+}
+
+/// What one camera over the tank gives: pixels of half a millimetre, y down, the origin in a corner.
+fn pixels(tank: &Tank) -> String {
+    let table = tank.table();
+    let mut lines = table.lines();
+    let header = lines.next().unwrap();
+    let mut out = header
+        .split(',')
+        .map(|name| {
+            if name == "t" {
+                name.to_owned()
+            } else {
+                format!("{name}_px")
+            }
+        })
+        .collect::<Vec<_>>()
+        .join(",");
+    for line in lines {
+        out.push('\n');
+        let cells = line.split(',').enumerate().map(|(column, cell)| {
+            let Ok(metres) = cell.parse::<f64>() else {
+                return cell.to_owned();
+            };
+            match column {
+                0 => cell.to_owned(),
+                _ if column % 2 == 1 => format!("{:?}", metres / 0.0005),
+                _ => format!("{:?}", 800.0 - metres / 0.0005),
+            }
+        });
+        out += &cells.collect::<Vec<_>>().join(",");
+    }
+    out + "\n"
+}
+
+#[test]
+fn one_camera_gives_poses_once_its_scale_is_known() {
+    let tank = robot(1.2);
+    let text = pixels(&tank);
+    let read = |metres_per_unit| {
+        let options = TrackOptions {
+            metres_per_unit,
+            ..TrackOptions::default()
+        };
+        read_tracks_with(text.as_bytes(), Path::new("run.csv"), &options).unwrap()
+    };
+    let reflectors = tank.reflectors(
+        PointName::Columns("x1_px".into(), "y1_px".into()),
+        PointName::Columns("x2_px".into(), "y2_px".into()),
+    );
+    // Without a scale there are no poses, but the scale that the reflectors' distance asks for.
+    let error = poses(&read(None), &reflectors, &PoseOptions::default()).unwrap_err();
+    let PoseError::NoScale {
+        scale: Some(scale), ..
+    } = error
+    else {
+        panic!("{error}")
+    };
+    assert!((scale / 0.0005 - 1.0).abs() < 1e-3, "{scale}");
+    // The image's y runs down: the heading turns the right way round all the same.
+    let mut track = poses(&read(Some(0.0005)), &reflectors, &PoseOptions::default()).unwrap();
+    assert_eq!(track.plane.map, "(x, y) = (X, -Y), normal -Z");
+    for sample in &mut track.samples {
+        sample.pose.y += 800.0 * 0.0005;
+    }
+    let (place, heading) = errors(&tank, &track);
+    assert!(
+        place < 5.0 * 3e-4 && heading < 5.0 * 6e-3,
+        "{place} {heading}"
+    );
 }

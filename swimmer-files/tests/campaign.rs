@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use swimmer_files::{Campaign, FileError, GaitSpec, PointName, SwimmerFile};
+use swimmer_files::{Axes, Campaign, FileError, GaitSpec, PointName, SwimmerFile, TrackSettings};
 
 const EXAMPLE: &str = r#"swimmer = "robot-slender"        # or a file
 [reflectors]
@@ -109,4 +109,35 @@ fn mistakes_have_a_place() {
             .to_string()
             .contains("at least one")
     );
+}
+
+#[test]
+fn what_recordings_do_not_say_themselves() {
+    assert_eq!(read(EXAMPLE).unwrap().tracks, TrackSettings::default());
+    let settings = "[tracks]\nscale = 0.0005\nrate_hz = 30\naxes = \"x,-y\"\nlikelihood = 0.8\n";
+    let with =
+        |settings: &str| read(&EXAMPLE.replacen("[[run]]", &format!("{settings}[[run]]"), 1));
+    assert_eq!(
+        with(settings).unwrap().tracks,
+        TrackSettings {
+            scale: Some(0.0005),
+            rate_hz: Some(30.0),
+            axes: Some(Axes::IMAGE),
+            likelihood: Some(0.8),
+        }
+    );
+    for (wrong, why) in [
+        ("scale = 0.0", "must be a positive number"),
+        ("rate_hz = -30.0", "must be a positive number"),
+        ("axes = \"x,x\"", "no axes"),
+        ("zoom = 2.0", "unknown field"),
+    ] {
+        let error = with(&format!("[tracks]\n{wrong}\n"))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.contains("campaign.toml:6:") && error.contains(why),
+            "{error}"
+        );
+    }
 }

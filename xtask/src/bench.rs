@@ -125,7 +125,7 @@ const COMPARISONS: [Comparison; 7] = [
         ],
     },
     Comparison {
-        what: "a wide Motive file of 20 000 frames and ten markers (5.6 MB), text to positions",
+        what: "a wide Motive file of 20 000 frames and ten markers (6.0 MB), text to positions",
         ours: "reading/wide, ten markers",
         by: "calibrate, with its header understood",
         peers: &[
