@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use host_link::port::{Direction, TracedFrame};
 use host_link::session::{ClockFit, ClockSamples};
@@ -48,10 +49,11 @@ impl Recorder {
         }))))
     }
 
-    /// What the port shows its frames to.
-    pub(crate) fn sink(&self) -> Sink {
+    /// What the port shows its frames to. `epoch` is the time of day at the origin of the port's clock, since 1970; zero for a
+    /// port in virtual time.
+    pub(crate) fn sink(&self, epoch: Duration) -> Sink {
         let recording = Arc::clone(&self.0);
-        Box::new(move |frame| locked(&recording).add(&frame))
+        Box::new(move |frame| locked(&recording).add(&frame, epoch))
     }
 
     /// Closes the log and gives it its name; returns the number of frames.
@@ -82,7 +84,7 @@ fn locked(recording: &Mutex<Recording>) -> MutexGuard<'_, Recording> {
 }
 
 impl Recording {
-    fn add(&mut self, frame: &TracedFrame<'_>) {
+    fn add(&mut self, frame: &TracedFrame<'_>, epoch: Duration) {
         let Some(writer) = &mut self.writer else {
             return;
         };
@@ -105,7 +107,7 @@ impl Recording {
                 Direction::ToRobot => swimmer_files::Direction::ToRobot,
                 Direction::ToHost => swimmer_files::Direction::FromRobot,
             },
-            host_time_ns: u64::try_from(frame.at.as_nanos()).unwrap_or(u64::MAX),
+            host_time_ns: u64::try_from((epoch + frame.at).as_nanos()).unwrap_or(u64::MAX),
             robot_time_us: told.or(estimated),
             bytes: frame.bytes.to_vec(),
         };

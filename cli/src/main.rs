@@ -4,6 +4,7 @@ mod arguments;
 mod bounds;
 mod commands;
 mod failure;
+mod fit_file;
 mod interrupt;
 mod link_log;
 mod new_folder;

@@ -3,13 +3,17 @@
 //!
 //! - [`timing()`]: a gait is a curve; its timing is free. The best timing under a rate limit, and the shortest period.
 //! - [`reach()`]: the largest angle of a gait, with its place, against what the servos allow.
+//! - [`until_wall`]: how many cycles a tank has room for; [`Forecast::displacement_error`]: what a calibration leaves open.
 //! - [`forecast()`]: the displacement as designed, as stored, as commanded and as turned, loss by loss, before a gait is sent.
 
+mod certainty;
 pub mod forecast;
 pub mod path;
 pub mod reach;
+pub mod tank;
 pub mod timing;
 
 pub use forecast::{Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast};
 pub use reach::{Reach, reach};
+pub use tank::{Meeting, Part, Tank, until_wall};
 pub use timing::{Timing, TimingError, shortest_period, timing};

@@ -70,7 +70,8 @@ use swimmer_model::{Model, Swimmer};
 use tables::{Swap, Tables};
 use work::Work;
 
-/// The brain. About 6 kB; no heap.
+/// The brain. About 6 kB; no heap. A clone goes on by itself from the same state: whoever replays a log tries with it what
+/// may have come when.
 #[derive(Clone)]
 pub struct Brain {
     identity: Identity,

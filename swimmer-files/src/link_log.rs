@@ -2,8 +2,11 @@
 //!
 //! MCAP is read by Foxglove, by the `mcap` Python package and by many others. Two topics, `/link/to_robot` and
 //! `/link/from_robot`; each message is JSON after the JSON schema `swimmer.LinkFrame` that the file carries: host time, robot
-//! time where the frame tells it, the decoded header and message where the frame is sound, and the raw bytes in hexadecimal,
-//! so that nothing depends on this program's decoder.
+//! time where it is known, the decoded header and message where the frame is sound, and the raw bytes in hexadecimal,
+//! so that nothing depends on this program's decoder. A third topic, `/robot/telemetry`, says again in SI units what the
+//! telemetry frames tell, to be plotted; it is written for people and never read back.
+//!
+//! Foxglove reads no schema with alternatives, so every field has one type and what is not known is left out.
 
 mod frame;
 mod read;
@@ -13,9 +16,12 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
+use frame::telemetry_json;
 pub use frame::{Direction, LinkFrame};
+use link_protocol::Message;
 use mcap::records::MessageHeader;
 pub use read::read_link_log;
+use serde_json::Value;
 
 use crate::FileError;
 use crate::atomic::beside;
@@ -23,6 +29,9 @@ use crate::atomic::beside;
 /// The JSON schema of each message, as the file carries it.
 const SCHEMA: &str = include_str!("link_log/schema.json");
 const SCHEMA_NAME: &str = "swimmer.LinkFrame";
+const TELEMETRY_SCHEMA: &str = include_str!("link_log/telemetry.json");
+const TELEMETRY_SCHEMA_NAME: &str = "swimmer.Telemetry";
+const TELEMETRY_TOPIC: &str = "/robot/telemetry";
 
 /// Why a link log could not be written or read.
 #[derive(Debug, thiserror::Error)]
@@ -56,7 +65,8 @@ pub struct LinkLogWriter {
     writer: Option<mcap::Writer<BufWriter<File>>>,
     temporary: PathBuf,
     path: PathBuf,
-    channels: [u16; 2],
+    /// To the robot, from it, and its telemetry.
+    channels: [u16; 3],
     sequence: u32,
 }
 
@@ -85,10 +95,16 @@ impl LinkLogWriter {
                 .library(concat!("swimmer-files ", env!("CARGO_PKG_VERSION")))
                 .create(BufWriter::new(file))?;
             let schema = writer.add_schema(SCHEMA_NAME, "jsonschema", SCHEMA.as_bytes())?;
+            let telemetry = writer.add_schema(
+                TELEMETRY_SCHEMA_NAME,
+                "jsonschema",
+                TELEMETRY_SCHEMA.as_bytes(),
+            )?;
             let empty = BTreeMap::new();
             let channels = [
                 writer.add_channel(schema, Direction::ToRobot.topic(), "json", &empty)?,
                 writer.add_channel(schema, Direction::FromRobot.topic(), "json", &empty)?,
+                writer.add_channel(telemetry, TELEMETRY_TOPIC, "json", &empty)?,
             ];
             Ok((writer, channels))
         };
@@ -115,12 +131,22 @@ impl LinkLogWriter {
     /// # Errors
     /// When the disk refuses.
     pub fn write(&mut self, frame: &LinkFrame) -> Result<(), LinkLogError> {
-        let [to_robot, from_robot] = self.channels;
+        let [to_robot, from_robot, telemetry] = self.channels;
+        let channel = match frame.direction {
+            Direction::ToRobot => to_robot,
+            Direction::FromRobot => from_robot,
+        };
+        let received = frame.received();
+        self.add(channel, frame, &frame.to_json(received.as_ref()))?;
+        match received.and_then(|received| received.message.ok()) {
+            Some(Message::Telemetry(told)) => self.add(telemetry, frame, &telemetry_json(&told)),
+            _ => Ok(()),
+        }
+    }
+
+    fn add(&mut self, channel: u16, frame: &LinkFrame, json: &Value) -> Result<(), LinkLogError> {
         let header = MessageHeader {
-            channel_id: match frame.direction {
-                Direction::ToRobot => to_robot,
-                Direction::FromRobot => from_robot,
-            },
+            channel_id: channel,
             sequence: self.sequence,
             log_time: frame.host_time_ns,
             publish_time: frame.host_time_ns,
@@ -130,7 +156,7 @@ impl LinkLogWriter {
             return Ok(());
         };
         writer
-            .write_to_known_channel(&header, frame.to_json().to_string().as_bytes())
+            .write_to_known_channel(&header, json.to_string().as_bytes())
             .map_err(|source| LinkLogError::Container {
                 path: self.path.clone(),
                 source,

@@ -101,6 +101,131 @@ fn a_sound_frame_is_decoded_for_people() {
     assert!(decoded[2].is_null(), "a cut frame");
 }
 
+/// Telemetry is there twice: as the frame that it was, and in SI units to be plotted.
+#[test]
+fn telemetry_has_a_topic_of_its_own() {
+    let telemetry = link_protocol::Telemetry {
+        robot_us: 2_500_000,
+        state: link_protocol::StateName::Playing,
+        cause: link_protocol::StopCause::Boot,
+        flags: link_protocol::Flags::DETACHED,
+        cycle: 3,
+        cycles: 10,
+        phase: 16_384,
+        setpoint: [10_000, -2_500],
+        pulse_ns: [1_536_000, 0],
+        battery_mv: None,
+        pose: link_protocol::Pose {
+            x: 0.5,
+            y: -0.25,
+            theta: 0.125,
+        },
+        frames_ok: 7,
+        frames_bad: 1,
+    };
+    let mut wire = [0; link_protocol::MAX_ENCODED];
+    let message = link_protocol::Message::Telemetry(telemetry);
+    let len = link_protocol::encode(link_protocol::Header::new(7, 1), &message, &mut wire).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("link.mcap");
+    let mut log = LinkLogWriter::create(&path).unwrap();
+    let frame = LinkFrame {
+        bytes: wire[..len].to_vec(),
+        ..frame(1)
+    };
+    log.write(&frame).unwrap();
+    log.finish().unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let told: Vec<(String, serde_json::Value)> = mcap::MessageStream::new(&bytes)
+        .unwrap()
+        .map(|message| {
+            let message = message.unwrap();
+            let json = serde_json::from_slice(&message.data).unwrap();
+            (message.channel.topic.clone(), json)
+        })
+        .collect();
+    let [(_, link), (topic, plotted)] = told.as_slice() else {
+        panic!("{told:?}");
+    };
+    assert_eq!(link["decoded"]["kind"], "Telemetry");
+    assert_eq!(topic, "/robot/telemetry");
+    assert_eq!(plotted["state"], "Playing");
+    for (key, value) in [
+        ("robot_time_s", 2.5),
+        ("phase", 0.25),
+        ("phi1_rad", 1.0),
+        ("phi2_rad", -0.25),
+        ("pulse1_us", 1536.0),
+        ("x_m", 0.5),
+        ("theta_rad", 0.125),
+    ] {
+        let told = plotted[key].as_f64().unwrap();
+        assert!((told - value).abs() < 1e-9, "{key}: {told}");
+    }
+    assert!(plotted.get("battery_v").is_none(), "not measured");
+    assert_eq!(read_link_log(&path).unwrap(), [frame]);
+}
+
+/// Foxglove takes a field of one plain type, an object with properties or an array of one such type, and refuses the whole
+/// topic else.
+#[test]
+fn the_schemas_are_such_as_foxglove_reads() {
+    fn check(schema: &serde_json::Value, place: &str) {
+        match schema["type"].as_str() {
+            Some("boolean" | "string" | "number" | "integer") => {}
+            Some("object") => {
+                for (name, field) in schema["properties"].as_object().unwrap() {
+                    check(field, &format!("{place}.{name}"));
+                }
+            }
+            Some("array") => check(&schema["items"], place),
+            other => panic!("{place} has the type {other:?}"),
+        }
+        assert!(schema.get("oneOf").is_none(), "{place}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("link.mcap");
+    LinkLogWriter::create(&path).unwrap().finish().unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    assert_eq!(summary.channels.len(), 3);
+    for channel in summary.channels.values() {
+        let schema = channel.schema.as_ref().unwrap();
+        let json = serde_json::from_slice(&schema.data).unwrap();
+        check(&json, &schema.name);
+    }
+}
+
+/// Logs from before this field was left out where nothing is known.
+#[test]
+fn a_null_robot_time_is_read_as_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("old.mcap");
+    let mut writer = mcap::Writer::new(std::fs::File::create(&path).unwrap()).unwrap();
+    let channel = writer
+        .add_channel(
+            0,
+            "/link/to_robot",
+            "json",
+            &std::collections::BTreeMap::new(),
+        )
+        .unwrap();
+    let header = mcap::records::MessageHeader {
+        channel_id: channel,
+        sequence: 0,
+        log_time: 5,
+        publish_time: 5,
+    };
+    let json = br#"{"host_time_ns":5,"robot_time_us":null,"raw_hex":"0102","decoded":null}"#;
+    writer.write_to_known_channel(&header, json).unwrap();
+    writer.finish().unwrap();
+    let frames = read_link_log(&path).unwrap();
+    assert_eq!(
+        (frames[0].robot_time_us, frames[0].bytes.as_slice()),
+        (None, &[1, 2][..])
+    );
+}
+
 #[test]
 fn an_abandoned_log_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();

@@ -42,6 +42,7 @@ mod drag;
 pub mod gait;
 mod heading;
 mod model;
+mod outline;
 mod pose;
 pub mod reference;
 mod resistance;

@@ -11,6 +11,7 @@
 mod camera;
 mod config;
 mod flash;
+mod replay;
 mod service;
 mod servos;
 mod tank;
@@ -22,6 +23,7 @@ pub use camera::{Camera, CameraConfig, Frame, MotiveFile, Point, TrackError};
 pub use config::{TwinConfig, configuration};
 pub use flash::VirtualFlash;
 pub use host_link::port::{VirtualPort, WireSpeed};
+pub use replay::{Difference, ReplayError, Replayed, replay};
 pub use service::serve;
 pub use servos::Servos;
 pub use tank::Tank;

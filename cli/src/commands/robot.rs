@@ -3,16 +3,20 @@
 mod access;
 mod answers;
 mod configure;
+mod dashboard;
 mod find;
 mod hc05;
 mod holder;
 mod info;
 mod key;
-mod listening;
+mod log;
 mod motion;
 mod playing;
 mod port;
+mod preflight;
+mod trim;
 mod upload;
+mod watch;
 
 use std::path::PathBuf;
 
@@ -51,7 +55,7 @@ enum Action {
     Status,
     /// Tell the robot its lengths and drag, and tighten its limits; stored on the robot
     Configure(Configure),
-    /// Send a gait to the robot
+    /// Foretell what the robot will make of a gait, and send it
     Upload(Upload),
     /// Power the servos and hold the link until Ctrl-C (= stop)
     Arm(Arm),
@@ -65,14 +69,16 @@ enum Action {
     Stop,
     /// Switch the pulses off at once; only `arm --clear-estop` ends it
     Estop,
-    /// Show or set the trim of the servos; stored on the robot
+    /// Set the trim of the servos, or nudge it with keys on a terminal; stored on the robot
     Trim(Trim),
-    /// Print what the robot does, a line each second, until Ctrl-C
+    /// Show what the robot does, on a screen with keys to stop it; a line each second where the output is no terminal
     Watch(Watch),
     /// Write every frame on the wire, both ways, as MCAP, until Ctrl-C
     Log(Log),
     Hc05(hc05::Hc05),
     Key(key::KeyChange),
+    /// Hold a log against the robot's brain: same frames at the same times, same set-points and pulses?
+    Replay(Replay),
 }
 
 #[derive(Debug, clap::Args)]
@@ -95,6 +101,12 @@ struct Upload {
     gait: GaitSpec,
     #[command(flatten)]
     owner: Owner,
+    #[command(flatten)]
+    preflight: preflight::Arguments,
+    /// Send nothing: only foretell what the robot will make of the gait. Without --port no robot is asked, and the swimmer
+    /// is that of --swimmer; exit status 1 where the robot would refuse the gait
+    #[arg(long)]
+    dry_run: bool,
 }
 
 /// Whose gait it is.
@@ -170,6 +182,16 @@ struct Log {
     seconds: Option<f64>,
 }
 
+#[derive(Debug, clap::Args)]
+struct Replay {
+    /// A link log: of `log`, or of any command with --log, from its start
+    #[arg(value_name = "FILE.mcap")]
+    file: PathBuf,
+    /// The gait that the robot held when the log began, where the log does not upload it
+    #[arg(long, value_name = "GAIT", value_parser = gait)]
+    gait: Option<GaitSpec>,
+}
+
 impl Robot {
     /// Does what was asked of the robot.
     pub(crate) fn run(self, output: Output) -> Outcome {
@@ -185,11 +207,12 @@ impl Robot {
             Action::Resume => motion::resume(access, output),
             Action::Stop => motion::stop(access, false, output),
             Action::Estop => motion::stop(access, true, output),
-            Action::Trim(arguments) => configure::trim(access, arguments, output),
-            Action::Watch(arguments) => listening::watch(access, arguments, output),
-            Action::Log(arguments) => listening::log(access, arguments, output),
+            Action::Trim(arguments) => trim::trim(access, arguments, output),
+            Action::Watch(arguments) => watch::watch(access, arguments, output),
+            Action::Log(arguments) => log::log(access, arguments, output),
             Action::Hc05(arguments) => hc05::run(access, arguments, output),
             Action::Key(arguments) => key::run(access, arguments, output),
+            Action::Replay(arguments) => log::replay_log(arguments, output),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `swimmer simulate`: swims a gait in the model.
 
-mod played;
+pub(crate) mod played;
 
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};

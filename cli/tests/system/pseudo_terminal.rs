@@ -228,3 +228,80 @@ fn a_run_over_tcp_is_tracked() {
         "{tracked} m tracked, {ideal} m without servos between"
     );
 }
+
+/// A play over a real pseudo-terminal, logged, and the log lived again.
+#[test]
+fn a_logged_play_is_replayed() {
+    let folder = tempfile::tempdir().unwrap();
+    let _twin = TwinProcess::start(folder.path(), &[]);
+    let run =
+        |words: &[&str]| swimmer_in(folder.path(), &[&["robot"], words, &["--json"]].concat());
+    run(&[
+        "play",
+        "--gait",
+        "circle:30deg",
+        "--cycles",
+        "2",
+        "--period",
+        "2",
+        "--log",
+        "run.mcap",
+        "--port",
+        "robot",
+    ])
+    .with_status(0);
+    let told = run(&["replay", "run.mcap"]).with_status(0).json();
+    assert_eq!(
+        (&told["same"], &told["requests"]),
+        (&true.into(), &3.into()),
+        "{told:#}"
+    );
+    assert!(number(&told, "compared") > 80.0, "{told:#}");
+
+    // The robot holds the gait now, and a second log does not: it must be named. A log begins with the robot at rest.
+    run(&["stop", "--port", "robot"]).with_status(0);
+    run(&[
+        "play",
+        "--cycles",
+        "1",
+        "--period",
+        "2",
+        "--log",
+        "again.mcap",
+        "--port",
+        "robot",
+    ])
+    .with_status(0);
+    let without = run(&["replay", "again.mcap"]).with_status(1);
+    assert_eq!(without.json()["same"], false, "{without}");
+    assert!(without.stderr.contains("name it with --gait"), "{without}");
+    run(&["replay", "again.mcap", "--gait", "circle:30deg"]).with_status(0);
+
+    let listened = run(&["log", "idle.mcap", "--seconds", "1", "--port", "robot"]).with_status(0);
+    assert!(number(&listened.json(), "frames") > 20.0, "{listened}");
+    let refused = run(&["log", "idle.mcap", "--seconds", "1", "--port", "robot"]).with_status(2);
+    assert!(refused.stderr.contains("exists"), "{refused}");
+}
+
+/// What went wrong is what a log is for: it is whole also after a refusal.
+#[test]
+fn a_log_survives_the_failure_it_records() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = [
+        "robot",
+        "play",
+        "--cycles",
+        "1",
+        "--log",
+        "failed.mcap",
+        "--port",
+        "twin",
+    ];
+    let ran = swimmer_in(folder.path(), &words).with_status(1);
+    assert!(
+        ran.stderr.contains("The link log is in failed.mcap."),
+        "{ran}"
+    );
+    let frames = swimmer_files::read_link_log(&folder.path().join("failed.mcap")).unwrap();
+    assert!(frames.len() > 10, "{}", frames.len());
+}

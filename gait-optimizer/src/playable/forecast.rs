@@ -18,6 +18,7 @@ use nalgebra::Vector2;
 use swimmer_files::ServoFile;
 use swimmer_model::{Gait, Model, Tolerance, swim};
 
+use super::path::Polyline;
 use super::reach::{Reach, reach};
 pub use gap::Gap;
 
@@ -200,6 +201,8 @@ pub struct Forecast {
     pub played: Played,
     /// Stage by stage, in the order of [`Stage::ALL`].
     pub stages: Vec<Loss>,
+    /// The way of the joints through one cycle as the servos take it, from the designed gait's first shape back to it.
+    pub way: Polyline,
     /// The joint that turns furthest.
     pub reach: Reach,
     /// Where the side links come closest on the way that the servos take.
@@ -268,6 +271,7 @@ pub fn forecast<G: Gait<f64> + ?Sized>(
         stages,
         reach,
         gap: Gap::along(&links, ways.played()),
+        way: ways.played().clone(),
         designed_gap: Gap::of_gait(&links, gait),
         thickness: match model.swimmer().tangential_drag {
             swimmer_model::TangentialDrag::HalfThickness(half) => 2.0 * half,
@@ -388,7 +392,7 @@ impl Forecast {
 const TURNING: f64 = 0.001_745;
 
 /// Integration of each stage: closer than the smallest loss that is told.
-fn tolerance() -> Tolerance {
+pub(super) fn tolerance() -> Tolerance {
     Tolerance::new(1e-10)
 }
 

@@ -10,6 +10,7 @@ use super::{BEAT, Robot};
 use crate::port::Port;
 use crate::session::{Event, LinkError, Ticket};
 
+const WAITING: &str = "waiting for the end of the play";
 /// Time after which the status is asked for when no telemetry tells it.
 const QUIET: Duration = Duration::from_secs(1);
 /// How long a robot that does not answer is looked for; one that plays detached until so long after its end.
@@ -54,9 +55,24 @@ impl<P: Port> Robot<P> {
     /// was answered), and the link's own.
     pub fn wait_until_finished(
         &mut self,
-        mut watch: impl FnMut(Option<&Telemetry>) -> ControlFlow<()>,
+        watch: impl FnMut(Option<&Telemetry>) -> ControlFlow<()>,
     ) -> Result<Status, LinkError> {
-        let doing = "waiting for the end of the play";
+        if let Some(status) = self.wait_while(watch)? {
+            return Ok(status);
+        }
+        self.stop()?;
+        Err(LinkError::Interrupted { doing: WAITING })
+    }
+
+    /// [`wait_until_finished`](Self::wait_until_finished) for a caller that has something else to do now and then: breaking
+    /// off returns `None` and leaves the robot as it is. Waiting may go on afterwards.
+    ///
+    /// # Errors
+    /// As there, but for the interruption.
+    pub fn wait_while(
+        &mut self,
+        mut watch: impl FnMut(Option<&Telemetry>) -> ControlFlow<()>,
+    ) -> Result<Option<Status>, LinkError> {
         // What was said before the play began tells nothing about its end.
         self.latest = None;
         let now = self.port.now();
@@ -68,13 +84,12 @@ impl<P: Port> Robot<P> {
         };
         loop {
             let beat = self.port.now() + BEAT;
-            let event = self.step(beat, doing)?;
+            let event = self.step(beat, WAITING)?;
             if watch(self.latest.as_ref()).is_break() {
-                self.stop()?;
-                return Err(LinkError::Interrupted { doing });
+                return Ok(None);
             }
             if let Some(status) = self.learn(event, &mut known)? {
-                return finished(status);
+                return finished(status).map(Some);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! One frame of the link log, and its JSON.
 
-use link_protocol::{Decoder, Message, Received};
-use serde_json::{Value, json};
+use link_protocol::{Decoder, Message, Received, Telemetry};
+use serde_json::{Map, Value, json};
 
 /// Which way a frame went.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -42,51 +42,35 @@ impl Direction {
 }
 
 impl LinkFrame {
-    pub(super) fn to_json(&self) -> Value {
-        let mut object = json!({
-            "host_time_ns": self.host_time_ns,
-            "robot_time_us": self.robot_time_us,
-            "raw_hex": hexadecimal(&self.bytes),
-        });
-        if let Value::Object(fields) = &mut object {
-            fields.insert("decoded".to_owned(), self.decoded());
+    pub(super) fn to_json(&self, received: Option<&Received>) -> Value {
+        let mut fields = Map::new();
+        fields.insert("host_time_ns".to_owned(), json!(self.host_time_ns));
+        if let Some(robot_time_us) = self.robot_time_us {
+            fields.insert("robot_time_us".to_owned(), json!(robot_time_us));
         }
-        object
+        fields.insert("raw_hex".to_owned(), json!(hexadecimal(&self.bytes)));
+        if let Some(received) = received {
+            fields.insert("decoded".to_owned(), decoded(received));
+        }
+        Value::Object(fields)
     }
 
-    /// Header and message for people to read; null where the frame is damaged.
-    fn decoded(&self) -> Value {
+    /// The frame as a receiver understands it; `None` where it is damaged.
+    pub fn received(&self) -> Option<Received> {
         let mut decoder = Decoder::new();
         // A closing zero ends the frame where the bytes come without one.
-        let received = self
-            .bytes
+        self.bytes
             .iter()
             .chain(&[0])
-            .find_map(|&byte| decoder.push(byte));
-        let Some(Received {
-            header, message, ..
-        }) = received
-        else {
-            return Value::Null;
-        };
-        let (kind, message) = match &message {
-            Ok(message) => (format!("{:?}", message.kind()), message_json(message)),
-            Err(problem) => ("not understood".to_owned(), json!(format!("{problem:?}"))),
-        };
-        json!({
-            "version": header.version,
-            "session": header.session,
-            "sequence": header.sequence,
-            "kind": kind,
-            "message": message,
-        })
+            .find_map(|&byte| decoder.push(byte))
     }
 
     pub(super) fn from_json(direction: Direction, data: &[u8]) -> Result<Self, String> {
         let value: Value =
             serde_json::from_slice(data).map_err(|error| format!("not JSON: {error}"))?;
         let field = |name: &str| value.get(name).ok_or_else(|| format!("no field `{name}`"));
-        let robot_time = field("robot_time_us")?;
+        // Earlier logs say null where nothing is known.
+        let robot_time = value.get("robot_time_us").unwrap_or(&Value::Null);
         Ok(Self {
             direction,
             host_time_ns: field("host_time_ns")?
@@ -106,6 +90,63 @@ impl LinkFrame {
         })
     }
 }
+
+/// Header and message for people to read. Telemetry has a topic of its own.
+fn decoded(received: &Received) -> Value {
+    let Received {
+        header, message, ..
+    } = received;
+    let mut fields = Map::new();
+    fields.insert("version".to_owned(), json!(header.version));
+    fields.insert("session".to_owned(), json!(header.session));
+    fields.insert("sequence".to_owned(), json!(header.sequence));
+    let (kind, body) = match message {
+        Ok(Message::Telemetry(_)) => ("Telemetry".to_owned(), None),
+        Ok(message) => (format!("{:?}", message.kind()), Some(message_json(message))),
+        Err(problem) => (
+            "not understood".to_owned(),
+            Some(json!(format!("{problem:?}"))),
+        ),
+    };
+    fields.insert("kind".to_owned(), json!(kind));
+    if let Some(body) = body {
+        fields.insert("message".to_owned(), body);
+    }
+    Value::Object(fields)
+}
+
+/// A piece of telemetry in SI units.
+pub(super) fn telemetry_json(telemetry: &Telemetry) -> Value {
+    let [phi1, phi2] = telemetry
+        .setpoint
+        .map(|units| f64::from(units) * ANGLE_UNIT);
+    let [pulse1, pulse2] = telemetry.pulse_ns.map(|ns| f64::from(ns) * 1e-3);
+    let mut json = json!({
+        "robot_time_s": telemetry.robot_us as f64 * 1e-6,
+        "state": format!("{:?}", telemetry.state),
+        "cause": format!("{:?}", telemetry.cause),
+        "flags": telemetry.flags.0,
+        "cycle": telemetry.cycle,
+        "cycles": telemetry.cycles,
+        "phase": f64::from(telemetry.phase) / 65_536.0,
+        "phi1_rad": phi1,
+        "phi2_rad": phi2,
+        "pulse1_us": pulse1,
+        "pulse2_us": pulse2,
+        "x_m": telemetry.pose.x,
+        "y_m": telemetry.pose.y,
+        "theta_rad": telemetry.pose.theta,
+        "frames_ok": telemetry.frames_ok,
+        "frames_bad": telemetry.frames_bad,
+    });
+    if let (Value::Object(fields), Some(millivolts)) = (&mut json, telemetry.battery_mv) {
+        fields.insert("battery_v".to_owned(), json!(f64::from(millivolts) * 1e-3));
+    }
+    json
+}
+
+/// [`link_protocol::ANGLE_UNIT_RAD`] without the digits of single precision.
+const ANGLE_UNIT: f64 = 1e-4;
 
 fn message_json(message: &Message) -> Value {
     let json = match message {

@@ -37,7 +37,7 @@ impl Laboratory {
         interrupt: Interrupt,
     ) -> Outcome<Self> {
         let log = Recorder::create(log)?;
-        let robot = Robot::connect(TracedPort::new(line, log.sink()), seed)?;
+        let robot = Robot::connect(TracedPort::new(line, log.sink(Duration::ZERO)), seed)?;
         Ok(Self {
             robot,
             log,

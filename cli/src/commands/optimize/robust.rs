@@ -1,15 +1,16 @@
 //! `--robust FIT.json`: the gait for a swimmer that is known as well as a calibration knows it.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::ValueEnum;
 use gait_optimizer::{Over, RobustError, RobustGait, Uncertainty, Values};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use super::answer::{Closing, Quarter};
 use super::timing::TimingAnswer;
 use crate::failure::{Failure, Outcome};
+use crate::fit_file::load_fit;
 use crate::quantity::Rows;
 
 /// What is uncertain, and what is made of it.
@@ -34,22 +35,6 @@ enum Which {
     Mean,
 }
 
-/// What is read of a fit.
-#[derive(Debug, Deserialize)]
-struct Fit {
-    sphere_radius_m: f64,
-    chi: f64,
-    intervals: Intervals,
-    correlation: Option<f64>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Intervals {
-    sphere_radius_m: [f64; 2],
-    chi: [f64; 2],
-    level: f64,
-}
-
 impl Robustly {
     /// What the fit leaves open and what shall be maximised, if that was asked for.
     pub(super) fn load(&self) -> Outcome<Option<(Uncertainty, Over)>> {
@@ -60,32 +45,8 @@ impl Robustly {
             Which::Worst => Over::Worst,
             Which::Mean => Over::Mean,
         };
-        Ok(Some((load(path)?, over)))
+        Ok(Some((load_fit(path)?, over)))
     }
-}
-
-fn load(path: &Path) -> Outcome<Uncertainty> {
-    let text = std::fs::read_to_string(path).map_err(|error| {
-        Failure::BadInput(format!("cannot read the fit {}: {error}", path.display()))
-    })?;
-    let fit: Fit = serde_json::from_str(&text).map_err(|error| {
-        Failure::BadInput(format!(
-            "{}:{}:{}: {error}; a fit is what swimmer calibrate --json prints",
-            path.display(),
-            error.line(),
-            error.column()
-        ))
-    })?;
-    let uncertainty = Uncertainty {
-        sphere_radius: fit.sphere_radius_m,
-        chi: fit.chi,
-        sphere_radius_interval: fit.intervals.sphere_radius_m,
-        chi_interval: fit.intervals.chi,
-        level: fit.intervals.level,
-        correlation: fit.correlation,
-    };
-    uncertainty.validate()?;
-    Ok(uncertainty)
 }
 
 /// A robust gait and what robustness costs and brings.

@@ -2,17 +2,17 @@
 
 use std::path::PathBuf;
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use host_link::port::{ListedPort, TracedPort, serial_ports};
 use host_link::session::SessionConfig;
-use host_link::{LinkError, Robot};
-use link_protocol::Telemetry;
+use host_link::{LinkError, Port as _, Robot};
+use link_protocol::{Joint, Telemetry};
 
 use super::find::{self, Answer};
 use super::holder::{Ask, HeldBy, Holder, Relayed};
 use super::key::KeyFile;
-use super::port::{AnyPort, Means, NotOpen, Opened, Pace, open};
+use super::port::{AnyPort, Means, NotOpen, Opened, Pace, fresh, open};
 use crate::failure::{Failure, Outcome};
 use crate::link_log::Recorder;
 use crate::output::aside;
@@ -37,6 +37,8 @@ pub(super) struct Access {
 /// A greeted robot, with all that a command needs beside it.
 pub(super) struct Line {
     pub(super) robot: Robot<AnyPort>,
+    /// The port's name.
+    name: String,
     holder: Holder,
     recorder: Option<Recorder>,
     /// The robot's clock at the telemetry seen last, µs.
@@ -59,6 +61,11 @@ pub(super) const LOOK_AGAIN: Duration = Duration::from_millis(50);
 pub(super) const BEAT: Duration = Duration::from_millis(20);
 
 impl Access {
+    /// Whether a port was named.
+    pub(super) fn names_a_port(&self) -> bool {
+        !self.port.is_empty()
+    }
+
     /// The same access with another log.
     pub(super) fn logging_to(&self, log: PathBuf) -> Self {
         Self {
@@ -113,20 +120,20 @@ impl Access {
         if let [name] = self.port.as_slice() {
             let means = self.means(pace)?;
             let opened = reach_alone(name, &means)?;
-            let port = traced(opened.port, recorder.as_ref());
+            let port = traced(opened.port, recorder.as_ref(), &opened.name);
             // From here on the port is ours: others are told, also while the robot is being greeted.
             let holder = Holder::announce(&opened.name, command);
             let robot = Robot::connect_with(port, means.session)?;
-            return Ok(Line::new(robot, holder, recorder));
+            return Line::new(opened.name, robot, holder, recorder);
         }
         let (name, robot) = self.find(pace)?;
         let holder = Holder::announce(&name, command);
-        let mut robot = robot.map_port(|port| traced(port, recorder.as_ref()));
+        let mut robot = robot.map_port(|port| traced(port, recorder.as_ref(), &name));
         if recorder.is_some() {
             // The greeting belongs to the log: without it nobody can tell which session follows.
             robot.reconnect()?;
         }
-        Ok(Line::new(robot, holder, recorder))
+        Line::new(name, robot, holder, recorder)
     }
 
     /// The port that was named, without a greeting; `None` where it must be looked for.
@@ -217,21 +224,52 @@ pub(super) fn greet(name: &str, means: &Means) -> Answer {
     greeted.map_err(|failure| failure.to_string())
 }
 
-fn traced(port: AnyPort, recorder: Option<&Recorder>) -> AnyPort {
-    match recorder {
-        Some(recorder) => Box::new(TracedPort::new(port, recorder.sink())),
-        None => port,
-    }
+fn traced(port: AnyPort, recorder: Option<&Recorder>, name: &str) -> AnyPort {
+    let Some(recorder) = recorder else {
+        return port;
+    };
+    let epoch = if fresh(name).is_some() {
+        Duration::ZERO
+    } else {
+        let today = SystemTime::now().duration_since(UNIX_EPOCH);
+        today.unwrap_or_default().saturating_sub(port.now())
+    };
+    Box::new(TracedPort::new(port, recorder.sink(epoch)))
 }
 
 impl Line {
-    fn new(robot: Robot<AnyPort>, holder: Holder, recorder: Option<Recorder>) -> Self {
-        Self {
+    fn new(
+        name: String,
+        robot: Robot<AnyPort>,
+        holder: Holder,
+        recorder: Option<Recorder>,
+    ) -> Outcome<Self> {
+        let mut line = Self {
             robot,
+            name,
             holder,
             recorder,
             seen_us: None,
+        };
+        if line.recorder.is_some() {
+            line.introduce()?;
         }
+        Ok(line)
+    }
+
+    /// Has the robot say what it is made of, so that a log alone is enough to live it again.
+    fn introduce(&mut self) -> Outcome {
+        let robot = &mut self.robot;
+        robot.configuration()?;
+        robot.servo(Joint::Front)?;
+        robot.servo(Joint::Back)?;
+        robot.status()?;
+        Ok(())
+    }
+
+    /// What the port is called.
+    pub(super) fn name(&self) -> &str {
+        &self.name
     }
 
     /// Lives on for a moment: listens, and does what other processes ask of the robot. Returns telemetry that is new.
@@ -253,7 +291,7 @@ impl Line {
         Ok(news)
     }
 
-    /// Whether another process waits for something, for calls that cannot [`beat`](Self::beat).
+    /// The robot, and who asks for what, for calls that cannot [`beat`](Self::beat).
     pub(super) fn split(&mut self) -> (&mut Robot<AnyPort>, &mut Holder) {
         (&mut self.robot, &mut self.holder)
     }

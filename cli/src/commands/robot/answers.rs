@@ -157,24 +157,30 @@ impl fmt::Display for Doing {
     }
 }
 
-fn battery(volts: Option<f64>) -> String {
+pub(super) fn battery(volts: Option<f64>) -> String {
     volts.map_or_else(
         || "not measured".to_owned(),
         |volts| format!("{volts:.2} V"),
     )
 }
 
+/// The set-points of a piece of telemetry, φ₁ and φ₂ in radians.
+pub(super) fn telemetry_angles(telemetry: &Telemetry) -> [f64; 2] {
+    telemetry
+        .setpoint
+        .map(|units| f64::from(units) * f64::from(link_protocol::ANGLE_UNIT_RAD))
+}
+
 /// One line of telemetry.
 pub(super) fn telemetry_line(telemetry: &Telemetry) -> String {
-    let degrees =
-        |units: i16| (f64::from(units) * f64::from(link_protocol::ANGLE_UNIT_RAD)).to_degrees();
+    let [front, back] = telemetry_angles(telemetry).map(f64::to_degrees);
     format!(
         "{:9.2} s  {:<9} cycle {:8.2}  φ {:+7.1}° {:+7.1}°  x {:+8.2} mm  y {:+7.2} mm  θ {:+6.1}°  {}  {} bad frames",
         std::time::Duration::from_micros(telemetry.robot_us).as_secs_f64(),
         state(telemetry.state),
         f64::from(telemetry.cycle) + f64::from(telemetry.phase) / 65_536.0,
-        degrees(telemetry.setpoint[0]),
-        degrees(telemetry.setpoint[1]),
+        front,
+        back,
         f64::from(telemetry.pose.x) * 1e3,
         f64::from(telemetry.pose.y) * 1e3,
         f64::from(telemetry.pose.theta).to_degrees(),
@@ -212,7 +218,7 @@ pub(super) fn cause(cause: StopCause) -> &'static str {
     }
 }
 
-fn flags(flags: Flags) -> Vec<&'static str> {
+pub(super) fn flags(flags: Flags) -> Vec<&'static str> {
     [
         (Flags::BATTERY_LOW, "battery low"),
         (Flags::RESET_LOOP, "reset loop"),

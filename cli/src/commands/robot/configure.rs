@@ -1,17 +1,16 @@
-//! `swimmer robot configure` and `trim`: what the robot must know of its body and its servos.
+//! `swimmer robot configure`: what the robot must know of its body.
 
 use std::fmt;
 
-use link_protocol::{Configuration, Joint};
+use link_protocol::Configuration;
 use serde::Serialize;
 use swimmer_files::ServoFile;
 use swimmer_model::Swimmer;
 use twin::configuration;
 
+use super::Configure;
 use super::access::Access;
-use super::answers::Trims;
 use super::port::Pace;
-use super::{Configure, Trim};
 use crate::arguments::load_swimmer;
 use crate::failure::Outcome;
 use crate::output::Output;
@@ -66,25 +65,6 @@ pub(super) fn configure(access: &Access, arguments: &Configure, output: Output) 
         max_angle_rad: wanted.max_angle,
         max_rate_rad_s: wanted.max_rate,
     });
-    line.close()
-}
-
-/// `swimmer robot trim`: sets what was named, then shows both.
-pub(super) fn trim(access: &Access, arguments: &Trim, output: Output) -> Outcome {
-    let mut line = access.connect("swimmer robot trim", Pace::AsFastAsPossible)?;
-    let robot = &mut line.robot;
-    for (joint, angle) in [
-        (Joint::Front, arguments.front),
-        (Joint::Back, arguments.back),
-    ] {
-        if let Some(angle) = angle {
-            robot.trim(joint, angle)?;
-        }
-    }
-    output.answer(&Trims::new(
-        robot.servo(Joint::Front)?.trim,
-        robot.servo(Joint::Back)?.trim,
-    ));
     line.close()
 }
 

@@ -203,7 +203,7 @@ fn millimetres(metres: f32) -> f64 {
     (f64::from(metres) * 1e5).round() / 1e2
 }
 
-fn board(board: Board) -> &'static str {
+pub(super) fn board(board: Board) -> &'static str {
     match board {
         Board::Twin => "twin",
         Board::NanoRp2040Connect => "Arduino Nano RP2040 Connect",

@@ -24,8 +24,6 @@ use crate::output::Output;
 
 /// Longest time from a stop to pulses off: a second of ramp, half a second of rest, and some for the link.
 const TO_REST: Duration = Duration::from_secs(5);
-/// Time after which the status is asked for when no telemetry tells it.
-const QUIET: Duration = Duration::from_secs(1);
 
 /// How a play ended.
 #[derive(Debug, Serialize)]
@@ -266,43 +264,40 @@ fn hold(line: &mut Line, interrupt: &Interrupt) -> Outcome {
     }
 }
 
-/// Waits for the end of the last cycle, with progress; Ctrl-C stops the robot.
+/// Waits for the end of the last cycle, with progress; Ctrl-C stops the robot. Other processes are served meanwhile.
 fn wait(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
     let status = line.robot.status()?;
     let mut shown = playing::Shown::new(Playing::of(&status));
-    let mut quiet = Duration::ZERO;
-    loop {
-        let news = line.beat();
-        let news = stopped_on_failure(&mut line.robot, news)?;
-        if interrupt.requested() {
-            drop(shown);
-            line.robot.stop()?;
-            wait_for_rest(&mut line.robot)?;
-            let status = line.robot.status()?;
-            return Err(Failure::Tried(format!(
-                "Ctrl-C: the robot was stopped after {} whole cycles",
-                status.cycle
-            )));
-        }
-        let over = if let Some(telemetry) = &news {
-            quiet = Duration::ZERO;
-            shown.tell(telemetry);
-            at_rest(telemetry.state, telemetry.cause)
-        } else {
-            quiet += super::access::BEAT;
-            quiet >= QUIET
-        };
-        if over {
-            quiet = Duration::ZERO;
-            let status = line.robot.status();
-            let status = stopped_on_failure(&mut line.robot, status)?;
-            if at_rest(status.state, status.cause) {
-                drop(shown);
-                output.answer(&Played::new(&finished(status)?, false));
-                return Ok(());
+    let (robot, holder) = line.split();
+    let status = loop {
+        let waited = robot.wait_while(|telemetry| {
+            if let Some(telemetry) = telemetry {
+                shown.tell(telemetry);
             }
+            if interrupt.requested() || holder.asked() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        });
+        match stopped_on_failure(robot, waited)? {
+            Some(status) => break status,
+            None if interrupt.requested() => {
+                drop(shown);
+                robot.stop()?;
+                wait_for_rest(robot)?;
+                let status = robot.status()?;
+                return Err(Failure::Tried(format!(
+                    "Ctrl-C: the robot was stopped after {} whole cycles",
+                    status.cycle
+                )));
+            }
+            None => holder.serve(robot),
         }
-    }
+    };
+    drop(shown);
+    output.answer(&Played::new(&status, false));
+    Ok(())
 }
 
 /// Passes a result on; a failure stops the robot first, as far as the link still allows.

@@ -42,6 +42,15 @@ impl Playing {
         Some((cycles - self.done).max(0.0) * self.period_s)
     }
 
+    /// How far it came, for a play that is over.
+    pub(super) fn so_far(&self) -> String {
+        match self.cycles {
+            _ if self.period_s <= 0.0 => "nothing played yet".to_owned(),
+            Some(cycles) => format!("played {:.2} of {cycles} cycles", self.done),
+            None => format!("played {:.2} cycles", self.done),
+        }
+    }
+
     /// Share of the play that is done; `None` for a play without end.
     pub(super) fn share(&self) -> Option<f64> {
         self.cycles
@@ -129,6 +138,8 @@ mod tests {
         };
         assert_eq!(endless.to_string(), "cycle 2.50, without end");
         assert_eq!((endless.share(), endless.remaining_s()), (None, None));
+        assert_eq!(play.so_far(), "played 2.50 of 10 cycles");
+        assert_eq!(endless.so_far(), "played 2.50 cycles");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use gait_player::GaitTable;
 use host_link::{LinkError, Port as _, Robot};
-use link_protocol::{MAX_KNOTS, TableInfo};
+use link_protocol::{Configuration, MAX_CHUNK, MAX_ENCODED, MAX_KNOTS, TableInfo};
 use serde::Serialize;
 use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
 use swimmer_model::Gait as _;
@@ -14,17 +14,20 @@ use swimmer_model::Gait as _;
 use super::access::{Access, Line};
 use super::answers::Gait;
 use super::configure::is_configured_as;
-use super::port::{AnyPort, Pace};
+use super::port::{AnyPort, BAUD, Pace};
+use super::preflight::{Player, Preflight};
 use super::{Owner, Upload};
 use crate::arguments::{load_gait, load_swimmer};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::output::Output;
+use crate::output::{Output, aside};
 use crate::progress::Progress;
 use crate::quantity;
 
 /// An upload over a link that loses frames may take this long.
 const PATIENCE: Duration = Duration::from_mins(2);
+/// A round trip that has not been measured yet.
+const ROUND_TRIP: Duration = Duration::from_millis(50);
 
 #[derive(Debug, Serialize)]
 struct Uploaded {
@@ -32,6 +35,10 @@ struct Uploaded {
     gait: Gait,
     bytes: usize,
     seconds: f64,
+    /// What the upload was expected to take.
+    predicted_seconds: f64,
+    /// `null` for a gait of which nothing can be foretold.
+    preflight: Option<Preflight>,
     #[serde(skip)]
     name: String,
 }
@@ -46,12 +53,63 @@ impl fmt::Display for Uploaded {
     }
 }
 
+/// A pre-flight alone.
+#[derive(Debug, Serialize)]
+struct Foretold {
+    preflight: Preflight,
+}
+
+impl fmt::Display for Foretold {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.preflight)
+    }
+}
+
 /// `swimmer robot upload`.
 pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcome {
     let interrupt = Interrupt::install()?;
     let gait = Prepared::new(&arguments.gait)?;
+    let file = arguments
+        .owner
+        .swimmer
+        .as_deref()
+        .map(load_swimmer)
+        .transpose()?;
+    if arguments.dry_run && !access.names_a_port() {
+        let Some(file) = &file else {
+            return Err(Failure::BadInput(
+                "say which swimmer shall play the gait: --swimmer, or --port of a robot that tells"
+                    .to_owned(),
+            ));
+        };
+        return foretell_alone(arguments, &gait, &Player::of_file(file), output);
+    }
     let mut line = access.connect("swimmer robot upload", Pace::AsFastAsPossible)?;
-    arguments.owner.check(&gait, &mut line.robot)?;
+    let configuration = line.robot.configuration()?;
+    let player = Player::of_robot(line.robot.info(), &configuration, file.as_ref());
+    if arguments.dry_run {
+        foretell_alone(arguments, &gait, &player, output)?;
+        return line.close();
+    }
+    if !arguments.owner.force {
+        gait.check_swimmer(&configuration, file.as_ref())?;
+    }
+    let preflight = match arguments
+        .preflight
+        .foretell(&gait.name, &gait.gait, &player)
+    {
+        Ok(preflight) => {
+            output.line(&preflight.to_string());
+            Some(preflight)
+        }
+        Err(Failure::Tried(reason)) => {
+            // The robot has the last word, and will say it.
+            aside(&format!("Nothing can be foretold: {reason}."));
+            None
+        }
+        Err(failure) => return Err(failure),
+    };
+    let predicted = predicted_time(&line.robot, gait.table.bytes().len());
     let begun = line.robot.port().now();
     let info = send(&mut line, &gait, &interrupt)?;
     let seconds = line.robot.port().now().saturating_sub(begun).as_secs_f64();
@@ -60,9 +118,36 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
         gait: Gait::new(&info),
         bytes,
         seconds,
+        predicted_seconds: predicted.as_secs_f64(),
+        preflight,
         name: gait.name,
     });
     line.close()
+}
+
+/// `--dry-run`: exit status 1 where the robot would refuse.
+fn foretell_alone(arguments: &Upload, gait: &Prepared, player: &Player, output: Output) -> Outcome {
+    let preflight = arguments
+        .preflight
+        .foretell(&gait.name, &gait.gait, player)?;
+    let refused = preflight.refused.clone();
+    output.answer(&Foretold { preflight });
+    match refused {
+        Some(reason) => Err(Failure::Answered(format!(
+            "the robot would refuse {}: {reason}",
+            gait.name
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// What an upload takes on a line without faults: the chunks' bytes at the line's speed, and a round trip for each of
+/// Begin, last chunk and Commit.
+fn predicted_time(robot: &Robot<AnyPort>, bytes: usize) -> Duration {
+    let on_the_line = bytes.div_ceil(MAX_CHUNK) * (MAX_ENCODED - MAX_CHUNK) + bytes;
+    let bytes_per_second = f64::from(BAUD) / 10.0;
+    let trip = robot.link_counters().round_trip.unwrap_or(ROUND_TRIP);
+    Duration::from_secs_f64(on_the_line as f64 / bytes_per_second) + 3 * trip
 }
 
 /// Uploads the gait of a play.
@@ -73,24 +158,19 @@ pub(super) fn before_play(
     interrupt: &Interrupt,
 ) -> Outcome {
     let gait = Prepared::new(gait)?;
-    owner.check(&gait, &mut line.robot)?;
+    if !owner.force {
+        let file = owner.swimmer.as_deref().map(load_swimmer).transpose()?;
+        let configuration = line.robot.configuration()?;
+        gait.check_swimmer(&configuration, file.as_ref())?;
+    }
     send(line, &gait, interrupt)?;
     Ok(())
-}
-
-impl Owner {
-    fn check(&self, gait: &Prepared, robot: &mut Robot<AnyPort>) -> Outcome {
-        if self.force {
-            return Ok(());
-        }
-        let named = self.swimmer.as_deref().map(load_swimmer).transpose()?;
-        gait.check_swimmer(robot, named.as_ref())
-    }
 }
 
 /// A gait ready to be sent.
 struct Prepared {
     name: String,
+    gait: AnyGait,
     table: GaitTable,
     /// Where the gait comes from a file that says so: whose it is.
     made_for: Option<MadeFor>,
@@ -115,7 +195,8 @@ impl Prepared {
             }
             GaitSpec::Circle { .. } | GaitSpec::Square { .. } => None,
         };
-        let table = table_of(&load_gait(spec)?).map_err(|error| {
+        let gait = load_gait(spec)?;
+        let table = table_of(&gait).map_err(|error| {
             Failure::BadInput(format!(
                 "the gait {} makes no table for the robot: {error}",
                 quantity::gait(spec)
@@ -123,6 +204,7 @@ impl Prepared {
         })?;
         Ok(Self {
             name: quantity::gait(spec),
+            gait,
             table,
             made_for,
         })
@@ -132,16 +214,15 @@ impl Prepared {
     ///
     /// The robot knows its body in single precision, the gait file names the swimmer by a fingerprint: so the swimmer that
     /// both may mean is looked for among the presets and the one that the operator names.
-    fn check_swimmer(&self, robot: &mut Robot<AnyPort>, named: Option<&SwimmerFile>) -> Outcome {
+    fn check_swimmer(&self, configuration: &Configuration, named: Option<&SwimmerFile>) -> Outcome {
         let Some(made_for) = &self.made_for else {
             return Ok(());
         };
-        let configuration = robot.configuration()?;
         let presets = SwimmerFile::PRESETS
             .iter()
             .filter_map(|name| SwimmerFile::preset(name));
         let known = presets.chain(named.cloned()).any(|file| {
-            file.hash() == made_for.hash && is_configured_as(&configuration, &file.swimmer)
+            file.hash() == made_for.hash && is_configured_as(configuration, &file.swimmer)
         });
         if known {
             return Ok(());
@@ -165,7 +246,12 @@ pub(crate) fn table_of(gait: &AnyGait) -> Result<GaitTable, gait_player::table::
 fn send(line: &mut Line, gait: &Prepared, interrupt: &Interrupt) -> Outcome<TableInfo> {
     let bytes = gait.table.bytes();
     let progress = Progress::of_bytes(bytes.len() as u64);
-    progress.doing(format!("uploading {}", gait.name));
+    let time = predicted_time(&line.robot, bytes.len());
+    progress.doing(format!(
+        "uploading {}, about {:.1} s",
+        gait.name,
+        time.as_secs_f64()
+    ));
     loop {
         let (robot, holder) = line.split();
         let sent = robot.upload(bytes, PATIENCE, |step| {

@@ -52,7 +52,7 @@ impl Playing {
 
 /// A cycle as the tank will see it.
 #[derive(Debug, Serialize)]
-pub(super) struct PlayedAnswer {
+pub(crate) struct PlayedAnswer {
     period_s: f64,
     knots: usize,
     pulse_step_ns: u32,
@@ -96,7 +96,7 @@ struct ReachAnswer {
 }
 
 impl PlayedAnswer {
-    fn new(forecast: &Forecast) -> Self {
+    pub(crate) fn new(forecast: &Forecast) -> Self {
         let played = forecast.ends().map(|(_, played)| *played);
         let of = |value: fn(&Loss) -> f64| played.as_ref().map_or(f64::NAN, value);
         let radius = forecast.turn_radius();
@@ -140,7 +140,7 @@ impl PlayedAnswer {
     }
 
     /// Lines for people.
-    pub(super) fn rows(&self, rows: &mut Rows) {
+    pub(crate) fn rows(&self, rows: &mut Rows) {
         let share = |share: Option<f64>| {
             share.map_or_else(String::new, |share| {
                 format!("   {:.3} %", tidy(share * 100.0))

@@ -1,0 +1,372 @@
+//! What the robot and its tank will make of a gait, told before it is sent.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use gait_optimizer::Uncertainty;
+use gait_optimizer::playable::{Forecast, Meeting, Played, Servos, Tank, forecast, until_wall};
+use link_protocol::{ANGLE_UNIT_RAD, Board, Configuration, HelloReply, MAX_KNOTS, TangentialDrag};
+use nalgebra::Vector2;
+use serde::Serialize;
+use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
+use swimmer_model::{Links, Model, Pose, Swimmer};
+
+use super::configure::is_configured_as;
+use super::playing::duration;
+use crate::arguments::{angle, seconds};
+use crate::commands::simulate::played::PlayedAnswer;
+use crate::failure::{Failure, Outcome};
+use crate::fit_file::load_fit;
+use crate::quantity::{self, Rows};
+
+/// How and where the gait is to be played.
+#[derive(Debug, clap::Args)]
+pub(super) struct Arguments {
+    /// Foretell for this duration of a cycle
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "30")]
+    period: f64,
+    /// Foretell with this fit's error (of swimmer calibrate: fit.json, or its --json)
+    #[arg(long, value_name = "FIT.json")]
+    fit: Option<PathBuf>,
+    /// Foretell when the swimmer meets a wall of this tank: length x width, m
+    #[arg(long, value_name = "LENGTHxWIDTH", value_parser = tank)]
+    tank: Option<Tank>,
+    /// Where in the tank it starts: from its centre along length and width, m
+    #[arg(long, value_name = "X,Y", value_parser = place, requires = "tank", allow_hyphen_values = true, default_value = "0,0")]
+    start: Place,
+    /// Where the middle link heads at the start, from the tank's length
+    #[arg(long, value_name = "ANGLE", value_parser = angle, requires = "tank", allow_hyphen_values = true, default_value = "0deg")]
+    heading: f64,
+}
+
+/// A place in the tank, from its centre \[m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Place(Vector2<f64>);
+
+/// The swimmer that shall play, and its servos.
+pub(super) struct Player {
+    name: String,
+    swimmer: Swimmer<f64>,
+    servos: Servos,
+}
+
+impl Player {
+    /// The swimmer of a file alone, without a robot.
+    pub(super) fn of_file(file: &SwimmerFile) -> Self {
+        Self {
+            name: file.name.clone(),
+            swimmer: file.swimmer,
+            servos: Servos::on_the_robot(file.servo.unwrap_or_default()),
+        }
+    }
+
+    /// The robot as it is configured; body and servos of the file, where one is named, with the robot's limits.
+    pub(super) fn of_robot(
+        hello: &HelloReply,
+        configuration: &Configuration,
+        file: Option<&SwimmerFile>,
+    ) -> Self {
+        let servo = file.and_then(|file| file.servo).unwrap_or_default();
+        let (name, swimmer) = match file {
+            Some(file) => (file.name.clone(), file.swimmer),
+            None => configured(configuration),
+        };
+        Self {
+            name,
+            swimmer,
+            servos: Servos {
+                file: ServoFile {
+                    max_angle: double(configuration.max_angle.min(hello.limits.max_angle)),
+                    max_rate: double(configuration.max_rate.min(hello.limits.max_rate)),
+                    ..servo
+                },
+                pulse_step_ns: match hello.board {
+                    Board::Twin => 0,
+                    Board::NanoRp2040Connect | Board::Pico => Servos::ROBOT_PULSE_STEP_NS,
+                },
+            },
+        }
+    }
+}
+
+/// The swimmer that a robot believes to be, with the name of the preset that it is.
+pub(super) fn configured(configuration: &Configuration) -> (String, Swimmer<f64>) {
+    let presets = SwimmerFile::PRESETS
+        .iter()
+        .filter_map(|name| SwimmerFile::preset(name));
+    let known = presets
+        .into_iter()
+        .find(|file| is_configured_as(configuration, &file.swimmer));
+    if let Some(file) = known {
+        return (file.name, file.swimmer);
+    }
+    let swimmer = Swimmer {
+        links: Links {
+            middle: double(configuration.middle_m),
+            front: double(configuration.front_m),
+            back: double(configuration.back_m),
+        },
+        chi: double(configuration.chi),
+        tangential_drag: match configuration.tangential_drag {
+            TangentialDrag::LogAspect(value) => {
+                swimmer_model::TangentialDrag::LogAspect(double(value))
+            }
+            TangentialDrag::HalfThickness(value) => {
+                swimmer_model::TangentialDrag::HalfThickness(double(value))
+            }
+            TangentialDrag::OverViscosity(value) => {
+                swimmer_model::TangentialDrag::OverViscosity(double(value))
+            }
+        },
+        sphere_radius: double(configuration.sphere_radius_m),
+    };
+    ("as configured on the robot".to_owned(), swimmer)
+}
+
+/// The decimal number that was meant by one in single precision.
+fn double(single: f32) -> f64 {
+    f64::from_str(&single.to_string()).unwrap_or_else(|_| single.into())
+}
+
+/// What is foretold.
+#[derive(Debug, Serialize)]
+pub(super) struct Preflight {
+    gait: String,
+    swimmer: String,
+    max_rate_rad_s: f64,
+    /// What the robot allows.
+    max_rate_allowed_rad_s: f64,
+    /// Unit of the table's angles.
+    table_step_rad: f64,
+    /// What one step of the pulses' timer turns a servo.
+    pulse_step_rad: f64,
+    dead_band_rad: f64,
+    /// Half width of the interval of the displacement, from the fit; `null` without one.
+    displacement_error_m: Option<f64>,
+    /// Level of that interval.
+    level: Option<f64>,
+    tank: Option<TankAnswer>,
+    #[serde(flatten)]
+    played: PlayedAnswer,
+    #[serde(skip)]
+    pub(super) refused: Option<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct TankAnswer {
+    length_m: f64,
+    width_m: f64,
+    /// `null`: no wall is met.
+    cycles: Option<f64>,
+    seconds: Option<f64>,
+    meets: Option<&'static str>,
+    at_m: Option<[f64; 2]>,
+}
+
+impl Arguments {
+    /// What is foretold of a gait.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`] for a fit or a swimmer that is none, [`Failure::Tried`] for a gait that no robot can play.
+    pub(super) fn foretell(
+        &self,
+        name: &str,
+        gait: &AnyGait,
+        player: &Player,
+    ) -> Outcome<Preflight> {
+        let model = Model::new(&player.swimmer).map_err(|error| {
+            Failure::BadInput(format!(
+                "the swimmer `{}` cannot swim: {error}",
+                player.name
+            ))
+        })?;
+        let played = Played {
+            servos: player.servos,
+            period: self.period,
+            knots: MAX_KNOTS,
+        };
+        let told = forecast(&model, gait, &played).map_err(|error| Failure::tried(&error))?;
+        let fit = self.fit.as_deref().map(load_fit).transpose()?;
+        let error = fit
+            .as_ref()
+            .map(|fit: &Uncertainty| told.displacement_error(&model, fit))
+            .transpose()
+            .map_err(|error| Failure::bad_input(&error))?;
+        let meeting = |tank: &Tank| {
+            let Place(start) = self.start;
+            let start = Pose::new(start.x, start.y, self.heading);
+            until_wall(&model, &told.way, tank, &start)
+        };
+        Ok(Preflight {
+            displacement_error_m: error,
+            level: fit.map(|fit| fit.level),
+            tank: self
+                .tank
+                .as_ref()
+                .map(|tank| TankAnswer::new(tank, meeting(tank), self.period)),
+            ..Preflight::new(name, player, &told)
+        })
+    }
+}
+
+impl Preflight {
+    fn new(name: &str, player: &Player, told: &Forecast) -> Self {
+        let servos = &told.played.servos;
+        let allowed = servos.file.max_rate;
+        Self {
+            gait: name.to_owned(),
+            swimmer: player.name.clone(),
+            // The shortest period is where the fastest joint just reaches what is allowed.
+            max_rate_rad_s: allowed * told.verdict.min_period / told.played.period,
+            max_rate_allowed_rad_s: allowed,
+            table_step_rad: double(ANGLE_UNIT_RAD),
+            pulse_step_rad: f64::from(servos.pulse_step_ns) * 1e-3 * servos.file.slope_rad_per_us,
+            dead_band_rad: servos.file.dead_band,
+            displacement_error_m: None,
+            level: None,
+            tank: None,
+            played: PlayedAnswer::new(told),
+            refused: told.verdict.refused.clone(),
+        }
+    }
+}
+
+impl fmt::Display for Preflight {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows = Rows::default();
+        rows.row(
+            "fastest joint",
+            format!(
+                "{}/s of {}/s",
+                quantity::angle(self.max_rate_rad_s),
+                quantity::angle(self.max_rate_allowed_rad_s)
+            ),
+        )
+        .row(
+            "finest steps",
+            format!(
+                "{:.4}° in the table, {:.4}° in the pulses, dead band {:.3}°",
+                self.table_step_rad.to_degrees(),
+                self.pulse_step_rad.to_degrees(),
+                self.dead_band_rad.to_degrees()
+            ),
+        );
+        self.played.rows(&mut rows);
+        rows.row(
+            "error of X",
+            match (self.displacement_error_m, self.level) {
+                (Some(error), Some(level)) => format!(
+                    "±{:.3} mm ({:.0} %, from the fit)",
+                    error * 1e3,
+                    level * 100.0
+                ),
+                _ => "not known: name a fit with --fit".to_owned(),
+            },
+        );
+        if let Some(tank) = &self.tank {
+            rows.row("tank", tank.to_string());
+        }
+        rows.row(
+            "robot",
+            if self.refused.is_none() {
+                "will play it"
+            } else {
+                "will refuse it"
+            },
+        );
+        write!(
+            f,
+            "Pre-flight of {}, swimmer {}\n{rows}",
+            self.gait, self.swimmer
+        )
+    }
+}
+
+impl TankAnswer {
+    fn new(tank: &Tank, meeting: Option<Meeting>, period: f64) -> Self {
+        Self {
+            length_m: tank.length,
+            width_m: tank.width,
+            cycles: meeting.map(|meeting| meeting.cycles),
+            seconds: meeting.map(|meeting| meeting.cycles * period),
+            meets: meeting.map(|meeting| meeting.part.word()),
+            at_m: meeting.map(|meeting| meeting.at.into()),
+        }
+    }
+}
+
+impl fmt::Display for TankAnswer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} m by {} m: ", self.length_m, self.width_m)?;
+        match (self.cycles, self.seconds, self.meets, self.at_m) {
+            (Some(cycles), _, Some(part), _) if cycles <= 0.0 => {
+                write!(f, "too small: {part} meets the wall before the first cycle")
+            }
+            (Some(cycles), Some(seconds), Some(part), Some([x, y])) => write!(
+                f,
+                "{part} meets the wall after {cycles:.1} cycles ({}), {:.0} mm along and {:.0} mm across from the centre",
+                duration(seconds),
+                x * 1e3,
+                y * 1e3
+            ),
+            _ => write!(f, "no wall is met"),
+        }
+    }
+}
+
+fn tank(text: &str) -> Result<Tank, String> {
+    let sides = text.split_once(['x', '×']).map(|(length, width)| {
+        let number = |text: &str| f64::from_str(text.trim().trim_end_matches('m').trim());
+        (number(length), number(width))
+    });
+    match sides {
+        Some((Ok(length), Ok(width)))
+            if length > 0.0 && width > 0.0 && length.is_finite() && width.is_finite() =>
+        {
+            Ok(Tank { length, width })
+        }
+        _ => Err("write length and width in metres, as 1.0x0.6".to_owned()),
+    }
+}
+
+fn place(text: &str) -> Result<Place, String> {
+    let numbers = text
+        .split_once(',')
+        .map(|(x, y)| (f64::from_str(x.trim()), f64::from_str(y.trim())));
+    match numbers {
+        Some((Ok(x), Ok(y))) if x.is_finite() && y.is_finite() => Ok(Place(Vector2::new(x, y))),
+        _ => Err("write two lengths in metres from the tank's centre, as 0.1,-0.2".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tanks_and_places_are_read() {
+        let read = |text| tank(text).map(|tank| (tank.length, tank.width));
+        assert_eq!(read("1.0x0.6"), Ok((1.0, 0.6)));
+        assert_eq!(read("2 m × 1 m"), Ok((2.0, 1.0)));
+        for text in ["1.0", "x", "0x1", "1x-1", "1xnan", "axb", "1x2x3"] {
+            assert!(tank(text).is_err(), "{text}");
+        }
+        assert_eq!(place("0.1,-0.2"), Ok(Place(Vector2::new(0.1, -0.2))));
+        for text in ["", "1", "1,", "nan,0", "1,2,3"] {
+            assert!(place(text).is_err(), "{text}");
+        }
+    }
+
+    /// A robot in single precision is taken for the decimal swimmer that it was told.
+    #[test]
+    fn a_configured_robot_is_its_preset_or_its_own_numbers() {
+        let robot = SwimmerFile::preset("robot").unwrap();
+        let told = twin::configuration(&robot.swimmer, &ServoFile::default());
+        assert_eq!(configured(&told), (robot.name, robot.swimmer));
+        let other = Configuration { chi: 3.21, ..told };
+        let (name, swimmer) = configured(&other);
+        assert_eq!(name, "as configured on the robot");
+        assert_eq!((swimmer.chi, swimmer.links.front), (3.21, 0.137));
+    }
+}

@@ -1,0 +1,164 @@
+//! `swimmer robot trim`: the servos' trims, named on the command line or nudged at the bench with keys.
+//!
+//! At the bench the operator powers the servos (they hold neutral), nudges until the joints are straight, and saves. Each nudge
+//! goes to the robot at once; it stores what it has when the pulses are off again. Leaving without saving puts the trims back.
+
+mod nudging;
+
+use std::io::{self, IsTerminal as _};
+use std::time::Duration;
+
+use crossterm::event::{self, Event};
+use link_protocol::{ANGLE_UNIT_RAD, Flags, Joint, StateName};
+use ratatui::DefaultTerminal;
+
+use self::nudging::{Nudging, Wish};
+use super::Trim;
+use super::access::{Access, Line};
+use super::answers::Trims;
+use super::motion::wait_for_rest;
+use super::port::Pace;
+use super::watch::no_terminal;
+use crate::failure::{Failure, Outcome};
+use crate::interrupt::Interrupt;
+use crate::output::Output;
+
+/// Beyond this a servo horn sits on the wrong tooth, or degrees were meant and radians written.
+const LARGEST_RAD: f64 = 0.524;
+/// Storing takes a second at most, and is tried again after a failure.
+const TO_STORE: Duration = Duration::from_secs(5);
+
+/// `swimmer robot trim`: sets what was named, then shows both; on a terminal, with nothing named, nudges.
+pub(super) fn trim(access: &Access, arguments: &Trim, output: Output) -> Outcome {
+    let named = [
+        (Joint::Front, arguments.front),
+        (Joint::Back, arguments.back),
+    ];
+    for (joint, angle) in named {
+        if let Some(angle) = angle.filter(|angle| angle.abs() > LARGEST_RAD) {
+            return Err(Failure::BadInput(format!(
+                "a trim of {:.1}° for the {joint:?} joint is beyond ±30°: write degrees as {angle}deg, or set the servo's horn \
+                 anew",
+                angle.to_degrees()
+            )));
+        }
+    }
+    let nothing_named = named.iter().all(|(_, angle)| angle.is_none());
+    let at_a_terminal = io::stdin().is_terminal() && io::stdout().is_terminal();
+    if nothing_named && at_a_terminal && !output.json {
+        return nudge(access, output);
+    }
+    let mut line = access.connect("swimmer robot trim", Pace::AsFastAsPossible)?;
+    for (joint, angle) in named {
+        if let Some(angle) = angle {
+            line.robot.trim(joint, angle)?;
+        }
+    }
+    let [front, back] = trims(&mut line)?;
+    output.answer(&Trims::new(front, back));
+    line.close()
+}
+
+fn trims(line: &mut Line) -> Outcome<[i16; 2]> {
+    Ok([
+        line.robot.servo(Joint::Front)?.trim,
+        line.robot.servo(Joint::Back)?.trim,
+    ])
+}
+
+/// Nudges with keys.
+fn nudge(access: &Access, output: Output) -> Outcome {
+    let interrupt = Interrupt::install()?;
+    let mut line = access.connect("swimmer robot trim", Pace::RealTime)?;
+    let before = trims(&mut line)?;
+    let mut nudging = Nudging::new(before.map(degrees));
+    let mut terminal = ratatui::try_init().map_err(no_terminal)?;
+    let ended = bench(&mut terminal, &mut line, &mut nudging, &interrupt);
+    ratatui::restore();
+    let saved = matches!(ended, Ok(Wish::Save));
+    // Power off first; what is in force then is what the robot stores.
+    line.robot.stop()?;
+    wait_for_rest(&mut line.robot)?;
+    if !saved {
+        for (joint, trim) in [Joint::Front, Joint::Back].into_iter().zip(before) {
+            line.robot.trim(joint, degrees(trim).to_radians())?;
+        }
+    }
+    stored(&mut line)?;
+    ended?;
+    let [front, back] = trims(&mut line)?;
+    output.line(if saved {
+        "Saved on the robot."
+    } else {
+        "Not saved: the trims are as before."
+    });
+    output.answer(&Trims::new(front, back));
+    line.close()
+}
+
+fn degrees(units: i16) -> f64 {
+    (f64::from(units) * f64::from(ANGLE_UNIT_RAD)).to_degrees()
+}
+
+/// Waits until the robot has stored its settings.
+fn stored(line: &mut Line) -> Outcome {
+    let mut waited = Duration::ZERO;
+    loop {
+        let status = line.robot.status()?;
+        if !status.flags.contains(Flags::UNSAVED) {
+            return Ok(());
+        }
+        if status.flags.contains(Flags::STORAGE_FAILED) || waited > TO_STORE {
+            return Err(Failure::Tried(
+                "the trims are in force but the robot could not store them: they last until its power goes; try again"
+                    .to_owned(),
+            ));
+        }
+        line.beat()?;
+        waited += super::access::BEAT;
+    }
+}
+
+/// Until the operator saves or leaves.
+fn bench(
+    terminal: &mut DefaultTerminal,
+    line: &mut Line,
+    nudging: &mut Nudging,
+    interrupt: &Interrupt,
+) -> Outcome<Wish> {
+    loop {
+        if let Some(telemetry) = line.beat()? {
+            nudging.state = Some(telemetry.state);
+        }
+        if interrupt.requested() {
+            return Ok(Wish::Leave);
+        }
+        while event::poll(Duration::ZERO).map_err(no_terminal)? {
+            let Event::Key(key) = event::read().map_err(no_terminal)? else {
+                continue;
+            };
+            match nudging.press(key) {
+                Some(wish @ (Wish::Save | Wish::Leave)) => return Ok(wish),
+                Some(Wish::Turn(joint)) => {
+                    let angle = nudging.angle(joint).to_radians();
+                    line.robot.trim(joint, angle)?;
+                }
+                Some(Wish::Power) => {
+                    let off = matches!(
+                        nudging.state,
+                        None | Some(StateName::Stopped | StateName::EStopped)
+                    );
+                    if off {
+                        line.robot.arm(false)?;
+                    } else {
+                        line.robot.stop()?;
+                    }
+                }
+                None => {}
+            }
+        }
+        terminal
+            .draw(|frame| nudging.draw(frame))
+            .map_err(no_terminal)?;
+    }
+}

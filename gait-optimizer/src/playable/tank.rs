@@ -1,0 +1,194 @@
+//! How far a swimmer comes before it meets a wall of its tank.
+
+use nalgebra::Vector2;
+use swimmer_model::{Gait, Model, Pose, trajectory};
+
+use super::forecast::tolerance;
+
+/// A rectangular tank, inner measures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tank {
+    /// Along x \[m\].
+    pub length: f64,
+    /// Along y \[m\].
+    pub width: f64,
+}
+
+/// A part of the body that meets the wall.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Part {
+    /// The tip of the back link.
+    BackTip,
+    /// The back joint.
+    BackJoint,
+    /// The front joint.
+    FrontJoint,
+    /// The tip of the front link.
+    FrontTip,
+    /// The sphere on the middle link.
+    Sphere,
+}
+
+impl Part {
+    /// In words.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::BackTip => "the back link's tip",
+            Self::BackJoint => "the back joint",
+            Self::FrontJoint => "the front joint",
+            Self::FrontTip => "the front link's tip",
+            Self::Sphere => "the sphere",
+        }
+    }
+}
+
+/// Where a swimmer meets the wall.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Meeting {
+    /// Cycles until then, with the fraction of the last one; 0 where it does not fit into the tank at the start.
+    pub cycles: f64,
+    /// With what.
+    pub part: Part,
+    /// Where, from the tank's centre \[m\].
+    pub at: Vector2<f64>,
+}
+
+/// Looks at the body a cycle.
+const LOOKS: usize = 360;
+/// Cycles that are looked at: a month of 30 s each.
+const MOST_CYCLES: u32 = 90_000;
+
+/// When a swimmer that starts at a pose (of its middle link at the gait's first shape, from the tank's centre, heading from the
+/// tank's x) and swims this gait over and over meets a wall. `None`: not within 90 000 cycles, or never because it comes round
+/// to where it was.
+///
+/// The links are lines and the sphere a disc; walls do not slow the swimmer before they are met.
+pub fn until_wall<G: Gait<f64> + ?Sized>(
+    model: &Model<f64>,
+    gait: &G,
+    tank: &Tank,
+    start: &Pose<f64>,
+) -> Option<Meeting> {
+    let mut cycle: Vec<(f64, Pose<f64>, Vector2<f64>)> = Vec::with_capacity(LOOKS + 1);
+    trajectory(model, gait, &tolerance(), LOOKS, |point| {
+        cycle.push((point.u, point.pose, point.phi));
+    });
+    let net = cycle.last().map(|(_, pose, _)| *pose)?;
+    let swimmer = model.swimmer();
+    // No part of the body is further than this from where the cycle began.
+    let reach = cycle
+        .iter()
+        .map(|(_, pose, _)| pose.position().norm())
+        .fold(0.0, f64::max)
+        + swimmer.total_length().max(swimmer.sphere_radius);
+    let (half_length, half_width) = (0.5 * tank.length, 0.5 * tank.width);
+    let mut began = *start;
+    let mut turned: f64 = 0.0;
+    for number in 0..MOST_CYCLES {
+        let far_from_walls =
+            began.x.abs() + reach < half_length && began.y.abs() + reach < half_width;
+        if !far_from_walls {
+            for (u, pose, phi) in &cycle {
+                let pose = began * *pose;
+                let [back_tip, back, front, front_tip] = swimmer.links.outline(phi);
+                let parts = [
+                    (Part::BackTip, back_tip, 0.0),
+                    (Part::FrontTip, front_tip, 0.0),
+                    (Part::Sphere, Vector2::zeros(), swimmer.sphere_radius),
+                    (Part::BackJoint, back, 0.0),
+                    (Part::FrontJoint, front, 0.0),
+                ];
+                for (part, point, radius) in parts {
+                    let at = pose.transform(&point);
+                    if at.x.abs() + radius >= half_length || at.y.abs() + radius >= half_width {
+                        return Some(Meeting {
+                            cycles: f64::from(number) + u,
+                            part,
+                            at,
+                        });
+                    }
+                }
+            }
+        }
+        began = began * net;
+        turned += net.theta;
+        // A swimmer that turns goes round a circle, and after two rounds has been everywhere on it.
+        if turned.abs() > 2.0 * std::f64::consts::TAU {
+            return None;
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use swimmer_files::AnyGait;
+    use swimmer_model::{Swimmer, Tolerance, swim};
+
+    fn robot() -> Model<f64> {
+        Model::new(&Swimmer::robot()).unwrap()
+    }
+
+    const TANK: Tank = Tank {
+        length: 1.0,
+        width: 0.6,
+    };
+
+    /// A gait without rotation goes straight: the last cycle is where the body's foremost reach within a cycle, carried on by
+    /// the net displacement, passes the wall.
+    #[test]
+    fn a_straight_swimmer_meets_the_end_where_arithmetic_says() {
+        let (model, gait) = (robot(), AnyGait::circle(1.2));
+        let net = swim(&model, &gait, &Tolerance::default()).displacement.x;
+        let meeting = until_wall(&model, &gait, &TANK, &Pose::identity()).unwrap();
+        let mut foremost: f64 = 0.0;
+        trajectory(&model, &gait, &tolerance(), LOOKS, |point| {
+            for corner in model.swimmer().links.outline(&point.phi) {
+                foremost = foremost.max(point.pose.transform(&corner).x);
+            }
+        });
+        let expected = (0.5 - foremost) / net;
+        assert!(
+            (meeting.cycles - expected).abs() <= 1.0,
+            "{} cycles, {expected} by arithmetic",
+            meeting.cycles
+        );
+        assert!((meeting.at.x - 0.5).abs() < net, "{meeting:?}");
+        // A longer tank is longer by what the net displacement needs.
+        let longer = Tank {
+            length: 2.0,
+            ..TANK
+        };
+        let later = until_wall(&model, &gait, &longer, &Pose::identity()).unwrap();
+        assert!((later.cycles - meeting.cycles - 0.5 / net).abs() <= 1.0);
+    }
+
+    #[test]
+    fn reversed_it_meets_the_other_end_and_across_the_side() {
+        let (model, gait) = (robot(), AnyGait::circle(1.2));
+        let back = gait.clone().reversed_if(true);
+        let meeting = until_wall(&model, &back, &TANK, &Pose::identity()).unwrap();
+        assert!(meeting.at.x < -0.49, "{meeting:?}");
+        let across = Pose::new(0.0, 0.0, std::f64::consts::FRAC_PI_2);
+        let side = until_wall(&model, &gait, &TANK, &across).unwrap();
+        assert!(side.cycles < meeting.cycles && side.at.y > 0.29, "{side:?}");
+    }
+
+    #[test]
+    fn a_tank_that_is_too_small_is_met_at_once_and_a_still_swimmer_never() {
+        let small = Tank {
+            length: 0.2,
+            width: 0.6,
+        };
+        let (model, gait) = (robot(), AnyGait::circle(0.5));
+        let meeting = until_wall(&model, &gait, &small, &Pose::identity()).unwrap();
+        assert!(meeting.cycles <= 0.0, "{meeting:?}");
+        let still = AnyGait::circle(1e-9);
+        let wide = Tank {
+            length: 10.0,
+            width: 10.0,
+        };
+        assert_eq!(until_wall(&model, &still, &wide, &Pose::identity()), None);
+    }
+}

@@ -1,0 +1,207 @@
+//! A link log lived again gives the robot's own set-points and pulses; a log that was tampered with does not.
+
+use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use gait_player::GaitTable;
+use host_link::port::{Direction, FaultPlan, Faults, FaultyPort, TracedFrame, TracedPort};
+use host_link::session::ClockSamples;
+use host_link::{Port, Robot};
+use link_protocol::{Decoder, Header, MAX_ENCODED, Message, Play, Request, encode};
+use swimmer_files::{LinkFrame, SwimmerFile};
+use twin::{ReplayError, Twin, TwinConfig, TwinPort, WireSpeed, replay};
+
+fn table(amplitude: f64) -> GaitTable {
+    GaitTable::from_fn(64, |u| {
+        let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
+        [amplitude * cos, amplitude * sin]
+    })
+    .unwrap()
+}
+
+fn message(bytes: &[u8]) -> Option<(Header, Message)> {
+    let mut decoder = Decoder::new();
+    let received = bytes.iter().find_map(|&byte| decoder.push(byte))?;
+    Some((received.header, received.message.ok()?))
+}
+
+/// The frames of a session, with both clocks as a recorder keeps them.
+fn recorded(
+    port: impl Port + 'static,
+    act: impl FnOnce(&mut Robot<Box<dyn Port>>),
+) -> Vec<LinkFrame> {
+    let frames: Arc<Mutex<Vec<LinkFrame>>> = Arc::default();
+    let sink = Arc::clone(&frames);
+    let mut samples = ClockSamples::default();
+    let port: Box<dyn Port> = Box::new(TracedPort::new(port, move |frame: TracedFrame<'_>| {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few seconds
+        let mut robot_time_us = samples
+            .fit()
+            .map(|fit| (fit.robot_time(frame.at).max(0.0) * 1e6) as u64);
+        if let (Direction::ToHost, Some((_, Message::Pong(pong)))) =
+            (frame.direction, message(frame.bytes))
+        {
+            samples.push(&pong, frame.at);
+            robot_time_us = Some(pong.sent_us);
+        }
+        sink.lock().unwrap().push(LinkFrame {
+            direction: match frame.direction {
+                Direction::ToRobot => swimmer_files::Direction::ToRobot,
+                Direction::ToHost => swimmer_files::Direction::FromRobot,
+            },
+            host_time_ns: u64::try_from(frame.at.as_nanos()).unwrap(),
+            robot_time_us,
+            bytes: frame.bytes.to_vec(),
+        });
+    }));
+    let mut robot = Robot::connect(port, 7).unwrap();
+    act(&mut robot);
+    drop(robot);
+    Arc::into_inner(frames).unwrap().into_inner().unwrap()
+}
+
+fn twin() -> TwinPort {
+    let config = TwinConfig::new(&SwimmerFile::preset("robot").unwrap(), 3);
+    TwinPort::new(Twin::new(config).unwrap(), WireSpeed::robot())
+}
+
+fn upload(robot: &mut Robot<Box<dyn Port>>, table: &GaitTable) {
+    let patience = Duration::from_mins(2);
+    robot
+        .upload(table.bytes(), patience, |_| ControlFlow::Continue(()))
+        .unwrap();
+}
+
+fn live(robot: &mut Robot<Box<dyn Port>>, seconds: f64) {
+    let time = Duration::from_secs_f64(seconds);
+    robot.listen(time, |_| ControlFlow::Continue(())).unwrap();
+}
+
+/// Everything that moves a robot, at moments that fit no tick: a pause within a cycle, a gait swapped while playing, a stop, a
+/// second play to its end, an e-stop and what clears it.
+fn everything(robot: &mut Robot<Box<dyn Port>>) {
+    live(robot, 1.003);
+    upload(robot, &table(1.0));
+    robot.arm(false).unwrap();
+    robot.play(0, Duration::from_millis(4321), false).unwrap();
+    live(robot, 5.137);
+    robot.pause(false).unwrap();
+    live(robot, 0.777);
+    robot.resume().unwrap();
+    live(robot, 1.501);
+    upload(robot, &table(0.7));
+    live(robot, 6.0);
+    robot.stop().unwrap();
+    live(robot, 2.513);
+    robot.arm(false).unwrap();
+    robot.play(2, Duration::from_secs(3), false).unwrap();
+    robot
+        .wait_until_finished(|_| ControlFlow::Continue(()))
+        .unwrap();
+    live(robot, 2.0);
+    robot.arm(false).unwrap();
+    live(robot, 0.5);
+    robot.estop().unwrap();
+    live(robot, 0.5);
+    robot.arm(true).unwrap();
+    live(robot, 0.3);
+    robot.stop().unwrap();
+    live(robot, 2.0);
+}
+
+#[test]
+fn a_log_gives_the_same_pulses() {
+    let frames = recorded(twin(), everything);
+    let told = replay(&frames, None).unwrap();
+    assert_eq!(told.different, 0, "{told:#?}");
+    assert!(told.compared > 600 && told.requests == 13, "{told:?}");
+    assert_eq!(told.missing_table, None);
+}
+
+#[test]
+fn so_does_one_of_a_link_that_drops_and_delays() {
+    let faults: Faults = "drop=5%,delay=60".parse().unwrap();
+    let faulty = FaultyPort::new(twin(), FaultPlan::at_host(faults), 5);
+    let frames = recorded(faulty, everything);
+    let told = replay(&frames, None).unwrap();
+    assert_eq!(told.different, 0, "{told:#?}");
+    assert!(told.compared > 500, "{told:?}");
+}
+
+/// Another period in the log's Play, and the brain plays otherwise than the robot did.
+#[test]
+fn a_log_that_was_tampered_with_does_not() {
+    let mut frames = recorded(twin(), everything);
+    for frame in &mut frames {
+        let Some((header, Message::Request(Request::Play(play)))) = message(&frame.bytes) else {
+            continue;
+        };
+        let play = Play {
+            period_us: play.period_us + 10_000,
+            ..play
+        };
+        let mut bytes = [0; MAX_ENCODED];
+        let length = encode(header, &Message::Request(Request::Play(play)), &mut bytes).unwrap();
+        frame.bytes = bytes[..length].to_vec();
+    }
+    let told = replay(&frames, None).unwrap();
+    assert!(told.different > 100, "{told:?}");
+    let first = told.first.unwrap();
+    assert_ne!(Some(first.logged), first.replayed);
+}
+
+/// A gait that the robot held before the log began must be named.
+#[test]
+fn a_gait_from_before_the_log_is_named_from_outside() {
+    let mut port = Robot::connect(Box::new(twin()) as Box<dyn Port>, 1).unwrap();
+    upload(&mut port, &table(1.0));
+    let frames = recorded(port.into_port(), |robot| {
+        robot.status().unwrap();
+        robot.arm(false).unwrap();
+        robot.play(1, Duration::from_secs(4), false).unwrap();
+        robot
+            .wait_until_finished(|_| ControlFlow::Continue(()))
+            .unwrap();
+    });
+    let told = replay(&frames, Some(&table(1.0))).unwrap();
+    assert_eq!((told.different, told.missing_table), (0, None), "{told:#?}");
+    for wrong in [None, Some(table(0.9))] {
+        let told = replay(&frames, wrong.as_ref()).unwrap();
+        assert!(
+            told.different > 50 && told.missing_table.is_some(),
+            "{told:?}"
+        );
+    }
+}
+
+#[test]
+fn logs_without_a_session_say_what_they_lack() {
+    assert_eq!(replay(&[], None), Err(ReplayError::NoClock));
+    let frames = recorded(twin(), |robot| live(robot, 1.0));
+    let without = |unwanted: fn(&Message) -> bool| -> Vec<LinkFrame> {
+        frames
+            .iter()
+            .filter(|frame| message(&frame.bytes).is_none_or(|(_, message)| !unwanted(&message)))
+            .cloned()
+            .collect()
+    };
+    let ungreeted = without(|message| matches!(message, Message::HelloReply(_)));
+    assert_eq!(replay(&ungreeted, None), Err(ReplayError::NoGreeting));
+    let silent = without(|message| matches!(message, Message::Telemetry(_)));
+    assert_eq!(replay(&silent, None), Err(ReplayError::NoTelemetry));
+}
+
+#[test]
+fn a_log_that_begins_in_motion_is_refused() {
+    let mut robot = Robot::connect(Box::new(twin()) as Box<dyn Port>, 1).unwrap();
+    upload(&mut robot, &table(1.0));
+    robot.arm(false).unwrap();
+    robot.play(20, Duration::from_secs(4), true).unwrap();
+    live(&mut robot, 3.0);
+    let frames = recorded(robot.into_port(), |robot| live(robot, 1.0));
+    assert!(matches!(
+        replay(&frames, None),
+        Err(ReplayError::NotAtRest(_))
+    ));
+}
