@@ -7,6 +7,7 @@ import { quicken } from './quick.mjs';
 import { noise, paint, unpainted } from './ram.mjs';
 import { Rtt } from './rtt.mjs';
 import { fillGaps } from './shims.mjs';
+import { FlashCache } from './xip.mjs';
 
 const FLASH_START = 0x10000000;
 const FLASH_SIZE = 2 << 20;
@@ -30,10 +31,12 @@ export class Board {
     this.flash = new Uint8Array(FLASH_SIZE).fill(0xff);
     for (const { address, bytes } of elf.segments) this.flash.set(bytes, address - FLASH_START);
     this.stack = { bottom: elf.symbols._stack_end, top: elf.symbols._stack_start };
+    this.tick = entry(elf, 'firmware7control7Control4tick');
     this.logBlock = elf.symbols._SEGGER_RTT;
     this.connected = false;
     this.battery = 0;
     this.before = 0;
+    this.cached = false;
     this.events = emptyEvents();
     this.flashBytesLeft = Infinity;
     this.powered = true;
@@ -92,6 +95,12 @@ export class Board {
     const image = fs.readFileSync(path);
     if (image.length !== FLASH_SIZE) throw new Error(`${path}: ${image.length} bytes instead of ${FLASH_SIZE}`);
     this.flash.set(image);
+    this.powerCycle();
+  }
+
+  /** Comes up anew with the flash behind its cache, whose misses take time; without it every read is a hit. */
+  putFlashBehindCache() {
+    this.cached = true;
     this.powerCycle();
   }
 
@@ -160,9 +169,13 @@ export class Board {
       }
       if (core.registers[15] < 0x4000) this.trap(core);
       const inControl = core.IPSR === CONTROL;
-      const cycles = core.executeInstruction();
+      let cycles = core.executeInstruction();
+      if (this.cache) cycles += this.fills();
       this.busy += cycles;
-      if (inControl) this.control += cycles;
+      if (inControl) {
+        this.control += cycles;
+        this.watchTick(core);
+      }
       const now = clock.nanosCounter + cycles * cycle, alarm = clock.nextAlarm;
       if (alarm !== null && alarm.nanos <= now) clock.tick(cycles * cycle);
       else clock.nanosCounter = now; // what a tick without an alarm does
@@ -172,6 +185,26 @@ export class Board {
         this.takeLog();
       }
     }
+  }
+
+  /** How long the control task's tick itself takes, from its first instruction to where it returns to. */
+  watchTick(core) {
+    const pc = core.registers[15];
+    if (pc === this.tick) {
+      this.tickReturn = core.registers[14] & ~1;
+      this.tickFrom = this.control;
+    } else if (pc === this.tickReturn) {
+      this.ticking += this.control - this.tickFrom;
+      this.tickReturn = null;
+    }
+  }
+
+  /** Cycles that the last instruction waited for lines of flash. */
+  fills() {
+    const { misses, fill } = this.cache;
+    this.cache.misses = 0;
+    this.misses += misses;
+    return misses * fill;
   }
 
   trap(core) {
@@ -186,6 +219,9 @@ export class Board {
     this.reset = null;
     this.busy = 0;
     this.control = 0;
+    this.ticking = 0;
+    this.tickReturn = null;
+    this.misses = 0;
     this.stalledUntil = 0;
     const mcu = new RP2040();
     this.mcu = mcu;
@@ -202,6 +238,8 @@ export class Board {
       warn: (text) => { this.events.warnings[text] = (this.events.warnings[text] ?? 0) + 1; },
     });
     mcu.flash.set(this.flash, 0);
+    this.cache = this.cached ? new FlashCache(this.kind) : null;
+    this.cache?.watch(mcu);
     const dog = mcu.peripherals[0x40058];
     dog.reason = reason;
     dog.scratchData.set(scratch);
@@ -226,10 +264,13 @@ export class Board {
       const [front, back] = [slice.alarmA.target, slice.alarmB.target];
       this.events.periods.push({
         at: this.now, front, back, top: slice.timer.top, divider: slice.timer.prescaler, clock: mcu.clkSys,
-        busy: this.busy, control: this.control,
+        busy: this.busy, control: this.control, tick: this.ticking, misses: this.misses,
       });
       this.busy = 0;
+      if (this.tickReturn) this.tickFrom -= this.control;
       this.control = 0;
+      this.ticking = 0;
+      this.misses = 0;
     };
     slice.wrap = latched;
     slice.alarmBottom.callback = latched;
@@ -273,7 +314,14 @@ export class Board {
   store(at, bytes) {
     this.flash.set(bytes, at);
     this.mcu.flash.set(bytes, at);
+    this.cache?.flush();
   }
+}
+
+/** Where the function begins whose mangled name holds `part`. */
+function entry(elf, part) {
+  const found = Object.entries(elf.symbols).find(([name]) => name.includes(part));
+  return found ? found[1] & ~1 : -1;
 }
 
 function emptyEvents() {

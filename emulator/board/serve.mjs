@@ -24,6 +24,7 @@ const commands = {
   save_flash: ({ path }) => { board.saveFlash(path); },
   load_flash: ({ path }) => { board.loadFlash(path); },
   stack: () => ({ stack: board.stackLeft() }),
+  cache: () => { board.putFlashBehindCache(); },
   power_cycle: () => { board.powerCycle(); },
   pin_reset: () => { board.pinReset(); },
   patch: ({ address, halfword }) => { board.patch(address, halfword); },

@@ -1,7 +1,8 @@
 // What rp2040js 1.4.1 lacks for this firmware, each gap named where it is filled. Nothing here knows the swimmer.
 //
-// Left open: cache misses of the flash take no time, so that a count of cycles is a lower bound; the ring oscillator's random
-// bit is always 1, so that the robot's nonces differ only by what it counts itself.
+// Left open: cache misses of the flash take no time, so that a count of cycles is a lower bound, unless a board is told to put
+// its flash behind the cache of xip.mjs; the ring oscillator's random bit is always 1, so that the robot's nonces differ only by
+// what it counts itself.
 
 import { Pl011, combined } from './uart.mjs';
 

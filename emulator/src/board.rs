@@ -287,6 +287,15 @@ impl Board {
         Ok(answer.stack)
     }
 
+    /// Comes up anew with the flash behind its cache, whose misses take time; without it every read is a hit, as if the
+    /// program were in RAM. Runs at about half the pace.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn put_flash_behind_cache(&mut self) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "cache" }))
+    }
+
     /// Off and on again: RAM is lost, flash stays.
     ///
     /// # Errors

@@ -25,6 +25,10 @@ pub struct Period {
     /// Cycles that the core was awake since the period before, and of these in the control task.
     busy: u64,
     control: u64,
+    /// And of these in the tick itself.
+    tick: u64,
+    /// Lines of flash that were not in its cache meanwhile; see [`Board::put_flash_behind_cache`](crate::Board::put_flash_behind_cache).
+    pub misses: u64,
 }
 
 impl Period {
@@ -56,6 +60,11 @@ impl Period {
     /// How much of that the control task took: its tick and the bytes that came \[ms at 125 MHz\].
     pub fn control_ms(&self) -> f64 {
         self.control as f64 / 125e3
+    }
+
+    /// How much of that the tick took that ended in the period \[ms at 125 MHz\].
+    pub fn tick_ms(&self) -> f64 {
+        self.tick as f64 / 125e3
     }
 
     /// Whether both servos get pulses.

@@ -54,6 +54,8 @@ pub(crate) async fn control(mut control: Control) {
 }
 
 impl Control {
+    /// A function of its own, for `memory.x` to put it into RAM.
+    #[inline(never)]
     fn tick(&mut self) {
         let inputs = Inputs {
             battery_mv: battery::lowest_mv(),

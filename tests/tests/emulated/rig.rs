@@ -76,14 +76,25 @@ pub(crate) fn robot() -> Option<Robot<Port>> {
 
 /// Any image's, greeted and configured.
 pub(crate) fn robot_of(image: Image) -> Option<Robot<Port>> {
+    Some(greeted(port(image)?))
+}
+
+/// The same with its flash behind the chip's cache.
+pub(crate) fn robot_behind_cache(image: Image) -> Option<Robot<Port>> {
     let mut port = port(image)?;
+    let board = port.device_mut().board_mut();
+    board.put_flash_behind_cache().unwrap();
+    Some(greeted(port))
+}
+
+fn greeted(mut port: Port) -> Robot<Port> {
     set_pack(port.device_mut().board_mut(), 5.0);
     let mut robot = Robot::connect(port, 1).unwrap();
     let file = SwimmerFile::preset("robot").unwrap();
     robot
         .configure(configuration(&file.swimmer, &ServoFile::default()))
         .unwrap();
-    Some(robot)
+    robot
 }
 
 /// The board under a robot.
