@@ -20,8 +20,14 @@ pub(super) fn run(access: &Access, output: Output) -> Outcome {
     let robot = &mut line.robot;
     let (configuration, table, counters) =
         (robot.configuration()?, robot.table()?, robot.counters()?);
+    let crash_message = if robot.info().crash_message {
+        Some(robot.crash_message()?)
+    } else {
+        None
+    };
     output.answer(&Info::new(
         robot.info(),
+        crash_message,
         &configuration,
         table.as_ref(),
         &counters,
@@ -38,6 +44,8 @@ struct Info {
     protocol: [u8; 2],
     schema_key: String,
     reset_reason: &'static str,
+    /// What a crash before that start left to tell.
+    crash_message: Option<String>,
     session: u16,
     limits: Limits,
     configuration: Body,
@@ -80,6 +88,7 @@ struct Traffic {
 impl Info {
     fn new(
         hello: &HelloReply,
+        crash_message: Option<String>,
         configuration: &Configuration,
         table: Option<&TableInfo>,
         counters: &Counters,
@@ -100,6 +109,7 @@ impl Info {
                 ResetReason::Crash => "crash",
                 ResetReason::Pin => "reset pin",
             },
+            crash_message,
             session: hello.session,
             limits: Limits {
                 max_angle_rad: hello.limits.max_angle,
@@ -157,7 +167,13 @@ impl fmt::Display for Info {
                     self.firmware, self.protocol[0], self.protocol[1]
                 ),
             )
-            .row("started by", self.reset_reason)
+            .row(
+                "started by",
+                match &self.crash_message {
+                    Some(message) => format!("{}: {message}", self.reset_reason),
+                    None => self.reset_reason.to_owned(),
+                },
+            )
             .row(
                 "limits",
                 format!(
