@@ -23,7 +23,7 @@ use std::path::PathBuf;
 use host_link::LinkError;
 use swimmer_files::GaitSpec;
 
-use self::access::Access;
+use self::access::{Access, Met};
 use self::answers::Doing;
 use self::holder::Ask;
 use self::port::Pace;
@@ -218,13 +218,16 @@ impl Robot {
 }
 
 fn status(access: &Access, output: Output) -> Outcome {
-    if let Some(relayed) = access.ask_holder(Ask::Status)? {
-        output.answer(&relayed.told());
-        return Ok(());
+    match access.meet(Ask::Status, "swimmer robot status", Pace::AsFastAsPossible)? {
+        Met::Relayed(relayed) => {
+            output.answer(&relayed.told());
+            Ok(())
+        }
+        Met::Line(mut line) => {
+            output.answer(&Doing::new(&line.robot.status()?));
+            line.close()
+        }
     }
-    let mut line = access.connect("swimmer robot status", Pace::AsFastAsPossible)?;
-    output.answer(&Doing::new(&line.robot.status()?));
-    line.close()
 }
 
 impl From<LinkError> for Failure {

@@ -45,6 +45,14 @@ pub(super) struct Line {
     seen_us: Option<u64>,
 }
 
+/// How a robot can be told something.
+pub(super) enum Met {
+    /// Over its line, which is ours.
+    Line(Box<Line>),
+    /// Through the process that has it, which has done so.
+    Relayed(Relayed),
+}
+
 /// A port that was named.
 pub(super) enum Reached {
     /// It is ours.
@@ -136,6 +144,25 @@ impl Access {
         Line::new(name, robot, holder, recorder)
     }
 
+    /// Has the process that holds the robot's port do what is asked, or takes the port.
+    ///
+    /// # Errors
+    /// As [`Self::ask_holder`] and [`Self::connect`].
+    pub(super) fn meet(&self, ask: Ask, command: &str, pace: Pace) -> Outcome<Met> {
+        let begun = Instant::now();
+        loop {
+            if let Some(relayed) = self.ask_holder(ask)? {
+                return Ok(Met::Relayed(relayed));
+            }
+            match self.connect(command, pace) {
+                Ok(line) => return Ok(Met::Line(Box::new(line))),
+                // Another process took the port between the two: now it can be asked.
+                Err(_) if self.holder().is_some() && begun.elapsed() < 3 * A_MOMENT => {}
+                Err(failure) => return Err(failure),
+            }
+        }
+    }
+
     /// The port that was named, without a greeting; `None` where it must be looked for.
     ///
     /// # Errors
@@ -152,18 +179,21 @@ impl Access {
     /// # Errors
     /// What that process says.
     pub(super) fn ask_holder(&self, ask: Ask) -> Outcome<Option<Relayed>> {
-        let held = if let [name] = self.port.as_slice() {
-            HeldBy::of(name)
-        } else {
-            let candidates = self.candidates().into_iter();
-            let mut held = candidates.filter_map(|port| HeldBy::of(&port.path));
-            // Of several it cannot be told which one is meant.
-            held.next().filter(|_| held.next().is_none())
-        };
-        match held {
+        match self.holder() {
             Some(held_by) => held_by.ask(ask),
             None => Ok(None),
         }
+    }
+
+    /// The process that holds the robot's port.
+    fn holder(&self) -> Option<HeldBy> {
+        if let [name] = self.port.as_slice() {
+            return HeldBy::of(name);
+        }
+        let candidates = self.candidates().into_iter();
+        let mut held = candidates.filter_map(|port| HeldBy::of(&port.path));
+        // Of several it cannot be told which one is meant.
+        held.next().filter(|_| held.next().is_none())
     }
 
     fn candidates(&self) -> Vec<ListedPort> {

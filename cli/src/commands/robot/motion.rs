@@ -11,7 +11,7 @@ use host_link::{LinkError, Robot};
 use link_protocol::{StateName, Status, Telemetry};
 use serde::Serialize;
 
-use super::access::{Access, LOOK_AGAIN, Line, Reached};
+use super::access::{Access, LOOK_AGAIN, Line, Met, Reached};
 use super::answers::{Done, E_STOPPED, STOPPED, cause, state};
 use super::holder::{Ask, Relayed};
 use super::playing::{self, Playing};
@@ -144,12 +144,14 @@ fn attach(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
 
 /// `swimmer robot pause`: holds the pose, and the link until Ctrl-C unless detached.
 pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
-    if let Some(relayed) = access.ask_holder(Ask::Pause)? {
-        output.answer(&relayed.told());
-        return Ok(());
-    }
     let interrupt = Interrupt::install()?;
-    let mut line = access.connect("swimmer robot pause", Pace::RealTime)?;
+    let mut line = match access.meet(Ask::Pause, "swimmer robot pause", Pace::RealTime)? {
+        Met::Line(line) => line,
+        Met::Relayed(relayed) => {
+            output.answer(&relayed.told());
+            return Ok(());
+        }
+    };
     line.robot.pause(pause.detach)?;
     if pause.detach {
         let sentence = "Paused: the robot holds its pose for at most 60 s, then stops; `swimmer robot resume` goes on.";
@@ -167,12 +169,14 @@ pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
 
 /// `swimmer robot resume`: goes on and waits for the end of the last cycle.
 pub(super) fn resume(access: &Access, output: Output) -> Outcome {
-    if let Some(relayed) = access.ask_holder(Ask::Resume)? {
-        output.answer(&relayed.told());
-        return Ok(());
-    }
     let interrupt = Interrupt::install()?;
-    let mut line = access.connect("swimmer robot resume", Pace::RealTime)?;
+    let mut line = match access.meet(Ask::Resume, "swimmer robot resume", Pace::RealTime)? {
+        Met::Line(line) => line,
+        Met::Relayed(relayed) => {
+            output.answer(&relayed.told());
+            return Ok(());
+        }
+    };
     line.robot.resume()?;
     wait(&mut line, &interrupt, output)?;
     line.close()
