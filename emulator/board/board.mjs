@@ -37,6 +37,7 @@ export class Board {
     this.battery = 0;
     this.before = 0;
     this.cached = false;
+    this.patched = null;
     this.events = emptyEvents();
     this.flashBytesLeft = Infinity;
     this.powered = true;
@@ -112,6 +113,7 @@ export class Board {
 
   /** Two bytes of code in flash, as a fault would change them: the copy that runs, not the one that survives. */
   patch(address, halfword) {
+    this.patched = address & ~1;
     new DataView(this.mcu.flash.buffer, this.mcu.flash.byteOffset).setUint16((address & ~1) - FLASH_START, halfword, true);
   }
 
@@ -153,7 +155,6 @@ export class Board {
   runUntilReset() {
     const { core, clock } = this.mcu;
     let cycle = 1e9 / this.mcu.clkSys;
-    let count = 0;
     while (!this.reset) {
       const end = this.until - this.before;
       if (clock.nanosCounter >= end) break;
@@ -168,6 +169,7 @@ export class Board {
         continue;
       }
       if (core.registers[15] < 0x4000) this.trap(core);
+      if (core.registers[15] === this.patched) this.reachPatch();
       const inControl = core.IPSR === CONTROL;
       let cycles = core.executeInstruction();
       if (this.cache) cycles += this.fills();
@@ -179,8 +181,9 @@ export class Board {
       const now = clock.nanosCounter + cycles * cycle, alarm = clock.nextAlarm;
       if (alarm !== null && alarm.nanos <= now) clock.tick(cycles * cycle);
       else clock.nanosCounter = now; // what a tick without an alarm does
-      count = (count + 1) & 0x3ff;
-      if (count === 0) {
+      // Counted over all runs, so that how they are cut shows nowhere.
+      this.count = (this.count + 1) & 0x3ff;
+      if (this.count === 0) {
         cycle = 1e9 / this.mcu.clkSys; // the firmware sets its clock up once, early
         this.takeLog();
       }
@@ -207,6 +210,12 @@ export class Board {
     return misses * fill;
   }
 
+  /** The patched code runs for the first time. */
+  reachPatch() {
+    this.patched = null;
+    this.events.patch_reached.push({ at: this.now });
+  }
+
   trap(core) {
     const trap = this.traps.get(core.registers[15] & ~1);
     if (!trap) return;
@@ -219,6 +228,7 @@ export class Board {
     this.reset = null;
     this.busy = 0;
     this.control = 0;
+    this.count = 0;
     this.ticking = 0;
     this.tickReturn = null;
     this.misses = 0;
@@ -325,5 +335,5 @@ function entry(elf, part) {
 }
 
 function emptyEvents() {
-  return { uart: [], uart_at: [], log: [], periods: [], edges: [], led: [], resets: [], power_cuts: [], warnings: {}, erased: 0, programmed: 0 };
+  return { uart: [], uart_at: [], log: [], periods: [], edges: [], led: [], resets: [], power_cuts: [], patch_reached: [], warnings: {}, erased: 0, programmed: 0 };
 }

@@ -134,6 +134,19 @@ impl Reset {
     }
 }
 
+/// Code changed by [`Board::patch`](crate::Board::patch) ran for the first time.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct PatchReached {
+    at: f64,
+}
+
+impl PatchReached {
+    /// When.
+    pub fn at(&self) -> Duration {
+        nanos(self.at)
+    }
+}
+
 /// The power went.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct PowerCut {
@@ -160,6 +173,8 @@ pub struct Events {
     pub resets: Vec<Reset>,
     /// When the power was cut, as [`Board::cut_power_after`](crate::Board::cut_power_after) asked.
     pub power_cuts: Vec<PowerCut>,
+    /// When patched code first ran.
+    pub patch_reached: Vec<PatchReached>,
     /// Sectors of flash erased.
     pub erased: u32,
     /// Pages of flash programmed.
@@ -181,6 +196,7 @@ impl Events {
         self.led.extend(later.led);
         self.resets.extend(later.resets);
         self.power_cuts.extend(later.power_cuts);
+        self.patch_reached.extend(later.patch_reached);
         self.erased += later.erased;
         self.programmed += later.programmed;
         self.lost = later.lost;

@@ -15,6 +15,6 @@ mod robot;
 
 pub use board::{Board, BoardConfig, BoardKind, EmulatorError};
 pub use commission::commission;
-pub use events::{Edge, Events, Led, Period, PowerCut, Reset, Servo, Stack};
+pub use events::{Edge, Events, Led, PatchReached, Period, PowerCut, Reset, Servo, Stack};
 pub use log::{LogLevel, LogLine};
 pub use robot::EmulatedRobot;
