@@ -96,10 +96,8 @@ fn noise(count: usize, tell: fn(&str, &str)) {
     );
     let bytes = storm.tally.bytes;
     tell(
-        &format!(
-            "R1, R4: {count} frames, mutated, random in a whole frame, or valid ({bytes} bytes)"
-        ),
-        &storm.told(),
+        &format!("R1, R4: {count} frames, mutated, random in a whole frame, or valid"),
+        &format!("{bytes} bytes; {}", storm.told()),
     );
 }
 
