@@ -13,7 +13,7 @@ pub enum Reply {
     Done,
     /// Not done, and why. Nothing changed.
     Refused(Refusal),
-    /// Still at it (checking a table takes up to a second): this is no end. Keep waiting, or ask again with the same
+    /// Still at it (checking a table takes some seconds while pulses are on): this is no end. Keep waiting, or ask again with the same
     /// number; the last word comes under that number too.
     Working,
     /// Answer to [`crate::Request::Status`].

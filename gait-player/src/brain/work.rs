@@ -9,9 +9,9 @@ use link_protocol::{CrossingPlace, Header, Play, Refusal, Reply};
 
 use super::state::{Progress, State};
 
-/// Units of work a tick while pulses are on. A unit takes up to 0.22 ms of the chip, and a servo period up to 1.2 ms without
-/// any, so that both stay below the promised 2 ms on either board (the emulated ones measure it).
-const POWERED_WORK: u32 = 2;
+/// Units of work a tick while pulses are on. A unit takes up to 0.22 ms of the chip, and a tick up to 1 ms without any, so
+/// that it stays below the promised 2 ms (the emulated boards measure it).
+const POWERED_WORK: u32 = 3;
 /// Units while they are off and nothing waits for the tick: 16 ms.
 const IDLE_WORK: u32 = 70;
 /// Units of one look at a way.

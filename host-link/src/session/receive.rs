@@ -13,7 +13,7 @@ use super::{Event, Link, Owner, Pending, Session, describe};
 
 /// Wait before a robot that is busy is asked again.
 const BUSY_WAIT: Duration = Duration::from_millis(100);
-/// Times in a row that a robot may be busy: checking a table takes up to a second.
+/// Times in a row that a robot may be busy: checking a table takes some seconds.
 const BUSY_TRIES: u32 = 50;
 
 impl Session {

@@ -19,6 +19,8 @@ const GREETED_EVERY: usize = 4;
 /// So often it is told to stop.
 const STOPPED_EVERY: usize = 128;
 const MS: Duration = Duration::from_millis(1);
+/// Sequence number of the stops, by which their answers are known.
+const STOP_NUMBER: u16 = 0x5709;
 /// A character at 115 200 baud.
 const BYTE: Duration = Duration::from_nanos(86_806);
 
@@ -42,6 +44,8 @@ struct Tally {
     shortest_us: f64,
     longest_us: f64,
     stops: usize,
+    /// Stops that were sent again, because the first fell into the time in which flash is erased and nothing is heard.
+    again: usize,
 }
 
 struct Storm {
@@ -49,6 +53,9 @@ struct Storm {
     decoder: Decoder,
     frames: Frames,
     status: Option<Status>,
+    stop_answered: bool,
+    /// Bytes that the board has not heard since it was switched on.
+    lost: u64,
     acted: u32,
     tally: Tally,
 }
@@ -63,6 +70,8 @@ fn noise(count: usize, tell: fn(&str, &str)) {
         decoder: Decoder::new(),
         frames: Frames::new(ChaCha8Rng::seed_from_u64(11)),
         status: None,
+        stop_answered: false,
+        lost: 0,
         acted: 0,
         tally: Tally {
             shortest_us: f64::INFINITY,
@@ -110,6 +119,7 @@ impl Storm {
             shortest_us,
             longest_us,
             stops,
+            again,
             ..
         } = self.tally;
         assert_eq!(
@@ -119,7 +129,7 @@ impl Storm {
         );
         format!(
             "no reset; {} requests acted; pulses on in {:.0} % of {periods} periods, all between {shortest_us:.0} and \
-             {longest_us:.0} µs; Stop answered and obeyed {stops} times of {stops}",
+             {longest_us:.0} µs; Stop answered and obeyed {stops} times of {stops}, {again} of them at the second sending",
             self.acted,
             100.0 * powered as f64 / periods as f64,
         )
@@ -136,6 +146,7 @@ impl Storm {
         self.board.run(until).unwrap();
         let events = self.board.take_events();
         assert!(events.resets.is_empty(), "reset: {:?}", events.resets);
+        self.lost = events.lost;
         let window =
             [Limits::ROBOT.pulse_min_ns, Limits::ROBOT.pulse_max_ns].map(|ns| f64::from(ns) * 1e-3);
         for period in &events.periods {
@@ -159,6 +170,8 @@ impl Storm {
         self.board.take_sent(now, usize::MAX, &mut bytes);
         for byte in bytes {
             if let Some(received) = self.decoder.push(byte) {
+                let header = received.header;
+                self.stop_answered |= header.session == 0 && header.sequence == STOP_NUMBER;
                 self.hear(&received.message.expect("a whole message"));
             }
         }
@@ -176,8 +189,18 @@ impl Storm {
 
     /// Stop, of no session at all: within a tick the robot is on its way, and the pulses go in time.
     fn stop(&mut self) {
-        self.send(&encoded(0, 0, &Message::Request(Request::Stop)));
+        self.stop_answered = false;
+        let (stop, lost) = (Message::Request(Request::Stop), self.lost);
+        self.send(&encoded(0, STOP_NUMBER, &stop));
         self.live(20 * MS);
+        if !self.stop_answered {
+            assert!(self.lost > lost, "no answer to a Stop that was heard");
+            self.tally.again += 1;
+            self.live(60 * MS); // a sector is erased in 45
+            self.send(&encoded(0, STOP_NUMBER, &stop));
+            self.live(20 * MS);
+            assert!(self.stop_answered, "no answer to the second Stop");
+        }
         let hello = self.frames.hello();
         self.send(&hello);
         self.live(20 * MS);
