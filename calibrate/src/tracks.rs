@@ -35,6 +35,7 @@ mod options;
 mod point;
 mod qtm;
 mod records;
+mod rows;
 mod source;
 mod table;
 mod tracker;

@@ -8,6 +8,7 @@ use std::path::Path;
 use super::cells::Cells;
 use super::lines::{Delimiter, Line, Lines};
 use super::number::{Decimals, Number};
+use super::rows::{TakesRows, read_rows};
 use super::{TrackError, TrackPoint, TrackProblem, TrackWarning};
 use notes::Notes;
 
@@ -108,7 +109,6 @@ pub(super) struct Body {
 /// # Errors
 /// [`TrackError::Broken`] with line and column.
 pub(super) fn read(lines: &mut Lines<'_>, file: &Path, grid: Grid) -> Result<Body, TrackError> {
-    lines.skip_past(grid.header_line);
     let mut reader = Reader {
         decimals: if grid.delimiter.allows_decimal_comma() {
             Decimals::Open
@@ -129,39 +129,9 @@ pub(super) fn read(lines: &mut Lines<'_>, file: &Path, grid: Grid) -> Result<Bod
         extent: None,
         grid,
     };
-    let mut last_line = reader.grid.header_line.max(1);
-    while let Some(line) = lines.next()? {
-        last_line = line.number;
-        if line.is_blank() {
-            if reader.grid.section && !reader.body.times.is_empty() {
-                break;
-            }
-            continue;
-        }
-        if reader.grid.comments && line.text.trim_start().starts_with(['#', '%']) {
-            continue;
-        }
-        match reader.row(&line) {
-            Ok(()) => {}
-            Err(_) if !line.ended && !reader.body.times.is_empty() => {
-                let line = line.number;
-                reader
-                    .body
-                    .warnings
-                    .push(TrackWarning::LastLineCut { line });
-                break;
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    if reader.body.times.is_empty() {
-        let line = Line {
-            number: last_line,
-            text: "",
-            ended: true,
-        };
-        return Err(line.error(file, 0, TrackProblem::NoData));
-    }
+    let header_line = reader.grid.header_line;
+    let cut = read_rows(lines, file, header_line, &mut reader)?;
+    reader.body.warnings.extend(cut);
     Ok(reader.finish())
 }
 
@@ -175,6 +145,23 @@ struct Reader<'f> {
     body: Body,
     last_decimals: usize,
     extent: Option<usize>,
+}
+
+impl TakesRows for Reader<'_> {
+    fn take_line(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+        if self.grid.comments && line.text.trim_start().starts_with(['#', '%']) {
+            return Ok(());
+        }
+        self.row(line)
+    }
+
+    fn has_rows(&self) -> bool {
+        !self.body.times.is_empty()
+    }
+
+    fn ends_at_blank(&self) -> bool {
+        self.grid.section
+    }
 }
 
 impl Reader<'_> {

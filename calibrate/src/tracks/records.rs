@@ -15,6 +15,7 @@ use super::cells::Cells;
 use super::grid::Body;
 use super::lines::{Delimiter, Line, Lines};
 use super::number::Number;
+use super::rows::{TakesRows, read_rows};
 use super::{
     Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
     TrackWarning, Unit,
@@ -35,33 +36,35 @@ pub(super) fn read(
     let (unit, metres, overridden) = options.unit(Unit::Metre);
     let mut reader = Reader::new(metres);
     reader.warnings.extend(overridden);
-    let mut cells = Cells::default();
-    let mut last_line = 1;
-    while let Some(line) = lines.next()? {
-        last_line = line.number;
-        if line.is_blank() {
-            continue;
-        }
-        let record = Record::read(&line, delimiter, file, &mut cells);
-        match record.and_then(|record| reader.take(&record)) {
-            Ok(()) => {}
-            Err(_) if !line.ended && !reader.times.is_empty() => {
-                let line = line.number;
-                reader.warnings.push(TrackWarning::LastLineCut { line });
-                break;
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    if reader.times.is_empty() {
-        let line = Line {
-            number: last_line,
-            text: "",
-            ended: true,
-        };
-        return Err(line.error(file, 0, TrackProblem::NoData));
-    }
+    let mut taker = Records {
+        reader,
+        delimiter,
+        file,
+        cells: Cells::default(),
+    };
+    let cut = read_rows(lines, file, 0, &mut taker)?;
+    let mut reader = taker.reader;
+    reader.warnings.extend(cut);
     Ok(reader.finish(unit))
+}
+
+/// Lines cut into records for the reader.
+struct Records<'f> {
+    reader: Reader,
+    delimiter: Delimiter,
+    file: &'f Path,
+    cells: Cells,
+}
+
+impl TakesRows for Records<'_> {
+    fn take_line(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+        let record = Record::read(line, self.delimiter, self.file, &mut self.cells)?;
+        self.reader.take(&record)
+    }
+
+    fn has_rows(&self) -> bool {
+        !self.reader.times.is_empty()
+    }
 }
 
 /// A rigid body and the points that tell of it.

@@ -8,6 +8,7 @@ use super::cells::{Cell, Cells, cell_at, split};
 use super::grid::{Body, decimals, may_be_cut, row_length};
 use super::lines::{Delimiter, Line, Lines};
 use super::number::{Decimals, Number};
+use super::rows::{TakesRows, read_rows};
 use super::{
     Draft, Place, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
     TrackWarning, Unit,
@@ -38,31 +39,9 @@ pub(super) fn read(
 ) -> Result<Draft, TrackError> {
     let (unit, metres, _) = options.unit(Unit::Unknown);
     let mut reader = Reader::begin(lines, file, delimiter)?;
-    let mut last_line = reader.header_line;
-    lines.skip_past(last_line);
-    while let Some(line) = lines.next()? {
-        last_line = line.number;
-        if line.is_blank() {
-            continue;
-        }
-        match reader.row(&line) {
-            Ok(()) => {}
-            Err(_) if !line.ended && !reader.times.is_empty() => {
-                let line = line.number;
-                reader.warnings.push(TrackWarning::LastLineCut { line });
-                break;
-            }
-            Err(error) => return Err(error),
-        }
-    }
-    if reader.times.is_empty() {
-        let line = Line {
-            number: last_line,
-            text: "",
-            ended: true,
-        };
-        return Err(line.error(file, 0, TrackProblem::NoData));
-    }
+    let header_line = reader.header_line;
+    let cut = read_rows(lines, file, header_line, &mut reader)?;
+    reader.warnings.extend(cut);
     if let Some((count, first_line)) = reader.half_blank {
         let warning = TrackWarning::HalfBlank { count, first_line };
         reader.warnings.push(warning);
@@ -93,6 +72,16 @@ struct Reader<'f> {
     last_decimals: usize,
     extent: Option<usize>,
     half_blank: Option<(usize, usize)>,
+}
+
+impl TakesRows for Reader<'_> {
+    fn take_line(&mut self, line: &Line<'_>) -> Result<(), TrackError> {
+        self.row(line)
+    }
+
+    fn has_rows(&self) -> bool {
+        !self.times.is_empty()
+    }
 }
 
 impl<'f> Reader<'f> {
