@@ -4,6 +4,7 @@
 mod bench;
 
 use bench::*;
+use gait_player::Brain;
 use link_protocol::*;
 use rand::{RngExt, SeedableRng, seq::SliceRandom};
 use rand_chacha::ChaCha8Rng;
@@ -39,6 +40,40 @@ fn nothing_but_stops_acts_without_the_open_session() {
     bench.session = open;
     assert_eq!(bench.status().state, StateName::Holding);
     assert_eq!(counters(&mut bench).stale, 12);
+}
+
+/// Greetings are short and their answers long: a flood of them leaves no room for any other answer.
+#[test]
+fn a_stop_is_answered_in_a_flood_that_drowns_all_other_answers() {
+    let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
+    let dropped = counters(&mut bench).dropped;
+    let mut encoded = [0; MAX_ENCODED];
+    let mut send = |brain: &mut Brain, now_us, header, message: &Message| {
+        let len = encode(header, message, &mut encoded).unwrap();
+        brain.receive(now_us, &encoded[..len]);
+    };
+    let now_us = bench.now_us;
+    for host_nonce in 0..100 {
+        let hello = Hello {
+            protocol_min: PROTOCOL_MIN,
+            protocol_current: PROTOCOL_CURRENT,
+            schema_key: SCHEMA_KEY,
+            host_nonce,
+        };
+        let header = Header::new(0, 7);
+        send(&mut bench.brain, now_us, header, &Message::Hello(hello));
+    }
+    assert!(bench.brain.counters().dropped > dropped + 80);
+    let stop = Header::new(0, 4711);
+    let message = Message::Request(Request::Stop);
+    send(&mut bench.brain, now_us, stop, &message);
+    bench.tick();
+    assert!(
+        bench.replies.contains(&(stop, Reply::Done)),
+        "{:?}",
+        bench.replies
+    );
+    assert_eq!(bench.output.state, StateName::Stopping);
 }
 
 #[test]

@@ -5,6 +5,9 @@ use link_protocol::{EncodeError, Header, Kind, MAX_ENCODED, Message, encode, enc
 
 /// Bytes that wait at most. Replies are few, telemetry yields to them.
 const ROOM: usize = 640;
+/// Everything leaves so much room for answers to stops, four of them: whatever floods the robot, a stop that acted is
+/// acknowledged.
+const STOPS_LEFT: usize = 4 * 14;
 /// Telemetry leaves so much room for replies.
 const TELEMETRY_LEAVES: usize = 2 * MAX_ENCODED;
 /// Bytes that may leave in one tick, and so a second: 5 kB/s.
@@ -43,6 +46,13 @@ impl Outbox {
     pub(crate) fn send(&mut self, header: Header, message: &Message) {
         let mut frame = [0; MAX_ENCODED];
         let encoded = encode(header, message, &mut frame);
+        self.push(encoded, &frame, STOPS_LEFT);
+    }
+
+    /// Sends the answer to a stop, which takes the room that all else leaves.
+    pub(crate) fn send_stop_answer(&mut self, header: Header, message: &Message) {
+        let mut frame = [0; MAX_ENCODED];
+        let encoded = encode(header, message, &mut frame);
         self.push(encoded, &frame, 0);
     }
 
@@ -59,7 +69,7 @@ impl Outbox {
     pub(crate) fn send_reply_body(&mut self, header: Header, body: &[u8]) {
         let mut frame = [0; MAX_ENCODED];
         let encoded = encode_body(header, Kind::Reply as u8, body, None, &mut frame);
-        self.push(encoded, &frame, 0);
+        self.push(encoded, &frame, STOPS_LEFT);
     }
 
     fn push(&mut self, encoded: Result<usize, EncodeError>, frame: &[u8], leave: usize) {

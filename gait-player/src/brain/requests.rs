@@ -152,10 +152,10 @@ impl Brain {
     /// A stop is answered to whoever sent it; only ours has a place in the order, where its answer is kept.
     fn answer_stop(&mut self, header: Header, ours: bool) {
         if ours {
-            self.finish(header, Reply::Done);
-        } else {
-            self.reply(header, Reply::Done);
+            self.session.keep(header.sequence, &Reply::Done);
         }
+        self.outbox
+            .send_stop_answer(answer(header), &Message::Reply(Reply::Done));
     }
 
     /// Says why a request may not act.

@@ -48,7 +48,11 @@ fn a_low_battery_stops_the_robot_and_five_good_seconds_let_it_go_on() {
     assert_eq!(robot.status().unwrap().cause, StopCause::BatteryLow);
     let periods = rig::events(&mut robot).periods;
     let ramp = rig::ramp_begins(&periods).checked_sub(low).unwrap();
-    assert!(ramp >= MS * 1000 && ramp <= MS * 1040, "{ramp:?}");
+    // Seen at the next tick, a second counted, the tick after where that one came a microsecond early, latched at the wrap.
+    assert!(
+        ramp >= MS * 1000 && ramp <= MS * (1000 + 3 * 20),
+        "{ramp:?}"
+    );
 
     // Latched: a voltage that comes back resumes nothing, and arming waits for five seconds of it.
     assert!(matches!(

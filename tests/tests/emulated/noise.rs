@@ -64,7 +64,9 @@ struct Storm {
     stop_answered: bool,
     /// Bytes that the board has not heard since it was switched on.
     lost: u64,
+    /// As the robot counts since it was switched on: requests that acted, frames that found no room on their way out.
     acted: u32,
+    dropped: u32,
     tally: Tally,
 }
 
@@ -81,6 +83,7 @@ fn noise(count: usize, seed: u64, tell: fn(&str, &str)) {
         stop_answered: false,
         lost: 0,
         acted: 0,
+        dropped: 0,
         tally: Tally {
             shortest_us: f64::INFINITY,
             ..Tally::default()
@@ -102,7 +105,12 @@ fn noise(count: usize, seed: u64, tell: fn(&str, &str)) {
             storm.stop();
         }
         if batch % (batches / 10) == batches / 10 - 1 {
-            println!("{} frames: {}", (batch + 1) * BATCH, storm.told());
+            println!(
+                "{} frames: {}; {} answers found no room to leave",
+                (batch + 1) * BATCH,
+                storm.told(),
+                storm.dropped
+            );
         }
     }
     storm.stop();
@@ -192,7 +200,9 @@ impl Storm {
             Message::HelloReply(reply) if reply.session != 0 => self.frames.greeted(reply.session),
             Message::Reply(Reply::Status(status)) => self.status = Some(*status),
             Message::Reply(Reply::Wanted { upload, .. }) => self.frames.upload(*upload),
-            Message::Reply(Reply::Counters(counters)) => self.acted = counters.acted,
+            Message::Reply(Reply::Counters(counters)) => {
+                (self.acted, self.dropped) = (counters.acted, counters.dropped);
+            }
             _ => {}
         }
     }
@@ -214,7 +224,11 @@ impl Storm {
         self.send(&encoded(0, STOP_NUMBER, &stop));
         self.await_stop();
         if !self.stop_answered {
-            assert!(self.lost > lost, "no answer to a Stop that was heard");
+            assert!(
+                self.lost > lost,
+                "no answer to a Stop that was heard: {}",
+                self.told()
+            );
             self.tally.again += 1;
             self.send(&encoded(0, STOP_NUMBER, &stop));
             self.await_stop();
