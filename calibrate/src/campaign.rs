@@ -201,13 +201,13 @@ impl<'a> Run<'a> {
         swimmer: &SwimmerFile,
     ) -> Result<Self, CalibrateError> {
         let file = || data.file.clone();
-        let poses =
-            poses::poses(&data.track, reflectors, &PoseOptions::default()).map_err(|cause| {
-                CalibrateError::Poses {
-                    file: file(),
-                    cause,
-                }
-            })?;
+        let options = PoseOptions::of_period(data.period_s);
+        let poses = poses::poses(&data.track, reflectors, &options).map_err(|cause| {
+            CalibrateError::Poses {
+                file: file(),
+                cause,
+            }
+        })?;
         let clock = Clock::find(&poses, data.period_s).map_err(|cause| CalibrateError::Cycles {
             file: file(),
             cause,

@@ -18,7 +18,7 @@ use std::fmt;
 
 use swimmer_model::Pose;
 
-use crate::poses::{PoseSample, PoseTrack};
+use crate::poses::{Origin, PoseSample, PoseTrack};
 use clock::Bin;
 pub(crate) use curve::{Curve, Harmonics, Projection};
 pub use statistics::Statistics;
@@ -132,7 +132,7 @@ pub struct Cycle {
     pub delta_y: f64,
     /// Δθ \[rad\].
     pub delta_theta: f64,
-    /// Share of its samples that are missing.
+    /// Share of its samples that are missing: filled, or in gaps too long for that.
     pub missing: f64,
     /// Root mean square distance of the positions from the harmonic curve \[m\].
     pub residual_m: f64,
@@ -262,11 +262,11 @@ impl Clock {
                 continue;
             }
             let samples = window(track, start, period);
-            let missing = (1.0 - samples.len() as f64 / (period * track.rate_hz)).max(0.0);
+            let tracked = samples.iter().filter(|s| !s.is_filled()).count();
+            let missing = (1.0 - tracked as f64 / (period * track.rate_hz)).max(0.0);
+            let trusted = samples.iter().filter(|s| s.origin == Origin::Seen);
             let curve = Curve::fit(
-                samples
-                    .iter()
-                    .map(|s| ((s.time_s - start) / period, s.pose)),
+                trusted.map(|s| ((s.time_s - start) / period, s.pose)),
                 1.0 / (period * track.rate_hz),
             );
             match curve.filter(|_| missing <= MOST_MISSING) {
@@ -326,22 +326,15 @@ fn mean_heading(drawn: &[(f64, f64, Curve, f64)]) -> Harmonics {
     mean
 }
 
-/// Samples that were seen in \[start, start + period).
-fn window(track: &PoseTrack, start: f64, period: f64) -> Vec<PoseSample> {
+/// Samples in \[start, start + period).
+fn window(track: &PoseTrack, start: f64, period: f64) -> &[PoseSample] {
     let from = track
         .samples
         .partition_point(|sample| sample.time_s < start);
     let until = track
         .samples
         .partition_point(|sample| sample.time_s < start + period);
-    track
-        .samples
-        .get(from..until)
-        .unwrap_or(&[])
-        .iter()
-        .filter(|sample| !sample.filled)
-        .copied()
-        .collect()
+    track.samples.get(from..until).unwrap_or(&[])
 }
 
 fn drop_unlike(drawn: &mut Vec<(f64, f64, Curve, f64)>, left_out: &mut Vec<(f64, LeftOut)>) {

@@ -25,7 +25,7 @@ pub use campaign::{
 pub use cycles::{Cycle, CycleError, CycleWarning, Cycles, LeftOut, Statistics};
 pub use fit::{Fit, FitError, FitOptions, FitWarning, Intervals, RunResidual, c_t_form};
 pub use poses::{
-    PoseError, PoseOptions, PoseSample, PoseTrack, PoseWarning, poses, usual_reflectors,
+    Origin, PoseError, PoseOptions, PoseSample, PoseTrack, PoseWarning, poses, usual_reflectors,
 };
 pub use prediction::{PredictedCycle, PredictionError, joint_path, predict};
 pub use tracks::{

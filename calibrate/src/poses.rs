@@ -5,10 +5,14 @@
 //! 2. [`Plane`] is fitted to all of their positions and gives the tank's x and y.
 //! 3. Two points in the plane and their places on the link give the link's centre and heading.
 //!
-//! Gaps of at most [`PoseOptions::longest_fill_s`] are bridged by straight lines and marked. Bridged poses are there to be
-//! drawn: no estimate uses them, since least squares needs no evenly spaced samples.
+//! Gaps of at most [`PoseOptions::longest_fill_s`] are filled by a monotone cubic, the samples beside gaps are not trusted, and
+//! both are marked ([`Origin`]). They are there to be drawn: no estimate uses them, since least squares needs no evenly spaced
+//! samples.
 
+mod assembly;
+mod fill;
 mod follow;
+mod pchip;
 mod plane;
 
 use std::f64::consts::{PI, TAU};
@@ -19,13 +23,15 @@ use swimmer_files::{PointName, Reflectors};
 use swimmer_model::{Pose, Swimmer};
 
 use crate::TrackFile;
+use assembly::Assembly;
+use fill::Seen;
 pub use follow::FollowReport;
 pub use plane::Plane;
 
 /// Limits of the way from points to poses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseOptions {
-    /// Gaps up to this long are bridged \[s\].
+    /// Gaps up to this long are filled \[s\].
     pub longest_fill_s: f64,
     /// How far the reflectors' distance may be from its mean to be taken for the pair, as a share of it.
     pub distance_tolerance: f64,
@@ -37,6 +43,17 @@ impl Default for PoseOptions {
         Self {
             longest_fill_s: 0.1,
             distance_tolerance: 0.1,
+        }
+    }
+}
+
+impl PoseOptions {
+    /// As usual, but never over more than a tenth of a period \[s\].
+    pub fn of_period(period_s: f64) -> Self {
+        let usual = Self::default();
+        Self {
+            longest_fill_s: usual.longest_fill_s.min(0.1 * period_s),
+            ..usual
         }
     }
 }
@@ -160,8 +177,40 @@ pub struct PoseSample {
     pub time_s: f64,
     /// Centre of the middle link \[m\] and its heading, unwrapped.
     pub pose: Pose<f64>,
-    /// Bridged rather than seen.
-    pub filled: bool,
+    /// How it was found.
+    pub origin: Origin,
+}
+
+/// How a pose was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// Both reflectors were seen.
+    Seen,
+    /// Both were seen, but right before or after a gap, where what is seen of a reflector is not all of it.
+    Tail,
+    /// From the reflector that was seen, and a cubic's heading.
+    OneSeen,
+    /// From a cubic.
+    Filled,
+}
+
+impl Origin {
+    /// The word that stands for it in tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Seen => "seen",
+            Self::Tail => "tail",
+            Self::OneSeen => "one-seen",
+            Self::Filled => "filled",
+        }
+    }
+}
+
+impl PoseSample {
+    /// Whether a reflector at least was lost.
+    pub fn is_filled(&self) -> bool {
+        matches!(self.origin, Origin::OneSeen | Origin::Filled)
+    }
 }
 
 /// The middle link's poses through a run.
@@ -184,9 +233,14 @@ pub struct PoseTrack {
 }
 
 impl PoseTrack {
-    /// The samples that were seen.
+    /// The samples that estimates are made of: seen, and not beside a gap.
     pub fn seen(&self) -> impl Iterator<Item = &PoseSample> {
-        self.samples.iter().filter(|sample| !sample.filled)
+        self.with(Origin::Seen)
+    }
+
+    /// The samples found in one way.
+    pub fn with(&self, origin: Origin) -> impl Iterator<Item = &PoseSample> {
+        self.samples.iter().filter(move |s| s.origin == origin)
     }
 
     /// Exchanges front and back. `reflectors` are those that the track was made with.
@@ -263,34 +317,27 @@ pub fn poses(
             rows: followed.lost_rows,
         });
     }
-    let mut samples: Vec<PoseSample> = Vec::with_capacity(followed.rows.len());
-    let (mut previous_row, mut heading) = (None, None);
-    for row in &followed.rows {
-        let (front, back) = (plane.project(&row.front), plane.project(&row.back));
-        let mut pose = pose_of(&front, &back, reflectors.front.at, reflectors.back.at);
-        if let Some(last) = heading {
-            pose.theta = last + wrapped(pose.theta - last);
-        }
-        heading = Some(pose.theta);
-        let time_s = track.times.get(row.index).copied().unwrap_or(0.0);
-        if let (Some(before), Some(previous)) = (samples.last().copied(), previous_row)
-            && time_s - before.time_s <= options.longest_fill_s + 1.5 / track.rate_hz
-        {
-            let gap = track.times.get(previous + 1..row.index).unwrap_or(&[]);
-            samples.extend(
-                gap.iter()
-                    .map(|time| between(&before, time_s, &pose, *time)),
-            );
-        }
-        samples.push(PoseSample {
-            time_s,
-            pose,
-            filled: false,
-        });
-        previous_row = Some(row.index);
-    }
+    let mut seen: Vec<Seen> = followed
+        .rows
+        .iter()
+        .map(|row| Seen {
+            row: row.index,
+            time_s: track.times.get(row.index).copied().unwrap_or(0.0),
+            front: plane.project(&row.front),
+            back: plane.project(&row.back),
+            tail: false,
+        })
+        .collect();
+    fill::mark_tails(&mut seen);
+    let assembly = Assembly {
+        track,
+        reflectors,
+        followed: &followed,
+        plane: &plane,
+        longest_s: options.longest_fill_s,
+    };
     Ok(PoseTrack {
-        samples,
+        samples: assembly.samples(&seen),
         frames: track.frames(),
         rate_hz: track.rate_hz,
         plane,
@@ -298,22 +345,6 @@ pub fn poses(
         order_known: followed.order_known,
         warnings,
     })
-}
-
-fn between(before: &PoseSample, after_s: f64, after: &Pose<f64>, time_s: f64) -> PoseSample {
-    let share = (time_s - before.time_s) / (after_s - before.time_s);
-    let mix = |a: f64, b: f64| a + share * (b - a);
-    let from = before.pose;
-    let pose = Pose::new(
-        mix(from.x, after.x),
-        mix(from.y, after.y),
-        mix(from.theta, after.theta),
-    );
-    PoseSample {
-        time_s,
-        pose,
-        filled: true,
-    }
 }
 
 /// The link's pose from two points in the plane and their places on the link.

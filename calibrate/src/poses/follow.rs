@@ -9,7 +9,7 @@
 
 mod search;
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use swimmer_files::{PointName, Reflectors};
 
 use super::{PoseError, PoseOptions};
@@ -46,7 +46,8 @@ pub(super) struct Row {
     miss: Option<f64>,
 }
 
-pub(super) struct Followed {
+pub(super) struct Followed<'a> {
+    search: Search<'a>,
     pub(super) rows: Vec<Row>,
     pub(super) report: FollowReport,
     pub(super) expected_m: f64,
@@ -59,6 +60,9 @@ pub(super) struct Followed {
 const SMOOTHING_S: f64 = 0.2;
 /// Longest gap before a speed is known \[s\].
 const FIRST_GAP_S: f64 = 1.0;
+/// How near to a cubic a lone point must be to be the reflector, over the reflectors' distance: what 0.1 s of a fast gait bend.
+const NEAR: f64 = 0.05;
+
 /// Place and velocity of a reflector.
 #[derive(Clone, Copy)]
 struct Motion {
@@ -85,11 +89,30 @@ impl Motion {
     }
 }
 
-pub(super) fn follow(
-    track: &TrackFile,
+impl Followed<'_> {
+    /// The measured point of a row that is nearest to where a reflector ought to be, if it is near enough to be it.
+    pub(super) fn nearest(
+        &self,
+        row: usize,
+        project: impl Fn(&Vector3<f64>) -> Vector2<f64>,
+        place: &Vector2<f64>,
+    ) -> Option<Vector2<f64>> {
+        let mut candidates = Vec::new();
+        self.search.candidates(row, &mut candidates);
+        let reach = self.search.after_gap.1.max(NEAR * self.search.distance);
+        candidates
+            .iter()
+            .map(|(_, at)| project(at))
+            .filter(|at| (at - place).norm() < reach)
+            .min_by(|a, b| (a - place).norm().total_cmp(&(b - place).norm()))
+    }
+}
+
+pub(super) fn follow<'a>(
+    track: &'a TrackFile,
     reflectors: &Reflectors,
     options: &PoseOptions,
-) -> Result<Followed, PoseError> {
+) -> Result<Followed<'a>, PoseError> {
     let [a, b] = [reflectors.front.at, reflectors.back.at];
     let expected_m = (a[0] - b[0]).hypot(a[1] - b[1]);
     if !(expected_m.is_finite() && expected_m > 0.0) {
@@ -116,11 +139,11 @@ pub(super) fn follow(
     }
     let named = !matches!(reflectors.front.point, PointName::Auto)
         || !matches!(reflectors.back.point, PointName::Auto);
-    let mut followed = settle(rows, &starts, track.frames(), expected_m);
+    let mut followed = settle(search, rows, &starts, expected_m);
     followed.order_known = named && followed.rows.iter().any(|row| row.labels.is_some());
     let mut candidates = Vec::new();
     for row in &followed.rows {
-        search.candidates(row.index, &mut candidates);
+        followed.search.candidates(row.index, &mut candidates);
         followed.report.ghosts_rejected += candidates.len().saturating_sub(2);
     }
     Ok(followed)
@@ -263,8 +286,13 @@ fn next(
 }
 
 /// Lets the labels of each segment decide which end is the front, and counts.
-fn settle(rows: Vec<Row>, starts: &[usize], frames: usize, expected_m: f64) -> Followed {
-    let length = rows.len();
+fn settle<'a>(
+    search: Search<'a>,
+    rows: Vec<Row>,
+    starts: &[usize],
+    expected_m: f64,
+) -> Followed<'a> {
+    let (length, frames) = (rows.len(), search.track.frames());
     let ends = starts.iter().skip(1).copied().chain([length]);
     let mut segments: Vec<(usize, usize, Option<bool>)> = Vec::new();
     for (start, end) in starts.iter().copied().zip(ends) {
@@ -313,6 +341,7 @@ fn settle(rows: Vec<Row>, starts: &[usize], frames: usize, expected_m: f64) -> F
         .sum::<f64>()
         / count;
     Followed {
+        search,
         report: FollowReport {
             followed: kept.len(),
             missing: frames - kept.len(),

@@ -35,6 +35,8 @@ pub(crate) struct Tank {
     pub(crate) dropout: f64,
     /// Stretches (first frame, frames) in which both are missing.
     pub(crate) gaps: Vec<(usize, usize)>,
+    /// How far reflectors are seen off their places in the three frames beside such a stretch, m.
+    pub(crate) tails: f64,
     /// Stretches in which the labels are exchanged.
     pub(crate) swaps: Vec<(usize, usize)>,
     pub(crate) ghosts: bool,
@@ -57,6 +59,7 @@ impl Tank {
             noise: 3e-4,
             dropout: 0.005,
             gaps: Vec::new(),
+            tails: 0.0,
             swaps: Vec::new(),
             ghosts: true,
             seed: 1,
@@ -161,6 +164,14 @@ impl Tank {
     fn frames(&self) -> Vec<[Option<[f64; 3]>; 4]> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         let mut ghosts = [None; 2];
+        let beside = |i: usize| {
+            let near = |(a, n): &(usize, usize)| i + 3 >= *a && i < a + n + 3;
+            if self.gaps.iter().any(near) {
+                self.tails
+            } else {
+                0.0
+            }
+        };
         let within = |stretches: &[(usize, usize)], i: usize| {
             stretches.iter().any(|(a, n)| i >= *a && i < a + n)
         };
@@ -171,7 +182,7 @@ impl Tank {
                 let [a, b, c]: [f64; 3] = std::array::from_fn(|_| StandardNormal.sample(&mut rng));
                 if rng.random::<f64>() >= self.dropout && !within(&self.gaps, i) {
                     *place = Some([
-                        p.x + self.noise * a,
+                        p.x + self.noise * a + beside(i),
                         p.y + self.noise * b,
                         0.05 + self.noise * c,
                     ]);
