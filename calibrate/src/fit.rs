@@ -6,15 +6,18 @@
 //! fit with the path that the servos really played. Jacobians are central differences of fourth order of a simulation that
 //! is smooth to 1e-10.
 //!
-//! Intervals are Student's t, with the wider of two standard errors for each parameter: from the residuals (which holds when
-//! the model is right up to noise) and from the deviations between cycles (which holds when the residuals are few).
+//! Intervals are Student's t, with the variances of what goes into the fit: between the cycles of a run (`errors.rs`) and
+//! from run to run (`components.rs`). `tests/coverage.rs` counts how often they hold the truth.
 
+pub(crate) mod components;
+pub(crate) mod errors;
 mod intervals;
 mod problem;
+mod search;
 
 use swimmer_model::{InvalidSwimmer, Swimmer, TangentialDrag};
 
-use crate::cycles::{Cycles, Projection};
+use crate::cycles::{Cycles, Projection, Statistics};
 use crate::prediction::{JointPath, PredictedCycle};
 pub use intervals::Intervals;
 use problem::{Problem, natural};
@@ -81,16 +84,15 @@ pub enum FitError {
 #[derive(Debug, Clone)]
 pub(crate) struct Observation {
     pub(crate) path: JointPath,
-    /// X, ΔY, Δθ: mean and standard error.
-    pub(crate) measured: [(f64, f64); 3],
+    /// X, ΔY, Δθ.
+    pub(crate) measured: [Statistics; 3],
 }
 
 impl Observation {
     pub(crate) fn new(path: JointPath, cycles: &Cycles) -> Self {
-        let of = |s: &crate::Statistics| (s.mean, s.se);
         Self {
             path,
-            measured: [of(&cycles.x), of(&cycles.delta_y), of(&cycles.delta_theta)],
+            measured: [cycles.x, cycles.delta_y, cycles.delta_theta],
         }
     }
 
@@ -198,14 +200,7 @@ pub fn c_t_form(drag: &TangentialDrag<f64>) -> String {
     }
 }
 
-/// Starting grid: r_s/L and χ.
-const GRID: ([f64; 4], [f64; 5]) = ([0.02, 0.08, 0.2, 0.4], [1.3, 2.0, 3.5, 6.0, 10.0]);
-/// p of a start just inside the border r_s = 0: a sphere of a thousandth of the length.
-const SMALL_SPHERE: f64 = 0.03;
-/// Ends of the search that are followed up.
-const FOLLOWED: usize = 3;
-
-/// Searches with ideal servos, then fits with the servos' own paths. `gaits` belong to `runs`.
+/// The paper's fit. `gaits` belong to `runs`.
 pub(crate) fn fit(
     start: &Swimmer<f64>,
     runs: &[Observation],
@@ -217,54 +212,12 @@ pub(crate) fn fit(
         return Err(FitError::Level { level });
     }
     let scales = scales(runs)?;
+    let row = [0, 1, 2].map(|i| WEIGHTS[i].sqrt() / scales[i]);
+    let factors = vec![row; runs.len()];
     let projection = Projection::new();
-    let ideal: Vec<Observation> = runs
-        .iter()
-        .zip(gaits)
-        .map(|(run, gait)| run.ideal(gait))
-        .collect();
-    let search = Problem::new(start, &ideal, scales, &projection);
-    let length = start.total_length();
-    let mut starts: Vec<[f64; 2]> = vec![[(start.sphere_radius / length).sqrt(), start.chi.ln()]];
-    for radius in GRID.0 {
-        starts.extend(GRID.1.map(|chi| [radius.sqrt(), chi.ln()]));
-    }
-    let mut ranked: Vec<([f64; 2], f64)> = starts
-        .iter()
-        .filter_map(|p| Some((*p, search.cost(*p)?)))
-        .collect();
-    ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let mut ends: Vec<[f64; 2]> = Vec::new();
-    let best = ranked.iter().take(FOLLOWED).map(|(p, _)| *p);
-    for p in best.filter_map(|p| search.minimise(p)) {
-        if ends
-            .iter()
-            .all(|q| (q[0] - p[0]).abs() + (q[1] - p[1]).abs() > 1e-3)
-        {
-            ends.push(p);
-        }
-    }
-    let problem = Problem::new(start, runs, scales, &projection);
-    let bare = ends
-        .iter()
-        .filter_map(|p| problem.without_sphere().minimise(*p));
-    // From the border inwards again: its optimum may be a saddle.
-    let bare: Vec<[f64; 2]> = bare
-        .flat_map(|[_, k]| [[0.0, k], [SMALL_SPHERE, k]])
-        .collect();
-    let finished = ends
-        .iter()
-        .chain(bare.iter().filter(|p| p[0] > 0.0))
-        .filter_map(|p| problem.minimise(*p))
-        .chain(bare.iter().filter(|p| p[0] <= 0.0).copied())
-        .filter_map(|p| Some((p, problem.cost(p)?)));
-    let best = finished.min_by(|a, b| a.1.total_cmp(&b.1));
-    let (p, cost) = best.ok_or(FitError::NoConvergence {
-        starts: starts.len() + 1,
-    })?;
-    summary(&problem, p, cost, level).ok_or(FitError::NoConvergence {
-        starts: starts.len() + 1,
-    })
+    let problem = Problem::new(start, runs, &factors, &projection);
+    let (p, cost) = search::search(&problem, gaits)?;
+    summary(&problem, p, cost, level).ok_or(FitError::NoConvergence { starts: 1 })
 }
 
 /// Whether the model swims the other way in every run.
@@ -273,7 +226,11 @@ pub(crate) fn check_signs(start: &Swimmer<f64>, runs: &[Observation]) -> Result<
     let mut first = None;
     for run in runs {
         let predicted_m = run.path.predict(start, &projection)?.0.x_m;
-        let (measured_m, se) = run.measured[0];
+        let Statistics {
+            mean: measured_m,
+            se,
+            ..
+        } = run.measured[0];
         if measured_m * predicted_m >= 0.0 || measured_m.abs() < 3.0 * se {
             return Ok(());
         }
@@ -293,7 +250,7 @@ pub(crate) fn check_signs(start: &Swimmer<f64>, runs: &[Observation]) -> Result<
 fn scales(runs: &[Observation]) -> Result<[f64; 3], FitError> {
     let largest = |i: usize| {
         runs.iter()
-            .map(|run| run.measured[i].0.abs())
+            .map(|run| run.measured[i].mean.abs())
             .fold(0.0, f64::max)
     };
     let scales = [0, 1, 2].map(largest);
@@ -308,7 +265,7 @@ fn scales(runs: &[Observation]) -> Result<[f64; 3], FitError> {
 fn summary(problem: &Problem<'_>, p: [f64; 2], cost: f64, level: f64) -> Option<Fit> {
     let swimmer = natural(problem.start, p);
     let (r_s, chi) = (swimmer.sphere_radius, swimmer.chi);
-    let spread = intervals::spread(problem, r_s, chi, cost, level)?;
+    let spread = intervals::spread(problem, r_s, chi, level)?;
     let mut residuals = Vec::with_capacity(problem.runs.len());
     for (run, parts) in problem
         .runs
@@ -316,7 +273,7 @@ fn summary(problem: &Problem<'_>, p: [f64; 2], cost: f64, level: f64) -> Option<
         .zip(problem.residuals(&swimmer)?.chunks(3))
     {
         let predicted = run.path.predict(&swimmer, problem.projection).ok()?.0;
-        let [x, y, theta] = run.measured.map(|(mean, _)| mean);
+        let [x, y, theta] = run.measured.map(|measured| measured.mean);
         residuals.push(RunResidual {
             predicted,
             x_m: predicted.x_m - x,

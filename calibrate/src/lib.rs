@@ -4,6 +4,7 @@
 //! bytes ──read_tracks──► TrackFile ──poses──► PoseTrack ──► Cycles ──► Fit: r_s, χ, intervals, residuals
 //!          (tracks)                 (poses)             (cycles)    (fit)
 //! ```
+//! [`weigh_evidence`] then tells, on demand, what the data say beyond the fit: likelihood, profiles, ridge, bootstrap, outliers.
 //! Lengths are metres, angles radians, times seconds. Nothing here opens a file, except [`CampaignData::load`] and
 //! [`load_run`], which read what the caller names. [`predict`] is the model's side of the fit, for anyone who wants to know
 //! beforehand what the cameras will see.
@@ -13,6 +14,7 @@
 
 mod campaign;
 pub mod cycles;
+pub mod evidence;
 pub mod fit;
 pub mod poses;
 mod prediction;
@@ -23,6 +25,7 @@ pub use campaign::{
     calibrate_run, load_run, load_tracks, track_options,
 };
 pub use cycles::{Cycle, CycleError, CycleWarning, Cycles, LeftOut, Statistics};
+pub use evidence::{Evidence, EvidenceOptions, weigh_evidence};
 pub use fit::{Fit, FitError, FitOptions, FitWarning, Intervals, RunResidual, c_t_form};
 pub use poses::{
     Origin, PoseError, PoseOptions, PoseSample, PoseTrack, PoseWarning, poses, usual_reflectors,

@@ -1,4 +1,5 @@
-//! The fit against the truth: exact data, noisy data over seeds, coverage, servos, and data that oppose the model.
+//! The fit against the truth: exact data, noisy data over seeds, servos, and data that oppose the model. How often intervals
+//! hold the truth is counted in `coverage.rs`.
 
 mod tank;
 
@@ -84,42 +85,6 @@ fn random_swimmers_are_recovered_within_a_hundredth() {
         let sum: f64 = fit.residuals.iter().map(|r| r.share).sum();
         assert!((sum.sqrt() / fit.rmse - 1.0).abs() < 1e-9);
     }
-}
-
-#[test]
-fn intervals_cover_the_truth_about_as_often_as_they_say() {
-    let truth = Swimmer::<f64>::robot();
-    let (mut inside, mut wide, campaigns) = ([0; 2], 0.0_f64, 40);
-    for seed in 1..=campaigns {
-        let tank = Tank {
-            seed,
-            cycles: 5,
-            period_s: 4.0,
-            rate_hz: 50.0,
-            noise: 1e-3,
-            ..robot()
-        };
-        let (campaign, data) = campaign(
-            &tank,
-            &[40.0, 60.0, 80.0, 100.0],
-            Tank::motive,
-            tank.named(),
-        );
-        let fit = calibrate_campaign(&campaign, &data, FitOptions { level: 0.9 })
-            .unwrap()
-            .fit;
-        let within = |[lo, hi]: [f64; 2], value: f64| i32::from(lo <= value && value <= hi);
-        inside[0] += within(fit.intervals.sphere_radius, truth.sphere_radius);
-        inside[1] += within(fit.intervals.chi, truth.chi);
-        wide = wide.max(fit.intervals.chi[1] / fit.intervals.chi[0]);
-    }
-    println!(
-        "of {campaigns}: r_s {} chi {} covered, widest chi interval a factor of {wide:.3}",
-        inside[0], inside[1]
-    );
-    // 90 % of 40 is 36; 30 is more than three standard deviations below.
-    assert!(inside.iter().all(|count| *count >= 30), "{inside:?}");
-    assert!(wide < 1.5, "{wide}");
 }
 
 #[test]

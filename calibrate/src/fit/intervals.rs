@@ -1,9 +1,11 @@
 //! How sure is it? Intervals from the curvature at the optimum.
 
-use nalgebra::{Dyn, Matrix2, OMatrix, OVector, U2};
+use nalgebra::{DMatrix, Dyn, OMatrix, OVector, U2};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use swimmer_model::Swimmer;
 
+use super::components::Components;
+use super::errors::{self, Variance};
 use super::problem::{Problem, difference};
 
 /// Intervals of both parameters.
@@ -28,45 +30,41 @@ pub(super) struct Spread {
 /// Step in r_s/L and in ln χ.
 const STEP: f64 = 1e-3;
 
-pub(super) fn spread(
-    problem: &Problem<'_>,
-    r_s: f64,
-    chi: f64,
-    cost: f64,
-    level: f64,
-) -> Option<Spread> {
+pub(super) fn spread(problem: &Problem<'_>, r_s: f64, chi: f64, level: f64) -> Option<Spread> {
     let length = problem.start.total_length();
     let jacobian = jacobian(problem, r_s / length, chi.ln())?;
-    let information: Matrix2<f64> = jacobian.tr_mul(&jacobian);
-    let inverse = information.try_inverse()?;
-    let freedom = (jacobian.nrows() as f64 - 2.0).max(1.0);
-    let by_residuals = inverse * (cost / freedom);
-    // The residuals' own variances, from cycle to cycle: J⁺ V J⁺ᵀ.
-    let mut inner = Matrix2::zeros();
-    for (row, (_, se), factor) in problem
-        .runs
-        .iter()
-        .flat_map(|run| run.measured.into_iter().zip(problem.factors))
-        .enumerate()
-        .map(|(row, (measured, factor))| (row, measured, factor))
-    {
-        let gradient = jacobian.row(row);
-        inner += gradient.transpose() * gradient * (se * factor).powi(2);
-    }
-    let by_cycles = inverse * inner * inverse;
-    let error = |i: usize| by_residuals[(i, i)].max(by_cycles[(i, i)]).max(0.0).sqrt();
-    let quantile = StudentsT::new(0.0, 1.0, freedom)
-        .ok()?
-        .inverse_cdf(0.5 + level / 2.0);
-    let (dr, dk) = (quantile * error(0) * length, quantile * error(1));
-    let ratio = |i: usize| {
-        let cycles = by_cycles[(i, i)];
-        if cycles > 0.0 {
-            (by_residuals[(i, i)] / cycles).sqrt()
-        } else {
-            0.0
-        }
+    let swimmer = Swimmer {
+        sphere_radius: r_s,
+        chi,
+        ..*problem.start
     };
+    let residuals = problem.residuals(&swimmer)?;
+    let measured: Vec<_> = problem.runs.iter().map(|run| run.measured).collect();
+    let within: Vec<Variance> = errors::within_runs(&measured)
+        .into_iter()
+        .zip(problem.factors)
+        .flat_map(|(run, factors)| {
+            let scaled = |(v, factor): (Variance, &f64)| Variance {
+                value: v.value * factor.powi(2),
+                ..v
+            };
+            run.into_iter().zip(factors).map(scaled).collect::<Vec<_>>()
+        })
+        .collect();
+    let dynamic = DMatrix::from_fn(jacobian.nrows(), 2, |i, j| jacobian[(i, j)]);
+    let mut components = Components::of(&dynamic, &vec![1.0; residuals.len()], &residuals, within)?;
+    let error = |components: &Components, i: usize| -> Option<(f64, f64)> {
+        let Variance { value, freedom } = components.of_parameter(i);
+        let quantile = StudentsT::new(0.0, 1.0, freedom)
+            .ok()?
+            .inverse_cdf(0.5 + level / 2.0);
+        Some((value.sqrt(), quantile))
+    };
+    let ((sr, tr), (sk, tk)) = (error(&components, 0)?, error(&components, 1)?);
+    let (dr, dk) = (tr * sr * length, tk * sk);
+    let covariance = components.covariance();
+    components.between = [0.0; 3];
+    let ratio = (sr / error(&components, 0)?.0).max(sk / error(&components, 1)?.0);
     let singular = jacobian.clone().svd(false, false).singular_values;
     Some(Spread {
         intervals: Intervals {
@@ -75,8 +73,8 @@ pub(super) fn spread(
             level,
         },
         condition: singular.max() / singular.min(),
-        correlation: inverse[(0, 1)] / (inverse[(0, 0)] * inverse[(1, 1)]).sqrt(),
-        misfit: ratio(0).max(ratio(1)),
+        correlation: covariance[(0, 1)] / (covariance[(0, 0)] * covariance[(1, 1)]).sqrt(),
+        misfit: if ratio.is_finite() { ratio } else { 0.0 },
     })
 }
 

@@ -4,17 +4,17 @@ use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{Dyn, OMatrix, OVector, U2, Vector2, storage::Owned};
 use swimmer_model::Swimmer;
 
-use super::{Observation, WEIGHTS};
+use super::Observation;
 use crate::cycles::Projection;
 
 /// Runs, and the swimmer whose r_s and χ are sought.
 #[derive(Clone, Copy)]
-pub(super) struct Problem<'a> {
-    pub(super) start: &'a Swimmer<f64>,
-    pub(super) runs: &'a [Observation],
-    /// Square root of the weight over the largest measured value, for X, ΔY, Δθ.
-    pub(super) factors: [f64; 3],
-    pub(super) projection: &'a Projection,
+pub(crate) struct Problem<'a> {
+    pub(crate) start: &'a Swimmer<f64>,
+    pub(crate) runs: &'a [Observation],
+    /// What multiplies the residuals of X, ΔY, Δθ, run by run.
+    pub(crate) factors: &'a [[f64; 3]],
+    pub(crate) projection: &'a Projection,
     /// Leaves the sphere out whatever p says. At p = 0 the derivative by p vanishes and Levenberg–Marquardt's scaling with
     /// it, so the border is fitted by itself: p becomes a residual of its own, whose optimum is 0.
     bare: bool,
@@ -25,7 +25,7 @@ pub(super) struct Problem<'a> {
 const STEP: f64 = 1e-3;
 
 /// The swimmer at parameters (√(r_s/L), ln χ).
-pub(super) fn natural(start: &Swimmer<f64>, [p, k]: [f64; 2]) -> Swimmer<f64> {
+pub(crate) fn natural(start: &Swimmer<f64>, [p, k]: [f64; 2]) -> Swimmer<f64> {
     Swimmer {
         sphere_radius: start.total_length() * p * p,
         chi: k.exp(),
@@ -34,13 +34,12 @@ pub(super) fn natural(start: &Swimmer<f64>, [p, k]: [f64; 2]) -> Swimmer<f64> {
 }
 
 impl<'a> Problem<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         start: &'a Swimmer<f64>,
         runs: &'a [Observation],
-        scales: [f64; 3],
+        factors: &'a [[f64; 3]],
         projection: &'a Projection,
     ) -> Self {
-        let factors = [0, 1, 2].map(|i| WEIGHTS[i].sqrt() / scales[i]);
         Self {
             start,
             runs,
@@ -52,23 +51,29 @@ impl<'a> Problem<'a> {
     }
 
     /// The same without a sphere: only χ is sought.
-    pub(super) fn without_sphere(&self) -> Self {
+    pub(crate) fn without_sphere(&self) -> Self {
         Self {
             bare: true,
             ..*self
         }
     }
 
+    /// The same for other runs, as many.
+    pub(crate) fn of_runs<'b>(&self, runs: &'b [Observation]) -> Problem<'b>
+    where
+        'a: 'b,
+    {
+        Problem { runs, ..*self }
+    }
+
     /// Weighted residuals, three a run; `None` where the swimmer cannot swim.
-    pub(super) fn residuals(&self, swimmer: &Swimmer<f64>) -> Option<Vec<f64>> {
+    pub(crate) fn residuals(&self, swimmer: &Swimmer<f64>) -> Option<Vec<f64>> {
         let mut out = Vec::with_capacity(3 * self.runs.len());
-        for run in self.runs {
+        for (run, factors) in self.runs.iter().zip(self.factors) {
             let cycle = run.path.predict(swimmer, self.projection).ok()?.0;
             let simulated = [cycle.x_m, cycle.delta_y_m, cycle.delta_theta_rad];
-            for ((simulated, (measured, _)), factor) in
-                simulated.iter().zip(run.measured).zip(self.factors)
-            {
-                out.push((simulated - measured) * factor);
+            for ((simulated, measured), factor) in simulated.iter().zip(run.measured).zip(factors) {
+                out.push((simulated - measured.mean) * factor);
             }
         }
         out.iter().all(|r| r.is_finite()).then_some(out)
@@ -84,12 +89,12 @@ impl<'a> Problem<'a> {
     }
 
     /// The squared criterion.
-    pub(super) fn cost(&self, p: [f64; 2]) -> Option<f64> {
+    pub(crate) fn cost(&self, p: [f64; 2]) -> Option<f64> {
         Some(self.at(p)?.iter().map(|r| r * r).sum())
     }
 
     /// From a start to the nearest minimum.
-    pub(super) fn minimise(&self, p: [f64; 2]) -> Option<[f64; 2]> {
+    pub(crate) fn minimise(&self, p: [f64; 2]) -> Option<[f64; 2]> {
         let problem = Self {
             p: Vector2::from(p),
             ..*self
@@ -134,7 +139,7 @@ impl LeastSquaresProblem<f64, Dyn, U2> for Problem<'_> {
 }
 
 /// The derivative from values one and two steps to either side: fourth order.
-pub(super) fn difference(
+pub(crate) fn difference(
     m2: &[f64],
     m1: &[f64],
     p1: &[f64],

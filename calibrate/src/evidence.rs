@@ -1,0 +1,324 @@
+//! What the data say about r_s and χ beyond the paper's fit: computed on demand from a finished fit.
+//!
+//! Beside the paper's criterion, which weighs all runs alike, stands a likelihood: each X, ΔY and Δθ has a variance of its own,
+//! from the cycles of its run and from what differs from run to run (`fit/components.rs`). From it come a second estimate, profiles,
+//! the ridge between r_s and χ, and outliers; from the paper's criterion the cycle bootstrap; from both what hangs on a single
+//! run.
+//!
+//! All of it is asked of polynomials in (r_s, ln χ) through the model's answers (`surface.rs`), whose error is stated.
+
+mod bootstrap;
+mod curves;
+mod deletion;
+mod estimate;
+mod profile;
+mod sought;
+mod surface;
+
+use swimmer_files::Campaign;
+
+use crate::campaign::{CalibrateError, CampaignData, CampaignFit};
+use crate::cycles::Projection;
+use crate::fit::{FitError, Intervals};
+use crate::prediction::JointPath;
+use bootstrap::Drawn;
+pub use curves::{CurvePoint, circle_curve};
+use profile::Scale;
+use sought::{RECTANGLES, Sought};
+use surface::Surface;
+
+/// How much to compute.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EvidenceOptions {
+    /// Draws of the bootstrap.
+    pub draws: usize,
+    /// Where their chance comes from.
+    pub seed: u64,
+}
+
+impl Default for EvidenceOptions {
+    /// 2000 draws.
+    fn default() -> Self {
+        Self {
+            draws: 2000,
+            seed: 1,
+        }
+    }
+}
+
+/// r_s and χ by one way of fitting.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// r_s \[m\].
+    pub sphere_radius: f64,
+    /// χ.
+    pub chi: f64,
+}
+
+/// X, ΔY or Δθ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// X \[m\].
+    X,
+    /// ΔY \[m\].
+    DeltaY,
+    /// Δθ \[rad\].
+    DeltaTheta,
+}
+
+impl Quantity {
+    /// In the order of all arrays here.
+    pub const ALL: [Self; 3] = [Self::X, Self::DeltaY, Self::DeltaTheta];
+}
+
+impl std::fmt::Display for Quantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::X => "X",
+            Self::DeltaY => "ΔY",
+            Self::DeltaTheta => "Δθ",
+        })
+    }
+}
+
+/// The estimate of greatest likelihood.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Likelihood {
+    /// The estimate, outliers left out.
+    pub estimate: Pair,
+    /// Where the profile likelihoods fall to Student's threshold.
+    pub intervals: Intervals,
+    /// Standard deviation from run to run of X \[m\], ΔY \[m\] and Δθ \[rad\], beyond what cycles explain.
+    pub between_runs: [f64; 3],
+    /// Correlation between r_s and ln χ.
+    pub correlation: f64,
+}
+
+/// What is left of one quantity of one run at the estimate of greatest likelihood; m or rad.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunError {
+    /// Measured mean.
+    pub measured: f64,
+    /// By the model.
+    pub predicted: f64,
+    /// Standard error of the mean from the run's cycles.
+    pub within: f64,
+    /// The same with what differs from run to run.
+    pub standard_error: f64,
+    /// (Predicted − measured) / standard error.
+    pub standardised: f64,
+}
+
+/// A profile likelihood.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// The parameter (m, or χ) and log-likelihood less its largest value, the other parameter set free.
+    pub points: Vec<(f64, f64)>,
+    /// Where the interval ends: −t²/2 of Student's t.
+    pub threshold: f64,
+    /// The interval.
+    pub interval: [f64; 2],
+    /// Whether the profile did not fall to the threshold as far as it was followed: then that end is no bound.
+    pub open: [bool; 2],
+    /// Degrees of freedom of Student's t.
+    pub freedom: f64,
+}
+
+/// The log-likelihood over both parameters, for drawing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ridge {
+    /// r_s \[m\] of the grid's columns.
+    pub sphere_radius: Vec<f64>,
+    /// χ of its rows.
+    pub chi: Vec<f64>,
+    /// Log-likelihood less its largest value: a row for each χ.
+    pub log_ratio: Vec<Vec<f64>>,
+    /// Regions of both parameters together.
+    pub contours: Vec<Contour>,
+}
+
+/// The border of a joint region.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contour {
+    /// Its level.
+    pub level: f64,
+    /// The log-likelihood on it, less the largest: minus Fisher's F of two parameters.
+    pub threshold: f64,
+    /// Corners (r_s \[m\], χ), once round.
+    pub corners: Vec<(f64, f64)>,
+}
+
+/// The cycle bootstrap of the paper's fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CycleBootstrap {
+    /// Where the draws came from.
+    pub seed: u64,
+    /// How many.
+    pub draws: usize,
+    /// Whether runs were drawn too (from five on), or only cycles within them.
+    pub runs_drawn: bool,
+    /// Draws whose fit ended at the border of what was looked at: intervals mean little where they are many.
+    pub at_border: usize,
+    /// Bias-corrected and accelerated intervals.
+    pub intervals: Intervals,
+    /// The draws' fits.
+    pub points: Vec<Pair>,
+}
+
+/// Both fits without one run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WithoutRun {
+    /// Which run, in the campaign's order.
+    pub run: usize,
+    /// By the paper's criterion.
+    pub paper: Pair,
+    /// By likelihood; `None` where the other runs do not determine it.
+    pub likelihood: Option<Pair>,
+}
+
+/// A value that the other ones do not expect. It is left out of the likelihood, never of the paper's criterion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outlier {
+    /// Which run, in the campaign's order.
+    pub run: usize,
+    /// Which of its values.
+    pub quantity: Quantity,
+    /// Measured less what all others predict \[m or rad\].
+    pub deviation: f64,
+    /// The same in standard errors of that difference.
+    pub standard_errors: f64,
+    /// Chance that any value of a faultless campaign stands out so far.
+    pub chance: f64,
+}
+
+/// Everything beyond the paper's fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evidence {
+    /// The estimate of greatest likelihood.
+    pub likelihood: Likelihood,
+    /// X, ΔY and Δθ of each run against it.
+    pub run_errors: Vec<[RunError; 3]>,
+    /// Profiles of r_s and of χ.
+    pub profiles: [Profile; 2],
+    /// Both together.
+    pub ridge: Ridge,
+    /// The cycle bootstrap of the paper's fit.
+    pub bootstrap: CycleBootstrap,
+    /// Both fits without each run.
+    pub without_run: Vec<WithoutRun>,
+    /// What stands out.
+    pub outliers: Vec<Outlier>,
+    /// Circles by the starting swimmer.
+    pub start_curve: Vec<CurvePoint>,
+    /// Circles by the swimmer of the paper's fit.
+    pub fitted_curve: Vec<CurvePoint>,
+    /// How far the polynomials through the model's answers are off, as a share of the largest X, ΔY, Δθ.
+    pub surface_error: f64,
+}
+
+/// Weighs what a campaign's runs say about its fit.
+///
+/// # Errors
+/// [`CalibrateError`]: the data do not determine the parameters.
+pub fn weigh_evidence(
+    campaign: &Campaign,
+    data: &CampaignData,
+    found: &CampaignFit,
+    options: EvidenceOptions,
+) -> Result<Evidence, CalibrateError> {
+    let projection = Projection::new();
+    let start = &campaign.swimmer;
+    let mut paths = Vec::with_capacity(data.runs.len());
+    for run in &data.runs {
+        let path = JointPath::new(&run.gait, start.servo.as_ref(), run.period_s);
+        paths.push(path.map_err(|cause| CalibrateError::Prediction {
+            file: run.file.clone(),
+            cause,
+        })?);
+    }
+    let sought = Sought::of(found, start.swimmer.total_length());
+    let nothing = || CalibrateError::Fit(FitError::NoConvergence { starts: RECTANGLES });
+    let (surface, data_used, estimate, unexpected) = sought
+        .settle(|rectangle| {
+            Surface::new(
+                &start.swimmer,
+                &paths,
+                sought.scales,
+                &projection,
+                rectangle,
+            )
+        })
+        .ok_or_else(nothing)?;
+    let scale = Scale {
+        length: sought.length,
+    };
+    let level = found.fit.intervals.level;
+    let profile =
+        |parameter| profile::profile(&surface, &data_used, &estimate, &scale, parameter, level);
+    let profiles = [
+        profile(0).ok_or_else(nothing)?,
+        profile(1).ok_or_else(nothing)?,
+    ];
+    let pair = |at: [f64; 2]| Pair {
+        sphere_radius: scale.natural(0, at[0]),
+        chi: scale.natural(1, at[1]),
+    };
+    let drawn: Vec<Drawn> = found
+        .runs
+        .iter()
+        .map(|run| sought.drawn(&run.cycles))
+        .collect();
+    let drawn =
+        bootstrap::bootstrap(&surface, &drawn, sought.paper, level, options).ok_or_else(nothing)?;
+    let natural = |parameter: usize, ends: [f64; 2]| ends.map(|end| scale.natural(parameter, end));
+    let covariance = estimate.components.covariance();
+    let period_s = median(data.runs.iter().map(|run| run.period_s));
+    Ok(Evidence {
+        likelihood: Likelihood {
+            estimate: pair(estimate.at),
+            intervals: Intervals {
+                sphere_radius: profiles[0].interval,
+                chi: profiles[1].interval,
+                level,
+            },
+            between_runs: [0, 1, 2]
+                .map(|q| estimate.components.between[q].sqrt() * sought.scales[q]),
+            correlation: covariance[(0, 1)] / (covariance[(0, 0)] * covariance[(1, 1)]).sqrt(),
+        },
+        run_errors: sought.run_errors(&estimate),
+        ridge: profile::ridge(&surface, &data_used, &estimate, &scale).ok_or_else(nothing)?,
+        profiles,
+        bootstrap: CycleBootstrap {
+            seed: drawn.seed,
+            draws: drawn.draws,
+            runs_drawn: drawn.runs_drawn,
+            at_border: drawn.at_border,
+            intervals: Intervals {
+                sphere_radius: natural(0, drawn.intervals[0]),
+                chi: natural(1, drawn.intervals[1]),
+                level,
+            },
+            points: drawn.points.into_iter().map(pair).collect(),
+        },
+        without_run: sought.without_runs(&surface, &data_used, estimate.at, pair),
+        outliers: unexpected
+            .into_iter()
+            .map(|value| Outlier {
+                run: value.row / 3,
+                quantity: Quantity::ALL[value.row % 3],
+                deviation: value.deviation * sought.scales[value.row % 3],
+                standard_errors: value.standard_errors,
+                chance: value.chance,
+            })
+            .collect(),
+        start_curve: circle_curve(start, period_s),
+        fitted_curve: circle_curve(&found.swimmer, period_s),
+        surface_error: surface.error,
+    })
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(1.0)
+}

@@ -1,0 +1,184 @@
+//! The cycle bootstrap of the paper's fit: whole cycles drawn anew within runs and, from five runs on, the runs too; every
+//! drawn campaign is fitted again, exactly, on the surface. Intervals are bias-corrected and accelerated (Efron's `BCa`), with
+//! the acceleration from leaving out each run.
+//!
+//! Means of drawn cycles vary by (n − 1)/n less than means of true ones, and drawing breaks the order in which neighbouring
+//! steps belong together: the draws are widened by what both take away.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use statrs::distribution::{ContinuousCDF, Normal};
+
+use super::EvidenceOptions;
+use super::estimate::minimise;
+use super::surface::Surface;
+use crate::fit::WEIGHTS;
+
+/// From how many runs on runs are drawn too.
+const ENOUGH_RUNS: usize = 5;
+
+/// What is drawn from: one run's values of single cycles about their mean, each quantity in units of its scale.
+#[derive(Debug, Clone)]
+pub(super) struct Drawn {
+    pub(super) means: [f64; 3],
+    /// Deviations from the mean, widened.
+    pub(super) deviations: [Vec<f64>; 3],
+}
+
+/// What came of it, in (r_s/L, ln χ).
+pub(super) struct Bootstrap {
+    pub(super) seed: u64,
+    pub(super) draws: usize,
+    pub(super) runs_drawn: bool,
+    pub(super) at_border: usize,
+    pub(super) intervals: [[f64; 2]; 2],
+    pub(super) points: Vec<[f64; 2]>,
+}
+
+/// Draws and fits.
+pub(super) fn bootstrap(
+    surface: &Surface,
+    runs: &[Drawn],
+    optimum: [f64; 2],
+    level: f64,
+    options: EvidenceOptions,
+) -> Option<Bootstrap> {
+    let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
+    let resampled = runs.len() >= ENOUGH_RUNS;
+    let measured: Vec<f64> = runs.iter().flat_map(|run| run.means).collect();
+    let mut draws: Vec<[f64; 2]> = Vec::with_capacity(options.draws);
+    let mut at_border = 0;
+    for _ in 0..options.draws {
+        let mut weights = vec![0.0; runs.len()];
+        if resampled {
+            for _ in runs {
+                weights[rng.random_range(0..runs.len())] += 1.0;
+            }
+        } else {
+            weights.fill(1.0);
+        }
+        let mut values = measured.clone();
+        for (run, values) in runs.iter().zip(values.chunks_mut(3)) {
+            for (value, deviations) in values.iter_mut().zip(&run.deviations) {
+                let mut sum = 0.0;
+                for _ in deviations {
+                    sum += deviations[rng.random_range(0..deviations.len())];
+                }
+                *value += sum / deviations.len().max(1) as f64;
+            }
+        }
+        let at = papers_fit(surface, &values, &weights, optimum);
+        at_border += usize::from(!surface.rectangle.holds(at));
+        draws.push(at);
+    }
+    let left_out: Vec<[f64; 2]> = (0..runs.len())
+        .map(|run| {
+            let mut weights = vec![1.0; runs.len()];
+            weights[run] = 0.0;
+            papers_fit(surface, &measured, &weights, optimum)
+        })
+        .collect();
+    let interval = |parameter: usize| {
+        accelerated(
+            draws.iter().map(|at| at[parameter]).collect(),
+            optimum[parameter],
+            &left_out.iter().map(|at| at[parameter]).collect::<Vec<_>>(),
+            level,
+        )
+    };
+    Some(Bootstrap {
+        seed: options.seed,
+        draws: options.draws,
+        runs_drawn: resampled,
+        at_border,
+        intervals: [interval(0)?, interval(1)?],
+        points: draws,
+    })
+}
+
+/// The paper's criterion over weighted runs, its scales taken from the drawn runs as from any others.
+pub(super) fn papers_fit(
+    surface: &Surface,
+    values: &[f64],
+    runs: &[f64],
+    start: [f64; 2],
+) -> [f64; 2] {
+    let mut scales = [0.0_f64; 3];
+    for (row, value) in values.iter().enumerate() {
+        if runs[row / 3] > 0.0 {
+            scales[row % 3] = scales[row % 3].max(value.abs());
+        }
+    }
+    let weigh = |row: usize| runs[row / 3] * WEIGHTS[row % 3] / scales[row % 3].powi(2);
+    let weights: Vec<f64> = (0..values.len()).map(weigh).collect();
+    minimise(surface, values, &weights, start)
+}
+
+/// `BCa`: percentiles of the draws, moved by how far the optimum is from their median and by how the spread changes with it.
+fn accelerated(
+    mut draws: Vec<f64>,
+    optimum: f64,
+    left_out: &[f64],
+    level: f64,
+) -> Option<[f64; 2]> {
+    draws.sort_by(f64::total_cmp);
+    let count = draws.len() as f64;
+    if draws.is_empty() {
+        return None;
+    }
+    let normal = Normal::standard();
+    // Ties (a border) count half.
+    let below = draws.partition_point(|d| *d < optimum) as f64;
+    let not_above = draws.partition_point(|d| *d <= optimum) as f64;
+    let share = (f64::midpoint(below, not_above) / count).clamp(1.0 / count, 1.0 - 1.0 / count);
+    let bias = normal.inverse_cdf(share);
+    let mean = left_out.iter().sum::<f64>() / left_out.len().max(1) as f64;
+    let (mut squares, mut cubes) = (0.0, 0.0);
+    for value in left_out {
+        squares += (mean - value).powi(2);
+        cubes += (mean - value).powi(3);
+    }
+    let acceleration = if squares > 0.0 {
+        cubes / (6.0 * squares.powf(1.5))
+    } else {
+        0.0
+    };
+    let end = |share: f64| {
+        let z = bias + normal.inverse_cdf(share);
+        let moved = normal.cdf(bias + z / (1.0 - acceleration * z));
+        quantile(&draws, moved)
+    };
+    Some([end((1.0 - level) / 2.0), end(f64::midpoint(1.0, level))])
+}
+
+/// The value below which a share of sorted values lies.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let last = sorted.len().saturating_sub(1);
+    let place = share.clamp(0.0, 1.0) * last as f64;
+    let (low, part) = (place.floor() as usize, place.fract());
+    let value = |i: usize| sorted.get(i.min(last)).copied().unwrap_or(f64::NAN);
+    value(low) * (1.0 - part) + value(low + 1) * part
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_bias_and_acceleration_it_is_the_percentile_interval() {
+        let draws: Vec<f64> = (0..=1000).map(f64::from).collect();
+        let [low, high] = accelerated(draws, 500.0, &[1.0, 2.0, 3.0], 0.9).unwrap();
+        assert!(
+            (low - 50.0).abs() < 1.0 && (high - 950.0).abs() < 1.0,
+            "{low} {high}"
+        );
+    }
+
+    #[test]
+    fn draws_that_lie_too_low_are_moved_up() {
+        let draws: Vec<f64> = (0..=1000).map(f64::from).collect();
+        let [low, high] = accelerated(draws, 600.0, &[1.0, 2.0, 3.0], 0.9).unwrap();
+        assert!(low > 80.0 && high > 970.0, "{low} {high}");
+    }
+}

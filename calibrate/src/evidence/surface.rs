@@ -1,0 +1,216 @@
+//! The model's answers over a rectangle of (r_s/L, ln χ), as polynomials: what profiles, contours and a thousand refits ask of
+//! the model again and again, they ask of these. How far the polynomials are off is measured, not assumed.
+
+use std::f64::consts::PI;
+
+use nalgebra::DMatrix;
+use swimmer_model::Swimmer;
+
+use crate::cycles::Projection;
+use crate::prediction::JointPath;
+
+/// Degree of the polynomials in each parameter.
+const DEGREE: usize = 7;
+const NODES: usize = DEGREE + 1;
+
+/// A rectangle in (r_s/L, ln χ).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rectangle {
+    pub(super) low: [f64; 2],
+    pub(super) high: [f64; 2],
+}
+
+impl Rectangle {
+    /// About a point, with half widths; r_s never goes below 0, nor χ out of reach.
+    pub(super) fn about(centre: [f64; 2], half: [f64; 2]) -> Self {
+        Self {
+            low: [(centre[0] - half[0]).max(0.0), centre[1] - half[1]],
+            high: [centre[0] + half[0], centre[1] + half[1]],
+        }
+    }
+
+    pub(super) fn clamp(&self, q: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| q[i].clamp(self.low[i], self.high[i]))
+    }
+
+    /// Whether a point lies inside or on the border.
+    pub(super) fn contains(&self, q: [f64; 2]) -> bool {
+        [0, 1]
+            .iter()
+            .all(|i| (self.low[*i]..=self.high[*i]).contains(&q[*i]))
+    }
+
+    /// Whether a point lies well inside; the border r_s = 0 counts as inside.
+    pub(super) fn holds(&self, q: [f64; 2]) -> bool {
+        [0, 1].iter().all(|i| {
+            let margin = 0.1 * (self.high[*i] - self.low[*i]);
+            let bottom = self.low[*i] <= 0.0 && *i == 0;
+            (bottom || q[*i] > self.low[*i] + margin) && q[*i] < self.high[*i] - margin
+        })
+    }
+
+    /// In (−1, 1).
+    fn place(&self, q: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| (2.0 * q[i] - self.low[i] - self.high[i]) / (self.high[i] - self.low[i]))
+    }
+}
+
+/// X, ΔY, Δθ of every run as functions of (r_s/L, ln χ), each in units of its scale.
+#[derive(Debug, Clone)]
+pub(super) struct Surface {
+    pub(super) rectangle: Rectangle,
+    /// One row for each pair of degrees, one column for each quantity of each run.
+    coefficients: DMatrix<f64>,
+    /// Largest deviation from the model at the points where it was looked for.
+    pub(super) error: f64,
+}
+
+impl Surface {
+    /// Asks the model at 64 points; `None` where it cannot swim at one.
+    pub(super) fn new(
+        start: &Swimmer<f64>,
+        paths: &[JointPath],
+        scales: [f64; 3],
+        projection: &Projection,
+        rectangle: Rectangle,
+    ) -> Option<Self> {
+        let columns = 3 * paths.len();
+        let ask = |q: [f64; 2]| predictions(start, paths, scales, projection, q);
+        let node = |i: usize| (PI * (i as f64 + 0.5) / NODES as f64).cos();
+        let at = |u: [f64; 2]| {
+            let Rectangle { low, high } = rectangle;
+            [0, 1].map(|i| low[i] + (high[i] - low[i]) * (u[i] + 1.0) / 2.0)
+        };
+        let mut coefficients = DMatrix::zeros(NODES * NODES, columns);
+        for i in 0..NODES {
+            for j in 0..NODES {
+                let values = ask(at([node(i), node(j)]))?;
+                let (a, b) = (chebyshev(node(i)).0, chebyshev(node(j)).0);
+                for m in 0..NODES {
+                    for n in 0..NODES {
+                        let norm = if m == 0 { 1.0 } else { 2.0 } * if n == 0 { 1.0 } else { 2.0 };
+                        let share = norm * a[m] * b[n] / (NODES * NODES) as f64;
+                        for (column, value) in values.iter().enumerate() {
+                            coefficients[(m * NODES + n, column)] += share * value;
+                        }
+                    }
+                }
+            }
+        }
+        let mut surface = Self {
+            rectangle,
+            coefficients,
+            error: 0.0,
+        };
+        for u in [[0.0, 0.0], [0.83, -0.9], [-0.97, 0.97]] {
+            let off = surface.at(at(u));
+            let off = ask(at(u))?.into_iter().zip(off.0);
+            surface.error = off.fold(surface.error, |worst, (a, b)| worst.max((a - b).abs()));
+        }
+        Some(surface)
+    }
+
+    /// Values, and their derivatives by r_s/L and ln χ.
+    pub(super) fn at(&self, q: [f64; 2]) -> (Vec<f64>, DMatrix<f64>) {
+        let [u, v] = self.rectangle.place(q);
+        let ((a, da), (b, db)) = (chebyshev(u), chebyshev(v));
+        let inner = [0, 1].map(|i| 2.0 / (self.rectangle.high[i] - self.rectangle.low[i]));
+        let columns = self.coefficients.ncols();
+        let mut values = vec![0.0; columns];
+        let mut jacobian = DMatrix::zeros(columns, 2);
+        for m in 0..NODES {
+            for n in 0..NODES {
+                let weights = [
+                    a[m] * b[n],
+                    da[m] * b[n] * inner[0],
+                    a[m] * db[n] * inner[1],
+                ];
+                for (column, value) in values.iter_mut().enumerate() {
+                    let c = self.coefficients[(m * NODES + n, column)];
+                    *value += weights[0] * c;
+                    jacobian[(column, 0)] += weights[1] * c;
+                    jacobian[(column, 1)] += weights[2] * c;
+                }
+            }
+        }
+        (values, jacobian)
+    }
+}
+
+/// X, ΔY, Δθ of every run by the model itself.
+pub(super) fn predictions(
+    start: &Swimmer<f64>,
+    paths: &[JointPath],
+    scales: [f64; 3],
+    projection: &Projection,
+    [radius, log_chi]: [f64; 2],
+) -> Option<Vec<f64>> {
+    let swimmer = Swimmer {
+        sphere_radius: radius * start.total_length(),
+        chi: log_chi.exp(),
+        ..*start
+    };
+    let mut out = Vec::with_capacity(3 * paths.len());
+    for path in paths {
+        let cycle = path.predict(&swimmer, projection).ok()?.0;
+        let values = [cycle.x_m, cycle.delta_y_m, cycle.delta_theta_rad];
+        out.extend(
+            values
+                .iter()
+                .zip(scales)
+                .map(|(value, scale)| value / scale),
+        );
+    }
+    out.iter().all(|value| value.is_finite()).then_some(out)
+}
+
+/// Chebyshev polynomials and their derivatives.
+fn chebyshev(u: f64) -> ([f64; NODES], [f64; NODES]) {
+    let (mut values, mut slopes) = ([1.0; NODES], [0.0; NODES]);
+    values[1] = u;
+    slopes[1] = 1.0;
+    for n in 2..NODES {
+        values[n] = 2.0 * u * values[n - 1] - values[n - 2];
+        slopes[n] = 2.0 * values[n - 1] + 2.0 * u * slopes[n - 1] - slopes[n - 2];
+    }
+    (values, slopes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use swimmer_files::AnyGait;
+
+    #[test]
+    fn the_surface_is_the_model() {
+        let start = Swimmer::<f64>::robot();
+        let paths = [0.6, 1.8].map(|amplitude| JointPath::Ideal(AnyGait::circle(amplitude)));
+        let projection = Projection::new();
+        let scales = [0.01, 0.02, 0.5];
+        let centre = [start.sphere_radius / start.total_length(), start.chi.ln()];
+        let rectangle = Rectangle::about(centre, [0.05, 0.2]);
+        let surface = Surface::new(&start, &paths, scales, &projection, rectangle).unwrap();
+        assert!(surface.error < 1e-6, "{}", surface.error);
+        let q = [centre[0] + 0.02, centre[1] - 0.1];
+        let ask = |q| predictions(&start, &paths, scales, &projection, q).unwrap();
+        let (values, jacobian) = surface.at(q);
+        for (row, (value, truth)) in values.iter().zip(ask(q)).enumerate() {
+            assert!((value - truth).abs() < 1e-6, "{value} {truth}");
+            for parameter in 0..2 {
+                let mut ahead = q;
+                let mut behind = q;
+                ahead[parameter] += 1e-4;
+                behind[parameter] -= 1e-4;
+                let slope = (ask(ahead)[row] - ask(behind)[row]) / 2e-4;
+                assert!((jacobian[(row, parameter)] - slope).abs() < 1e-4 * (1.0 + slope.abs()));
+            }
+        }
+    }
+
+    #[test]
+    fn rectangles_end_at_no_sphere() {
+        let rectangle = Rectangle::about([0.01, 1.0], [0.05, 0.5]);
+        assert!(rectangle.low[0].abs() <= 0.0);
+        assert!(rectangle.holds([0.0, 1.0]) && !rectangle.holds([0.059, 1.0]));
+    }
+}

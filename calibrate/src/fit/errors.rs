@@ -1,0 +1,219 @@
+//! How wrong are X, ΔY and Δθ of a run, as far as its cycles tell?
+//!
+//! Their variance comes from as few as four cycles, so it is itself uncertain: the runs' variances are drawn towards what they
+//! have in common, by as much as their own scatter allows (Smyth's moderated variances, Stat. Appl. Genet. Mol. Biol. 3, 2004).
+//! Steps X of neighbouring cycles share one, so camera noise makes them vary against each other and a drifting tank with each
+//! other; their lag-1 correlation is pooled over the runs.
+//!
+//! What all cycles of a run share does not show here, but in what a fit leaves (`components.rs`).
+
+use statrs::function::gamma::digamma;
+
+use crate::cycles::Statistics;
+
+/// A squared standard error and how many degrees of freedom it rests on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Variance {
+    pub(crate) value: f64,
+    pub(crate) freedom: f64,
+}
+
+/// Relative deviation below which numbers are rounding.
+const ROUNDING: f64 = 1e-12;
+/// Freedom of a variance that is common to all runs as far as anybody can tell.
+pub(super) const MOST_FREEDOM: f64 = 1e4;
+
+/// Variances of the means of X, ΔY, Δθ, run by run, from the deviations between cycles.
+pub(crate) fn within_runs(measured: &[[Statistics; 3]]) -> Vec<[Variance; 3]> {
+    let nothing = Variance {
+        value: 0.0,
+        freedom: 0.0,
+    };
+    let mut out = vec![[nothing; 3]; measured.len()];
+    for quantity in 0..3 {
+        let of_runs: Vec<Statistics> = measured.iter().map(|run| run[quantity]).collect();
+        let largest = of_runs.iter().map(|s| s.mean.abs()).fold(0.0, f64::max);
+        // Only steps have a reason to be correlated.
+        let lag1 = if quantity == 0 {
+            common_lag(&of_runs)
+        } else {
+            0.0
+        };
+        for (out, variance) in out.iter_mut().zip(moderated(&of_runs, ROUNDING * largest)) {
+            out[quantity] = variance;
+        }
+        for (out, s) in out.iter_mut().zip(&of_runs) {
+            let n = s.count.max(1) as f64;
+            // Cycles that vary against each other widen the sample's deviation, and the other way round.
+            let inflation = (1.0 + 2.0 * lag1 * (1.0 - 1.0 / n)) / (1.0 - 2.0 * lag1 / n);
+            out[quantity].value *= inflation.max(1.0 / n) / n;
+        }
+    }
+    out
+}
+
+/// The lag-1 correlation of all runs together, freed of the bias −1/n that a run's own mean brings.
+fn common_lag(runs: &[Statistics]) -> f64 {
+    let (mut products, mut squares) = (0.0, 0.0);
+    for s in runs.iter().filter(|s| s.count >= 5 && s.sd > 0.0) {
+        let n = s.count as f64;
+        products += (s.lag1 + 1.0 / n) * (n - 1.0);
+        squares += n - 1.0;
+    }
+    if squares > 0.0 {
+        (products / squares).clamp(-0.5, 0.5)
+    } else {
+        0.0
+    }
+}
+
+/// Variances of single cycles, drawn towards each other.
+fn moderated(runs: &[Statistics], least_sd: f64) -> Vec<Variance> {
+    let samples: Vec<(f64, f64)> = runs
+        .iter()
+        .filter(|s| s.count > 1)
+        .map(|s| (s.sd.max(least_sd).powi(2), s.count as f64 - 1.0))
+        .collect();
+    let Some(prior) = prior(&samples) else {
+        return vec![
+            Variance {
+                value: least_sd.powi(2),
+                freedom: 0.0
+            };
+            runs.len()
+        ];
+    };
+    let posterior = |s: &Statistics| {
+        let own = (s.count as f64 - 1.0).max(0.0);
+        let freedom = own + prior.freedom;
+        let sum = own * s.sd.max(least_sd).powi(2) + prior.freedom * prior.value;
+        Variance {
+            value: if freedom > 0.0 {
+                sum / freedom
+            } else {
+                prior.value
+            },
+            freedom: freedom.max(1.0),
+        }
+    };
+    runs.iter().map(posterior).collect()
+}
+
+/// What the runs' variances have in common: a scaled inverse χ² distribution, by the moments of their logarithms.
+fn prior(samples: &[(f64, f64)]) -> Option<Variance> {
+    let count = samples.len() as f64;
+    let logs: Vec<f64> = samples
+        .iter()
+        .filter(|(value, _)| *value > 0.0)
+        .map(|(value, freedom)| value.ln() - digamma(freedom / 2.0) + (freedom / 2.0).ln())
+        .collect();
+    if logs.is_empty() {
+        return None;
+    }
+    let mean = logs.iter().sum::<f64>() / count;
+    let spread = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    let expected = samples.iter().map(|(_, f)| trigamma(f / 2.0)).sum::<f64>() / count;
+    let freedom = if logs.len() < 2 {
+        0.0
+    } else {
+        inverse_trigamma(spread - expected).map_or(MOST_FREEDOM, |half| 2.0 * half)
+    };
+    let shift = if freedom > 0.0 {
+        digamma(freedom / 2.0) - (freedom / 2.0).ln()
+    } else {
+        0.0
+    };
+    Some(Variance {
+        value: (mean + shift).exp(),
+        freedom: freedom.min(MOST_FREEDOM),
+    })
+}
+
+/// ψ′(x) for x > 0, by its recurrence and asymptotic series.
+fn trigamma(mut x: f64) -> f64 {
+    let mut sum = 0.0;
+    while x < 10.0 {
+        sum += 1.0 / (x * x);
+        x += 1.0;
+    }
+    let y = 1.0 / (x * x);
+    sum + 1.0 / x + y / 2.0 + y / x * (1.0 / 6.0 - y * (1.0 / 30.0 - y / 42.0))
+}
+
+/// The x at which ψ′(x) = value; `None` for a value that only infinity reaches. Newton's method on 1/ψ′, which is convex.
+fn inverse_trigamma(value: f64) -> Option<f64> {
+    if value < 1.0 / MOST_FREEDOM {
+        return None;
+    }
+    let mut x = 0.5 + 1.0 / value;
+    for _ in 0..60 {
+        let at = trigamma(x);
+        let slope = (trigamma(x * (1.0 + 1e-5)) - trigamma(x * (1.0 - 1e-5))) / (2e-5 * x);
+        let step = at * (1.0 - at / value) / slope;
+        x += step;
+        if (step / x).abs() < 1e-10 {
+            break;
+        }
+    }
+    (x > 0.0).then_some(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn statistics(values: &[f64]) -> Statistics {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+        Statistics {
+            mean,
+            sd: (squares / (n - 1.0)).sqrt(),
+            se: 0.0,
+            lag1: 0.0,
+            count: values.len(),
+        }
+    }
+
+    #[test]
+    fn trigamma_and_its_inverse() {
+        let pi = std::f64::consts::PI;
+        assert!((trigamma(1.0) - pi * pi / 6.0).abs() < 1e-9);
+        assert!((trigamma(0.5) - pi * pi / 2.0).abs() < 1e-9);
+        for x in [0.3, 1.0, 7.0, 200.0] {
+            assert!(
+                (inverse_trigamma(trigamma(x)).unwrap() / x - 1.0).abs() < 1e-6,
+                "{x}"
+            );
+        }
+        assert!(inverse_trigamma(-0.1).is_none());
+    }
+
+    #[test]
+    fn alike_variances_are_pooled_and_unlike_ones_are_not() {
+        let alike: Vec<Statistics> = (0..6)
+            .map(|i| statistics(&[1.0, 2.0 + 0.01 * f64::from(i), 3.0, 4.0]))
+            .collect();
+        let pooled = moderated(&alike, 1e-9);
+        assert!(pooled.iter().all(|v| v.freedom > 100.0), "{pooled:?}");
+        let unlike: Vec<Statistics> = (0..6)
+            .map(|i| {
+                let scale = 10_f64.powi(i);
+                statistics(&[1.0, 1.0 + scale, 1.0 - scale, 1.0 + 2.0 * scale])
+            })
+            .collect();
+        let own = moderated(&unlike, 1e-9);
+        assert!(own.iter().all(|v| v.freedom < 6.0), "{own:?}");
+        assert!(own[5].value > 1e6 * own[0].value);
+    }
+
+    #[test]
+    fn a_common_lag_is_found_without_the_bias_of_the_mean() {
+        let run = |lag1: f64| Statistics {
+            lag1,
+            ..statistics(&[1.0, 2.0, 3.0, 2.0, 1.0])
+        };
+        assert!(common_lag(&[run(-0.2), run(-0.2)]).abs() < 1e-12);
+        assert!((common_lag(&[run(-0.7), run(-0.5)]) + 0.4).abs() < 1e-12);
+    }
+}
