@@ -9,6 +9,7 @@ use swimmer_model::{InvalidSwimmer, Swimmer};
 
 use crate::cycles::{Clock, CycleError, Cycles, Projection};
 use crate::fit::{self, Fit, FitError, FitOptions, Observation};
+use crate::further::dead_band;
 use crate::poses::{self, PoseError, PoseOptions, PoseTrack};
 use crate::prediction::{JointPath, PredictionError};
 use crate::tracks::{TrackError, TrackFile, TrackOptions, read_tracks_with};
@@ -351,17 +352,15 @@ pub fn calibrate_campaign(
         };
         let settled = !runs.iter().zip(starts.iter().zip(&next)).any(moved);
         if settled || round == ROUNDS {
-            let fitted = campaign.swimmer.fitted(fit.sphere_radius, fit.chi);
-            let runs = runs
-                .into_iter()
-                .zip(cycles)
-                .map(|(run, cycles)| run.finish(cycles))
-                .collect();
-            return Ok(CampaignFit {
-                runs,
+            let finished = runs.into_iter().zip(cycles);
+            let mut found = CampaignFit {
+                runs: finished.map(|(run, cycles)| run.finish(cycles)).collect(),
+                swimmer: campaign.swimmer.fitted(fit.sphere_radius, fit.chi),
                 fit,
-                swimmer: fitted,
-            });
+            };
+            let dead_band = dead_band::noticed(campaign, data, &found);
+            found.fit.warnings.extend(dead_band);
+            return Ok(found);
         }
         starts = next;
     }

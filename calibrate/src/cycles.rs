@@ -8,10 +8,11 @@
 //!   the heading's harmonics match those of the model swimming the same gait; for the gaits of the paper that does not
 //!   depend on the drag, by symmetry.
 //! * X and Y are the step of SE(2) from one cycle to the next in the frame of the cycle's first heading. ΔY and Δθ are half
-//!   of max − min of the cycle's harmonic curve.
+//!   of max − min of the cycle's harmonics, drawn about the drift from one cycle's mean to the next one's.
 
 mod clock;
 mod curve;
+mod integral;
 mod statistics;
 
 use std::fmt;
@@ -20,6 +21,7 @@ use swimmer_model::Pose;
 
 use crate::poses::{Origin, PoseSample, PoseTrack};
 use clock::Bin;
+pub(crate) use clock::shift;
 pub(crate) use curve::{Curve, Harmonics, Projection};
 pub use statistics::Statistics;
 
@@ -275,6 +277,7 @@ impl Clock {
             }
         }
         drop_unlike(&mut drawn, &mut left_out);
+        let drawn = settle_drifts(&drawn, period);
         let Some((.., lone, _)) = drawn.first() else {
             let (from_s, active_s) = (from, to - from);
             return Err(CycleError::NoCycle {
@@ -358,16 +361,37 @@ fn drop_unlike(drawn: &mut Vec<(f64, f64, Curve, f64)>, left_out: &mut Vec<(f64,
     });
 }
 
+/// Every curve with the drift from the cycle before it to the one after it, as far as they are there.
+fn settle_drifts(drawn: &[(f64, f64, Curve, f64)], period: f64) -> Vec<(f64, f64, Curve, f64)> {
+    let near = |a: &(f64, _, _, _), b: &(f64, _, _, _)| b.0 - a.0 < 1.5 * period;
+    let settled = |(i, (start, missing, curve, residual)): (usize, &(f64, f64, Curve, f64))| {
+        let here = &drawn[i];
+        let before = i
+            .checked_sub(1)
+            .map(|i| &drawn[i])
+            .filter(|b| near(b, here));
+        let after = drawn.get(i + 1).filter(|after| near(here, after));
+        let curve = match (before, after) {
+            (Some((_, _, before, _)), Some((_, _, after, _))) => curve.drifting(before, after, 2.0),
+            (None, Some((_, _, after, _))) => curve.drifting(curve, after, 1.0),
+            (Some((_, _, before, _)), None) => curve.drifting(before, curve, 1.0),
+            (None, None) => curve.clone(),
+        };
+        (*start, *missing, curve, *residual)
+    };
+    drawn.iter().enumerate().map(settled).collect()
+}
+
 fn cycle(
     (start_s, missing, curve, residual_m): &(f64, f64, Curve, f64),
     next: Option<&(f64, f64, Curve, f64)>,
     period: f64,
 ) -> Cycle {
     let follows = next.filter(|(next_start, ..)| next_start - start_s < 1.5 * period);
-    let (delta_y, delta_theta) = curve.amplitudes();
+    let (delta_y, delta_theta) = curve.amplitudes(0.0);
     Cycle {
         start_s: *start_s,
-        step: follows.map(|(_, _, next, _)| curve.step_to(next)),
+        step: follows.map(|(_, _, next, _)| curve.step_to(next, 0.0)),
         delta_y,
         delta_theta,
         missing: *missing,

@@ -70,6 +70,14 @@ pub enum FitError {
         /// What the model swims \[m\].
         predicted_m: f64,
     },
+    /// The data say nothing about some combination of what was asked.
+    #[error(
+        "these runs do not determine {parameters} together; fit fewer parameters, or measure other gaits and amplitudes"
+    )]
+    Undetermined {
+        /// Their names.
+        parameters: String,
+    },
     /// No start led anywhere.
     #[error(
         "the fit did not converge from any of {starts} starts; look at X, ΔY and Δθ of the runs first"
@@ -160,6 +168,15 @@ pub enum FitWarning {
     },
     /// The optimum has no sphere.
     NoSphere,
+    /// Another dead band would explain the runs much better.
+    DeadBand {
+        /// As the swimmer file says \[rad\].
+        known: f64,
+        /// As the runs say \[rad\].
+        found: f64,
+        /// Gain in log-likelihood.
+        gain: f64,
+    },
     /// The residuals say more than cycles' deviations: factor between both standard errors.
     ModelMisfit {
         /// Standard error by residuals over that by cycles.
@@ -181,6 +198,13 @@ impl std::fmt::Display for FitWarning {
             Self::FewRuns { runs } => write!(
                 f,
                 "{runs} run(s) for two parameters: the intervals are wide and rest on little"
+            ),
+            Self::DeadBand { known, found, gain } => write!(
+                f,
+                "the runs look as if the servos had a dead band of {:.1}°, where the swimmer file says {:.1}° (log-likelihood \
+                 +{gain:.1}): r_s and chi are off if it is so; see --fit-also deadband, then [servo] dead_band in the swimmer file",
+                found.to_degrees(),
+                known.to_degrees()
             ),
             Self::NoSphere => f.write_str("the best fit has no sphere: r_s = 0 is at its bound"),
             Self::ModelMisfit { ratio } => write!(

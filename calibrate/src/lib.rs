@@ -16,6 +16,8 @@ mod campaign;
 pub mod cycles;
 pub mod evidence;
 pub mod fit;
+pub mod further;
+mod golden;
 pub mod poses;
 mod prediction;
 pub mod tracks;
@@ -27,6 +29,7 @@ pub use campaign::{
 pub use cycles::{Cycle, CycleError, CycleWarning, Cycles, LeftOut, Statistics};
 pub use evidence::{Evidence, EvidenceOptions, weigh_evidence};
 pub use fit::{Fit, FitError, FitOptions, FitWarning, Intervals, RunResidual, c_t_form};
+pub use further::{Further, FurtherFit, fit_further};
 pub use poses::{
     Origin, PoseError, PoseOptions, PoseSample, PoseTrack, PoseWarning, poses, usual_reflectors,
 };

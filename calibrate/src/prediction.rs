@@ -18,10 +18,12 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 use swimmer_model::{Gait, InvalidSwimmer, Model, Pose, Swimmer, Tolerance, trajectory};
 
-use crate::cycles::{Curve, Harmonics, Projection};
+use crate::cycles::{self, Curve, Harmonics, Projection};
 
 /// Knots of the table that a robot is given.
 const KNOTS: usize = 512;
+/// Pieces of a gait that becomes a path: chords cut off 1e-6 of it.
+const PIECES: usize = 2048;
 
 /// Why a cycle cannot be predicted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -122,29 +124,70 @@ impl JointPath {
         }
     }
 
+    /// The same way with both joints elsewhere by a constant \[rad\]. A gait becomes a path of fine pieces.
+    pub(crate) fn moved(&self, by: Vector2<f64>) -> Self {
+        match self {
+            Self::Ideal(gait) => Self::Played(
+                (0..=PIECES)
+                    .map(|i| i as f64 / PIECES as f64)
+                    .map(|u| (u, gait.at(u).phi + by))
+                    .collect(),
+            ),
+            Self::Played(vertices) => {
+                Self::Played(vertices.iter().map(|(u, phi)| (*u, phi + by)).collect())
+            }
+        }
+    }
+
     /// The predicted cycle and its heading's harmonics.
     pub(crate) fn predict(
         &self,
         swimmer: &Swimmer<f64>,
         projection: &Projection,
     ) -> Result<(PredictedCycle, Harmonics), InvalidSwimmer> {
+        let (curve, next) = self.curves(swimmer, projection, Vector2::zeros())?;
+        Ok((cycle(&curve, &next, 0.0), curve.heading_harmonics()))
+    }
+
+    /// The cycle as it is measured when another model tells where cycles start, with these harmonics of its heading, and when
+    /// the point that is taken for the middle link's centre lies `marker` \[m\] off it, along and across the link.
+    pub(crate) fn predict_as_cut(
+        &self,
+        swimmer: &Swimmer<f64>,
+        projection: &Projection,
+        marker: Vector2<f64>,
+        cut_by: &Harmonics,
+    ) -> Result<PredictedCycle, InvalidSwimmer> {
+        let (curve, next) = self.curves(swimmer, projection, marker)?;
+        let start = cycles::shift(&curve.heading_harmonics(), cut_by).unwrap_or(0.0);
+        Ok(cycle(&curve, &next, start - start.round()))
+    }
+
+    /// One cycle and the next.
+    fn curves(
+        &self,
+        swimmer: &Swimmer<f64>,
+        projection: &Projection,
+        marker: Vector2<f64>,
+    ) -> Result<(Curve, Curve), InvalidSwimmer> {
         let model = Model::new(swimmer)?;
-        let (poses, end) = match self {
+        let (mut poses, end) = match self {
             Self::Ideal(gait) => swum(&model, gait),
             Self::Played(vertices) => swum_along(&model, vertices),
         };
-        let curve = projection.curve(&poses);
+        if marker != Vector2::zeros() {
+            let marker = Pose::new(marker.x, marker.y, 0.0);
+            poses = poses.into_iter().map(|pose| pose * marker).collect();
+        }
         let next: Vec<Pose<f64>> = poses.iter().map(|pose| end * *pose).collect();
-        Ok((
-            cycle(&curve, &projection.curve(&next)),
-            curve.heading_harmonics(),
-        ))
+        let (curve, next) = (projection.curve(&poses), projection.curve(&next));
+        Ok((curve.drifting(&curve, &next, 1.0), next))
     }
 }
 
-fn cycle(curve: &Curve, next: &Curve) -> PredictedCycle {
-    let step = curve.step_to(next);
-    let (delta_y_m, delta_theta_rad) = curve.amplitudes();
+fn cycle(curve: &Curve, next: &Curve, start: f64) -> PredictedCycle {
+    let step = curve.step_to(next, start);
+    let (delta_y_m, delta_theta_rad) = curve.amplitudes(start);
     PredictedCycle {
         x_m: step.x,
         y_m: step.y,

@@ -4,8 +4,12 @@ mod twin_campaigns;
 
 use std::ops::RangeInclusive;
 
-use calibrate::{EvidenceOptions, FitOptions, Intervals, calibrate_campaign, weigh_evidence};
+use calibrate::{
+    EvidenceOptions, FitOptions, Intervals, calibrate_campaign, calibrate_run, predict,
+    weigh_evidence,
+};
 use statrs::distribution::{Binomial, DiscreteCDF};
+use swimmer_files::SwimmerFile;
 use twin_campaigns::Laboratory;
 
 const LEVEL: f64 = 0.9;
@@ -73,5 +77,46 @@ fn three_hundred_campaigns_are_covered_in_nine_of_ten() {
     let inside = covered(1..=300);
     for inside in &inside[0] {
         assert!((255..=285).contains(inside), "{inside} of 300");
+    }
+}
+
+/// Mean deviations of X, ΔY and Δθ from what the model predicts, relative to it, for each amplitude.
+fn biases(seeds: RangeInclusive<u64>, change: impl Fn(&mut Laboratory)) -> Vec<[f64; 3]> {
+    let count = seeds.clone().count() as f64;
+    let mut sums = Vec::new();
+    for seed in seeds {
+        let mut laboratory = Laboratory::quiet(seed);
+        change(&mut laboratory);
+        let (campaign, data) = laboratory.campaign();
+        let truth = SwimmerFile {
+            swimmer: laboratory.swimmer,
+            ..campaign.swimmer
+        };
+        sums.resize(data.runs.len(), [0.0; 3]);
+        for (run, sum) in data.runs.iter().zip(&mut sums) {
+            let expected = predict(&truth, &run.gait, run.period_s).unwrap();
+            let found = calibrate_run(run, &campaign.reflectors, &truth).unwrap();
+            let cycles = found.cycles;
+            for (sum, (found, expected)) in sum.iter_mut().zip([
+                (cycles.x.mean, expected.x_m),
+                (cycles.delta_y.mean, expected.delta_y_m),
+                (cycles.delta_theta.mean, expected.delta_theta_rad),
+            ]) {
+                *sum += (found / expected - 1.0) / count;
+            }
+        }
+    }
+    sums
+}
+
+#[test]
+fn a_millimetre_of_noise_leaves_amplitudes_as_they_are() {
+    let found = biases(1..=8, |laboratory| {
+        laboratory.camera.noise_sd = 1e-3;
+        laboratory.cycles = 12;
+    });
+    println!("relative bias of X, ΔY, Δθ: {found:.5?}");
+    for [_, y, theta] in found {
+        assert!(y.abs() < 2e-3 && theta.abs() < 2e-3, "{y} {theta}");
     }
 }

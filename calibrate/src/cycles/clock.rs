@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector};
 
 use super::curve::{HARMONICS, Harmonics};
+use crate::golden::golden;
 use crate::poses::{PoseSample, PoseTrack};
 
 /// Averages over a hundredth of a cycle.
@@ -113,7 +114,10 @@ pub(super) fn active(bins: &[Option<Bin>], lever: f64) -> Option<(f64, f64)> {
     } else {
         end
     };
-    Some((at(start)?.time_s, at(end)?.time_s))
+    // Motion shows in a bin's neighbours: the bin itself may be one in which nothing was seen.
+    let first = bins.iter().skip(start).flatten().next()?;
+    let last = bins.iter().take(end + 1).rev().flatten().next()?;
+    Some((first.time_s, last.time_s))
 }
 
 /// The motion that noise feigns between two bins \[m\], from second differences, which smooth motion does not show in.
@@ -173,7 +177,7 @@ pub(super) fn refine_period(bins: &[Bin], commanded_s: f64) -> Period {
             ..keep
         };
     }
-    let (found, least) = golden(scale(best - 1), scale(best + 1), unexplained);
+    let (found, least) = golden(scale(best - 1), scale(best + 1), 40, unexplained);
     let noise = least / (bins.len().saturating_sub(2 + 2 * PERIOD_HARMONICS).max(1)) as f64;
     if unexplained(1.0) - least < 9.0 * noise {
         keep
@@ -183,25 +187,6 @@ pub(super) fn refine_period(bins: &[Bin], commanded_s: f64) -> Period {
             at_border: false,
         }
     }
-}
-
-/// Minimum of a function of one hump in an interval.
-fn golden(mut a: f64, mut b: f64, f: impl Fn(f64) -> f64) -> (f64, f64) {
-    let ratio = 0.618_033_988_749_894_9;
-    let (mut c, mut d) = (b - ratio * (b - a), a + ratio * (b - a));
-    let (mut fc, mut fd) = (f(c), f(d));
-    for _ in 0..40 {
-        if fc < fd {
-            (b, d, fd) = (d, c, fc);
-            c = b - ratio * (b - a);
-            fc = f(c);
-        } else {
-            (a, c, fc) = (c, d, fd);
-            d = a + ratio * (b - a);
-            fd = f(d);
-        }
-    }
-    if fc < fd { (c, fc) } else { (d, fd) }
 }
 
 /// θ's harmonics about `zero_s` by least squares, and the unexplained sum of squares.
@@ -255,7 +240,7 @@ pub(super) fn cycle_start(bins: &[Bin], period_s: f64, model: &Harmonics) -> Opt
 }
 
 /// By how much of a period the model must be moved for its θ to match the measured one best.
-pub(super) fn shift(measured: &[[f64; 2]], model: &Harmonics) -> Option<f64> {
+pub(crate) fn shift(measured: &[[f64; 2]], model: &Harmonics) -> Option<f64> {
     // θ(t) = Σ c cos hω(t − zero) + s sin …; the model runs from its start: shift ψ = ω (start − zero).
     // Overlap Σ Re(conj(M) C e^{ihψ}) with C = c − is.
     let products: Vec<(f64, f64)> = measured
@@ -302,4 +287,38 @@ fn sum(
         .zip(1..)
         .map(|(product, h)| term(f64::from(h), *product, (f64::from(h) * psi).sin_cos()));
     terms.sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motion_that_begins_and_ends_unseen_is_found() {
+        let bin = |i: usize| {
+            let time_s = i as f64 / BINS;
+            let along = (time_s - 0.5).clamp(0.0, 2.0);
+            Some(Bin {
+                time_s,
+                x: along,
+                y: 0.0,
+                theta: 0.0,
+            })
+        };
+        let mut bins: Vec<Option<Bin>> = (0..300).map(bin).collect();
+        let whole = active(&bins, 0.07).unwrap();
+        for i in (47..51).chain(249..253) {
+            bins[i] = None;
+        }
+        let (from, to) = active(&bins, 0.07).unwrap();
+        assert!(
+            (from - whole.0).abs() < 0.06 && (to - whole.1).abs() < 0.06,
+            "{from} {to}"
+        );
+        // The first and the last bin with motion about them, but nothing in them.
+        let mut bins: Vec<Option<Bin>> = (0..300).map(bin).collect();
+        bins[48] = None;
+        bins[252] = None;
+        assert!(active(&bins, 0.07).is_some());
+    }
 }

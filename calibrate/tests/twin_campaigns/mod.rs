@@ -27,6 +27,8 @@ use twin::{CameraConfig, Twin, TwinConfig, TwinPort, WireSpeed};
 pub(crate) struct Laboratory {
     pub(crate) swimmer: Swimmer<f64>,
     pub(crate) servo: ServoFile,
+    /// Where the joints' zeros really are \[rad\].
+    pub(crate) offsets: [f64; 2],
     /// Amplitudes \[deg\].
     pub(crate) amplitudes: Vec<f64>,
     pub(crate) cycles: u32,
@@ -49,6 +51,7 @@ impl Laboratory {
         Self {
             swimmer: Swimmer::robot(),
             servo: ServoFile::default(),
+            offsets: [0.0; 2],
             amplitudes: vec![30.0, 50.0, 70.0, 90.0, 110.0],
             cycles: 6,
             period_s: 8,
@@ -94,6 +97,7 @@ impl Laboratory {
         Self {
             swimmer,
             servo,
+            offsets: [0.0; 2],
             amplitudes,
             cycles: rng.random_range(5..=20),
             period_s: rng.random_range(6..=12),
@@ -166,7 +170,11 @@ impl Laboratory {
         config.camera = self.camera.clone();
         let port = TwinPort::new(Twin::new(config).unwrap(), WireSpeed::robot());
         let mut robot = Robot::connect(port, seed).unwrap();
-        let table = GaitTable::from_fn(512, |u| gait.at(u).phi.into()).unwrap();
+        let table = GaitTable::from_fn(512, |u| {
+            let phi = gait.at(u).phi;
+            [phi.x + self.offsets[0], phi.y + self.offsets[1]]
+        })
+        .unwrap();
         robot
             .upload(table.bytes(), Duration::from_mins(1), |_| {
                 ControlFlow::Continue(())
