@@ -1,10 +1,15 @@
 //! Any story of requests, bytes, times, batteries and resets: promises R4 and R6 hold on every tick.
 #![no_main]
 
+use std::collections::VecDeque;
+
 use arbitrary::Arbitrary;
 use libfuzzer_sys::fuzz_target;
-use link_protocol::{Decoder, Header, MAX_CHUNK, Message, Reply, Request, ResetReason, StateName};
-use swimmer_fuzz::ask::{Ask, table};
+use link_protocol::{
+    Binding, Decoder, Flags, Header, HelloReply, Key, Message, Reply, Request, ResetReason, Seal,
+    StateName,
+};
+use swimmer_fuzz::ask::{Ask, PIECE, table};
 use swimmer_fuzz::robot::FuzzedRobot;
 use swimmer_fuzz::wire;
 
@@ -14,6 +19,12 @@ enum Step {
         nonce: u8,
     },
     Ask(Ask),
+    /// Without the signature that a robot with a key asks for.
+    Unsigned(Ask),
+    /// One of the last signed frames, byte by byte.
+    Recorded {
+        back: u8,
+    },
     /// Begin, chunks, commit, and the time that the check takes.
     Upload {
         which: u8,
@@ -47,13 +58,24 @@ enum Step {
     },
 }
 
-/// The far end as the story sees it: numbers to use next.
+/// The far end as the story sees it: numbers to use next, and the key.
 #[derive(Default)]
 struct Host {
     session: u16,
     sequence: u16,
     upload: u16,
     decoder: Decoder,
+    /// The robot's key, as far as a host can know it: the one that it granted last.
+    key: Option<Key>,
+    asked_key: Option<(u16, Option<Key>)>,
+    /// The robot has some key for certain: it said so, and no request could have taken it away since.
+    locked: bool,
+    /// What the open session is bound to, and its seal where it began with a key.
+    bound: Option<(Binding, Option<Seal>)>,
+    /// The open session began when the robot was locked: only what is signed moves it.
+    guarded: bool,
+    counter: u64,
+    recorded: VecDeque<Vec<u8>>,
 }
 
 impl Host {
@@ -61,17 +83,60 @@ impl Host {
         let mut bytes = Vec::new();
         robot.transmit(&mut bytes);
         for byte in bytes {
-            let received = self.decoder.push(byte);
-            match received.map(|received| {
-                received
-                    .message
-                    .expect("the robot says what no one understands")
-            }) {
-                Some(Message::HelloReply(reply)) => self.session = reply.session,
-                Some(Message::Reply(Reply::Wanted { upload, .. })) => self.upload = upload,
+            let Some(received) = self.decoder.push(byte) else {
+                continue;
+            };
+            let message = received
+                .message
+                .expect("the robot says what no one understands");
+            match message {
+                Message::HelloReply(reply) => self.meet(&reply),
+                Message::Reply(Reply::Wanted { upload, .. }) => self.upload = upload,
+                Message::Reply(Reply::Done) => {
+                    if let Some((sequence, key)) = self.asked_key
+                        && sequence == received.header.sequence
+                    {
+                        self.key = key;
+                    }
+                }
+                Message::Telemetry(telemetry) => {
+                    self.locked = telemetry.flags.contains(Flags::KEY_SET);
+                }
                 _ => {}
             }
         }
+    }
+
+    fn meet(&mut self, reply: &HelloReply) {
+        self.session = reply.session;
+        let binding = Binding {
+            boot_nonce: reply.boot_nonce,
+            session: reply.session,
+            host_nonce: reply.host_nonce,
+        };
+        // A greeting that came twice is answered twice; it is one session.
+        if self
+            .bound
+            .as_ref()
+            .is_none_or(|(bound, _)| *bound != binding)
+        {
+            let seal = self.key.as_ref().map(|key| Seal::new(key, binding));
+            self.bound = Some((binding, seal));
+            self.guarded = self.locked;
+        }
+    }
+
+    /// A message as this host says it: signed where the session began with a key.
+    fn frame(&mut self, sequence: u16, message: &Message) -> Vec<u8> {
+        let header = Header::new(self.session, sequence);
+        let Some((_, Some(seal))) = &self.bound else {
+            return wire::frame(header, message);
+        };
+        self.counter += 1;
+        let frame = wire::signed(header, message, seal, self.counter);
+        self.recorded.push_front(frame.clone());
+        self.recorded.truncate(64);
+        frame
     }
 }
 
@@ -79,6 +144,7 @@ impl Host {
 #[derive(Arbitrary, Debug, PartialEq, PartialOrd)]
 enum Start {
     Greeted,
+    Locked,
     Uploaded,
     Armed,
     Playing,
@@ -100,6 +166,15 @@ fuzz_target!(|story: (Start, Vec<Step>)| {
 
 fn prelude(robot: &mut FuzzedRobot, host: &mut Host, start: &Start) {
     let polite = [
+        (Start::Locked, Step::Ask(Ask::SetKey { key: Some(1) })),
+        (
+            Start::Locked,
+            Step::Ticks {
+                count: 30,
+                keep_alive: true,
+            },
+        ),
+        (Start::Locked, Step::Greet { nonce: 2 }),
         (Start::Uploaded, Step::Upload { which: 1 }),
         (Start::Armed, Step::Ask(Ask::Arm { clear_estop: false })),
         (
@@ -118,12 +193,20 @@ fn prelude(robot: &mut FuzzedRobot, host: &mut Host, start: &Start) {
             },
         ),
     ];
-    for (_, step) in polite.iter().filter(|(from, _)| start >= from) {
+    // Whether there is a key, each story chooses: those that go further than the lock go without.
+    let told = |from: &Start| match from {
+        Start::Locked => *start == Start::Locked,
+        from => start >= from && *start != Start::Locked,
+    };
+    for (_, step) in polite.iter().filter(|(from, _)| told(from)) {
         tell(robot, host, step);
+        robot.tick(0);
+        host.hear(robot);
     }
+    assert_eq!(host.guarded, *start == Start::Locked);
     let state = robot.tick(0).state;
     let meant = match start {
-        Start::Greeted | Start::Uploaded => StateName::Stopped,
+        Start::Greeted | Start::Locked | Start::Uploaded => StateName::Stopped,
         Start::Armed => StateName::Holding,
         Start::Playing => StateName::Playing,
     };
@@ -144,11 +227,30 @@ fn tell(robot: &mut FuzzedRobot, host: &mut Host, step: &Step) {
         }
         Step::Ask(ask) => {
             host.sequence = host.sequence.wrapping_add(1);
-            ask_under(robot, host, ask, Header::new(host.session, host.sequence));
+            let request = noted(robot, host, ask, false);
+            if let Request::SetKey(key) = request {
+                host.asked_key = Some((host.sequence, key));
+            }
+            let frame = host.frame(host.sequence, &Message::Request(request));
+            robot.receive(&frame);
+        }
+        Step::Unsigned(ask) => {
+            host.sequence = host.sequence.wrapping_add(1);
+            let request = noted(robot, host, ask, host.guarded);
+            let header = Header::new(host.session, host.sequence);
+            robot.receive(&wire::frame(header, &Message::Request(request)));
+        }
+        Step::Recorded { back } => {
+            if let Some(frame) = host.recorded.get(usize::from(*back)) {
+                robot.armed |= !host.guarded;
+                robot.remapped |= !host.guarded;
+                host.locked = false;
+                robot.receive(frame);
+            }
         }
         Step::Upload { which } => {
             let which = *which;
-            let pieces = table(which).bytes().len().div_ceil(MAX_CHUNK);
+            let pieces = table(which).bytes().len().div_ceil(PIECE);
             let mut asks = vec![Ask::Begin { which }];
             asks.extend((0..pieces).map(|piece| Ask::Chunk {
                 which,
@@ -181,11 +283,16 @@ fn tell(robot: &mut FuzzedRobot, host: &mut Host, step: &Step) {
             ask,
             session,
             sequence,
-        } => ask_under(robot, host, ask, Header::new(*session, *sequence)),
+        } => {
+            let request = noted(robot, host, ask, false);
+            let header = Header::new(*session, *sequence);
+            robot.receive(&wire::frame(header, &Message::Request(request)));
+        }
         Step::Sound { kind, body } => {
-            // It may be an arm or a new map, whatever the fuzzer found.
+            // It may be an arm, a new map or a key, whatever the fuzzer found.
             robot.armed = true;
             robot.remapped = true;
+            host.locked = false;
             robot.receive(&wire::sound(
                 Header::new(host.session, host.sequence),
                 *kind,
@@ -197,10 +304,8 @@ fn tell(robot: &mut FuzzedRobot, host: &mut Host, step: &Step) {
         Step::Ticks { count, keep_alive } => {
             for _ in 0..*count {
                 if *keep_alive {
-                    robot.receive(&wire::frame(
-                        Header::new(host.session, 0),
-                        &Message::KeepAlive,
-                    ));
+                    let frame = host.frame(0, &Message::KeepAlive);
+                    robot.receive(&frame);
                 }
                 robot.tick(0);
             }
@@ -216,16 +321,21 @@ fn tell(robot: &mut FuzzedRobot, host: &mut Host, step: &Step) {
                 ResetReason::Pin,
             ];
             robot.reset(reasons[usize::from(*reason) % reasons.len()]);
+            (host.locked, host.guarded) = (false, false);
         }
     }
 }
 
-fn ask_under(robot: &mut FuzzedRobot, host: &Host, ask: &Ask, header: Header) {
+/// The request of an ask, with what the witness has to know of it, unless it is sure to be turned away.
+fn noted(robot: &mut FuzzedRobot, host: &mut Host, ask: &Ask, turned_away: bool) -> Request {
     let request = ask.request(host.upload);
-    robot.armed |= matches!(request, Request::Arm(_));
-    robot.remapped |= matches!(
-        request,
-        Request::SetServo { .. } | Request::Configure(_) | Request::Trim { .. }
-    );
-    robot.receive(&wire::frame(header, &Message::Request(request)));
+    if !turned_away {
+        robot.armed |= matches!(request, Request::Arm(_));
+        robot.remapped |= matches!(
+            request,
+            Request::SetServo { .. } | Request::Configure(_) | Request::Trim { .. }
+        );
+        host.locked &= !matches!(request, Request::SetKey(_));
+    }
+    request
 }

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use arbitrary::Arbitrary;
 use gait_player::GaitTable;
 use link_protocol::{
-    Arm, Begin, Chunk, Configuration, Joint, MAX_CHUNK, Play, Request, ServoSettings,
+    Arm, Begin, Chunk, Configuration, Joint, Key, MAX_SIGNED_CHUNK, Play, Request, ServoSettings,
     TangentialDrag,
 };
 
@@ -21,6 +21,9 @@ fn circle(amplitude: f64, knots: usize) -> GaitTable {
     })
     .expect("a circle within the table's range")
 }
+
+/// Bytes of a table in one request: there is room for a signature beside them.
+pub const PIECE: usize = MAX_SIGNED_CHUNK;
 
 /// The table of this number.
 pub fn table(which: u8) -> &'static GaitTable {
@@ -83,6 +86,9 @@ pub enum Ask {
         max_angle: f32,
         max_rate: f32,
     },
+    SetKey {
+        key: Option<u8>,
+    },
 }
 
 impl Ask {
@@ -126,8 +132,8 @@ impl Ask {
                 upload,
             } => {
                 let bytes = table(which).bytes();
-                let start = usize::from(piece) * MAX_CHUNK % bytes.len();
-                let end = bytes.len().min(start + MAX_CHUNK);
+                let start = usize::from(piece) * PIECE % bytes.len();
+                let end = bytes.len().min(start + PIECE);
                 let data = heapless::Vec::from_slice(&bytes[start..end]).unwrap_or_default();
                 Request::Chunk(Chunk {
                     upload: number(upload),
@@ -175,6 +181,7 @@ impl Ask {
                 max_angle,
                 max_rate,
             }),
+            Self::SetKey { key } => Request::SetKey(key.map(|letter| Key([letter; Key::LEN]))),
         }
     }
 }

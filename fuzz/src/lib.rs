@@ -4,6 +4,6 @@
 //! session; each target says what must hold however the story goes.
 
 pub mod ask;
-pub mod files;
 pub mod robot;
+pub mod tracks;
 pub mod wire;

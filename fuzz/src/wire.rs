@@ -1,13 +1,23 @@
 //! Frames and what a bad line makes of them.
 
 use arbitrary::Arbitrary;
-use link_protocol::{Header, Hello, MAX_ENCODED, Message, SCHEMA_KEY, encode, encode_body};
+use link_protocol::{
+    Header, Hello, MAX_ENCODED, Message, SCHEMA_KEY, Seal, encode, encode_body, encode_signed,
+};
 
 /// One message as bytes on the wire.
 pub fn frame(header: Header, message: &Message) -> Vec<u8> {
     let mut bytes = [0; MAX_ENCODED];
     let count =
         encode(header, message, &mut bytes).expect("every message of the protocol fits a frame");
+    bytes[..count].to_vec()
+}
+
+/// One message as bytes on the wire, signed.
+pub fn signed(header: Header, message: &Message, seal: &Seal, counter: u64) -> Vec<u8> {
+    let mut bytes = [0; MAX_ENCODED];
+    let count = encode_signed(header, message, seal, counter, &mut bytes)
+        .expect("every story's message leaves room for a signature");
     bytes[..count].to_vec()
 }
 

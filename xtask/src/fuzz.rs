@@ -5,26 +5,24 @@ use std::path::{Path, PathBuf};
 use crate::debian;
 use crate::failure::{Failure, Outcome};
 use crate::run::{command, read, run, target_folder};
+use crate::tools::FUZZ;
 
-/// What runs the targets, at the version these were tried with.
-const CARGO_FUZZ: (&str, &str) = ("cargo-fuzz", "0.13.2");
+/// The small files that the tests of the tracking readers use.
+const TRACKS: &str = "calibrate/tests/formats";
 
 /// Runs one target, or all, for `seconds` each.
 ///
 /// # Errors
 /// A target found a case that breaks its promise (its file is named, to be run again alone), or cargo-fuzz cannot be had.
 pub(crate) fn run_targets(only: Option<&str>, seconds: u32) -> Outcome {
-    let tools = target_folder()?.join("tools");
-    let path = install(&tools)?;
-    let fuzz = || {
-        let mut fuzz = command("cargo");
+    debian::ensure_tool(command("c++").arg("--version"), &["g++"])?;
+    let fuzz = || -> Outcome<_> {
+        let mut fuzz = FUZZ.cargo(true)?;
         // Sanitizers ask for unstable flags; the stable compiler takes them with this.
-        fuzz.arg("fuzz")
-            .env("RUSTC_BOOTSTRAP", "1")
-            .env("PATH", &path);
-        fuzz
+        fuzz.env("RUSTC_BOOTSTRAP", "1");
+        Ok(fuzz)
     };
-    let targets = read(fuzz().arg("list"), "see fuzz/Cargo.toml")?;
+    let targets = read(fuzz()?.arg("list"), "see fuzz/Cargo.toml")?;
     let targets: Vec<&str> = targets
         .lines()
         .filter(|target| only.is_none_or(|only| only == *target))
@@ -38,25 +36,13 @@ pub(crate) fn run_targets(only: Option<&str>, seconds: u32) -> Outcome {
         ));
     }
     for target in targets {
-        let grown = target_folder()?.join("fuzz-corpus").join(target);
-        std::fs::create_dir_all(&grown).map_err(|why| {
-            Failure::new(
-                format!("making {}", grown.display()),
-                why,
-                "check the folder",
-            )
-        })?;
-        let seeds = seeds(target);
+        let corpus = corpus(target)?;
         let time = format!("-max_total_time={seconds}");
-        // New inputs go into the first folder; the seeds of the repository are only read.
-        let mut target_run = fuzz();
+        let mut target_run = fuzz()?;
         // No sanitizer: the workspace has no unsafe code on a host, and without one the targets run several times faster.
         target_run
             .args(["run", "--sanitizer", "none", target])
-            .arg(&grown);
-        if seeds.exists() {
-            target_run.arg(&seeds);
-        }
+            .arg(&corpus);
         target_run.args([
             "--",
             &time,
@@ -73,28 +59,74 @@ pub(crate) fn run_targets(only: Option<&str>, seconds: u32) -> Outcome {
     Ok(())
 }
 
-/// Where a target starts: its own seeds, or the small files that the readers' tests use.
-fn seeds(target: &str) -> PathBuf {
-    match target {
-        "tracks" => PathBuf::from("calibrate/tests/formats"),
-        _ => Path::new("fuzz/seeds").join(target),
-    }
+/// The folder of what a target starts from and finds: outside the repository, with copies of the repository's seeds.
+fn corpus(target: &str) -> Outcome<PathBuf> {
+    let corpus = target_folder()?.join("fuzz-corpus").join(target);
+    let copy = || -> std::io::Result<()> {
+        std::fs::create_dir_all(&corpus)?;
+        for seed in seeds(Path::new("."), target)? {
+            if let Some(name) = seed.file_name() {
+                std::fs::copy(&seed, corpus.join(name))?;
+            }
+        }
+        Ok(())
+    };
+    copy().map_err(|why| {
+        Failure::new(
+            format!("filling {} with seeds", corpus.display()),
+            why,
+            "check the folder",
+        )
+    })?;
+    Ok(corpus)
 }
 
-/// cargo-fuzz in `tools`, where it is not there yet; a search path that finds it.
-fn install(tools: &Path) -> Outcome<std::ffi::OsString> {
-    debian::ensure_tool(command("c++").arg("--version"), &["g++"])?;
-    let (name, version) = CARGO_FUZZ;
-    if !tools.join("bin").join(name).exists() {
-        run(
-            command("cargo")
-                .args(["install", "--locked", name, "--version", version, "--root"])
-                .arg(tools),
-            "check the network, and repeat the command",
-        )?;
+/// Where a target starts: its own seeds, or the files of the readers' tests in its format.
+fn seeds(root: &Path, target: &str) -> std::io::Result<Vec<PathBuf>> {
+    let begins: &[&str] = match target {
+        "tracks" => &[""],
+        "tracks_wide" => &["motive-1.2", "motive-excel"],
+        "tracks_records" => &["motive-1.1.", "trackingtools"],
+        "tracks_headerless" => &["motive-without-header"],
+        "tracks_trc" => &["tank.trc"],
+        _ => &[target.strip_prefix("tracks_").unwrap_or_default()],
+    };
+    let folder = if target.starts_with("tracks") {
+        root.join(TRACKS)
+    } else {
+        root.join("fuzz/seeds").join(target)
+    };
+    if !folder.exists() {
+        return Ok(Vec::new());
     }
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let folders = std::iter::once(tools.join("bin")).chain(std::env::split_paths(&path));
-    std::env::join_paths(folders.collect::<Vec<PathBuf>>())
-        .map_err(|why| Failure::new("naming the folder of cargo-fuzz", why, "mend PATH"))
+    let files = std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
+    let files: Vec<PathBuf> = files.collect::<std::io::Result<_>>()?;
+    let wanted = |file: &PathBuf| {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        begins.iter().any(|begin| name.starts_with(begin))
+    };
+    Ok(files.into_iter().filter(wanted).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_reader_starts_from_files_of_its_format() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let targets = std::fs::read_dir(root.join("fuzz/fuzz_targets")).unwrap();
+        let mut sown = 0;
+        for target in targets {
+            let target = target.unwrap().path();
+            let target = target.file_stem().unwrap().to_str().unwrap();
+            if target.starts_with("tracks") {
+                let seeds = seeds(&root, target).unwrap();
+                assert!(!seeds.is_empty(), "{target}");
+                sown += usize::from(target != "tracks") * seeds.len();
+            }
+        }
+        let files = std::fs::read_dir(root.join(TRACKS)).unwrap().count();
+        assert_eq!(sown, files, "each file belongs to one format");
+    }
 }

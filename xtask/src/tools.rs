@@ -26,6 +26,11 @@ pub(crate) const MUTANTS: Tool = Tool {
     package: "cargo-mutants",
     version: "27.1.0",
 };
+/// Tells stories to the decoder, the brain, the session and the readers.
+pub(crate) const FUZZ: Tool = Tool {
+    package: "cargo-fuzz",
+    version: "0.13.2",
+};
 
 impl Tool {
     /// A `cargo` that finds the tool, with its name as the first argument.

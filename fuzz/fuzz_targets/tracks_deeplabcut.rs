@@ -1,0 +1,6 @@
+//! DeepLabCut's tables.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| swimmer_fuzz::tracks::read(bytes, &["scorer,"]));

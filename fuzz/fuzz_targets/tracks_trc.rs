@@ -1,0 +1,6 @@
+//! TRC.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| swimmer_fuzz::tracks::read(bytes, &["PathFileType\t"]));

@@ -1,0 +1,9 @@
+//! Vicon's CSV.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| swimmer_fuzz::tracks::read(
+    bytes,
+    &["Trajectories\n", "Trajectories\r\n"]
+));

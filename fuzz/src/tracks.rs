@@ -1,0 +1,51 @@
+//! Tracking files, whatever is in them: tracks or an error that says what is wrong, never a panic, never a number that is none.
+
+use std::path::Path;
+
+use calibrate::{TrackFile, TrackOptions};
+
+/// Reads a file that begins with one of `openings`: bytes that do not get the first of them put in front. Which reader a
+/// file goes to is told by its first lines, so these force the format; without openings the bytes are the whole file.
+///
+/// # Panics
+/// Where what was read is not sane.
+pub fn read(bytes: &[u8], openings: &[&str]) {
+    let begun = |opening: &&str| bytes.starts_with(opening.as_bytes());
+    let opening = match openings.first() {
+        Some(first) if !openings.iter().any(begun) => *first,
+        _ => "",
+    };
+    let file = [opening.as_bytes(), bytes].concat();
+    // Some formats say neither unit nor rate: with a user who does, their rows are read too.
+    let told = TrackOptions {
+        metres_per_unit: Some(0.001),
+        rate_hz: Some(50.0),
+        ..TrackOptions::default()
+    };
+    for options in [TrackOptions::default(), told] {
+        match calibrate::read_tracks_with(&*file, Path::new("f"), &options) {
+            Ok(file) => sane(&file),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    }
+}
+
+/// Whole numbers of frames, finite numbers.
+fn sane(file: &TrackFile) {
+    assert!(
+        file.times.iter().all(|time| time.is_finite()),
+        "a time that is no number"
+    );
+    assert_eq!(file.times.len(), file.frame_numbers.len());
+    for point in &file.points {
+        let positions = (0..file.frames()).filter_map(|row| point.position(row));
+        for position in positions {
+            assert!(
+                position.iter().all(|value| value.is_finite()),
+                "a position that is no number: {position:?}"
+            );
+        }
+        assert!(point.present() <= file.frames());
+        assert!(point.longest_gap() <= file.frames());
+    }
+}
