@@ -1,0 +1,148 @@
+//! What can happen to a brain.
+
+use super::world::config;
+use crate::GaitTable;
+use link_protocol::*;
+use std::vec::Vec;
+
+use ResetReason::{Crash, Pin, PowerOn, Watchdog};
+
+/// Something that happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Event {
+    /// A request in the open session, under the next number.
+    Ask(usize),
+    /// The frame of the last request again, byte by byte.
+    Repeat,
+    /// A request under an old number.
+    Late(usize),
+    /// A request of a session before.
+    Foreign(usize),
+    /// A request in the open session without the signature that it asks for.
+    Unsigned(usize),
+    /// Another host greets.
+    Greet,
+    /// The same host greets again.
+    GreetAgain,
+    KeepAlive,
+    /// Time passes: ticks, with or without keep-alives.
+    Pass {
+        ticks: u32,
+        kept_alive: bool,
+    },
+    /// One tick that comes late by so many seconds.
+    Jump(u64),
+    /// The battery has this voltage from now on.
+    Battery(Option<u16>),
+    Reset(ResetReason),
+}
+
+pub(super) fn requests() -> Vec<Request> {
+    let play = |cycles, detached| {
+        Request::Play(Play {
+            cycles,
+            period_us: 1_000_000,
+            detached,
+        })
+    };
+    let (a, b) = (table(0.3), table(0.5));
+    let begin = |table: &GaitTable| {
+        Request::Begin(Begin {
+            slot: 0,
+            len: table.bytes().len() as u16,
+            crc32: table.crc32(),
+        })
+    };
+    let chunk = |table: &GaitTable, from: usize, to: usize| {
+        Request::Chunk(Chunk {
+            upload: 0, // filled in when it is sent
+            offset: from as u16,
+            data: heapless::Vec::from_slice(&table.bytes()[from..to]).unwrap(),
+        })
+    };
+    let config = config();
+    let servo = config.servos[0];
+    std::vec![
+        Request::Arm(Arm { clear_estop: false }),
+        Request::Arm(Arm { clear_estop: true }),
+        play(2, false),
+        play(2, true),
+        play(0, false),
+        play(0, true),
+        Request::Pause { detached: false },
+        Request::Pause { detached: true },
+        Request::Resume,
+        Request::Stop,
+        Request::EStop,
+        begin(&a),
+        begin(&b),
+        chunk(&a, 0, 16),
+        chunk(&a, 16, 32),
+        chunk(&b, 0, 32),
+        Request::Commit { upload: 0 },
+        Request::ClearResets,
+        Request::Configure(config.configuration),
+        Request::SetServo {
+            joint: Joint::Front,
+            settings: servo
+        },
+        Request::Trim {
+            joint: Joint::Back,
+            trim: 100
+        },
+        Request::Status,
+        Request::Counters,
+        Request::Configuration,
+        Request::Servo(Joint::Back),
+        Request::CrashMessage,
+        Request::Table,
+        Request::SetKey(Some(Key([7; Key::LEN]))),
+        Request::SetKey(None),
+    ]
+}
+
+pub(super) fn events(requests: &[Request]) -> Vec<Event> {
+    let mut events: Vec<_> = (0..requests.len()).map(Event::Ask).collect();
+    for (index, request) in requests.iter().enumerate() {
+        // What could move the robot, stop it or open it, from elsewhere, too late or without leave.
+        if matches!(
+            request,
+            Request::Arm(_)
+                | Request::Play(_)
+                | Request::Resume
+                | Request::Stop
+                | Request::EStop
+                | Request::SetKey(_)
+        ) {
+            events.extend([
+                Event::Late(index),
+                Event::Foreign(index),
+                Event::Unsigned(index),
+            ]);
+        }
+    }
+    events.extend([
+        Event::Repeat,
+        Event::Greet,
+        Event::GreetAgain,
+        Event::KeepAlive,
+        Event::Battery(Some(5_000)),
+        Event::Battery(Some(4_000)),
+        Event::Battery(None),
+        Event::Jump(6),
+        Event::Jump(61),
+    ]);
+    for (ticks, kept_alive) in [(1, false), (7, true), (26, false), (26, true), (52, true)] {
+        events.push(Event::Pass { ticks, kept_alive });
+    }
+    events.extend([PowerOn, Watchdog, Crash, Pin].map(Event::Reset));
+    events
+}
+
+fn table(amplitude: f64) -> GaitTable {
+    GaitTable::from_fn(8, |u| {
+        let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
+        [amplitude * cos, amplitude * sin]
+    })
+    .unwrap()
+}

@@ -1,0 +1,152 @@
+//! When two worlds are the same.
+
+use super::world::World;
+use crate::TICK_US;
+use crate::brain::state::State;
+use crate::brain::work::Work;
+
+/// In which respect worlds are told apart that are the same otherwise: in one at a time, for with all at once there are too
+/// many to come to an end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Finer {
+    Nothing,
+    /// Why the brain last stopped.
+    Causes,
+    /// How far a ramp or a cycle has come.
+    Progress,
+    /// How long ago something was heard, and since when the battery is low or well.
+    Ages,
+    /// How long ago the last resets were.
+    Resets,
+    /// Whether settings wait to be stored.
+    Saving,
+    /// Which pieces of which table have come while there is a key.
+    Keys,
+}
+
+impl World {
+    /// What makes two worlds the same.
+    pub(super) fn shape(&self, finer: Finer) -> Shape {
+        let brain = &self.brain;
+        let state = &brain.state;
+        let since = |tick: u64| (brain.tick - tick) * u64::from(TICK_US);
+        let bucket = |us: u64, of: u64, parts: u64| (us * parts / of.max(1)).min(parts) as u8;
+        let parts = if finer == Finer::Progress { 4 } else { 2 };
+        let progress = match *state {
+            State::Stopped | State::EStopped | State::Holding { .. } => 0,
+            State::Starting {
+                ramp, since: at, ..
+            }
+            | State::Stopping { ramp, since: at } => {
+                bucket(since(at), u64::from(ramp.duration_us()), parts)
+            }
+            State::Settling { since: at } => bucket(since(at), 500_000, parts),
+            State::Playing { .. } => brain.last_play.map_or(0, |play| {
+                let endless = play.request.cycles == 0;
+                let within = bucket(u64::from(play.in_cycle_us()), 1_000_000, parts);
+                if endless {
+                    within
+                } else {
+                    within + 8 * play.cycles_done() as u8
+                }
+            }),
+            State::Paused { since_us, .. } => bucket(self.now_us - since_us, 60_000_000, 1),
+        };
+        let age = |since: Option<u64>, of: u64| {
+            since.map(|since| {
+                bucket(
+                    self.now_us - since,
+                    of,
+                    if finer == Finer::Ages { 2 } else { 1 },
+                )
+            })
+        };
+        let (word, resets) = (brain.resets.word(), &brain.resets);
+        let aged = |shift: u32| finer == Finer::Resets && (word >> shift & 127) <= 60;
+        let key = (
+            brain.settings.key.is_some(),
+            self.flash.key().is_some(),
+            self.seal.is_some(),
+        );
+        let without_key = key == (false, false, false);
+        Shape {
+            state: state.name() as u8,
+            cause: (finer == Finer::Causes).then_some(brain.cause as u8),
+            progress,
+            detached: state.detached(),
+            cycles: state.play().map_or(0, |play| play.request.cycles),
+            at_neutral: brain.commanded.iter().all(|angle| angle.abs() < 1e-6),
+            session: (
+                brain.session.number() != 0,
+                brain.session.silent(self.now_us),
+                finer == Finer::Ages && age(brain.session.heard_us, 460_000) == Some(0),
+            ),
+            key,
+            repeat: (self.last_moves, self.asked, brain.session.kept().is_some()),
+            battery: (
+                self.battery_mv,
+                brain.battery.low(),
+                brain.battery_stops,
+                age(brain.battery.below_since, 1_000_000),
+                age(brain.battery.well_since, 5_000_000),
+            ),
+            resets: (
+                resets.estop,
+                resets.wait_s().map(|left| left > 0),
+                aged(17),
+                aged(10),
+            ),
+            work: match brain.work {
+                Work::Idle => 0,
+                Work::Commit { .. } => 1,
+                Work::Swap { .. } => 2,
+                Work::Play { .. } => 3,
+            },
+            upload: (without_key || finer == Finer::Keys).then(|| Upload {
+                came: brain.tables.uploaded().map(|bytes| bytes / 16),
+                announced: self.begun,
+                complete: brain.tables.complete(self.upload).is_ok(),
+            }),
+            tables: (
+                brain.tables.swap().is_some(),
+                brain
+                    .tables
+                    .active()
+                    .map(|_| brain.tables.facts().is_some()),
+            ),
+            unsaved: (
+                finer == Finer::Saving && brain.persist.unsaved(),
+                !brain.persist.table_stored(),
+            ),
+        }
+    }
+}
+
+/// What makes two worlds the same.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Shape {
+    state: u8,
+    cause: Option<u8>,
+    progress: u8,
+    detached: bool,
+    cycles: u32,
+    at_neutral: bool,
+    session: (bool, bool, bool),
+    /// Set in the brain, set in the flash, asked for in the open session.
+    key: (bool, bool, bool),
+    repeat: (bool, bool, bool),
+    battery: (Option<u16>, bool, bool, Option<u8>, Option<u8>),
+    resets: (bool, Option<bool>, bool, bool),
+    work: u8,
+    upload: Option<Upload>,
+    tables: (bool, Option<bool>),
+    unsaved: (bool, bool),
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct Upload {
+    came: Option<u16>,
+    /// The checksum of the table that was announced, and whether its bytes are those.
+    announced: u32,
+    complete: bool,
+}
