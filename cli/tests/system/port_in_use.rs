@@ -117,6 +117,40 @@ fn a_pause_and_a_resume_keep_the_play_that_holds_the_port_waiting() {
     assert!(said.contains("Ctrl-C: the robot was stopped"), "{said}");
 }
 
+/// A second screen beside the play: it hears what the play hears, and leaves when the play does.
+#[test]
+fn a_watch_sees_the_robot_through_the_play_that_holds_the_port() {
+    let scene = Scene::playing();
+    let watched = scene.robot(&["watch", "--seconds", "3"]).with_status(0);
+    let lines: Vec<&str> = watched.stdout.lines().collect();
+    assert!(lines.len() >= 2, "{watched}");
+    for line in &lines {
+        assert!(line.contains("playing"), "{watched}");
+    }
+    assert!(lines.windows(2).all(|two| two[0] != two[1]), "{watched}");
+    let words = ["watch", "--seconds", "0.5", "--json"];
+    let status = scene.robot(&words).with_status(0).json();
+    assert_eq!(status["state"], "playing", "{status:#}");
+    // Frames are seen only by who has the port.
+    let refused = scene.robot(&["watch", "--log", "w.mcap"]).with_status(1);
+    assert!(refused.stderr.contains("has the port open"), "{refused}");
+
+    let folder = scene.folder.path().to_owned();
+    let words = ["robot", "watch", "--port", "robot"];
+    let watch = command(&folder, &words)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    scene.robot(&["stop"]).with_status(0);
+    let (status, said) = scene.play_ended();
+    assert_eq!(status, Some(1), "{said}");
+    let watch = watch.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&watch.stderr);
+    assert!(watch.status.success(), "{said}");
+    assert!(said.contains("has let it go"), "{said}");
+}
+
 #[test]
 fn what_needs_the_port_for_itself_is_told_who_has_it_and_how_to_stop() {
     let scene = Scene::playing();

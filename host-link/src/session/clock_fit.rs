@@ -1,6 +1,7 @@
 //! The robot's clock as the host knows it: a straight line through the quickest pings, with its uncertainty, so that camera
 //! frames can be placed on the robot's time.
 
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -10,7 +11,7 @@ use link_protocol::Pong;
 const REMEMBERED: usize = 256;
 
 /// A straight line from the host's clock to the robot's: `robot = robot_at_origin + rate · (host − origin)`, seconds.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ClockFit {
     /// A host time near the middle of the pings, s.
     pub origin: f64,

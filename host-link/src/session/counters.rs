@@ -4,9 +4,10 @@ use std::fmt;
 use std::time::Duration;
 
 use link_protocol::DecodeCounters;
+use serde::{Deserialize, Serialize};
 
 /// Counts of everything that crossed the link, or should have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct LinkCounters {
     /// Frames sent, of any kind.
     pub frames_sent: u64,

@@ -74,6 +74,11 @@ impl Access {
         !self.port.is_empty()
     }
 
+    /// Whether every frame is to be kept.
+    pub(super) fn logs(&self) -> bool {
+        self.log.is_some()
+    }
+
     /// The same access with another log.
     pub(super) fn logging_to(&self, log: PathBuf) -> Self {
         Self {

@@ -1,10 +1,10 @@
 //! One program has a serial port at a time. While a `swimmer` has the robot's port, another one of the same user can ask it,
-//! through a local socket named after the port, to stop the robot or to tell what it does: an operator in a hurry need not
+//! through a local socket named after the port, to stop the robot or to tell what it does, also again and again (`watch`): an operator in a hurry need not
 //! find the terminal that plays.
 //!
 //! ```text
 //!  swimmer robot play ──── port ──── robot          one line each way:
-//!        ▲ socket                                    → stop | estop | pause | resume | status
+//!        ▲ socket                                    → stop | estop | pause | resume | status | …
 //!  swimmer robot stop                                ← {"done": …, "text": …, "answer": …}
 //! ```
 //!
@@ -21,6 +21,6 @@ mod socket;
 #[cfg(not(unix))]
 pub(super) use nobody::{HeldBy, Holder};
 pub(super) use others::program_with;
-pub(super) use relay::{Ask, Relayed};
+pub(super) use relay::{Ask, Introduction, News, Relayed};
 #[cfg(unix)]
 pub(super) use socket::{HeldBy, Holder};

@@ -1,58 +1,75 @@
 //! `swimmer robot watch`: a screen on a terminal, a line each second elsewhere. It moves nothing unless a key says so.
 
+mod source;
+
 use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
 
 use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
-use host_link::{LinkError, Port as _};
 use link_protocol::Telemetry;
 use ratatui::DefaultTerminal;
 
 use super::Watch;
 use super::access::{Access, BEAT, Line};
-use super::answers::{Doing, telemetry_line};
+use super::answers::telemetry_line;
 use super::dashboard::Dashboard;
 use super::playing::Playing;
-use super::port::Pace;
 use super::preflight::configured;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::output::Output;
+use crate::output::{Output, aside};
+use source::{Beat, Source};
 
 /// Robot time between two lines.
 const LINE_EVERY: Duration = Duration::from_secs(1);
 /// Time between two pictures.
 const PICTURE_EVERY: Duration = Duration::from_millis(100);
 
+/// What to say when the process beside which this one watches ends.
+const LET_GO: &str = "The program that had the port has let it go.";
+
 /// `swimmer robot watch`; at the end, for scripts, the status.
 pub(super) fn watch(access: &Access, arguments: &Watch, output: Output) -> Outcome {
     let interrupt = Interrupt::install()?;
-    let mut line = access.connect("swimmer robot watch", Pace::RealTime)?;
+    let mut source = Source::find(access)?;
     let end = arguments.seconds.map(Duration::from_secs_f64);
     if output.json || !io::stdout().is_terminal() || !io::stdin().is_terminal() {
-        lines(&mut line, end, &interrupt, output)?;
-        let status = line.robot.status()?;
+        lines(&mut source, end, &interrupt, output)?;
         if output.json {
-            output.answer(&Doing::new(&status));
+            return source.leave(output);
         }
-        return line.close();
+        return source.close();
     }
-    let dashboard = prepare(&mut line)?;
-    let left = screen(&mut line, dashboard, end, &interrupt)?;
-    let status = line.robot.status()?;
-    output.line(&format!("{left}\n{}", Doing::new(&status)));
-    line.close()
+    let dashboard = prepare(&mut source)?;
+    let left = screen(&mut source, dashboard, end, &interrupt)?;
+    output.line(left);
+    source.leave(output)
 }
 
 /// A line each second of the robot's time.
-fn lines(line: &mut Line, end: Option<Duration>, interrupt: &Interrupt, output: Output) -> Outcome {
-    let mut due = 0;
-    listen(line, end, interrupt, |telemetry| {
-        if telemetry.robot_us >= due {
-            due = telemetry.robot_us + u64::try_from(LINE_EVERY.as_micros()).unwrap_or(u64::MAX);
-            output.line(&telemetry_line(telemetry));
+fn lines(
+    source: &mut Source,
+    end: Option<Duration>,
+    interrupt: &Interrupt,
+    output: Output,
+) -> Outcome {
+    let (begun, mut due) = (source.now(), 0);
+    while !interrupt.requested() && end.is_none_or(|end| source.now().saturating_sub(begun) < end) {
+        match source.beat()? {
+            Beat::Telemetry(telemetry) if telemetry.robot_us >= due => {
+                due =
+                    telemetry.robot_us + u64::try_from(LINE_EVERY.as_micros()).unwrap_or(u64::MAX);
+                output.line(&telemetry_line(&telemetry));
+            }
+            Beat::Telemetry(_) | Beat::Nothing => {}
+            Beat::OutOfReach(error) => return Err(error.into()),
+            Beat::LetGo => {
+                aside(LET_GO);
+                break;
+            }
         }
-    })
+    }
+    Ok(())
 }
 
 /// Listens for so long on the port's clock, or until Ctrl-C.
@@ -72,21 +89,19 @@ pub(super) fn listen(
     Ok(())
 }
 
-fn prepare(line: &mut Line) -> Outcome<Dashboard> {
-    let configuration = line.robot.configuration()?;
-    let (name, swimmer) = configured(&configuration);
-    let status = line.robot.status()?;
+fn prepare(source: &mut Source) -> Outcome<Dashboard> {
+    let (introduction, place) = source.introduction()?;
+    let (name, swimmer) = configured(&introduction.configuration);
     let title = format!(
-        "{} at {}, firmware {}, {name}",
-        super::info::board(line.robot.info().board),
-        line.name(),
-        line.robot.firmware(),
+        "{} {place}, firmware {}, {name}",
+        super::info::board(introduction.board),
+        introduction.firmware,
     );
     Ok(Dashboard::new(
         title,
         swimmer.links,
         swimmer.sphere_radius,
-        Playing::of(&status),
+        Playing::of(&introduction.status),
     ))
 }
 
@@ -113,49 +128,48 @@ fn wish(key: KeyEvent) -> Option<Wish> {
 
 /// Draws until `q`; the terminal is as before afterwards, whatever happens. Returns what to say of the robot that is left.
 fn screen(
-    line: &mut Line,
+    source: &mut Source,
     mut dashboard: Dashboard,
     end: Option<Duration>,
     interrupt: &Interrupt,
 ) -> Outcome<&'static str> {
     let mut terminal = ratatui::try_init().map_err(no_terminal)?;
-    let shown = show(&mut terminal, line, &mut dashboard, end, interrupt);
+    let shown = show(&mut terminal, source, &mut dashboard, end, interrupt);
     ratatui::restore();
     shown
 }
 
 fn show(
     terminal: &mut DefaultTerminal,
-    line: &mut Line,
+    source: &mut Source,
     dashboard: &mut Dashboard,
     end: Option<Duration>,
     interrupt: &Interrupt,
 ) -> Outcome<&'static str> {
-    let begun = line.robot.port().now();
+    let begun = source.now();
     let mut heard = begun;
     let mut drawn: Option<Instant> = None;
     let mut left = "Left the robot as it is.";
     loop {
-        let beaten = line.beat();
+        let beat = source.beat()?;
         // Before the telemetry is told: what the robot has heard is held against what was sent by then.
-        dashboard.link = line.robot.link_counters();
-        dashboard.clock = line.robot.clock();
-        match beaten {
-            Ok(Some(telemetry)) => {
-                heard = line.robot.port().now();
+        (dashboard.link, dashboard.clock) = source.link();
+        match beat {
+            Beat::Telemetry(telemetry) => {
+                heard = source.now();
                 dashboard.tell(&telemetry);
             }
-            Ok(None) => {}
-            Err(error @ LinkError::Port { .. }) => return Err(error.into()),
-            Err(_) => {
-                // Out of reach for now: the screen stays, and says for how long.
+            Beat::Nothing => {}
+            Beat::OutOfReach(_) => {
+                // The screen stays, and says for how long.
                 dashboard.note = "no answer: greeting again";
-                if line.robot.reconnect().is_ok() {
+                if source.greet_again() {
                     dashboard.note = "";
                 }
             }
+            Beat::LetGo => return Ok(LET_GO),
         }
-        let now = line.robot.port().now();
+        let now = source.now();
         dashboard.silent = now.saturating_sub(heard);
         while event::poll(Duration::ZERO).map_err(no_terminal)? {
             let Event::Key(key) = event::read().map_err(no_terminal)? else {
@@ -165,12 +179,12 @@ fn show(
             match wish(key) {
                 Some(Wish::Leave) => return Ok(left),
                 Some(Wish::Stop) => {
-                    line.robot.stop()?;
+                    source.stop(false)?;
                     left = "The robot was stopped.";
                     dashboard.note = "stopped";
                 }
                 Some(Wish::EStop) => {
-                    line.robot.estop()?;
+                    source.stop(true)?;
                     left =
                         "The robot was e-stopped; only `swimmer robot arm --clear-estop` ends it.";
                     dashboard.note = "e-stopped";

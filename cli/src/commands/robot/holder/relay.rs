@@ -3,12 +3,16 @@
 use std::fmt;
 
 use clap::ValueEnum;
+use host_link::session::{ClockFit, LinkCounters};
 use host_link::{LinkError, Robot};
+use link_protocol::{Board, Configuration, Status, Telemetry};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::super::answers::{Doing, Done, E_STOPPED, state};
 use super::super::port::AnyPort;
+use crate::failure::{Failure, Outcome};
 use crate::output::Answer;
 
 /// Something that the holder of the port does for another process. The word is the line on the socket.
@@ -25,6 +29,52 @@ pub(in super::super) enum Ask {
     Resume,
     /// Say what the robot does.
     Status,
+    /// Say which robot it is: [`Introduction`].
+    Introduce,
+    /// Say what was heard of the robot last, without asking it anything: [`News`].
+    News,
+}
+
+/// Which robot the holder has, and what it was doing: where a screen beside the holder begins.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(in super::super) struct Introduction {
+    pub(in super::super) board: Board,
+    pub(in super::super) firmware: String,
+    pub(in super::super) configuration: Configuration,
+    pub(in super::super) status: Status,
+}
+
+impl Introduction {
+    /// The robot's own.
+    ///
+    /// # Errors
+    /// The link's.
+    pub(in super::super) fn of(robot: &mut Robot<AnyPort>) -> Result<Self, LinkError> {
+        Ok(Self {
+            board: robot.info().board,
+            firmware: robot.firmware(),
+            configuration: robot.configuration()?,
+            status: robot.status()?,
+        })
+    }
+}
+
+/// What is known of a robot and its link at this moment.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(in super::super) struct News {
+    pub(in super::super) telemetry: Option<Telemetry>,
+    pub(in super::super) link: LinkCounters,
+    pub(in super::super) clock: Option<ClockFit>,
+}
+
+impl News {
+    fn of(robot: &Robot<AnyPort>) -> Self {
+        Self {
+            telemetry: robot.telemetry().copied(),
+            link: robot.link_counters(),
+            clock: robot.clock(),
+        }
+    }
 }
 
 impl Ask {
@@ -55,6 +105,8 @@ impl Ask {
             Self::Status => robot
                 .status()
                 .map(|status| Relayed::of(&Doing::new(&status))),
+            Self::Introduce => Introduction::of(robot).map(|told| Relayed::data(&told)),
+            Self::News => Ok(Relayed::data(&News::of(robot))),
         };
         answered.unwrap_or_else(|error| Relayed {
             done: false,
@@ -80,6 +132,27 @@ impl Relayed {
             text: answer.to_string(),
             answer: serde_json::to_value(answer).unwrap_or(Value::Null),
         }
+    }
+
+    /// An answer that only a program reads.
+    fn data(answer: &impl Serialize) -> Self {
+        Self {
+            done: true,
+            text: String::new(),
+            answer: serde_json::to_value(answer).unwrap_or(Value::Null),
+        }
+    }
+
+    /// What the answer holds.
+    ///
+    /// # Errors
+    /// [`Failure::Tried`] where it is something else: another version of this program has the port.
+    pub(in super::super) fn read<T: DeserializeOwned>(self) -> Outcome<T> {
+        serde_json::from_value(self.answer).map_err(|error| {
+            Failure::Tried(format!(
+                "the program that has the port tells something else than was asked ({error}); is it of another version? End it and try again"
+            ))
+        })
     }
 
     /// The state that the robot is in, by the answer.

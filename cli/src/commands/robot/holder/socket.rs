@@ -184,7 +184,7 @@ impl fmt::Display for HeldBy {
         write!(
             f,
             "opening {port}: `{command}` (process {process}) has the port open. Through it, `swimmer robot stop --port {port}` (or \
-             estop, pause, resume, status) works now; for anything else end it first, with Ctrl-C there"
+             estop, pause, resume, status, watch) works now; for anything else end it first, with Ctrl-C there"
         )
     }
 }

@@ -1,0 +1,198 @@
+//! Where a watcher hears of the robot: over its own line, or from the process that has the port.
+
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use host_link::session::{ClockFit, LinkCounters};
+use host_link::{LinkError, Port as _};
+use link_protocol::Telemetry;
+
+use super::super::access::{Access, Line, Met};
+use super::super::answers::Doing;
+use super::super::holder::{Ask, Introduction, News};
+use super::super::port::Pace;
+use super::super::status;
+use crate::failure::Outcome;
+use crate::output::Output;
+
+const COMMAND: &str = "swimmer robot watch";
+/// Time between two questions to the process that has the port.
+const ASK_EVERY: Duration = Duration::from_millis(200);
+
+/// Where a watcher hears of the robot.
+pub(super) enum Source<'a> {
+    Own(Box<Line>),
+    Holder(Box<Beside<'a>>),
+}
+
+/// Beside the process that has the port.
+pub(super) struct Beside<'a> {
+    access: &'a Access,
+    introduction: Introduction,
+    news: News,
+    begun: Instant,
+    /// The robot's clock at the telemetry seen last, µs.
+    seen_us: Option<u64>,
+}
+
+/// What came of listening for a moment.
+pub(super) enum Beat {
+    Telemetry(Telemetry),
+    Nothing,
+    /// Nothing comes through at present.
+    OutOfReach(LinkError),
+    /// The process that had the port let it go.
+    LetGo,
+}
+
+impl<'a> Source<'a> {
+    /// The process that has the port, or the port.
+    ///
+    /// # Errors
+    /// As [`Access::meet`].
+    pub(super) fn find(access: &'a Access) -> Outcome<Self> {
+        let met = if access.logs() {
+            // Frames are seen only by who has the port.
+            Met::Line(Box::new(access.connect(COMMAND, Pace::RealTime)?))
+        } else {
+            access.meet(Ask::Introduce, COMMAND, Pace::RealTime)?
+        };
+        Ok(match met {
+            Met::Line(line) => Self::Own(line),
+            Met::Relayed(relayed) => Self::Holder(Box::new(Beside {
+                access,
+                introduction: relayed.read()?,
+                news: News::default(),
+                begun: Instant::now(),
+                seen_us: None,
+            })),
+        })
+    }
+
+    /// Which robot it is, and where: for a title.
+    ///
+    /// # Errors
+    /// The link's.
+    pub(super) fn introduction(&mut self) -> Outcome<(Introduction, String)> {
+        Ok(match self {
+            Self::Own(line) => (
+                Introduction::of(&mut line.robot)?,
+                format!("at {}", line.name()),
+            ),
+            Self::Holder(beside) => (
+                beside.introduction.clone(),
+                "through the program that has its port".to_owned(),
+            ),
+        })
+    }
+
+    /// Listens for a moment.
+    ///
+    /// # Errors
+    /// The port's, or what the process that has it says.
+    pub(super) fn beat(&mut self) -> Outcome<Beat> {
+        match self {
+            Self::Own(line) => Ok(match line.beat() {
+                Ok(Some(telemetry)) => Beat::Telemetry(telemetry),
+                Ok(None) => Beat::Nothing,
+                Err(error @ LinkError::Port { .. }) => return Err(error.into()),
+                Err(error) => Beat::OutOfReach(error),
+            }),
+            Self::Holder(beside) => beside.beat(),
+        }
+    }
+
+    /// Greets again after [`Beat::OutOfReach`]; false where that came to nothing.
+    pub(super) fn greet_again(&mut self) -> bool {
+        match self {
+            Self::Own(line) => line.robot.reconnect().is_ok(),
+            // Its matter, not ours.
+            Self::Holder(_) => false,
+        }
+    }
+
+    /// How the link is.
+    pub(super) fn link(&self) -> (LinkCounters, Option<ClockFit>) {
+        match self {
+            Self::Own(line) => (line.robot.link_counters(), line.robot.clock()),
+            Self::Holder(beside) => (beside.news.link, beside.news.clock),
+        }
+    }
+
+    /// A clock that goes on while the robot lives.
+    pub(super) fn now(&self) -> Duration {
+        match self {
+            Self::Own(line) => line.robot.port().now(),
+            Self::Holder(beside) => beside.begun.elapsed(),
+        }
+    }
+
+    /// Stops or e-stops the robot.
+    ///
+    /// # Errors
+    /// The link's, or what the process that has the port says.
+    pub(super) fn stop(&mut self, estop: bool) -> Outcome {
+        match self {
+            Self::Own(line) if estop => Ok(line.robot.estop()?),
+            Self::Own(line) => Ok(line.robot.stop()?),
+            Self::Holder(beside) => {
+                let ask = if estop { Ask::EStop } else { Ask::Stop };
+                beside
+                    .access
+                    .meet(ask, COMMAND, Pace::RealTime)
+                    .and_then(|met| match met {
+                        Met::Relayed(_) => Ok(()),
+                        // It let go of the port in this very moment.
+                        Met::Line(mut line) if estop => Ok(line.robot.estop()?),
+                        Met::Line(mut line) => Ok(line.robot.stop()?),
+                    })
+            }
+        }
+    }
+
+    /// Lets the robot go.
+    ///
+    /// # Errors
+    /// Where a log could not be written.
+    pub(super) fn close(self) -> Outcome {
+        match self {
+            Self::Own(line) => line.close(),
+            Self::Holder(_) => Ok(()),
+        }
+    }
+
+    /// Tells at the end what the robot does, and lets it go.
+    ///
+    /// # Errors
+    /// The link's, or where a log could not be written.
+    pub(super) fn leave(self, output: Output) -> Outcome {
+        match self {
+            Self::Own(mut line) => {
+                output.answer(&Doing::new(&line.robot.status()?));
+                line.close()
+            }
+            Self::Holder(beside) => status(beside.access, output),
+        }
+    }
+}
+
+impl Beside<'_> {
+    fn beat(&mut self) -> Outcome<Beat> {
+        sleep(ASK_EVERY);
+        let Some(relayed) = self.access.ask_holder(Ask::News)? else {
+            return Ok(Beat::LetGo);
+        };
+        self.news = relayed.read()?;
+        let news = self
+            .news
+            .telemetry
+            .filter(|telemetry| self.seen_us.is_none_or(|seen| telemetry.robot_us > seen));
+        Ok(match news {
+            Some(telemetry) => {
+                self.seen_us = Some(telemetry.robot_us);
+                Beat::Telemetry(telemetry)
+            }
+            None => Beat::Nothing,
+        })
+    }
+}
