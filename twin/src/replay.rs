@@ -5,6 +5,8 @@
 //! pause, stop, commit, …) each tick between the request and its answer is tried with a clone of the brain, and the one that
 //! fits the telemetry until the next request is kept. Everything else (keep-alives, chunks, questions) is given to the tick
 //! after it was sent.
+//!
+//! A signed log needs no key: the fresh brain has none, and reads past the signatures of what the robot let in.
 
 mod events;
 
@@ -35,6 +37,11 @@ pub enum ReplayError {
         "the log holds no ping that came back, so the robot's clock is not known; record for longer than a second"
     )]
     NoClock,
+    /// The robot has a key that the host did not have.
+    #[error(
+        "the robot turned the log's host away: it has a key that this host did not sign with, so nothing moved it and there is nothing to replay; record with --key FILE"
+    )]
+    TurnedAway,
     /// The robot was moving before the log began.
     #[error(
         "the log begins while the robot is {0:?}; only a log that begins at rest at neutral can be replayed"

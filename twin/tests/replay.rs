@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use gait_player::GaitTable;
 use host_link::port::{Direction, FaultPlan, Faults, FaultyPort, TracedFrame, TracedPort};
-use host_link::session::ClockSamples;
+use host_link::session::{ClockSamples, SessionConfig};
 use host_link::{Port, Robot};
-use link_protocol::{Decoder, Header, MAX_ENCODED, Message, Play, Request, encode};
+use link_protocol::{Decoder, Header, Key, MAX_ENCODED, Message, Play, Request, encode};
 use swimmer_files::{LinkFrame, SwimmerFile};
 use twin::{ReplayError, Twin, TwinConfig, TwinPort, WireSpeed, replay};
 
@@ -29,6 +29,14 @@ fn message(bytes: &[u8]) -> Option<(Header, Message)> {
 /// The frames of a session, with both clocks as a recorder keeps them.
 fn recorded(
     port: impl Port + 'static,
+    act: impl FnOnce(&mut Robot<Box<dyn Port>>),
+) -> Vec<LinkFrame> {
+    recorded_with(port, SessionConfig::new(7), act)
+}
+
+fn recorded_with(
+    port: impl Port + 'static,
+    session: SessionConfig,
     act: impl FnOnce(&mut Robot<Box<dyn Port>>),
 ) -> Vec<LinkFrame> {
     let frames: Arc<Mutex<Vec<LinkFrame>>> = Arc::default();
@@ -55,7 +63,7 @@ fn recorded(
             bytes: frame.bytes.to_vec(),
         });
     }));
-    let mut robot = Robot::connect(port, 7).unwrap();
+    let mut robot = Robot::connect_with(port, session).unwrap();
     act(&mut robot);
     drop(robot);
     Arc::into_inner(frames).unwrap().into_inner().unwrap()
@@ -127,6 +135,52 @@ fn so_does_one_of_a_link_that_drops_and_delays() {
     let told = replay(&frames, None).unwrap();
     assert_eq!(told.different, 0, "{told:#?}");
     assert!(told.compared > 500, "{told:?}");
+}
+
+/// A robot that shares a key with its hosts.
+fn keyed_twin() -> TwinPort {
+    let mut robot = Robot::connect(twin(), 1).unwrap();
+    robot.set_key(Some(KEY)).unwrap();
+    robot.into_port()
+}
+
+const KEY: Key = Key(*b"sixteen letters!");
+
+fn with_key(key: Key) -> SessionConfig {
+    SessionConfig {
+        key: Some(key),
+        ..SessionConfig::new(7)
+    }
+}
+
+/// The key is not in the log, and need not be: who may ask is decided before, and replay asks what was done then.
+#[test]
+fn so_does_one_that_was_signed_without_the_key() {
+    let frames = recorded_with(keyed_twin(), with_key(KEY), everything);
+    let signed = |frame: &&LinkFrame| {
+        let received = frame.received().unwrap();
+        frame.direction == swimmer_files::Direction::ToRobot && received.signature.is_some()
+    };
+    assert!(frames.iter().filter(signed).count() > 300);
+    let told = replay(&frames, None).unwrap();
+    assert_eq!(told.different, 0, "{told:#?}");
+    assert!(told.compared > 600 && told.requests == 13, "{told:?}");
+}
+
+/// A host without the right key moves nothing, not even a clock: there is nothing to compare.
+#[test]
+fn a_log_of_a_host_that_was_turned_away_says_so() {
+    for session in [SessionConfig::new(7), with_key(Key([0; 16]))] {
+        let frames = recorded_with(keyed_twin(), session, |robot| {
+            live(robot, 1.0);
+            assert!(robot.arm(false).is_err());
+            robot.stop().unwrap();
+            live(robot, 1.0);
+        });
+        let error = replay(&frames, None).unwrap_err();
+        assert_eq!(error, ReplayError::TurnedAway);
+        assert!(error.to_string().contains("--key FILE"), "{error}");
+    }
 }
 
 /// Another period in the log's Play, and the brain plays otherwise than the robot did.

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use gait_player::TICK_US;
 use link_protocol::{
-    Configuration, HelloReply, Joint, Message, Received, Reply, Request, ServoSettings, StateName,
-    Telemetry,
+    Configuration, HelloReply, Joint, Message, Received, Refusal, Reply, Request, ServoSettings,
+    StateName, Telemetry,
 };
 use swimmer_files::{Direction, LinkFrame};
 
@@ -162,7 +162,26 @@ fn on_the_robots_clock(frames: &[LinkFrame]) -> Result<Vec<Read<'_>>, ReplayErro
         let pong = matches!(frame.received()?.message, Ok(Message::Pong(_)));
         pong.then(|| robot_us as f64 - host_us(frame))
     });
-    let offset = known.ok_or(ReplayError::NoClock)?;
+    let turned_away = || {
+        frames
+            .iter()
+            .filter_map(LinkFrame::received)
+            .any(|received| {
+                matches!(
+                    received.message,
+                    Ok(Message::Reply(Reply::Refused(
+                        Refusal::KeyNeeded | Refusal::WrongKey
+                    )))
+                )
+            })
+    };
+    let offset = known.ok_or_else(|| {
+        if turned_away() {
+            ReplayError::TurnedAway
+        } else {
+            ReplayError::NoClock
+        }
+    })?;
     Ok(frames
         .iter()
         .filter_map(|frame| {
