@@ -123,7 +123,9 @@ export class Pl011 {
     }
   }
   writeUint32Atomic(offset, value, how) {
-    this.writeUint32(offset, offset === 0x44 ? value : combined(this.readUint32(offset), value, how));
+    // A plain write must not read first: reading the data register takes a character.
+    const whole = how === 0 || offset === 0x44;
+    this.writeUint32(offset, whole ? value : combined(this.readUint32(offset), value, how));
   }
   clkPeriChanged() {}
 }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use emulator::Board;
 use gait_player::Limits;
-use link_protocol::{Decoder, Message, Reply, Request, StateName, Status};
+use link_protocol::{DecodeCounters, Decoder, Message, Reply, Request, StateName, Status};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -67,6 +67,9 @@ struct Storm {
     /// As the robot counts since it was switched on: requests that acted, frames that found no room on their way out.
     acted: u32,
     dropped: u32,
+    /// Frames as the robot counts them, and as a decoder here does that takes the same bytes.
+    frames_there: DecodeCounters,
+    mirror: Decoder,
     tally: Tally,
 }
 
@@ -84,6 +87,8 @@ fn noise(count: usize, seed: u64, tell: fn(&str, &str)) {
         lost: 0,
         acted: 0,
         dropped: 0,
+        frames_there: DecodeCounters::default(),
+        mirror: Decoder::new(),
         tally: Tally {
             shortest_us: f64::INFINITY,
             ..Tally::default()
@@ -156,6 +161,9 @@ impl Storm {
     /// Sends bytes and lives until they have arrived.
     fn send(&mut self, bytes: &[u8]) {
         self.board.feed(bytes).unwrap();
+        for &byte in bytes {
+            self.mirror.push(byte);
+        }
         self.live(BYTE * u32::try_from(bytes.len() + 4).unwrap());
     }
 
@@ -202,6 +210,7 @@ impl Storm {
             Message::Reply(Reply::Wanted { upload, .. }) => self.frames.upload(*upload),
             Message::Reply(Reply::Counters(counters)) => {
                 (self.acted, self.dropped) = (counters.acted, counters.dropped);
+                self.frames_there = counters.frames;
             }
             _ => {}
         }
@@ -242,6 +251,13 @@ impl Storm {
             [Request::Status, Request::Counters].map(|request| self.frames.request(request));
         self.send(&asked.concat());
         self.live(20 * MS);
+        if self.lost == 0 {
+            assert_eq!(
+                self.frames_there,
+                self.mirror.counters(),
+                "the robot saw other bytes than were sent"
+            );
+        }
         let state = self
             .status
             .as_ref()
