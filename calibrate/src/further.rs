@@ -15,8 +15,9 @@ use swimmer_model::Swimmer;
 
 use crate::campaign::{CalibrateError, CampaignData, CampaignFit};
 use crate::fit::{FitError, Intervals};
-use least::{Data, Likeliest, likeliest};
-use setting::Setting;
+use least::Data;
+pub(crate) use least::{Likeliest, likeliest};
+pub(crate) use setting::Setting;
 
 /// What can be fitted along with r_s and χ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -4,7 +4,8 @@
 //! bytes ──read_tracks──► TrackFile ──poses──► PoseTrack ──► Cycles ──► Fit: r_s, χ, intervals, residuals
 //!          (tracks)                 (poses)             (cycles)    (fit)
 //! ```
-//! [`weigh_evidence`] then tells, on demand, what the data say beyond the fit: likelihood, profiles, ridge, bootstrap, outliers.
+//! [`weigh_evidence`] then tells, on demand, what the data say beyond the fit: likelihood, profiles, ridge, bootstrap, outliers;
+//! [`fit_further`] fits what else may be off, and [`advise`] says what to measure next.
 //! Lengths are metres, angles radians, times seconds. Nothing here opens a file, except [`CampaignData::load`] and
 //! [`load_run`], which read what the caller names. [`predict`] is the model's side of the fit, for anyone who wants to know
 //! beforehand what the cameras will see.
@@ -12,6 +13,7 @@
 // Formulas in the docs read like the paper's: c_t, r_s.
 #![allow(clippy::doc_markdown)]
 
+mod advice;
 mod campaign;
 pub mod cycles;
 pub mod evidence;
@@ -22,6 +24,7 @@ pub mod poses;
 mod prediction;
 pub mod tracks;
 
+pub use advice::{Advice, Candidate, advise};
 pub use campaign::{
     CalibrateError, CampaignData, CampaignFit, RunData, RunResult, calibrate_campaign,
     calibrate_run, load_run, load_tracks, track_options,

@@ -20,6 +20,9 @@ use swimmer_files::{
 };
 use swimmer_model::{Gait, Model, Pose, Swimmer};
 
+/// The first heading, rad.
+const HEADING: f64 = 0.8;
+
 /// One recording.
 #[derive(Clone)]
 pub(crate) struct Tank {
@@ -31,6 +34,8 @@ pub(crate) struct Tank {
     pub(crate) rate_hz: f64,
     /// Noise of each coordinate, m.
     pub(crate) noise: f64,
+    /// Velocity of the fluid along the first heading, m/s.
+    pub(crate) current: f64,
     /// Chance that a reflector is missing in a frame.
     pub(crate) dropout: f64,
     /// Stretches (first frame, frames) in which both are missing.
@@ -57,6 +62,7 @@ impl Tank {
             cycles: 5,
             rate_hz: 100.0,
             noise: 3e-4,
+            current: 0.0,
             dropout: 0.005,
             gaps: Vec::new(),
             tails: 0.0,
@@ -114,7 +120,7 @@ impl Tank {
         let tick_of = |t: f64| {
             ((t - self.rest_s - soft_s) / 0.02 + 1e-9).floor() * 0.02 + self.rest_s + soft_s
         };
-        let mut pose = Pose::new(0.4, -0.2, 0.8);
+        let mut pose = Pose::new(0.4, -0.2, HEADING);
         let mut phi = wanted(0.0);
         let mut out = vec![pose];
         for step in 1..=(total / dt) as u32 {
@@ -178,7 +184,9 @@ impl Tank {
         let see = |(i, pose): (usize, Pose<f64>)| {
             let mut points: [Option<[f64; 3]>; 4] = [None; 4];
             for (place, along) in points.iter_mut().zip([self.reach(), -self.reach()]) {
-                let p = pose.transform(&Vector2::new(along, 0.0));
+                let drifted = self.current * i as f64 / self.rate_hz;
+                let p = pose.transform(&Vector2::new(along, 0.0))
+                    + Vector2::new(HEADING.cos(), HEADING.sin()) * drifted;
                 let [a, b, c]: [f64; 3] = std::array::from_fn(|_| StandardNormal.sample(&mut rng));
                 if rng.random::<f64>() >= self.dropout && !within(&self.gaps, i) {
                     *place = Some([
