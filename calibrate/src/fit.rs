@@ -12,6 +12,7 @@
 pub(crate) mod components;
 pub(crate) mod errors;
 mod intervals;
+pub(crate) mod outliers;
 mod problem;
 mod search;
 
@@ -24,6 +25,9 @@ use problem::{Problem, natural};
 
 /// Weights of X, ΔY and Δθ in the paper's criterion.
 pub const WEIGHTS: [f64; 3] = [0.5, 0.25, 0.25];
+
+/// Their names.
+const QUANTITIES: [&str; 3] = ["X", "ΔY", "Δθ"];
 
 /// What a fit is made from besides the data.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -168,6 +172,15 @@ pub enum FitWarning {
     },
     /// The optimum has no sphere.
     NoSphere,
+    /// One value is unlike what the other runs say.
+    Outlier {
+        /// Which run, in the campaign's order.
+        run: usize,
+        /// Which of its values.
+        quantity: &'static str,
+        /// By how many standard errors.
+        standard_errors: f64,
+    },
     /// Another dead band would explain the runs much better.
     DeadBand {
         /// As the swimmer file says \[rad\].
@@ -198,6 +211,17 @@ impl std::fmt::Display for FitWarning {
             Self::FewRuns { runs } => write!(
                 f,
                 "{runs} run(s) for two parameters: the intervals are wide and rest on little"
+            ),
+            Self::Outlier {
+                run,
+                quantity,
+                standard_errors,
+            } => write!(
+                f,
+                "{quantity} of run {} is {:.0} standard errors off what the other runs say: look at that recording; the paper's \
+                 criterion does not know outliers",
+                run + 1,
+                standard_errors.abs()
             ),
             Self::DeadBand { known, found, gain } => write!(
                 f,
@@ -278,7 +302,7 @@ fn scales(runs: &[Observation]) -> Result<[f64; 3], FitError> {
             .fold(0.0, f64::max)
     };
     let scales = [0, 1, 2].map(largest);
-    for (scale, quantity) in scales.iter().zip(["X", "ΔY", "Δθ"]) {
+    for (scale, quantity) in scales.iter().zip(QUANTITIES) {
         if !(*scale > 0.0 && scale.is_finite()) {
             return Err(FitError::NothingMeasured { quantity });
         }
@@ -320,6 +344,13 @@ fn summary(problem: &Problem<'_>, p: [f64; 2], cost: f64, level: f64) -> Option<
     }
     if r_s < 1e-4 * problem.start.total_length() {
         warnings.push(FitWarning::NoSphere);
+    }
+    if let Some(outlier) = spread.outlier {
+        warnings.push(FitWarning::Outlier {
+            run: outlier.row / 3,
+            quantity: QUANTITIES[outlier.row % 3],
+            standard_errors: outlier.standard_errors,
+        });
     }
     if spread.misfit > 10.0 {
         warnings.push(FitWarning::ModelMisfit {

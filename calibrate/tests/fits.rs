@@ -329,6 +329,21 @@ fn a_run_with_a_wrong_x_is_named_and_moves_nothing() {
     ];
     println!("shift in half widths of the intervals: {shift:.3?}");
     assert!(shift.iter().all(|shift| *shift < 1.0), "{shift:?}");
+    let told = |w: &FitWarning| {
+        matches!(
+            w,
+            FitWarning::Outlier {
+                run: 2,
+                quantity: "X",
+                ..
+            }
+        )
+    };
+    assert!(
+        found.fit.warnings.iter().any(told),
+        "{:?}",
+        found.fit.warnings
+    );
     // The paper's criterion knows no outliers: without that run it agrees.
     let without = &spoilt.without_run[2].paper;
     assert!(

@@ -4,13 +4,10 @@
 //! measured, by more than Student's t allows at 1 % after as many looks as there are values. The worst goes first; then the
 //! others are looked at again, for a bad one hides behind a worse.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
-
 use super::estimate::{Estimate, Measured};
 use super::surface::Surface;
+use crate::fit::outliers::{self, FALSE_ALARM};
 
-/// Chance that some value of a campaign without fault is called an outlier.
-const FALSE_ALARM: f64 = 0.01;
 /// Of how many values one may be left out.
 const VALUES_FOR_ONE: usize = 6;
 
@@ -68,21 +65,12 @@ fn unexpected(
     let variance = predicted + rest.components.variance(row);
     let deviation = -rest.residuals[row];
     let standard_errors = deviation / variance.sqrt();
-    let freedom = rest.components.freedom[row % 3].min(
-        // Where nothing differs from run to run, the cycles' own variances are all there is.
-        if rest.components.between[row % 3] > 0.0 {
-            f64::INFINITY
-        } else {
-            data.within.get(row)?.freedom
-        },
-    );
-    let student = StudentsT::new(0.0, 1.0, freedom.max(1.0)).ok()?;
-    let chance = 2.0 * student.sf(standard_errors.abs()) * looks as f64;
+    let chance = outliers::chance(&rest.components, row, standard_errors, looks)?;
     Some(Unexpected {
         row,
         standard_errors,
         deviation,
-        chance: chance.min(1.0),
+        chance,
     })
 }
 

@@ -6,6 +6,7 @@ use swimmer_model::Swimmer;
 
 use super::components::Components;
 use super::errors::{self, Variance};
+use super::outliers::{self, Unlike};
 use super::problem::{Problem, difference};
 
 /// Intervals of both parameters.
@@ -23,6 +24,8 @@ pub(super) struct Spread {
     pub(super) intervals: Intervals,
     pub(super) condition: f64,
     pub(super) correlation: f64,
+    /// The value that stands out most, if one does.
+    pub(super) outlier: Option<Unlike>,
     /// Standard error by residuals over that by cycles, the larger of both parameters; 0 where cycles say nothing.
     pub(super) misfit: f64,
 }
@@ -52,6 +55,7 @@ pub(super) fn spread(problem: &Problem<'_>, r_s: f64, chi: f64, level: f64) -> O
         })
         .collect();
     let dynamic = DMatrix::from_fn(jacobian.nrows(), 2, |i, j| jacobian[(i, j)]);
+    let outlier = outliers::worst(&dynamic, &residuals, &within);
     let mut components = Components::of(&dynamic, &vec![1.0; residuals.len()], &residuals, within)?;
     let error = |components: &Components, i: usize| -> Option<(f64, f64)> {
         let Variance { value, freedom } = components.of_parameter(i);
@@ -74,6 +78,7 @@ pub(super) fn spread(problem: &Problem<'_>, r_s: f64, chi: f64, level: f64) -> O
         },
         condition: singular.max() / singular.min(),
         correlation: covariance[(0, 1)] / (covariance[(0, 0)] * covariance[(1, 1)]).sqrt(),
+        outlier,
         misfit: if ratio.is_finite() { ratio } else { 0.0 },
     })
 }

@@ -1,0 +1,96 @@
+//! Does one value stand out? Each is left out in turn, to first order: r_s and χ go where the others pull them, the variances
+//! are estimated from the others, and the value is held against what those expect. Told in every fit; the likelihood
+//! (`evidence/deletion.rs`) does the same without the shortcut and goes on without the value.
+
+use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::components::Components;
+use super::errors::Variance;
+
+/// Chance that some value of a campaign without fault is called an outlier.
+pub(crate) const FALSE_ALARM: f64 = 0.01;
+
+/// A value that the others do not expect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Unlike {
+    /// X, ΔY, Δθ of the first run, of the second, …
+    pub(crate) row: usize,
+    /// By how many standard errors.
+    pub(crate) standard_errors: f64,
+    chance: f64,
+}
+
+/// The worst value, if it stands out.
+pub(super) fn worst(
+    jacobian: &DMatrix<f64>,
+    residuals: &[f64],
+    within: &[Variance],
+) -> Option<Unlike> {
+    let rows = residuals.len();
+    let all = (0..rows).filter_map(|row| unlike(jacobian, residuals, within, row));
+    let worst = all.min_by(|a, b| a.chance.total_cmp(&b.chance))?;
+    (worst.chance < FALSE_ALARM).then_some(worst)
+}
+
+fn unlike(
+    jacobian: &DMatrix<f64>,
+    residuals: &[f64],
+    within: &[Variance],
+    row: usize,
+) -> Option<Unlike> {
+    let mut weights = vec![1.0; residuals.len()];
+    weights[row] = 0.0;
+    let first = Components::of(jacobian, &weights, residuals, within.to_vec())?;
+    let step = &first.gain * DVector::from_column_slice(residuals);
+    let left = DVector::from_column_slice(residuals) - jacobian * step;
+    let others = Components::of(jacobian, &weights, left.as_slice(), within.to_vec())?;
+    let gradient = jacobian.row(row);
+    let expected = (gradient * others.covariance() * gradient.transpose())[(0, 0)];
+    let standard_errors = left[row] / (expected + others.variance(row)).sqrt();
+    Some(Unlike {
+        row,
+        standard_errors,
+        chance: chance(&others, row, standard_errors, residuals.len())?,
+    })
+}
+
+/// Chance that the largest of so many deviations is so large.
+pub(crate) fn chance(
+    others: &Components,
+    row: usize,
+    standard_errors: f64,
+    looks: usize,
+) -> Option<f64> {
+    // Where nothing differs from run to run, the cycles' own variances are all there is.
+    let freedom = if others.between[row % 3] > 0.0 {
+        others.freedom[row % 3]
+    } else {
+        others.freedom[row % 3].min(others.within.get(row)?.freedom)
+    };
+    let student = StudentsT::new(0.0, 1.0, freedom.max(1.0)).ok()?;
+    Some((2.0 * student.sf(standard_errors.abs()) * looks as f64).min(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_in_eighteen() {
+        let jacobian = DMatrix::from_fn(18, 2, |k, j| if j == 0 { 1.0 } else { (k / 3) as f64 });
+        let within = vec![
+            Variance {
+                value: 1e-6,
+                freedom: 9.0
+            };
+            18
+        ];
+        let noise = |k: usize| 1e-3 * ((k * k * 7919) as f64).sin();
+        let mut residuals: Vec<f64> = (0..18).map(noise).collect();
+        assert_eq!(worst(&jacobian, &residuals, &within), None);
+        residuals[7] += 0.1;
+        let found = worst(&jacobian, &residuals, &within).unwrap();
+        assert!(found.row == 7 && found.standard_errors > 20.0, "{found:?}");
+    }
+}
