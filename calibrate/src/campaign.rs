@@ -1,96 +1,19 @@
 //! One experiment from its tracks to its drag: every run to cycles, all runs to one fit.
 
-use std::path::{Path, PathBuf};
+mod data;
 
-use swimmer_files::{
-    AnyGait, Campaign, FileError, PointName, Reflectors, SwimmerFile, TrackSettings,
-};
+use std::path::PathBuf;
+
+use swimmer_files::{AnyGait, Campaign, FileError, LinkLogError, Reflectors, SwimmerFile};
 use swimmer_model::{InvalidSwimmer, Swimmer};
 
 use crate::cycles::{Clock, CycleError, Cycles, Projection};
 use crate::fit::{self, Fit, FitError, FitOptions, Observation};
 use crate::further::dead_band;
-use crate::poses::{self, PoseError, PoseOptions, PoseTrack};
+use crate::poses::{self, FrontRule, PoseError, PoseOptions, PoseTrack};
 use crate::prediction::{JointPath, PredictionError};
-use crate::tracks::{TrackError, TrackFile, TrackOptions, read_tracks_with};
-
-/// One run, read.
-#[derive(Debug, Clone)]
-pub struct RunData {
-    /// The tracking file's path, for messages.
-    pub file: PathBuf,
-    /// What it holds.
-    pub track: TrackFile,
-    /// The gait that was played.
-    pub gait: AnyGait,
-    /// The gait as it was named.
-    pub gait_name: String,
-    /// One cycle as commanded \[s\].
-    pub period_s: f64,
-}
-
-/// Everything that a campaign names, read.
-#[derive(Debug, Clone)]
-pub struct CampaignData {
-    /// The runs, in the campaign's order.
-    pub runs: Vec<RunData>,
-}
-
-impl CampaignData {
-    /// Reads tracks and gait files: the one place of this crate that opens files, and only those that the campaign names.
-    ///
-    /// # Errors
-    /// [`CalibrateError`] for the first file that cannot be read.
-    pub fn load(campaign: &Campaign) -> Result<Self, CalibrateError> {
-        let options = track_options(&campaign.reflectors, &campaign.tracks);
-        let read = |run: &swimmer_files::CampaignRun| {
-            Ok(RunData {
-                track: load_tracks(&run.track, &options)?,
-                file: run.track.clone(),
-                gait: run.gait.load()?,
-                gait_name: run.gait.to_string(),
-                period_s: run.period_s,
-            })
-        };
-        Ok(Self {
-            runs: campaign
-                .runs
-                .iter()
-                .map(read)
-                .collect::<Result<_, CalibrateError>>()?,
-        })
-    }
-}
-
-/// What reflectors and settings of a campaign say about its tracks.
-pub fn track_options(reflectors: &Reflectors, settings: &TrackSettings) -> TrackOptions {
-    let pair = |point: &PointName| match point {
-        PointName::Columns(x, y) => Some([x.clone(), y.clone()]),
-        PointName::Named(_) | PointName::Auto => None,
-    };
-    TrackOptions {
-        metres_per_unit: settings.scale,
-        rate_hz: settings.rate_hz,
-        axes: settings.axes,
-        likelihood: settings.likelihood,
-        pairs: [&reflectors.front, &reflectors.back]
-            .into_iter()
-            .filter_map(|r| pair(&r.point))
-            .collect(),
-    }
-}
-
-/// Opens and reads a tracking file, one line at a time.
-///
-/// # Errors
-/// [`CalibrateError`] when it cannot be opened or read.
-pub fn load_tracks(file: &Path, options: &TrackOptions) -> Result<TrackFile, CalibrateError> {
-    let stream = std::fs::File::open(file).map_err(|cause| CalibrateError::Open {
-        file: file.to_owned(),
-        cause: cause.to_string(),
-    })?;
-    Ok(read_tracks_with(stream, file, options)?)
-}
+use crate::tracks::TrackError;
+pub use data::{CampaignData, RunData, load_run, load_tracks, track_options};
 
 /// Why there is no calibration.
 #[derive(Debug, thiserror::Error)]
@@ -109,6 +32,17 @@ pub enum CalibrateError {
     /// A gait file is wrong.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A link log is broken.
+    #[error(transparent)]
+    Log(#[from] LinkLogError),
+    /// A link log does not say which of its plays a run was.
+    #[error("{}: {problem}", log.display())]
+    Play {
+        /// The log.
+        log: PathBuf,
+        /// What is missing.
+        problem: String,
+    },
     /// A track gave no poses.
     #[error("{}: {cause}", file.display())]
     Poses {
@@ -142,7 +76,12 @@ impl CalibrateError {
     /// Whether the input is to blame (bad usage, exit 2) rather than the outcome (exit 1).
     pub fn is_bad_input(&self) -> bool {
         match self {
-            Self::Open { .. } | Self::Track(_) | Self::File(_) | Self::Prediction { .. } => true,
+            Self::Open { .. }
+            | Self::Track(_)
+            | Self::File(_)
+            | Self::Log(_)
+            | Self::Play { .. }
+            | Self::Prediction { .. } => true,
             Self::Poses { cause, .. } => {
                 matches!(
                     cause,
@@ -190,6 +129,7 @@ pub struct CampaignFit {
 /// A run on its way: everything that does not change when the model does.
 struct Run<'a> {
     data: &'a RunData,
+    reflectors: Reflectors,
     poses: PoseTrack,
     clock: Clock,
     path: JointPath,
@@ -198,20 +138,23 @@ struct Run<'a> {
 impl<'a> Run<'a> {
     fn begin(
         data: &'a RunData,
-        reflectors: &Reflectors,
+        common: &Reflectors,
         swimmer: &SwimmerFile,
     ) -> Result<Self, CalibrateError> {
         let file = || data.file.clone();
+        let reflectors = data.reflectors(common);
         let options = PoseOptions::of_period(data.period_s);
-        let poses = poses::poses(&data.track, reflectors, &options).map_err(|cause| {
+        let poses = poses::poses(&data.track, &reflectors, &options).map_err(|cause| {
             CalibrateError::Poses {
                 file: file(),
                 cause,
             }
         })?;
-        let clock = Clock::find(&poses, data.period_s).map_err(|cause| CalibrateError::Cycles {
-            file: file(),
-            cause,
+        let clock = Clock::find(&poses, data.period_s, &data.timing).map_err(|cause| {
+            CalibrateError::Cycles {
+                file: file(),
+                cause,
+            }
         })?;
         let path =
             JointPath::new(&data.gait, swimmer.servo.as_ref(), data.period_s).map_err(|cause| {
@@ -222,6 +165,7 @@ impl<'a> Run<'a> {
             })?;
         Ok(Self {
             data,
+            reflectors,
             poses,
             clock,
             path,
@@ -252,21 +196,22 @@ impl<'a> Run<'a> {
             })
     }
 
-    /// Where no label tells front from back, the direction of travel does: X has the model's sign.
-    fn settle_order(
+    /// Where no label tells front from back, the direction of travel does: X has the model's sign. And where log or flash told
+    /// when cycles began, the heading may object.
+    fn settled(
         &mut self,
-        cycles: Cycles,
         start_s: f64,
         swimmer: &Swimmer<f64>,
-        reflectors: &Reflectors,
         projection: &Projection,
     ) -> Result<Cycles, CalibrateError> {
-        let predicted = self.path.predict(swimmer, projection)?.0.x_m;
-        if self.poses.order_known || predicted * cycles.x.mean >= 0.0 {
-            return Ok(cycles);
+        let (predicted, heading) = self.path.predict(swimmer, projection)?;
+        let mut cycles = self.cycles(start_s)?;
+        if self.poses.front == FrontRule::Travel && predicted.x_m * cycles.x.mean < 0.0 {
+            self.poses.turn_round(&self.reflectors);
+            cycles = self.cycles(start_s)?;
         }
-        self.poses.turn_round(reflectors);
-        self.cycles(start_s)
+        self.clock.check_phase(&mut cycles, &heading);
+        Ok(cycles)
     }
 
     fn finish(self, cycles: Cycles) -> RunResult {
@@ -274,7 +219,7 @@ impl<'a> Run<'a> {
         let poses = self.poses.warnings.iter().map(ToString::to_string);
         let own = cycles.warnings.iter().map(ToString::to_string);
         let mut warnings: Vec<String> = reader.chain(poses).chain(own).collect();
-        if !self.poses.order_known {
+        if self.poses.front == FrontRule::Travel {
             warnings.push("no label tells the front reflector from the back one; the direction of travel was taken for forwards".to_owned());
         }
         RunResult {
@@ -299,8 +244,7 @@ pub fn calibrate_run(
     let projection = Projection::new();
     let mut begun = Run::begin(run, reflectors, swimmer)?;
     let start_s = begun.start(&swimmer.swimmer, &projection)?;
-    let cycles = begun.cycles(start_s)?;
-    let cycles = begun.settle_order(cycles, start_s, &swimmer.swimmer, reflectors, &projection)?;
+    let cycles = begun.settled(start_s, &swimmer.swimmer, &projection)?;
     Ok(begun.finish(cycles))
 }
 
@@ -330,8 +274,7 @@ pub fn calibrate_campaign(
         round += 1;
         let mut cycles = Vec::with_capacity(runs.len());
         for (run, start_s) in runs.iter_mut().zip(&starts) {
-            let found = run.cycles(*start_s)?;
-            cycles.push(run.settle_order(found, *start_s, &swimmer, reflectors, &projection)?);
+            cycles.push(run.settled(*start_s, &swimmer, &projection)?);
         }
         let observations: Vec<Observation> = runs
             .iter()
@@ -374,23 +317,4 @@ fn starts(
     runs.iter()
         .map(|run| run.start(swimmer, projection))
         .collect()
-}
-
-/// Reads one tracking file for [`calibrate_run`]; as [`CampaignData::load`], an edge to the file system.
-///
-/// # Errors
-/// [`CalibrateError`] when it cannot be opened or read.
-pub fn load_run(
-    file: &Path,
-    gait: &swimmer_files::GaitSpec,
-    period_s: f64,
-    options: &TrackOptions,
-) -> Result<RunData, CalibrateError> {
-    Ok(RunData {
-        file: file.to_owned(),
-        track: load_tracks(file, options)?,
-        gait: gait.load()?,
-        gait_name: gait.to_string(),
-        period_s,
-    })
 }

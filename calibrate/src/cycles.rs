@@ -4,12 +4,13 @@
 //!   partial cycles at both ends, cycles with more than a tenth of their samples missing, and cycles unlike the others (the
 //!   robot stopped or was pushed).
 //! * The period is the commanded one, refined within ±2 % where the data speak clearly for another.
-//! * A cycle starts at the gait's first point, where φ₁ = φ₂ > 0. The cameras do not see the joints, so the start is where
-//!   the heading's harmonics match those of the model swimming the same gait; for the gaits of the paper that does not
-//!   depend on the drag, by symmetry.
+//! * A cycle starts at the gait's first point, where φ₁ = φ₂ > 0. Where the robot's link log or its flash tells when, that is
+//!   taken ([`Timing`]). Else, since the cameras do not see the joints, the start is where the heading's harmonics match those
+//!   of the model swimming the same gait; for the gaits of the paper that does not depend on the drag, by symmetry.
 //! * X and Y are the step of SE(2) from one cycle to the next in the frame of the cycle's first heading. ΔY and Δθ are half
 //!   of max − min of the cycle's harmonics, drawn about the drift from one cycle's mean to the next one's.
 
+mod beginnings;
 mod clock;
 mod curve;
 mod integral;
@@ -20,6 +21,8 @@ use std::fmt;
 use swimmer_model::Pose;
 
 use crate::poses::{Origin, PoseSample, PoseTrack};
+use beginnings::Beginnings;
+pub use beginnings::{Phase, Timing};
 use clock::Bin;
 pub(crate) use clock::shift;
 pub(crate) use curve::{Curve, Harmonics, Projection};
@@ -27,8 +30,8 @@ pub use statistics::Statistics;
 
 /// Times that a start is refined: each leaves the square of the error before.
 const REFINEMENTS: usize = 2;
-/// More cycles than any recording has.
-const MOST_CYCLES: u32 = 20_000;
+/// Clocks of robot and cameras run alike to this: crystals by far.
+const CLOCKS_DIFFER: f64 = 1e-3;
 /// Share of a cycle's samples that may be missing.
 const MOST_MISSING: f64 = 0.1;
 /// A cycle is unlike the others when its residual is this many times their median.
@@ -84,7 +87,17 @@ pub enum CycleWarning {
     OneCycle,
     /// The start-up cycle could not be dropped, because it is the only one.
     StartUpKept,
+    /// The heading says that cycles began at another time than the log or the flash does.
+    PhaseDiffers {
+        /// By how much later \[s\].
+        by_s: f64,
+        /// The period \[s\].
+        period_s: f64,
+    },
 }
+
+/// Phases may differ by this much of a period before it is worth a word.
+const SAME_PHASE: f64 = 0.02;
 
 impl fmt::Display for CycleWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -107,6 +120,12 @@ impl fmt::Display for CycleWarning {
             Self::StartUpKept => {
                 f.write_str("the only cycle is the first, which may hold the start-up")
             }
+            Self::PhaseDiffers { by_s, period_s } => write!(
+                f,
+                "by the heading, cycles began {by_s:+.3} s ({:+.1} % of a period) from where the log or the flash puts them: check \
+                 clock_offset_s or cycle_start_s, and the gait",
+                100.0 * by_s / period_s
+            ),
         }
     }
 }
@@ -120,6 +139,25 @@ pub enum LeftOut {
     Missing(f64),
     /// Its poses are unlike the other cycles': residual \[m\].
     Unlike(f64),
+    /// By the robot's log it was broken off, paused or swapped.
+    Unsteady,
+}
+
+impl fmt::Display for LeftOut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::StartUp => f.write_str("start-up: the first whole cycle is never used"),
+            Self::Missing(share) => write!(f, "{:.0} % of its samples are missing", 100.0 * share),
+            Self::Unlike(residual_m) => write!(
+                f,
+                "unlike the others: {:.2} mm (rms) from its own harmonic curve",
+                1e3 * residual_m
+            ),
+            Self::Unsteady => {
+                f.write_str("by the robot's log its pace changed (pause, swap or stop)")
+            }
+        }
+    }
 }
 
 /// One cycle.
@@ -159,6 +197,8 @@ pub struct Cycles {
     pub delta_y: Statistics,
     /// Δθ \[rad\].
     pub delta_theta: Statistics,
+    /// How their starts were found.
+    pub phase: Phase,
     /// What to know.
     pub warnings: Vec<CycleWarning>,
     /// Mean harmonics of the heading, from the cycles' starts.
@@ -170,14 +210,29 @@ pub struct Cycles {
 pub(crate) struct Clock {
     period_s: f64,
     active_s: (f64, f64),
+    /// When it moved first.
+    motion_s: f64,
     steady: Vec<Bin>,
+    beginnings: Beginnings,
     warnings: Vec<CycleWarning>,
 }
 
 impl Clock {
-    pub(crate) fn find(track: &PoseTrack, commanded_s: f64) -> Result<Self, CycleError> {
+    pub(crate) fn find(
+        track: &PoseTrack,
+        commanded_s: f64,
+        timing: &Timing,
+    ) -> Result<Self, CycleError> {
+        // What the robot was told is better known than what was written down.
+        let commanded_s = timing
+            .play
+            .as_ref()
+            .map_or(commanded_s, |play| play.period_s);
         let bins = clock::bins(track, commanded_s);
-        let active_s = clock::active(&bins, track.report.distance_m).ok_or(CycleError::NoMotion)?;
+        let lever = track.report.distance_m;
+        let active_s = clock::active(&bins, lever, clock::REST).ok_or(CycleError::NoMotion)?;
+        // However long the robot rested in between.
+        let motion = clock::active(&bins, lever, bins.len());
         // Motion is looked for over four hundredths of a cycle: the last of them may be rest.
         let until = active_s.1 - 0.04 * commanded_s;
         let within = |from: f64| {
@@ -195,7 +250,15 @@ impl Clock {
             within(active_s.0)
         };
         let mut warnings = Vec::new();
-        let period = clock::refine_period(&steady, commanded_s);
+        let mut period = clock::refine_period(&steady, commanded_s);
+        let off = (period.seconds / commanded_s - 1.0).abs();
+        if timing.play.is_some() && (period.at_border || off > CLOCKS_DIFFER) {
+            // The robot played by its own clock: what else seems better is noise.
+            period = clock::Period {
+                seconds: commanded_s,
+                at_border: false,
+            };
+        }
         if period.at_border {
             warnings.push(CycleWarning::PeriodNotFound { commanded_s });
         }
@@ -208,7 +271,9 @@ impl Clock {
         Ok(Self {
             period_s: period.seconds,
             active_s,
+            motion_s: motion.map_or(active_s.0, |(first, _)| first),
             steady,
+            beginnings: Beginnings::new(timing, period.seconds),
             warnings,
         })
     }
@@ -216,16 +281,45 @@ impl Clock {
     /// A start of a cycle \[s\], matched with the model's heading: roughly from averages, then from the cycles' own curves,
     /// which are drawn as the model's is.
     pub(crate) fn start(&self, track: &PoseTrack, model: &Harmonics) -> Result<f64, CycleError> {
-        let mut start = self.rough_start(model)?;
+        if let Some(known) = self.beginnings.known(self.motion_s) {
+            return Ok(known);
+        }
+        let rough = self.rough_start(model)?;
+        let mut start = self.beginnings.nearest(rough, self.motion_s, self.period_s);
         for _ in 0..REFINEMENTS {
             // Why there are no cycles, the caller will hear when it asks for them.
             let Ok(cycles) = self.cycles(track, start) else {
                 break;
             };
-            let shift = clock::shift(&cycles.heading, model).unwrap_or(0.0);
-            start += (shift - shift.round()) * self.period_s;
+            start += self.phase_error(&cycles, model);
         }
         Ok(start)
+    }
+
+    /// How much later than in these cycles the heading says that they began \[s\].
+    pub(crate) fn phase_error(&self, cycles: &Cycles, model: &Harmonics) -> f64 {
+        let shift = clock::shift(&cycles.heading, model).unwrap_or(0.0);
+        (shift - shift.round()) * self.period_s
+    }
+
+    /// Says so where the heading contradicts a start that was told.
+    pub(crate) fn check_phase(&self, cycles: &mut Cycles, model: &Harmonics) {
+        let by_s = self.phase_error(cycles, model);
+        if cycles.phase != Phase::Heading && by_s.abs() > SAME_PHASE * self.period_s {
+            let period_s = self.period_s;
+            cycles
+                .warnings
+                .push(CycleWarning::PhaseDiffers { by_s, period_s });
+        }
+    }
+
+    /// Where whole cycles may lie \[s\].
+    fn window(&self, track: &PoseTrack) -> (f64, f64) {
+        let ends = track.samples.first().zip(track.samples.last());
+        match ends.filter(|_| self.beginnings.has_log()) {
+            Some((first, last)) => (first.time_s, last.time_s),
+            None => self.active_s,
+        }
     }
 
     fn rough_start(&self, model: &Harmonics) -> Result<f64, CycleError> {
@@ -245,21 +339,18 @@ impl Clock {
     /// The cycles from a known start of one of them.
     pub(crate) fn cycles(&self, track: &PoseTrack, start_s: f64) -> Result<Cycles, CycleError> {
         let period = self.period_s;
-        let slack = 0.02 * period;
-        let (from, to) = self.active_s;
-        let first = ((from - start_s - slack) / period).ceil();
+        let (from, to) = self.window(track);
         let mut drawn: Vec<(f64, f64, Curve, f64)> = Vec::new();
         let mut left_out = Vec::new();
         let mut warnings = self.warnings.clone();
-        let starts: Vec<f64> = (0..MOST_CYCLES)
-            .map(|k| start_s + (first + f64::from(k)) * period)
-            .take_while(|s| s + period <= to + slack)
-            .collect();
-        if starts.len() == 1 {
+        let listed = self.beginnings.listed(start_s, period, (from, to));
+        left_out.extend(listed.unsteady.iter().map(|s| (*s, LeftOut::Unsteady)));
+        let starts = listed.starts;
+        if listed.with_start_up && starts.len() == 1 {
             warnings.push(CycleWarning::StartUpKept);
         }
         for (index, start) in starts.iter().copied().enumerate() {
-            if index == 0 && starts.len() > 1 {
+            if index == 0 && listed.with_start_up && starts.len() > 1 {
                 left_out.push((start, LeftOut::StartUp));
                 continue;
             }
@@ -309,6 +400,7 @@ impl Clock {
             delta_theta: Statistics::of(cycles.iter().map(|cycle| cycle.delta_theta)),
             cycles,
             left_out,
+            phase: self.beginnings.phase(),
             warnings,
             heading,
         })
@@ -387,7 +479,8 @@ fn cycle(
     next: Option<&(f64, f64, Curve, f64)>,
     period: f64,
 ) -> Cycle {
-    let follows = next.filter(|(next_start, ..)| next_start - start_s < 1.5 * period);
+    let follows =
+        next.filter(|(next_start, ..)| (next_start - start_s - period).abs() < SAME_PHASE * period);
     let (delta_y, delta_theta) = curve.amplitudes(0.0);
     Cycle {
         start_s: *start_s,

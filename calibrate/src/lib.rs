@@ -29,12 +29,13 @@ pub use campaign::{
     CalibrateError, CampaignData, CampaignFit, RunData, RunResult, calibrate_campaign,
     calibrate_run, load_run, load_tracks, track_options,
 };
-pub use cycles::{Cycle, CycleError, CycleWarning, Cycles, LeftOut, Statistics};
+pub use cycles::{Cycle, CycleError, CycleWarning, Cycles, LeftOut, Phase, Statistics, Timing};
 pub use evidence::{Evidence, EvidenceOptions, weigh_evidence};
 pub use fit::{Fit, FitError, FitOptions, FitWarning, Intervals, RunResidual, c_t_form};
 pub use further::{Further, FurtherFit, fit_further};
 pub use poses::{
-    Origin, PoseError, PoseOptions, PoseSample, PoseTrack, PoseWarning, poses, usual_reflectors,
+    FrontRule, Origin, PoseError, PoseOptions, PoseSample, PoseTrack, PoseWarning, poses,
+    usual_reflectors,
 };
 pub use prediction::{PredictedCycle, PredictionError, joint_path, predict};
 pub use tracks::{

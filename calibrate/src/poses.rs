@@ -181,6 +181,38 @@ pub struct PoseSample {
     pub origin: Origin,
 }
 
+/// How the front reflector was told from the back one: from two points alone nobody can.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FrontRule {
+    /// By the points' names in the file.
+    Label,
+    /// By which of the two was nearer to a place in the first frame.
+    Place,
+    /// By nothing yet: forwards is where the model says that the robot swims.
+    Travel,
+}
+
+impl FrontRule {
+    /// The word that stands for it in JSON.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Label => "label",
+            Self::Place => "place",
+            Self::Travel => "travel",
+        }
+    }
+}
+
+impl fmt::Display for FrontRule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Label => "by the points' names",
+            Self::Place => "nearer to the place given, in the first frame",
+            Self::Travel => "by the direction of travel",
+        })
+    }
+}
+
 /// How a pose was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
@@ -226,8 +258,8 @@ pub struct PoseTrack {
     pub plane: Plane,
     /// How the reflectors were followed.
     pub report: FollowReport,
-    /// Whether front and back were told apart by labels; if not, only the direction of travel can tell.
-    pub order_known: bool,
+    /// How front and back were told apart.
+    pub front: FrontRule,
     /// What to know about them.
     pub warnings: Vec<PoseWarning>,
 }
@@ -241,6 +273,23 @@ impl PoseTrack {
     /// The samples found in one way.
     pub fn with(&self, origin: Origin) -> impl Iterator<Item = &PoseSample> {
         self.samples.iter().filter(move |s| s.origin == origin)
+    }
+
+    /// Where a reflector is the one nearer to a place, takes that for its end.
+    fn settle_by_place(&mut self, reflectors: &Reflectors, first: &Seen) {
+        let nearer = |place: [f64; 2]| {
+            let to = |point: &Vector2<f64>| (point - Vector2::from(place)).norm();
+            to(&first.front) < to(&first.back)
+        };
+        let front_is_front = match (&reflectors.front.point, &reflectors.back.point) {
+            (PointName::Near(place), _) => nearer(*place),
+            (_, PointName::Near(place)) => !nearer(*place),
+            _ => return,
+        };
+        self.front = FrontRule::Place;
+        if !front_is_front {
+            self.turn_round(reflectors);
+        }
     }
 
     /// Exchanges front and back. `reflectors` are those that the track was made with.
@@ -336,15 +385,23 @@ pub fn poses(
         plane: &plane,
         longest_s: options.longest_fill_s,
     };
-    Ok(PoseTrack {
+    let mut poses = PoseTrack {
         samples: assembly.samples(&seen),
         frames: track.frames(),
         rate_hz: track.rate_hz,
         plane,
         report: followed.report,
-        order_known: followed.order_known,
+        front: if followed.order_known {
+            FrontRule::Label
+        } else {
+            FrontRule::Travel
+        },
         warnings,
-    })
+    };
+    if let Some(first) = seen.first().filter(|_| poses.front == FrontRule::Travel) {
+        poses.settle_by_place(reflectors, first);
+    }
+    Ok(poses)
 }
 
 /// The link's pose from two points in the plane and their places on the link.

@@ -7,8 +7,8 @@ mod tank;
 use std::path::Path;
 
 use calibrate::{
-    CalibrateError, CycleError, CycleWarning, LeftOut, Origin, PoseError, PoseOptions, PoseSample,
-    TrackOptions, calibrate_run, poses, read_tracks_with,
+    CalibrateError, CycleError, CycleWarning, FrontRule, LeftOut, Origin, PoseError, PoseOptions,
+    PoseSample, TrackOptions, calibrate_run, poses, read_tracks_with,
 };
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, PointName};
@@ -59,7 +59,7 @@ fn poses_are_recovered_through_noise_ghosts_and_exchanged_labels() {
         "{place} {heading}"
     );
     assert_eq!((track.report.swaps_repaired, track.report.segments), (3, 1));
-    assert!(track.report.ghosts_rejected > 500 && track.order_known);
+    assert!(track.report.ghosts_rejected > 500 && track.front == FrontRule::Label);
     assert!(
         (track.report.distance_m - 0.071).abs() < 1e-4
             && (track.report.distance_sd_m / 4.2e-4 - 1.0).abs() < 0.1
@@ -194,8 +194,36 @@ fn reflectors_without_names_are_found() {
             place < 5.0 * 3e-4 && heading < 5.0 * 6e-3,
             "{place} {heading}"
         );
-        assert!(!result.poses.order_known && result.cycles.x.mean > 0.0);
+        assert!(result.poses.front == FrontRule::Travel && result.cycles.x.mean > 0.0);
     }
+}
+
+#[test]
+fn a_place_tells_front_from_back() {
+    // The first frame's reflectors are at (0.4, -0.2) ± 35.5 mm along 0.8 rad. The swimmer is told to run backwards, so that the
+    // direction of travel would be wrong.
+    let tank = robot(1.2);
+    let mut run = tank.run_of(&tank.table());
+    run.gait = AnyGait::circle(1.2).reversed_if(true);
+    let (ahead, behind) = ([0.45, -0.15], [0.35, -0.25]);
+    let near = PointName::Near;
+    for (front, back) in [
+        (near(ahead), PointName::Auto),
+        (PointName::Auto, near(behind)),
+    ] {
+        let result = calibrate_run(&run, &tank.reflectors(front, back), &file()).unwrap();
+        assert_eq!(result.poses.front, FrontRule::Place);
+        assert!(errors(&tank, &result.poses).1 < 5.0 * 6e-3 && result.cycles.x.mean > 0.0);
+    }
+    let travel = calibrate_run(&run, &tank.auto(), &file()).unwrap();
+    assert!(errors(&tank, &travel.poses).1 > 3.0 && travel.cycles.x.mean < 0.0);
+    // One run may say it for itself.
+    run.front = Some(near(ahead));
+    let result = calibrate_run(&run, &tank.auto(), &file()).unwrap();
+    assert_eq!(result.poses.front, FrontRule::Place);
+    run.front = Some(near(behind));
+    let turned = calibrate_run(&run, &tank.auto(), &file()).unwrap();
+    assert!(errors(&tank, &turned.poses).1 > 3.0);
 }
 
 #[test]

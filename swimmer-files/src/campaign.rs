@@ -52,15 +52,57 @@ pub struct Reflector {
     pub at: [f64; 2],
 }
 
-/// How a tracking file names a point.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Which of a tracking file's points a reflector is.
+#[derive(Debug, Clone, PartialEq)]
 pub enum PointName {
     /// A marker's name (`point = "Front"`).
     Named(String),
     /// Two columns of a plain table (`point = ["x1", "y1"]`).
     Columns(String, String),
-    /// To be found from the tracks themselves (`point = "auto"`).
+    /// To be found from the tracks themselves (`point = "auto"`), front and back by the direction of travel.
     Auto,
+    /// To be found from the tracks themselves, and the one of the two that is nearer to this place of the tank (x, y) \[m\] in
+    /// the first frame (`point = { near = [0.4, 0.2] }`).
+    Near([f64; 2]),
+}
+
+impl std::str::FromStr for PointName {
+    type Err = String;
+
+    /// As on the command line: `auto`, a place `X,Y` in metres, two columns `x1,y1`, or a name.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let text = text.trim();
+        if text.is_empty() {
+            return Err("write a point's name, X,Y in metres, or auto".to_owned());
+        }
+        if text == "auto" {
+            return Ok(Self::Auto);
+        }
+        let Some((x, y)) = text.split_once(',') else {
+            return Ok(Self::Named(text.to_owned()));
+        };
+        let (x, y) = (x.trim(), y.trim());
+        match (x.parse::<f64>(), y.parse::<f64>()) {
+            (Ok(x), Ok(y)) if x.is_finite() && y.is_finite() => Ok(Self::Near([x, y])),
+            (Err(_), Err(_)) => Ok(Self::Columns(x.to_owned(), y.to_owned())),
+            _ => Err(format!(
+                "`{text}` is neither a place X,Y in metres nor two columns"
+            )),
+        }
+    }
+}
+
+/// What is known of when a run's cycles began.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RunTiming {
+    /// `cycle_start_s`: the cameras' time at which a cycle began, as by the flash of the robot's LED \[s\].
+    pub cycle_start_s: Option<f64>,
+    /// `log`: the link log of the session.
+    pub log: Option<PathBuf>,
+    /// `play`: which of the log's plays this is, counted from 1.
+    pub play: Option<usize>,
+    /// `clock_offset_s`: the robot's clock at the cameras' time 0 \[s\].
+    pub clock_offset_s: Option<f64>,
 }
 
 /// One run: a track, the gait that was swum, its period.
@@ -72,6 +114,10 @@ pub struct CampaignRun {
     pub gait: GaitSpec,
     /// One cycle \[s\].
     pub period_s: f64,
+    /// `front`: which point the front reflector is in this run's file, where it is not as in `[reflectors]`.
+    pub front: Option<PointName>,
+    /// When its cycles began, where that is known.
+    pub timing: RunTiming,
 }
 
 #[derive(Deserialize)]
@@ -111,11 +157,12 @@ struct RawReflector {
 #[derive(Deserialize)]
 #[serde(
     untagged,
-    expecting = "a point is a name, a pair of column names, or \"auto\""
+    expecting = "a point is a name, a pair of column names, { near = [x, y] }, or \"auto\""
 )]
 enum RawPoint {
     Name(String),
     Columns([String; 2]),
+    Near { near: [f64; 2] },
 }
 
 #[derive(Deserialize)]
@@ -124,6 +171,11 @@ struct RawRun {
     track: Spanned<String>,
     gait: Spanned<String>,
     period_s: Spanned<f64>,
+    front: Option<Spanned<RawPoint>>,
+    cycle_start_s: Option<Spanned<f64>>,
+    log: Option<Spanned<String>>,
+    play: Option<Spanned<usize>>,
+    clock_offset_s: Option<Spanned<f64>>,
 }
 
 impl Campaign {
@@ -218,12 +270,20 @@ fn reflector(
             format!("at = {at:?} must be two finite lengths in metres"),
         ));
     }
-    let point = match raw.point {
-        RawPoint::Name(name) if name == "auto" => PointName::Auto,
-        RawPoint::Name(name) => PointName::Named(name),
-        RawPoint::Columns([x, y]) => PointName::Columns(x, y),
-    };
+    let point = point(raw.point).map_err(|problem| error(raw.at.span().start, problem))?;
     Ok(Reflector { point, at })
+}
+
+fn point(raw: RawPoint) -> Result<PointName, String> {
+    match raw {
+        RawPoint::Name(name) if name == "auto" => Ok(PointName::Auto),
+        RawPoint::Name(name) => Ok(PointName::Named(name)),
+        RawPoint::Columns([x, y]) => Ok(PointName::Columns(x, y)),
+        RawPoint::Near { near } if near.iter().all(|v| v.is_finite()) => Ok(PointName::Near(near)),
+        RawPoint::Near { near } => Err(format!(
+            "near = {near:?} must be two finite lengths in metres"
+        )),
+    }
 }
 
 fn run(
@@ -249,9 +309,48 @@ fn run(
             format!("period_s = {period_s} must be a positive number of seconds"),
         ));
     }
+    let front = raw.front.map(|front| {
+        let place = front.span().start;
+        point(front.into_inner()).map_err(|problem| error(place, problem))
+    });
+    let finite = |value: Option<Spanned<f64>>, name: &str| {
+        let Some(value) = value else { return Ok(None) };
+        let number = *value.get_ref();
+        if number.is_finite() {
+            return Ok(Some(number));
+        }
+        let problem = format!("{name} = {number} must be a finite number of seconds");
+        Err(error(value.span().start, problem))
+    };
+    // What says something about the log says nothing without it.
+    let of_log = [
+        ("play", raw.play.as_ref().map(Spanned::span)),
+        (
+            "clock_offset_s",
+            raw.clock_offset_s.as_ref().map(Spanned::span),
+        ),
+    ];
+    let lonely = of_log
+        .into_iter()
+        .find_map(|(name, span)| Some((name, span?)));
+    if let (None, Some((name, span))) = (&raw.log, lonely) {
+        let problem = format!("{name} is about the robot's log; name it by `log`");
+        return Err(error(span.start, problem));
+    }
+    if let Some(play) = raw.play.as_ref().filter(|play| *play.get_ref() == 0) {
+        let problem = "play counts the log's plays from 1".to_owned();
+        return Err(error(play.span().start, problem));
+    }
     Ok(CampaignRun {
         track: folder.join(raw.track.into_inner()),
         gait: gait.from_folder(folder),
         period_s,
+        front: front.transpose()?,
+        timing: RunTiming {
+            cycle_start_s: finite(raw.cycle_start_s, "cycle_start_s")?,
+            log: raw.log.map(|log| folder.join(log.into_inner())),
+            play: raw.play.map(Spanned::into_inner),
+            clock_offset_s: finite(raw.clock_offset_s, "clock_offset_s")?,
+        },
     })
 }

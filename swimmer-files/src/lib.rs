@@ -9,8 +9,8 @@
 //! | swimmer file (TOML) or preset | [`SwimmerFile`], [`Fluid`], [`ServoFile`], [`SwimmerHash`] |
 //! | gait on the command line or in a campaign | [`GaitSpec`], [`AnyGait`] |
 //! | gait file (plain text) | [`GaitFile`], [`GaitArc`], [`ArcKind`], [`Bounds`], [`Objective`] |
-//! | campaign file (TOML) | [`Campaign`], [`CampaignRun`], [`Reflectors`], [`TrackSettings`], [`Axes`] |
-//! | link log (MCAP) | [`LinkLogWriter`], [`LinkFrame`], [`read_link_log`] |
+//! | campaign file (TOML) | [`Campaign`], [`CampaignRun`], [`Reflectors`], [`TrackSettings`], [`RunTiming`], [`Axes`] |
+//! | link log (MCAP) | [`LinkLogWriter`], [`LinkFrame`], [`read_link_log`], [`plays`] |
 
 mod angle;
 mod any_gait;
@@ -29,10 +29,12 @@ pub use angle::{AngleError, parse_angle};
 pub use any_gait::AnyGait;
 pub use atomic::write_atomically;
 pub use axes::Axes;
-pub use campaign::{Campaign, CampaignRun, PointName, Reflector, Reflectors, TrackSettings};
+pub use campaign::{
+    Campaign, CampaignRun, PointName, Reflector, Reflectors, RunTiming, TrackSettings,
+};
 pub use gait_file::{ArcKind, Bounds, GaitArc, GaitFile, Objective};
 pub use gait_spec::{GaitSpec, GaitSpecError};
 pub use hash::SwimmerHash;
-pub use link_log::{Direction, LinkFrame, LinkLogError, LinkLogWriter, read_link_log};
+pub use link_log::{Direction, LinkFrame, LinkLogError, LinkLogWriter, Play, plays, read_link_log};
 pub use place::FileError;
 pub use swimmer_file::{Fluid, ServoFile, SwimmerFile};

@@ -9,6 +9,7 @@
 //! Foxglove reads no schema with alternatives, so every field has one type and what is not known is left out.
 
 mod frame;
+mod plays;
 mod read;
 
 use std::collections::BTreeMap;
@@ -20,6 +21,7 @@ use frame::telemetry_json;
 pub use frame::{Direction, LinkFrame};
 use link_protocol::Message;
 use mcap::records::MessageHeader;
+pub use plays::{Play, plays};
 pub use read::read_link_log;
 use serde_json::Value;
 

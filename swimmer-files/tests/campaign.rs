@@ -141,3 +141,72 @@ fn what_recordings_do_not_say_themselves() {
         );
     }
 }
+
+#[test]
+fn front_and_clock_of_a_run() {
+    let text = r#"swimmer = "robot"
+[reflectors]
+front = { point = { near = [0.4, -0.2] }, at = [0.0355, 0.0] }
+back = { point = "auto", at = [-0.0355, 0.0] }
+[[run]]
+track = "a.csv"
+gait = "circle:30deg"
+period_s = 30.0
+front = "Nose"
+log = "link.mcap"
+play = 2
+clock_offset_s = -1.25
+[[run]]
+track = "b.csv"
+gait = "circle:50deg"
+period_s = 30.0
+cycle_start_s = 4.5
+"#;
+    let campaign = read(text).unwrap();
+    assert_eq!(
+        campaign.reflectors.front.point,
+        PointName::Near([0.4, -0.2])
+    );
+    let [a, b] = &campaign.runs[..] else { panic!() };
+    assert_eq!(a.front, Some(PointName::Named("Nose".into())));
+    assert_eq!(a.timing.log.as_deref(), Some(Path::new("tank/link.mcap")));
+    assert_eq!(
+        (a.timing.play, a.timing.clock_offset_s),
+        (Some(2), Some(-1.25))
+    );
+    assert_eq!((b.timing.cycle_start_s, &b.timing.log), (Some(4.5), &None));
+
+    for (from, to, place, why) in [
+        ("play = 2", "play = 0", "tank/campaign.toml:11:8", "from 1"),
+        (
+            "log = \"link.mcap\"\n",
+            "",
+            "tank/campaign.toml:10:8",
+            "name it by `log`",
+        ),
+        (
+            "-1.25",
+            "inf",
+            "tank/campaign.toml:12:18",
+            "finite number of seconds",
+        ),
+        (
+            "[0.4, -0.2]",
+            "[0.4, nan]",
+            "tank/campaign.toml:3",
+            "finite lengths",
+        ),
+    ] {
+        let error = read(&text.replace(from, to)).unwrap_err().to_string();
+        assert!(error.contains(place) && error.contains(why), "{error}");
+    }
+    for (text, point) in [
+        ("Front", PointName::Named("Front".into())),
+        ("auto", PointName::Auto),
+        ("x1,y1", PointName::Columns("x1".into(), "y1".into())),
+        ("-0.5, 0.25", PointName::Near([-0.5, 0.25])),
+    ] {
+        assert_eq!(text.parse(), Ok(point));
+    }
+    assert!("0.5,y1".parse::<PointName>().is_err() && "".parse::<PointName>().is_err());
+}

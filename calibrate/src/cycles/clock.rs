@@ -75,9 +75,12 @@ pub(super) fn bins(track: &PoseTrack, period_s: f64) -> Vec<Option<Bin>> {
     sums.into_iter().map(mean).collect()
 }
 
-/// From when to when the robot swam: the longest stretch of motion without a rest of a quarter of a cycle. `lever` \[m\] weighs
+/// Bins of rest that end a stretch of motion: a quarter of a cycle.
+pub(super) const REST: usize = 25;
+
+/// From when to when the robot swam: the longest stretch of motion without so many bins of rest. `lever` \[m\] weighs
 /// rotation against translation.
-pub(super) fn active(bins: &[Option<Bin>], lever: f64) -> Option<(f64, f64)> {
+pub(super) fn active(bins: &[Option<Bin>], lever: f64, rest: usize) -> Option<(f64, f64)> {
     let at = |i: usize| bins.get(i).copied().flatten();
     let motion = |i: usize| {
         let (a, b) = (at(i.saturating_sub(2))?, at(i + 2)?);
@@ -89,7 +92,6 @@ pub(super) fn active(bins: &[Option<Bin>], lever: f64) -> Option<(f64, f64)> {
     let quick = *sorted.get(sorted.len() * 9 / 10)?;
     // A tenth of quick motion, or three times what noise feigns, where that is more.
     let threshold = (3.0 * feigned(bins, lever)).clamp(0.1 * quick, 0.4 * quick);
-    let rest = (BINS / 4.0) as usize;
     let mut best: Option<(usize, usize)> = None;
     let mut run: Option<(usize, usize)> = None;
     for (i, _) in motions
@@ -306,11 +308,11 @@ mod tests {
             })
         };
         let mut bins: Vec<Option<Bin>> = (0..300).map(bin).collect();
-        let whole = active(&bins, 0.07).unwrap();
+        let whole = active(&bins, 0.07, REST).unwrap();
         for i in (47..51).chain(249..253) {
             bins[i] = None;
         }
-        let (from, to) = active(&bins, 0.07).unwrap();
+        let (from, to) = active(&bins, 0.07, REST).unwrap();
         assert!(
             (from - whole.0).abs() < 0.06 && (to - whole.1).abs() < 0.06,
             "{from} {to}"
@@ -319,6 +321,6 @@ mod tests {
         let mut bins: Vec<Option<Bin>> = (0..300).map(bin).collect();
         bins[48] = None;
         bins[252] = None;
-        assert!(active(&bins, 0.07).is_some());
+        assert!(active(&bins, 0.07, REST).is_some());
     }
 }

@@ -137,8 +137,8 @@ pub(super) fn follow<'a>(
             frames: track.frames(),
         });
     }
-    let named = !matches!(reflectors.front.point, PointName::Auto)
-        || !matches!(reflectors.back.point, PointName::Auto);
+    let has_name = |point: &PointName| !matches!(point, PointName::Auto | PointName::Near(_));
+    let named = has_name(&reflectors.front.point) || has_name(&reflectors.back.point);
     let mut followed = settle(search, rows, &starts, expected_m);
     followed.order_known = named && followed.rows.iter().any(|row| row.labels.is_some());
     let mut candidates = Vec::new();

@@ -6,7 +6,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use calibrate::{RunData, read_tracks};
+use calibrate::{RunData, Timing, read_tracks};
 use gait_player::GaitTable;
 use gait_player::servo::ServoMap;
 use gait_player::servo::plant::{PlantParameters, ServoPlant};
@@ -15,8 +15,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use swimmer_files::{
-    AnyGait, Campaign, CampaignRun, GaitSpec, PointName, Reflector, Reflectors, ServoFile,
-    SwimmerFile, TrackSettings,
+    AnyGait, Campaign, CampaignRun, GaitSpec, PointName, Reflector, Reflectors, RunTiming,
+    ServoFile, SwimmerFile, TrackSettings,
 };
 use swimmer_model::{Gait, Model, Pose, Swimmer};
 
@@ -275,6 +275,8 @@ impl Tank {
             gait: self.gait.clone(),
             gait_name: "test".into(),
             period_s: self.period_s,
+            front: None,
+            timing: Timing::default(),
         }
     }
 
@@ -350,6 +352,8 @@ pub(crate) fn campaign(
                 clockwise: false,
             },
             period_s: run.period_s,
+            front: None,
+            timing: RunTiming::default(),
         });
     let campaign = Campaign {
         swimmer: known(&tank.swimmer, tank.servo),

@@ -9,15 +9,15 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use calibrate::{CampaignData, RunData, read_tracks};
+use calibrate::{CampaignData, RunData, Timing, read_tracks};
 use gait_player::GaitTable;
 use host_link::Robot;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use swimmer_files::{
-    AnyGait, Campaign, CampaignRun, GaitSpec, PointName, Reflector, Reflectors, ServoFile,
-    SwimmerFile, TrackSettings,
+    AnyGait, Campaign, CampaignRun, GaitSpec, PointName, Reflector, Reflectors, RunTiming,
+    ServoFile, SwimmerFile, TrackSettings,
 };
 use swimmer_model::{Gait as _, Swimmer};
 use twin::{CameraConfig, Twin, TwinConfig, TwinPort, WireSpeed};
@@ -122,6 +122,8 @@ impl Laboratory {
                     clockwise: false,
                 },
                 period_s: run.period_s,
+                front: None,
+                timing: RunTiming::default(),
             }
         });
         let reach = self.swimmer.links.middle / 2.0;
@@ -160,6 +162,8 @@ impl Laboratory {
             gait,
             gait_name: format!("circle:{}deg", self.amplitudes[index]),
             period_s: f64::from(self.period_s),
+            front: None,
+            timing: Timing::default(),
         }
     }
 

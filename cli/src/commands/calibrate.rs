@@ -1,20 +1,21 @@
 //! `swimmer calibrate`: tracks → poses → cycles → fitted sphere radius and χ.
 
-use std::fmt;
+mod answer;
+
 use std::path::{Path, PathBuf};
 
 use calibrate::{
     CalibrateError, CampaignData, CampaignFit, FitOptions, RunResult, TrackOptions, c_t_form,
     calibrate_campaign, calibrate_run, load_run, usual_reflectors,
 };
-use serde::Serialize;
-use swimmer_files::{Campaign, GaitSpec, SwimmerFile, write_atomically};
+use swimmer_files::{Campaign, GaitSpec, PointName, SwimmerFile, write_atomically};
 
+pub(crate) use self::answer::{FitAnswer, RunAnswer};
+use self::answer::{Intervals, RunsAnswer};
 use crate::arguments::{gait, load_swimmer, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::{Output, document};
-use crate::quantity::{self, Rows, Table};
 use crate::recording::Recording;
 
 /// Turn tracks into poses, cycles and fitted drag parameters
@@ -36,6 +37,13 @@ pub(crate) struct Calibrate {
     /// The swimmer of a single run
     #[arg(long, value_name = "SWIMMER")]
     swimmer: Option<String>,
+    /// The front reflector of a single run: a point's name, two columns, or X,Y in metres for the one nearer to that place in
+    /// the first frame
+    #[arg(long, value_name = "NAME|X,Y", allow_hyphen_values = true)]
+    front: Option<PointName>,
+    /// The back reflector of a single run, likewise
+    #[arg(long, value_name = "NAME|X,Y", allow_hyphen_values = true)]
+    back: Option<PointName>,
     /// Level of the intervals
     #[arg(long, value_name = "SHARE", default_value_t = 0.95, value_parser = level)]
     level: f64,
@@ -44,130 +52,6 @@ pub(crate) struct Calibrate {
     output: Option<PathBuf>,
     #[command(flatten)]
     recording: Recording,
-}
-
-/// The cycles of one run, and what they brought.
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct RunAnswer {
-    pub(crate) file: String,
-    pub(crate) gait: String,
-    pub(crate) cycles: usize,
-    pub(crate) x_m: f64,
-    pub(crate) x_sd_m: f64,
-    pub(crate) y_m: f64,
-    pub(crate) delta_y_m: f64,
-    pub(crate) delta_y_sd_m: f64,
-    pub(crate) delta_theta_rad: f64,
-    pub(crate) delta_theta_sd_rad: f64,
-    pub(crate) turn_rad: f64,
-    pub(crate) period_s: f64,
-}
-
-/// The cycles of all runs, and the parameters that explain them.
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct FitAnswer {
-    pub(crate) runs: Vec<RunAnswer>,
-    pub(crate) sphere_radius_m: f64,
-    pub(crate) chi: f64,
-    pub(crate) rmse: f64,
-    pub(crate) intervals: Intervals,
-    /// Between both.
-    pub(crate) correlation: f64,
-    pub(crate) c_t_form: String,
-    /// What to know about the runs and the fit.
-    pub(crate) warnings: Vec<String>,
-}
-
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct Intervals {
-    pub(crate) sphere_radius_m: [f64; 2],
-    pub(crate) chi: [f64; 2],
-    pub(crate) level: f64,
-}
-
-/// Only the cycles: what a single run can tell.
-#[derive(Debug, Serialize)]
-struct RunsAnswer {
-    runs: Vec<RunAnswer>,
-    warnings: Vec<String>,
-}
-
-impl fmt::Display for RunsAnswer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", table(&self.runs))?;
-        notes(f, &self.warnings)
-    }
-}
-
-fn notes(f: &mut fmt::Formatter<'_>, warnings: &[String]) -> fmt::Result {
-    warnings
-        .iter()
-        .try_for_each(|warning| write!(f, "\n  note: {warning}"))
-}
-
-impl fmt::Display for FitAnswer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Intervals {
-            sphere_radius_m: [r_low, r_high],
-            chi: [chi_low, chi_high],
-            level,
-        } = self.intervals;
-        let percent = level * 100.0;
-        let mut rows = Rows::default();
-        rows.row(
-            "sphere radius r_s",
-            format!(
-                "{:.3} mm   ({percent:.0} %: {:.3} … {:.3} mm)",
-                self.sphere_radius_m * 1e3,
-                r_low * 1e3,
-                r_high * 1e3
-            ),
-        )
-        .row(
-            "drag ratio χ",
-            format!(
-                "{:.4}      ({percent:.0} %: {chi_low:.4} … {chi_high:.4})",
-                self.chi
-            ),
-        )
-        .row(
-            "RMSE",
-            format!("{} (the paper's weights)", quantity::small(self.rmse)),
-        )
-        .row("form of c_t", &self.c_t_form);
-        write!(f, "{}\n\n{rows}", table(&self.runs))?;
-        notes(f, &self.warnings)
-    }
-}
-
-fn table(runs: &[RunAnswer]) -> Table {
-    let mut table = Table::new([
-        "run",
-        "gait",
-        "cycles",
-        "X [mm]",
-        "Y [mm]",
-        "ΔY [mm]",
-        "Δθ",
-        "period [s]",
-    ]);
-    for run in runs {
-        table.line([
-            run.file.clone(),
-            run.gait.clone(),
-            run.cycles.to_string(),
-            format!("{:.3} ± {:.3}", run.x_m * 1e3, run.x_sd_m * 1e3),
-            format!("{:.3}", run.y_m * 1e3),
-            format!("{:.3} ± {:.3}", run.delta_y_m * 1e3, run.delta_y_sd_m * 1e3),
-            format!(
-                "{} ± {}",
-                quantity::angle(run.delta_theta_rad),
-                quantity::angle(run.delta_theta_sd_rad)
-            ),
-            format!("{:.3}", run.period_s),
-        ]);
-    }
-    table
 }
 
 impl Calibrate {
@@ -248,43 +132,26 @@ pub(crate) fn single_run(
     period_s: f64,
     swimmer: &SwimmerFile,
     options: &TrackOptions,
+    ends: [Option<&PointName>; 2],
 ) -> Outcome<RunCycles> {
-    let data = load_run(track, gait, period_s, options)?;
-    let reflectors = usual_reflectors(&data.track, &swimmer.swimmer);
+    let mut options = options.clone();
+    for end in ends.into_iter().flatten() {
+        if let PointName::Columns(x, y) = end {
+            options.pairs.push([x.clone(), y.clone()]);
+        }
+    }
+    let data = load_run(track, gait, period_s, &options)?;
+    let mut reflectors = usual_reflectors(&data.track, &swimmer.swimmer);
+    // Who names one end does not want the other one by its usual name.
+    if ends.iter().any(Option::is_some) {
+        let [front, back] = ends.map(|end| end.cloned().unwrap_or(PointName::Auto));
+        (reflectors.front.point, reflectors.back.point) = (front, back);
+    }
     let found = calibrate_run(&data, &reflectors, swimmer)?;
     Ok(RunCycles {
         answer: RunAnswer::new(&found, gait, Path::new("")),
         found,
     })
-}
-
-impl RunAnswer {
-    /// Paths are told relative to the campaign's folder, as the campaign tells them.
-    fn new(run: &RunResult, gait: &GaitSpec, folder: &Path) -> Self {
-        let cycles = &run.cycles;
-        let relative = |path: &Path| path.strip_prefix(folder).unwrap_or(path).to_owned();
-        let gait = match gait {
-            GaitSpec::File { path, reversed } => GaitSpec::File {
-                path: relative(path),
-                reversed: *reversed,
-            },
-            closed_form => closed_form.clone(),
-        };
-        Self {
-            file: relative(&run.file).display().to_string(),
-            gait: quantity::gait(&gait),
-            cycles: cycles.cycles.len(),
-            x_m: cycles.x.mean,
-            x_sd_m: cycles.x.sd,
-            y_m: cycles.y.mean,
-            delta_y_m: cycles.delta_y.mean,
-            delta_y_sd_m: cycles.delta_y.sd,
-            delta_theta_rad: cycles.delta_theta.mean,
-            delta_theta_sd_rad: cycles.delta_theta.sd,
-            turn_rad: cycles.rotation.mean,
-            period_s: cycles.period_s,
-        }
-    }
 }
 
 /// What reader, poses and cycles of a run had to say, with its file's name.
@@ -302,6 +169,8 @@ impl Calibrate {
             ("--gait", self.gait.is_some()),
             ("--period", self.period.is_some()),
             ("--swimmer", self.swimmer.is_some()),
+            ("--front", self.front.is_some()),
+            ("--back", self.back.is_some()),
         ];
         let flag = single_only
             .iter()
@@ -347,6 +216,7 @@ impl Calibrate {
             period_s,
             &load_swimmer(swimmer)?,
             &self.recording.options(),
+            [self.front.as_ref(), self.back.as_ref()],
         )?;
         let warnings = run_warnings(&run.found, Path::new(""));
         output.answer(&RunsAnswer {

@@ -183,6 +183,7 @@ impl<'a> Round<'a> {
             period_s,
             &fitted,
             &TrackOptions::default(),
+            [None, None],
         )?;
         self.laboratory.close()?;
         Ok(Finished {

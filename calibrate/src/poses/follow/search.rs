@@ -49,7 +49,7 @@ fn labelled(
         }
     };
     let (found, wanted) = match &reflector.point {
-        PointName::Auto => return Ok(Vec::new()),
+        PointName::Auto | PointName::Near(_) => return Ok(Vec::new()),
         PointName::Named(name) => {
             let exact = matching(&|point| point.name == *name);
             (

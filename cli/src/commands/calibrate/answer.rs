@@ -1,0 +1,259 @@
+//! What `swimmer calibrate` answers: JSON keys and lines for people.
+
+use std::fmt;
+use std::path::Path;
+
+use calibrate::{Origin, RunResult};
+use serde::Serialize;
+use swimmer_files::GaitSpec;
+
+use crate::quantity::{self, Rows, Table};
+
+/// The cycles of one run, and what they brought.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct RunAnswer {
+    pub(crate) file: String,
+    pub(crate) gait: String,
+    pub(crate) cycles: usize,
+    pub(crate) x_m: f64,
+    pub(crate) x_sd_m: f64,
+    pub(crate) y_m: f64,
+    pub(crate) delta_y_m: f64,
+    pub(crate) delta_y_sd_m: f64,
+    pub(crate) delta_theta_rad: f64,
+    pub(crate) delta_theta_sd_rad: f64,
+    pub(crate) turn_rad: f64,
+    pub(crate) period_s: f64,
+    #[serde(flatten)]
+    spreads: Spreads,
+    /// How front and back were told apart: label, place or travel.
+    front_rule: &'static str,
+    /// How the starts of cycles were found: heading, flash, log or log-and-heading.
+    phase: &'static str,
+    left_out: Vec<LeftOutAnswer>,
+    samples: Samples,
+    #[serde(skip)]
+    pub(crate) front_words: String,
+}
+
+/// Standard deviations, standard errors and lag-1 correlations of a run's cycles, where they are not told already.
+#[derive(Debug, Clone, Serialize)]
+struct Spreads {
+    x_se_m: f64,
+    x_lag1: f64,
+    y_sd_m: f64,
+    y_se_m: f64,
+    y_lag1: f64,
+    delta_y_se_m: f64,
+    delta_y_lag1: f64,
+    delta_theta_se_rad: f64,
+    delta_theta_lag1: f64,
+    turn_sd_rad: f64,
+    turn_se_rad: f64,
+    turn_lag1: f64,
+}
+
+/// A whole cycle that does not count.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct LeftOutAnswer {
+    pub(crate) start_s: f64,
+    pub(crate) reason: String,
+}
+
+/// What became of a track's frames.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Samples {
+    pub(crate) frames: usize,
+    pub(crate) seen: usize,
+    /// Seen, but right beside a gap: drawn, not used.
+    pub(crate) tails: usize,
+    /// In short gaps: drawn, not used.
+    pub(crate) filled: usize,
+}
+
+/// The cycles of all runs, and the parameters that explain them.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct FitAnswer {
+    pub(crate) runs: Vec<RunAnswer>,
+    pub(crate) sphere_radius_m: f64,
+    pub(crate) chi: f64,
+    pub(crate) rmse: f64,
+    pub(crate) intervals: Intervals,
+    /// Between both.
+    pub(crate) correlation: f64,
+    pub(crate) c_t_form: String,
+    /// What to know about the runs and the fit.
+    pub(crate) warnings: Vec<String>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct Intervals {
+    pub(crate) sphere_radius_m: [f64; 2],
+    pub(crate) chi: [f64; 2],
+    pub(crate) level: f64,
+}
+
+/// Only the cycles: what a single run can tell.
+#[derive(Debug, Serialize)]
+pub(super) struct RunsAnswer {
+    pub(super) runs: Vec<RunAnswer>,
+    pub(super) warnings: Vec<String>,
+}
+
+impl fmt::Display for RunsAnswer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", table(&self.runs))?;
+        left_out(f, &self.runs)?;
+        notes(f, &self.warnings)
+    }
+}
+
+/// How each run's front and phase were found, and which of its whole cycles do not count.
+fn left_out(f: &mut fmt::Formatter<'_>, runs: &[RunAnswer]) -> fmt::Result {
+    for run in runs {
+        write!(
+            f,
+            "\n  {}: front {}, phase by {}",
+            run.file,
+            run.front_words,
+            run.phase.replace('-', " ")
+        )?;
+        for cycle in &run.left_out {
+            write!(f, "; left out at {:.2} s: {}", cycle.start_s, cycle.reason)?;
+        }
+    }
+    Ok(())
+}
+
+fn notes(f: &mut fmt::Formatter<'_>, warnings: &[String]) -> fmt::Result {
+    warnings
+        .iter()
+        .try_for_each(|warning| write!(f, "\n  note: {warning}"))
+}
+
+impl fmt::Display for FitAnswer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Intervals {
+            sphere_radius_m: [r_low, r_high],
+            chi: [chi_low, chi_high],
+            level,
+        } = self.intervals;
+        let percent = level * 100.0;
+        let mut rows = Rows::default();
+        rows.row(
+            "sphere radius r_s",
+            format!(
+                "{:.3} mm   ({percent:.0} %: {:.3} … {:.3} mm)",
+                self.sphere_radius_m * 1e3,
+                r_low * 1e3,
+                r_high * 1e3
+            ),
+        )
+        .row(
+            "drag ratio χ",
+            format!(
+                "{:.4}      ({percent:.0} %: {chi_low:.4} … {chi_high:.4})",
+                self.chi
+            ),
+        )
+        .row(
+            "RMSE",
+            format!("{} (the paper's weights)", quantity::small(self.rmse)),
+        )
+        .row("form of c_t", &self.c_t_form);
+        write!(f, "{}", table(&self.runs))?;
+        left_out(f, &self.runs)?;
+        write!(f, "\n\n{rows}")?;
+        notes(f, &self.warnings)
+    }
+}
+
+fn table(runs: &[RunAnswer]) -> Table {
+    let mut table = Table::new([
+        "run",
+        "gait",
+        "cycles",
+        "X [mm]",
+        "Y [mm]",
+        "ΔY [mm]",
+        "Δθ",
+        "period [s]",
+    ]);
+    for run in runs {
+        table.line([
+            run.file.clone(),
+            run.gait.clone(),
+            run.cycles.to_string(),
+            format!("{:.3} ± {:.3}", run.x_m * 1e3, run.x_sd_m * 1e3),
+            format!("{:.3}", run.y_m * 1e3),
+            format!("{:.3} ± {:.3}", run.delta_y_m * 1e3, run.delta_y_sd_m * 1e3),
+            format!(
+                "{} ± {}",
+                quantity::angle(run.delta_theta_rad),
+                quantity::angle(run.delta_theta_sd_rad)
+            ),
+            format!("{:.3}", run.period_s),
+        ]);
+    }
+    table
+}
+
+impl RunAnswer {
+    /// Paths are told relative to the campaign's folder, as the campaign tells them.
+    pub(super) fn new(run: &RunResult, gait: &GaitSpec, folder: &Path) -> Self {
+        let cycles = &run.cycles;
+        let relative = |path: &Path| path.strip_prefix(folder).unwrap_or(path).to_owned();
+        let gait = match gait {
+            GaitSpec::File { path, reversed } => GaitSpec::File {
+                path: relative(path),
+                reversed: *reversed,
+            },
+            closed_form => closed_form.clone(),
+        };
+        Self {
+            file: relative(&run.file).display().to_string(),
+            gait: quantity::gait(&gait),
+            cycles: cycles.cycles.len(),
+            x_m: cycles.x.mean,
+            x_sd_m: cycles.x.sd,
+            y_m: cycles.y.mean,
+            delta_y_m: cycles.delta_y.mean,
+            delta_y_sd_m: cycles.delta_y.sd,
+            delta_theta_rad: cycles.delta_theta.mean,
+            delta_theta_sd_rad: cycles.delta_theta.sd,
+            turn_rad: cycles.rotation.mean,
+            period_s: cycles.period_s,
+            spreads: Spreads {
+                x_se_m: cycles.x.se,
+                x_lag1: cycles.x.lag1,
+                y_sd_m: cycles.y.sd,
+                y_se_m: cycles.y.se,
+                y_lag1: cycles.y.lag1,
+                delta_y_se_m: cycles.delta_y.se,
+                delta_y_lag1: cycles.delta_y.lag1,
+                delta_theta_se_rad: cycles.delta_theta.se,
+                delta_theta_lag1: cycles.delta_theta.lag1,
+                turn_sd_rad: cycles.rotation.sd,
+                turn_se_rad: cycles.rotation.se,
+                turn_lag1: cycles.rotation.lag1,
+            },
+            front_rule: run.poses.front.word(),
+            phase: cycles.phase.word(),
+            left_out: cycles
+                .left_out
+                .iter()
+                .map(|(start_s, why)| LeftOutAnswer {
+                    start_s: *start_s,
+                    reason: why.to_string(),
+                })
+                .collect(),
+            samples: Samples {
+                frames: run.poses.frames,
+                seen: run.poses.seen().count(),
+                tails: run.poses.with(Origin::Tail).count(),
+                filled: run.poses.samples.iter().filter(|s| s.is_filled()).count(),
+            },
+            front_words: run.poses.front.to_string(),
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! When the robot swam, by its own word: the plays of a link log with their periods and the starts of their cycles, on the
+//! robot's clock.
+//!
+//! Telemetry tells robot time, cycles done and the fraction of the cycle about 25 times a second, to the tick of 20 ms. A cycle
+//! counts as steady when all that was told of it lies on one line from its first to its last tenth: a pause, a swap or a stop
+//! in it bends the line.
+
+use link_protocol::{Message, Reply, Request, StateName, Telemetry};
+
+use super::{Direction, LinkFrame};
+
+/// One play, from its first cycle to the ramp back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Play {
+    /// One cycle \[s of the robot's clock\].
+    pub period_s: f64,
+    /// When its first cycle began \[s of the robot's clock\].
+    pub started_s: f64,
+    /// When it was last told to play \[s of the robot's clock\].
+    pub ended_s: f64,
+    /// Starts of the cycles that went from beginning to end without a change of pace \[s of the robot's clock\].
+    pub cycle_starts: Vec<f64>,
+    /// When those began that did not \[s of the robot's clock\].
+    pub unsteady: Vec<f64>,
+}
+
+/// How far a steady cycle's telemetry may lie off its line \[s\]: two ticks.
+const SLACK_S: f64 = 0.04;
+/// A cycle must have been told of up to this close to its ends, as a fraction of it.
+const TOLD: f64 = 0.1;
+
+/// The plays of a log, in their order. Telemetry before the period is known is passed over.
+pub fn plays(frames: &[LinkFrame]) -> Vec<Play> {
+    let mut plays: Vec<Vec<Telemetry>> = Vec::new();
+    let mut periods: Vec<f64> = Vec::new();
+    let (mut period_s, mut playing, mut asked) = (None, false, false);
+    for frame in frames {
+        let Some(Ok(message)) = frame.received().map(|received| received.message) else {
+            continue;
+        };
+        match (frame.direction, message) {
+            (Direction::ToRobot, Message::Request(Request::Play(play))) => {
+                period_s = Some(f64::from(play.period_us) * 1e-6);
+                asked = true;
+            }
+            (Direction::FromRobot, Message::Reply(Reply::Status(status)))
+                if status.period_us > 0 =>
+            {
+                period_s = Some(f64::from(status.period_us) * 1e-6);
+            }
+            (Direction::FromRobot, Message::Telemetry(told)) => {
+                let plays_now = matches!(told.state, StateName::Playing | StateName::Paused);
+                let Some(period_s) = period_s.filter(|_| plays_now) else {
+                    // On the ramp between a pause and its end nothing is over yet.
+                    playing &= plays_now;
+                    continue;
+                };
+                if !playing || asked && told.cycle == 0 && told.phase < 1 << 12 {
+                    plays.push(Vec::new());
+                    periods.push(period_s);
+                }
+                (playing, asked) = (true, false);
+                if let Some(play) = plays.last_mut() {
+                    play.push(told);
+                }
+            }
+            _ => {}
+        }
+    }
+    plays
+        .iter()
+        .zip(periods)
+        .filter_map(|(told, period_s)| play(told, period_s))
+        .collect()
+}
+
+fn play(told: &[Telemetry], period_s: f64) -> Option<Play> {
+    let seconds = |telemetry: &Telemetry| telemetry.robot_us as f64 * 1e-6;
+    let (first, last) = (told.first()?, told.last()?);
+    let mut starts = Vec::new();
+    let mut unsteady = Vec::new();
+    for cycle in told.chunk_by(|a, b| a.cycle == b.cycle) {
+        let fraction = |telemetry: &Telemetry| f64::from(telemetry.phase) / 65_536.0;
+        let origins = cycle.iter().map(|t| seconds(t) - fraction(t) * period_s);
+        let (low, high) = origins
+            .clone()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), origin| {
+                (low.min(origin), high.max(origin))
+            });
+        let ends = cycle.first().zip(cycle.last());
+        let whole = ends.is_some_and(|(a, b)| fraction(a) < TOLD && fraction(b) > 1.0 - TOLD);
+        if whole && high - low < SLACK_S {
+            starts.push(origins.clone().sum::<f64>() / cycle.len() as f64);
+        } else if cycle.len() > 1 {
+            unsteady.extend(origins.clone().next());
+        }
+    }
+    let progress = f64::from(first.phase) / 65_536.0 + f64::from(first.cycle);
+    Some(Play {
+        period_s,
+        started_s: seconds(first) - progress * period_s,
+        ended_s: seconds(last),
+        cycle_starts: starts,
+        unsteady,
+    })
+}
