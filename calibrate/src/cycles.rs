@@ -176,6 +176,14 @@ pub struct Cycle {
     pub missing: f64,
     /// Root mean square distance of the positions from the harmonic curve \[m\].
     pub residual_m: f64,
+    curve: Curve,
+}
+
+impl Cycle {
+    /// The pose of the cycle's harmonic curve at a fraction of it.
+    pub fn at(&self, u: f64) -> Pose<f64> {
+        self.curve.at(u)
+    }
 }
 
 /// The cycles of a run.
@@ -489,5 +497,6 @@ fn cycle(
         delta_theta,
         missing: *missing,
         residual_m: *residual_m,
+        curve: curve.clone(),
     }
 }

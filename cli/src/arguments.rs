@@ -1,11 +1,13 @@
 //! The values on the command line that several commands share.
 
+use std::path::Path;
 use std::str::FromStr;
 
-use swimmer_files::{AnyGait, GaitSpec, SwimmerFile, parse_angle};
+use swimmer_files::{AnyGait, GaitSpec, Provenance, SwimmerFile, parse_angle};
 use swimmer_model::Model;
 
 use crate::failure::{Failure, Outcome};
+use crate::output::aside;
 
 /// An angle on the command line, in radians.
 pub(crate) fn angle(text: &str) -> Result<f64, String> {
@@ -47,7 +49,18 @@ pub(crate) fn gait(text: &str) -> Result<GaitSpec, String> {
 
 /// Loads what `--swimmer` names.
 pub(crate) fn load_swimmer(preset_or_path: &str) -> Outcome<SwimmerFile> {
-    Ok(SwimmerFile::find(preset_or_path)?)
+    let swimmer = SwimmerFile::find(preset_or_path)?;
+    if SwimmerFile::preset(preset_or_path).is_none() {
+        let path = Path::new(preset_or_path);
+        let folder = path.parent().unwrap_or_else(|| Path::new(""));
+        let made = Provenance::load(path)?;
+        for input in made.iter().flat_map(|made| made.changed(folder)) {
+            aside(&format!(
+                "note: {preset_or_path} was fitted from {input}, which has changed since; calibrate again"
+            ));
+        }
+    }
+    Ok(swimmer)
 }
 
 /// Loads what `--gait` names.

@@ -187,6 +187,30 @@ impl Campaign {
         Self::parse(&read_text(path)?, path)
     }
 
+    /// The files that a campaign is made of, each once: itself, its swimmer where that is a file, tracks, gait files, link logs.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
+        let text = read_text(path)?;
+        let raw: RawCampaign = crate::toml_text::parse(&text, path)?;
+        let mut files = vec![path.to_path_buf()];
+        if SwimmerFile::preset(raw.swimmer.get_ref()).is_none() {
+            let folder = path.parent().unwrap_or_else(|| Path::new(""));
+            files.push(folder.join(raw.swimmer.get_ref()));
+        }
+        for run in Self::parse(&text, path)?.runs {
+            files.push(run.track);
+            if let GaitSpec::File { path, .. } = run.gait {
+                files.push(path);
+            }
+            files.extend(run.timing.log);
+        }
+        let mut seen = std::collections::HashSet::new();
+        files.retain(|file| seen.insert(file.clone()));
+        Ok(files)
+    }
+
     /// Reads a campaign's text; `path` says which folder its paths start from.
     ///
     /// # Errors

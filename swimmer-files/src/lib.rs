@@ -6,7 +6,7 @@
 //!
 //! | on disk | here |
 //! |---|---|
-//! | swimmer file (TOML) or preset | [`SwimmerFile`], [`Fluid`], [`ServoFile`], [`SwimmerHash`] |
+//! | swimmer file (TOML) or preset | [`SwimmerFile`], [`Fluid`], [`ServoFile`], [`SwimmerHash`]; what it was fitted from: [`Provenance`] |
 //! | gait on the command line or in a campaign | [`GaitSpec`], [`AnyGait`] |
 //! | gait file (plain text) | [`GaitFile`], [`GaitArc`], [`ArcKind`], [`Bounds`], [`Objective`] |
 //! | campaign file (TOML) | [`Campaign`], [`CampaignRun`], [`Reflectors`], [`TrackSettings`], [`RunTiming`], [`Axes`] |
@@ -22,6 +22,7 @@ mod gait_spec;
 mod hash;
 mod link_log;
 mod place;
+mod provenance;
 mod swimmer_file;
 mod toml_text;
 
@@ -37,4 +38,5 @@ pub use gait_spec::{GaitSpec, GaitSpecError};
 pub use hash::SwimmerHash;
 pub use link_log::{Direction, LinkFrame, LinkLogError, LinkLogWriter, Play, plays, read_link_log};
 pub use place::FileError;
+pub use provenance::{InputHash, Provenance};
 pub use swimmer_file::{Fluid, ServoFile, SwimmerFile};

@@ -176,6 +176,16 @@ cycle_start_s = 4.5
     );
     assert_eq!((b.timing.cycle_start_s, &b.timing.log), (Some(4.5), &None));
 
+    // The swimmer is a preset, and the log's folder is the campaign's.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("campaign.toml");
+    std::fs::write(&path, text.replace("circle:50deg", "b.gait")).unwrap();
+    let files = ["campaign.toml", "a.csv", "link.mcap", "b.csv", "b.gait"];
+    assert_eq!(
+        Campaign::files(&path).unwrap(),
+        files.map(|file| folder.path().join(file))
+    );
+
     for (from, to, place, why) in [
         ("play = 2", "play = 0", "tank/campaign.toml:11:8", "from 1"),
         (

@@ -1,6 +1,7 @@
 //! `swimmer calibrate`: tracks → poses → cycles → fitted sphere radius and χ.
 
 mod answer;
+mod folder;
 
 use std::path::{Path, PathBuf};
 
@@ -8,14 +9,14 @@ use calibrate::{
     CalibrateError, CampaignData, CampaignFit, FitOptions, RunResult, TrackOptions, c_t_form,
     calibrate_campaign, calibrate_run, load_run, usual_reflectors,
 };
-use swimmer_files::{Campaign, GaitSpec, PointName, SwimmerFile, write_atomically};
+use swimmer_files::{Campaign, GaitSpec, PointName, SwimmerFile};
 
 pub(crate) use self::answer::{FitAnswer, RunAnswer};
 use self::answer::{Intervals, RunsAnswer};
 use crate::arguments::{gait, load_swimmer, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
-use crate::output::{Output, document};
+use crate::output::Output;
 use crate::recording::Recording;
 
 /// Turn tracks into poses, cycles and fitted drag parameters
@@ -47,7 +48,7 @@ pub(crate) struct Calibrate {
     /// Level of the intervals
     #[arg(long, value_name = "SHARE", default_value_t = 0.95, value_parser = level)]
     level: f64,
-    /// Write the fitted swimmer file and the fit into this folder
+    /// Write report, fitted swimmer file, fit and every intermediate into this folder
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -74,6 +75,7 @@ pub(crate) struct FittedCampaign {
     pub(crate) answer: FitAnswer,
     pub(crate) found: CampaignFit,
     pub(crate) campaign: Campaign,
+    data: CampaignData,
 }
 
 /// One run's cycles with what is printed of them.
@@ -119,6 +121,7 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
         answer,
         found,
         campaign,
+        data,
     })
 }
 
@@ -183,14 +186,7 @@ impl Calibrate {
         let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
         let fitted = fit_campaign(&self.file, self.level)?;
         if let Some(folder) = folder {
-            fitted
-                .found
-                .swimmer
-                .save(&folder.draft().join("fitted.toml"))?;
-            write_atomically(
-                &folder.draft().join("fit.json"),
-                document(&fitted.answer).as_bytes(),
-            )?;
+            folder::write(&fitted, &self.file, folder.draft(), folder.place())?;
             folder.publish()?;
         }
         output.answer(&fitted.answer);

@@ -14,6 +14,7 @@ use swimmer_model::{Gait as _, Stroke};
 use super::study::{Simple, Study, UPPER};
 use crate::commands::height_map::picture;
 use crate::failure::Outcome;
+use crate::report::calibration::field;
 use crate::report::chart::{
     BOUND, Chart, INK, MEASURED, PREDICTED, Point, SINGULAR, SLENDER, Series,
 };
@@ -137,15 +138,6 @@ impl Figure {
             }
         }
         text
-    }
-}
-
-/// A field of a table that may hold a comma.
-fn field(text: &str) -> String {
-    if text.contains(',') {
-        format!("\"{text}\"")
-    } else {
-        text.to_owned()
     }
 }
 

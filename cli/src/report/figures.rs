@@ -11,10 +11,15 @@ const LOW: (i32, i32) = (520, 200);
 /// More points than a column has pixels show nothing more.
 const MOST_POINTS: usize = 1200;
 
-/// X over the amplitude: measured, fitted, slender.
-pub(super) fn displacement(report: &Report) -> Outcome<String> {
+/// X over the amplitude: measured, fitted, and by the model that the fit started from.
+pub(super) fn displacement(
+    measured: &[MeasuredCircle],
+    fitted: &[ModelCircle],
+    start: &[ModelCircle],
+) -> Outcome<String> {
     over_amplitude(
-        report,
+        [fitted, start],
+        measured,
         "X [mm per cycle]",
         WIDE,
         |circle| circle.x,
@@ -24,9 +29,14 @@ pub(super) fn displacement(report: &Report) -> Outcome<String> {
 }
 
 /// ΔY over the amplitude.
-pub(super) fn delta_y(report: &Report) -> Outcome<String> {
+pub(super) fn delta_y(
+    measured: &[MeasuredCircle],
+    fitted: &[ModelCircle],
+    start: &[ModelCircle],
+) -> Outcome<String> {
     over_amplitude(
-        report,
+        [fitted, start],
+        measured,
         "ΔY [mm]",
         LOW,
         |circle| circle.delta_y,
@@ -36,10 +46,15 @@ pub(super) fn delta_y(report: &Report) -> Outcome<String> {
 }
 
 /// Δθ over the amplitude.
-pub(super) fn delta_theta(report: &Report) -> Outcome<String> {
+pub(super) fn delta_theta(
+    measured: &[MeasuredCircle],
+    fitted: &[ModelCircle],
+    start: &[ModelCircle],
+) -> Outcome<String> {
     let degrees = 1_f64.to_degrees();
     over_amplitude(
-        report,
+        [fitted, start],
+        measured,
         "Δθ [°]",
         LOW,
         |circle| circle.delta_theta,
@@ -49,7 +64,8 @@ pub(super) fn delta_theta(report: &Report) -> Outcome<String> {
 }
 
 fn over_amplitude(
-    report: &Report,
+    [fitted, start]: [&[ModelCircle]; 2],
+    circles: &[MeasuredCircle],
     y_label: &str,
     size: (i32, i32),
     measured: impl Fn(&MeasuredCircle) -> (f64, f64),
@@ -62,7 +78,7 @@ fn over_amplitude(
             .map(|circle| (circle.amplitude.to_degrees(), model(circle) * unit))
             .collect()
     };
-    let bars = report.circles.iter().map(|circle| {
+    let bars = circles.iter().map(|circle| {
         let (mean, deviation) = measured(circle);
         (circle.amplitude.to_degrees(), mean * unit, deviation * unit)
     });
@@ -73,12 +89,12 @@ fn over_amplitude(
         equal_axes: false,
         series: vec![
             Series::Line {
-                points: curve(&report.start_curve),
+                points: curve(start),
                 color: SLENDER,
                 width: 1.6,
             },
             Series::Line {
-                points: curve(&report.fitted_curve),
+                points: curve(fitted),
                 color: INK,
                 width: 1.8,
             },

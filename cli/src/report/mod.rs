@@ -1,5 +1,6 @@
 //! The one-page report of a round through the whole loop: what was measured, fitted, predicted and tracked.
 
+pub(crate) mod calibration;
 pub(crate) mod chart;
 mod figures;
 mod page;

@@ -11,21 +11,23 @@ use crate::quantity;
 /// # Errors
 /// As the drawing of a chart.
 pub(crate) fn page(report: &Report) -> Outcome<String> {
-    let mut html = String::with_capacity(400_000);
-    html.push_str(HEAD);
+    let mut html = head("Swimmer: once round the loop");
     heading(&mut html, report);
     cards(&mut html, report);
     html.push_str("<section class=grid>");
     figure(
         &mut html,
-        &figures::displacement(report)?,
+        &figures::displacement(&report.circles, &report.fitted_curve, &report.start_curve)?,
         "Displacement of circles",
         "<i class=dot style='color:#1f6fb2'></i>tracked, mean ± sd over cycles \
          <i style='color:#1d242c'></i>fitted model <i style='color:#3a9d5d'></i>model the fit started from",
     );
     figure_pair(
         &mut html,
-        [&figures::delta_y(report)?, &figures::delta_theta(report)?],
+        [
+            &figures::delta_y(&report.circles, &report.fitted_curve, &report.start_curve)?,
+            &figures::delta_theta(&report.circles, &report.fitted_curve, &report.start_curve)?,
+        ],
         "Sway and yaw of circles",
         "Half of maximum − minimum within a cycle; colours as on the left.",
     );
@@ -67,7 +69,7 @@ pub(crate) fn page(report: &Report) -> Outcome<String> {
     files(&mut html, report);
     html.push_str("</div></section>");
     runs(&mut html, report);
-    html.push_str("</main></body></html>\n");
+    html.push_str(END);
     Ok(html)
 }
 
@@ -155,14 +157,16 @@ fn cards(html: &mut String, report: &Report) {
     );
 }
 
-fn figure(html: &mut String, svg: &str, title: &str, caption: &str) {
+/// A figure with its title and caption.
+pub(crate) fn figure(html: &mut String, svg: &str, title: &str, caption: &str) {
     let _ = write!(
         html,
         "<figure><h2>{title}</h2>{svg}<figcaption>{caption}</figcaption></figure>"
     );
 }
 
-fn figure_pair(html: &mut String, svgs: [&str; 2], title: &str, caption: &str) {
+/// Two charts in one figure.
+pub(crate) fn figure_pair(html: &mut String, svgs: [&str; 2], title: &str, caption: &str) {
     figure(html, &svgs.concat(), title, caption);
 }
 
@@ -202,11 +206,12 @@ fn runs(html: &mut String, report: &Report) {
 }
 
 /// A true minus sign instead of a hyphen.
-fn minus(text: &str) -> String {
+pub(crate) fn minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
 
-fn escaped(text: &str) -> String {
+/// Text that cannot break the page.
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
@@ -214,12 +219,18 @@ fn escaped(text: &str) -> String {
         .replace('\'', "&#39;")
 }
 
-const HEAD: &str = concat!(
-    "<!doctype html>\n<html lang=en><head><meta charset=utf-8>",
-    "<meta name=viewport content='width=device-width,initial-scale=1'><title>Swimmer: once round the loop</title><style>\n",
-    include_str!("page.css"),
-    "</style></head><body><main>"
-);
+/// Everything before the page's content; the page asks for nothing from outside.
+pub(crate) fn head(title: &str) -> String {
+    format!(
+        "<!doctype html>\n<html lang=en><head><meta charset=utf-8>\
+         <meta name=viewport content='width=device-width,initial-scale=1'><title>{}</title><style>\n{}</style></head><body><main>",
+        escaped(title),
+        include_str!("page.css")
+    )
+}
+
+/// Everything after it.
+pub(crate) const END: &str = "</main></body></html>\n";
 
 #[cfg(test)]
 mod tests {

@@ -21,6 +21,9 @@ struct RawFile {
     sphere: Option<RawSphere>,
     fluid: Option<RawFluid>,
     servo: Option<RawServo>,
+    /// Says where the file comes from, not what swims.
+    #[serde(rename = "provenance")]
+    _provenance: Option<crate::Provenance>,
 }
 
 #[derive(Deserialize)]

@@ -31,7 +31,7 @@ pub(crate) struct RunAnswer {
     /// How the starts of cycles were found: heading, flash, log or log-and-heading.
     phase: &'static str,
     left_out: Vec<LeftOutAnswer>,
-    samples: Samples,
+    pub(crate) samples: Samples,
     #[serde(skip)]
     pub(crate) front_words: String,
 }

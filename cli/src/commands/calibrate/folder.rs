@@ -1,0 +1,69 @@
+//! What `-o` leaves behind: the report, the fitted swimmer with the hashes of its inputs, every intermediate.
+
+use std::path::Path;
+
+use calibrate::{EvidenceOptions, weigh_evidence};
+use swimmer_files::{Campaign, Provenance, write_atomically};
+
+use super::FittedCampaign;
+use crate::failure::Outcome;
+use crate::output::document;
+use crate::report::calibration::{Calibration, evidence_json, page, tables};
+
+const FITTED: &str = "fitted.toml";
+const FIT: &str = "fit.json";
+const EVIDENCE: &str = "evidence.json";
+const REPORT: &str = "report.html";
+
+/// Fills `draft`, which will stand at `place`.
+///
+/// # Errors
+/// As weighing the evidence, hashing the inputs and writing.
+pub(super) fn write(fitted: &FittedCampaign, file: &Path, draft: &Path, place: &Path) -> Outcome {
+    let FittedCampaign {
+        answer,
+        found,
+        campaign,
+        data,
+    } = fitted;
+    let options = EvidenceOptions::default();
+    let evidence = weigh_evidence(campaign, data, found, options)?;
+    let made_by = concat!("swimmer calibrate ", env!("CARGO_PKG_VERSION"));
+    let provenance = Provenance::of_files(made_by, &Campaign::files(file)?, place)?;
+    let save = |name: &str, text: &str| write_atomically(&draft.join(name), text.as_bytes());
+    save(FITTED, &(found.swimmer.to_toml() + &provenance.to_toml()))?;
+    save(FIT, &document(answer))?;
+    let names: Vec<String> = answer.runs.iter().map(|run| run.file.clone()).collect();
+    save(
+        EVIDENCE,
+        &document(&evidence_json(&evidence, options, &names)),
+    )?;
+    let mut files = vec![
+        (
+            FITTED,
+            "the swimmer with the fitted drag, for swimmer optimize, and the hashes of its inputs",
+        ),
+        (
+            FIT,
+            "the fit, for --robust and --fit: what swimmer calibrate --json prints",
+        ),
+        (
+            EVIDENCE,
+            "likelihood, profiles, ridge, bootstrap, fits without each run",
+        ),
+    ];
+    for (name, what, text) in tables(found, &evidence, &names) {
+        save(name, &text)?;
+        files.push((name, what));
+    }
+    let report = page(&Calibration {
+        campaign,
+        found,
+        evidence: &evidence,
+        answer,
+        options,
+        provenance: &provenance,
+        files,
+    })?;
+    Ok(save(REPORT, &report)?)
+}

@@ -1,0 +1,268 @@
+//! The charts of a calibration's report, each from the numbers it shows.
+
+use calibrate::evidence::{Evidence, Profile};
+use calibrate::{Cycle, RunResult};
+use plotters::style::RGBColor;
+
+use crate::failure::Outcome;
+use crate::report::chart::{
+    BOUND, Chart, INK, MEASURED, MEASURED_BAND, PREDICTED, Point, SINGULAR, SLENDER, Series,
+};
+
+const SQUARE: (i32, i32) = (520, 430);
+const LOW: (i32, i32) = (520, 240);
+const SMALL: (i32, i32) = (360, 250);
+/// More points than a column has pixels show nothing more.
+const MOST_POINTS: usize = 800;
+/// Points that are drawn of each cycle, and of their mean.
+const CYCLE_POINTS: usize = 100;
+
+fn chart(labels: [&str; 2], size: (i32, i32), series: Vec<Series>) -> Chart {
+    Chart {
+        x_label: labels[0].into(),
+        y_label: labels[1].into(),
+        size,
+        equal_axes: false,
+        series,
+    }
+}
+
+/// The way of the link's centre, what was seen and what was filled.
+pub(super) fn track(run: &RunResult) -> Outcome<String> {
+    let samples = &run.poses.samples;
+    let every = samples.len().div_ceil(MOST_POINTS).max(1);
+    let place = |sample: &calibrate::PoseSample| (sample.pose.x * 1e3, sample.pose.y * 1e3);
+    let filled = samples
+        .iter()
+        .filter(|s| s.is_filled())
+        .map(place)
+        .collect();
+    let starts = run.cycles.cycles.iter().map(|cycle| {
+        let pose = cycle.at(0.0);
+        (pose.x * 1e3, pose.y * 1e3)
+    });
+    Chart {
+        equal_axes: true,
+        ..chart(
+            ["x [mm]", "y [mm]"],
+            SMALL,
+            vec![
+                Series::Line {
+                    points: samples.iter().step_by(every).map(place).collect(),
+                    color: MEASURED_BAND,
+                    width: 1.2,
+                },
+                Series::Dots {
+                    points: filled,
+                    color: PREDICTED,
+                    radius: 1.2,
+                },
+                Series::Dots {
+                    points: starts.collect(),
+                    color: INK,
+                    radius: 2.6,
+                },
+            ],
+        )
+    }
+    .svg()
+}
+
+/// Which of a cycle's coordinates.
+#[derive(Clone, Copy)]
+pub(super) enum Coordinate {
+    /// Across the first heading.
+    Y,
+    /// The heading.
+    Theta,
+}
+
+/// All cycles of a run over one another in the frame of their first pose, and the mean of their harmonic curves.
+pub(super) fn cycles(run: &RunResult, coordinate: Coordinate) -> Outcome<String> {
+    let cycles = &run.cycles.cycles;
+    let period = run.cycles.period_s;
+    let in_frame = |cycle: &Cycle, pose: &swimmer_model::Pose<f64>| {
+        let local = cycle.at(0.0).inverse() * *pose;
+        match coordinate {
+            Coordinate::Y => local.y * 1e3,
+            Coordinate::Theta => local.theta.to_degrees(),
+        }
+    };
+    let mut series = Vec::new();
+    for cycle in cycles {
+        let within = |s: &&calibrate::PoseSample| {
+            s.time_s >= cycle.start_s && s.time_s < cycle.start_s + period
+        };
+        let samples: Vec<_> = run.poses.seen().filter(within).collect();
+        let every = samples.len().div_ceil(CYCLE_POINTS).max(1);
+        let point = |s: &&calibrate::PoseSample| {
+            (
+                (s.time_s - cycle.start_s) / period,
+                in_frame(cycle, &s.pose),
+            )
+        };
+        series.push(Series::Line {
+            points: samples.iter().step_by(every).map(point).collect(),
+            color: MEASURED_BAND,
+            width: 1.0,
+        });
+    }
+    let mean = (0..=CYCLE_POINTS).map(|i| {
+        let u = i as f64 / CYCLE_POINTS as f64;
+        let sum: f64 = cycles
+            .iter()
+            .map(|cycle| in_frame(cycle, &cycle.at(u)))
+            .sum();
+        (u, sum / cycles.len().max(1) as f64)
+    });
+    series.push(Series::Line {
+        points: mean.collect(),
+        color: INK,
+        width: 1.5,
+    });
+    let label = match coordinate {
+        Coordinate::Y => "y [mm]",
+        Coordinate::Theta => "θ [°]",
+    };
+    chart(["fraction of the cycle", label], SMALL, series).svg()
+}
+
+/// The ridge: joint regions, draws of the bootstrap, both estimates.
+pub(super) fn ridge(evidence: &Evidence, paper: (f64, f64)) -> Outcome<String> {
+    let point = |(radius, chi): (f64, f64)| (radius * 1e3, chi);
+    let draws = &evidence.bootstrap.points;
+    let every = draws.len().div_ceil(400).max(1);
+    let mut series = vec![Series::Dots {
+        points: draws
+            .iter()
+            .step_by(every)
+            .map(|p| point((p.sphere_radius, p.chi)))
+            .collect(),
+        color: SINGULAR,
+        radius: 1.3,
+    }];
+    for contour in &evidence.ridge.contours {
+        let closed = contour.corners.iter().chain(contour.corners.first());
+        let points: Vec<Point> = closed.map(|corner| point(*corner)).collect();
+        let top = points.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
+        series.push(Series::Line {
+            points,
+            color: MEASURED,
+            width: 1.4,
+        });
+        if let Some(at) = top {
+            series.push(Series::Word {
+                at,
+                text: format!("{:.0} %", contour.level * 100.0),
+                color: MEASURED,
+            });
+        }
+    }
+    let likelihood = evidence.likelihood.estimate;
+    let dot = |at: (f64, f64), color: RGBColor| Series::Dots {
+        points: vec![point(at)],
+        color,
+        radius: 4.5,
+    };
+    series.push(dot((likelihood.sphere_radius, likelihood.chi), PREDICTED));
+    series.push(dot(paper, INK));
+    chart(["sphere radius r_s [mm]", "drag ratio χ"], SQUARE, series).svg()
+}
+
+/// Both fits without each run, named by its number.
+pub(super) fn without_run(evidence: &Evidence, paper: (f64, f64)) -> Outcome<String> {
+    let mut series = Vec::new();
+    for without in &evidence.without_run {
+        let at = (without.paper.sphere_radius * 1e3, without.paper.chi);
+        if let Some(other) = without.likelihood {
+            series.push(Series::Dots {
+                points: vec![(other.sphere_radius * 1e3, other.chi)],
+                color: PREDICTED,
+                radius: 3.0,
+            });
+        }
+        series.push(Series::Dots {
+            points: vec![at],
+            color: MEASURED,
+            radius: 3.0,
+        });
+        series.push(Series::Word {
+            at,
+            text: (without.run + 1).to_string(),
+            color: MEASURED,
+        });
+    }
+    series.push(Series::Dots {
+        points: vec![(paper.0 * 1e3, paper.1)],
+        color: INK,
+        radius: 4.5,
+    });
+    chart(["sphere radius r_s [mm]", "drag ratio χ"], SQUARE, series).svg()
+}
+
+/// A profile likelihood with the threshold of its interval; `unit` turns the parameter into the axis' unit.
+pub(super) fn profile(profile: &Profile, label: &str, unit: f64) -> Outcome<String> {
+    let points: Vec<Point> = profile.points.iter().map(|(p, l)| (p * unit, *l)).collect();
+    let ends = points
+        .iter()
+        .fold(None, |ends: Option<(f64, f64)>, (x, _)| {
+            Some(ends.map_or((*x, *x), |(low, high)| (low.min(*x), high.max(*x))))
+        });
+    let mut series = vec![Series::Line {
+        points,
+        color: INK,
+        width: 1.7,
+    }];
+    if let Some((low, high)) = ends {
+        series.push(Series::Dashes {
+            points: vec![(low, profile.threshold), (high, profile.threshold)],
+            color: BOUND,
+            width: 1.4,
+        });
+        let inside = profile.interval.map(|end| (end * unit, profile.threshold));
+        series.push(Series::Dots {
+            points: inside.to_vec(),
+            color: PREDICTED,
+            radius: 3.2,
+        });
+    }
+    chart([label, "log-likelihood ratio"], LOW, series).svg()
+}
+
+/// What is left of each run over its standard error, by the run's number.
+pub(super) fn residuals(evidence: &Evidence) -> Outcome<String> {
+    let count = evidence.run_errors.len() as f64;
+    let band = |at: f64| Series::Dashes {
+        points: vec![(0.5, at), (count + 0.5, at)],
+        color: BOUND,
+        width: 1.2,
+    };
+    let mut series = vec![
+        band(2.0),
+        band(-2.0),
+        Series::Line {
+            points: vec![(0.5, 0.0), (count + 0.5, 0.0)],
+            color: SINGULAR,
+            width: 1.0,
+        },
+    ];
+    for (quantity, (color, aside)) in [(MEASURED, -0.12), (SLENDER, 0.0), (PREDICTED, 0.12)]
+        .into_iter()
+        .enumerate()
+    {
+        let points = evidence
+            .run_errors
+            .iter()
+            .enumerate()
+            .filter_map(|(run, errors)| {
+                let error = errors.get(quantity)?;
+                Some((run as f64 + 1.0 + aside, error.standardised))
+            });
+        series.push(Series::Dots {
+            points: points.collect(),
+            color,
+            radius: 3.6,
+        });
+    }
+    chart(["run", "(model − measured) / standard error"], LOW, series).svg()
+}

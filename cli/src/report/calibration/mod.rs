@@ -1,0 +1,72 @@
+//! The report of a calibration: one page, and every intermediate as CSV and JSON.
+
+mod figures;
+mod json;
+mod page;
+mod tables;
+
+use calibrate::evidence::{CurvePoint, Evidence};
+use calibrate::{CampaignFit, EvidenceOptions};
+use swimmer_files::{Campaign, GaitSpec, Provenance, SwimmerFile};
+
+pub(crate) use self::json::evidence_json;
+pub(crate) use self::page::page;
+pub(crate) use self::tables::{field, tables};
+use super::{MeasuredCircle, ModelCircle};
+use crate::commands::calibrate::FitAnswer;
+
+/// Everything that the report shows.
+pub(crate) struct Calibration<'a> {
+    pub(crate) campaign: &'a Campaign,
+    pub(crate) found: &'a CampaignFit,
+    pub(crate) evidence: &'a Evidence,
+    pub(crate) answer: &'a FitAnswer,
+    pub(crate) options: EvidenceOptions,
+    pub(crate) provenance: &'a Provenance,
+    /// What else lies in the folder: file name and what it holds.
+    pub(crate) files: Vec<(&'static str, &'static str)>,
+}
+
+impl Calibration<'_> {
+    fn start(&self) -> &SwimmerFile {
+        &self.campaign.swimmer
+    }
+
+    /// The runs that were circles, as points over the amplitude; clockwise ones count as what they are, mirrored.
+    fn circles(&self) -> Vec<MeasuredCircle> {
+        let gaits = self.campaign.runs.iter().map(|run| &run.gait);
+        gaits
+            .zip(&self.found.runs)
+            .filter_map(|(gait, run)| match gait {
+                GaitSpec::Circle {
+                    amplitude,
+                    clockwise,
+                } => {
+                    let cycles = &run.cycles;
+                    let of = |s: &calibrate::Statistics| (s.mean, s.sd);
+                    let (x, sd) = of(&cycles.x);
+                    Some(MeasuredCircle {
+                        amplitude: *amplitude,
+                        cycles: cycles.cycles.len(),
+                        x: (if *clockwise { -x } else { x }, sd),
+                        delta_y: of(&cycles.delta_y),
+                        delta_theta: of(&cycles.delta_theta),
+                    })
+                }
+                _ => None,
+            })
+            .collect()
+    }
+}
+
+fn model_circles(curve: &[CurvePoint]) -> Vec<ModelCircle> {
+    curve
+        .iter()
+        .map(|point| ModelCircle {
+            amplitude: point.amplitude_rad,
+            x: point.cycle.x_m,
+            delta_y: point.cycle.delta_y_m,
+            delta_theta: point.cycle.delta_theta_rad,
+        })
+        .collect()
+}
