@@ -216,6 +216,9 @@ pub struct Evidence {
     pub surface_error: f64,
 }
 
+/// Optima that are further apart, in r_s/L and ln χ, are two.
+const ELSEWHERE: f64 = 1e-3;
+
 /// Weighs what a campaign's runs say about its fit.
 ///
 /// # Errors
@@ -238,17 +241,22 @@ pub fn weigh_evidence(
     }
     let sought = Sought::of(found, start.swimmer.total_length());
     let nothing = || CalibrateError::Fit(FitError::NoConvergence { starts: RECTANGLES });
-    let (surface, data_used, estimate, unexpected) = sought
-        .settle(|rectangle| {
-            Surface::new(
-                &start.swimmer,
-                &paths,
-                sought.scales,
-                &projection,
-                rectangle,
-            )
-        })
-        .ok_or_else(nothing)?;
+    let ask = |rectangle| {
+        Surface::new(
+            &start.swimmer,
+            &paths,
+            sought.scales,
+            &projection,
+            rectangle,
+        )
+    };
+    let mut settled = sought.settle(sought.paper, ask).ok_or_else(nothing)?;
+    let far = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() + (a[1] - b[1]).abs() > ELSEWHERE;
+    let best = sought.sought_widely(campaign, data, found, &paths, &settled.2);
+    if let Some(best) = best.filter(|best| far(*best, settled.2.at)) {
+        settled = sought.settle(best, ask).ok_or_else(nothing)?;
+    }
+    let (surface, data_used, estimate, unexpected) = settled;
     let scale = Scale {
         length: sought.length,
     };

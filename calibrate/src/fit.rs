@@ -268,6 +268,19 @@ pub(crate) fn fit(
     summary(&problem, p, cost, level).ok_or(FitError::NoConvergence { starts: 1 })
 }
 
+/// The optimum (r_s/L, ln χ) of least squares with other factors of the residuals, sought from as many starts.
+pub(crate) fn with_factors(
+    start: &Swimmer<f64>,
+    runs: &[Observation],
+    gaits: &[swimmer_files::AnyGait],
+    factors: &[[f64; 3]],
+) -> Result<[f64; 2], FitError> {
+    let projection = Projection::new();
+    let problem = Problem::new(start, runs, factors, &projection);
+    let ([p, k], _) = search::search(&problem, gaits)?;
+    Ok([p * p, k])
+}
+
 /// Whether the model swims the other way in every run.
 pub(crate) fn check_signs(start: &Swimmer<f64>, runs: &[Observation]) -> Result<(), FitError> {
     let projection = Projection::new();

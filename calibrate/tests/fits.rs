@@ -285,6 +285,43 @@ fn shift_by_drag(truth: &Swimmer<f64>, share: f64) -> [f64; 2] {
     ]
 }
 
+/// Bootstrap and leaving out ask polynomials instead of the model: they are held against fits without the shortcut.
+#[test]
+fn refits_on_the_surface_are_refits() {
+    let tank = Tank {
+        noise: 1e-3,
+        ..robot()
+    };
+    let (all, data) = campaign(&tank, &AMPLITUDES, Tank::motive, tank.named());
+    let found = calibrate_campaign(&all, &data, FitOptions::default()).unwrap();
+    let options = EvidenceOptions::default();
+    let evidence = weigh_evidence(&all, &data, &found, options).unwrap();
+    println!("surface off by {:.1e}", evidence.surface_error);
+    assert!(evidence.surface_error < 1e-6);
+    for left_out in 0..data.runs.len() {
+        let (mut campaign, mut data) = (all.clone(), data.clone());
+        campaign.runs.remove(left_out);
+        data.runs.remove(left_out);
+        let refit = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
+        let quick = evidence.without_run[left_out].paper;
+        let off = [
+            quick.sphere_radius / refit.fit.sphere_radius - 1.0,
+            quick.chi / refit.fit.chi - 1.0,
+        ];
+        println!("without run {left_out}: {off:?}");
+        assert!(off.iter().all(|off| off.abs() < 1e-5), "{off:?}");
+    }
+    // Seeded: the same draws, the same intervals; another seed, others.
+    let again = |seed| {
+        let options = EvidenceOptions { seed, ..options };
+        weigh_evidence(&all, &data, &found, options)
+            .unwrap()
+            .bootstrap
+    };
+    assert_eq!(again(1), evidence.bootstrap);
+    assert_ne!(again(2).intervals, evidence.bootstrap.intervals);
+}
+
 /// One run whose X is wrong (a wrong scale, a robot that was pushed): it is named, and the estimate of greatest likelihood stays.
 #[test]
 fn a_run_with_a_wrong_x_is_named_and_moves_nothing() {

@@ -1,13 +1,16 @@
 //! What a finished fit hands on: its data in units of their scales, and a rectangle of (r_s/L, ln χ) to look at.
 
+use swimmer_files::{AnyGait, Campaign};
+
 use super::deletion::{self, Unexpected};
 use super::estimate::{Estimate, Measured};
 use super::surface::{Rectangle, Surface};
 use super::{Drawn, Pair, RunError, WithoutRun, bootstrap};
-use crate::campaign::CampaignFit;
+use crate::campaign::{CampaignData, CampaignFit, RunResult};
 use crate::cycles::{Cycles, Statistics};
-use crate::fit::Intervals;
 use crate::fit::errors::{Variance, within_runs};
+use crate::fit::{self, Intervals, Observation};
+use crate::prediction::JointPath;
 
 /// Half widths of the first rectangle, in half widths of the fit's intervals.
 const REACH: f64 = 4.0;
@@ -75,20 +78,45 @@ impl Sought {
         }
     }
 
+    /// The likelihood sought from as many starts as the paper's fit, with the variances of an estimate.
+    pub(super) fn sought_widely(
+        &self,
+        campaign: &Campaign,
+        data: &CampaignData,
+        found: &CampaignFit,
+        paths: &[JointPath],
+        estimate: &Estimate,
+    ) -> Option<[f64; 2]> {
+        let observed =
+            |(path, run): (&JointPath, &RunResult)| Observation::new(path.clone(), &run.cycles);
+        let runs: Vec<Observation> = paths.iter().zip(&found.runs).map(observed).collect();
+        let gaits: Vec<AnyGait> = data.runs.iter().map(|run| run.gait.clone()).collect();
+        let factors: Vec<[f64; 3]> = estimate
+            .weights
+            .chunks(3)
+            .map(|run| [0, 1, 2].map(|q| run[q].sqrt() / self.scales[q]))
+            .collect();
+        fit::with_factors(&campaign.swimmer.swimmer, &runs, &gaits, &factors).ok()
+    }
+
     /// Widens or moves the rectangle until it holds the estimate and what surrounds it.
     pub(super) fn settle(
         &self,
+        start: [f64; 2],
         ask: impl Fn(Rectangle) -> Option<Surface>,
     ) -> Option<(Surface, Measured, Estimate, Vec<Unexpected>)> {
         let mut half = [0, 1].map(|i| (REACH * self.half[i]).clamp(SMALLEST[i], LARGEST[i]));
-        let mut centre = self.paper;
+        let mut centre = [0, 1].map(|i| f64::midpoint(self.paper[i], start[i]));
+        for (half, i) in half.iter_mut().zip(0..2) {
+            *half = (*half + (self.paper[i] - start[i]).abs()).min(LARGEST[i]);
+        }
         for attempt in 1..=RECTANGLES {
             let Some(surface) = ask(Rectangle::about(centre, half)) else {
                 half = half.map(|h| h / 2.0);
                 continue;
             };
             let (data, estimate, unexpected) =
-                deletion::without_outliers(&surface, &self.measured, centre)?;
+                deletion::without_outliers(&surface, &self.measured, start)?;
             let inside = surface.rectangle.holds(estimate.at);
             if (inside && surface.rectangle.holds(self.paper)) || attempt == RECTANGLES {
                 return Some((surface, data, estimate, unexpected));
