@@ -1,6 +1,7 @@
 //! `swimmer calibrate`: tracks → poses → cycles → fitted sphere radius and χ.
 
 mod answer;
+mod asked;
 mod folder;
 
 use std::path::{Path, PathBuf};
@@ -13,6 +14,7 @@ use swimmer_files::{Campaign, GaitSpec, PointName, SwimmerFile};
 
 pub(crate) use self::answer::{FitAnswer, RunAnswer};
 use self::answer::{Intervals, RunsAnswer};
+use self::asked::{Asked, AskedAnswer};
 use crate::arguments::{gait, load_swimmer, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
@@ -48,6 +50,8 @@ pub(crate) struct Calibrate {
     /// Level of the intervals
     #[arg(long, value_name = "SHARE", default_value_t = 0.95, value_parser = level)]
     level: f64,
+    #[command(flatten)]
+    asked: Asked,
     /// Write report, fitted swimmer file, fit and every intermediate into this folder
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -116,6 +120,7 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
         warnings: of_runs
             .chain(fit.warnings.iter().map(ToString::to_string))
             .collect(),
+        asked: AskedAnswer::default(),
     };
     Ok(FittedCampaign {
         answer,
@@ -184,8 +189,15 @@ impl Calibrate {
             )));
         }
         let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
-        let fitted = fit_campaign(&self.file, self.level)?;
+        let mut fitted = fit_campaign(&self.file, self.level)?;
+        let (answer, further) = self
+            .asked
+            .answer(&fitted.campaign, &fitted.data, &fitted.found)?;
+        fitted.answer.asked = answer;
         if let Some(folder) = folder {
+            if let Some(further) = further {
+                further.save(&folder.draft().join("fitted-further.toml"))?;
+            }
             folder::write(&fitted, &self.file, folder.draft(), folder.place())?;
             folder.publish()?;
         }
@@ -205,6 +217,11 @@ impl Calibrate {
             return Err(Failure::BadInput(
                 "-o goes with a campaign: a single run is not fitted".to_owned(),
             ));
+        }
+        if let Some(flag) = self.asked.given() {
+            return Err(Failure::BadInput(format!(
+                "{flag} goes with a campaign: a single run is not fitted"
+            )));
         }
         let run = single_run(
             &self.file,

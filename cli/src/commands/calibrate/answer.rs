@@ -7,6 +7,7 @@ use calibrate::{Origin, RunResult};
 use serde::Serialize;
 use swimmer_files::GaitSpec;
 
+use super::asked::AskedAnswer;
 use crate::quantity::{self, Rows, Table};
 
 /// The cycles of one run, and what they brought.
@@ -84,6 +85,8 @@ pub(crate) struct FitAnswer {
     pub(crate) c_t_form: String,
     /// What to know about the runs and the fit.
     pub(crate) warnings: Vec<String>,
+    #[serde(flatten)]
+    pub(super) asked: AskedAnswer,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -164,7 +167,8 @@ impl fmt::Display for FitAnswer {
         write!(f, "{}", table(&self.runs))?;
         left_out(f, &self.runs)?;
         write!(f, "\n\n{rows}")?;
-        notes(f, &self.warnings)
+        notes(f, &self.warnings)?;
+        write!(f, "{}", self.asked)
     }
 }
 
