@@ -5,8 +5,8 @@ use swimmer_files::{AnyGait, SwimmerFile};
 use crate::cycles::Projection;
 use crate::prediction::{JointPath, PredictedCycle};
 
-/// Circles from 5° on, a point every so many degrees.
-const STEP_DEG: u32 = 5;
+/// A point every so many degrees.
+const STEP_DEG: u32 = 2;
 /// The largest circle \[deg\].
 const LARGEST_DEG: u32 = 120;
 

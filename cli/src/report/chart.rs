@@ -105,7 +105,7 @@ impl Chart {
         let said = |error: &dyn std::fmt::Display| error.to_string();
         let label_width = 64 * SCALE;
         let label_height = 42 * SCALE;
-        let (top, right) = (10 * SCALE, 14 * SCALE);
+        let (top, right) = (10 * SCALE, 24 * SCALE);
         let inside = (
             self.size.0 * SCALE - label_width - right,
             self.size.1 * SCALE - label_height - top,

@@ -67,6 +67,80 @@ fn the_papers_robot_and_what_the_demo_leaves_behind() {
             "{key}: {one} in the demo, {two} from its campaign"
         );
     }
+    what_a_calibration_leaves_behind(&out);
+}
+
+/// Report, tables and the fitted swimmer with the hashes of its inputs, from the demo's own campaign.
+fn what_a_calibration_leaves_behind(demo: &Path) {
+    let run = swimmer_in(demo, &["calibrate", "campaign.toml", "-o", "fit"]).with_status(0);
+    assert!(
+        run.stdout.contains("phase by heading; left out at"),
+        "{run}"
+    );
+    let fit = demo.join("fit");
+    let read = |name: &str| std::fs::read_to_string(fit.join(name)).unwrap();
+    let report = read("report.html");
+    // X, ΔY, Δθ, ridge, two profiles, residuals, without a run; three for each of nine runs.
+    assert_eq!(report.matches("<svg").count(), 8 + 27);
+    for outside in ["src=", "href=", "url(", "@import"] {
+        assert!(
+            !report.contains(outside),
+            "the report needs nothing from outside: {outside}"
+        );
+    }
+    for table in [
+        "poses",
+        "cycles",
+        "runs",
+        "residuals",
+        "ridge",
+        "profiles",
+        "bootstrap",
+        "without-run",
+        "circles",
+    ] {
+        let text = read(&format!("{table}.csv"));
+        let columns = |line: &str| line.matches(',').count();
+        let mut lines = text.lines();
+        let header = columns(lines.next().unwrap());
+        assert!(lines.clone().count() > 1, "{table}.csv is empty");
+        assert!(
+            lines.all(|line| columns(line) == header),
+            "{table}.csv is ragged"
+        );
+    }
+    let answer: serde_json::Value = serde_json::from_str(&read("fit.json")).unwrap();
+    let first = &answer["runs"][0];
+    assert!(
+        number(first, "x_se_m") > 0.0 && first["left_out"][0]["reason"].is_string(),
+        "{first:#}"
+    );
+    assert_eq!(
+        (&first["front_rule"], &first["phase"]),
+        (&"label".into(), &"heading".into())
+    );
+    let evidence: serde_json::Value = serde_json::from_str(&read("evidence.json")).unwrap();
+    assert_eq!(evidence["without_run"].as_array().unwrap().len(), 9);
+
+    // The fitted swimmer is ready to be used; a changed input is told.
+    let words = [
+        "simulate",
+        "--swimmer",
+        "fit/fitted.toml",
+        "--gait",
+        "circle:70deg",
+    ];
+    let run = swimmer_in(demo, &words).with_status(0);
+    assert!(!run.stderr.contains("changed"), "{run}");
+    let track = demo.join("circle-050.csv");
+    let text = std::fs::read_to_string(&track).unwrap();
+    std::fs::write(&track, text + "\r\n").unwrap();
+    let run = swimmer_in(demo, &words).with_status(0);
+    assert!(
+        run.stderr
+            .contains("../circle-050.csv, which has changed since"),
+        "{run}"
+    );
 }
 
 /// The same with the real firmware in the middle.

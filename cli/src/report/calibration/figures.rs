@@ -55,7 +55,7 @@ pub(super) fn track(run: &RunResult) -> Outcome<String> {
                 Series::Dots {
                     points: filled,
                     color: PREDICTED,
-                    radius: 1.2,
+                    radius: 1.0,
                 },
                 Series::Dots {
                     points: starts.collect(),
@@ -264,5 +264,5 @@ pub(super) fn residuals(evidence: &Evidence) -> Outcome<String> {
             radius: 3.6,
         });
     }
-    chart(["run", "(model − measured) / standard error"], LOW, series).svg()
+    chart(["run", "residual / standard error"], LOW, series).svg()
 }

@@ -55,11 +55,8 @@ fn parameters(html: &mut String, calibration: &Calibration<'_>) {
     );
     let start = calibration.start().swimmer;
     let likelihood = &evidence.likelihood;
-    let mut row = |name: &str,
-                   unit: f64,
-                   digits: usize,
-                   values: [f64; 3],
-                   ends: fn(&Intervals) -> [f64; 2]| {
+    let mut row = |name: &str, unit: f64, values: [f64; 3], ends: fn(&Intervals) -> [f64; 2]| {
+        let digits = digits(ends(&fit.intervals).map(|end| end * unit));
         let between = |intervals: &Intervals| {
             let [low, high] = ends(intervals).map(|end| end * unit);
             format!("{low:.digits$} … {high:.digits$}")
@@ -76,7 +73,6 @@ fn parameters(html: &mut String, calibration: &Calibration<'_>) {
     row(
         "r<sub>s</sub> [mm]",
         1e3,
-        2,
         [
             start.sphere_radius,
             fit.sphere_radius,
@@ -87,7 +83,6 @@ fn parameters(html: &mut String, calibration: &Calibration<'_>) {
     row(
         "χ",
         1.0,
-        4,
         [start.chi, fit.chi, likelihood.estimate.chi],
         |intervals| intervals.chi,
     );
@@ -95,13 +90,13 @@ fn parameters(html: &mut String, calibration: &Calibration<'_>) {
     let _ = write!(
         html,
         "</tbody></table><p class=note>RMSE {} with the paper’s weights; correlation of r<sub>s</sub> and ln χ {}. The likelihood \
-         weighs every X, ΔY and Δθ by its own error: from the run’s cycles, and from run to run {:.3} mm, {:.3} mm and {:.3}°. \
+         weighs every X, ΔY and Δθ by its own error: from the run’s cycles, and from run to run {} mm, {} mm and {}°. \
          Bootstrap: {} draws of {}, seed {}.</p></section>",
         minus(&quantity::small(fit.rmse)),
         minus(&format!("{:.3}", fit.correlation)),
-        x * 1e3,
-        y * 1e3,
-        theta.to_degrees(),
+        minus(&quantity::small(x * 1e3)),
+        minus(&quantity::small(y * 1e3)),
+        minus(&quantity::small(theta.to_degrees())),
         evidence.bootstrap.draws,
         if evidence.bootstrap.runs_drawn {
             "runs and cycles"
@@ -110,6 +105,17 @@ fn parameters(html: &mut String, calibration: &Calibration<'_>) {
         },
         calibration.options.seed,
     );
+}
+
+/// Decimals that show an interval's width to two digits.
+fn digits([low, high]: [f64; 2]) -> usize {
+    let width = high - low;
+    if !(width.is_finite() && width > 0.0) {
+        return 4;
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between 1 and 9
+    let digits = (1.0 - width.log10().floor()).clamp(1.0, 9.0) as usize;
+    digits
 }
 
 fn warnings(html: &mut String, calibration: &Calibration<'_>) {
@@ -229,8 +235,10 @@ fn runs(html: &mut String, calibration: &Calibration<'_>) {
         .enumerate()
     {
         let cycles = &run.cycles;
-        let millimetres = |metres: f64| minus(&format!("{:.3}", metres * 1e3));
-        let degrees = |radians: f64| minus(&format!("{:.3}", radians.to_degrees()));
+        // Adding zero turns a rounded -0.000 into 0.000.
+        let three = |value: f64| minus(&format!("{:.3}", (value * 1e3).round() / 1e3 + 0.0));
+        let millimetres = |metres: f64| three(metres * 1e3);
+        let degrees = |radians: f64| three(radians.to_degrees());
         let _ = write!(
             html,
             "<tr><th>{}<td class=name>{}<td class=name>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{:.3}<td>{}<td>{}</tr>",
@@ -331,4 +339,18 @@ fn inputs(html: &mut String, calibration: &Calibration<'_>) {
         );
     }
     html.push_str("</table></figure></section>");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::digits;
+
+    #[test]
+    fn intervals_are_told_apart() {
+        // 69.177 … 69.209, 3.5960 … 3.5989, 60 … 75.
+        assert_eq!(digits([69.177, 69.209]), 3);
+        assert_eq!(digits([3.5960, 3.5989]), 4);
+        assert_eq!(digits([60.0, 75.0]), 1);
+        assert_eq!(digits([1.0, 1.0]), 4);
+    }
 }
