@@ -34,6 +34,7 @@
 //! E-stop (at once) > low battery > silent link > end of a detached pause > Stop > end of the last cycle. Where several
 //! hold, the more severe is told as [`link_protocol::StopCause`]; all but e-stop end in the same ramp.
 
+mod actions;
 mod battery;
 mod config;
 #[cfg(test)]

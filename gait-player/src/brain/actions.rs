@@ -1,0 +1,239 @@
+//! What a request that may act does. Each arm of [`Brain::act`] is one request's whole meaning.
+
+use super::state::State;
+use super::work::Work;
+use super::{Brain, settings};
+use crate::route::Route;
+use crate::servo::ServoMap;
+use crate::table::check::Checker;
+use link_protocol::{Arm, Header, Joint, Play, Refusal, Reply, Request, ServoSettings};
+
+/// What a request comes to.
+type Outcome = Result<Option<Reply>, Refusal>;
+
+const DONE: Outcome = Ok(Some(Reply::Done));
+/// The answer comes when the work is done.
+const LATER: Outcome = Ok(None);
+
+impl Brain {
+    /// Does what is asked; `None` where the answer comes later.
+    pub(super) fn act(&mut self, now_us: u64, header: Header, request: &Request) -> Outcome {
+        match request {
+            Request::Status => Ok(Some(Reply::Status(self.status(now_us)))),
+            Request::Counters => Ok(Some(Reply::Counters(self.counters()))),
+            Request::Configuration => Ok(Some(Reply::Configuration(self.settings.configuration))),
+            Request::Configure(configuration) => {
+                self.only_stopped()?;
+                self.model = settings::check_configuration(configuration, &self.firmware_limits)?;
+                self.settings.configuration = *configuration;
+                self.limits = self.firmware_limits.tightened(configuration);
+                self.tables.forget_facts();
+                self.persist.settings_changed();
+                DONE
+            }
+            Request::Servo(joint) => Ok(Some(Reply::Servo(self.settings.servos[joint.index()]))),
+            Request::SetServo { joint, settings } => {
+                self.only_stopped()?;
+                settings::check_servo(settings, &self.firmware_limits)?;
+                self.set_servo(*joint, *settings);
+                DONE
+            }
+            Request::Trim { joint, trim } => self.trim(*joint, *trim),
+            Request::Begin(begin) => {
+                self.only_idle()?;
+                let offset = self.tables.begin(header.sequence, *begin)?;
+                Ok(Some(Reply::Wanted {
+                    upload: header.sequence,
+                    offset,
+                }))
+            }
+            // Handled before the order of requests.
+            Request::Chunk(_) => Err(Refusal::NoUpload),
+            Request::Commit { upload } => self.commit(header, *upload),
+            Request::Arm(arm) => self.arm(*arm),
+            Request::Play(play) => self.play(header, *play),
+            Request::Pause { detached } => self.pause(now_us, *detached),
+            Request::Resume => match self.state {
+                State::Paused { play, .. } => {
+                    self.state = State::Playing {
+                        since: self.tick,
+                        play,
+                    };
+                    DONE
+                }
+                state => Err(Refusal::WrongState(state.name())),
+            },
+            // Handled before everything else.
+            Request::Stop | Request::EStop => DONE,
+            Request::ClearResets => match self.resets.wait_s() {
+                Some(wait_s) if wait_s > 0 => Err(Refusal::ResetLoop { wait_s }),
+                _ => {
+                    self.resets.clear();
+                    DONE
+                }
+            },
+            Request::CrashMessage => Ok(Some(Reply::CrashMessage(self.boot.crash_message.clone()))),
+            Request::Table => Ok(Some(Reply::Table(self.table_info()))),
+            Request::SetKey(key) => {
+                self.only_stopped()?;
+                self.settings.key = *key;
+                self.persist.settings_changed();
+                DONE
+            }
+        }
+    }
+
+    fn only_stopped(&self) -> Result<(), Refusal> {
+        match self.state {
+            State::Stopped => self.only_idle(),
+            state => Err(Refusal::WrongState(state.name())),
+        }
+    }
+
+    fn only_idle(&self) -> Result<(), Refusal> {
+        if matches!(self.work, Work::Idle) {
+            Ok(())
+        } else {
+            Err(Refusal::Busy)
+        }
+    }
+
+    fn set_servo(&mut self, joint: Joint, settings: ServoSettings) {
+        self.settings.servos[joint.index()] = settings;
+        self.persist.settings_changed();
+    }
+
+    /// Sets a trim. While the pulses are on they stand for another angle from then on, and the joint moves back from there
+    /// no faster than allowed; where that angle would lie beyond the largest, no stop could reach neutral in its time.
+    fn trim(&mut self, joint: Joint, trim: i16) -> Outcome {
+        if !matches!(
+            self.state,
+            State::Stopped | State::EStopped | State::Holding { .. } | State::Paused { .. }
+        ) {
+            return Err(Refusal::WrongState(self.state.name()));
+        }
+        settings::check_trim(trim)?;
+        let settings = ServoSettings {
+            trim,
+            ..self.settings.servos[joint.index()]
+        };
+        if let Some(pulses_ns) = self.clamp.last() {
+            let angle = ServoMap::from(settings).angle(pulses_ns[joint.index()]);
+            if libm::fabsf(angle) > self.limits.max_angle {
+                return Err(Refusal::WrongState(self.state.name()));
+            }
+            self.commanded[joint.index()] = angle;
+        }
+        self.set_servo(joint, settings);
+        DONE
+    }
+
+    fn commit(&mut self, header: Header, upload: u16) -> Outcome {
+        self.only_idle()?;
+        if let Err(refusal) = self.tables.complete(upload) {
+            if matches!(refusal, Refusal::CrcMismatch { .. }) {
+                self.tables.abandon();
+            }
+            return Err(refusal);
+        }
+        self.work = Work::Commit {
+            reply_to: header,
+            checker: Checker::new(),
+        };
+        LATER
+    }
+
+    fn arm(&mut self, arm: Arm) -> Outcome {
+        if self.state == State::EStopped && !arm.clear_estop {
+            return Err(Refusal::EStopped);
+        }
+        if matches!(
+            self.state,
+            State::Starting { .. } | State::Playing { .. } | State::Paused { .. }
+        ) {
+            return Err(Refusal::WrongState(self.state.name()));
+        }
+        if self.battery.low() {
+            let measured_mv = self.battery.mv().unwrap_or_default();
+            return Err(Refusal::BatteryLow {
+                measured_mv,
+                limit_mv: self.limits.battery_limit_mv,
+            });
+        }
+        if let Some(wait_s) = self.resets.wait_s() {
+            return Err(Refusal::ResetLoop { wait_s });
+        }
+        self.resets.estop = false;
+        if !matches!(self.state, State::Holding { .. }) {
+            self.state = State::Holding {
+                pose: self.commanded,
+            };
+        }
+        DONE
+    }
+
+    fn play(&mut self, header: Header, play: Play) -> Outcome {
+        match self.state {
+            State::Holding { .. } => {}
+            State::EStopped => return Err(Refusal::EStopped),
+            State::Stopped | State::Stopping { .. } | State::Settling { .. } => {
+                return Err(Refusal::NotArmed);
+            }
+            State::Starting { .. } | State::Playing { .. } | State::Paused { .. } => {
+                return Err(Refusal::WrongState(self.state.name()));
+            }
+        }
+        self.only_idle()?;
+        if play.period_us < crate::TICK_US {
+            return Err(Refusal::BadValue { field: 1 });
+        }
+        if play.detached && play.cycles == 0 {
+            return Err(Refusal::DetachedEndless);
+        }
+        if self.tables.active().is_none() {
+            return Err(Refusal::NoTable);
+        }
+        self.work = Work::Play {
+            reply_to: header,
+            play,
+            route: None::<Route>,
+        };
+        LATER
+    }
+
+    fn pause(&mut self, now_us: u64, detached: bool) -> Outcome {
+        match self.state {
+            State::Playing { play, .. } => {
+                let play = self.last_play.unwrap_or(play);
+                self.state = State::Paused {
+                    pose: self.commanded,
+                    since_us: now_us,
+                    detached,
+                    play,
+                };
+                DONE
+            }
+            State::Paused {
+                pose,
+                since_us,
+                detached: before,
+                play,
+            } => {
+                // The minute without a link begins when it is first asked for.
+                let since_us = if detached && !before {
+                    now_us
+                } else {
+                    since_us
+                };
+                self.state = State::Paused {
+                    pose,
+                    since_us,
+                    detached,
+                    play,
+                };
+                DONE
+            }
+            state => Err(Refusal::WrongState(state.name())),
+        }
+    }
+}
