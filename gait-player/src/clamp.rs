@@ -131,11 +131,18 @@ mod tests {
         );
         clamp.off();
         assert_eq!(clamp.apply([-2.0, 2.0], &maps, &Limits::ROBOT).cut, None);
-        assert!(
-            clamp
-                .apply([-2.0, 2.9], &maps, &Limits::ROBOT)
-                .cut
-                .is_some()
-        );
+    }
+
+    /// Where the pulses may be anywhere, only the angle's own limit is left.
+    #[test]
+    fn an_angle_that_is_cut_is_told_although_its_pulse_is_the_limits_own() {
+        let maps = [ServoMap::ROBOT; 2];
+        for (wanted, limit) in [(2.9, 2.8), (-2.9, -2.8), (f32::NAN, -2.8)] {
+            let clamped = Clamp::new().apply([0.1, wanted], &maps, &Limits::ROBOT);
+            let cut = clamped.cut.unwrap();
+            assert!((cut[0] - 0.1).abs() < 1e-6, "{cut:?}");
+            assert!((cut[1] - limit).abs() < 1e-4, "{cut:?}");
+            assert_eq!(clamped.pulses_ns[1], maps[1].pulse_ns(limit));
+        }
     }
 }

@@ -164,7 +164,7 @@ pub fn encode_body(
     let crc = crc32c(&raw[..covered]);
     raw[covered..covered + TRAILER].copy_from_slice(&crc.to_le_bytes());
     out[0] = 0;
-    let written = cobs::try_encode(&raw[..covered + TRAILER], &mut out[1..MAX_ENCODED - 1])
+    let written = cobs::try_encode(&raw[..covered + TRAILER], &mut out[1..])
         .map_err(|_| EncodeError::BufferTooShort)?;
     out[1 + written] = 0;
     Ok(written + 2)

@@ -120,6 +120,9 @@ fn every_flipped_bit_under_a_mended_crc_is_noticed() {
 fn a_key_is_not_shown() {
     let shown = format!("{:?}", Request::SetKey(Some(KEY)));
     assert_eq!(shown, "SetKey(Some(Key(not shown)))");
+    // Nor what it has become: a state of the hash is as good as the key.
+    let shown = format!("{:?}", Seal::new(&KEY, BINDING));
+    assert_eq!(shown, "Seal(not shown)");
 }
 
 #[test]
