@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use host_link::session::{ClockFit, LinkCounters};
-use link_protocol::{Flags, StateName, Telemetry};
+use link_protocol::{StateName, Telemetry};
 use nalgebra::Vector2;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout};

@@ -1,7 +1,7 @@
 //! The screen at the sizes of terminals, as pictures of text.
 
 use super::*;
-use link_protocol::StopCause;
+use link_protocol::{Flags, StopCause};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use swimmer_model::Swimmer;
