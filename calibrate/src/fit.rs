@@ -211,7 +211,7 @@ impl std::fmt::Display for FitWarning {
             ),
             Self::FewRuns { runs } => write!(
                 f,
-                "{runs} run(s) for two parameters: the intervals are wide and rest on little"
+                "{runs} run(s) for two parameters: what differs from run to run hardly shows in so few, and the intervals leave it out"
             ),
             Self::Outlier {
                 run,

@@ -322,6 +322,66 @@ fn refits_on_the_surface_are_refits() {
     assert_ne!(again(2).intervals, evidence.bootstrap.intervals);
 }
 
+/// One run, two runs, no noise, no sphere: whatever could be fitted can be weighed.
+#[test]
+fn evidence_of_little_is_still_evidence() {
+    let bare = Swimmer {
+        chi: 2.6,
+        ..Swimmer::robot_slender()
+    };
+    let perfect = Tank {
+        steps: 50,
+        ..robot().perfect()
+    };
+    let cases: [(&str, Tank, &[f64]); 5] = [
+        ("one run", robot(), &[70.0]),
+        ("two runs", robot(), &[50.0, 90.0]),
+        ("the same gait thrice", robot(), &[70.0, 70.0, 70.0]),
+        ("no noise", perfect, &AMPLITUDES),
+        (
+            "no sphere",
+            Tank {
+                swimmer: bare,
+                ..robot()
+            },
+            &AMPLITUDES,
+        ),
+    ];
+    for (name, tank, degrees) in cases {
+        let (campaign, data) = campaign(&tank, degrees, Tank::motive, tank.named());
+        let found = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
+        let options = EvidenceOptions {
+            draws: 200,
+            ..EvidenceOptions::default()
+        };
+        let evidence = weigh_evidence(&campaign, &data, &found, options).unwrap();
+        let likelihood = &evidence.likelihood;
+        println!(
+            "{name}: fit {} {} {:?}",
+            found.fit.sphere_radius, found.fit.chi, found.fit.intervals
+        );
+        println!(
+            "  {likelihood:?}, open {:?} {:?}",
+            evidence.profiles[0].open, evidence.profiles[1].open
+        );
+        println!(
+            "  bootstrap {:?}, outliers {:?}",
+            evidence.bootstrap.intervals, evidence.outliers
+        );
+        for [low, high] in [likelihood.intervals.sphere_radius, likelihood.intervals.chi] {
+            assert!(low >= 0.0 && low <= high && high.is_finite(), "{name}");
+        }
+        let chi = likelihood.estimate.chi / tank.swimmer.chi;
+        assert!((chi - 1.0).abs() < 0.05, "{name}: {chi}");
+        assert!(
+            evidence.outliers.is_empty(),
+            "{name}: {:?}",
+            evidence.outliers
+        );
+        assert_eq!(evidence.run_errors.len(), degrees.len());
+    }
+}
+
 /// One run whose X is wrong (a wrong scale, a robot that was pushed): it is named, and the estimate of greatest likelihood stays.
 #[test]
 fn a_run_with_a_wrong_x_is_named_and_moves_nothing() {
