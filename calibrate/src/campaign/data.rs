@@ -143,7 +143,7 @@ pub fn load_tracks(file: &Path, options: &TrackOptions) -> Result<TrackFile, Cal
     Ok(read_tracks_with(stream, file, options)?)
 }
 
-/// Reads one tracking file for [`calibrate_run`]; as [`CampaignData::load`], an edge to the file system.
+/// Reads one tracking file for [`calibrate_run`](crate::calibrate_run); as [`CampaignData::load`], an edge to the file system.
 ///
 /// # Errors
 /// [`CalibrateError`] when it cannot be opened or read.
