@@ -44,3 +44,37 @@ impl Limits {
         self.max_rate * (TICK_US as f32 * 1e-6)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Boot;
+    use crate::brain::{BrainConfig, Identity};
+    use link_protocol::{Board, FirmwareVersion};
+
+    #[test]
+    fn a_configuration_tightens_and_never_loosens() {
+        let firmware = FirmwareVersion {
+            major: 0,
+            minor: 1,
+            patch: 0,
+            commit: [0; 8],
+        };
+        let board = Board::Twin;
+        let identity = Identity { firmware, board };
+        let robot = BrainConfig::robot(identity, Boot::power_on(1, 1)).configuration;
+        for (factor, expected) in [(0.5, 0.5), (1.0, 1.0), (2.0, 1.0)] {
+            let configuration = Configuration {
+                max_angle: factor * Limits::ROBOT.max_angle,
+                max_rate: factor * Limits::ROBOT.max_rate,
+                ..robot
+            };
+            let limits = Limits {
+                max_angle: expected * Limits::ROBOT.max_angle,
+                max_rate: expected * Limits::ROBOT.max_rate,
+                ..Limits::ROBOT
+            };
+            assert_eq!(Limits::ROBOT.tightened(&configuration), limits);
+        }
+    }
+}

@@ -89,6 +89,25 @@ mod tests {
     }
 
     #[test]
+    fn settings_on_the_wire_are_the_map_with_the_trim_in_radians() {
+        let settings = ServoSettings {
+            centre_ns: 1_490_000,
+            slope_rad_per_us: 0.03,
+            reversed: true,
+            trim: -250,
+        };
+        let map = ServoMap::from(settings);
+        assert!((map.trim + 0.025).abs() < 1e-7, "{map:?}");
+        let without = ServoMap {
+            centre_ns: 1_490_000,
+            slope_rad_per_us: 0.03,
+            reversed: true,
+            trim: map.trim,
+        };
+        assert_eq!(map, without);
+    }
+
+    #[test]
     fn nonsense_does_not_wrap_around() {
         let map = ServoMap::ROBOT;
         assert_eq!(map.pulse_ns(f32::NAN), 1_500_000);
