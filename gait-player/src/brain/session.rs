@@ -212,6 +212,7 @@ mod tests {
             ],
             [0xFFFE, 0xFFFE, 0xFFFF, 1]
         );
+        assert_eq!(session.number(), 1);
         assert_eq!(Session::new(0, 7).greet(9, None), 1);
     }
 
