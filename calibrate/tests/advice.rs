@@ -8,7 +8,7 @@ use calibrate::{
 use swimmer_files::GaitSpec;
 use twin_campaigns::Laboratory;
 
-const CAMPAIGNS: u64 = 6;
+const CAMPAIGNS: u64 = 4;
 
 /// Widths of the intervals of `r_s` and of ln χ by likelihood: mean logarithms over campaigns.
 fn widths(amplitudes: &[f64]) -> [f64; 2] {

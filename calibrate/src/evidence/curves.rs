@@ -47,13 +47,13 @@ mod tests {
     #[test]
     fn a_curve_ends_where_the_servos_do() {
         let mut file = SwimmerFile::preset("robot").unwrap();
-        assert_eq!(circle_curve(&file, 10.0).len(), 24);
+        assert_eq!(circle_curve(&file, 10.0).len(), 60);
         file.servo = Some(ServoFile {
             max_angle: 1.0,
             ..ServoFile::default()
         });
         let curve = circle_curve(&file, 10.0);
-        assert_eq!(curve.len(), 11);
+        assert_eq!(curve.len(), 28);
         assert!(
             curve
                 .windows(2)
