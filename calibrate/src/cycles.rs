@@ -365,7 +365,7 @@ impl Clock {
             let samples = window(track, start, period);
             let tracked = samples.iter().filter(|s| !s.is_filled()).count();
             let missing = (1.0 - tracked as f64 / (period * track.rate_hz)).max(0.0);
-            let trusted = samples.iter().filter(|s| s.origin == Origin::Seen);
+            let trusted = samples.iter().filter(|s| s.origin != Origin::Tail);
             let curve = Curve::fit(
                 trusted.map(|s| ((s.time_s - start) / period, s.pose)),
                 1.0 / (period * track.rate_hz),

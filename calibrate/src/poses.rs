@@ -5,9 +5,9 @@
 //! 2. [`Plane`] is fitted to all of their positions and gives the tank's x and y.
 //! 3. Two points in the plane and their places on the link give the link's centre and heading.
 //!
-//! Gaps of at most [`PoseOptions::longest_fill_s`] are filled by a monotone cubic, the samples beside gaps are not trusted, and
-//! both are marked ([`Origin`]). They are there to be drawn: no estimate uses them, since least squares needs no evenly spaced
-//! samples.
+//! Gaps of at most [`PoseOptions::longest_fill_s`] are filled by a monotone cubic, which also takes the place of the samples
+//! beside them, since those are not trusted; all are marked ([`Origin`]). Cycles use them: a harmonic curve leaves a rest of a
+//! gait with corners, and where samples are missing that rest does not average out. Longer gaps stay gaps.
 
 mod assembly;
 mod fill;
@@ -218,8 +218,11 @@ impl fmt::Display for FrontRule {
 pub enum Origin {
     /// Both reflectors were seen.
     Seen,
-    /// Both were seen, but right before or after a gap, where what is seen of a reflector is not all of it.
+    /// Both were seen, but right before or after a gap too long to be filled, where what is seen of a reflector is not all of
+    /// it. For drawing only.
     Tail,
+    /// Both were seen, right before or after a gap that was filled; the pose is the cubic's.
+    Smoothed,
     /// From the reflector that was seen, and a cubic's heading.
     OneSeen,
     /// From a cubic.
@@ -232,6 +235,7 @@ impl Origin {
         match self {
             Self::Seen => "seen",
             Self::Tail => "tail",
+            Self::Smoothed => "smoothed",
             Self::OneSeen => "one-seen",
             Self::Filled => "filled",
         }
@@ -265,7 +269,7 @@ pub struct PoseTrack {
 }
 
 impl PoseTrack {
-    /// The samples that estimates are made of: seen, and not beside a gap.
+    /// The samples that were seen, and not beside a gap.
     pub fn seen(&self) -> impl Iterator<Item = &PoseSample> {
         self.with(Origin::Seen)
     }

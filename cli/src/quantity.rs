@@ -54,7 +54,9 @@ pub(crate) fn crossing(of_cycle: f64) -> String {
 
 /// A number without a unit that may be very small.
 pub(crate) fn small(value: f64) -> String {
-    if value.abs() >= 0.001 {
+    if value == 0.0 {
+        "0".to_owned()
+    } else if value.abs() >= 0.001 {
         format!("{value:.4}")
     } else {
         format!("{value:.1e}")
@@ -156,6 +158,10 @@ mod tests {
         assert_eq!(length(-3.0), "-3.000000 m");
         assert_eq!(angle(-1e-9), "0.000°");
         assert_eq!(deviation(-0.0123), "-1.23 %");
+        assert_eq!(
+            (small(0.0), small(3e-5)),
+            ("0".to_owned(), "3.0e-5".to_owned())
+        );
     }
 
     #[test]

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use swimmer_files::Reflectors;
 use swimmer_model::Pose;
 
-use super::fill::{Bridge, Seen};
+use super::fill::{Bridge, Seen, TAIL};
 use super::follow::Followed;
 use super::{Origin, Plane, PoseSample, pose_of, wrapped};
 use crate::TrackFile;
@@ -31,39 +31,60 @@ impl Assembly<'_> {
                 origin,
             });
         };
-        let [front, back] = [self.reflectors.front.at, self.reflectors.back.at];
+        let bridges: Vec<Option<Bridge>> = (0..seen.len()).map(|i| self.bridge(seen, i)).collect();
         for (index, sample) in seen.iter().enumerate() {
-            for (time_s, pose, origin) in self.fill(seen, index).unwrap_or_default() {
+            let bridge = bridges.get(index).and_then(Option::as_ref);
+            let filled = bridge.and_then(|bridge| self.fill(bridge, seen, index));
+            for (time_s, pose, origin) in filled.unwrap_or_default() {
                 push(time_s, pose, origin);
             }
-            let pose = pose_of(&sample.front, &sample.back, front, back);
-            let origin = if sample.tail {
-                Origin::Tail
-            } else {
-                Origin::Seen
-            };
+            let mut pose = self.pose(&sample.front, &sample.back);
+            let mut origin = Origin::Seen;
+            if sample.tail {
+                // The cubic of a gap within reach, where that was filled.
+                let near = index.saturating_sub(TAIL - 1)..=index + TAIL;
+                let bridge = near.filter_map(|i| bridges.get(i)?.as_ref()).next();
+                let smooth = bridge.and_then(|bridge| bridge.at(sample.time_s));
+                origin = smooth.map_or(Origin::Tail, |_| Origin::Smoothed);
+                pose = smooth.map_or(pose, |(front, back)| self.pose(&front, &back));
+            }
             push(sample.time_s, pose, origin);
         }
         samples
     }
 
-    /// The poses in the gap before a sample, if there is one that may be filled.
-    fn fill(&self, seen: &[Seen], after: usize) -> Option<Vec<(f64, Pose<f64>, Origin)>> {
+    fn pose(&self, front: &Vector2<f64>, back: &Vector2<f64>) -> Pose<f64> {
+        pose_of(
+            front,
+            back,
+            self.reflectors.front.at,
+            self.reflectors.back.at,
+        )
+    }
+
+    /// The cubic over the gap before a sample, if there is one that may be filled.
+    fn bridge(&self, seen: &[Seen], after: usize) -> Option<Bridge> {
         let (before, next) = (seen.get(after.checked_sub(1)?)?, seen.get(after)?);
-        let rows = before.row + 1..next.row;
         let gap_s = next.time_s - before.time_s;
-        if rows.is_empty() || gap_s > self.longest_s + 1.5 / self.track.rate_hz {
-            return None;
-        }
-        let bridge = Bridge::over(seen, after)?;
+        let may = next.row - before.row > 1 && gap_s <= self.longest_s + 1.5 / self.track.rate_hz;
+        may.then(|| Bridge::over(seen, after)).flatten()
+    }
+
+    /// The poses in the gap before a sample.
+    fn fill(
+        &self,
+        bridge: &Bridge,
+        seen: &[Seen],
+        after: usize,
+    ) -> Option<Vec<(f64, Pose<f64>, Origin)>> {
+        let rows = seen.get(after.checked_sub(1)?)?.row + 1..seen.get(after)?.row;
         // In a single lost frame the cubic is better than one reflector's noise.
         let hidden = rows.len() > 1;
         let row = |row: usize| {
             let time_s = *self.track.times.get(row)?;
             let (front, back) = bridge.at(time_s)?;
             let moved = hidden.then(|| self.moved(row, &front, &back)).flatten();
-            let [at_front, at_back] = [self.reflectors.front.at, self.reflectors.back.at];
-            let mut pose = pose_of(&front, &back, at_front, at_back);
+            let mut pose = self.pose(&front, &back);
             let by = moved.unwrap_or_default();
             (pose.x, pose.y) = (pose.x + by.x, pose.y + by.y);
             let origin = moved.map_or(Origin::Filled, |_| Origin::OneSeen);

@@ -1,7 +1,7 @@
 //! Gaps: the samples beside them are not trusted, short ones are filled, and both are marked.
 //!
 //! A reflector that is about to be hidden is seen in part, and what is seen of it is off its centre: so beside a gap of two
-//! rows and more [`TAIL`] samples on either side become tails. (One missing row is a lost frame, not a hidden reflector.)
+//! rows and more [`TAIL`] samples on either side become tails, for which the cubic stands in. (One missing row is a lost frame, not a hidden reflector.)
 //!
 //! A gap of at most the longest fill is filled in x and y of each reflector by the monotone cubic through the means of a few
 //! trusted samples on either side: means, because over a gap of ten rows a slope between two neighbouring rows is noise. Where

@@ -66,9 +66,11 @@ pub(crate) struct LeftOutAnswer {
 pub(crate) struct Samples {
     pub(crate) frames: usize,
     pub(crate) seen: usize,
-    /// Seen, but right beside a gap: drawn, not used.
+    /// Seen, but right beside a gap too long to be filled: drawn, not used.
     pub(crate) tails: usize,
-    /// In short gaps: drawn, not used.
+    /// Seen right beside a filled gap, and replaced by its cubic.
+    pub(crate) smoothed: usize,
+    /// In short gaps.
     pub(crate) filled: usize,
 }
 
@@ -255,6 +257,7 @@ impl RunAnswer {
                 frames: run.poses.frames,
                 seen: run.poses.seen().count(),
                 tails: run.poses.with(Origin::Tail).count(),
+                smoothed: run.poses.with(Origin::Smoothed).count(),
                 filled: run.poses.samples.iter().filter(|s| s.is_filled()).count(),
             },
             front_words: run.poses.front.to_string(),

@@ -265,7 +265,7 @@ fn runs(html: &mut String, calibration: &Calibration<'_>) {
 fn left_out(html: &mut String, calibration: &Calibration<'_>) {
     html.push_str(
         "<section><h2>Cycles and samples that do not count</h2><table class=left><thead><tr><th>track<th>cycle at [s]<th>why\
-         <th>frames<th>filled<th>beside gaps</tr></thead><tbody>",
+         <th>frames<th>filled<th>smoothed<th>beside long gaps</tr></thead><tbody>",
     );
     for (answer, run) in calibration.answer.runs.iter().zip(&calibration.found.runs) {
         let listed = &run.cycles.left_out;
@@ -277,16 +277,17 @@ fn left_out(html: &mut String, calibration: &Calibration<'_>) {
             .collect();
         let _ = write!(
             html,
-            "<td>{}<td class=name>{}<td>{}<td>{}<td>{}</tr>",
+            "<td>{}<td class=name>{}<td>{}<td>{}<td>{}<td>{}</tr>",
             times.join("<br>"),
             reasons.join("<br>"),
             answer.samples.frames,
             answer.samples.filled,
+            answer.samples.smoothed,
             answer.samples.tails,
         );
     }
     html.push_str(
-        "</tbody></table><p class=note>Filled poses and those within three samples of a gap are drawn and never used.</p></section>",
+        "</tbody></table><p class=note>Gaps of 0.1 s at most are filled by a cubic, which also stands for the three samples on either side; beside longer gaps these are drawn, never used.</p></section>",
     );
 }
 
