@@ -8,7 +8,7 @@ use std::path::Path;
 
 use calibrate::{
     CalibrateError, CycleError, CycleWarning, FrontRule, LeftOut, Origin, PoseError, PoseOptions,
-    PoseSample, TrackOptions, calibrate_run, poses, read_tracks_with,
+    TrackOptions, calibrate_run, poses, read_tracks_with,
 };
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, PointName};

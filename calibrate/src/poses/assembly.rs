@@ -42,8 +42,8 @@ impl Assembly<'_> {
             let mut origin = Origin::Seen;
             if sample.tail {
                 // The cubic of a gap within reach, where that was filled.
-                let near = index.saturating_sub(TAIL - 1)..=index + TAIL;
-                let bridge = near.filter_map(|i| bridges.get(i)?.as_ref()).next();
+                let mut near = index.saturating_sub(TAIL - 1)..=index + TAIL;
+                let bridge = near.find_map(|i| bridges.get(i)?.as_ref());
                 let smooth = bridge.and_then(|bridge| bridge.at(sample.time_s));
                 origin = smooth.map_or(Origin::Tail, |_| Origin::Smoothed);
                 pose = smooth.map_or(pose, |(front, back)| self.pose(&front, &back));
