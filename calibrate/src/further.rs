@@ -266,17 +266,22 @@ pub(crate) fn measured(found: &CampaignFit, scales: [f64; 3]) -> Data {
 /// Dead bands to start from \[rad\], beside the files'.
 const DEAD_BANDS: [f64; 3] = [0.03, 0.09, 0.18];
 
+/// Offsets of the reflectors' middle to start from, as shares of the largest: seen from the wrong side of the joints' middle a link
+/// sways nearly as much, so that there are two minima.
+const MARKERS: [f64; 2] = [-0.5, 0.5];
+
 fn starts(setting: &Setting<'_>, found: &CampaignFit) -> Vec<Vec<f64>> {
     let begun = setting.begin(found);
     let mut starts = vec![begun.clone()];
-    if let Some(place) = setting
-        .slots
-        .iter()
-        .position(|slot| *slot == Slot::DeadBand)
-    {
-        starts.extend(DEAD_BANDS.map(|dead_band| {
+    for (place, (slot, (_, high))) in setting.slots.iter().zip(setting.bounds()).enumerate() {
+        let others: &[f64] = match slot {
+            Slot::DeadBand => &DEAD_BANDS,
+            Slot::MarkerAlong | Slot::MarkerAcross => &MARKERS.map(|share| share * high),
+            _ => &[],
+        };
+        starts.extend(others.iter().map(|value| {
             let mut start = begun.clone();
-            start[place] = dead_band;
+            start[place] = *value;
             start
         }));
     }

@@ -22,7 +22,6 @@ pub(crate) struct Data {
 #[derive(Debug, Clone)]
 pub(crate) struct Minimum {
     pub(crate) at: Vec<f64>,
-    pub(crate) cost: f64,
     pub(crate) residuals: Vec<f64>,
     pub(crate) jacobian: DMatrix<f64>,
 }
@@ -91,7 +90,6 @@ pub(crate) fn minimise(
     }
     Some(Minimum {
         at,
-        cost,
         residuals,
         jacobian,
     })
@@ -106,17 +104,41 @@ pub(crate) struct Likeliest {
     pub(crate) log_likelihood: f64,
 }
 
-/// From several starts to the best least squares, from there to the largest likelihood.
+/// Minima that are nearer than this are one.
+const APART: f64 = 1e-4;
+
+/// From several starts to minima of least squares, from each of them to a largest likelihood, of which the largest counts.
 pub(crate) fn likeliest(
     setting: &Setting<'_>,
     data: &Data,
     starts: &[Vec<f64>],
 ) -> Option<Likeliest> {
     let even = vec![1.0; data.values.len()];
-    let ends = starts
+    let mut ends: Vec<Minimum> = Vec::new();
+    for end in starts
         .iter()
-        .filter_map(|start| minimise(setting, data, &even, start));
-    let best = ends.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+        .filter_map(|start| minimise(setting, data, &even, start))
+    {
+        let near = |other: &Minimum| {
+            let apart = end.at.iter().zip(&other.at).map(|(a, b)| (a - b).abs());
+            apart.sum::<f64>() < APART
+        };
+        if !ends.iter().any(near) {
+            ends.push(end);
+        }
+    }
+    ends.into_iter()
+        .filter_map(|end| likeliest_from(setting, data, even.clone(), end))
+        .max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood))
+}
+
+/// Weights from the residuals, parameters from the weights, in turn.
+fn likeliest_from(
+    setting: &Setting<'_>,
+    data: &Data,
+    even: Vec<f64>,
+    end: Minimum,
+) -> Option<Likeliest> {
     let components = |minimum: &Minimum, weights: &[f64]| {
         Components::of(
             &minimum.jacobian,
@@ -125,8 +147,8 @@ pub(crate) fn likeliest(
             data.within.clone(),
         )
     };
-    let mut found = components(&best, &even)?;
-    let mut minimum = best;
+    let mut found = components(&end, &even)?;
+    let mut minimum = end;
     let mut weights = even;
     for _ in 0..ROUNDS {
         let before = minimum.at.clone();
