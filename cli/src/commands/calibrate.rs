@@ -7,13 +7,14 @@ mod folder;
 use std::path::{Path, PathBuf};
 
 use calibrate::{
-    CalibrateError, CampaignData, CampaignFit, FitOptions, RunResult, TrackOptions, c_t_form,
-    calibrate_campaign, calibrate_run, load_run, usual_reflectors,
+    CalibrateError, CampaignData, CampaignFit, EvidenceOptions, FitOptions, RunResult,
+    TrackOptions, c_t_form, calibrate_campaign, calibrate_run, load_run, usual_reflectors,
+    weigh_evidence,
 };
 use swimmer_files::{Campaign, GaitSpec, PointName, SwimmerFile};
 
+use self::answer::RunsAnswer;
 pub(crate) use self::answer::{FitAnswer, RunAnswer};
-use self::answer::{Intervals, RunsAnswer};
 use self::asked::{Asked, AskedAnswer};
 use crate::arguments::{gait, load_swimmer, seconds};
 use crate::failure::{Failure, Outcome};
@@ -110,13 +111,10 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
         sphere_radius_m: fit.sphere_radius,
         chi: fit.chi,
         rmse: fit.rmse,
-        intervals: Intervals {
-            sphere_radius_m: fit.intervals.sphere_radius,
-            chi: fit.intervals.chi,
-            level: fit.intervals.level,
-        },
+        intervals: (&fit.intervals).into(),
         correlation: fit.correlation,
         c_t_form: c_t_form(&fit.c_t_form),
+        likelihood: None,
         warnings: of_runs
             .chain(fit.warnings.iter().map(ToString::to_string))
             .collect(),
@@ -194,11 +192,21 @@ impl Calibrate {
             .asked
             .answer(&fitted.campaign, &fitted.data, &fitted.found)?;
         fitted.answer.asked = answer;
+        let options = EvidenceOptions::default();
+        let evidence = weigh_evidence(&fitted.campaign, &fitted.data, &fitted.found, options);
+        match &evidence {
+            Ok(evidence) => fitted.answer.likelihood = Some((&evidence.likelihood).into()),
+            Err(cause) => fitted
+                .answer
+                .warnings
+                .push(format!("no estimate by likelihood: {cause}")),
+        }
         if let Some(folder) = folder {
             if let Some(further) = further {
                 further.save(&folder.draft().join("fitted-further.toml"))?;
             }
-            folder::write(&fitted, &self.file, folder.draft(), folder.place())?;
+            let weighed = (&evidence?, options);
+            folder::write(&fitted, weighed, &self.file, folder.draft(), folder.place())?;
             folder.publish()?;
         }
         output.answer(&fitted.answer);

@@ -119,6 +119,14 @@ fn what_a_calibration_leaves_behind(demo: &Path) {
         (&first["front_rule"], &first["phase"]),
         (&"label".into(), &"heading".into())
     );
+    // The estimate by likelihood, beside the paper's.
+    let likelihood = &answer["likelihood"];
+    let chi = number(likelihood, "chi");
+    assert!((chi / 3.598 - 1.0).abs() < 0.01, "{likelihood:#}");
+    let interval = likelihood["intervals"]["chi"].as_array().unwrap();
+    let [low, high] = [0, 1].map(|end| interval[end].as_f64().unwrap());
+    assert!(low < chi && chi < high, "{likelihood:#}");
+
     let evidence: serde_json::Value = serde_json::from_str(&read("evidence.json")).unwrap();
     assert_eq!(evidence["without_run"].as_array().unwrap().len(), 9);
 

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
+use calibrate::evidence::Likelihood;
 use calibrate::{Origin, RunResult};
 use serde::Serialize;
 use swimmer_files::GaitSpec;
@@ -85,6 +86,9 @@ pub(crate) struct FitAnswer {
     /// Between both.
     pub(crate) correlation: f64,
     pub(crate) c_t_form: String,
+    /// The estimate beside the paper's: each value weighed by its own variance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) likelihood: Option<LikelihoodAnswer>,
     /// What to know about the runs and the fit.
     pub(crate) warnings: Vec<String>,
     #[serde(flatten)]
@@ -96,6 +100,34 @@ pub(crate) struct Intervals {
     pub(crate) sphere_radius_m: [f64; 2],
     pub(crate) chi: [f64; 2],
     pub(crate) level: f64,
+}
+
+/// The estimate of greatest likelihood, with its profiles' intervals.
+#[derive(Debug, Clone, Serialize)]
+pub(super) struct LikelihoodAnswer {
+    sphere_radius_m: f64,
+    chi: f64,
+    intervals: Intervals,
+}
+
+impl From<&Likelihood> for LikelihoodAnswer {
+    fn from(likelihood: &Likelihood) -> Self {
+        Self {
+            sphere_radius_m: likelihood.estimate.sphere_radius,
+            chi: likelihood.estimate.chi,
+            intervals: (&likelihood.intervals).into(),
+        }
+    }
+}
+
+impl From<&calibrate::Intervals> for Intervals {
+    fn from(intervals: &calibrate::Intervals) -> Self {
+        Self {
+            sphere_radius_m: intervals.sphere_radius,
+            chi: intervals.chi,
+            level: intervals.level,
+        }
+    }
 }
 
 /// Only the cycles: what a single run can tell.
@@ -138,40 +170,50 @@ fn notes(f: &mut fmt::Formatter<'_>, warnings: &[String]) -> fmt::Result {
 
 impl fmt::Display for FitAnswer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Intervals {
-            sphere_radius_m: [r_low, r_high],
-            chi: [chi_low, chi_high],
-            level,
-        } = self.intervals;
-        let percent = level * 100.0;
         let mut rows = Rows::default();
-        rows.row(
-            "sphere radius r_s",
-            format!(
-                "{:.3} mm   ({percent:.0} %: {:.3} … {:.3} mm)",
-                self.sphere_radius_m * 1e3,
-                r_low * 1e3,
-                r_high * 1e3
-            ),
-        )
-        .row(
-            "drag ratio χ",
-            format!(
-                "{:.4}      ({percent:.0} %: {chi_low:.4} … {chi_high:.4})",
-                self.chi
-            ),
-        )
-        .row(
-            "RMSE",
-            format!("{} (the paper's weights)", quantity::small(self.rmse)),
-        )
-        .row("form of c_t", &self.c_t_form);
+        let [radius, chi] = with_intervals(self.sphere_radius_m, self.chi, &self.intervals);
+        rows.row("sphere radius r_s", radius)
+            .row("drag ratio χ", chi)
+            .row(
+                "RMSE",
+                format!("{} (the paper's weights)", quantity::small(self.rmse)),
+            )
+            .row("form of c_t", &self.c_t_form);
+        if let Some(LikelihoodAnswer {
+            sphere_radius_m,
+            chi,
+            intervals,
+        }) = &self.likelihood
+        {
+            let [radius, chi] = with_intervals(*sphere_radius_m, *chi, intervals);
+            rows.row("r_s by likelihood", radius)
+                .row("χ by likelihood", chi);
+        }
         write!(f, "{}", table(&self.runs))?;
         left_out(f, &self.runs)?;
         write!(f, "\n\n{rows}")?;
         notes(f, &self.warnings)?;
         write!(f, "{}", self.asked)
     }
+}
+
+/// r_s and χ with their intervals, for people.
+fn with_intervals(sphere_radius_m: f64, chi: f64, intervals: &Intervals) -> [String; 2] {
+    let Intervals {
+        sphere_radius_m: [r_low, r_high],
+        chi: [chi_low, chi_high],
+        level,
+    } = intervals;
+    let percent = level * 100.0;
+    [
+        format!(
+            "{:.3} mm   ({percent:.0} %: {:.3} … {:.3} mm)",
+            sphere_radius_m * 1e3,
+            r_low * 1e3,
+            r_high * 1e3
+        ),
+        format!("{chi:.4}      ({percent:.0} %: {chi_low:.4} … {chi_high:.4})"),
+    ]
 }
 
 fn table(runs: &[RunAnswer]) -> Table {

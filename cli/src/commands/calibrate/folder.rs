@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibrate::{EvidenceOptions, weigh_evidence};
+use calibrate::{Evidence, EvidenceOptions};
 use swimmer_files::{Campaign, Provenance, write_atomically};
 
 use super::FittedCampaign;
@@ -18,16 +18,20 @@ const REPORT: &str = "report.html";
 /// Fills `draft`, which will stand at `place`.
 ///
 /// # Errors
-/// As weighing the evidence, hashing the inputs and writing.
-pub(super) fn write(fitted: &FittedCampaign, file: &Path, draft: &Path, place: &Path) -> Outcome {
+/// As hashing the inputs and writing.
+pub(super) fn write(
+    fitted: &FittedCampaign,
+    (evidence, options): (&Evidence, EvidenceOptions),
+    file: &Path,
+    draft: &Path,
+    place: &Path,
+) -> Outcome {
     let FittedCampaign {
         answer,
         found,
         campaign,
-        data,
+        ..
     } = fitted;
-    let options = EvidenceOptions::default();
-    let evidence = weigh_evidence(campaign, data, found, options)?;
     let made_by = concat!("swimmer calibrate ", env!("CARGO_PKG_VERSION"));
     let provenance = Provenance::of_files(made_by, &Campaign::files(file)?, place)?;
     let save = |name: &str, text: &str| write_atomically(&draft.join(name), text.as_bytes());
@@ -36,7 +40,7 @@ pub(super) fn write(fitted: &FittedCampaign, file: &Path, draft: &Path, place: &
     let names: Vec<String> = answer.runs.iter().map(|run| run.file.clone()).collect();
     save(
         EVIDENCE,
-        &document(&evidence_json(&evidence, options, &names)),
+        &document(&evidence_json(evidence, options, &names)),
     )?;
     let mut files = vec![
         (
@@ -52,14 +56,14 @@ pub(super) fn write(fitted: &FittedCampaign, file: &Path, draft: &Path, place: &
             "likelihood, profiles, ridge, bootstrap, fits without each run",
         ),
     ];
-    for (name, what, text) in tables(found, &evidence, &names) {
+    for (name, what, text) in tables(found, evidence, &names) {
         save(name, &text)?;
         files.push((name, what));
     }
     let report = page(&Calibration {
         campaign,
         found,
-        evidence: &evidence,
+        evidence,
         answer,
         options,
         provenance: &provenance,
