@@ -197,7 +197,7 @@ impl fmt::Display for FitAnswer {
     }
 }
 
-/// r_s and χ with their intervals, for people.
+/// `r_s` and χ with their intervals, for people.
 fn with_intervals(sphere_radius_m: f64, chi: f64, intervals: &Intervals) -> [String; 2] {
     let Intervals {
         sphere_radius_m: [r_low, r_high],
