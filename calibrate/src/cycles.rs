@@ -15,8 +15,7 @@ mod clock;
 mod curve;
 mod integral;
 mod statistics;
-
-use std::fmt;
+mod told;
 
 use swimmer_model::Pose;
 
@@ -27,6 +26,8 @@ use clock::Bin;
 pub(crate) use clock::shift;
 pub(crate) use curve::{Curve, Harmonics, Projection};
 pub use statistics::Statistics;
+use told::SAME_PHASE;
+pub use told::{CycleError, CycleWarning, LeftOut};
 
 /// Times that a start is refined: each leaves the square of the error before.
 const REFINEMENTS: usize = 2;
@@ -36,129 +37,6 @@ const CLOCKS_DIFFER: f64 = 1e-3;
 const MOST_MISSING: f64 = 0.1;
 /// A cycle is unlike the others when its residual is this many times their median.
 const UNLIKE: f64 = 3.0;
-
-/// Why a track gave no cycles.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum CycleError {
-    /// The robot never moves.
-    #[error("the robot does not move in this track")]
-    NoMotion,
-    /// Not one whole cycle.
-    #[error(
-        "the robot moves for {active_s:.2} s, from {from_s:.2} s on, and no cycle of {period_s:.3} s in it is whole and clean \
-         ({left_out} left out); check period_s, or record longer"
-    )]
-    NoCycle {
-        /// From when it moves \[s\].
-        from_s: f64,
-        /// How long it moves \[s\].
-        active_s: f64,
-        /// The period \[s\].
-        period_s: f64,
-        /// Cycles that were left out.
-        left_out: usize,
-    },
-    /// The heading does not swing, so nothing tells where a cycle starts.
-    #[error(
-        "the heading does not swing with the period of {period_s:.3} s; check period_s and the gait"
-    )]
-    NoPhase {
-        /// The period \[s\].
-        period_s: f64,
-    },
-}
-
-/// What to know about a run's cycles.
-#[derive(Debug, Clone, PartialEq)]
-pub enum CycleWarning {
-    /// The period differs from the commanded one by more than 0.5 %.
-    Period {
-        /// As commanded \[s\].
-        commanded_s: f64,
-        /// As found \[s\].
-        found_s: f64,
-    },
-    /// No period within ±2 % of the commanded one is best.
-    PeriodNotFound {
-        /// As commanded \[s\].
-        commanded_s: f64,
-    },
-    /// Only one cycle: X is its drift, and there is no deviation.
-    OneCycle,
-    /// The start-up cycle could not be dropped, because it is the only one.
-    StartUpKept,
-    /// The heading says that cycles began at another time than the log or the flash does.
-    PhaseDiffers {
-        /// By how much later \[s\].
-        by_s: f64,
-        /// The period \[s\].
-        period_s: f64,
-    },
-}
-
-/// Phases may differ by this much of a period before it is worth a word.
-const SAME_PHASE: f64 = 0.02;
-
-impl fmt::Display for CycleWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Period {
-                commanded_s,
-                found_s,
-            } => write!(
-                f,
-                "the period is {found_s:.4} s, not {commanded_s} s as commanded ({:+.2} %): the clocks drift, or the command was another",
-                100.0 * (found_s / commanded_s - 1.0)
-            ),
-            Self::PeriodNotFound { commanded_s } => write!(
-                f,
-                "no period within 2 % of {commanded_s} s fits best; {commanded_s} s was used; check period_s"
-            ),
-            Self::OneCycle => f.write_str(
-                "there is only one clean cycle: X is taken from its drift, without a deviation",
-            ),
-            Self::StartUpKept => {
-                f.write_str("the only cycle is the first, which may hold the start-up")
-            }
-            Self::PhaseDiffers { by_s, period_s } => write!(
-                f,
-                "by the heading, cycles began {by_s:+.3} s ({:+.1} % of a period) from where the log or the flash puts them: check \
-                 clock_offset_s or cycle_start_s, and the gait",
-                100.0 * by_s / period_s
-            ),
-        }
-    }
-}
-
-/// Why a whole cycle was left out.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LeftOut {
-    /// The first one.
-    StartUp,
-    /// Too many samples are missing: the share.
-    Missing(f64),
-    /// Its poses are unlike the other cycles': residual \[m\].
-    Unlike(f64),
-    /// By the robot's log it was broken off, paused or swapped.
-    Unsteady,
-}
-
-impl fmt::Display for LeftOut {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::StartUp => f.write_str("start-up: the first whole cycle is never used"),
-            Self::Missing(share) => write!(f, "{:.0} % of its samples are missing", 100.0 * share),
-            Self::Unlike(residual_m) => write!(
-                f,
-                "unlike the others: {:.2} mm (rms) from its own harmonic curve",
-                1e3 * residual_m
-            ),
-            Self::Unsteady => {
-                f.write_str("by the robot's log its pace changed (pause, swap or stop)")
-            }
-        }
-    }
-}
 
 /// One cycle.
 #[derive(Debug, Clone, PartialEq)]

@@ -231,8 +231,7 @@ pub fn fit_further(
         })
     };
     let before = likeliest(&plain, &measured, &[plain.begin(found)]).ok_or_else(undetermined)?;
-    let starts = starts(&setting, found);
-    let after = likeliest(&setting, &measured, &starts).ok_or_else(undetermined)?;
+    let after = likeliest(&setting, &measured, &setting.starts(found)).ok_or_else(undetermined)?;
     let gain = after.log_likelihood - before.log_likelihood;
     let begun = setting.begin(found);
     summary(&setting, &begun, &after, gain, found.fit.intervals.level).ok_or_else(undetermined)
@@ -261,31 +260,6 @@ pub(crate) fn measured(found: &CampaignFit, scales: [f64; 3]) -> Data {
             })
             .collect(),
     }
-}
-
-/// Dead bands to start from \[rad\], beside the files'.
-const DEAD_BANDS: [f64; 3] = [0.03, 0.09, 0.18];
-
-/// Offsets of the reflectors' middle to start from, as shares of the largest: seen from the wrong side of the joints' middle a link
-/// sways nearly as much, so that there are two minima.
-const MARKERS: [f64; 2] = [-0.5, 0.5];
-
-fn starts(setting: &Setting<'_>, found: &CampaignFit) -> Vec<Vec<f64>> {
-    let begun = setting.begin(found);
-    let mut starts = vec![begun.clone()];
-    for (place, (slot, (_, high))) in setting.slots.iter().zip(setting.bounds()).enumerate() {
-        let others: &[f64] = match slot {
-            Slot::DeadBand => &DEAD_BANDS,
-            Slot::MarkerAlong | Slot::MarkerAcross => &MARKERS.map(|share| share * high),
-            _ => &[],
-        };
-        starts.extend(others.iter().map(|value| {
-            let mut start = begun.clone();
-            start[place] = *value;
-            start
-        }));
-    }
-    starts
 }
 
 /// Beyond these, a correlation or a condition number is worth a warning.

@@ -9,6 +9,12 @@ use crate::campaign::{CalibrateError, CampaignData, CampaignFit};
 use crate::cycles::{Harmonics, Projection};
 use crate::prediction::JointPath;
 
+/// Dead bands to start from \[rad\], beside the files'.
+const DEAD_BANDS: [f64; 3] = [0.03, 0.09, 0.18];
+/// Offsets of the reflectors' middle to start from, as shares of the largest: seen from the wrong side of the joints' middle a link
+/// sways nearly as much, so that there are two minima.
+const MARKERS: [f64; 2] = [-0.5, 0.5];
+
 /// Runs, and the parameters that may differ.
 pub(crate) struct Setting<'a> {
     start: &'a SwimmerFile,
@@ -161,6 +167,25 @@ impl<'a> Setting<'a> {
             _ => 0.0,
         };
         self.slots.iter().map(of).collect()
+    }
+
+    /// Where a search begins, more than once for what has more than one minimum.
+    pub(crate) fn starts(&self, found: &CampaignFit) -> Vec<Vec<f64>> {
+        let begun = self.begin(found);
+        let mut starts = vec![begun.clone()];
+        for (place, (slot, (_, high))) in self.slots.iter().zip(self.bounds()).enumerate() {
+            let others: &[f64] = match slot {
+                Slot::DeadBand => &DEAD_BANDS,
+                Slot::MarkerAlong | Slot::MarkerAcross => &MARKERS.map(|share| share * high),
+                _ => &[],
+            };
+            starts.extend(others.iter().map(|value| {
+                let mut start = begun.clone();
+                start[place] = *value;
+                start
+            }));
+        }
+        starts
     }
 
     /// A parameter in units of people: m, rad, or the plain number.
