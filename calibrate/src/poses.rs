@@ -14,6 +14,7 @@ mod fill;
 mod follow;
 mod pchip;
 mod plane;
+mod told;
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -27,6 +28,7 @@ use assembly::Assembly;
 use fill::Seen;
 pub use follow::FollowReport;
 pub use plane::Plane;
+pub use told::{PoseError, PoseWarning};
 
 /// Limits of the way from points to poses.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,118 +56,6 @@ impl PoseOptions {
         Self {
             longest_fill_s: usual.longest_fill_s.min(0.1 * period_s),
             ..usual
-        }
-    }
-}
-
-/// Why a track gave no poses.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PoseError {
-    /// A reflector's point is not in the file.
-    #[error(
-        "the {reflector} reflector is called `{wanted}`, but the points in the track are {points}; change `point` in the campaign"
-    )]
-    NoPoint {
-        /// `front` or `back`.
-        reflector: &'static str,
-        /// The name that was asked for.
-        wanted: String,
-        /// The names that are there.
-        points: String,
-    },
-    /// Nobody said how long the track's unit is.
-    #[error(
-        "the track's lengths are in `{unit}`; say how many metres that is (`scale` under [tracks] in the campaign, or --scale){}",
-        scale.map_or(String::new(), |scale| format!("; by the reflectors' distance it is {scale:.6e}"))
-    )]
-    NoScale {
-        /// The unit.
-        unit: crate::Unit,
-        /// The scale at which the reflectors' distance is right, where they can be told.
-        scale: Option<f64>,
-    },
-    /// Both reflectors are at the same place on the link.
-    #[error("both reflectors sit at the same place of the link, so they show no heading")]
-    SamePlace,
-    /// No two points ever have the right distance.
-    #[error(
-        "no two points are {expected_m:.5} m apart (within {tolerance_m:.5} m) in any of {frames} frames; check `at` of both \
-         reflectors, the unit and the points' names"
-    )]
-    NoPair {
-        /// Distance by `at` of the campaign \[m\].
-        expected_m: f64,
-        /// Tolerance \[m\].
-        tolerance_m: f64,
-        /// Rows that were searched.
-        frames: usize,
-    },
-    /// The named points have another distance than `at` says.
-    #[error(
-        "the reflectors are {measured_m:.5} m apart in the track but {expected_m:.5} m by `at`; if the track is in other units, a \
-         scale of {scale:.6} makes them agree"
-    )]
-    Distance {
-        /// Median distance in the track \[m\].
-        measured_m: f64,
-        /// Distance by `at` \[m\].
-        expected_m: f64,
-        /// Expected over measured.
-        scale: f64,
-    },
-}
-
-/// What made the poses less than perfect.
-#[derive(Debug, Clone, PartialEq)]
-pub enum PoseWarning {
-    /// The reflectors' distance differs from what `at` says by more than 2 %.
-    Distance {
-        /// Mean in the track \[m\].
-        measured_m: f64,
-        /// By `at` \[m\].
-        expected_m: f64,
-    },
-    /// Points leave the plane by more than 2 % of the reflectors' distance or 5 mm.
-    OutOfPlane {
-        /// Root mean square distance from the plane \[m\].
-        rms_m: f64,
-    },
-    /// The points lie nearly on a line, so the plane is an axis plane of the file rather than a fitted one.
-    PlaneAssumed,
-    /// After a gap nobody could tell front from back; the rows before or after it are left out.
-    AmbiguousGaps {
-        /// Segments that were left out.
-        segments: usize,
-        /// Rows in them.
-        rows: usize,
-    },
-}
-
-impl fmt::Display for PoseWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Distance {
-                measured_m,
-                expected_m,
-            } => write!(
-                f,
-                "the reflectors are {measured_m:.5} m apart in the track, {expected_m:.5} m by `at`: lengths may be off by {:.1} %",
-                100.0 * (measured_m / expected_m - 1.0)
-            ),
-            Self::OutOfPlane { rms_m } => {
-                write!(
-                    f,
-                    "the reflectors leave their plane by {:.2} mm (rms); the camera may be tilted",
-                    1e3 * rms_m
-                )
-            }
-            Self::PlaneAssumed => f.write_str(
-                "the reflectors moved along a line only: the plane is the file's own, not fitted",
-            ),
-            Self::AmbiguousGaps { segments, rows } => write!(
-                f,
-                "{segments} stretches ({rows} rows) come after gaps too long to tell front from back; they are left out"
-            ),
         }
     }
 }
