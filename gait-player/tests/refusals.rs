@@ -353,3 +353,37 @@ fn trim_moves_the_pulse_not_the_setpoint_and_not_faster_than_allowed() {
         assert_eq!(bench.refused(set), Refusal::BadValue { field });
     }
 }
+
+/// What is being checked must not change, and nothing may overtake its answer: table, configuration, servos and plays wait.
+#[test]
+fn while_a_table_is_checked_nothing_that_hangs_on_it_begins() {
+    let mut bench = Bench::new();
+    let upload = bench.send_table(&circle(1.1));
+    let commit = bench.sequence + 1;
+    assert_eq!(bench.send_request(commit, Request::Commit { upload }), None);
+    let configuration =
+        gait_player::BrainConfig::robot(IDENTITY, gait_player::Boot::power_on(1, 1));
+    for (later, request) in (1..).zip([
+        Request::Begin(Begin {
+            slot: 0,
+            len: 8,
+            crc32: 0,
+        }),
+        Request::Commit { upload },
+        Request::Configure(configuration.configuration),
+        Request::SetKey(None),
+    ]) {
+        assert_eq!(
+            bench.send_request(commit + later, request.clone()),
+            Some(Reply::Refused(Refusal::Busy)),
+            "{request:?}"
+        );
+    }
+    // Neither lost its answer by them: the table is checked and taken.
+    bench.sequence = commit + 4;
+    bench.run(4 * SECOND);
+    let taken = |(header, reply): &(Header, Reply)| {
+        header.sequence == commit && matches!(reply, Reply::Table(Some(_)))
+    };
+    assert!(bench.replies.iter().any(taken), "{:?}", bench.replies);
+}
