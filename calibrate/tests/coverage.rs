@@ -2,6 +2,7 @@
 
 mod twin_campaigns;
 
+use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
 use calibrate::{
@@ -23,7 +24,34 @@ struct Count {
     false_alarms: [u64; 2],
 }
 
+impl std::ops::Add for Count {
+    type Output = Self;
+
+    fn add(mut self, other: Self) -> Self {
+        let pairs = self.inside.iter_mut().flatten();
+        for (here, there) in pairs.zip(other.inside.iter().flatten()) {
+            *here += there;
+        }
+        for (here, there) in self.false_alarms.iter_mut().zip(other.false_alarms) {
+            *here += there;
+        }
+        self
+    }
+}
+
+/// Half of the campaigns in a thread each.
 fn count(campaigns: RangeInclusive<u64>) -> Count {
+    let (first, last) = (*campaigns.start(), *campaigns.end());
+    let middle = u64::midpoint(first, last);
+    let count = std::thread::scope(|scope| {
+        let half = scope.spawn(|| count_one_by_one(first..=middle));
+        count_one_by_one(middle + 1..=last) + half.join().unwrap()
+    });
+    println!("{count:?}");
+    count
+}
+
+fn count_one_by_one(campaigns: RangeInclusive<u64>) -> Count {
     let mut count = Count::default();
     for seed in campaigns {
         let laboratory = Laboratory::by_chance(seed);
@@ -44,7 +72,7 @@ fn count(campaigns: RangeInclusive<u64>) -> Count {
                 _ => {}
             }
         }
-        print!("{seed:3}: {} runs;", found.runs.len());
+        let mut line = format!("{seed:3}: {} runs;", found.runs.len());
         for (inside, intervals) in count.inside.iter_mut().zip(all) {
             let Intervals {
                 sphere_radius, chi, ..
@@ -55,17 +83,16 @@ fn count(campaigns: RangeInclusive<u64>) -> Count {
                 // The truth's place between the ends: −1 and 1 are the ends themselves.
                 let place = (2.0 * truth - low - high) / (high - low);
                 let wide = 50.0 * (high - low) / truth;
-                print!(" {place:+.2} (±{wide:.2} %)");
+                let _ = write!(line, " {place:+.2} (±{wide:.2} %)");
             }
-            print!(";");
+            line.push(';');
         }
         println!(
-            " outliers {}, surface {:.0e}",
+            "{line} outliers {}, surface {:.0e}",
             evidence.outliers.len(),
             evidence.surface_error
         );
     }
-    println!("{count:?}");
     count
 }
 

@@ -20,6 +20,10 @@ const GUARDS: [(&str, &[&str]); 2] = [
         "gait-player",
         &[
             "gait-player/src/brain/session.rs",
+            "gait-player/src/brain/requests.rs",
+            "gait-player/src/brain/actions.rs",
+            "gait-player/src/brain/motion.rs",
+            "gait-player/src/brain/battery.rs",
             "gait-player/src/clamp.rs",
             "gait-player/src/limits.rs",
             "gait-player/src/servo.rs",

@@ -12,7 +12,9 @@ use calibrate::{PredictedCycle, TrackOptions, predict};
 use gait_optimizer::{DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement};
 use host_link::LinkError;
 use link_protocol::Refusal;
-use swimmer_files::{AnyGait, GaitSpec, ServoFile, SwimmerFile, write_atomically};
+use swimmer_files::{
+    AnyGait, Campaign, GaitSpec, Provenance, ServoFile, SwimmerFile, write_atomically,
+};
 use swimmer_model::Swimmer;
 
 use self::answer::DemoAnswer;
@@ -162,7 +164,11 @@ impl<'a> Round<'a> {
             name: format!("{}, fitted", self.truth.name),
             ..fit.found.swimmer.clone()
         };
-        fitted.save(&self.draft.join(FITTED))?;
+        let inputs = Campaign::files(&self.draft.join(CAMPAIGN))?;
+        let made_by = concat!("swimmer demo ", env!("CARGO_PKG_VERSION"));
+        let provenance = Provenance::of_files(made_by, &inputs, self.draft)?;
+        let text = fitted.to_toml() + &provenance.to_toml();
+        write_atomically(&self.draft.join(FITTED), text.as_bytes())?;
         self.laboratory.configure(&fitted, &self.servo)?;
         self.doing("optimising a gait with the fitted model");
         let (best, best_gait, bound, period_s) = self.upload_best(&fitted)?;
