@@ -1,9 +1,25 @@
-//! Ctrl-C as a value that a command looks at, so that what moves is stopped before the program ends.
+//! Ctrl-C, or a polite kill: a value that a command looks at, so that what moves is stopped before the program ends. Where no
+//! command looks, the drafts of what it was to write are removed and the program ends.
 
-use std::sync::Arc;
+use std::process::exit;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use crate::failure::{Failure, Outcome};
+use crate::new_folder::Drafts;
+use crate::output::Output;
+
+/// Exit status of a program that a second Ctrl-C ends, as shells have it.
+const AT_ONCE: i32 = 130;
+/// Exit status of a job that was tried and failed.
+const TRIED: i32 = 1;
+
+/// Whether the handler is installed; there can be only one.
+static LISTENING: Mutex<bool> = Mutex::new(false);
+/// Who looks whether the program shall end.
+static IN_CHARGE: Mutex<Option<Interrupt>> = Mutex::new(None);
+/// How a program that ends in the middle says so.
+static OUTPUT: OnceLock<Output> = OnceLock::new();
 
 /// Whether the operator asked the program to end (Ctrl-C, or a polite kill). Clones share the answer.
 #[derive(Debug, Clone, Default)]
@@ -16,18 +32,13 @@ impl Interrupt {
     /// # Errors
     /// [`Failure::Tried`] when the operating system refuses the handler.
     pub(crate) fn install() -> Outcome<Self> {
-        let interrupt = Self::default();
-        let flag = interrupt.clone();
-        ctrlc::set_handler(move || {
-            if flag.0.swap(true, Ordering::SeqCst) {
-                std::process::exit(130);
-            }
-        })
-        .map_err(|error| {
+        listen().map_err(|error| {
             Failure::Tried(format!(
                 "cannot listen for Ctrl-C ({error}), and without it a moving robot could not be stopped; nothing was started"
             ))
         })?;
+        let interrupt = Self::default();
+        *locked(&IN_CHARGE) = Some(interrupt.clone());
         Ok(interrupt)
     }
 
@@ -35,4 +46,59 @@ impl Interrupt {
     pub(crate) fn requested(&self) -> bool {
         self.0.load(Ordering::SeqCst)
     }
+}
+
+/// Says how a program that ends in the middle answers.
+pub(crate) fn answers_with(output: Output) {
+    OUTPUT.get_or_init(|| output);
+}
+
+/// From here on Ctrl-C removes what is half-written before it ends the program.
+///
+/// # Errors
+/// When the operating system refuses the handler.
+pub(crate) fn listen() -> Result<(), ctrlc::Error> {
+    let mut listening = locked(&LISTENING);
+    if !*listening {
+        ctrlc::set_handler(heard)?;
+        *listening = true;
+    }
+    Ok(())
+}
+
+/// Runs in a thread of its own at each Ctrl-C.
+fn heard() {
+    let in_charge = locked(&IN_CHARGE).clone();
+    match in_charge {
+        Some(interrupt) => {
+            if interrupt.0.swap(true, Ordering::SeqCst) {
+                Drafts::held().remove();
+                exit(AT_ONCE);
+            }
+        }
+        None => give_up(),
+    }
+}
+
+fn give_up() {
+    // Held to the end: from here on nothing is published, and nothing that was published is taken back.
+    let drafts = Drafts::held();
+    if drafts.none() {
+        // All is written, and only the answer is still to come.
+        return;
+    }
+    drafts.remove();
+    let output = OUTPUT.get().copied().unwrap_or(Output { json: false });
+    output.failure(&Failure::Tried(
+        "interrupted: what was half-written is removed and nothing was kept; run it again"
+            .to_owned(),
+    ));
+    // The command may have written on meanwhile.
+    drafts.remove();
+    exit(TRIED);
+}
+
+/// Locks what a thread that panicked may have left.
+pub(crate) fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

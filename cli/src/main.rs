@@ -16,6 +16,7 @@ mod recording;
 mod report;
 mod virtual_robot;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -25,12 +26,14 @@ use crate::commands::Arguments;
 use crate::output::Output;
 
 fn main() -> ExitCode {
-    match Arguments::try_parse() {
+    let words: Vec<OsString> = std::env::args_os().collect();
+    match parse(&words) {
         Ok(arguments) => {
             let output = Output {
                 json: arguments.json,
             };
-            match commands::run(arguments.command, output) {
+            interrupt::answers_with(output);
+            match commands::run(arguments.command, output).and_then(|()| output::delivered()) {
                 Ok(()) => ExitCode::SUCCESS,
                 Err(failure) => {
                     output.failure(&failure);
@@ -38,21 +41,42 @@ fn main() -> ExitCode {
                 }
             }
         }
-        Err(error) => bad_usage(&error),
+        Err(error) => bad_usage(&error, &words),
     }
 }
 
+/// What was typed. Help is text even for scripts, but the word `help` takes no flags: there `--json` is passed over.
+fn parse(words: &[OsString]) -> Result<Arguments, clap::Error> {
+    Arguments::try_parse_from(words).map_err(|error| {
+        if error.kind() != ErrorKind::InvalidSubcommand || !words.iter().any(|word| word == "help")
+        {
+            return error;
+        }
+        let without = words.iter().filter(|word| *word != "--json");
+        match Arguments::try_parse_from(without) {
+            Err(help) if help.kind() == ErrorKind::DisplayHelp => help,
+            _ => error,
+        }
+    })
+}
+
 /// Help and version go to standard output with status 0; anything else is bad usage, status 2.
-fn bad_usage(error: &clap::Error) -> ExitCode {
-    let _ = error.print();
+fn bad_usage(error: &clap::Error, words: &[OsString]) -> ExitCode {
+    let printed = error.print();
     if matches!(
         error.kind(),
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
     ) {
-        return ExitCode::SUCCESS;
+        return match output::loss(printed) {
+            None => ExitCode::SUCCESS,
+            Some(lost) => {
+                output::aside(&format!("error: {lost}"));
+                ExitCode::FAILURE
+            }
+        };
     }
     // Nothing was parsed, so whether a script is asking can only be seen in the words themselves.
-    if std::env::args_os().any(|word| word == "--json") {
+    if words.iter().any(|word| word == "--json") {
         let text = error.render().to_string();
         // The first paragraph is the reason, the rest is about usage.
         let reason: Vec<&str> = text

@@ -2,10 +2,14 @@
 
 use std::fmt;
 use std::io::{self, Write};
+use std::sync::OnceLock;
 
 use serde::Serialize;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, Outcome};
+
+/// What the system said when standard output first took no more.
+static LOST: OnceLock<String> = OnceLock::new();
 
 /// Where and how a command answers.
 #[derive(Debug, Clone, Copy)]
@@ -66,10 +70,32 @@ pub(crate) fn document(value: &impl Serialize) -> String {
     text + "\n"
 }
 
-/// A reader that has gone away (`swimmer … | head`) is no reason to fail.
+/// Writes to standard output. What it does not take is told at the end, by [`delivered`].
 pub(crate) fn write_all(text: &str) {
     let mut stdout = io::stdout().lock();
-    let _ = stdout
+    let written = stdout
         .write_all(text.as_bytes())
         .and_then(|()| stdout.flush());
+    if let Some(lost) = loss(written) {
+        LOST.get_or_init(|| lost);
+    }
+}
+
+/// Why what was written did not arrive. A reader that has gone away (`swimmer … | head`) is no reason to fail.
+pub(crate) fn loss(written: io::Result<()>) -> Option<String> {
+    written
+        .err()
+        .filter(|error| error.kind() != io::ErrorKind::BrokenPipe)
+        .map(|error| {
+            format!("standard output took no more: {error}; the answer is not all there, so send it elsewhere and run this again")
+        })
+}
+
+/// Whether standard output took all that was written to it.
+///
+/// # Errors
+/// [`Failure::Answered`] where it did not: there is no use in writing more to it.
+pub(crate) fn delivered() -> Outcome {
+    LOST.get()
+        .map_or(Ok(()), |lost| Err(Failure::Answered(lost.clone())))
 }

@@ -1,40 +1,92 @@
 //! Whole files or none: written beside their place and renamed into it.
 
-use std::fs::File;
-use std::io::Write;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::FileError;
 
+/// Longest chain of symbolic links that is followed, as the kernel's.
+const LONGEST_CHAIN: usize = 40;
+
 /// Writes a file so that a reader sees either what was there before or all of `bytes`, never a part.
 ///
 /// The bytes go to a temporary file in the same folder, are flushed to the disk, and the file is renamed into place. A
-/// missing folder is made.
+/// missing folder is made. A symbolic link stays, and what it leads to is replaced. A device or a pipe stays too, and is
+/// written to: there is nothing in it that could be half new.
 ///
 /// # Errors
-/// [`FileError::Write`] when the folder cannot be made or written to; the temporary file is removed.
+/// [`FileError::Write`] when the folder cannot be made or written to, or `path` is a folder; the temporary file is removed.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let fail = |source| FileError::Write {
         path: path.to_path_buf(),
         source,
     };
-    if let Some(folder) = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-    {
-        std::fs::create_dir_all(folder).map_err(fail)?;
+    match destination(path).map_err(fail)? {
+        Destination::Stream => OpenOptions::new()
+            .write(true)
+            .open(path)
+            .and_then(|mut stream| stream.write_all(bytes))
+            .map_err(fail),
+        Destination::File(place) => replace(&place, bytes).map_err(fail),
     }
-    let temporary = beside(path, "partial");
+}
+
+fn replace(place: &Path, bytes: &[u8]) -> io::Result<()> {
+    make_folder_of(place)?;
+    let temporary = beside(place, "partial");
     let written = File::create(&temporary)
         .and_then(|mut file| {
             file.write_all(bytes)?;
             file.sync_all()
         })
-        .and_then(|()| std::fs::rename(&temporary, path));
-    written.map_err(|source| {
-        let _ = std::fs::remove_file(&temporary);
-        fail(source)
-    })
+        .and_then(|()| fs::rename(&temporary, place));
+    if written.is_err() {
+        let _ = fs::remove_file(&temporary);
+    }
+    written
+}
+
+/// Makes the folder that a file shall stand in, where it is missing.
+pub(crate) fn make_folder_of(place: &Path) -> io::Result<()> {
+    place
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .map_or(Ok(()), fs::create_dir_all)
+}
+
+/// What a path that shall be written leads to.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Destination {
+    /// A file, there or not yet, under the name that no symbolic link stands at.
+    File(PathBuf),
+    /// A device, pipe or socket, which no file may take the place of.
+    Stream,
+}
+
+/// Where writing to `path` ends: a rename would replace the symbolic link or the device itself.
+pub(crate) fn destination(path: &Path) -> io::Result<Destination> {
+    match fs::metadata(path) {
+        Ok(there) if there.is_dir() => {
+            return Err(io::Error::new(
+                io::ErrorKind::IsADirectory,
+                "it is a folder; name a file",
+            ));
+        }
+        Ok(there) if !there.is_file() => return Ok(Destination::Stream),
+        Ok(_) => {}
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+        Err(error) => return Err(error),
+    }
+    let mut place = path.to_path_buf();
+    for _ in 0..LONGEST_CHAIN {
+        match fs::read_link(&place) {
+            // A target is told from the link's own folder.
+            Ok(target) => place = place.with_file_name("").join(target),
+            Err(_) => break,
+        }
+    }
+    Ok(Destination::File(place))
 }
 
 /// `name.ext` becomes `.name.ext.SUFFIX` in the same folder, so that the rename stays on one file system.
@@ -65,13 +117,54 @@ mod tests {
     #[test]
     fn a_failure_leaves_nothing() {
         let folder = tempfile::tempdir().unwrap();
-        // A folder stands where the file should go: the rename fails.
+        // A folder stands where the file should go.
         let path = folder.path().join("taken");
         std::fs::create_dir_all(path.join("inside")).unwrap();
-        assert!(matches!(
-            write_atomically(&path, b"x"),
-            Err(FileError::Write { .. })
-        ));
+        let refused = write_atomically(&path, b"x").unwrap_err();
+        assert!(
+            matches!(&refused, FileError::Write { source, .. } if source.to_string().contains("it is a folder")),
+            "{refused}"
+        );
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_symbolic_link_stays_and_what_it_leads_to_is_replaced() {
+        use std::os::unix::fs::symlink;
+
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::create_dir(at("data")).unwrap();
+        std::fs::write(at("data/one.csv"), "old").unwrap();
+        symlink("data/one.csv", at("inner")).unwrap();
+        symlink("inner", at("outer")).unwrap();
+        symlink("data/new.csv", at("dangling")).unwrap();
+        write_atomically(&at("outer"), b"new").unwrap();
+        write_atomically(&at("dangling"), b"made").unwrap();
+        for link in ["inner", "outer", "dangling"] {
+            assert!(at(link).is_symlink(), "{link}");
+        }
+        assert_eq!(std::fs::read(at("data/one.csv")).unwrap(), b"new");
+        assert_eq!(std::fs::read(at("data/new.csv")).unwrap(), b"made");
+        assert_eq!(std::fs::read_dir(at("data")).unwrap().count(), 2);
+
+        symlink("round", at("round")).unwrap();
+        write_atomically(&at("round"), b"x").unwrap_err();
+        assert!(at("round").is_symlink());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_file_is_never_replaced() {
+        use std::os::unix::fs::FileTypeExt as _;
+
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("socket");
+        let _socket = std::os::unix::net::UnixListener::bind(&path).unwrap();
+        // A socket cannot be opened as a file.
+        write_atomically(&path, b"x").unwrap_err();
+        assert!(std::fs::metadata(&path).unwrap().file_type().is_socket());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }
