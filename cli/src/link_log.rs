@@ -1,25 +1,29 @@
 //! Frames seen on a port, as the link log keeps them: each with the host's clock and, once a ping has come back, the robot's.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use host_link::port::{Direction, TracedFrame};
+use host_link::port::TracedFrame;
 use host_link::session::{ClockFit, ClockSamples};
-use link_protocol::{Decoder, Message};
+use link_protocol::{Decoder, Direction, Message};
 use swimmer_files::{LinkFrame, LinkLogError, LinkLogWriter};
 
 use crate::failure::{Failure, Outcome};
+use crate::interrupt::locked;
+use crate::output::aside;
 
 /// What a traced port shows its frames to.
 pub(crate) type Sink = Box<dyn FnMut(TracedFrame<'_>) + Send>;
 
-/// Writes a link log while others talk. Dropped before [`Recorder::finish`], it finishes all the same: what led to a failure
-/// is what a log is for.
+/// Writes a link log while others talk. Dropped before [`Recorder::finish`], it finishes all the same, unless nothing crossed
+/// the link: what led to a failure is what a log is for.
 pub(crate) struct Recorder(Arc<Mutex<Recording>>);
 
 struct Recording {
     path: PathBuf,
+    /// Whether its place is told where a failure ends it.
+    told: bool,
     writer: Option<LinkLogWriter>,
     frames: u64,
     failed: Option<LinkLogError>,
@@ -41,12 +45,19 @@ impl Recorder {
         }
         Ok(Self(Arc::new(Mutex::new(Recording {
             path: path.to_path_buf(),
+            told: false,
             writer: Some(LinkLogWriter::create(path)?),
             frames: 0,
             failed: None,
             samples: ClockSamples::default(),
             clock: None,
         }))))
+    }
+
+    /// The same, which says where it is when a failure ends it: for a log that outlasts the command.
+    pub(crate) fn told(self) -> Self {
+        locked(&self.0).told = true;
+        self
     }
 
     /// What the port shows its frames to. `epoch` is the time of day at the origin of the port's clock, since 1970; zero for a
@@ -70,17 +81,20 @@ impl Recorder {
 impl Drop for Recorder {
     fn drop(&mut self) {
         let mut recording = locked(&self.0);
+        if recording.frames == 0 {
+            // Never finished, it leaves no file.
+            recording.writer = None;
+        }
         if recording.writer.is_some() {
             match recording.finish() {
-                Ok(()) => eprintln!("The link log is in {}.", recording.path.display()),
-                Err(error) => eprintln!("{}", Failure::from(error)),
+                Ok(()) if recording.told => {
+                    aside(&format!("The link log is in {}.", recording.path.display()));
+                }
+                Ok(()) => {}
+                Err(error) => aside(&Failure::from(error).to_string()),
             }
         }
     }
-}
-
-fn locked(recording: &Mutex<Recording>) -> MutexGuard<'_, Recording> {
-    recording.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Recording {
@@ -103,10 +117,7 @@ impl Recording {
             .clock
             .map(|clock| (clock.robot_time(frame.at).max(0.0) * 1e6) as u64);
         let frame = LinkFrame {
-            direction: match frame.direction {
-                Direction::ToRobot => swimmer_files::Direction::ToRobot,
-                Direction::ToHost => swimmer_files::Direction::FromRobot,
-            },
+            direction: frame.direction,
             host_time_ns: u64::try_from((epoch + frame.at).as_nanos()).unwrap_or(u64::MAX),
             robot_time_us: told.or(estimated),
             bytes: frame.bytes.to_vec(),
@@ -142,5 +153,28 @@ impl From<LinkLogError> for Failure {
             LinkLogError::File(error) => error.into(),
             other => Self::tried(&other),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_without_frames_leaves_nothing_unless_finished() {
+        let folder = tempfile::tempdir().unwrap();
+        let left = || std::fs::read_dir(folder.path()).unwrap().count();
+        let path = folder.path().join("z.mcap");
+        drop(Recorder::create(&path).unwrap().told());
+        assert_eq!(left(), 0);
+        let recorder = Recorder::create(&path).unwrap();
+        recorder.sink(Duration::ZERO)(TracedFrame {
+            direction: Direction::ToRobot,
+            at: Duration::ZERO,
+            bytes: &[1, 2, 3],
+        });
+        drop(recorder);
+        assert!(path.exists() && left() == 1);
+        assert!(Recorder::create(&path).is_err());
     }
 }

@@ -31,7 +31,7 @@ pub use mock::MockPort;
 pub use pty::{PtyError, PtyPort};
 pub use serial::{OpenError, SerialPort};
 pub use tcp::TcpPort;
-pub use traced::{Direction, TracedFrame, TracedPort};
+pub use traced::{TracedFrame, TracedPort};
 pub use virtual_port::{Device, VirtualPort};
 pub use wire::{Wire, WireSpeed};
 

@@ -22,6 +22,7 @@ mod counters;
 mod drive;
 mod error;
 mod event;
+mod greeting;
 mod receive;
 mod round_trip;
 mod under_way;
@@ -41,7 +42,7 @@ pub use clock_fit::{ClockFit, ClockSamples};
 pub use counters::LinkCounters;
 pub use error::{LinkError, cause_in_words};
 pub use event::{Event, Ticket};
-pub(crate) use receive::firmware_name;
+pub(crate) use greeting::firmware_name;
 pub use upload::{UploadPhase, UploadProgress};
 
 use round_trip::RoundTrip;
@@ -168,7 +169,7 @@ impl Session {
     /// Asks something of the robot. Ends in [`Event::Answered`] or [`Event::Failed`].
     pub fn request(&mut self, now: Duration, request: Request) -> Ticket {
         let ticket = self.ticket();
-        if matches!(request, Request::Stop | Request::EStop) {
+        if request.is_stop() {
             let estop_unanswered = self
                 .pending
                 .as_ref()

@@ -8,10 +8,10 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use host_link::port::{Direction, FaultPlan, Faults, TracedFrame, TracedPort};
+use host_link::port::{FaultPlan, Faults, TracedFrame, TracedPort};
 use host_link::session::SessionConfig;
 use host_link::{LinkError, Port, Robot};
-use link_protocol::{Flags, Key, StateName};
+use link_protocol::{Direction, Flags, Key, StateName};
 use tank_less::{Line, circle, connect, faulty, upload};
 
 const MS: Duration = Duration::from_millis(1);

@@ -10,7 +10,9 @@
 //!
 //! Each run of bytes between zeros ends in exactly one counter of [`DecodeCounters`].
 
-use crate::{BodyError, HEADER, Header, KIND_SIGNED, MAX_RAW, Message, Signature, TRAILER, crc32c};
+use crate::{
+    BodyError, HEADER, Header, KIND_SIGNED, Kind, MAX_RAW, Message, Signature, TRAILER, crc32c,
+};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
@@ -61,8 +63,8 @@ const MAX_COBS: usize = MAX_RAW + 1;
 pub struct Decoder {
     state: State,
     bytes: [u8; MAX_COBS],
-    /// Of the frame received last, the bytes that its signature covers; 0 where it has none.
-    covered: usize,
+    /// Bytes of the frame received last, which stand first in `bytes`.
+    whole: usize,
     counters: DecodeCounters,
 }
 
@@ -80,7 +82,7 @@ impl Decoder {
         Self {
             state: State::Collecting(0),
             bytes: [0; MAX_COBS],
-            covered: 0,
+            whole: 0,
             counters: DecodeCounters {
                 ok: 0,
                 bad_crc: 0,
@@ -100,7 +102,31 @@ impl Decoder {
     /// What the signature of the frame that came last covers: all before its tag. Empty where it was not signed; holds
     /// until the next byte.
     pub fn signed_bytes(&self) -> &[u8] {
-        self.bytes.get(..self.covered).unwrap_or_default()
+        let (_, signature) = self.body_and_signature();
+        let unsigned = if signature.is_some() {
+            TRAILER + Signature::TAG
+        } else {
+            self.whole
+        };
+        let covered = self.whole.saturating_sub(unsigned);
+        self.bytes.get(..covered).unwrap_or_default()
+    }
+
+    /// Kind and body of the frame that came last: what can be told of one that is no message of this version. `None` where
+    /// no message has its kind, or where it is too short for its signature; holds until the next byte.
+    pub fn kind_and_body(&self) -> Option<(Kind, &[u8])> {
+        let kind = Kind::from_byte(self.kind() & !KIND_SIGNED)?;
+        Some((kind, self.body_and_signature().0?))
+    }
+
+    /// The last byte of the header.
+    fn kind(&self) -> u8 {
+        self.bytes[HEADER - 1]
+    }
+
+    fn body_and_signature(&self) -> (Option<&[u8]>, Option<Signature>) {
+        let end = self.whole.saturating_sub(TRAILER);
+        split_signature(self.kind(), self.bytes.get(HEADER..end).unwrap_or_default())
     }
 
     /// Takes one byte; gives a frame where this byte completed one whose CRC is right.
@@ -143,11 +169,7 @@ impl Decoder {
             sequence: u16::from_le_bytes([q0, q1]),
         };
         let (body, signature) = split_signature(kind, body);
-        self.covered = if signature.is_some() {
-            len.saturating_sub(TRAILER + Signature::TAG)
-        } else {
-            0
-        };
+        self.whole = len;
         let message = match body {
             Some(body) => Message::decode_body(version, kind & !KIND_SIGNED, body),
             None => Err(BodyError::Malformed),

@@ -4,6 +4,15 @@ use crate::{
     HEADER, KIND_SIGNED, MAX_ENCODED, MAX_RAW, Message, PROTOCOL_CURRENT, TRAILER, crc32c,
 };
 
+/// Which way a frame goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// Host to robot.
+    ToRobot,
+    /// Robot to host.
+    ToHost,
+}
+
 /// What stands before every body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {

@@ -48,6 +48,42 @@ pub struct HelloReply {
     pub buffer: u16,
 }
 
+/// How a [`HelloReply`] begins: what it tells of itself even where the rest names a board or a reason that was appended
+/// since, and is no message to this end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HelloReplyStart {
+    /// As [`HelloReply::host_nonce`].
+    pub host_nonce: u32,
+    /// As [`HelloReply::protocol_min`].
+    pub protocol_min: u8,
+    /// As [`HelloReply::protocol_current`].
+    pub protocol_current: u8,
+    /// As [`HelloReply::schema_key`].
+    pub schema_key: [u8; 8],
+    /// As [`HelloReply::firmware`].
+    pub firmware: FirmwareVersion,
+}
+
+impl HelloReplyStart {
+    /// The start of a body; `None` where it is too short.
+    pub fn of_body(body: &[u8]) -> Option<Self> {
+        let (start, _) = postcard::take_from_bytes(body).ok()?;
+        Some(start)
+    }
+}
+
+impl From<&HelloReply> for HelloReplyStart {
+    fn from(reply: &HelloReply) -> Self {
+        Self {
+            host_nonce: reply.host_nonce,
+            protocol_min: reply.protocol_min,
+            protocol_current: reply.protocol_current,
+            schema_key: reply.schema_key,
+            firmware: reply.firmware,
+        }
+    }
+}
+
 /// A flag in a byte that leaves room for seven more, in a message that may never grow.
 mod lowest_bit {
     use serde::{Deserialize, Deserializer, Serializer};

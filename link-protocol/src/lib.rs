@@ -41,8 +41,10 @@ mod telemetry;
 pub use checksum::{Checksum, crc32c};
 pub use configuration::{Configuration, Joint, ServoSettings, TangentialDrag};
 pub use decoder::{DecodeCounters, Decoder, Received};
-pub use frame::{EncodeError, Header, Kind, Signature, encode, encode_body};
-pub use hello::{Board, FirmwareVersion, Hello, HelloReply, ResetReason, RobotLimits};
+pub use frame::{Direction, EncodeError, Header, Kind, Signature, encode, encode_body};
+pub use hello::{
+    Board, FirmwareVersion, Hello, HelloReply, HelloReplyStart, ResetReason, RobotLimits,
+};
 pub use message::{BodyError, Message};
 pub use refusal::{CrossingPlace, Refusal};
 pub use reply::{Counters, Reply, Status, TableInfo};

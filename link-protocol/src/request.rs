@@ -48,7 +48,7 @@ pub enum Request {
     Arm(Arm),
     /// Plays the active table, after a soft start.
     Play(Play),
-    /// Holds the pose. Detached: holds it for at most 60 s without a link, then stops.
+    /// Holds the pose. Detached: holds it without a link too, for at most 60 s in all, then stops.
     Pause {
         /// Hold without the link.
         detached: bool,
@@ -68,6 +68,13 @@ pub enum Request {
     /// Sets, changes or removes the shared key; only while Stopped; in force from the next session on. A robot with a key
     /// takes it only signed with that key. The new key crosses the wire in the clear: send it over a cable.
     SetKey(Option<Key>),
+}
+
+impl Request {
+    /// It ends motion: it acts in any session and under any number, and the more often the safer.
+    pub fn is_stop(&self) -> bool {
+        matches!(self, Self::Stop | Self::EStop)
+    }
 }
 
 /// Opens an upload.

@@ -24,8 +24,8 @@ pub enum StateName {
     Settling,
 }
 
-/// Why the robot stops or last stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+/// Why the robot stops or last stopped; the later the more severe.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, Schema)]
 pub enum StopCause {
     /// It has not moved since its start.
     Boot,

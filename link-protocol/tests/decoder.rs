@@ -55,6 +55,54 @@ fn every_message_comes_back_and_fits() {
 }
 
 #[test]
+fn kind_and_body_of_the_last_frame_can_be_told() {
+    let signature = Some(Signature {
+        counter: 1,
+        tag: [3; 8],
+    });
+    for (name, message) in samples::messages() {
+        let mut body = [0; MAX_BODY];
+        let body = message.encode_body(&mut body).unwrap();
+        for signature in [None, signature] {
+            let mut frame = [0; MAX_ENCODED];
+            let header = Header::new(1, 2);
+            let Ok(len) = encode_body(header, message.kind() as u8, body, signature, &mut frame)
+            else {
+                continue;
+            };
+            let mut decoder = Decoder::new();
+            push_all(&mut decoder, &frame[..len]);
+            let told = decoder.kind_and_body();
+            assert_eq!(told, Some((message.kind(), &*body)), "{name}");
+        }
+    }
+    let mut decoder = Decoder::new();
+    assert_eq!(decoder.kind_and_body(), None);
+    // A body that is no message is told too, but neither one of no kind nor one too short for its signature.
+    push_all(&mut decoder, &raw_frame(4, 1, &[200]));
+    assert_eq!(decoder.kind_and_body(), Some((Kind::Reply, &[200][..])));
+    push_all(&mut decoder, &raw_frame(9, 1, &[200]));
+    assert_eq!(decoder.kind_and_body(), None);
+}
+
+#[test]
+fn the_start_of_a_greetings_answer_is_read_whatever_follows() {
+    for (name, message) in samples::messages() {
+        let Message::HelloReply(reply) = message else {
+            continue;
+        };
+        let mut body = [0; MAX_BODY];
+        let body = message.encode_body(&mut body).unwrap();
+        let start = HelloReplyStart::from(&reply);
+        let mut bytes = [0; MAX_BODY];
+        let len = postcard::to_slice(&start, &mut bytes).unwrap().len();
+        body[len..].fill(0xFF);
+        assert_eq!(HelloReplyStart::of_body(body), Some(start), "{name}");
+        assert_eq!(HelloReplyStart::of_body(&body[..len - 1]), None, "{name}");
+    }
+}
+
+#[test]
 fn the_largest_messages_fit_with_a_signature_where_they_must() {
     let signature = Some(Signature {
         counter: u64::MAX >> 16,

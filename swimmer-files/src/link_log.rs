@@ -14,19 +14,19 @@ mod read;
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
-use frame::telemetry_json;
-pub use frame::{Direction, LinkFrame};
-use link_protocol::Message;
+pub use frame::LinkFrame;
+use frame::{telemetry_json, topic};
+use link_protocol::{Direction, Message};
 use mcap::records::MessageHeader;
 pub use plays::{Play, plays};
 pub use read::read_link_log;
 use serde_json::Value;
 
 use crate::FileError;
-use crate::atomic::beside;
+use crate::atomic::{Destination, beside, destination, make_folder_of};
 
 /// The JSON schema of each message, as the file carries it.
 const SCHEMA: &str = include_str!("link_log/schema.json");
@@ -42,12 +42,12 @@ pub enum LinkLogError {
     #[error(transparent)]
     File(#[from] FileError),
     /// The MCAP container.
-    #[error("the link log {}: {source}", path.display())]
+    #[error("the link log {}: {problem}", path.display())]
     Container {
         /// The log.
         path: PathBuf,
-        /// What the container's reader or writer said.
-        source: mcap::McapError,
+        /// What the container's reader or writer said, in one line.
+        problem: String,
     },
     /// A message in it is not a link frame.
     #[error("the link log {}, message {index}: {problem}", path.display())]
@@ -59,6 +59,44 @@ pub enum LinkLogError {
         /// What is wrong.
         problem: String,
     },
+}
+
+impl LinkLogError {
+    fn container(path: &Path, error: &mcap::McapError) -> Self {
+        Self::Container {
+            path: path.to_path_buf(),
+            problem: first_line(&error.to_string()),
+        }
+    }
+}
+
+/// The first line that says something, in plain text: a record that cannot be parsed is told with frames, colours and where in
+/// the library's own source it happened.
+fn first_line(text: &str) -> String {
+    let mut plain = String::new();
+    let mut rest = text.chars();
+    while let Some(letter) = rest.next() {
+        if letter == '\u{1b}' {
+            // An escape sequence ends with its first letter.
+            rest.by_ref().find(char::is_ascii_alphabetic);
+        } else {
+            plain.push(letter);
+        }
+    }
+    plain
+        .lines()
+        .map(|line| line.trim_matches(|letter: char| letter.is_whitespace() || is_frame(letter)))
+        .find(|line| !line.is_empty() && *line != "Error" && *line != "Backtrace")
+        .map_or("it is damaged", |line| {
+            let line = line.strip_prefix("0: ").unwrap_or(line);
+            line.strip_prefix("Error: ").unwrap_or(line)
+        })
+        .to_owned()
+}
+
+/// Lines, corners and ends of lines that frames are drawn with.
+fn is_frame(letter: char) -> bool {
+    ('\u{2500}'..='\u{257f}').contains(&letter)
 }
 
 /// Writes a link log. The file takes its name only when [`LinkLogWriter::finish`] succeeds; dropped before that, it is
@@ -82,13 +120,14 @@ impl LinkLogWriter {
             path: path.to_path_buf(),
             source,
         };
-        if let Some(folder) = path
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty())
-        {
-            std::fs::create_dir_all(folder).map_err(write_error)?;
-        }
-        let temporary = beside(path, "partial");
+        let place = match destination(path).map_err(write_error)? {
+            Destination::File(place) => place,
+            Destination::Stream => {
+                return Err(write_error(io::Error::other("it is no file; name one")).into());
+            }
+        };
+        make_folder_of(&place).map_err(write_error)?;
+        let temporary = beside(&place, "partial");
         let file = File::create(&temporary).map_err(write_error)?;
         let start = || -> mcap::McapResult<_> {
             let mut writer = mcap::WriteOptions::new()
@@ -104,8 +143,8 @@ impl LinkLogWriter {
             )?;
             let empty = BTreeMap::new();
             let channels = [
-                writer.add_channel(schema, Direction::ToRobot.topic(), "json", &empty)?,
-                writer.add_channel(schema, Direction::FromRobot.topic(), "json", &empty)?,
+                writer.add_channel(schema, topic(Direction::ToRobot), "json", &empty)?,
+                writer.add_channel(schema, topic(Direction::ToHost), "json", &empty)?,
                 writer.add_channel(telemetry, TELEMETRY_TOPIC, "json", &empty)?,
             ];
             Ok((writer, channels))
@@ -114,16 +153,13 @@ impl LinkLogWriter {
             Ok((writer, channels)) => Ok(Self {
                 writer: Some(writer),
                 temporary,
-                path: path.to_path_buf(),
+                path: place,
                 channels,
                 sequence: 0,
             }),
             Err(source) => {
                 let _ = std::fs::remove_file(&temporary);
-                Err(LinkLogError::Container {
-                    path: path.to_path_buf(),
-                    source,
-                })
+                Err(LinkLogError::container(path, &source))
             }
         }
     }
@@ -136,7 +172,7 @@ impl LinkLogWriter {
         let [to_robot, from_robot, telemetry] = self.channels;
         let channel = match frame.direction {
             Direction::ToRobot => to_robot,
-            Direction::FromRobot => from_robot,
+            Direction::ToHost => from_robot,
         };
         let received = frame.received();
         self.add(channel, frame, &frame.to_json(received.as_ref()))?;
@@ -159,10 +195,7 @@ impl LinkLogWriter {
         };
         writer
             .write_to_known_channel(&header, json.to_string().as_bytes())
-            .map_err(|source| LinkLogError::Container {
-                path: self.path.clone(),
-                source,
-            })
+            .map_err(|error| LinkLogError::container(&self.path, &error))
     }
 
     /// Closes the log and gives it its name.
@@ -173,10 +206,7 @@ impl LinkLogWriter {
         let Some(mut writer) = self.writer.take() else {
             return Ok(());
         };
-        let container = |source| LinkLogError::Container {
-            path: self.path.clone(),
-            source,
-        };
+        let container = |error| LinkLogError::container(&self.path, &error);
         let finished = writer.finish().map_err(container).and_then(|_| {
             let write_error = |source| FileError::Write {
                 path: self.path.clone(),

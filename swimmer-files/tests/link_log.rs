@@ -1,14 +1,15 @@
 //! The link log: written as MCAP, read back frame by frame, readable without us.
 
+use link_protocol::Direction;
 use proptest::prelude::*;
-use swimmer_files::{Direction, LinkFrame, LinkLogWriter, read_link_log};
+use swimmer_files::{LinkFrame, LinkLogWriter, read_link_log};
 
 fn frame(index: u64) -> LinkFrame {
     LinkFrame {
         direction: if index.is_multiple_of(2) {
             Direction::ToRobot
         } else {
-            Direction::FromRobot
+            Direction::ToHost
         },
         host_time_ns: 1_000 * index,
         robot_time_us: index.is_multiple_of(3).then_some(index),
@@ -33,6 +34,55 @@ fn every_frame_comes_back() {
     assert_eq!(
         std::fs::read_dir(path.parent().unwrap()).unwrap().count(),
         1
+    );
+}
+
+/// The container's reader tells of a damaged record with colours, frames and its own source.
+#[test]
+fn a_damaged_log_is_told_of_in_one_plain_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("link.mcap");
+    let mut log = LinkLogWriter::create(&path).unwrap();
+    log.write(&frame(3)).unwrap();
+    log.finish().unwrap();
+    let good = std::fs::read(&path).unwrap();
+    let mut told = std::collections::BTreeSet::new();
+    for at in 0..good.len().min(300) {
+        let mut damaged = good.clone();
+        damaged[at] ^= 0x80;
+        std::fs::write(&path, &damaged).unwrap();
+        let Err(error) = read_link_log(&path) else {
+            continue;
+        };
+        let mut cause: Option<&dyn std::error::Error> = Some(&error);
+        while let Some(one) = cause {
+            let text = one.to_string();
+            assert!(
+                !text.contains(char::is_control) && !text.contains('\u{2501}'),
+                "byte {at}: {text:?}"
+            );
+            cause = one.source();
+        }
+        let text = error.to_string();
+        told.insert(text.rsplit_once("link.mcap").unwrap().1.to_owned());
+    }
+    assert!(
+        told.iter().all(|text| text.len() > ": x".len()),
+        "{told:#?}"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_symbolic_link_to_a_log_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("latest.mcap");
+    std::os::unix::fs::symlink("today.mcap", &link).unwrap();
+    LinkLogWriter::create(&link).unwrap().finish().unwrap();
+    assert!(link.is_symlink());
+    assert_eq!(
+        read_link_log(&folder.path().join("today.mcap")).unwrap(),
+        []
     );
 }
 

@@ -1,37 +1,24 @@
 //! The link log of a session holds every frame both ways, and it alone tells the session again.
 
+mod traced;
+
 use std::ops::ControlFlow;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Duration;
 
 use gait_player::GaitTable;
 use host_link::Robot;
-use host_link::port::{Direction, TracedFrame, TracedPort};
-use link_protocol::{Decoder, Message, Request};
-use swimmer_files::{LinkFrame, LinkLogWriter, SwimmerFile, read_link_log};
-use twin::{Twin, TwinConfig, TwinPort, WireSpeed};
+use link_protocol::{Decoder, Direction, Message, Request};
+use swimmer_files::{LinkLogWriter, SwimmerFile, read_link_log};
+use traced::traced;
+use twin::TwinConfig;
 
 #[test]
 fn a_log_tells_the_session_again() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("link.mcap");
-    let seen: Arc<Mutex<Vec<LinkFrame>>> = Arc::default();
-    let sink = Arc::clone(&seen);
-    let twin = Twin::new(TwinConfig::new(&SwimmerFile::preset("robot").unwrap(), 1)).unwrap();
-    let port = TracedPort::new(
-        TwinPort::new(twin, WireSpeed::robot()),
-        move |frame: TracedFrame<'_>| {
-            sink.lock().unwrap().push(LinkFrame {
-                direction: match frame.direction {
-                    Direction::ToRobot => swimmer_files::Direction::ToRobot,
-                    Direction::ToHost => swimmer_files::Direction::FromRobot,
-                },
-                host_time_ns: u64::try_from(frame.at.as_nanos()).unwrap(),
-                robot_time_us: None,
-                bytes: frame.bytes.to_vec(),
-            });
-        },
-    );
+    let swimmer = SwimmerFile::preset("robot").unwrap();
+    let (port, seen) = traced(TwinConfig::new(&swimmer, 1));
     let mut robot = Robot::connect(port, 1).unwrap();
     let table = GaitTable::from_fn(64, |u| {
         [
@@ -71,7 +58,7 @@ fn a_log_tells_the_session_again() {
     let (mut sent, mut telemetry) = (Vec::new(), 0);
     let mut decoders = [Decoder::new(), Decoder::new()];
     for frame in &read {
-        let to_robot = frame.direction == swimmer_files::Direction::ToRobot;
+        let to_robot = frame.direction == Direction::ToRobot;
         for &byte in &frame.bytes {
             let message = decoders[usize::from(to_robot)]
                 .push(byte)

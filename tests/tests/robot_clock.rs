@@ -1,9 +1,10 @@
 //! The robot's log and the cameras' track of one session: by the log's cycles, phases are right where the track alone tells them
 //! badly, and cycles that a pause broke are left out.
 
+mod traced;
+
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use calibrate::{
@@ -12,11 +13,12 @@ use calibrate::{
 };
 use gait_player::GaitTable;
 use host_link::Robot;
-use host_link::port::{Direction, TracedFrame, TracedPort};
+use host_link::port::TracedPort;
 use link_protocol::StateName;
-use swimmer_files::{AnyGait, GaitSpec, LinkFrame, Play, ServoFile, SwimmerFile, plays};
+use swimmer_files::{AnyGait, GaitSpec, Play, ServoFile, SwimmerFile, plays};
 use swimmer_model::Gait as _;
-use twin::{CameraConfig, Recording, Twin, TwinConfig, TwinPort, WireSpeed};
+use traced::traced;
+use twin::{CameraConfig, Recording, TwinConfig, TwinPort};
 
 const PERIOD_S: f64 = 10.0;
 
@@ -38,27 +40,12 @@ fn session(amplitude: &str, noise: f64, pause_s: Option<f64>, seed: u64) -> Sess
         servo: Some(ServoFile::default()),
         ..SwimmerFile::preset("robot").unwrap()
     };
-    let frames: Arc<Mutex<Vec<LinkFrame>>> = Arc::default();
-    let sink = Arc::clone(&frames);
     let mut config = TwinConfig::new(&file, seed);
     config.camera = CameraConfig {
         noise_sd: noise,
         ..CameraConfig::default()
     };
-    let port = TracedPort::new(
-        TwinPort::new(Twin::new(config).unwrap(), WireSpeed::robot()),
-        move |frame: TracedFrame<'_>| {
-            sink.lock().unwrap().push(LinkFrame {
-                direction: match frame.direction {
-                    Direction::ToRobot => swimmer_files::Direction::ToRobot,
-                    Direction::ToHost => swimmer_files::Direction::FromRobot,
-                },
-                host_time_ns: u64::try_from(frame.at.as_nanos()).unwrap(),
-                robot_time_us: None,
-                bytes: frame.bytes.to_vec(),
-            });
-        },
-    );
+    let (port, frames) = traced(config);
     let mut robot = Robot::connect(port, 1).unwrap();
     let table = GaitTable::from_fn(512, |u| shape.at(u).phi.into()).unwrap();
     robot

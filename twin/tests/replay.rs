@@ -5,10 +5,10 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use gait_player::GaitTable;
-use host_link::port::{Direction, FaultPlan, Faults, FaultyPort, TracedFrame, TracedPort};
+use host_link::port::{FaultPlan, Faults, FaultyPort, TracedFrame, TracedPort};
 use host_link::session::{ClockSamples, SessionConfig};
 use host_link::{Port, Robot};
-use link_protocol::{Decoder, Header, Key, MAX_ENCODED, Message, Play, Request, encode};
+use link_protocol::{Decoder, Direction, Header, Key, MAX_ENCODED, Message, Play, Request, encode};
 use swimmer_files::{LinkFrame, SwimmerFile};
 use twin::{ReplayError, Twin, TwinConfig, TwinPort, WireSpeed, replay};
 
@@ -54,10 +54,7 @@ fn recorded_with(
             robot_time_us = Some(pong.sent_us);
         }
         sink.lock().unwrap().push(LinkFrame {
-            direction: match frame.direction {
-                Direction::ToRobot => swimmer_files::Direction::ToRobot,
-                Direction::ToHost => swimmer_files::Direction::FromRobot,
-            },
+            direction: frame.direction,
             host_time_ns: u64::try_from(frame.at.as_nanos()).unwrap(),
             robot_time_us,
             bytes: frame.bytes.to_vec(),
@@ -159,7 +156,7 @@ fn so_does_one_that_was_signed_without_the_key() {
     let frames = recorded_with(keyed_twin(), with_key(KEY), everything);
     let signed = |frame: &&LinkFrame| {
         let received = frame.received().unwrap();
-        frame.direction == swimmer_files::Direction::ToRobot && received.signature.is_some()
+        frame.direction == Direction::ToRobot && received.signature.is_some()
     };
     assert!(frames.iter().filter(signed).count() > 300);
     let told = replay(&frames, None).unwrap();

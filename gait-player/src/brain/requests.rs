@@ -83,7 +83,7 @@ impl Brain {
 
     fn request(&mut self, now_us: u64, header: Header, request: &Request, admission: Admission) {
         // These act whatever else holds. Where their number is the next one, it takes its place in the order.
-        if matches!(request, Request::Stop | Request::EStop) {
+        if request.is_stop() {
             if *request == Request::Stop {
                 self.stop(StopCause::Requested);
             } else {

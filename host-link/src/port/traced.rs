@@ -3,17 +3,10 @@
 use std::io;
 use std::time::Duration;
 
+use link_protocol::Direction;
+
 use super::Port;
 use super::frames::FrameCutter;
-
-/// Which way a frame went.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// From the host to the robot.
-    ToRobot,
-    /// From the robot to the host.
-    ToHost,
-}
 
 /// One frame that passed a [`TracedPort`] at the host's end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

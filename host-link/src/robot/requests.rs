@@ -136,7 +136,7 @@ impl<P: Port> Robot<P> {
         self.order(Request::Play(play), doing)
     }
 
-    /// Holds the pose within a play. Detached: for at most 60 s without a link, then the robot stops.
+    /// Holds the pose within a play. Detached: without a link too, for at most 60 s in all, then the robot stops.
     ///
     /// # Errors
     /// [`LinkError::Refused`] when nothing plays, and the link's.

@@ -45,7 +45,8 @@ impl Session {
             Link::Closed => (None, None, false),
         };
         let request = match &self.pending {
-            Some(pending) => Some(pending.next_try),
+            // Without a session only a stop goes out: all else waits for the greeting to end.
+            Some(pending) => (open || pending.request.is_stop()).then_some(pending.next_try),
             None if self.busy > 0 && open => Some(self.hold_until),
             None => None,
         };
@@ -144,7 +145,7 @@ impl Session {
     /// There is no session: whatever waits ends here, but for a stop, which needs none.
     pub(super) fn fail_waiting(&mut self) {
         self.fail_unanswered(
-            |request| !matches!(request, Request::Stop | Request::EStop),
+            |request| !request.is_stop(),
             |doing| LinkError::NotConnected { doing },
         );
         self.end_upload(LinkError::NotConnected {
@@ -161,7 +162,7 @@ impl Session {
         let Some(pending) = &mut self.pending else {
             return;
         };
-        let stop = matches!(pending.request, Request::Stop | Request::EStop);
+        let stop = pending.request.is_stop();
         if now < pending.next_try || !(open || stop) {
             return;
         }

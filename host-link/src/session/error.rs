@@ -100,6 +100,22 @@ pub enum LinkError {
         /// The robot's firmware.
         firmware: String,
     },
+    /// The robot's greeting names a board or a reason of its reset that was appended to the protocol since this program.
+    #[error(
+        "the robot's firmware {firmware} is newer than this program and tells of itself what it does not know (a board, or a reason of its last reset): update this program"
+    )]
+    UnknownGreeting {
+        /// The robot's firmware.
+        firmware: String,
+    },
+    /// The robot's answer is one that was appended to the protocol since this program.
+    #[error(
+        "while {doing}: the robot gave an answer that this program does not know, so its firmware is newer: update this program; whether the robot did it, its status tells"
+    )]
+    UnknownAnswer {
+        /// What was being done.
+        doing: &'static str,
+    },
     /// The robot no longer knows this session.
     #[error(
         "while {doing}: the robot has opened another session ({open}): it restarted, or another program took it over; look at its status and connect again"
@@ -183,8 +199,13 @@ pub enum LinkError {
 }
 
 fn no_answer_advice(counters: &LinkCounters) -> &'static str {
-    match (counters.bytes_received, counters.received.ok) {
+    let received = &counters.received;
+    let unknown = received.not_understood > 0 || received.trailing_bytes > 0;
+    match (counters.bytes_received, received.ok) {
         (0, _) => "; is the robot on and paired, and is this its port?",
+        (_, 0) if unknown => {
+            "; whole frames come, but none that this program knows: the robot's firmware is newer, update this program"
+        }
         (_, 0) => {
             "; bytes come but none make sense: is this the robot's port, and is its Bluetooth module set to 115200 baud (AT+UART=115200,0,0)?"
         }

@@ -1,11 +1,8 @@
-//! What a session makes of the bytes that come: greetings, answers, telemetry, the time.
+//! What a session makes of the bytes that come: answers, telemetry, the time; greetings are in [`super::greeting`].
 
 use std::time::Duration;
 
-use link_protocol::{
-    Binding, FirmwareVersion, HelloReply, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Received,
-    Refusal, Reply, Request, SCHEMA_KEY, Seal,
-};
+use link_protocol::{Header, HelloReplyStart, Kind, Message, Received, Refusal, Reply, Request};
 
 use super::error::LinkError;
 use super::upload::UploadPhase;
@@ -30,23 +27,28 @@ impl Session {
 
     fn take(&mut self, received: Received, now: Duration) {
         let header = received.header;
-        let Ok(message) = received.message else {
-            return;
-        };
         let ours = matches!(self.link, Link::Open(_)) && header.session == self.number;
+        let Ok(message) = received.message else {
+            return self.take_unknown(header, ours, now);
+        };
         match message {
             Message::HelloReply(reply) => self.greeted(reply, now),
             Message::Reply(reply) => {
-                let answers = self
-                    .pending
-                    .as_ref()
-                    .is_some_and(|pending| pending.sequence == header.sequence);
-                // A stop is answered whatever the session, and so is a request of a session that is no more.
-                let stop = answers && self.stop_under_way();
-                let stale = matches!(reply, Reply::Refused(Refusal::StaleSession { .. }));
-                if ours || stop || stale {
+                let stop = self.pending.as_ref().is_some_and(|pending| {
+                    pending.sequence == header.sequence && pending.request.is_stop()
+                });
+                let counts = if stop {
+                    // Whatever the session, but nothing else: a reply held back must not end the repeats of a lost stop.
+                    reply == Reply::Done
+                } else {
+                    // A request of a session that is no more is answered, too.
+                    ours || matches!(reply, Reply::Refused(Refusal::StaleSession { .. }))
+                };
+                if counts {
                     self.last_heard = now;
                     self.answered(header.sequence, reply, now);
+                } else if ours {
+                    self.counters.unmatched += 1;
                 } else {
                     self.counters.foreign += 1;
                 }
@@ -79,75 +81,38 @@ impl Session {
         }
     }
 
-    fn stop_under_way(&self) -> bool {
-        self.pending
-            .as_ref()
-            .is_some_and(|pending| matches!(pending.request, Request::Stop | Request::EStop))
-    }
-
-    fn greeted(&mut self, reply: HelloReply, now: Duration) {
-        let Link::Greeting(greeting) = &self.link else {
-            return;
-        };
-        if reply.host_nonce != greeting.nonce {
-            self.counters.foreign += 1;
-            return;
-        }
-        let ticket = greeting.ticket;
-        let binding = Binding {
-            boot_nonce: reply.boot_nonce,
-            session: reply.session,
-            host_nonce: greeting.nonce,
-        };
-        if greeting.tries == 1 {
-            self.trip.sample(now.saturating_sub(greeting.first_sent));
-        }
-        self.last_heard = now;
-        if let Err(error) = versions_meet(&reply) {
-            self.link = Link::Closed;
-            if let Some(ticket) = ticket {
-                self.fail(ticket, error);
+    /// A whole frame that is no message this program knows: a newer firmware's. What it answers ends with that reason.
+    fn take_unknown(&mut self, header: Header, ours: bool, now: Duration) {
+        match self.decoder.kind_and_body() {
+            Some((Kind::HelloReply, body)) => {
+                if let Some(start) = HelloReplyStart::of_body(body) {
+                    self.greeted_by_unknown(header.sequence, &start, now);
+                }
             }
-            self.fail_waiting();
-            return;
-        }
-        let restarted = self
-            .boot_nonce
-            .is_some_and(|nonce| nonce != reply.boot_nonce);
-        if restarted {
-            self.clock.clear();
-        }
-        self.boot_nonce = Some(reply.boot_nonce);
-        if reply.session != self.number {
-            self.disown_pending(reply.session);
-        }
-        self.number = reply.session;
-        self.seal = self.config.key.map(|key| Seal::new(&key, binding));
-        self.signed = 0;
-        self.last_robot_us = None;
-        self.pings = 0;
-        self.counters.sessions += 1;
-        self.link = Link::Open(reply);
-        if let Some(ticket) = ticket {
-            self.events
-                .push_back(Event::Connected { ticket, restarted });
-        }
-        if self.upload.is_some() {
-            let doing = "uploading the gait";
-            self.renew_upload(LinkError::NotConnected { doing });
+            Some((Kind::Reply, _)) if ours => {
+                self.last_heard = now;
+                self.answered_by_unknown(header.sequence);
+            }
+            _ => {}
         }
     }
 
-    /// A request sent in an earlier session may have acted there: in this one it must not act again.
-    fn disown_pending(&mut self, open: u16) {
-        let sent_before = |pending: &mut Pending| {
-            pending.tries > 0 && !matches!(pending.request, Request::Stop | Request::EStop)
-        };
-        if let Some(pending) = self.pending.take_if(sent_before)
-            && let Owner::Ticket(ticket) = pending.owner
-        {
+    /// Asked again, the robot would answer the same. A stop is asked again all the same: nothing says that it acted.
+    fn answered_by_unknown(&mut self, sequence: u16) {
+        let meant =
+            |pending: &mut Pending| pending.sequence == sequence && !pending.request.is_stop();
+        if let Some(pending) = self.pending.take_if(meant) {
+            self.busy = 0;
             let doing = describe(&pending.request);
-            self.fail(ticket, LinkError::SessionLost { doing, open });
+            match pending.owner {
+                Owner::Ticket(ticket) => self.fail(ticket, LinkError::UnknownAnswer { doing }),
+                Owner::Upload => self.end_upload(LinkError::UnknownAnswer { doing }),
+            }
+        } else if self.upload.as_ref().is_some_and(|upload| {
+            upload.phase == UploadPhase::Chunks && upload.window.knows(sequence)
+        }) {
+            let doing = "uploading the gait";
+            self.end_upload(LinkError::UnknownAnswer { doing });
         }
     }
 
@@ -327,47 +292,5 @@ impl Session {
         if upload.window.wanted() > before {
             self.chunks_or_commit();
         }
-    }
-}
-
-fn versions_meet(reply: &HelloReply) -> Result<(), LinkError> {
-    let firmware = firmware_name(&reply.firmware);
-    if reply.protocol_current < PROTOCOL_MIN || reply.protocol_min > PROTOCOL_CURRENT {
-        return Err(LinkError::Version {
-            robot_min: reply.protocol_min,
-            robot_current: reply.protocol_current,
-            host_min: PROTOCOL_MIN,
-            host_current: PROTOCOL_CURRENT,
-            firmware,
-        });
-    }
-    if reply.protocol_current == PROTOCOL_CURRENT && reply.schema_key != SCHEMA_KEY {
-        return Err(LinkError::Schema {
-            version: PROTOCOL_CURRENT,
-            robot_key: u64::from_be_bytes(reply.schema_key),
-            host_key: u64::from_be_bytes(SCHEMA_KEY),
-            firmware,
-        });
-    }
-    Ok(())
-}
-
-/// `1.2.3 (0123abcd)`.
-pub(crate) fn firmware_name(firmware: &FirmwareVersion) -> String {
-    let FirmwareVersion {
-        major,
-        minor,
-        patch,
-        commit,
-    } = firmware;
-    let commit: String = commit
-        .iter()
-        .map(|&byte| char::from(byte))
-        .filter(char::is_ascii_hexdigit)
-        .collect();
-    if commit.is_empty() {
-        format!("{major}.{minor}.{patch}")
-    } else {
-        format!("{major}.{minor}.{patch} ({commit})")
     }
 }

@@ -33,11 +33,13 @@ pub(super) enum Owner {
     Upload,
 }
 
+/// A request that was sent at least once.
 #[derive(Debug)]
 pub(super) struct Pending {
     pub(super) owner: Owner,
     pub(super) request: Request,
     pub(super) sequence: u16,
+    /// Times it was sent since the robot was last heard to work at it.
     pub(super) tries: u32,
     pub(super) first_sent: Duration,
     pub(super) last_sent: Duration,

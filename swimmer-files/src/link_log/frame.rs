@@ -1,16 +1,7 @@
 //! One frame of the link log, and its JSON.
 
-use link_protocol::{Decoder, Message, Received, Telemetry};
+use link_protocol::{Decoder, Direction, Message, Received, Telemetry};
 use serde_json::{Map, Value, json};
-
-/// Which way a frame went.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Direction {
-    /// Host to robot.
-    ToRobot,
-    /// Robot to host.
-    FromRobot,
-}
 
 /// One frame as it crossed the wire.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -25,20 +16,19 @@ pub struct LinkFrame {
     pub bytes: Vec<u8>,
 }
 
-impl Direction {
-    /// The topic in the log.
-    pub fn topic(self) -> &'static str {
-        match self {
-            Self::ToRobot => "/link/to_robot",
-            Self::FromRobot => "/link/from_robot",
-        }
+/// The topic of frames that go this way.
+pub(super) fn topic(direction: Direction) -> &'static str {
+    match direction {
+        Direction::ToRobot => "/link/to_robot",
+        Direction::ToHost => "/link/from_robot",
     }
+}
 
-    pub(super) fn of_topic(topic: &str) -> Option<Self> {
-        [Self::ToRobot, Self::FromRobot]
-            .into_iter()
-            .find(|one| one.topic() == topic)
-    }
+/// The other way round; `None` for a topic of another program.
+pub(super) fn direction_of(name: &str) -> Option<Direction> {
+    [Direction::ToRobot, Direction::ToHost]
+        .into_iter()
+        .find(|direction| topic(*direction) == name)
 }
 
 impl LinkFrame {

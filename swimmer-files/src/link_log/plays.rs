@@ -5,9 +5,9 @@
 //! counts as steady when all that was told of it lies on one line from its first to its last tenth: a pause, a swap or a stop
 //! in it bends the line.
 
-use link_protocol::{Message, Reply, Request, StateName, Telemetry};
+use link_protocol::{Direction, Message, Reply, Request, StateName, Telemetry};
 
-use super::{Direction, LinkFrame};
+use super::LinkFrame;
 
 /// One play, from its first cycle to the ramp back.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,12 +43,10 @@ pub fn plays(frames: &[LinkFrame]) -> Vec<Play> {
                 period_s = Some(f64::from(play.period_us) * 1e-6);
                 asked = true;
             }
-            (Direction::FromRobot, Message::Reply(Reply::Status(status)))
-                if status.period_us > 0 =>
-            {
+            (Direction::ToHost, Message::Reply(Reply::Status(status))) if status.period_us > 0 => {
                 period_s = Some(f64::from(status.period_us) * 1e-6);
             }
-            (Direction::FromRobot, Message::Telemetry(told)) => {
+            (Direction::ToHost, Message::Telemetry(told)) => {
                 let plays_now = matches!(told.state, StateName::Playing | StateName::Paused);
                 let Some(period_s) = period_s.filter(|_| plays_now) else {
                     // On the ramp between a pause and its end nothing is over yet.

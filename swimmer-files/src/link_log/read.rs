@@ -6,7 +6,8 @@ use std::path::Path;
 use mcap::records::Record;
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-use super::{Direction, LinkFrame, LinkLogError};
+use super::frame::direction_of;
+use super::{LinkFrame, LinkLogError};
 use crate::FileError;
 
 /// Larger than any chunk that a writer makes by default, small enough to allocate.
@@ -21,10 +22,7 @@ pub fn read_link_log(path: &Path) -> Result<Vec<LinkFrame>, LinkLogError> {
         path: path.to_path_buf(),
         source,
     })?;
-    let container = |source| LinkLogError::Container {
-        path: path.to_path_buf(),
-        source,
-    };
+    let container = |error| LinkLogError::container(path, &error);
     let options = LinearReaderOptions::default().with_record_length_limit(LARGEST_RECORD);
     let mut reader = LinearReader::new_with_options(options);
     let mut rest = bytes.as_slice();
@@ -44,7 +42,7 @@ pub fn read_link_log(path: &Path) -> Result<Vec<LinkFrame>, LinkLogError> {
         match mcap::parse_record(opcode, data).map_err(container)? {
             Record::Channel(channel) => {
                 // Another program's topic in the same file is passed over.
-                directions.insert(channel.id, Direction::of_topic(&channel.topic));
+                directions.insert(channel.id, direction_of(&channel.topic));
             }
             Record::Message { header, data } => {
                 let Some(&Some(direction)) = directions.get(&header.channel_id) else {

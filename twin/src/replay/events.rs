@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use gait_player::TICK_US;
 use link_protocol::{
-    Configuration, HelloReply, Joint, Message, Received, Refusal, Reply, Request, ServoSettings,
-    StateName, Telemetry,
+    Configuration, Direction, HelloReply, Joint, Message, Received, Refusal, Reply, Request,
+    ServoSettings, StateName, Telemetry,
 };
-use swimmer_files::{Direction, LinkFrame};
+use swimmer_files::LinkFrame;
 
 use super::{BEFORE, ReplayError};
 
@@ -59,7 +59,7 @@ impl Events {
         let read = on_the_robots_clock(frames)?;
         let greeted = read.iter().enumerate().find_map(|(index, read)| {
             match (read.frame.direction, &read.received.message) {
-                (Direction::FromRobot, Ok(Message::HelloReply(hello))) => Some((index, *hello)),
+                (Direction::ToHost, Ok(Message::HelloReply(hello))) => Some((index, *hello)),
                 _ => None,
             }
         });
@@ -68,7 +68,7 @@ impl Events {
         let told: Vec<Telemetry> = read
             .iter()
             .skip(greeting)
-            .filter(|read| read.frame.direction == Direction::FromRobot)
+            .filter(|read| read.frame.direction == Direction::ToHost)
             .filter_map(|read| match &read.received.message {
                 Ok(Message::Telemetry(telemetry)) => Some(*telemetry),
                 _ => None,
@@ -112,7 +112,7 @@ fn found(read: &[Read<'_>], greeting: usize) -> Option<(StateName, [i16; 2])> {
     let mut heard = read
         .iter()
         .skip(greeting)
-        .filter(|read| read.frame.direction == Direction::FromRobot);
+        .filter(|read| read.frame.direction == Direction::ToHost);
     heard.find_map(|read| match &read.received.message {
         Ok(Message::Reply(Reply::Status(status))) => Some((status.state, status.setpoint)),
         Ok(Message::Telemetry(telemetry)) => Some((telemetry.state, telemetry.setpoint)),
@@ -201,7 +201,7 @@ fn sent(read: &[Read<'_>], clock: &Ticks) -> (Vec<Moving>, Vec<Still>) {
     let answers: HashMap<(u16, u16), f64> = read
         .iter()
         .rev()
-        .filter(|read| read.frame.direction == Direction::FromRobot)
+        .filter(|read| read.frame.direction == Direction::ToHost)
         .filter(|read| {
             matches!(&read.received.message, Ok(Message::Reply(reply)) if !matches!(reply, Reply::Working))
         })
@@ -296,7 +296,7 @@ impl Facts {
                 (Direction::ToRobot, Ok(Message::Request(Request::Servo(joint)))) => {
                     asked.insert(number, *joint);
                 }
-                (Direction::FromRobot, Ok(Message::Reply(reply))) => match reply {
+                (Direction::ToHost, Ok(Message::Reply(reply))) => match reply {
                     Reply::Configuration(configuration) => {
                         facts.configuration.get_or_insert(*configuration);
                     }

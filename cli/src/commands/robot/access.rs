@@ -129,7 +129,12 @@ impl Access {
     /// [`Failure::BadInput`] where no port was named and none or several can be meant, [`Failure::Tried`] when the port
     /// cannot be opened or no robot answers.
     pub(super) fn connect(&self, command: &str, pace: Pace) -> Outcome<Line> {
-        let recorder = self.log.as_deref().map(Recorder::create).transpose()?;
+        let recorder = self
+            .log
+            .as_deref()
+            .map(Recorder::create)
+            .transpose()?
+            .map(Recorder::told);
         if let [name] = self.port.as_slice() {
             let means = self.means(pace)?;
             let opened = reach_alone(name, &means)?;
