@@ -2,6 +2,7 @@
 //! them.
 
 use crate::TICK_US;
+use crate::servo::ServoMap;
 use link_protocol::Configuration;
 
 /// Limits on angle, rate and pulse.
@@ -15,9 +16,19 @@ pub struct Limits {
     pub pulse_min_ns: u32,
     /// Longest pulse, ns.
     pub pulse_max_ns: u32,
+    /// Pulse of a straight joint as built, ns; settings may lie [`CENTRE_ROOM_NS`] from it.
+    pub centre_ns: u32,
+    /// Angle per pulse as built, rad/µs; settings may differ from it by [`SLOPE_ROOM`]. A step of the angle is a step of the
+    /// pulse by way of the slope: a robot that took any slope for its own would take any step for slow.
+    pub slope_rad_per_us: f32,
     /// The battery is low below this, mV.
     pub battery_limit_mv: u16,
 }
+
+/// The horn sits on its spline by teeth of 14°, and no two servos are straight at the same pulse: 20 µs are 31° here.
+pub const CENTRE_ROOM_NS: u32 = 20_000;
+/// Share by which a servo's slope may differ from that of its kind.
+pub const SLOPE_ROOM: f32 = 0.1;
 
 impl Limits {
     /// The robot's: sail-winch servos, hard clamp inside 600 to 2400 µs, a pack of 4.8 V.
@@ -26,6 +37,8 @@ impl Limits {
         max_rate: 3.5,
         pulse_min_ns: 1_300_000,
         pulse_max_ns: 1_700_000,
+        centre_ns: ServoMap::ROBOT.centre_ns,
+        slope_rad_per_us: ServoMap::ROBOT.slope_rad_per_us,
         battery_limit_mv: 4_400,
     };
 
@@ -39,6 +52,18 @@ impl Limits {
         }
     }
 
+    /// A servo may be set up with this centre \[ns\].
+    pub fn allows_centre(&self, centre_ns: u32) -> bool {
+        (self.pulse_min_ns..=self.pulse_max_ns).contains(&centre_ns)
+            && centre_ns.abs_diff(self.centre_ns) <= CENTRE_ROOM_NS
+    }
+
+    /// A servo may be set up with this slope \[rad/µs\]; no number is none.
+    pub fn allows_slope(&self, slope_rad_per_us: f32) -> bool {
+        let share = slope_rad_per_us / self.slope_rad_per_us;
+        (1.0 - SLOPE_ROOM..=1.0 + SLOPE_ROOM).contains(&share)
+    }
+
     /// Largest step of an angle in one tick, rad.
     pub fn max_step(&self) -> f32 {
         self.max_rate * (TICK_US as f32 * 1e-6)
@@ -48,21 +73,11 @@ impl Limits {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Boot;
-    use crate::brain::{BrainConfig, Identity};
-    use link_protocol::{Board, FirmwareVersion};
+    use crate::BrainConfig;
 
     #[test]
     fn a_configuration_tightens_and_never_loosens() {
-        let firmware = FirmwareVersion {
-            major: 0,
-            minor: 1,
-            patch: 0,
-            commit: [0; 8],
-        };
-        let board = Board::Twin;
-        let identity = Identity { firmware, board };
-        let robot = BrainConfig::robot(identity, Boot::power_on(1, 1)).configuration;
+        let robot = BrainConfig::in_tests().configuration;
         for (factor, expected) in [(0.5, 0.5), (1.0, 1.0), (2.0, 1.0)] {
             let configuration = Configuration {
                 max_angle: factor * Limits::ROBOT.max_angle,

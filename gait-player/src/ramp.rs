@@ -33,11 +33,18 @@ impl Ramp {
     /// two within limits that [`link_protocol::Configuration`] may have.
     pub fn soft(from: [f32; 2], to: [f32; 2], via_neutral: bool, limits: &Limits) -> Self {
         let corner = if via_neutral { NEUTRAL } else { to };
-        let wanted_us = Leg::wanted_us(from, corner, limits) + Leg::wanted_us(corner, to, limits);
-        let shrink = (LONGEST_US / wanted_us).min(1.0);
+        let wanted_us = [(from, corner), (corner, to)].map(|(a, b)| Leg::wanted_us(a, b, limits));
+        // Each leg is rounded up to whole ticks where there is time for it: two legs may want less than there is and yet not
+        // find room for both.
+        let rounded_us = wanted_us.map(whole_ticks);
+        let share = if rounded_us[0].saturating_add(rounded_us[1]) > LONGEST_US as u32 {
+            Some((LONGEST_US / (wanted_us[0] + wanted_us[1])).min(1.0))
+        } else {
+            None
+        };
         Self {
-            first: Leg::soft(from, corner, shrink, limits),
-            second: via_neutral.then(|| Leg::soft(corner, to, shrink, limits)),
+            first: Leg::soft(from, corner, share, limits),
+            second: via_neutral.then(|| Leg::soft(corner, to, share, limits)),
         }
     }
 
@@ -83,18 +90,19 @@ impl Leg {
         eased_us.max(GENTLE_US.min(3.0 * eased_us))
     }
 
-    /// A soft leg that takes this share of the time it would.
-    fn soft(from: [f32; 2], to: [f32; 2], shrink: f32, limits: &Limits) -> Self {
+    /// A soft leg: as long as it would be, or this share of it where time is short.
+    fn soft(from: [f32; 2], to: [f32; 2], share: Option<f32>, limits: &Limits) -> Self {
         let (fastest_us, wanted_us) = (
             fastest_us(from, to, limits),
             Self::wanted_us(from, to, limits),
         );
-        let duration_us = if shrink < 1.0 {
+        let duration_us = match share {
             // Rounded down, so that two legs together keep the promise.
-            let ticks = libm::floorf(shrink * wanted_us / TICK_US as f32 + 1e-3);
-            (ticks as u32 * TICK_US).max(whole_ticks(fastest_us))
-        } else {
-            whole_ticks(wanted_us)
+            Some(share) => {
+                let ticks = libm::floorf(share * wanted_us / TICK_US as f32 + 1e-3);
+                (ticks as u32 * TICK_US).max(whole_ticks(fastest_us))
+            }
+            None => whole_ticks(wanted_us),
         };
         // A share `e` of ease is 1 + e/2 times as fast in its middle as on average.
         let spare = duration_us as f32 / fastest_us - 1.0;
@@ -177,6 +185,19 @@ mod tests {
             prop_assert!(ramp.duration_us() <= 2_000_000, "{}", ramp.duration_us());
             prop_assert!(largest_step(&ramp) <= limits.max_step() * 1.002, "{}", largest_step(&ramp) / limits.max_step());
         }
+    }
+
+    /// Found by the law above: 1.06 and 0.92 s are less than two, but not when each is rounded up to a tick.
+    #[test]
+    fn two_legs_that_want_just_less_than_two_seconds_get_no_more() {
+        let limits = Limits {
+            max_angle: 0.01,
+            max_rate: 0.01 / 0.715_860_96,
+            ..Limits::ROBOT
+        };
+        let ramp = Ramp::soft([0.009_915_114, 0.0], [0.002_867_301_7, 0.0], true, &limits);
+        assert_eq!(ramp.duration_us(), 2_000_000 - TICK_US);
+        assert!(largest_step(&ramp) <= limits.max_step() * 1.002);
     }
 
     #[test]

@@ -44,6 +44,12 @@ impl Route {
         }
     }
 
+    /// It begins here, to the last bit.
+    #[allow(clippy::float_cmp)]
+    pub(crate) fn begins_at(&self, from: [f32; 2]) -> bool {
+        self.from == from
+    }
+
     /// Looks once.
     pub(crate) fn advance(&mut self, links: &Links<f32>) -> Decision {
         match (self.check.advance(links), self.leg) {

@@ -110,6 +110,14 @@ fn a_detached_pause_holds_for_a_minute() {
     bench.keep_alive = false;
     let took = bench.until(StateName::Stopping, 61 * SECOND);
     assert!(took.abs_diff(60 * SECOND) <= TICK, "{took}");
+    // It is a minute with a link too; asked for again it is not longer.
+    let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
+    bench.done(Request::Pause { detached: true });
+    bench.run(40 * SECOND);
+    bench.done(Request::Pause { detached: true });
+    bench.keep_alive = false;
+    let took = bench.until(StateName::Stopping, 61 * SECOND);
+    assert!(took.abs_diff(20 * SECOND) <= TICK, "{took}");
     // An attached pause after a detached one needs the link again.
     let mut bench = Bench::playing(&circle(1.2), play(0, 5_000_000));
     bench.done(Request::Pause { detached: true });

@@ -109,6 +109,22 @@ fn r6_a_reset_restarts_nothing_and_an_estop_survives_it() {
     }
 }
 
+/// The shell keeps the word before it sends the answer: an e-stop that was acknowledged is not lost with a reset that comes
+/// before the next tick.
+#[test]
+fn r6_an_estop_is_in_the_word_to_keep_before_its_answer_is_sent() {
+    let mut bench = Bench::new();
+    bench.done(ARM);
+    bench.tick();
+    assert_eq!(bench.brain.kept(), bench.output.kept);
+    assert_eq!(
+        bench.send_request(bench.sequence + 1, Request::EStop),
+        Some(Reply::Done)
+    );
+    let mut after = restarted(bench.brain.kept(), ResetReason::Watchdog);
+    assert_eq!(after.status().state, StateName::EStopped);
+}
+
 #[test]
 fn r8_three_resets_in_a_minute_refuse_arming_until_cleared() {
     let mut kept = Bench::new().output.kept;

@@ -4,7 +4,8 @@
 mod bench;
 
 use bench::*;
-use gait_player::TICK_US;
+use gait_player::ramp::Ramp;
+use gait_player::{GaitTable, Limits, TICK_US};
 use link_protocol::*;
 use swimmer_model::{Circle, Model, Swimmer, Tolerance, swim};
 
@@ -265,6 +266,54 @@ fn a_swap_waits_for_the_end_of_the_cycle_and_goes_by_a_ramp() {
     assert_eq!(bench.until(StateName::Stopping, 11 * SECOND), 10 * SECOND);
 }
 
+/// Cycles that were done before the swap stay done.
+#[test]
+fn a_swap_in_a_later_cycle_waits_for_the_end_of_that_one_and_counts_on() {
+    let period = 10 * SECOND;
+    let mut bench = Bench::playing(&circle(1.2), play(4, 10_000_000));
+    bench.run(2 * period + SECOND);
+    bench.upload(&circle(0.5));
+    let status = bench.status();
+    assert_eq!((status.state, status.cycle), (StateName::Playing, 2));
+    bench.until(StateName::Starting, period);
+    assert_eq!(bench.status().cycle, 3);
+    bench.until(StateName::Playing, 2 * SECOND);
+    assert_eq!(bench.until(StateName::Stopping, 2 * period), period);
+    let status = bench.status();
+    assert_eq!((status.cycle, status.cycles), (4, 4));
+}
+
+/// The tick in which the ramp is over is the first of the play: none is lost at the first knot.
+#[test]
+fn a_start_takes_its_ramp_and_not_a_tick_more() {
+    let mut bench = Bench::new();
+    let table = circle(1.2);
+    bench.upload(&table);
+    bench.done(ARM);
+    bench.tick();
+    let ramp = Ramp::soft([0.0; 2], table.knot_angles(0), false, &Limits::ROBOT);
+    bench.done(play(1, 5_000_000));
+    // It begins to move in the very tick that accepts it.
+    assert_eq!(bench.output.state, StateName::Starting);
+    let left = bench.until(StateName::Playing, 2 * SECOND);
+    assert_eq!(left + u64::from(TICK_US), u64::from(ramp.duration_us()));
+}
+
+#[test]
+fn the_shortest_period_is_a_tick() {
+    let mut bench = Bench::new();
+    let still = GaitTable::from_fn(64, |_| [0.1, -0.1]).unwrap();
+    bench.upload(&still);
+    bench.done(ARM);
+    assert_eq!(
+        bench.refused(play(50, TICK_US - 1)),
+        Refusal::BadValue { field: 1 }
+    );
+    bench.done(play(50, TICK_US));
+    bench.until(StateName::Playing, 2 * SECOND);
+    assert_eq!(bench.until(StateName::Stopping, 2 * SECOND), SECOND);
+}
+
 #[test]
 fn a_swap_that_is_too_fast_leaves_the_old_gait_playing() {
     let mut bench = Bench::playing(&circle(1.0), play(0, 2_000_000));
@@ -293,5 +342,24 @@ fn a_table_that_waited_is_active_once_the_play_is_over() {
         let status = bench.status();
         assert_eq!(status.table.unwrap().crc32, circle(0.5).crc32());
         assert!(!status.flags.contains(Flags::SWAP_PENDING));
+    }
+}
+
+#[test]
+fn ticks_that_are_left_out_are_counted_each_gap_once() {
+    let mut bench = Bench::new();
+    let late = |bench: &Bench| bench.brain.counters().late_ticks;
+    bench.run(SECOND);
+    assert_eq!(late(&bench), 0);
+    // A tick that comes within its period is none of them; a second call in the same period is none either.
+    bench.now_us += 9_000;
+    bench.brain.tick(bench.now_us, &bench.inputs);
+    bench.now_us += 11_000;
+    bench.brain.tick(bench.now_us, &bench.inputs);
+    assert_eq!(late(&bench), 0);
+    for (gap, counted) in [(2, 1), (3, 2), (1, 2), (50, 3)] {
+        bench.now_us += gap * u64::from(TICK_US);
+        bench.brain.tick(bench.now_us, &bench.inputs);
+        assert_eq!(late(&bench), counted, "after {gap} periods");
     }
 }

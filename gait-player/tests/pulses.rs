@@ -13,7 +13,6 @@ use rand_chacha::ChaCha8Rng;
 /// Holds the pulses of every tick against the limits.
 struct Witness {
     last: Option<[u32; 2]>,
-    slopes: [f32; 2],
     powered: u64,
 }
 
@@ -21,7 +20,6 @@ impl Witness {
     fn new() -> Self {
         Self {
             last: None,
-            slopes: [0.0274; 2],
             powered: 0,
         }
     }
@@ -29,8 +27,8 @@ impl Witness {
     fn see(&mut self, output: &Output, limits: &Limits) {
         if let (Some(last), Some(pulses)) = (self.last, output.pulses_ns) {
             for joint in 0..2 {
-                let step =
-                    f64::from(limits.max_rate) * 0.02 / f64::from(self.slopes[joint]) * 1000.0;
+                // By the servos as built, a tenth flatter at most: not by the slope that somebody told the robot.
+                let step = f64::from(limits.max_rate) * 0.02 / (0.9 * 0.0274) * 1000.0;
                 let moved = f64::from(pulses[joint].abs_diff(last[joint]));
                 assert!(moved <= step.ceil(), "step of {moved} ns, {step} allowed");
             }
@@ -84,10 +82,10 @@ fn configuration(random: &mut ChaCha8Rng) -> Configuration {
 
 fn servo(random: &mut ChaCha8Rng) -> ServoSettings {
     ServoSettings {
-        centre_ns: if random.random() {
-            1_500_000
-        } else {
-            random.random()
+        centre_ns: match random.random_range(0..4) {
+            0 => random.random(),
+            1 => random.random_range(1_475_000..1_525_000),
+            _ => 1_500_000,
         },
         slope_rad_per_us: wild(random, 0.0274),
         reversed: random.random(),
@@ -286,15 +284,6 @@ fn wild_run(seed: u64) -> u64 {
         } else {
             let request = request(&mut random, sequence.wrapping_sub(1));
             bench.send_request(sequence, request);
-        }
-        // What the robot allows a servo is what it took; ask it rather than believe the request.
-        for joint in [Joint::Front, Joint::Back] {
-            bench.sequence = bench.sequence.wrapping_add(1);
-            if let Some(Reply::Servo(servo)) =
-                bench.send_request(bench.sequence, Request::Servo(joint))
-            {
-                witness.slopes[joint.index()] = servo.slope_rad_per_us;
-            }
         }
         for _ in 0..random.random_range(1..40) {
             bench.inputs = Inputs {

@@ -5,6 +5,7 @@
 mod bench;
 
 use bench::*;
+use gait_player::servo::ServoMap;
 use gait_player::{GaitTable, Limits};
 use link_protocol::*;
 
@@ -104,6 +105,7 @@ fn every_refusal_of_an_upload() {
         bench.refused(Request::Commit { upload }),
         Refusal::Incomplete { wanted: 10 }
     );
+    assert_eq!(bench.status().upload, Some(10));
     // Another session resumes by the same length and checksum, under a new number.
     bench.greet(2);
     bench.sequence = 500;
@@ -131,6 +133,32 @@ fn every_refusal_of_an_upload() {
         bench.refused(Request::Commit { upload: 501 }),
         Refusal::NoUpload
     );
+}
+
+#[test]
+fn an_upload_of_another_table_begins_at_its_first_byte() {
+    let mut bench = Bench::new();
+    let begin = |len, crc32| {
+        Request::Begin(Begin {
+            slot: 0,
+            len,
+            crc32,
+        })
+    };
+    let from = |bench: &mut Bench, len, crc32| match bench.ask(begin(len, crc32)) {
+        Reply::Wanted { upload, offset } => (upload, offset),
+        reply => panic!("{reply:?}"),
+    };
+    let (upload, offset) = from(&mut bench, 16, 1);
+    let data = heapless::Vec::from_slice(&[0; 8]).unwrap();
+    bench.ask(Request::Chunk(Chunk {
+        upload,
+        offset,
+        data,
+    }));
+    assert_eq!(from(&mut bench, 16, 1).1, 8);
+    assert_eq!(from(&mut bench, 16, 2).1, 0);
+    assert_eq!(bench.status().upload, Some(0));
 }
 
 #[test]
@@ -260,7 +288,8 @@ fn a_configuration_tightens_limits_and_is_held_against_the_active_table() {
         c.back_m = 0.3;
         c.max_angle = 2.8;
     }));
-    let long = GaitTable::from_fn(512, |u| [1.7 * (std::f64::consts::TAU * u).cos(); 2]).unwrap();
+    // It begins at neutral, where the servos are: no way to it can cross.
+    let long = GaitTable::from_fn(512, |u| [1.7 * (std::f64::consts::TAU * u).sin(); 2]).unwrap();
     let reply = bench.commit(&long);
     assert!(
         matches!(reply, Reply::Refused(Refusal::LinksCross { .. })),
@@ -275,7 +304,10 @@ fn a_configuration_tightens_limits_and_is_held_against_the_active_table() {
     }));
     bench.done(ARM);
     let refusal = bench.refused(play(1, 30_000_000));
-    assert!(matches!(refusal, Refusal::LinksCross { .. }), "{refusal:?}");
+    let Refusal::LinksCross { place, .. } = refusal else {
+        panic!("{refusal:?}")
+    };
+    assert!(matches!(place, CrossingPlace::Gait(_)), "{place:?}");
 }
 
 #[test]
@@ -327,7 +359,7 @@ fn trim_moves_the_pulse_not_the_setpoint_and_not_faster_than_allowed() {
         (
             0,
             ServoSettings {
-                centre_ns: 1_000_000,
+                centre_ns: 1_520_001,
                 ..wanted
             },
         ),
@@ -351,6 +383,63 @@ fn trim_moves_the_pulse_not_the_setpoint_and_not_faster_than_allowed() {
             settings: bad,
         };
         assert_eq!(bench.refused(set), Refusal::BadValue { field });
+    }
+}
+
+/// What the robot takes a pulse to mean is what makes a step slow or fast: settings for servos of another kind are refused.
+#[test]
+fn a_servo_may_be_set_up_as_one_of_its_kind_only() {
+    let mut bench = Bench::new();
+    let Reply::Servo(servo) = bench.ask(Request::Servo(Joint::Front)) else {
+        panic!()
+    };
+    let with = |centre_ns: u32, slope: f32| Request::SetServo {
+        joint: Joint::Front,
+        settings: ServoSettings {
+            centre_ns,
+            slope_rad_per_us: slope * servo.slope_rad_per_us,
+            ..servo
+        },
+    };
+    for (centre_ns, slope) in [(1_480_000, 0.901), (1_520_000, 1.099), (1_500_000, 1.0)] {
+        bench.done(with(centre_ns, slope));
+    }
+    for (field, request) in [
+        (0, with(1_479_999, 1.0)),
+        (0, with(1_520_001, 1.0)),
+        (0, with(1_300_000, 1.0)),
+        (1, with(1_500_000, 0.899)),
+        (1, with(1_500_000, 1.101)),
+        (1, with(1_500_000, 0.004)),
+        (1, with(1_500_000, -1.0)),
+        (1, with(1_500_000, f32::NAN)),
+    ] {
+        assert_eq!(bench.refused(request), Refusal::BadValue { field });
+    }
+}
+
+#[test]
+fn a_trim_may_put_a_joint_at_its_limit_and_not_beyond() {
+    let mut bench = Bench::new();
+    let Reply::Servo(servo) = bench.ask(Request::Servo(Joint::Back)) else {
+        panic!()
+    };
+    let trim = 4_000;
+    let away = ServoMap::from(ServoSettings { trim, ..servo }).angle(servo.centre_ns);
+    for (max_angle, taken) in [(away.abs(), true), (away.abs().next_down(), false)] {
+        let Reply::Configuration(mut wanted) = bench.ask(Request::Configuration) else {
+            panic!()
+        };
+        wanted.max_angle = max_angle;
+        bench.done(Request::Configure(wanted));
+        bench.done(ARM);
+        bench.tick();
+        let joint = Joint::Back;
+        let reply = bench.ask(Request::Trim { joint, trim });
+        assert_eq!(reply == Reply::Done, taken, "{reply:?}");
+        bench.done(Request::Stop);
+        bench.until(StateName::Stopped, 2 * SECOND);
+        bench.done(Request::Trim { joint, trim: 0 });
     }
 }
 

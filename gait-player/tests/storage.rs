@@ -109,12 +109,14 @@ fn boot(flash: &mut Flash) -> Bench {
 
 /// Serves the storage until nothing is left to do or the power is cut.
 fn serve(bench: &mut Bench, flash: &mut Flash) -> Result<(), PowerCut> {
-    bench.tick();
-    while bench.output.storage_wanted {
+    // Settings, an erase, eight pages of table, the header; and as much again.
+    for _ in 0..24 {
+        if !bench.tick().storage_wanted {
+            return Ok(());
+        }
         bench.brain.serve_storage(bench.now_us, flash)?;
-        bench.tick();
     }
-    Ok(())
+    panic!("the brain wants to store without end");
 }
 
 fn stored(bench: &mut Bench) -> Option<(u32, bool)> {
@@ -142,6 +144,9 @@ fn a_table_comes_back_after_a_restart_and_plays() {
     bench.done(ARM);
     bench.done(play(1, 5_000_000));
     bench.until(StateName::Playing, 2 * SECOND);
+    // Its knots, not only its name.
+    let first = circle(0.9).knot_angles(0);
+    assert!((0..2).all(|joint| (bench.output.setpoint[joint] - first[joint]).abs() < 1e-6));
 }
 
 #[test]
@@ -344,5 +349,83 @@ fn settings_that_are_lost_are_told_and_set_anew() {
         };
         assert_eq!(servo.trim, 77);
         assert!(!bench.status().flags.contains(Flags::STORAGE_FAILED));
+    }
+}
+
+/// The header of a slot: magic, format, generation, length, CRC of the table, CRC of these.
+fn header(words: [u32; 5]) -> Vec<u8> {
+    let mut bytes: Vec<u8> = words.into_iter().flat_map(u32::to_le_bytes).collect();
+    bytes.extend(crc32c(&bytes).to_le_bytes());
+    bytes
+}
+
+#[test]
+fn a_slot_counts_only_where_every_word_of_its_header_is_right() {
+    let table = circle(1.2);
+    let good = [
+        u32::from_le_bytes(*b"GAIT"),
+        1,
+        7,
+        u32::try_from(table.bytes().len()).unwrap(),
+        table.crc32(),
+    ];
+    let loaded = |header: &[u8], table: &[u8]| {
+        let mut flash = Flash::new();
+        flash.slots[0][..header.len()].copy_from_slice(header);
+        flash.slots[0][PAGE..PAGE + table.len()].copy_from_slice(table);
+        let mut bench = boot(&mut flash);
+        bench.run(SECOND);
+        stored(&mut bench)
+    };
+    let whole = Some((table.crc32(), true));
+    assert_eq!(loaded(&header(good), table.bytes()), whole);
+    // Another magic, a later format, and lengths that no table has, each with a right checksum.
+    for (word, value) in [
+        (0, good[0] ^ 1),
+        (1, 2),
+        (3, 2_044),
+        (3, 2_050),
+        (3, 2_052),
+        (3, u32::MAX),
+        (4, good[4] ^ 1),
+    ] {
+        let mut words = good;
+        words[word] = value;
+        assert_eq!(loaded(&header(words), table.bytes()), None, "{words:?}");
+    }
+    // One knot is no table, whatever its checksum; none is none.
+    for len in [0, 4] {
+        let (mut words, bytes) = (good, &table.bytes()[..len]);
+        (words[3], words[4]) = (u32::try_from(len).unwrap(), crc32c(bytes));
+        assert_eq!(loaded(&header(words), bytes), None, "{len} bytes");
+    }
+    let mut broken = header(good);
+    broken[23] ^= 1;
+    assert_eq!(loaded(&broken, table.bytes()), None);
+}
+
+#[test]
+fn settings_are_stored_before_a_table_and_after_it_where_they_fail() {
+    for broken in [false, true] {
+        let mut flash = Flash::new();
+        let mut bench = boot(&mut flash);
+        flash.settings_broken = broken;
+        bench.upload(&circle(1.2));
+        bench.done(Request::Trim {
+            joint: Joint::Front,
+            trim: 7,
+        });
+        bench.tick();
+        let first = bench.brain.serve_storage(bench.now_us, &mut flash);
+        assert_eq!(
+            (first.is_ok(), flash.settings.is_some()),
+            (!broken, !broken)
+        );
+        assert!(flash.slots.iter().flatten().all(|byte| *byte == 0xFF));
+        bench.run(2 * SECOND);
+        for _ in 0..20 {
+            let _ = bench.brain.serve_storage(bench.now_us, &mut flash);
+        }
+        assert_eq!(stored(&mut bench), Some((circle(1.2).crc32(), true)));
     }
 }

@@ -60,6 +60,8 @@ impl TwinConfig {
             max_rate: single(servo.max_rate),
             pulse_min_ns: nanoseconds((servo.centre_us - away).max(low)),
             pulse_max_ns: nanoseconds((servo.centre_us + away).min(high)),
+            centre_ns: nanoseconds(servo.centre_us),
+            slope_rad_per_us: single(servo.slope_rad_per_us),
             ..Limits::ROBOT
         };
         let settings = ServoSettings {

@@ -294,6 +294,15 @@ fn brain(events: &Events, session: u16) -> Brain {
         pulse_max_ns: limits.pulse_max_ns,
         ..Limits::ROBOT
     };
+    // A robot does not tell for which servos it was built: the paper's, or else those that it was set up with.
+    let told = events.servos.iter().flatten().next();
+    if let Some(servo) = told
+        && !(config.limits.allows_centre(servo.centre_ns)
+            && config.limits.allows_slope(servo.slope_rad_per_us))
+    {
+        config.limits.centre_ns = servo.centre_ns;
+        config.limits.slope_rad_per_us = servo.slope_rad_per_us;
+    }
     config.buffer = buffer;
     config.configuration = events.configuration.unwrap_or(Configuration {
         max_angle: limits.max_angle,

@@ -1,6 +1,7 @@
 //! `swimmer twin`: a robot in a virtual tank, in real time, behind a pseudo-terminal or a TCP port.
 
 use std::fmt;
+use std::net::{SocketAddr, ToSocketAddrs as _};
 use std::path::{Path, PathBuf};
 
 use host_link::Port;
@@ -75,6 +76,7 @@ impl Twin {
     /// Lives until Ctrl-C.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let file = load_swimmer(&self.swimmer)?;
+        let places = self.tcp.as_deref().map_or(Ok(Vec::new()), addresses)?;
         let mut robot = self
             .robot
             .line(&file, self.seed, &self.board)?
@@ -90,7 +92,7 @@ impl Twin {
             ));
         }
         if let Some(address) = &self.tcp {
-            let port = TcpPort::listen(address.as_str()).map_err(|error| {
+            let port = TcpPort::listen(places.as_slice()).map_err(|error| {
                 Failure::Tried(format!(
                     "cannot listen at {address}: {error}; choose another address or port"
                 ))
@@ -142,8 +144,10 @@ fn open_terminal(link: &Path) -> Outcome<host_link::port::PtyPort> {
     use host_link::port::{PtyError, PtyPort};
 
     PtyPort::open(Some(link)).map_err(|error| match error {
-        PtyError::Occupied(_) | PtyError::InUse { .. } => Failure::bad_input(&error),
-        _ => Failure::tried(&error),
+        PtyError::Occupied(_) | PtyError::InUse { .. } | PtyError::Link { .. } => {
+            Failure::bad_input(&error)
+        }
+        PtyError::NoTerminal(_) => Failure::tried(&error),
     })
 }
 
@@ -153,6 +157,17 @@ fn open_terminal(link: &Path) -> Outcome<TcpPort> {
         "cannot make {}: this system has no pseudo-terminals; use --tcp",
         link.display()
     )))
+}
+
+/// What an address stands for; whether one may listen there is seen later.
+fn addresses(text: &str) -> Outcome<Vec<SocketAddr>> {
+    text.to_socket_addrs()
+        .map(Iterator::collect)
+        .map_err(|error| {
+            Failure::BadInput(format!(
+                "cannot listen at {text}: {error}; write the address as 127.0.0.1:7000"
+            ))
+        })
 }
 
 fn faults(text: &str) -> Result<Faults, String> {

@@ -219,7 +219,7 @@ impl Brain {
                 detached: before,
                 play,
             } => {
-                // The minute without a link begins when it is first asked for.
+                // The minute of a detached pause begins when it is first asked for.
                 let since_us = if detached && !before {
                     now_us
                 } else {

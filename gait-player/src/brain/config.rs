@@ -88,6 +88,21 @@ impl Boot {
     }
 }
 
+#[cfg(test)]
+impl BrainConfig {
+    /// The paper's robot, of no version in particular, as its power comes on.
+    pub(crate) fn in_tests() -> Self {
+        let firmware = FirmwareVersion {
+            major: 0,
+            minor: 1,
+            patch: 0,
+            commit: [0; 8],
+        };
+        let board = Board::Twin;
+        Self::robot(Identity { firmware, board }, Boot::power_on(1, 100))
+    }
+}
+
 impl BrainConfig {
     /// The paper's robot: its geometry and limits, its servos as built.
     pub fn robot(identity: Identity, boot: Boot) -> Self {

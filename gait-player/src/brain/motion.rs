@@ -44,9 +44,7 @@ impl Brain {
         match self.state {
             State::Stopped | State::EStopped => {}
             State::Stopping { .. } | State::Settling { .. } => {
-                if cause as u8 > self.cause as u8 {
-                    self.cause = cause;
-                }
+                self.cause = self.cause.max(cause);
             }
             State::Holding { .. }
             | State::Starting { .. }

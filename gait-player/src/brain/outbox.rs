@@ -100,3 +100,85 @@ impl Outbox {
         self.bytes.clear();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use link_protocol::{MAX_BODY, Reply};
+
+    fn header() -> Header {
+        Header::new(u16::MAX, u16::MAX)
+    }
+
+    /// Takes all that waits; how many bytes it was.
+    fn waiting(outbox: &mut Outbox) -> usize {
+        outbox.take(&mut [0; 2 * ROOM])
+    }
+
+    /// Sends until one finds no room.
+    fn fill(outbox: &mut Outbox, send: impl Fn(&mut Outbox)) {
+        let full = (0..=ROOM).any(|_| {
+            send(outbox);
+            outbox.dropped() > 0
+        });
+        assert!(full, "it takes more than there is room for");
+    }
+
+    #[test]
+    fn four_answers_to_stops_find_room_whatever_floods_the_rest() {
+        for len in 1..=MAX_BODY {
+            let mut outbox = Outbox::new();
+            fill(&mut outbox, |outbox| {
+                outbox.send_reply_body(header(), &[0xA5; MAX_BODY][..len]);
+            });
+            for _ in 0..4 {
+                outbox.send_stop_answer(header(), &Message::Reply(Reply::Done));
+            }
+            assert_eq!(outbox.dropped(), 1, "among replies of {len} bytes");
+        }
+    }
+
+    #[test]
+    fn telemetry_leaves_room_for_two_of_the_longest_replies() {
+        let mut outbox = Outbox::new();
+        fill(&mut outbox, |outbox| {
+            outbox.tick();
+            outbox.send_telemetry(header(), &Message::KeepAlive);
+        });
+        // Room that telemetry leaves, less what answers to stops need of it.
+        let longest = MAX_BODY - STOPS_LEFT / 2;
+        for _ in 0..2 {
+            outbox.send_reply_body(header(), &[0xA5; MAX_BODY][..longest]);
+        }
+        assert_eq!(outbox.dropped(), 1);
+    }
+
+    #[test]
+    fn telemetry_goes_at_the_links_pace_and_saves_up_little() {
+        let message = Message::KeepAlive;
+        let mut outbox = Outbox::new();
+        outbox.send_telemetry(header(), &message);
+        assert_eq!(waiting(&mut outbox), 0, "nothing is saved yet");
+        // Shut up for a minute, then all at once: no more than a few frames come.
+        (0..3_000).for_each(|_| outbox.tick());
+        let mut burst = 0;
+        for _ in 0..200 {
+            outbox.send_telemetry(header(), &message);
+            burst += waiting(&mut outbox);
+        }
+        assert!(
+            (2 * MAX_ENCODED..=3 * MAX_ENCODED).contains(&burst),
+            "{burst}"
+        );
+        // From then on 5 kB/s: 100 bytes a tick.
+        let mut sent = 0;
+        for _ in 0..1_000 {
+            outbox.tick();
+            for _ in 0..200 {
+                outbox.send_telemetry(header(), &message);
+                sent += waiting(&mut outbox);
+            }
+        }
+        assert!((99_000..=100_100).contains(&sent), "{sent}");
+    }
+}

@@ -115,10 +115,10 @@ pub(crate) fn check_configuration(
 /// Checks a servo's map.
 pub(crate) fn check_servo(wanted: &ServoSettings, limits: &Limits) -> Result<(), Refusal> {
     let bad = |field| Err(Refusal::BadValue { field });
-    if !(limits.pulse_min_ns..=limits.pulse_max_ns).contains(&wanted.centre_ns) {
+    if !limits.allows_centre(wanted.centre_ns) {
         return bad(0);
     }
-    if !(1e-4..=1.0).contains(&wanted.slope_rad_per_us) {
+    if !limits.allows_slope(wanted.slope_rad_per_us) {
         return bad(1);
     }
     check_trim(wanted.trim).or(bad(3))

@@ -160,11 +160,14 @@ impl Brain {
         if let Err(refusal) = allowed {
             return self.finish(reply_to, Reply::Refused(refusal));
         }
-        let (State::Holding { pose }, Some(table)) = (self.state, self.tables.active()) else {
+        let (State::Holding { .. }, Some(table)) = (self.state, self.tables.active()) else {
             return self.finish(reply_to, Reply::Refused(Refusal::NotArmed));
         };
         let first = table.knot_angles(0);
-        let mut route = route.unwrap_or(Route::new(pose, first));
+        // The ramp begins where the joints are commanded to be; after a trim that is not yet where they are held.
+        let mut route = route
+            .filter(|route| route.begins_at(self.commanded))
+            .unwrap_or(Route::new(self.commanded, first));
         let mut left = work;
         while left >= LOOK_WORK {
             left -= LOOK_WORK;
@@ -203,5 +206,19 @@ fn on_the_way(shape: [f32; 2]) -> Refusal {
         place: CrossingPlace::Ramp,
         phi1,
         phi2,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_crossing_on_the_way_is_told_in_the_units_of_the_wire() {
+        let Refusal::LinksCross { place, phi1, phi2 } = on_the_way([1.25, -2.0]) else {
+            panic!("another refusal")
+        };
+        assert_eq!(place, CrossingPlace::Ramp);
+        assert!((phi1 - 12_500).abs() <= 1 && (phi2 + 20_000).abs() <= 1);
     }
 }

@@ -1,7 +1,6 @@
 //! What can happen to a brain.
 
-use super::world::config;
-use crate::GaitTable;
+use crate::{BrainConfig, GaitTable};
 use link_protocol::*;
 use std::vec::Vec;
 
@@ -60,7 +59,7 @@ pub(super) fn requests() -> Vec<Request> {
             data: heapless::Vec::from_slice(&table.bytes()[from..to]).unwrap(),
         })
     };
-    let config = config();
+    let config = BrainConfig::in_tests();
     let servo = config.servos[0];
     std::vec![
         Request::Arm(Arm { clear_estop: false }),

@@ -3,22 +3,11 @@
 use super::event::Event;
 use crate::TICK_US;
 use crate::brain::settings::Settings;
-use crate::brain::{Boot, Brain, BrainConfig, Identity, Inputs};
+use crate::brain::{Boot, Brain, BrainConfig, Inputs};
 use crate::storage::{MAX_SETTINGS, PAGE, SLOT_PAGES, SLOTS, Storage};
 use link_protocol::*;
 use std::convert::Infallible;
 use std::vec::Vec;
-
-pub(super) fn config() -> BrainConfig {
-    let firmware = FirmwareVersion {
-        major: 0,
-        minor: 1,
-        patch: 0,
-        commit: [0; 8],
-    };
-    let board = Board::Twin;
-    BrainConfig::robot(Identity { firmware, board }, Boot::power_on(1, 100))
-}
 
 /// A brain with all that surrounds it.
 #[derive(Clone)]
@@ -102,7 +91,7 @@ pub(super) struct Seen {
 impl World {
     pub(super) fn new() -> Self {
         let mut world = Self {
-            brain: Brain::new(config()),
+            brain: Brain::new(BrainConfig::in_tests()),
             flash: Flash {
                 slots: std::vec![0xFF; SLOT * SLOTS],
                 settings: None,
@@ -140,8 +129,7 @@ impl World {
                 seen.armed = self.ask(session, sequence, &requests[index]);
             }
             // Only where there is a number to be late for, or none needed.
-            Event::Late(index)
-                if !self.asked && !matches!(requests[index], Request::Stop | Request::EStop) => {}
+            Event::Late(index) if !self.asked && !requests[index].is_stop() => {}
             Event::Late(index) => {
                 let (session, sequence) = (self.brain.session.number(), self.sequence);
                 let old = sequence.wrapping_sub(5);
@@ -186,7 +174,10 @@ impl World {
                     session_seed: self.brain.session.number().wrapping_add(7),
                     ..Boot::power_on(1, 0)
                 };
-                self.brain = Brain::new(BrainConfig { boot, ..config() });
+                self.brain = Brain::new(BrainConfig {
+                    boot,
+                    ..BrainConfig::in_tests()
+                });
                 let Ok(()) = self.brain.load(&mut self.flash);
                 self.now_us = 0;
                 (self.asked, self.seal) = (false, None);
