@@ -3,6 +3,7 @@
 
 import fs from 'node:fs';
 import { RP2040 } from 'rp2040js';
+import { ringOscillator } from './chance.mjs';
 import { quicken } from './quick.mjs';
 import { noise, paint, unpainted } from './ram.mjs';
 import { Rtt } from './rtt.mjs';
@@ -12,14 +13,20 @@ import { FlashCache } from './xip.mjs';
 const FLASH_START = 0x10000000;
 const FLASH_SIZE = 2 << 20;
 const SECTOR = 4096, PAGE = 256;
-/** Typical times of the W25Q16 on both boards: 45 ms a sector erased, 0.4 ms a page programmed. */
+/** Typical times of the W25Q16 on both boards: 45 ms a sector erased (400 ms at most), 0.4 ms a page programmed. */
 const ERASE_NS = 45e6, PROGRAM_NS = 0.4e6;
 /** Both servos hang on PWM slice 0. */
 const SLICE = 0;
 /** The firmware's control task runs in this exception: 16 + SWI_IRQ_1. */
 const CONTROL = 16 + 27;
+/** Bit of WATCHDOG.REASON: its timer ran out. */
+const TIMER = 1;
+/** RESETS.RESET as a reset of the chip leaves it: every peripheral held in reset. */
+const ALL_PERIPHERALS = 0x1ffffff;
 /** Bits of VREG_AND_CHIP_RESET.CHIP_RESET: what the chip as a whole was last reset by. */
 const HAD_POR = 0x100, HAD_RUN = 0x10000;
+/** Of the ring oscillator's random bits, which go on over resets and power cycles. */
+const CHANCE = 0x2545f491;
 export const PINS = { front: 16, back: 17, state: { 'nano-connect': 25, pico: 22 }, led: { 'nano-connect': 6, pico: 25 } };
 
 /** Thrown inside the emulation when the power goes. */
@@ -33,6 +40,7 @@ export class Board {
     this.stack = { bottom: elf.symbols._stack_end, top: elf.symbols._stack_start };
     this.tick = entry(elf, 'firmware7control7Control4tick');
     this.logBlock = elf.symbols._SEGGER_RTT;
+    this.randomBit = ringOscillator(CHANCE, () => this.now);
     this.connected = false;
     this.battery = 0;
     this.before = 0;
@@ -40,6 +48,7 @@ export class Board {
     this.patched = null;
     this.events = emptyEvents();
     this.flashBytesLeft = Infinity;
+    this.eraseNs = ERASE_NS;
     this.powered = true;
     this.powerOn();
   }
@@ -72,6 +81,9 @@ export class Board {
   /** The power goes when so many more bytes of flash have been erased or programmed. */
   cutPowerAfter(flashBytes) { this.flashBytesLeft = flashBytes; }
 
+  /** How long a sector takes to erase [ns], from now on. */
+  setEraseTime(ns) { this.eraseNs = ns; }
+
   /** Off and on again: RAM and scratch registers are lost, flash stays. */
   powerCycle() {
     this.before = this.now;
@@ -84,6 +96,26 @@ export class Board {
   pinReset() {
     this.before = this.now;
     this.start({ reason: 0, scratch: new Uint32Array(8), ram: this.mcu.sram, chipReset: HAD_RUN });
+  }
+
+  /**
+   * The flash was written over USB: the boot ROM ends that with a reset by the watchdog. The way there led through the reset
+   * pin; and where a program asked for it, the ROM left its pin mask and interface mask in scratch registers 0 and 1.
+   */
+  bootRomReset() {
+    this.before = this.now;
+    const scratch = Uint32Array.of(1 << PINS.led[this.kind], 1, 0, 0, 0, 0, 0, 0);
+    this.start({ reason: TIMER, scratch, ram: this.mcu.sram });
+  }
+
+  /**
+   * A debugger resets the core and nothing else (SYSRESETREQ): the watchdog's registers stay, a reason from long ago too, and no
+   * peripheral is held in reset. What the peripherals' other registers held is not kept here: the firmware resets them first.
+   */
+  debuggerReset() {
+    this.before = this.now;
+    const { reason, scratchData } = this.mcu.peripherals[0x40058];
+    this.start({ reason, scratch: Uint32Array.from(scratchData), ram: this.mcu.sram, heldInReset: 0 });
   }
 
   powerOn() { this.start({ reason: 0, scratch: new Uint32Array(8), ram: null }); }
@@ -224,7 +256,7 @@ export class Board {
   }
 
   /** The chip comes out of reset as its boot ROM leaves it: at the second-stage loader. RAM outlives all but the power. */
-  start({ reason, scratch, ram, chipReset = HAD_POR }) {
+  start({ reason, scratch, ram, chipReset = HAD_POR, heldInReset = ALL_PERIPHERALS }) {
     this.reset = null;
     this.busy = 0;
     this.control = 0;
@@ -245,6 +277,7 @@ export class Board {
       onByte: (byte) => this.send(byte),
       onReset: (reset) => { this.reset = reset; },
       flash: { erase: (at, count) => this.erase(at, count), program: (at, bytes) => this.program(at, bytes) },
+      randomBit: this.randomBit,
       warn: (text) => { this.events.warnings[text] = (this.events.warnings[text] ?? 0) + 1; },
     });
     mcu.flash.set(this.flash, 0);
@@ -254,6 +287,7 @@ export class Board {
     dog.reason = reason;
     dog.scratchData.set(scratch);
     mcu.peripherals[0x40064].writeUint32(8, chipReset);
+    mcu.peripherals[0x4000c].reset = heldInReset;
     this.setConnected(this.connected);
     this.setBattery(this.battery);
     this.watchPulses();
@@ -294,7 +328,7 @@ export class Board {
     for (let at = offset; at < offset + count; at += SECTOR) {
       // The cells of a sector that loses power while it is erased may hold anything: here they are half done.
       this.spend(SECTOR, (done) => this.store(at, new Uint8Array(done).fill(0xff)));
-      this.stall(ERASE_NS);
+      this.stall(this.eraseNs);
       this.events.erased += 1;
     }
   }

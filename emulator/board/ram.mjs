@@ -1,18 +1,15 @@
 // What RAM holds when the power comes on, and how far the stack has grown since.
 
+import { scrambler } from './chance.mjs';
+
 const RAM_START = 0x20000000;
 const PAINT = 0x57ac57ac;
 
 /** Real RAM comes up with anything in it: a program that reads what it never wrote must not find zeros here. */
 export function noise(ram) {
   const words = new Uint32Array(ram.buffer, ram.byteOffset, ram.length / 4);
-  let state = 0x9e3779b9;
-  for (let i = 0; i < words.length; i++) {
-    state ^= state << 13;
-    state ^= state >>> 17;
-    state ^= state << 5;
-    words[i] = state;
-  }
+  const next = scrambler(0x9e3779b9);
+  for (let i = 0; i < words.length; i++) words[i] = next();
 }
 
 const region = (ram, bottom, top) => new Uint32Array(ram.buffer, ram.byteOffset + bottom - RAM_START, (top - bottom) / 4);

@@ -1,8 +1,7 @@
 // What rp2040js 1.4.1 lacks for this firmware, each gap named where it is filled. Nothing here knows the swimmer.
 //
 // Left open: cache misses of the flash take no time, so that a count of cycles is a lower bound, unless a board is told to put
-// its flash behind the cache of xip.mjs; the ring oscillator's random bit is always 1, so that the robot's nonces differ only by
-// what it counts itself.
+// its flash behind the cache of xip.mjs.
 
 import { Pl011, combined } from './uart.mjs';
 
@@ -14,10 +13,24 @@ class Registers {
   writeUint32Atomic(offset, value, how) { this.writeUint32(offset, combined(this.readUint32(offset), value, how)); }
 }
 
-/** Fills every gap of a fresh `mcu`. `flash` performs erase and program; `onReset` hears the watchdog; returns code traps. */
-export function fillGaps(mcu, { onByte, onReset, flash, warn }) {
+const RANDOMBIT = 0x1c;
+
+/** A ring oscillator that is stable and enabled, and whose random bit somebody else makes. */
+class RingOscillator extends Registers {
+  constructor(randomBit) {
+    super({ 0x18: 0x80001000 });
+    this.randomBit = randomBit;
+  }
+  readUint32(offset) { return (offset & 0xfff) === RANDOMBIT ? this.randomBit() : super.readUint32(offset); }
+}
+
+/**
+ * Fills every gap of a fresh `mcu`. `flash` performs erase and program; `onReset` hears the watchdog; `randomBit` is the ring
+ * oscillator's; returns code traps.
+ */
+export function fillGaps(mcu, { onByte, onReset, flash, randomBit, warn }) {
   uarts(mcu, onByte);
-  blocksThatAreMissing(mcu);
+  blocksThatAreMissing(mcu, randomBit);
   interruptController(mcu.core, mcu.ppb);
   sendEvent(mcu, warn);
   undefinedInstructions(mcu);
@@ -36,8 +49,8 @@ function uarts(mcu, onByte) {
 }
 
 // Gap: ring oscillator, voltage regulator and XIP cache control do not answer; embassy waits for their ready bits.
-function blocksThatAreMissing(mcu) {
-  mcu.peripherals[0x40060] = new Registers({ 0x18: 0x80001000, 0x1c: 1 }); // ROSC: stable, enabled
+function blocksThatAreMissing(mcu, randomBit) {
+  mcu.peripherals[0x40060] = new RingOscillator(randomBit);
   mcu.peripherals[0x40064] = new Registers({ 0: 0xb1, 8: 0x100 });         // VREG_AND_CHIP_RESET: had a power-on reset
   mcu.peripherals[0x14000] = new Registers({ 0: 3, 8: 3 });                // XIP_CTRL: flush ready, FIFO empty
 }

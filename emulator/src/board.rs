@@ -262,6 +262,14 @@ impl Board {
         self.perform(&json!({ "do": "cut", "flashBytes": flash_bytes }))
     }
 
+    /// How long the flash chip takes to erase a sector from now on; 45 ms at first.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn set_erase_time(&mut self, time: Duration) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "erase_time", "ns": time.as_nanos() as f64 }))
+    }
+
     /// Writes all that the flash chip holds to a file.
     ///
     /// # Errors
@@ -310,6 +318,22 @@ impl Board {
     /// As [`Self::run`].
     pub fn pin_reset(&mut self) -> Result<(), EmulatorError> {
         self.perform(&json!({ "do": "pin_reset" }))
+    }
+
+    /// The reset with which the chip's boot ROM ends the writing of flash over USB: by the watchdog, though nothing hung.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn boot_rom_reset(&mut self) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "boot_rom_reset" }))
+    }
+
+    /// A debugger's reset, of the core alone: RAM, the watchdog's scratch registers and its last reason stay.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn debugger_reset(&mut self) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "debugger_reset" }))
     }
 
     /// Changes two bytes of the running code, until the next reset.

@@ -1,17 +1,16 @@
 //! What the brain is told at the start: who it is and how it came up.
 
-use embassy_rp::clocks::RoscRng;
 use embassy_rp::pac::VREG_AND_CHIP_RESET;
 use embassy_rp::watchdog::ResetReason as WatchdogReset;
 use gait_player::{Boot, BrainConfig, Identity};
 use link_protocol::{Board, FirmwareVersion, ResetReason};
 
-use crate::survivors;
 use crate::uart::RECEIVE_BUFFER;
 use crate::watchdog::Watchdog;
+use crate::{random, survivors};
 
 /// Everything [`gait_player::Brain::new`] asks for.
-pub(crate) fn brain_config(watchdog: &mut Watchdog) -> BrainConfig {
+pub(crate) fn brain_config(watchdog: &mut Watchdog, whole_chip: bool) -> BrainConfig {
     let identity = Identity {
         firmware: VERSION,
         board: if cfg!(feature = "pico") {
@@ -22,7 +21,7 @@ pub(crate) fn brain_config(watchdog: &mut Watchdog) -> BrainConfig {
     };
     BrainConfig {
         buffer: RECEIVE_BUFFER as u16,
-        ..BrainConfig::robot(identity, boot(watchdog))
+        ..BrainConfig::robot(identity, boot(watchdog, whole_chip))
     }
 }
 
@@ -33,20 +32,25 @@ const VERSION: FirmwareVersion = FirmwareVersion {
     commit: commit(env!("SWIMMER_COMMIT")),
 };
 
-fn boot(watchdog: &mut Watchdog) -> Boot {
-    let reset_reason = match watchdog.reset_reason() {
-        Some(WatchdogReset::TimedOut) => ResetReason::Watchdog,
-        Some(WatchdogReset::Forced) => ResetReason::Crash,
-        None if VREG_AND_CHIP_RESET.chip_reset().read().had_run() => ResetReason::Pin,
-        None => ResetReason::PowerOn,
-    };
-    let mut random = RoscRng;
-    // The count tells starts apart even where the random bits do not. 256 sessions lie between two starts.
-    let starts = watchdog.count_start();
+/// A watchdog's reset that was none of ours, or is long over, counts as one by hand: no fault, and RAM is as it was.
+fn reset_reason(watchdog: &Watchdog, whole_chip: bool) -> ResetReason {
+    let had_run = || VREG_AND_CHIP_RESET.chip_reset().read().had_run();
+    match watchdog.reset_reason() {
+        Some(reason) if whole_chip && watchdog.was_armed_by_us() => match reason {
+            WatchdogReset::TimedOut => ResetReason::Watchdog,
+            WatchdogReset::Forced => ResetReason::Crash,
+        },
+        None if whole_chip && !had_run() => ResetReason::PowerOn,
+        _ => ResetReason::Pin,
+    }
+}
+
+fn boot(watchdog: &mut Watchdog, whole_chip: bool) -> Boot {
+    let random = random::bits_of_start(watchdog.count_start());
     Boot {
-        reset_reason,
-        nonce: random.next_u32() ^ starts,
-        session_seed: random.next_u32() as u16 ^ (starts as u16).rotate_left(8),
+        reset_reason: reset_reason(watchdog, whole_chip),
+        nonce: random as u32,
+        session_seed: (random >> 32) as u16,
         // The scratch register is empty after the reset pin: an e-stop must outlive that too.
         kept: match watchdog.kept() {
             0 => survivors::kept(),

@@ -66,7 +66,9 @@ impl Control {
         self.led.set(output.led);
         self.watchdog.feed();
         if output.storage_wanted
-            && let Err(error) = self.brain.serve_storage(now_us(), &mut self.storage)
+            && let Err(error) = self
+                .brain
+                .serve_storage(now_us(), &mut self.storage.feeding(&mut self.watchdog))
         {
             defmt::warn!("storing gait or settings: {}; the brain tries again", error);
         }

@@ -32,6 +32,8 @@ mod crash;
 #[cfg(target_os = "none")]
 mod led;
 #[cfg(target_os = "none")]
+mod random;
+#[cfg(target_os = "none")]
 mod servos;
 #[cfg(target_os = "none")]
 mod start;

@@ -30,16 +30,25 @@ fn SWI_IRQ_1() {
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
+    let whole_chip = watchdog::whole_chip_was_reset();
     let board = Board::new(embassy_rp::init(embassy_rp::config::Config::default()));
     // First of all the pins that could move something: outputs low, counter stopped.
     let servos = Servos::new(board.servo_slice, board.servo_front, board.servo_back);
     let mut watchdog = Watchdog::new(board.watchdog);
     watchdog.start();
+    // Its interrupt takes in what comes while the rest wakes up.
+    let link_state = uart::start(
+        spawner,
+        board.uart,
+        board.link_tx,
+        board.link_rx,
+        board.link_state,
+    );
 
     static BRAIN: StaticCell<Brain> = StaticCell::new();
-    let brain = BRAIN.init_with(|| Brain::new(boot::brain_config(&mut watchdog)));
+    let brain = BRAIN.init_with(|| Brain::new(boot::brain_config(&mut watchdog, whole_chip)));
     let mut storage = FlashStorage::new(board.flash);
-    if let Err(error) = brain.load(&mut storage) {
+    if let Err(error) = brain.load(&mut storage.feeding(&mut watchdog)) {
         defmt::warn!("loading gait and settings: {}; going on without", error);
     }
     info!(
@@ -48,13 +57,6 @@ async fn main(spawner: Spawner) {
         env!("SWIMMER_COMMIT")
     );
 
-    let link_state = uart::start(
-        spawner,
-        board.uart,
-        board.link_tx,
-        board.link_rx,
-        board.link_state,
-    );
     spawner.spawn(unwrap!(battery::sample(board.adc, board.battery)));
     spawner.spawn(unwrap!(watchdog::beat()));
 

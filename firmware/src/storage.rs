@@ -5,14 +5,16 @@
 
 use core::ops::Range;
 
-use embassy_embedded_hal::adapter::BlockingAsync;
 use embassy_futures::block_on;
 use embassy_rp::Peri;
-use embassy_rp::flash::{Blocking, ERASE_SIZE, Error as FlashError, Flash};
+use embassy_rp::flash::{Blocking, ERASE_SIZE, Error as FlashError, Flash, READ_SIZE, WRITE_SIZE};
 use embassy_rp::peripherals::FLASH;
+use embedded_storage_async::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
 use gait_player::storage::{MAX_SETTINGS, PAGE, SLOT_PAGES, SLOTS, Storage};
 use sequential_storage::cache::{Cache, Uncached};
 use sequential_storage::map::{MapConfig, MapStorage};
+
+use crate::watchdog::Watchdog;
 
 /// The smaller of the boards' flash chips (the Pico's).
 const FLASH_SIZE: usize = 2 * 1024 * 1024;
@@ -58,23 +60,79 @@ impl From<FlashError> for Error {
     }
 }
 
+type Chip = Flash<'static, FLASH, Blocking, FLASH_SIZE>;
+
 /// The flash chip's part that outlives the program.
 pub(crate) struct FlashStorage {
-    flash: Flash<'static, FLASH, Blocking, FLASH_SIZE>,
+    chip: Chip,
     slots: [Range<u32>; SLOTS],
     settings: Range<u32>,
 }
 
-type SettingsMap<'a> = MapStorage<
-    u8,
-    BlockingAsync<&'a mut Flash<'static, FLASH, Blocking, FLASH_SIZE>>,
-    Cache<Uncached, Uncached, Uncached, u8>,
->;
+/// The same in use, with the watchdog that must not fire meanwhile.
+pub(crate) struct StorageInUse<'a> {
+    flash: FedFlash<'a>,
+    slots: &'a [Range<u32>; SLOTS],
+    settings: &'a Range<u32>,
+}
+
+/// A flash chip whose erases the watchdog bears: a sector may take nearly as long as it waits, and nothing else can feed it
+/// meanwhile. One call of the settings map may erase several, to mend what a power cut left.
+struct FedFlash<'a> {
+    chip: &'a mut Chip,
+    watchdog: &'a mut Watchdog,
+}
+
+impl FedFlash<'_> {
+    /// Erases sector by sector.
+    fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashError> {
+        for sector in (from..to).step_by(ERASE_SIZE) {
+            let end = to.min(sector.saturating_add(ERASE_SIZE as u32));
+            self.watchdog.feed_for_flash();
+            self.chip.blocking_erase(sector, end)?;
+        }
+        // What follows has its time, too.
+        self.watchdog.feed_for_flash();
+        Ok(())
+    }
+}
+
+impl ErrorType for FedFlash<'_> {
+    type Error = FlashError;
+}
+
+impl ReadNorFlash for FedFlash<'_> {
+    const READ_SIZE: usize = READ_SIZE;
+
+    async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
+        self.chip.blocking_read(offset, bytes)
+    }
+
+    fn capacity(&self) -> usize {
+        FLASH_SIZE
+    }
+}
+
+impl NorFlash for FedFlash<'_> {
+    const WRITE_SIZE: usize = WRITE_SIZE;
+    const ERASE_SIZE: usize = ERASE_SIZE;
+
+    async fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashError> {
+        Self::erase(self, from, to)
+    }
+
+    async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
+        self.chip.blocking_write(offset, bytes)
+    }
+}
+
+type SettingsMap<'a, 'b> =
+    MapStorage<u8, &'a mut FedFlash<'b>, Cache<Uncached, Uncached, Uncached, u8>>;
 
 impl FlashStorage {
     pub(crate) fn new(flash: Peri<'static, FLASH>) -> Self {
         Self {
-            flash: Flash::new_blocking(flash),
+            chip: Flash::new_blocking(flash),
             slots: [
                 offset(&raw const __gait_slot_0_start)..offset(&raw const __gait_slot_0_end),
                 offset(&raw const __gait_slot_1_start)..offset(&raw const __gait_slot_1_end),
@@ -83,6 +141,20 @@ impl FlashStorage {
         }
     }
 
+    /// To be used by what may feed the watchdog, while no pulses go out.
+    pub(crate) fn feeding<'a>(&'a mut self, watchdog: &'a mut Watchdog) -> StorageInUse<'a> {
+        StorageInUse {
+            flash: FedFlash {
+                chip: &mut self.chip,
+                watchdog,
+            },
+            slots: &self.slots,
+            settings: &self.settings,
+        }
+    }
+}
+
+impl<'b> StorageInUse<'b> {
     fn slot(&self, slot: usize) -> Result<Range<u32>, Error> {
         self.slots.get(slot).cloned().ok_or(Error::NoSuchPlace)
     }
@@ -91,7 +163,7 @@ impl FlashStorage {
     fn settings_are_blank(&mut self) -> Result<bool, Error> {
         let mut bytes = [0; PAGE];
         for start in self.settings.clone().step_by(PAGE) {
-            self.flash.blocking_read(start, &mut bytes)?;
+            self.flash.chip.blocking_read(start, &mut bytes)?;
             if bytes.iter().any(|byte| *byte != 0xFF) {
                 return Ok(false);
             }
@@ -99,16 +171,16 @@ impl FlashStorage {
         Ok(true)
     }
 
-    fn settings(&mut self) -> SettingsMap<'_> {
+    fn settings(&mut self) -> SettingsMap<'_, 'b> {
         MapStorage::new(
-            BlockingAsync::new(&mut self.flash),
+            &mut self.flash,
             MapConfig::new(self.settings.clone()),
             Cache::new_uncached(),
         )
     }
 }
 
-impl Storage for FlashStorage {
+impl Storage for StorageInUse<'_> {
     type Error = Error;
 
     fn read(&mut self, slot: usize, offset: usize, bytes: &mut [u8]) -> Result<(), Error> {
@@ -118,12 +190,13 @@ impl Storage for FlashStorage {
         }
         Ok(self
             .flash
+            .chip
             .blocking_read(slot.start + offset as u32, bytes)?)
     }
 
     fn erase(&mut self, slot: usize) -> Result<(), Error> {
         let slot = self.slot(slot)?;
-        Ok(self.flash.blocking_erase(slot.start, slot.end)?)
+        Ok(self.flash.erase(slot.start, slot.end)?)
     }
 
     fn program(&mut self, slot: usize, page: usize, bytes: &[u8; PAGE]) -> Result<(), Error> {
@@ -133,6 +206,7 @@ impl Storage for FlashStorage {
         }
         Ok(self
             .flash
+            .chip
             .blocking_write(slot.start + (page * PAGE) as u32, bytes)?)
     }
 
@@ -157,7 +231,7 @@ impl Storage for FlashStorage {
     fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Error> {
         let mut buffer = [0; MAX_SETTINGS + 32];
         let mut settings = self.settings();
-        let mut store = |settings: &mut SettingsMap<'_>| {
+        let mut store = |settings: &mut SettingsMap<'_, '_>| {
             block_on(settings.store_item(&mut buffer, &SETTINGS_KEY, &bytes))
         };
         match store(&mut settings) {

@@ -144,8 +144,8 @@ impl Frames {
             95 => Request::SetServo {
                 joint: Joint::Back,
                 settings: ServoSettings {
-                    centre_ns: self.rng.random_range(1_400_000..1_600_000),
-                    slope_rad_per_us: self.rng.random_range(0.02..0.04),
+                    centre_ns: self.rng.random_range(1_475_000..1_525_000),
+                    slope_rad_per_us: self.rng.random_range(0.024..0.031),
                     reversed: self.rng.random_bool(0.5),
                     trim: 0,
                 },

@@ -6,6 +6,7 @@
 mod ahead;
 mod battery;
 mod boot;
+mod chance;
 mod crash;
 mod endurance;
 mod failsafes;

@@ -75,17 +75,6 @@ fn switch_off_and_on(robot: &mut Robot<Port>) {
     assert_eq!(robot.status().unwrap().state, StateName::Stopped);
 }
 
-/// A task that is polled all the time: the first whose hanging resets the chip.
-fn reset_by_hanging(robot: &mut Robot<Port>) {
-    for task in rig::tasks(robot) {
-        rig::hang(robot, task);
-        if !rig::events(robot).resets.is_empty() {
-            return;
-        }
-    }
-    panic!("no task whose hanging resets the chip");
-}
-
 /// R8: three resets within 60 s lock arming until 60 s of uptime and an explicit clear.
 #[test]
 fn three_resets_in_a_minute_lock_arming() {
@@ -96,7 +85,7 @@ fn three_resets_in_a_minute_lock_arming() {
         if count < 2 {
             robot.arm(false).unwrap();
         }
-        reset_by_hanging(&mut robot);
+        rig::reset_by_hanging(&mut robot);
         stopped_by_a_reset(&mut robot);
     }
     let up = rig::board_of(&mut robot).now();
@@ -136,7 +125,7 @@ fn an_estop_outlives_a_reset_but_not_the_power() {
     };
     robot.arm(false).unwrap();
     robot.estop().unwrap();
-    reset_by_hanging(&mut robot);
+    rig::reset_by_hanging(&mut robot);
     robot.reconnect().unwrap();
     assert_eq!(robot.info().reset_reason, ResetReason::Watchdog);
     assert_eq!(robot.status().unwrap().state, StateName::EStopped);
@@ -150,6 +139,49 @@ fn an_estop_outlives_a_reset_but_not_the_power() {
         "R6, e-stop, then a watchdog reset, then a power cycle",
         "e-stopped still, armed only with its clear flag; Stopped after the power cycle",
     );
+}
+
+/// A reset by what is no fault: the boot ROM, once it has written the flash over USB, and a debugger after a watchdog's.
+#[test]
+fn a_reset_from_outside_is_no_fault_and_clears_no_estop() {
+    let Some(mut robot) = rig::robot() else {
+        return;
+    };
+    for _ in 0..3 {
+        rig::board_of(&mut robot).boot_rom_reset().unwrap();
+        came_up_by_hand(&mut robot);
+    }
+    reset_by_a_fault_then_debugger(&mut robot);
+    let flags = robot.status().unwrap().flags;
+    assert!(!flags.contains(Flags::RESET_LOOP), "{flags:?}");
+    robot.arm(false).unwrap();
+    robot.estop().unwrap();
+    rig::board_of(&mut robot).debugger_reset().unwrap();
+    came_up_by_hand(&mut robot);
+    assert_eq!(rig::refusal(robot.arm(false)), Refusal::EStopped);
+    rig::board_of(&mut robot).boot_rom_reset().unwrap();
+    came_up_by_hand(&mut robot);
+    assert_eq!(rig::refusal(robot.arm(false)), Refusal::EStopped);
+    robot.arm(true).unwrap();
+    seen(
+        "R8, resets by the boot ROM after writing the flash, three in 60 s, and by a debugger after one by the watchdog",
+        "reason `reset pin`, no fault counted; an e-stop outlives both",
+    );
+}
+
+fn reset_by_a_fault_then_debugger(robot: &mut Robot<Port>) {
+    rig::reset_by_hanging(robot);
+    stopped_by_a_reset(robot);
+    for _ in 0..3 {
+        rig::board_of(robot).debugger_reset().unwrap();
+        came_up_by_hand(robot);
+    }
+}
+
+fn came_up_by_hand(robot: &mut Robot<Port>) {
+    rig::pass(robot, MS * 300);
+    robot.reconnect().unwrap();
+    assert_eq!(robot.info().reset_reason, ResetReason::Pin);
 }
 
 /// R6: a reset in the middle of a play starts nothing again.

@@ -143,6 +143,17 @@ pub(crate) fn hang(robot: &mut Robot<Port>, task: u32) {
     pass(robot, Duration::from_millis(600));
 }
 
+/// Hangs the first task whose hanging resets the chip: one that is polled all the time.
+pub(crate) fn reset_by_hanging(robot: &mut Robot<Port>) {
+    for task in tasks(robot) {
+        hang(robot, task);
+        if !events(robot).resets.is_empty() {
+            return;
+        }
+    }
+    panic!("no task whose hanging resets the chip");
+}
+
 /// What a request was refused for.
 pub(crate) fn refusal<T: std::fmt::Debug>(outcome: Result<T, LinkError>) -> Refusal {
     match outcome {

@@ -1,4 +1,4 @@
-//! Settings in flash that cannot be read any more.
+//! Settings in flash that cannot be read any more, and a chip that takes its time.
 
 use std::path::Path;
 use std::time::Duration;
@@ -52,6 +52,87 @@ fn settings_that_are_garbage_are_told_and_can_be_set_anew() {
     seen(
         "settings in flash overwritten with noise, with zeros",
         "the robot comes up and tells that they are lost; what is set anew is stored and outlives a power cycle",
+    );
+}
+
+/// What the makers of flash chips allow for one sector, where 45 ms are usual.
+const SLOWEST_ERASE: Duration = Duration::from_millis(400);
+/// What a rotation takes off a cut's count: a sector erased, and some twenty times a page programmed for a few bytes.
+const ROTATION_BYTES: u32 = 4096 + 20 * 256;
+
+/// One call may erase several sectors, each of them nearly as long as the watchdog waits: where nothing can be read, and
+/// where the power went while the oldest sector was cleared for new records.
+#[test]
+fn the_slowest_erase_brings_no_watchdog_reset() {
+    let Some(mut robot) = rig::robot() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let image = folder.path().join("flash.bin");
+    let mut trims = std::iter::successors(Some(0.0), |trim| Some((trim + 0.001) % 0.02)).skip(1);
+    let mut save = |robot: &mut Robot<Port>, wait: Duration| {
+        let stored = robot.trim(Joint::Front, trims.next().unwrap());
+        rig::pass(robot, wait);
+        stored
+    };
+
+    // As it was before the record that made the first sector be erased.
+    rig::events(&mut robot);
+    let mut before = 0;
+    loop {
+        rig::board_of(&mut robot).save_flash(&image).unwrap();
+        save(&mut robot, Duration::from_millis(60)).unwrap();
+        let events = rig::events(&mut robot);
+        if events.erased > 0 {
+            break;
+        }
+        before += 1;
+        assert!(before < 1000, "the settings' sectors never fill");
+    }
+    let board = rig::board_of(&mut robot);
+    board.set_erase_time(SLOWEST_ERASE).unwrap();
+    let (mut cuts, mut most) = (0, 0);
+    for after in (100..ROTATION_BYTES).step_by(600) {
+        rig::board_of(&mut robot).load_flash(&image).unwrap();
+        rig::pass(&mut robot, Duration::from_millis(300));
+        robot.reconnect().unwrap();
+        rig::events(&mut robot);
+        rig::board_of(&mut robot).cut_power_after(after).unwrap();
+        let _ = save(&mut robot, Duration::from_secs(1)); // the power may go before it is answered
+        let cut = rig::events(&mut robot);
+        assert!(cut.resets.is_empty(), "{after}: {:?}", cut.resets);
+        cuts += cut.power_cuts.len();
+        rig::board_of(&mut robot).power_cycle().unwrap();
+        rig::pass(&mut robot, Duration::from_secs(1));
+        robot.reconnect().unwrap();
+        save(&mut robot, Duration::from_millis(1500)).unwrap();
+        robot.reconnect().unwrap();
+        let events = rig::events(&mut robot);
+        assert!(events.resets.is_empty(), "{after}: {:?}", events.resets);
+        most = most.max(events.erased);
+        assert!(!told(&mut robot).1, "{after}: settings lost");
+    }
+    assert!(
+        cuts > 10 && most > 1,
+        "{cuts} cuts were reached, {most} sectors erased"
+    );
+
+    rig::board_of(&mut robot).save_flash(&image).unwrap();
+    spoil(&image, Fill::Zeros);
+    rig::board_of(&mut robot).load_flash(&image).unwrap();
+    rig::pass(&mut robot, Duration::from_secs(2));
+    robot.reconnect().unwrap();
+    save(&mut robot, Duration::from_secs(3)).unwrap();
+    robot.reconnect().unwrap();
+    let events = rig::events(&mut robot);
+    assert!(events.resets.is_empty(), "{:?}", events.resets);
+    assert!(!told(&mut robot).1);
+    seen(
+        "settings on a flash chip that takes 400 ms a sector: power cut at each 600th byte of a rotation; all overwritten with zeros",
+        &format!(
+            "no reset by the watchdog: {cuts} cuts with up to {most} sectors erased after them, {} in one go after the zeros",
+            events.erased
+        ),
     );
 }
 
