@@ -6,6 +6,9 @@
 //!    and the reversed curve included.
 //! 3. Each that is left is polished by the maximum principle to an exact extremal, and certified. What cannot be polished is
 //!    counted, never listed.
+//!
+//! Gaits that the solvers of quarter gaits find are starts, too. Those that are certified for the very bounds of the atlas
+//! are listed in any case, each counted as one start that ended in it.
 
 mod curve;
 mod displacement;
@@ -22,9 +25,10 @@ mod starts;
 use swimmer_files::{Bounds, Objective};
 use swimmer_model::{InvalidSwimmer, Model, Swimmer};
 
-use crate::OptimalGait;
 use crate::extremal::Walls;
+use crate::immobile::refuse_immobile;
 use crate::region::Region;
+use crate::{Immobile, OptimalGait};
 
 /// What to make an atlas of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,7 +119,7 @@ pub struct Optimum {
 pub struct Atlas {
     /// Certified optima, best first.
     pub optima: Vec<Optimum>,
-    /// How many starts there were.
+    /// How many starts there were: those asked for and the known gaits.
     pub starts: usize,
     /// Starts that did not settle on any stationary curve.
     pub unsettled: usize,
@@ -131,6 +135,9 @@ pub enum AtlasError {
     /// The swimmer's parameters are out of range.
     #[error("cannot make an atlas for this swimmer: {0}")]
     Swimmer(#[from] InvalidSwimmer),
+    /// Gaits do not move it.
+    #[error(transparent)]
+    Immobile(#[from] Immobile),
     /// Another objective.
     #[error(
         "there is no atlas for the objective `{objective}`; it knows displacement and efficiency"
@@ -178,6 +185,7 @@ pub enum AtlasError {
 pub fn atlas(problem: &AtlasProblem) -> Result<Atlas, AtlasError> {
     problem.validate()?;
     let model = Model::new(&problem.swimmer.of_unit_length())?;
+    refuse_immobile(&model, &problem.bounds)?;
     Ok(match problem.objective {
         Objective::Efficiency => pipeline::run(
             problem,

@@ -59,6 +59,12 @@ impl Certificate {
         &self.checks
     }
 
+    /// The number of the condition of this name; `None` where there is none.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        let mut named = self.checks.iter().filter(|check| check.name == name);
+        named.next().map(|check| check.value)
+    }
+
     /// Whether all hold.
     pub fn pass(&self) -> bool {
         self.checks.iter().all(|check| check.pass)
@@ -128,15 +134,26 @@ impl Certificate {
     }
 }
 
+/// What two ways of swimming a gait may differ by, over L.
+pub(crate) const SWUM_AGAIN: f64 = 1e-8;
+/// The same over the displacement itself: a gait that moves by rounding only proves nothing.
+pub(crate) const SHARE: f64 = 1e-3;
+
+/// What two ways of swimming a gait that moves so far over L may differ by, over L.
+pub(crate) fn again_within(over_length: f64) -> f64 {
+    SWUM_AGAIN.min(SHARE * over_length)
+}
+
 /// The samples swum by the model's own cycle integration, which shares no code with the arcs.
 pub(crate) fn swum_again(stroke: &Stroke<f64>, displacement_over_length: f64) -> [Check; 3] {
     let (x, y) = (stroke.displacement.x, stroke.displacement.y);
     let rotation = stroke.rotation;
+    let tolerance = again_within(displacement_over_length.abs());
     [
         Check::at_most(
             "displacement_swum_again",
             (x - displacement_over_length).abs(),
-            1e-8,
+            tolerance,
         ),
         Check::at_most("net_lateral", y.abs(), 1e-8),
         Check::at_most("net_rotation_rad", rotation.abs(), 1e-8),

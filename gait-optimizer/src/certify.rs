@@ -21,7 +21,9 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{Gait as _, InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, swim};
 
-use crate::certificate::{Certificate, Check, simple_and_turning_once, turning_number};
+use crate::certificate::{
+    Certificate, Check, SHARE, SWUM_AGAIN, simple_and_turning_once, turning_number,
+};
 use grid::{Along, Degree, Grid};
 use limits::{Limit, Limits, image};
 use path::Path;
@@ -144,15 +146,19 @@ fn certify_turned(
     let apart = |[a, b]: [f64; 2]| (a - x).hypot(b - y);
     let again = path::stepped(model, &subject.grid, &subject.shapes);
     let swum = [stroke.displacement.x, stroke.displacement.y];
+    let mut tolerance = SWUM_AGAIN + open.pose;
+    if objective != Objective::Turning {
+        tolerance = tolerance.min(SHARE * x.hypot(y));
+    }
     checks.push(Check::at_most(
         "displacement_swum_again",
         apart(swum),
-        1e-8 + open.pose,
+        tolerance,
     ));
     checks.push(Check::at_most(
         "displacement_stepped_again",
         apart([again[0], again[1]]),
-        1e-8 + open.pose,
+        tolerance,
     ));
     if objective != Objective::Turning {
         checks.push(Check::at_most(

@@ -16,6 +16,7 @@ use swimmer_model::{Links, Model, Swimmer};
 use trunk::trunks;
 
 use crate::cycle::{Cycle, QuarterTrace};
+use crate::immobile::refuse_immobile;
 use crate::optimal_gait::Solution;
 use crate::{Certificate, OptimalGait};
 
@@ -166,13 +167,15 @@ impl DisplacementProblem {
 /// A simple curve with these symmetries keeps each quarter between the diagonals φ₂ = ±φ₁. Where a region that the gait
 /// should go round is cut off by a bound, no such curve is the best one: the best ones touch their own images along a
 /// diagonal (as the paper's gait in the sector does). Such a gait, with its `diagonal` arcs, is returned where bounds on the
-/// angles leave no other forward gait, or only one that ends in a corner of the bounds and carries less far.
+/// angles leave no other forward gait, or only one that ends in a corner of the bounds and carries less far. Its bounds say so:
+/// they have the sector.
 ///
 /// # Errors
 /// [`DisplacementError`]: what is wrong with the problem, or why it has no optimum.
 pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, DisplacementError> {
     problem.validate()?;
     let model = Model::new(&problem.swimmer.of_unit_length())?;
+    refuse_immobile(&model, &problem.bounds)?;
     let found = best(problem, &model, &problem.bounds);
     if !problem.may_touch() || found.as_ref().is_ok_and(|gait| !cut_off(gait)) {
         return found;
@@ -192,12 +195,13 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
 pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, DisplacementError> {
     problem.validate()?;
     let model = Model::new(&problem.swimmer.of_unit_length())?;
+    refuse_immobile(&model, &problem.bounds)?;
     let of = |bounds: &Bounds| {
         let region = Region::new(bounds, &problem.swimmer.links);
         let (candidates, _) = candidates(problem, &model, bounds, &region);
-        let gaits = candidates.into_iter().filter_map(|candidate| {
-            certified(problem, &model, &region, problem.heading(), &candidate)
-        });
+        let gaits = candidates
+            .into_iter()
+            .filter_map(|candidate| certified(problem, &model, (bounds, &region), &candidate));
         gaits.collect::<Vec<_>>()
     };
     let mut gaits = of(&problem.bounds);
@@ -251,7 +255,7 @@ fn best(
     let (candidates, fates) = candidates(problem, model, bounds, &region);
     let mut refused = None;
     for candidate in &candidates {
-        let Some(gait) = certified(problem, model, &region, heading, candidate) else {
+        let Some(gait) = certified(problem, model, (bounds, &region), candidate) else {
             continue;
         };
         if gait.certificate.pass() {
@@ -271,17 +275,17 @@ fn best(
     })
 }
 
-/// A candidate as a full cycle with its certificate; none where it cannot even be traced again.
+/// A candidate as a full cycle with its certificate and the bounds that it was found within, which are those that it can be
+/// certified for again; none where it cannot even be traced.
 fn certified(
     problem: &DisplacementProblem,
     model: &Model<f64>,
-    region: &Region,
-    heading: Heading,
+    (bounds, region): (&Bounds, &Region),
     candidate: &Candidate,
 ) -> Option<OptimalGait> {
     let extremal = height::Extremal {
         model,
-        sign: heading.sign(),
+        sign: problem.heading().sign(),
         final_y: candidate.final_y,
     };
     let legs: Vec<_> = search::lasting(candidate.quarter.legs()).copied().collect();
@@ -296,7 +300,7 @@ fn certified(
     let mut gait = OptimalGait::new(Solution {
         objective: Objective::Displacement,
         swimmer: problem.swimmer,
-        bounds: problem.bounds,
+        bounds: *bounds,
         symmetric: true,
         arcs,
         cycle,
@@ -311,3 +315,6 @@ fn certified(
     gait.end_angle = trace.end().y;
     Some(gait)
 }
+
+#[cfg(test)]
+mod tests;

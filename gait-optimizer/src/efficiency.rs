@@ -24,6 +24,7 @@ use swimmer_model::{Links, Model, Swimmer};
 
 use crate::cycle::Cycle;
 use crate::extremal::wall::Walls;
+use crate::immobile::refuse_immobile;
 use crate::optimal_gait::Solution;
 use crate::{Arc, OptimalGait};
 pub use bounded::Reached;
@@ -184,6 +185,7 @@ pub struct EfficiencyFigures {
 pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, EfficiencyError> {
     problem.validate()?;
     let model = Model::new(&problem.swimmer.of_unit_length())?;
+    refuse_immobile(&model, &problem.bounds)?;
     let mut best: Option<OptimalGait> = None;
     let mut refused: Option<EfficiencyError> = None;
     for start in chain::starts(&model, problem.branch)? {

@@ -52,6 +52,7 @@ mod displacement;
 mod efficiency;
 mod extremal;
 mod height_map;
+mod immobile;
 mod loops;
 mod momentum;
 mod optimal_gait;
@@ -78,6 +79,7 @@ pub use extremal::{Polish, Unpolished, Unsolved, polish_efficiency};
 pub use height_map::{
     AreaRule, Convergence, Frame, Grid, HeightMap, HeightMapError, LevelCurve, Row,
 };
+pub use immobile::Immobile;
 pub use optimal_gait::{Arc, OptimalGait};
 pub use robust::{
     Over, RobustError, RobustGait, Uncertainty, Values, robust_displacement, robust_efficiency,

@@ -33,9 +33,11 @@ use swimmer_files::{Bounds, Objective};
 use swimmer_model::{InvalidSwimmer, Model, Swimmer};
 
 use crate::cycle::Cycle;
+use crate::immobile::refuse_immobile;
 use crate::optimal_gait::Solution;
 use crate::{
-    Branch, Certificate, DisplacementError, DisplacementProblem, Heading, OptimalGait, displacement,
+    Branch, Certificate, DisplacementError, DisplacementProblem, Heading, Immobile, OptimalGait,
+    displacement,
 };
 use arcs::Arcs;
 use fourier::FourierFamily;
@@ -60,6 +62,9 @@ pub enum RobustError {
     /// A member is no swimmer.
     #[error("{0}")]
     Swimmer(#[from] InvalidSwimmer),
+    /// Gaits do not move the swimmer of the estimates.
+    #[error(transparent)]
+    Immobile(#[from] Immobile),
     /// The uncertainty makes no sense.
     #[error("the {name} of the fit is {value}; {problem}")]
     Uncertainty {
@@ -362,6 +367,7 @@ pub fn robust_efficiency(
     }
     let ensemble = Ensemble::new(swimmer, uncertainty)?;
     let swimmer = uncertainty.nominal(swimmer);
+    refuse_immobile(&ensemble.nominal, bounds)?;
     let family = FourierFamily::around(&ensemble.nominal, order, branch)?;
     let found = ensemble.find(&family, over)?;
     let values = ensemble.values(&family, &found.x, 1.0);

@@ -21,7 +21,7 @@ use crate::new_folder::NewFolder;
 use crate::output::Output;
 use crate::quantity;
 
-use super::optimize::answer::{Arc, Evidence, arcs};
+use super::optimize::answer::{Arc, Evidence, Figures, arcs};
 
 /// Find every locally optimal gait, with and without the paper's symmetries, each certified
 ///
@@ -38,7 +38,7 @@ pub(crate) struct Atlas {
     objective: Aim,
     #[command(flatten)]
     bounds: WholeBounds,
-    /// How many random starts
+    /// How many random starts; gaits that are found without a guess are starts, too, and not counted here
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     starts: u32,
     /// Seed of the starts
@@ -107,15 +107,16 @@ impl Atlas {
             }
         }
         let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
+        let starts = usize::try_from(self.starts).unwrap_or(usize::MAX);
         let found = atlas(&AtlasProblem {
             bounds,
-            starts: usize::try_from(self.starts).unwrap_or(usize::MAX),
+            starts,
             seed: self.seed,
             threads: std::thread::available_parallelism().map_or(1, NonZero::get),
             ..AtlasProblem::new(swimmer, objective)
         })?;
         let seconds = begun.elapsed().as_secs_f64();
-        let mut answer = Answer::new(&file.name, objective, &found, seconds);
+        let mut answer = Answer::new(&file.name, objective, &found, starts, seconds);
         answer.continuation = order.map(|order| order.best(&found)).transpose()?;
         if let Some(folder) = folder {
             for (number, (optimum, line)) in found.optima.iter().zip(&mut answer.optima).enumerate()
@@ -148,7 +149,10 @@ struct Answer {
     objective: Objective,
     /// Best first.
     optima: Vec<Line>,
+    /// Random ones, as asked for.
     starts: usize,
+    /// Further starts, from gaits that the quarter solvers find without a guess.
+    known_starts: usize,
     /// Starts that settled nowhere.
     unsettled: usize,
     /// Starts that left the shapes searched.
@@ -176,6 +180,9 @@ struct Line {
     /// Of the quarter where the gait is symmetric, else of the cycle.
     arcs: Vec<Arc>,
     links_cross: f64,
+    /// Of gaits for efficiency.
+    #[serde(flatten)]
+    figures: Option<Figures>,
     certificate: Evidence,
     simple: bool,
     symmetric: bool,
@@ -186,7 +193,8 @@ struct Line {
 }
 
 impl Answer {
-    fn new(name: &str, objective: Objective, found: &Found, seconds: f64) -> Self {
+    /// `asked` random starts were asked for.
+    fn new(name: &str, objective: Objective, found: &Found, asked: usize, seconds: f64) -> Self {
         Self {
             name: name.to_owned(),
             objective,
@@ -195,7 +203,8 @@ impl Answer {
                 .iter()
                 .map(|optimum| Line::new(optimum, seconds))
                 .collect(),
-            starts: found.starts,
+            starts: asked,
+            known_starts: found.starts.saturating_sub(asked),
             unsettled: found.unsettled,
             left: found.left,
             uncertified: found.uncertified,
@@ -228,6 +237,9 @@ impl Line {
             end_angle_rad: gait.end_angle,
             arcs: arcs(gait),
             links_cross: gait.links_cross,
+            figures: Figures::of(gait, "shooting_residual", |gait| {
+                gait.certificate.value("power_variation")
+            }),
             certificate: (&gait.certificate).into(),
             simple: optimum.simple,
             symmetric: gait.symmetric,
@@ -240,7 +252,11 @@ impl Line {
 
 impl fmt::Display for Answer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}: {} starts", self.title(), self.starts)?;
+        write!(f, "{}: {} random starts", self.title(), self.starts)?;
+        if self.known_starts > 0 {
+            write!(f, " and {} from known gaits", self.known_starts)?;
+        }
+        writeln!(f)?;
         writeln!(
             f,
             "  no   |d|/L          efficiency ξ     simple symmetric found  links cross"

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::{Figure, Printed, Row};
 use crate::failure::Outcome;
+use crate::report::{escaped, minus};
 
 /// Builds the whole page; the same numbers give the same bytes.
 ///
@@ -91,17 +92,6 @@ pub(crate) fn deviation(row: &Row) -> String {
         Printed::Words(_) => crate::quantity::deviation(row.deviation),
         Printed::Number(_) => number(row.deviation),
     }
-}
-
-/// A true minus sign instead of a hyphen.
-fn minus(text: &str) -> String {
-    text.replace('-', "\u{2212}")
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }
 
 const HEAD: &str = concat!(

@@ -174,12 +174,7 @@ fn value_of(gait: &OptimalGait, name: &str) -> f64 {
         &Bounds::default(),
     )
     .ok()
-    .and_then(|certificate| {
-        let mut checks = certificate.checks().iter();
-        checks
-            .find(|check| check.name == name)
-            .map(|check| check.value)
-    })
+    .and_then(|certificate| certificate.value(name))
     .unwrap_or(f64::NAN)
 }
 

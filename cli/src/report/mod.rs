@@ -5,7 +5,7 @@ pub(crate) mod chart;
 mod figures;
 mod page;
 
-pub(crate) use page::page;
+pub(crate) use page::{escaped, minus, page};
 
 /// Everything that the report shows, in SI units; the page turns them into millimetres and degrees.
 #[derive(Debug, Clone)]

@@ -185,7 +185,7 @@ fn files(html: &mut String, report: &Report) {
 
 fn runs(html: &mut String, report: &Report) {
     html.push_str(
-        "<section><h2>The circles</h2><table class=runs><thead><tr><th>amplitude<th>cycles\
+        "<section><h2>The circles</h2><table class=circles><thead><tr><th>amplitude<th>cycles\
          <th>X [mm]<th>sd<th>ΔY [mm]<th>sd<th>Δθ [°]<th>sd</tr></thead><tbody>",
     );
     for circle in &report.circles {

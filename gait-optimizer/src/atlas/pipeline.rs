@@ -64,6 +64,12 @@ pub(super) fn run<S: Seek>(problem: &AtlasProblem, model: &Model<f64>, seek: &S)
         turns: problem.bounds.max_angle.is_none() && !problem.bounds.no_overlap,
     };
     let known = seek.known(problem);
+    // What is certified for these very bounds is in the atlas, wherever its coarse curve leads.
+    let kept = |known: &OptimalGait| known.bounds == problem.bounds && known.certificate.pass();
+    let is_kept = |index: usize| {
+        let known = known.get(index.wrapping_sub(problem.starts));
+        known.is_some_and(kept)
+    };
     let count = problem.starts + known.len();
     let ended = in_parallel(
         count,
@@ -79,22 +85,23 @@ pub(super) fn run<S: Seek>(problem: &AtlasProblem, model: &Model<f64>, seek: &S)
     );
     let mut atlas = Atlas {
         optima: Vec::new(),
-        starts: count,
+        starts: 0,
         unsettled: 0,
         left: 0,
         uncertified: 0,
     };
     let mut settled = Vec::new();
-    for one in ended {
+    for (index, one) in ended.into_iter().enumerate() {
+        let counts = usize::from(!is_kept(index));
         match one {
-            Ended::Nowhere => atlas.unsettled += 1,
-            Ended::Left => atlas.left += 1,
-            Ended::At(one) => settled.push(one),
+            Ended::Nowhere => atlas.unsettled += counts,
+            Ended::Left => atlas.left += counts,
+            Ended::At(one) => settled.push((one, counts)),
         }
     }
     let outlines: Vec<(f64, Outline)> = settled
         .iter()
-        .map(|one| {
+        .map(|(one, _)| {
             let distance = one.stationary.values.displacement.norm();
             (distance, Outline::new(&one.points))
         })
@@ -106,17 +113,22 @@ pub(super) fn run<S: Seek>(problem: &AtlasProblem, model: &Model<f64>, seek: &S)
         || (),
         |(), class| {
             let first = coarse_classes.get(class)?.first()?;
-            seek.polished(&functional, &settled.get(*first)?.stationary)
+            seek.polished(&functional, &settled.get(*first)?.0.stationary)
         },
     );
     let mut gaits: Vec<(OptimalGait, usize)> = Vec::new();
     for (class, gait) in coarse_classes.iter().zip(polished) {
+        let starts = class.iter().filter_map(|&index| settled.get(index));
+        let starts = starts.map(|(_, counts)| counts).sum();
         match gait {
-            Some(gait) => gaits.push((gait, class.len())),
-            None => atlas.uncertified += class.len(),
+            Some(gait) => gaits.push((gait, starts)),
+            None => atlas.uncertified += starts,
         }
     }
+    gaits.extend(known.into_iter().filter(kept).map(|known| (known, 1)));
     atlas.optima = distinct::<S>(&gaits, symmetries);
+    let found: usize = atlas.optima.iter().map(|optimum| optimum.found).sum();
+    atlas.starts = found + atlas.unsettled + atlas.left + atlas.uncertified;
     atlas
 }
 
@@ -129,7 +141,8 @@ fn distinct<S: Seek>(gaits: &[(OptimalGait, usize)], symmetries: Symmetries) -> 
     let mut optima = Vec::new();
     for class in classes(&outlines, symmetries, SAME.0, SAME.1) {
         let found = class.iter().filter_map(|&index| gaits.get(index));
-        let found = found.map(|(_, found)| found).sum();
+        // A kept gait that leads to another one than itself found both.
+        let found = found.map(|(_, found)| *found).sum::<usize>().max(1);
         if let Some((gait, _)) = class.first().and_then(|&index| gaits.get(index)) {
             optima.push(Optimum {
                 distance_over_length: distance(gait),

@@ -54,6 +54,36 @@ fn without_symmetry_the_robot_swims_more_efficiently_within_its_bounds() {
     assert!(stroke.rotation.abs() < 1e-8);
 }
 
+/// What the quarter solver certifies is in the atlas too, even where the polish of its coarse curve fails.
+#[test]
+fn no_certified_gait_is_lost() {
+    let bounds = Bounds {
+        max_angle: Some(3.5),
+        ..Bounds::default()
+    };
+    let swimmer = Swimmer::purcell();
+    let known = crate::displacement(&crate::DisplacementProblem {
+        bounds,
+        heading: Some(crate::Heading::Backwards),
+        ..crate::DisplacementProblem::new(swimmer)
+    })
+    .unwrap();
+    let found = atlas(&AtlasProblem {
+        bounds,
+        starts: 4,
+        ..problem(swimmer)
+    })
+    .unwrap();
+    let distance = known.displacement_over_length.abs();
+    let same = |one: &&super::Optimum| (one.distance_over_length - distance).abs() < 1e-8;
+    let listed: Vec<_> = found.optima.iter().filter(same).collect();
+    assert_eq!(listed.len(), 1, "{distance}");
+    assert!(listed.iter().all(|one| one.simple && one.found >= 1));
+    let counted: usize = found.optima.iter().map(|one| one.found).sum();
+    let rest = found.unsettled + found.left + found.uncertified;
+    assert_eq!(counted + rest, found.starts);
+}
+
 #[test]
 fn the_same_seed_gives_the_same_atlas_on_any_number_of_threads() {
     let one = atlas(&problem(Swimmer::purcell())).unwrap();

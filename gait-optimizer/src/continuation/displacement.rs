@@ -50,9 +50,7 @@ fn heading(gait: &OptimalGait) -> Heading {
 }
 
 fn kept(value: f64, gait: OptimalGait) -> Kept<()> {
-    let left = gait.certificate.checks().iter();
-    let left = left.filter(|check| check.name == "final_lambda4");
-    let residual = left.map(|check| check.value).fold(f64::NAN, f64::max);
+    let residual = gait.certificate.value("final_lambda4").unwrap_or(f64::NAN);
     Kept::new(value, gait, residual, ())
 }
 

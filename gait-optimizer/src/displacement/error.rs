@@ -5,6 +5,7 @@ use std::fmt;
 use swimmer_model::InvalidSwimmer;
 
 use super::Heading;
+use crate::Immobile;
 
 /// What became of the extremals that the search sent out.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -52,6 +53,9 @@ pub enum DisplacementError {
     /// The swimmer's parameters are out of range.
     #[error("cannot optimise this swimmer: {0}")]
     Swimmer(#[from] InvalidSwimmer),
+    /// Gaits do not move it.
+    #[error(transparent)]
+    Immobile(#[from] Immobile),
     /// The quarter gait rests on front and back links being alike.
     #[error(
         "the side links differ (front {front} m, back {back} m): a gait with the paper's two symmetries needs them alike"

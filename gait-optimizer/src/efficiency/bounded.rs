@@ -182,10 +182,8 @@ fn finished(
     }
     let power_variation = gait
         .certificate
-        .checks()
-        .iter()
-        .find(|check| check.name == "power_variation")
-        .map_or(f64::NAN, |check| check.value);
+        .value("power_variation")
+        .unwrap_or(f64::NAN);
     gait.efficiency_figures = Some(EfficiencyFigures {
         residual: extremal.solved.residual,
         power_variation,

@@ -3,6 +3,7 @@
 use swimmer_model::InvalidSwimmer;
 
 use super::{Branch, Reached};
+use crate::Immobile;
 
 /// Why there is no efficiency gait to return.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -10,6 +11,9 @@ pub enum EfficiencyError {
     /// The swimmer's parameters are out of range.
     #[error("cannot optimise this swimmer: {0}")]
     Swimmer(#[from] InvalidSwimmer),
+    /// Gaits do not move it.
+    #[error(transparent)]
+    Immobile(#[from] Immobile),
     /// The quarter gait rests on front and back links being alike.
     #[error(
         "the side links differ (front {front} m, back {back} m): a gait with the paper's two symmetries needs them alike"

@@ -6,7 +6,7 @@ use swimmer_model::{Model, Stroke};
 
 use super::flow::{Lap, Leg, Motion};
 use super::shooting::Closed;
-use crate::certificate::simple_and_turning_once;
+use crate::certificate::{again_within, simple_and_turning_once};
 use crate::cycle::Cycle;
 use crate::displacement::height::{State, pose, pose_rates, shape};
 use crate::momentum::Momentum;
@@ -212,7 +212,7 @@ impl LoopTrace {
             Check::at_most(
                 "displacement_swum_again",
                 (x.hypot(y) - evidence.along).abs(),
-                1e-8,
+                again_within(evidence.along.abs()),
             ),
             Check::at_most("net_rotation_rad", stroke.rotation.abs(), 1e-8),
         ]);

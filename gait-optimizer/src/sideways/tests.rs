@@ -30,6 +30,50 @@ fn the_robot_moves_sideways_without_turning() {
     assert!(stroke.rotation.abs() < 1e-8);
 }
 
+/// A wider bound leaves no less: the quarter solver's gaits are among the loops that are compared.
+#[test]
+fn a_wider_bound_leaves_purcells_swimmer_no_less() {
+    let within = |max_angle: f64| {
+        let found = sideways(&SidewaysProblem {
+            bounds: Bounds {
+                max_angle: Some(max_angle),
+                ..Bounds::default()
+            },
+            starts: 4,
+            ..SidewaysProblem::new(Swimmer::purcell())
+        });
+        found.unwrap().lateral_over_length
+    };
+    let (tight, wide) = (within(3.1), within(3.5));
+    println!("{tight} {wide}");
+    assert!(wide >= tight - 1e-9, "{tight} {wide}");
+}
+
+/// The same swimmer, whichever end is called its front.
+#[test]
+fn front_and_back_are_names() {
+    let of = |front: f64, back: f64| {
+        let mut swimmer = Swimmer::purcell();
+        (swimmer.links.front, swimmer.links.back) = (front, back);
+        let found = sideways(&SidewaysProblem {
+            starts: 4,
+            ..problem(swimmer)
+        });
+        let found = found.unwrap();
+        let model = Model::new(&swimmer).unwrap();
+        let stroke = swim(&model, &found.gait.gait().unwrap(), &Tolerance::default());
+        let across = stroke.displacement_over_length().y;
+        assert!((across - found.lateral_over_length).abs() < 1e-8);
+        let file = found.gait.gait_file("a swimmer");
+        let certificate = crate::certify(&swimmer, &file, file.objective, &file.bounds).unwrap();
+        assert!(certificate.pass(), "{}", certificate.failures());
+        across
+    };
+    let (one, other) = (of(1.0, 0.7), of(0.7, 1.0));
+    println!("{one} {other}");
+    assert!((one - other).abs() < 1e-8, "{one} {other}");
+}
+
 #[test]
 fn senseless_problems_are_refused() {
     let mut bad = problem(Swimmer::purcell());

@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use gait_optimizer::Optimum;
 
+use crate::report::escaped;
+
 /// Width and height of the plane.
 const SIDE: f64 = 720.0;
 const MARGIN: f64 = 60.0;
@@ -95,10 +97,4 @@ pub(super) fn svg(title: &str, optima: &[Optimum]) -> String {
     }
     out.push_str("</svg>\n");
     out
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }

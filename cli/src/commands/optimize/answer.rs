@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use gait_optimizer::{Certificate, OptimalGait};
+use gait_optimizer::{Certificate, Method, Objective, OptimalGait};
 use serde::Serialize;
 
 use super::timing::TimingAnswer;
@@ -151,6 +151,31 @@ impl Closing {
         if let Some(path) = &self.gait {
             rows.row("written to", path.display().to_string());
         }
+    }
+}
+
+/// What gaits for efficiency have beside the others, where no solver tells it.
+#[derive(Debug, Serialize)]
+pub(crate) struct Figures {
+    residual: Option<f64>,
+    power_variation: Option<f64>,
+    /// What led to the start of the polish.
+    method: &'static str,
+}
+
+impl Figures {
+    /// With this condition of the certificate as the residual; none for a gait that is not for efficiency. For gaits that were
+    /// optimised as Fourier series first.
+    pub(crate) fn of(
+        gait: &OptimalGait,
+        residual: &str,
+        power_variation: impl FnOnce(&OptimalGait) -> Option<f64>,
+    ) -> Option<Self> {
+        (gait.objective == Objective::Efficiency).then(|| Self {
+            residual: gait.certificate.value(residual),
+            power_variation: power_variation(gait),
+            method: Method::Fourier.word(),
+        })
     }
 }
 

@@ -19,7 +19,7 @@ use crate::quantity::{self, Rows};
 
 use super::answer::{Closing, Quarter};
 use super::robust::{RobustAnswer, Robustly};
-use super::timing::ServoTiming;
+use super::timing::{ServoTiming, TimingAnswer};
 
 /// Find a gait of most Lighthill efficiency by the maximum principle, with its certificate
 ///
@@ -74,7 +74,7 @@ impl Efficiency {
         let begun = Instant::now();
         let bounds = Bounds::from(self.bounds);
         if let Some((uncertainty, over)) = uncertain {
-            let found = robust_efficiency(
+            let mut found = robust_efficiency(
                 &file.swimmer,
                 (branch, self.order),
                 &bounds,
@@ -85,6 +85,9 @@ impl Efficiency {
             let timing = self
                 .timing
                 .write(&found.gait, &file.name, self.output.as_deref())?;
+            if let Some(timing) = &timing {
+                found.gait.efficiency = timing.efficiency;
+            }
             output.answer(&RobustAnswer::new(
                 format!("{}, most efficiency, robust", file.name),
                 "ξ",
@@ -108,8 +111,12 @@ impl Efficiency {
         let timing = self
             .timing
             .write(&gait, &file.name, self.output.as_deref())?;
-        let closing = Closing::new(&gait, timing, seconds, self.output);
-        output.answer(&Found::new(file.name, &gait, closing));
+        output.answer(&Found::new(
+            file.name,
+            &gait,
+            timing,
+            (seconds, self.output),
+        ));
         Ok(())
     }
 }
@@ -118,7 +125,11 @@ impl Efficiency {
 struct Found {
     #[serde(skip)]
     name: String,
+    /// Of the gait that is written: as timed for the servos, else at constant power.
     efficiency: f64,
+    /// Of the same curve at constant power, where the servos' timing is another.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    efficiency_constant_power: Option<f64>,
     #[serde(flatten)]
     quarter: Quarter,
     /// Max-norm of the shooting conditions.
@@ -137,17 +148,24 @@ struct Found {
 }
 
 impl Found {
-    fn new(name: String, gait: &OptimalGait, closing: Closing) -> Self {
+    fn new(
+        name: String,
+        gait: &OptimalGait,
+        timing: Option<TimingAnswer>,
+        (seconds, file): (f64, Option<PathBuf>),
+    ) -> Self {
         let figures = gait.efficiency_figures;
+        let timed = timing.as_ref().map(|timing| timing.efficiency);
         Self {
             name,
-            efficiency: gait.efficiency,
+            efficiency: timed.unwrap_or(gait.efficiency),
+            efficiency_constant_power: timed.map(|_| gait.efficiency),
             quarter: gait.into(),
             residual: figures.map(|figures| figures.residual),
             power_variation: figures.map(|figures| figures.power_variation),
             method: figures.map(|figures| figures.method.word()),
             direct_efficiency: figures.and_then(|figures| figures.direct_efficiency),
-            closing,
+            closing: Closing::new(gait, timing, seconds, file),
         }
     }
 }
@@ -156,6 +174,9 @@ impl fmt::Display for Found {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
         rows.row("efficiency ξ", format!("{:.12}", self.efficiency));
+        if let Some(untimed) = self.efficiency_constant_power {
+            rows.row("constant power", format!("ξ = {untimed:.12}"));
+        }
         self.quarter.rows(&mut rows);
         if let Some(residual) = self.residual {
             let bound = if residual <= 1e-10 {
@@ -169,7 +190,8 @@ impl fmt::Display for Found {
             rows.row("method", method);
         }
         if let Some(direct) = self.direct_efficiency {
-            let deviation = (direct / self.efficiency - 1.0).abs();
+            let polished = self.efficiency_constant_power.unwrap_or(self.efficiency);
+            let deviation = (direct / polished - 1.0).abs();
             rows.row(
                 "before polish",
                 format!("ξ off by {}", quantity::small(deviation)),
@@ -188,5 +210,50 @@ impl From<EfficiencyError> for Failure {
         } else {
             Self::tried(&error)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use swimmer_files::{AnyGait, GaitFile};
+    use swimmer_model::{Model, Swimmer, Tolerance, swim};
+
+    use super::*;
+
+    /// Servos at their limit cost efficiency, and what is told is that of the file.
+    #[test]
+    fn the_efficiency_is_that_of_the_gait_that_is_written() {
+        let gait = efficiency(&EfficiencyProblem {
+            bounds: Bounds {
+                max_angle: Some(1.5),
+                ..Bounds::default()
+            },
+            ..EfficiencyProblem::new(Swimmer::purcell(), Branch::Small)
+        })
+        .unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("timed.gait");
+        let told = |servos: ServoTiming| {
+            let timing = servos.write(&gait, "purcell", Some(&path)).unwrap();
+            let found = Found::new("purcell".to_owned(), &gait, timing, (0.0, None));
+            let file = AnyGait::from_file(&GaitFile::load(&path).unwrap()).unwrap();
+            let model = Model::new(&Swimmer::purcell()).unwrap();
+            let swum = swim(&model, &file, &Tolerance::default()).efficiency();
+            (found, swum)
+        };
+        let (free, swum) = told(ServoTiming {
+            max_rate: None,
+            period: None,
+        });
+        assert!((free.efficiency / swum - 1.0).abs() < 1e-6);
+        assert!(free.efficiency_constant_power.is_none());
+        let (timed, swum) = told(ServoTiming {
+            max_rate: Some(0.5),
+            period: Some(15.0772),
+        });
+        assert!((timed.efficiency / swum - 1.0).abs() < 1e-9, "{swum}");
+        assert!(timed.efficiency < 0.95 * free.efficiency);
+        assert_eq!(timed.efficiency_constant_power, Some(gait.efficiency));
+        assert!(format!("{timed}").contains(&format!("{:.12}", timed.efficiency)));
     }
 }

@@ -4,14 +4,18 @@ use std::fmt;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use gait_optimizer::{Over, RobustError, RobustGait, Uncertainty, Values};
+use gait_optimizer::{OptimalGait, Over, RobustError, RobustGait, Uncertainty, Values};
 use serde::Serialize;
+use swimmer_model::{Gait as _, Model};
 
-use super::answer::{Closing, Quarter};
+use super::answer::{Closing, Figures, Quarter};
 use super::timing::TimingAnswer;
 use crate::failure::{Failure, Outcome};
 use crate::fit_file::load_fit;
 use crate::quantity::Rows;
+
+/// Evenly spaced instants of a cycle at which the power is looked at.
+const INSTANTS: u32 = 1024;
 
 /// What is uncertain, and what is made of it.
 #[derive(Debug, clap::Args)]
@@ -60,7 +64,24 @@ pub(super) struct RobustAnswer {
     quarter: Quarter,
     robust: Robustness,
     #[serde(flatten)]
+    figures: Option<Figures>,
+    #[serde(flatten)]
     closing: Closing,
+}
+
+/// (max − min)/mean of the power along the gait as it is timed.
+fn power_variation(gait: &OptimalGait) -> Option<f64> {
+    let model = Model::new(&gait.swimmer.of_unit_length()).ok()?;
+    let curve = gait.gait().ok()?;
+    let powers: Vec<f64> = (0..INSTANTS)
+        .map(|instant| {
+            let at = curve.at(f64::from(instant) / f64::from(INSTANTS));
+            at.rate.dot(&(model.power_matrix(&at.phi) * at.rate))
+        })
+        .collect();
+    let most = powers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let least = powers.iter().copied().fold(f64::INFINITY, f64::min);
+    Some((most - least) * f64::from(INSTANTS) / powers.iter().sum::<f64>())
 }
 
 #[derive(Debug, Serialize)]
@@ -116,6 +137,9 @@ impl RobustAnswer {
             title,
             efficiency: gait.efficiency,
             quarter: gait.into(),
+            // The gradient of ln ξ̄ [1/rad] for the members as they are weighed: no single swimmer's shooting conditions hold. The
+            // power is that of the estimates' swimmer: one timing for all members is at constant power for none.
+            figures: Figures::of(gait, "robust_gradient", power_variation),
             robust: Robustness {
                 over: match found.over {
                     Over::Worst => "worst",

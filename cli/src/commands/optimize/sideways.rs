@@ -60,6 +60,8 @@ struct Answer {
     displacement_over_length: f64,
     /// What bridges to another start, which do not count, would come near to.
     bridged_supremum_over_length: f64,
+    /// Null: these gaits do not rotate, and what bridges would bring is the length above.
+    bridged_supremum_rad: Option<f64>,
     rotation_rad: f64,
     arcs: Vec<Arc>,
     #[serde(flatten)]
@@ -74,6 +76,7 @@ impl Answer {
             lateral_over_length: found.lateral_over_length,
             displacement_over_length: gait.displacement_over_length,
             bridged_supremum_over_length: found.bridged_supremum_over_length,
+            bridged_supremum_rad: None,
             rotation_rad: gait.rotation,
             arcs: arcs(gait),
             closing: Closing::new(gait, None, seconds, file),

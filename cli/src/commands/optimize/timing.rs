@@ -5,8 +5,8 @@ use std::path::Path;
 use gait_optimizer::OptimalGait;
 use gait_optimizer::playable::{Timing, TimingError, timing};
 use serde::Serialize;
-use swimmer_files::GaitFile;
-use swimmer_model::Model;
+use swimmer_files::{AnyGait, GaitFile};
+use swimmer_model::{Model, Tolerance, swim};
 
 use crate::arguments::{positive_angle, seconds};
 use crate::failure::{Failure, Outcome};
@@ -17,16 +17,20 @@ use crate::quantity::{self, Rows};
 pub(super) struct ServoTiming {
     /// Servos turn no faster than this angle a second: the gait is timed best under that limit instead of at constant power
     #[arg(long, value_name = "ANGLE_PER_S", value_parser = positive_angle, requires = "period")]
-    max_rate: Option<f64>,
+    pub(super) max_rate: Option<f64>,
     /// Seconds a cycle shall take with servos of that rate
     #[arg(long, value_name = "SECONDS", value_parser = seconds, requires = "max_rate")]
-    period: Option<f64>,
+    pub(super) period: Option<f64>,
 }
 
 /// A gait's timing under the limit.
 #[derive(Debug)]
 struct Timed {
     timing: Timing,
+    /// The gait with this timing.
+    file: GaitFile,
+    /// ξ of that file as it is timed.
+    efficiency: f64,
 }
 
 /// What the limit costs.
@@ -42,24 +46,30 @@ pub(crate) struct TimingAnswer {
     at_limit: f64,
     /// Share of Lighthill's ξ that the limit costs.
     efficiency_loss: f64,
+    /// ξ of the timed gait; answers that have an efficiency say it there.
+    #[serde(skip)]
+    pub(super) efficiency: f64,
 }
 
 impl ServoTiming {
     /// Times a gait, if that was asked for.
-    fn of(&self, gait: &OptimalGait) -> Outcome<Option<Timed>> {
+    fn of(&self, gait: &OptimalGait, file: &GaitFile) -> Outcome<Option<Timed>> {
         let (Some(max_rate), Some(period)) = (self.max_rate, self.period) else {
             return Ok(None);
         };
         let broken = |error: &dyn std::error::Error| Failure::tried(error);
         let model = Model::new(&gait.swimmer).map_err(|error| broken(&error))?;
         let curve = gait.gait().map_err(|error| broken(&error))?;
+        let timing = timing(&model, &curve, period, max_rate)?;
+        let file = timing.retime_file(file);
+        let timed = AnyGait::from_file(&file).map_err(|error| broken(&error))?;
         Ok(Some(Timed {
-            timing: timing(&model, &curve, period, max_rate)?,
+            efficiency: swim(&model, &timed, &Tolerance::default()).efficiency(),
+            timing,
+            file,
         }))
     }
-}
 
-impl ServoTiming {
     /// Times a gait, if that was asked for, and writes it, if it was.
     pub(super) fn write(
         &self,
@@ -67,12 +77,12 @@ impl ServoTiming {
         name: &str,
         path: Option<&Path>,
     ) -> Outcome<Option<TimingAnswer>> {
-        let timed = self.of(gait)?;
+        let file = gait.gait_file(name);
+        let timed = self.of(gait, &file)?;
         if let Some(path) = path {
-            let file = gait.gait_file(name);
             timed
                 .as_ref()
-                .map_or_else(|| file.clone(), |timed| timed.file(&file))
+                .map_or(&file, |timed| &timed.file)
                 .save(path)?;
         }
         Ok(timed.as_ref().map(Timed::answer))
@@ -80,11 +90,6 @@ impl ServoTiming {
 }
 
 impl Timed {
-    /// The gait file with this timing.
-    fn file(&self, file: &GaitFile) -> GaitFile {
-        self.timing.retime_file(file)
-    }
-
     /// What is printed of it.
     fn answer(&self) -> TimingAnswer {
         let Timing {
@@ -103,6 +108,7 @@ impl Timed {
             rate_at_constant_power_rad_s: rate_at_constant_power,
             at_limit,
             efficiency_loss,
+            efficiency: self.efficiency,
         }
     }
 }

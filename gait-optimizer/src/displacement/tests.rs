@@ -1,0 +1,86 @@
+use super::*;
+use crate::certify;
+use swimmer_model::TangentialDrag;
+
+/// Three links without a sphere.
+fn three_links(chi: f64) -> Swimmer<f64> {
+    Swimmer {
+        links: Links {
+            middle: 1.0,
+            front: 1.0,
+            back: 1.0,
+        },
+        chi,
+        tangential_drag: TangentialDrag::LogAspect(4.0),
+        sphere_radius: 0.0,
+    }
+}
+
+/// A drag that is the same in all directions moves nothing, and what is left of the height is rounding.
+#[test]
+fn isotropic_drag_has_no_gait() {
+    for chi in [1.0, 1.0 + 1e-10, 1.0 - 1e-10] {
+        for max_angle in [0.05, 2.8] {
+            let problem = DisplacementProblem::new(three_links(chi)).with_max_angle(max_angle);
+            let refused = displacement(&problem).unwrap_err().to_string();
+            assert!(refused.contains("no gait moves this swimmer"), "{refused}");
+        }
+    }
+}
+
+/// Nearly isotropic drag moves the swimmer nearly in proportion to what is left.
+#[test]
+fn nearly_isotropic_drag_moves_a_little() {
+    let of = |chi: f64| {
+        let problem = DisplacementProblem::new(three_links(chi)).with_max_angle(1.2);
+        displacement(&problem).unwrap().displacement_over_length
+    };
+    let (once, twice) = (of(1.001), of(1.002));
+    assert!(
+        once > 1e-6 && (twice / once - 2.0).abs() < 0.01,
+        "{once} {twice}"
+    );
+}
+
+/// Between rounding and a little a gait may be refused, but what is found is in proportion to what is left, and nothing is
+/// followed without end.
+#[test]
+fn what_is_found_beside_isotropic_drag_is_no_rounding() {
+    let of = |off: f64| {
+        let problem = DisplacementProblem::new(three_links(1.0 + off)).with_max_angle(1.2);
+        displacement(&problem).map(|gait| gait.displacement_over_length / off)
+    };
+    let slope = of(1e-3).unwrap();
+    for off in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, -1e-9, -1e-8] {
+        let found = of(off);
+        println!("{off:e} {found:?}");
+        if let Ok(found) = found {
+            assert!((found / slope - 1.0).abs() < 0.01, "{off}: {found} {slope}");
+        }
+    }
+}
+
+/// What optimises and what certifies mean the same gaits, also where these touch their own images.
+#[test]
+fn gaits_that_touch_their_images_certify_from_their_file() {
+    let mut touching = 0;
+    for max_angle in [1.3, 1.6, 1.9, 2.2] {
+        let swimmer = three_links(0.5);
+        let problem = DisplacementProblem::new(swimmer).with_max_angle(max_angle);
+        let Ok(gait) = displacement(&problem) else {
+            continue;
+        };
+        let runs_along = |arc: &crate::Arc| arc.kind == ArcKind::Diagonal;
+        let touches = gait.arcs.iter().any(runs_along);
+        touching += usize::from(touches);
+        assert_eq!(gait.bounds.sector, touches);
+        let file = gait.gait_file("a swimmer");
+        let certificate = certify(&swimmer, &file, file.objective, &file.bounds).unwrap();
+        assert!(
+            certificate.pass(),
+            "{max_angle}: {}",
+            certificate.failures()
+        );
+    }
+    assert!(touching > 0);
+}
