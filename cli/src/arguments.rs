@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::str::FromStr;
+use std::time::Duration;
 
 use swimmer_files::{AnyGait, GaitSpec, Provenance, SwimmerFile, parse_angle};
 use swimmer_model::Model;
@@ -32,8 +33,41 @@ pub(crate) fn length(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The longest time that may be asked for, s: thirty years, which every clock here can count to.
+const LONGEST_S: f64 = 1e9;
+/// The shortest and the longest cycle that a robot can be asked for, µs: one servo period, and what the wire carries.
+const PERIODS_US: [u32; 2] = [gait_player::TICK_US, u32::MAX];
+
 /// A time above zero on the command line, in seconds.
 pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = above_zero(text)?;
+    if seconds <= LONGEST_S {
+        Ok(seconds)
+    } else {
+        Err(format!(
+            "that is too long: write a number of seconds up to {LONGEST_S}, as 30 or 2.5"
+        ))
+    }
+}
+
+/// The duration of a cycle that a robot shall play, in seconds.
+pub(crate) fn period(text: &str) -> Result<f64, String> {
+    let period = above_zero(text)?;
+    let [shortest, longest] = PERIODS_US;
+    let on_the_wire = Duration::try_from_secs_f64(period)
+        .ok()
+        .and_then(|period| u32::try_from(period.as_micros()).ok());
+    if on_the_wire.is_some_and(|us| (shortest..=longest).contains(&us)) {
+        return Ok(period);
+    }
+    Err(format!(
+        "a robot's cycle takes from {} s to {} s; write its seconds, as 30 or 2.5",
+        f64::from(shortest) * 1e-6,
+        longest / 1_000_000
+    ))
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
     let number = text.strip_suffix('s').unwrap_or(text).trim_end();
     match f64::from_str(number) {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
@@ -51,16 +85,22 @@ pub(crate) fn gait(text: &str) -> Result<GaitSpec, String> {
 pub(crate) fn load_swimmer(preset_or_path: &str) -> Outcome<SwimmerFile> {
     let swimmer = SwimmerFile::find(preset_or_path)?;
     if SwimmerFile::preset(preset_or_path).is_none() {
-        let path = Path::new(preset_or_path);
-        let folder = path.parent().unwrap_or_else(|| Path::new(""));
-        let made = Provenance::load(path)?;
-        for input in made.iter().flat_map(|made| made.changed(folder)) {
-            aside(&format!(
-                "note: {preset_or_path} was fitted from {input}, which has changed since; calibrate again"
-            ));
-        }
+        say_if_stale(Path::new(preset_or_path))?;
     }
     Ok(swimmer)
+}
+
+/// Says so where a swimmer file was fitted from what is no longer the same.
+pub(crate) fn say_if_stale(path: &Path) -> Outcome {
+    let folder = path.parent().unwrap_or_else(|| Path::new(""));
+    let made = Provenance::load(path)?;
+    for input in made.iter().flat_map(|made| made.changed(folder)) {
+        aside(&format!(
+            "note: {} was fitted from {input}, which has changed since; calibrate again",
+            path.display()
+        ));
+    }
+    Ok(())
 }
 
 /// Loads what `--gait` names.
@@ -93,8 +133,24 @@ mod tests {
     fn times_are_positive() {
         assert_eq!(seconds("30"), Ok(30.0));
         assert_eq!(seconds("2.5s"), Ok(2.5));
-        for text in ["0", "-1", "nan", "inf", "s", "1m", ""] {
+        for text in ["0", "-1", "nan", "inf", "s", "1m", "", "1e300", "1e10"] {
             assert!(seconds(text).is_err(), "{text}");
+        }
+    }
+
+    /// Whatever is accepted can be counted to, and a period fits the wire.
+    #[test]
+    fn the_longest_times_can_be_counted() {
+        let counted = |text| Duration::try_from_secs_f64(seconds(text).unwrap());
+        assert_eq!(counted("1e9"), Ok(Duration::from_secs(1_000_000_000)));
+        let on_the_wire = |text| {
+            let period = Duration::try_from_secs_f64(period(text)?).unwrap();
+            u32::try_from(period.as_micros()).map_err(|error| error.to_string())
+        };
+        assert_eq!(on_the_wire("0.02"), Ok(20_000));
+        assert_eq!(on_the_wire("4294.967295"), Ok(u32::MAX));
+        for text in ["0", "1e-7", "0.0199", "4294.967296", "5000", "1e300", "nan"] {
+            assert!(on_the_wire(text).is_err(), "{text}");
         }
     }
 }

@@ -28,7 +28,7 @@ use self::answers::Doing;
 use self::holder::Ask;
 use self::port::Pace;
 pub(crate) use self::upload::table_of;
-use crate::arguments::{angle, gait, positive_angle, seconds};
+use crate::arguments::{gait, period, positive_angle, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 
@@ -138,7 +138,7 @@ struct Play {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     cycles: Option<u32>,
     /// Seconds a cycle takes
-    #[arg(long, value_name = "SECONDS", default_value = "30", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value = "30", value_parser = period)]
     period: f64,
     /// Return once the robot plays; it plays on to its end without the link
     #[arg(long, requires = "cycles")]
@@ -158,10 +158,10 @@ struct Pause {
 #[derive(Debug, clap::Args)]
 struct Trim {
     /// Trim of the front joint, φ₁
-    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
+    #[arg(long, value_name = "ANGLE", value_parser = trim::angle_of_trim, allow_hyphen_values = true)]
     front: Option<f64>,
     /// Trim of the back joint, φ₂
-    #[arg(long, value_name = "ANGLE", value_parser = angle, allow_hyphen_values = true)]
+    #[arg(long, value_name = "ANGLE", value_parser = trim::angle_of_trim, allow_hyphen_values = true)]
     back: Option<f64>,
 }
 

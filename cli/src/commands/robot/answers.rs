@@ -5,7 +5,35 @@ use std::fmt;
 use link_protocol::{Flags, StateName, Status, StopCause, TableInfo, Telemetry};
 use serde::Serialize;
 
+use crate::failure::{Failure, Outcome};
+use crate::output::{Answer, Output};
 use crate::quantity::{self, Rows};
+
+/// An answer that ends a command with exit status 1: scripts find the reason beside its keys.
+#[derive(Debug, Serialize)]
+struct Failed<'a, A> {
+    #[serde(flatten)]
+    answer: &'a A,
+    error: &'a str,
+}
+
+impl<A: fmt::Display> fmt::Display for Failed<'_, A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.answer.fmt(f)
+    }
+}
+
+/// Gives an answer that says no, with the reason, and fails with that.
+///
+/// # Errors
+/// Always, with [`Failure::Answered`].
+pub(super) fn answer_no(output: Output, answer: &impl Answer, reason: String) -> Outcome {
+    output.answer(&Failed {
+        answer,
+        error: &reason,
+    });
+    Err(Failure::Answered(reason))
+}
 
 /// A request that needs no other answer than that it was done.
 #[derive(Debug, Serialize)]
@@ -21,6 +49,9 @@ pub(super) const STOPPED: &str = "Stopped: the pulses are off.";
 /// What an e-stop leaves.
 pub(super) const E_STOPPED: &str =
     "E-stopped: the pulses are off; only `swimmer robot arm --clear-estop` ends it.";
+
+/// What a pause leaves that needs no link.
+pub(super) const PAUSED_DETACHED: &str = "Paused: the robot holds its pose for at most 60 s, then stops; `swimmer robot resume` goes on.";
 
 impl Done {
     /// The pulses are off after a stop.
@@ -87,7 +118,11 @@ pub(super) fn gait_line(gait: Option<&Gait>) -> String {
 #[derive(Debug, Serialize)]
 pub(super) struct Doing {
     pub(super) state: &'static str,
+    /// Of the last stop, whatever the robot does now.
     cause: &'static str,
+    /// Whether that stop is what led to the state.
+    #[serde(skip)]
+    explained: bool,
     flags: Vec<&'static str>,
     cycle: u32,
     /// `null`: without end.
@@ -106,6 +141,7 @@ impl Doing {
         Self {
             state: state(status.state),
             cause: cause(status.cause),
+            explained: is_explained(status.state),
             flags: flags(status.flags),
             cycle: status.cycle,
             cycles: (status.cycles > 0).then_some(status.cycles),
@@ -126,7 +162,12 @@ impl Doing {
 impl fmt::Display for Doing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
-        rows.row("state", format!("{} ({})", self.state, self.cause));
+        let state = if self.explained {
+            format!("{} ({})", self.state, self.cause)
+        } else {
+            self.state.to_owned()
+        };
+        rows.row("state", state);
         if !self.flags.is_empty() {
             rows.row("flags", self.flags.join(", "));
         }
@@ -204,6 +245,19 @@ pub(super) fn state(state: StateName) -> &'static str {
         StateName::Stopping => "stopping",
         StateName::Settling => "settling",
     }
+}
+
+/// Whether a play is under way: it has begun and neither ended nor been stopped.
+pub(super) fn is_under_way(state: StateName) -> bool {
+    matches!(
+        state,
+        StateName::Starting | StateName::Playing | StateName::Paused
+    )
+}
+
+/// Whether the cause of the last stop is why the robot is in this state; in the others that stop is history.
+pub(super) fn is_explained(state: StateName) -> bool {
+    !is_under_way(state) && state != StateName::Holding
 }
 
 pub(super) fn cause(cause: StopCause) -> &'static str {

@@ -7,6 +7,7 @@ use host_link::port::SerialPort;
 use serde::Serialize;
 
 use super::access::Access;
+use super::answers::answer_no;
 use super::port::{BAUD, is_a_path};
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
@@ -56,13 +57,14 @@ pub(super) fn run(access: &Access, arguments: &Hc05, output: Output) -> Outcome 
         SerialPort::open(path, arguments.at_baud).map_err(|error| Failure::tried(&error))?;
     let outcome = hc05::converse(&mut port, &wanted, arguments.check)?;
     let answer = Answer::new(&outcome, arguments.check);
-    output.answer(&answer);
     if arguments.check && !answer.differed.is_empty() {
-        return Err(Failure::Answered(format!(
+        let reason = format!(
             "the HC-05 is not as wanted: {}; set it up with the same command without --check",
             answer.differed.join(", ")
-        )));
+        );
+        return answer_no(output, &answer, reason);
     }
+    output.answer(&answer);
     Ok(())
 }
 

@@ -8,7 +8,7 @@ use swimmer_files::read_link_log;
 use twin::{Difference, ReplayError, Replayed, replay};
 
 use super::access::Access;
-use super::answers::{state, telemetry_angles};
+use super::answers::{answer_no, state, telemetry_angles};
 use super::port::Pace;
 use super::upload::table_of;
 use super::watch::listen;
@@ -167,9 +167,8 @@ pub(super) fn replay_log(arguments: &Replay, output: Output) -> Outcome {
         .transpose()?;
     let replayed = replay(&frames, table.as_ref())?;
     let answer = Verdict::new(arguments.file.display().to_string(), &replayed);
-    let same = answer.same;
-    output.answer(&answer);
-    if same {
+    if answer.same {
+        output.answer(&answer);
         return Ok(());
     }
     let missing = replayed.missing_table.map_or_else(String::new, |crc32| {
@@ -177,9 +176,11 @@ pub(super) fn replay_log(arguments: &Replay, output: Output) -> Outcome {
             "; the robot held a gait with CRC {crc32:08x} when the log began: name it with --gait"
         )
     });
-    Err(Failure::Answered(format!(
-        "the log and the brain differ{missing}"
-    )))
+    answer_no(
+        output,
+        &answer,
+        format!("the log and the brain differ{missing}"),
+    )
 }
 
 impl From<ReplayError> for Failure {

@@ -12,11 +12,11 @@ use link_protocol::{StateName, Status, Telemetry};
 use serde::Serialize;
 
 use super::access::{Access, LOOK_AGAIN, Line, Met, Reached};
-use super::answers::{Done, E_STOPPED, STOPPED, cause, state};
+use super::answers::{Done, E_STOPPED, PAUSED_DETACHED, STOPPED, cause, is_under_way, state};
 use super::holder::{Ask, Relayed};
 use super::playing::{self, Playing};
 use super::port::{AnyPort, Pace, session_seed};
-use super::upload::before_play;
+use super::upload::BeforePlay;
 use super::{Arm, Pause, Play};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
@@ -94,15 +94,23 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
     } else {
         Pace::RealTime
     };
+    let gait = play.gait.as_ref();
+    let upload = gait
+        .map(|gait| BeforePlay::new(gait, &play.owner))
+        .transpose()?;
     let mut line = access.connect("swimmer robot play", pace)?;
-    if let Some(gait) = &play.gait {
-        before_play(&mut line, gait, &play.owner, &interrupt)?;
+    nothing_under_way(&line.robot.status()?)?;
+    if let Some(upload) = upload {
+        upload.send(&mut line, &interrupt)?;
     }
     let cycles = play.cycles.unwrap_or(0);
     let robot = &mut line.robot;
-    let begun = robot
-        .arm(false)
-        .and_then(|()| robot.play(cycles, Duration::from_secs_f64(play.period), play.detach));
+    match robot.arm(false) {
+        // Nothing was powered by this, and what the robot does instead is not ours to stop.
+        Err(refused @ LinkError::Refused { .. }) => return Err(refused.into()),
+        armed => stopped_on_failure(robot, armed)?,
+    }
+    let begun = robot.play(cycles, Duration::from_secs_f64(play.period), play.detach);
     stopped_on_failure(robot, begun)?;
     if play.detach {
         let status = robot.status()?;
@@ -119,6 +127,23 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
     });
     wait(&mut line, &interrupt, output)?;
     line.close()
+}
+
+/// A play that goes on detached is left alone: another begins only when it has ended or was stopped.
+fn nothing_under_way(status: &Status) -> Outcome {
+    if !is_under_way(status.state) {
+        return Ok(());
+    }
+    let go_on = if status.state == StateName::Paused {
+        "`swimmer robot resume` goes on with it"
+    } else {
+        "`swimmer robot play --attach` waits for its end"
+    };
+    Err(Failure::Tried(format!(
+        "a play is under way and was left alone: the robot is {}, {}; {go_on}, `swimmer robot stop` ends it",
+        state(status.state),
+        Playing::of(status)
+    )))
 }
 
 /// Waits for the end of a play that began detached.
@@ -145,7 +170,12 @@ fn attach(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
 /// `swimmer robot pause`: holds the pose, and the link until Ctrl-C unless detached.
 pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
     let interrupt = Interrupt::install()?;
-    let mut line = match access.meet(Ask::Pause, "swimmer robot pause", Pace::RealTime)? {
+    let ask = if pause.detach {
+        Ask::PauseDetached
+    } else {
+        Ask::Pause
+    };
+    let mut line = match access.meet(ask, "swimmer robot pause", Pace::RealTime)? {
         Met::Line(line) => line,
         Met::Relayed(relayed) => {
             output.answer(&relayed.told());
@@ -154,10 +184,9 @@ pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
     };
     line.robot.pause(pause.detach)?;
     if pause.detach {
-        let sentence = "Paused: the robot holds its pose for at most 60 s, then stops; `swimmer robot resume` goes on.";
         output.answer(&Done {
             state: "paused",
-            sentence: sentence.into(),
+            sentence: PAUSED_DETACHED.into(),
         });
         return line.close();
     }

@@ -1,6 +1,7 @@
 //! What `--port` names, opened.
 
 use std::io;
+use std::num::NonZeroU16;
 use std::thread::sleep;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
@@ -92,6 +93,7 @@ fn any_port(name: &str, means: &Means) -> Result<AnyPort, NotOpen> {
         });
     }
     if let Some(address) = name.strip_prefix("tcp:") {
+        is_an_address(address)?;
         let port = TcpPort::connect(address)
             .map_err(|error| Failure::Tried(format!("cannot connect to the robot at {address}: {error}; is `swimmer twin --tcp` running?")))?;
         return Ok(Box::new(port));
@@ -108,6 +110,20 @@ fn any_port(name: &str, means: &Means) -> Result<AnyPort, NotOpen> {
         }
         Err(error) => Err(Failure::tried(&error).into()),
     }
+}
+
+/// A host and a port to call there; whether they are reached is another matter.
+///
+/// # Errors
+/// [`Failure::BadInput`].
+fn is_an_address(text: &str) -> Result<(), Failure> {
+    let parts = text.rsplit_once(':');
+    if parts.is_some_and(|(host, port)| !host.is_empty() && port.parse::<NonZeroU16>().is_ok()) {
+        return Ok(());
+    }
+    Err(Failure::BadInput(format!(
+        "`{text}` is no address: write --port tcp:HOST:PORT, as tcp:127.0.0.1:7000"
+    )))
 }
 
 /// Differs between runs: the time and the process.
@@ -154,5 +170,32 @@ impl<P: Port> Port for Paced<P> {
 
     fn now(&self) -> Duration {
         self.port.now()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_is_a_host_and_a_port() {
+        for text in ["127.0.0.1:7000", "[::1]:7000", "robot.local:1"] {
+            assert!(is_an_address(text).is_ok(), "{text}");
+        }
+        for text in [
+            "",
+            ":",
+            "127.0.0.1",
+            ":7000",
+            "host:",
+            "host:0",
+            "host:70000",
+            "host:x",
+        ] {
+            assert!(
+                matches!(is_an_address(text), Err(Failure::BadInput(_))),
+                "{text}"
+            );
+        }
     }
 }

@@ -14,7 +14,7 @@ use swimmer_model::{Links, Model, Pose, Swimmer};
 
 use super::configure::is_configured_as;
 use super::playing::duration;
-use crate::arguments::{angle, seconds};
+use crate::arguments::{angle, period};
 use crate::commands::simulate::played::PlayedAnswer;
 use crate::failure::{Failure, Outcome};
 use crate::fit_file::load_fit;
@@ -24,7 +24,7 @@ use crate::quantity::{self, Rows};
 #[derive(Debug, clap::Args)]
 pub(super) struct Arguments {
     /// Foretell for this duration of a cycle
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "30")]
+    #[arg(long, value_name = "SECONDS", value_parser = period, default_value = "30")]
     period: f64,
     /// Foretell with this fit's error (of swimmer calibrate: fit.json, or its --json)
     #[arg(long, value_name = "FIT.json")]
@@ -165,6 +165,26 @@ struct TankAnswer {
 }
 
 impl Arguments {
+    /// Whether what was asked makes sense at all, before any robot is met.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`] for a start outside the tank.
+    pub(super) fn check(&self) -> Outcome {
+        let Some(tank) = &self.tank else {
+            return Ok(());
+        };
+        let Place(start) = self.start;
+        let (along, across) = (tank.length / 2.0, tank.width / 2.0);
+        if start.x.abs() < along && start.y.abs() < across {
+            return Ok(());
+        }
+        Err(Failure::BadInput(format!(
+            "the start {},{} lies outside the tank, which reaches ±{along} m along and ±{across} m across from its centre; \
+             put --start inside",
+            start.x, start.y
+        )))
+    }
+
     /// What is foretold of a gait.
     ///
     /// # Errors

@@ -6,6 +6,7 @@
 mod nudging;
 
 use std::io::{self, IsTerminal as _};
+use std::str::FromStr;
 use std::time::Duration;
 
 use crossterm::event::{self, Event};
@@ -19,6 +20,7 @@ use super::answers::Trims;
 use super::motion::wait_for_rest;
 use super::port::Pace;
 use super::watch::no_terminal;
+use crate::arguments::angle;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::output::Output;
@@ -28,21 +30,31 @@ const LARGEST_RAD: f64 = 0.524;
 /// Storing takes a second at most, and is tried again after a failure.
 const TO_STORE: Duration = Duration::from_secs(5);
 
+/// A trim on the command line, in radians.
+pub(super) fn angle_of_trim(text: &str) -> Result<f64, String> {
+    let angle = angle(text)?;
+    if angle.abs() <= LARGEST_RAD {
+        return Ok(angle);
+    }
+    // Only a number without its unit may have been meant in degrees.
+    let meant = match f64::from_str(text.trim()) {
+        Ok(degrees) if degrees.to_radians().abs() <= LARGEST_RAD => {
+            format!("write degrees as {degrees}deg, or ")
+        }
+        _ => String::new(),
+    };
+    Err(format!(
+        "a trim of {:.1}° is beyond ±30°: {meant}set the servo's horn anew",
+        angle.to_degrees()
+    ))
+}
+
 /// `swimmer robot trim`: sets what was named, then shows both; on a terminal, with nothing named, nudges.
 pub(super) fn trim(access: &Access, arguments: &Trim, output: Output) -> Outcome {
     let named = [
         (Joint::Front, arguments.front),
         (Joint::Back, arguments.back),
     ];
-    for (joint, angle) in named {
-        if let Some(angle) = angle.filter(|angle| angle.abs() > LARGEST_RAD) {
-            return Err(Failure::BadInput(format!(
-                "a trim of {:.1}° for the {joint:?} joint is beyond ±30°: write degrees as {angle}deg, or set the servo's horn \
-                 anew",
-                angle.to_degrees()
-            )));
-        }
-    }
     let nothing_named = named.iter().all(|(_, angle)| angle.is_none());
     let at_a_terminal = io::stdin().is_terminal() && io::stdout().is_terminal();
     if nothing_named && at_a_terminal && !output.json {
@@ -160,5 +172,36 @@ fn bench(
         terminal
             .draw(|frame| nudging.draw(frame))
             .map_err(no_terminal)?;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degrees_are_suggested_only_where_they_may_have_been_meant() {
+        assert_eq!(angle_of_trim("-0.5"), Ok(-0.5));
+        assert_eq!(angle_of_trim("30deg"), Ok(30f64.to_radians()));
+        for (text, reason) in [
+            (
+                "90deg",
+                "a trim of 90.0° is beyond ±30°: set the servo's horn anew",
+            ),
+            (
+                "1.2rad",
+                "a trim of 68.8° is beyond ±30°: set the servo's horn anew",
+            ),
+            (
+                "-5",
+                "a trim of -286.5° is beyond ±30°: write degrees as -5deg, or set the servo's horn anew",
+            ),
+            (
+                "45",
+                "a trim of 2578.3° is beyond ±30°: set the servo's horn anew",
+            ),
+        ] {
+            assert_eq!(angle_of_trim(text), Err(reason.to_owned()), "{text}");
+        }
     }
 }

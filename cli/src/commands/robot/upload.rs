@@ -12,7 +12,7 @@ use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
 use swimmer_model::Gait as _;
 
 use super::access::{Access, Line};
-use super::answers::Gait;
+use super::answers::{Gait, answer_no};
 use super::configure::is_configured_as;
 use super::port::{AnyPort, BAUD, Pace};
 use super::preflight::{Player, Preflight};
@@ -68,6 +68,7 @@ impl fmt::Display for Foretold {
 /// `swimmer robot upload`.
 pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcome {
     let interrupt = Interrupt::install()?;
+    arguments.preflight.check()?;
     let gait = Prepared::new(&arguments.gait)?;
     let file = arguments
         .owner
@@ -87,12 +88,18 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
     let mut line = access.connect("swimmer robot upload", Pace::AsFastAsPossible)?;
     let configuration = line.robot.configuration()?;
     let player = Player::of_robot(line.robot.info(), &configuration, file.as_ref());
+    if !arguments.owner.force {
+        gait.check_swimmer(&configuration, file.as_ref())?;
+    }
+    if let Some(file) = file.filter(|file| !is_configured_as(&configuration, &file.swimmer)) {
+        aside(&format!(
+            "note: the robot is configured as another swimmer than `{}`, which --swimmer names and for which this foretells; send it with `swimmer robot configure`, or leave --swimmer out",
+            file.name
+        ));
+    }
     if arguments.dry_run {
         foretell_alone(arguments, &gait, &player, output)?;
         return line.close();
-    }
-    if !arguments.owner.force {
-        gait.check_swimmer(&configuration, file.as_ref())?;
     }
     let preflight = match arguments
         .preflight
@@ -131,14 +138,13 @@ fn foretell_alone(arguments: &Upload, gait: &Prepared, player: &Player, output: 
         .preflight
         .foretell(&gait.name, &gait.gait, player)?;
     let refused = preflight.refused.clone();
-    output.answer(&Foretold { preflight });
-    match refused {
-        Some(reason) => Err(Failure::Answered(format!(
-            "the robot would refuse {}: {reason}",
-            gait.name
-        ))),
-        None => Ok(()),
+    let foretold = Foretold { preflight };
+    if let Some(reason) = refused {
+        let reason = format!("the robot would refuse {}: {reason}", gait.name);
+        return answer_no(output, &foretold, reason);
     }
+    output.answer(&foretold);
+    Ok(())
 }
 
 /// What an upload takes on a line without faults: the chunks' bytes at the line's speed, and a round trip for each of
@@ -150,21 +156,39 @@ fn predicted_time(robot: &Robot<AnyPort>, bytes: usize) -> Duration {
     Duration::from_secs_f64(on_the_line as f64 / bytes_per_second) + 3 * trip
 }
 
-/// Uploads the gait of a play.
-pub(super) fn before_play(
-    line: &mut Line,
-    gait: &GaitSpec,
-    owner: &Owner,
-    interrupt: &Interrupt,
-) -> Outcome {
-    let gait = Prepared::new(gait)?;
-    if !owner.force {
-        let file = owner.swimmer.as_deref().map(load_swimmer).transpose()?;
-        let configuration = line.robot.configuration()?;
-        gait.check_swimmer(&configuration, file.as_ref())?;
+/// The gait of a play, read before any robot is met.
+pub(super) struct BeforePlay {
+    gait: Prepared,
+    file: Option<SwimmerFile>,
+    force: bool,
+}
+
+impl BeforePlay {
+    /// Reads the gait, and the swimmer whose it is.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`].
+    pub(super) fn new(gait: &GaitSpec, owner: &Owner) -> Outcome<Self> {
+        Ok(Self {
+            gait: Prepared::new(gait)?,
+            file: owner.swimmer.as_deref().map(load_swimmer).transpose()?,
+            force: owner.force,
+        })
     }
-    send(line, &gait, interrupt)?;
-    Ok(())
+
+    /// Uploads it.
+    ///
+    /// # Errors
+    /// [`Failure::Tried`] where it is another swimmer's or the robot refuses it, and the link's.
+    pub(super) fn send(&self, line: &mut Line, interrupt: &Interrupt) -> Outcome {
+        if !self.force {
+            let configuration = line.robot.configuration()?;
+            self.gait
+                .check_swimmer(&configuration, self.file.as_ref())?;
+        }
+        send(line, &self.gait, interrupt)?;
+        Ok(())
+    }
 }
 
 /// A gait ready to be sent.

@@ -27,10 +27,7 @@ impl Dashboard {
         };
         let [front, back] = telemetry_angles(telemetry).map(f64::to_degrees);
         let flags = answers::flags(telemetry.flags);
-        let moving = matches!(
-            telemetry.state,
-            StateName::Starting | StateName::Playing | StateName::Paused
-        );
+        let moving = answers::is_under_way(telemetry.state);
         let text = vec![
             Line::from(vec![
                 Span::styled(
@@ -39,10 +36,10 @@ impl Dashboard {
                         .fg(colour(telemetry.state))
                         .add_modifier(Modifier::BOLD),
                 ),
-                Span::raw(if moving {
-                    String::new()
-                } else {
+                Span::raw(if answers::is_explained(telemetry.state) {
                     format!("  ({})", answers::cause(telemetry.cause))
+                } else {
+                    String::new()
                 }),
             ]),
             Line::from(if moving {

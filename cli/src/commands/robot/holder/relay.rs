@@ -10,7 +10,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::super::answers::{Doing, Done, E_STOPPED, state};
+use super::super::answers::{Doing, Done, E_STOPPED, PAUSED_DETACHED, state};
 use super::super::port::AnyPort;
 use crate::failure::{Failure, Outcome};
 use crate::output::Answer;
@@ -23,8 +23,11 @@ pub(in super::super) enum Ask {
     EStop,
     /// Ramp to neutral.
     Stop,
-    /// Hold the pose.
+    /// Hold the pose for as long as the holder keeps the link.
     Pause,
+    /// Hold the pose for a minute at most.
+    #[value(name = "pause-detached")]
+    PauseDetached,
     /// Go on.
     Resume,
     /// Say what the robot does.
@@ -98,9 +101,12 @@ impl Ask {
             Self::Pause => robot.pause(false).and_then(|()| {
                 done(
                     robot,
-                    "Paused: the robot holds its pose; `swimmer robot resume` goes on.",
+                    "Paused: the program that has the port keeps the link, and the robot holds its pose until `swimmer robot resume` or `swimmer robot stop`; this one need not wait.",
                 )
             }),
+            Self::PauseDetached => robot
+                .pause(true)
+                .and_then(|()| done(robot, PAUSED_DETACHED)),
             Self::Resume => robot.resume().and_then(|()| done(robot, "Resumed.")),
             Self::Status => robot
                 .status()

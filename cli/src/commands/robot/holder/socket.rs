@@ -1,5 +1,6 @@
 //! The socket of a held port, at both ends.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::fs::{self, DirBuilder};
 use std::io::{self, BufRead, BufReader, Write};
@@ -181,12 +182,22 @@ impl fmt::Display for HeldBy {
             process,
             ..
         } = self;
+        let typed = as_typed(port);
         write!(
             f,
-            "opening {port}: `{command}` (process {process}) has the port open. Through it, `swimmer robot stop --port {port}` (or \
+            "opening {port}: `{command}` (process {process}) has the port open. Through it, `swimmer robot stop --port {typed}` (or \
              estop, pause, resume, status, watch) works now; for anything else end it first, with Ctrl-C there"
         )
     }
+}
+
+/// A word as a shell takes it for one.
+fn as_typed(word: &str) -> Cow<'_, str> {
+    let is_plain = |sign: char| sign.is_alphanumeric() || "/._-+:=@%,".contains(sign);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.into();
+    }
+    format!("'{}'", word.replace('\'', r"'\''")).into()
 }
 
 /// Beside the socket: who listens.
@@ -270,6 +281,28 @@ mod tests {
         drop(holder);
         assert!(HeldBy::of_in(place, port).is_none());
         assert_eq!(fs::read_dir(place).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_suggested_command_can_be_typed_as_it_stands() {
+        for (port, typed) in [
+            ("/dev/rfcomm0", "/dev/rfcomm0"),
+            ("tcp:127.0.0.1:7000", "tcp:127.0.0.1:7000"),
+            ("/tmp/my robot", "'/tmp/my robot'"),
+            ("/tmp/o'hara;$x", r"'/tmp/o'\''hara;$x'"),
+        ] {
+            assert_eq!(as_typed(port), typed);
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let _holder =
+            Holder::announce_in(Some(folder.path()), "/tmp/my robot", "swimmer robot play");
+        let told = HeldBy::of_in(folder.path(), "/tmp/my robot")
+            .unwrap()
+            .to_string();
+        assert!(
+            told.contains("`swimmer robot stop --port '/tmp/my robot'`"),
+            "{told}"
+        );
     }
 
     #[test]
