@@ -9,7 +9,8 @@ use swimmer_model::{Gait as _, Model, Swimmer};
 use crate::campaign::{CalibrateError, CampaignData, CampaignFit};
 use crate::cycles::Projection;
 use crate::fit::FitError;
-use crate::further::{Likeliest, Setting, Slot, likeliest, measured};
+use crate::fit::measured::RunValues;
+use crate::further::{Likeliest, Setting, Slot, likeliest};
 use crate::prediction::JointPath;
 
 /// Amplitudes of circles and squares that are weighed \[deg\].
@@ -62,14 +63,12 @@ pub fn advise(
         })
     };
     let slots = vec![Slot::SphereRadius, Slot::Chi];
-    let setting = Setting::new(&campaign.swimmer, data, found, slots)?;
-    let values = measured(found, setting.scales);
+    let values = RunValues::of(&found.runs);
+    let setting = Setting::new(&campaign.swimmer, data, found, slots, values.scales)?;
     let begun = [setting.begin(found)];
     let estimate = likeliest(&setting, &values, &begun).ok_or_else(undetermined)?;
     let known = Known::of(&estimate).ok_or_else(undetermined)?;
-    let mut periods: Vec<f64> = data.runs.iter().map(|run| run.period_s).collect();
-    periods.sort_by(f64::total_cmp);
-    let period_s = periods.get(periods.len() / 2).copied().unwrap_or(1.0);
+    let period_s = data.usual_period_s();
     let projection = Projection::new();
     let weigh = |gait: GaitSpec, shape: &AnyGait| -> Option<Candidate> {
         if crosses(&found.swimmer.swimmer, shape) {

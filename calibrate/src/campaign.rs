@@ -85,7 +85,10 @@ impl CalibrateError {
             Self::Poses { cause, .. } => {
                 matches!(
                     cause,
-                    PoseError::NoPoint { .. } | PoseError::SamePlace | PoseError::NoScale { .. }
+                    PoseError::NoPoint { .. }
+                        | PoseError::SamePlace
+                        | PoseError::SamePoint { .. }
+                        | PoseError::NoScale { .. }
                 )
             }
             Self::Fit(cause) => matches!(cause, FitError::Level { .. } | FitError::Swimmer(_)),
@@ -113,6 +116,8 @@ pub struct RunResult {
     pub cycles: Cycles,
     /// What reader, poses and cycles had to say.
     pub warnings: Vec<String>,
+    /// The way of the joints, as the starting swimmer's servos play the gait.
+    pub(crate) path: JointPath,
 }
 
 /// A campaign's outcome.
@@ -210,7 +215,12 @@ impl<'a> Run<'a> {
             self.poses.turn_round(&self.reflectors);
             cycles = self.cycles(start_s)?;
         }
-        self.clock.check_phase(&mut cycles, &heading);
+        self.clock
+            .check_heading(&mut cycles, &heading)
+            .map_err(|cause| CalibrateError::Cycles {
+                file: self.data.file.clone(),
+                cause,
+            })?;
         Ok(cycles)
     }
 
@@ -228,6 +238,7 @@ impl<'a> Run<'a> {
             cycles,
             poses: self.poses,
             warnings,
+            path: self.path,
         }
     }
 }

@@ -13,18 +13,23 @@
 mod beginnings;
 mod clock;
 mod curve;
+mod drawn;
 mod integral;
+mod repeats;
 mod statistics;
 mod told;
 
 use swimmer_model::Pose;
 
-use crate::poses::{Origin, PoseSample, PoseTrack};
+use crate::poses::{Jump, Origin, PoseSample, PoseTrack};
 use beginnings::Beginnings;
 pub use beginnings::{Phase, Timing};
 use clock::Bin;
 pub(crate) use clock::shift;
 pub(crate) use curve::{Curve, Harmonics, Projection};
+use drawn::Drawn;
+pub use repeats::Repeats;
+use repeats::Verdict;
 pub use statistics::Statistics;
 use told::SAME_PHASE;
 pub use told::{CycleError, CycleWarning, LeftOut};
@@ -33,10 +38,10 @@ pub use told::{CycleError, CycleWarning, LeftOut};
 const REFINEMENTS: usize = 2;
 /// Clocks of robot and cameras run alike to this: crystals by far.
 const CLOCKS_DIFFER: f64 = 1e-3;
+/// Fewer samples in a cycle than this draw no curve.
+const FEWEST_SAMPLES: f64 = 24.0;
 /// Share of a cycle's samples that may be missing.
 const MOST_MISSING: f64 = 0.1;
-/// A cycle is unlike the others when its residual is this many times their median.
-const UNLIKE: f64 = 3.0;
 
 /// One cycle.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,7 +121,8 @@ impl Clock {
             .map_or(commanded_s, |play| play.period_s);
         let bins = clock::bins(track, commanded_s);
         let lever = track.report.distance_m;
-        let active_s = clock::active(&bins, lever, clock::REST).ok_or(CycleError::NoMotion)?;
+        let active_s = clock::active(&bins, lever, clock::REST)
+            .ok_or_else(|| no_motion(track, commanded_s))?;
         // However long the robot rested in between.
         let motion = clock::active(&bins, lever, bins.len());
         // Motion is looked for over four hundredths of a cycle: the last of them may be rest.
@@ -154,6 +160,11 @@ impl Clock {
                 found_s: period.seconds,
             });
         }
+        match repeats::judge(&steady, period.seconds, timing.play.is_some()) {
+            Verdict::Fine => {}
+            Verdict::Doubtful(repeats) => warnings.push(CycleWarning::Repeats(repeats)),
+            Verdict::Hopeless(repeats) => return Err(CycleError::OtherPeriod(repeats)),
+        }
         Ok(Self {
             period_s: period.seconds,
             active_s,
@@ -189,7 +200,17 @@ impl Clock {
     }
 
     /// Says so where the heading contradicts a start that was told.
-    pub(crate) fn check_phase(&self, cycles: &mut Cycles, model: &Harmonics) {
+    ///
+    /// # Errors
+    /// [`CycleError::OtherPeriod`] where it goes through several cycles of the model in one period.
+    pub(crate) fn check_heading(
+        &self,
+        cycles: &mut Cycles,
+        model: &Harmonics,
+    ) -> Result<(), CycleError> {
+        if let Some(repeats) = repeats::several_times(&cycles.heading, model, self.period_s) {
+            return Err(CycleError::OtherPeriod(repeats));
+        }
         let by_s = self.phase_error(cycles, model);
         if cycles.phase != Phase::Heading && by_s.abs() > SAME_PHASE * self.period_s {
             let period_s = self.period_s;
@@ -197,6 +218,7 @@ impl Clock {
                 .warnings
                 .push(CycleWarning::PhaseDiffers { by_s, period_s });
         }
+        Ok(())
     }
 
     /// Where whole cycles may lie \[s\].
@@ -226,7 +248,7 @@ impl Clock {
     pub(crate) fn cycles(&self, track: &PoseTrack, start_s: f64) -> Result<Cycles, CycleError> {
         let period = self.period_s;
         let (from, to) = self.window(track);
-        let mut drawn: Vec<(f64, f64, Curve, f64)> = Vec::new();
+        let mut drawn: Vec<Drawn> = Vec::new();
         let mut left_out = Vec::new();
         let mut warnings = self.warnings.clone();
         let listed = self.beginnings.listed(start_s, period, (from, to));
@@ -241,6 +263,12 @@ impl Clock {
                 continue;
             }
             let samples = window(track, start, period);
+            let jumps_in_it = |jump: &Jump| jump.before_s >= start && jump.after_s < start + period;
+            if track.jumps.iter().any(jumps_in_it) {
+                left_out.push((start, LeftOut::Jump));
+                continue;
+            }
+            let segment = track.jumps.partition_point(|jump| jump.before_s < start);
             let tracked = samples.iter().filter(|s| !s.is_filled()).count();
             let missing = (1.0 - tracked as f64 / (period * track.rate_hz)).max(0.0);
             let trusted = samples.iter().filter(|s| s.origin != Origin::Tail);
@@ -249,13 +277,19 @@ impl Clock {
                 1.0 / (period * track.rate_hz),
             );
             match curve.filter(|_| missing <= MOST_MISSING) {
-                Some((curve, residual)) => drawn.push((start, missing, curve, residual)),
+                Some((curve, residual_m)) => drawn.push(Drawn {
+                    start_s: start,
+                    missing,
+                    curve,
+                    residual_m,
+                    segment,
+                }),
                 None => left_out.push((start, LeftOut::Missing(missing))),
             }
         }
-        drop_unlike(&mut drawn, &mut left_out);
-        let drawn = settle_drifts(&drawn, period);
-        let Some((.., lone, _)) = drawn.first() else {
+        drawn::drop_unlike(&mut drawn, &mut left_out);
+        let drawn = drawn::settle(drawn, period, track.report.distance_m, &mut left_out);
+        let Some(Drawn { curve: lone, .. }) = drawn.first() else {
             let (from_s, active_s) = (from, to - from);
             return Err(CycleError::NoCycle {
                 from_s,
@@ -265,11 +299,11 @@ impl Clock {
             });
         };
         let lone = lone.own_step();
-        let heading = mean_heading(&drawn);
+        let heading = drawn::mean_heading(&drawn);
         let cycles: Vec<Cycle> = drawn
             .iter()
             .enumerate()
-            .map(|(i, entry)| cycle(entry, drawn.get(i + 1), period))
+            .map(|(i, cycle)| cycle.cycle(drawn.get(i + 1), period))
             .collect();
         let mut steps: Vec<Pose<f64>> = cycles.iter().filter_map(|cycle| cycle.step).collect();
         if steps.is_empty() {
@@ -293,18 +327,18 @@ impl Clock {
     }
 }
 
-fn mean_heading(drawn: &[(f64, f64, Curve, f64)]) -> Harmonics {
-    let mut mean = Harmonics::default();
-    for (.., curve, _) in drawn {
-        for (mean, here) in mean
-            .iter_mut()
-            .flatten()
-            .zip(curve.heading_harmonics().iter().flatten())
-        {
-            *mean += here / drawn.len() as f64;
-        }
+/// Why no motion was found: with a period that is far off, bins of its hundredths show none.
+fn no_motion(track: &PoseTrack, period_s: f64) -> CycleError {
+    let ends = track.samples.first().zip(track.samples.last());
+    let track_s = ends.map_or(0.0, |(first, last)| last.time_s - first.time_s);
+    let samples = period_s * track.rate_hz;
+    if track_s < 2.0 * period_s {
+        CycleError::TooShort { track_s, period_s }
+    } else if samples < FEWEST_SAMPLES {
+        CycleError::TooQuick { samples, period_s }
+    } else {
+        CycleError::NoMotion
     }
-    mean
 }
 
 /// Samples in \[start, start + period).
@@ -316,65 +350,4 @@ fn window(track: &PoseTrack, start: f64, period: f64) -> &[PoseSample] {
         .samples
         .partition_point(|sample| sample.time_s < start + period);
     track.samples.get(from..until).unwrap_or(&[])
-}
-
-fn drop_unlike(drawn: &mut Vec<(f64, f64, Curve, f64)>, left_out: &mut Vec<(f64, LeftOut)>) {
-    let mut residuals: Vec<f64> = drawn.iter().map(|(.., residual)| *residual).collect();
-    residuals.sort_by(f64::total_cmp);
-    // Of two, the lower one is the measure: the last cycle is the one that goes wrong.
-    let Some(median) = residuals
-        .get((residuals.len().saturating_sub(1)) / 2)
-        .copied()
-    else {
-        return;
-    };
-    // Below a micrometre all residuals are rounding.
-    let limit = UNLIKE * median.max(1e-6);
-    drawn.retain(|(start, .., residual)| {
-        let keep = *residual <= limit;
-        if !keep {
-            left_out.push((*start, LeftOut::Unlike(*residual)));
-        }
-        keep
-    });
-}
-
-/// Every curve with the drift from the cycle before it to the one after it, as far as they are there.
-fn settle_drifts(drawn: &[(f64, f64, Curve, f64)], period: f64) -> Vec<(f64, f64, Curve, f64)> {
-    let near = |a: &(f64, _, _, _), b: &(f64, _, _, _)| b.0 - a.0 < 1.5 * period;
-    let settled = |(i, (start, missing, curve, residual)): (usize, &(f64, f64, Curve, f64))| {
-        let here = &drawn[i];
-        let before = i
-            .checked_sub(1)
-            .map(|i| &drawn[i])
-            .filter(|b| near(b, here));
-        let after = drawn.get(i + 1).filter(|after| near(here, after));
-        let curve = match (before, after) {
-            (Some((_, _, before, _)), Some((_, _, after, _))) => curve.drifting(before, after, 2.0),
-            (None, Some((_, _, after, _))) => curve.drifting(curve, after, 1.0),
-            (Some((_, _, before, _)), None) => curve.drifting(before, curve, 1.0),
-            (None, None) => curve.clone(),
-        };
-        (*start, *missing, curve, *residual)
-    };
-    drawn.iter().enumerate().map(settled).collect()
-}
-
-fn cycle(
-    (start_s, missing, curve, residual_m): &(f64, f64, Curve, f64),
-    next: Option<&(f64, f64, Curve, f64)>,
-    period: f64,
-) -> Cycle {
-    let follows =
-        next.filter(|(next_start, ..)| (next_start - start_s - period).abs() < SAME_PHASE * period);
-    let (delta_y, delta_theta) = curve.amplitudes(0.0);
-    Cycle {
-        start_s: *start_s,
-        step: follows.map(|(_, _, next, _)| curve.step_to(next, 0.0)),
-        delta_y,
-        delta_theta,
-        missing: *missing,
-        residual_m: *residual_m,
-        curve: curve.clone(),
-    }
 }

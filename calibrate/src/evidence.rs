@@ -231,14 +231,7 @@ pub fn weigh_evidence(
 ) -> Result<Evidence, CalibrateError> {
     let projection = Projection::new();
     let start = &campaign.swimmer;
-    let mut paths = Vec::with_capacity(data.runs.len());
-    for run in &data.runs {
-        let path = JointPath::new(&run.gait, start.servo.as_ref(), run.period_s);
-        paths.push(path.map_err(|cause| CalibrateError::Prediction {
-            file: run.file.clone(),
-            cause,
-        })?);
-    }
+    let paths: Vec<&JointPath> = found.runs.iter().map(|run| &run.path).collect();
     let sought = Sought::of(found, start.swimmer.total_length());
     let nothing = || CalibrateError::Fit(FitError::NoConvergence { starts: RECTANGLES });
     let ask = |rectangle| {
@@ -252,7 +245,7 @@ pub fn weigh_evidence(
     };
     let mut settled = sought.settle(sought.paper, ask).ok_or_else(nothing)?;
     let far = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() + (a[1] - b[1]).abs() > ELSEWHERE;
-    let best = sought.sought_widely(campaign, data, found, &paths, &settled.2);
+    let best = sought.sought_widely(campaign, data, found, &settled.2);
     if let Some(best) = best.filter(|best| far(*best, settled.2.at)) {
         settled = sought.settle(best, ask).ok_or_else(nothing)?;
     }
@@ -280,7 +273,7 @@ pub fn weigh_evidence(
         bootstrap::bootstrap(&surface, &drawn, sought.paper, level, options).ok_or_else(nothing)?;
     let natural = |parameter: usize, ends: [f64; 2]| ends.map(|end| scale.natural(parameter, end));
     let covariance = estimate.components.covariance();
-    let period_s = median(data.runs.iter().map(|run| run.period_s));
+    let period_s = data.usual_period_s();
     Ok(Evidence {
         likelihood: Likelihood {
             estimate: pair(estimate.at),
@@ -323,10 +316,4 @@ pub fn weigh_evidence(
         fitted_curve: circle_curve(&found.swimmer, period_s),
         surface_error: surface.error,
     })
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut sorted: Vec<f64> = values.collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(1.0)
 }

@@ -13,6 +13,7 @@
 pub(crate) mod components;
 pub(crate) mod errors;
 mod intervals;
+pub(crate) mod measured;
 pub(crate) mod outliers;
 mod problem;
 mod search;

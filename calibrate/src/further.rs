@@ -14,8 +14,8 @@ use swimmer_files::{Campaign, SwimmerFile};
 use swimmer_model::Swimmer;
 
 use crate::campaign::{CalibrateError, CampaignData, CampaignFit};
+use crate::fit::measured::RunValues;
 use crate::fit::{FitError, Intervals};
-use least::Data;
 pub(crate) use least::{Likeliest, likeliest};
 pub(crate) use setting::Setting;
 
@@ -216,14 +216,10 @@ pub fn fit_further(
     wanted.dedup();
     let mut slots = vec![Slot::SphereRadius, Slot::Chi];
     slots.extend(wanted.iter().flat_map(|further| further.slots()));
-    let plain = Setting::new(
-        &campaign.swimmer,
-        data,
-        found,
-        vec![Slot::SphereRadius, Slot::Chi],
-    )?;
+    let measured = RunValues::of(&found.runs);
+    let plain = vec![Slot::SphereRadius, Slot::Chi];
+    let plain = Setting::new(&campaign.swimmer, data, found, plain, measured.scales)?;
     let setting = plain.with_slots(slots);
-    let measured = measured(found, setting.scales);
     let undetermined = || {
         let names: Vec<&str> = setting.slots.iter().map(|slot| slot.name()).collect();
         CalibrateError::Fit(FitError::Undetermined {
@@ -235,31 +231,6 @@ pub fn fit_further(
     let gain = after.log_likelihood - before.log_likelihood;
     let begun = setting.begin(found);
     summary(&setting, &begun, &after, gain, found.fit.intervals.level).ok_or_else(undetermined)
-}
-
-/// Measured values and their variances, in units of the scales.
-pub(crate) fn measured(found: &CampaignFit, scales: [f64; 3]) -> Data {
-    let statistics: Vec<_> = found
-        .runs
-        .iter()
-        .map(|run| [run.cycles.x, run.cycles.delta_y, run.cycles.delta_theta])
-        .collect();
-    let within = crate::fit::errors::within_runs(&statistics);
-    Data {
-        values: statistics
-            .iter()
-            .flat_map(|run| [0, 1, 2].map(|q| run[q].mean / scales[q]))
-            .collect(),
-        within: within
-            .into_iter()
-            .flat_map(|run| {
-                [0, 1, 2].map(|q| crate::fit::errors::Variance {
-                    value: run[q].value / scales[q].powi(2),
-                    ..run[q]
-                })
-            })
-            .collect(),
-    }
 }
 
 /// Beyond these, a correlation or a condition number is worth a warning.

@@ -20,6 +20,7 @@ pub mod evidence;
 pub mod fit;
 pub mod further;
 mod golden;
+mod median;
 pub mod poses;
 mod prediction;
 pub mod tracks;
@@ -29,12 +30,14 @@ pub use campaign::{
     CalibrateError, CampaignData, CampaignFit, RunData, RunResult, calibrate_campaign,
     calibrate_run, load_run, load_tracks, track_options,
 };
-pub use cycles::{Cycle, CycleError, CycleWarning, Cycles, LeftOut, Phase, Statistics, Timing};
+pub use cycles::{
+    Cycle, CycleError, CycleWarning, Cycles, LeftOut, Phase, Repeats, Statistics, Timing,
+};
 pub use evidence::{Evidence, EvidenceOptions, weigh_evidence};
 pub use fit::{Fit, FitError, FitOptions, FitWarning, Intervals, RunResidual, c_t_form};
 pub use further::{Further, FurtherFit, fit_further};
 pub use poses::{
-    FrontRule, Origin, PoseError, PoseOptions, PoseSample, PoseTrack, PoseWarning, poses,
+    FrontRule, Jump, Origin, PoseError, PoseOptions, PoseSample, PoseTrack, PoseWarning, poses,
     usual_reflectors,
 };
 pub use prediction::{PredictedCycle, PredictionError, joint_path, predict};

@@ -12,6 +12,8 @@
 mod assembly;
 mod fill;
 mod follow;
+mod frozen;
+mod jumps;
 mod pchip;
 mod plane;
 mod told;
@@ -27,6 +29,7 @@ use crate::TrackFile;
 use assembly::Assembly;
 use fill::Seen;
 pub use follow::FollowReport;
+pub use jumps::Jump;
 pub use plane::Plane;
 pub use told::{PoseError, PoseWarning};
 
@@ -152,6 +155,8 @@ pub struct PoseTrack {
     pub plane: Plane,
     /// How the reflectors were followed.
     pub report: FollowReport,
+    /// Where the pose jumps: nothing that spans one of these is a measurement.
+    pub jumps: Vec<Jump>,
     /// How front and back were told apart.
     pub front: FrontRule,
     /// What to know about them.
@@ -260,6 +265,12 @@ pub fn poses(
             rows: followed.lost_rows,
         });
     }
+    if followed.frozen.rows > 0 {
+        warnings.push(PoseWarning::Frozen {
+            stretches: followed.frozen.stretches,
+            rows: followed.frozen.rows,
+        });
+    }
     let mut seen: Vec<Seen> = followed
         .rows
         .iter()
@@ -269,6 +280,7 @@ pub fn poses(
             front: plane.project(&row.front),
             back: plane.project(&row.back),
             tail: false,
+            begins: row.begins,
         })
         .collect();
     fill::mark_tails(&mut seen);
@@ -279,8 +291,14 @@ pub fn poses(
         plane: &plane,
         longest_s: options.longest_fill_s,
     };
+    let samples = assembly.samples(&seen);
+    let jumps = jumps::jumps(&samples, distance, track.rate_hz);
+    if !jumps.is_empty() {
+        warnings.push(PoseWarning::Jumps(jumps.clone()));
+    }
     let mut poses = PoseTrack {
-        samples: assembly.samples(&seen),
+        samples,
+        jumps,
         frames: track.frames(),
         rate_hz: track.rate_hz,
         plane,

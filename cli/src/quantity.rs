@@ -116,6 +116,11 @@ impl Table {
     pub(crate) fn line<const N: usize>(&mut self, cells: [String; N]) {
         self.0.push(cells.into());
     }
+
+    /// Its lines, the heading first.
+    pub(crate) fn lines(&self) -> &[Vec<String>] {
+        &self.0
+    }
 }
 
 impl fmt::Display for Table {

@@ -13,6 +13,8 @@ use crate::{Axes, FileError, GaitSpec, SwimmerFile};
 pub struct Campaign {
     /// The swimmer; its sphere radius and χ are only starting values of a fit.
     pub swimmer: SwimmerFile,
+    /// Where it was read; `None` for a preset.
+    pub swimmer_path: Option<PathBuf>,
     /// The two reflectors on the middle link.
     pub reflectors: Reflectors,
     /// What the tracking files do not say themselves.
@@ -192,14 +194,10 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::load`].
     pub fn files(path: &Path) -> Result<Vec<PathBuf>, FileError> {
-        let text = read_text(path)?;
-        let raw: RawCampaign = crate::toml_text::parse(&text, path)?;
+        let campaign = Self::load(path)?;
         let mut files = vec![path.to_path_buf()];
-        if SwimmerFile::preset(raw.swimmer.get_ref()).is_none() {
-            let folder = path.parent().unwrap_or_else(|| Path::new(""));
-            files.push(folder.join(raw.swimmer.get_ref()));
-        }
-        for run in Self::parse(&text, path)?.runs {
+        files.extend(campaign.swimmer_path);
+        for run in campaign.runs {
             files.push(run.track);
             if let GaitSpec::File { path, .. } = run.gait {
                 files.push(path);
@@ -225,6 +223,8 @@ impl Campaign {
                 FileError::Read { .. } => error(raw.swimmer.span().start, cause.to_string()),
                 other => other,
             })?;
+        let is_preset = SwimmerFile::preset(raw.swimmer.get_ref()).is_some();
+        let swimmer_path = (!is_preset).then(|| folder.join(raw.swimmer.get_ref()));
         let back_place = raw.reflectors.back.span().start;
         let reflectors = Reflectors {
             front: reflector(raw.reflectors.front, &error)?,
@@ -251,6 +251,7 @@ impl Campaign {
             .collect::<Result<_, _>>()?;
         Ok(Self {
             swimmer,
+            swimmer_path,
             reflectors,
             tracks,
             runs,

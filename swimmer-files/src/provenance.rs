@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
-use crate::FileError;
 use crate::place::read_text;
+use crate::{FileError, SwimmerFile, write_atomically};
 
 /// The `[provenance]` table of a swimmer file. Readers of swimmer files pass it over: it says nothing about the swimmer.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
@@ -46,6 +46,14 @@ impl Provenance {
             made_by: made_by.to_owned(),
             inputs: files.iter().map(input).collect::<Result<_, FileError>>()?,
         })
+    }
+
+    /// Saves a swimmer with where it came from.
+    ///
+    /// # Errors
+    /// [`FileError`] when the file cannot be written.
+    pub fn save_with(&self, swimmer: &SwimmerFile, path: &Path) -> Result<(), FileError> {
+        write_atomically(path, (swimmer.to_toml() + &self.to_toml()).as_bytes())
     }
 
     /// Reads the table of a swimmer file; `None` where it has none.

@@ -8,6 +8,7 @@ use swimmer_files::{
 
 use super::CalibrateError;
 use crate::cycles::Timing;
+use crate::median::median;
 use crate::tracks::{TrackFile, TrackOptions, read_tracks_with};
 
 /// One run, read.
@@ -48,6 +49,11 @@ pub struct CampaignData {
 }
 
 impl CampaignData {
+    /// The median of the runs' commanded periods \[s\], for a gait that none of them swam.
+    pub(crate) fn usual_period_s(&self) -> f64 {
+        median(self.runs.iter().map(|run| run.period_s)).unwrap_or(1.0)
+    }
+
     /// Reads tracks and gait files: the one place of this crate that opens files, and only those that the campaign names.
     ///
     /// # Errors

@@ -7,6 +7,7 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
+use swimmer_model::Pose;
 
 use super::curve::{HARMONICS, Harmonics};
 use crate::golden::golden;
@@ -22,13 +23,13 @@ pub(super) struct Bin {
 }
 
 /// Bins of a cycle.
-const BINS: f64 = 100.0;
+pub(super) const BINS: f64 = 100.0;
 /// Twenty thousand cycles: what comes later is no recording, but a slip in the times.
 const MOST_BINS: f64 = 2e6;
 /// The largest search for the period, either way.
 pub(super) const PERIOD_RANGE: f64 = 0.02;
 /// Harmonics of θ by which the period is found.
-const PERIOD_HARMONICS: usize = 4;
+pub(super) const PERIOD_HARMONICS: usize = 4;
 
 /// Averages of what was seen; `None` where nothing was.
 pub(super) fn bins(track: &PoseTrack, period_s: f64) -> Vec<Option<Bin>> {
@@ -37,7 +38,17 @@ pub(super) fn bins(track: &PoseTrack, period_s: f64) -> Vec<Option<Bin>> {
     };
     let width = period_s / BINS;
     let mut sums: Vec<(f64, Bin)> = Vec::new();
+    // Where the frame jumped, the motion goes on from where it was.
+    let mut jumps = track.jumps.iter().peekable();
+    let (mut last, mut jumped) = (first.pose, [0.0; 3]);
     for PoseSample { time_s, pose, .. } in track.seen() {
+        if jumps.next_if(|jump| jump.after_s <= *time_s).is_some() {
+            for (sum, by) in jumped.iter_mut().zip(difference(pose, &last)) {
+                *sum += by;
+            }
+        }
+        last = *pose;
+        let [x, y, theta] = difference(pose, &Pose::new(jumped[0], jumped[1], jumped[2]));
         let index = ((time_s - first.time_s) / width).min(MOST_BINS) as usize;
         if index >= sums.len() {
             sums.resize(
@@ -58,9 +69,9 @@ pub(super) fn bins(track: &PoseTrack, period_s: f64) -> Vec<Option<Bin>> {
             let sum = |a: f64, b: f64| a + b;
             *bin = Bin {
                 time_s: sum(bin.time_s, *time_s),
-                x: sum(bin.x, pose.x),
-                y: sum(bin.y, pose.y),
-                theta: sum(bin.theta, pose.theta),
+                x: sum(bin.x, x),
+                y: sum(bin.y, y),
+                theta: sum(bin.theta, theta),
             };
         }
     }
@@ -73,6 +84,10 @@ pub(super) fn bins(track: &PoseTrack, period_s: f64) -> Vec<Option<Bin>> {
         })
     };
     sums.into_iter().map(mean).collect()
+}
+
+fn difference(a: &Pose<f64>, b: &Pose<f64>) -> [f64; 3] {
+    [a.x - b.x, a.y - b.y, a.theta - b.theta]
 }
 
 /// Bins of rest that end a stretch of motion: a quarter of a cycle.
@@ -192,7 +207,7 @@ pub(super) fn refine_period(bins: &[Bin], commanded_s: f64) -> Period {
 }
 
 /// θ's harmonics about `zero_s` by least squares, and the unexplained sum of squares.
-fn harmonic_fit(
+pub(super) fn harmonic_fit(
     bins: &[Bin],
     period_s: f64,
     zero_s: f64,

@@ -5,10 +5,10 @@
 pub struct Statistics {
     /// Mean.
     pub mean: f64,
-    /// Standard deviation from cycle to cycle; 0 for a single one.
+    /// Standard deviation from cycle to cycle; NaN for a single one, which tells of none.
     pub sd: f64,
     /// Standard error of the mean. Neighbouring steps share a cycle, so that noise of the cameras makes them vary against
-    /// each other; the lag-1 correlation is taken into account from five values on.
+    /// each other; the lag-1 correlation is taken into account from five values on. NaN for a single one.
     pub se: f64,
     /// Lag-1 correlation; 0 below five values.
     pub lag1: f64,
@@ -22,7 +22,11 @@ impl Statistics {
         let n = values.len().max(1) as f64;
         let mean = values.iter().sum::<f64>() / n;
         let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
-        let variance = if n > 1.0 { squares / (n - 1.0) } else { 0.0 };
+        let variance = if n > 1.0 {
+            squares / (n - 1.0)
+        } else {
+            f64::NAN
+        };
         let products: f64 = values
             .windows(2)
             .map(|w| w.iter().map(|v| v - mean).product::<f64>())
@@ -55,6 +59,6 @@ mod tests {
         let alternating = Statistics::of([1.0, 2.0, 1.0, 2.0, 1.0, 2.0].into_iter());
         assert!(alternating.lag1 < -0.7 && alternating.se < alternating.sd / 4.0);
         let one = Statistics::of([4.0].into_iter());
-        assert_eq!((one.mean, one.sd, one.se), (4.0, 0.0, 0.0));
+        assert!((one.mean - 4.0).abs() < 1e-15 && one.sd.is_nan() && one.se.is_nan());
     }
 }

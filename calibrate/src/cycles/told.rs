@@ -2,12 +2,34 @@
 
 use std::fmt;
 
+use super::repeats::Repeats;
+
 /// Why a track gave no cycles.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CycleError {
     /// The robot never moves.
     #[error("the robot does not move in this track")]
     NoMotion,
+    /// The track holds less than two cycles of this period.
+    #[error(
+        "the track is {track_s:.2} s long, less than two cycles of {period_s} s; check period_s, or record longer"
+    )]
+    TooShort {
+        /// From the first to the last sample \[s\].
+        track_s: f64,
+        /// The period \[s\].
+        period_s: f64,
+    },
+    /// A cycle of this period is over within a few samples.
+    #[error(
+        "the cameras took {samples:.2} samples in a cycle of {period_s} s, too few to see one; check period_s (it is in seconds)"
+    )]
+    TooQuick {
+        /// Rows in one period.
+        samples: f64,
+        /// The period \[s\].
+        period_s: f64,
+    },
     /// Not one whole cycle.
     #[error(
         "the robot moves for {active_s:.2} s, from {from_s:.2} s on, and no cycle of {period_s:.3} s in it is whole and clean \
@@ -31,6 +53,9 @@ pub enum CycleError {
         /// The period \[s\].
         period_s: f64,
     },
+    /// The heading repeats, but with another period.
+    #[error("{0}")]
+    OtherPeriod(Repeats),
 }
 
 /// What to know about a run's cycles.
@@ -59,6 +84,8 @@ pub enum CycleWarning {
         /// The period \[s\].
         period_s: f64,
     },
+    /// The heading hardly repeats with the period.
+    Repeats(Repeats),
 }
 
 /// Phases may differ by this much of a period before it is worth a word.
@@ -91,6 +118,7 @@ impl fmt::Display for CycleWarning {
                  clock_offset_s or cycle_start_s, and the gait",
                 100.0 * by_s / period_s
             ),
+            Self::Repeats(repeats) => repeats.fmt(f),
         }
     }
 }
@@ -106,6 +134,15 @@ pub enum LeftOut {
     Unlike(f64),
     /// By the robot's log it was broken off, paused or swapped.
     Unsteady,
+    /// The pose jumps in it.
+    Jump,
+    /// Not the cycle, but the step from it to the next one: how far it is from the run's other steps.
+    Step {
+        /// Of the position \[m\].
+        by_m: f64,
+        /// Of the turn \[rad\].
+        by_rad: f64,
+    },
 }
 
 impl fmt::Display for LeftOut {
@@ -121,6 +158,14 @@ impl fmt::Display for LeftOut {
             Self::Unsteady => {
                 f.write_str("by the robot's log its pace changed (pause, swap or stop)")
             }
+            Self::Jump => f.write_str("the pose jumps in it"),
+            Self::Step { by_m, by_rad } => write!(
+                f,
+                "only the step from it to the next one: {:.1} mm and {:+.1}° from the other steps, as if the robot was pushed or the \
+                 frame of the cameras moved",
+                1e3 * by_m,
+                by_rad.to_degrees()
+            ),
         }
     }
 }

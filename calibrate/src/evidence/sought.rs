@@ -8,9 +8,8 @@ use super::surface::{Rectangle, Surface};
 use super::{Drawn, Pair, RunError, WithoutRun, bootstrap};
 use crate::campaign::{CampaignData, CampaignFit, RunResult};
 use crate::cycles::{Cycles, Statistics};
-use crate::fit::errors::{Variance, within_runs};
+use crate::fit::measured::RunValues;
 use crate::fit::{self, Intervals, Observation};
-use crate::prediction::JointPath;
 
 /// Half widths of the first rectangle, in half widths of the fit's intervals.
 const REACH: f64 = 4.0;
@@ -34,30 +33,11 @@ pub(super) struct Sought {
 
 impl Sought {
     pub(super) fn of(found: &CampaignFit, length: f64) -> Self {
-        let statistics: Vec<[Statistics; 3]> = found
-            .runs
-            .iter()
-            .map(|run| [run.cycles.x, run.cycles.delta_y, run.cycles.delta_theta])
-            .collect();
-        let largest = |q: usize| {
-            let sizes = statistics.iter().map(|run| run[q].mean.abs());
-            sizes.fold(0.0, f64::max)
-        };
-        let scales = [0, 1, 2].map(largest);
-        let values = statistics
-            .iter()
-            .flat_map(|run| (0..3).map(|q| run[q].mean / scales[q]).collect::<Vec<_>>());
-        let values: Vec<f64> = values.collect();
-        let within = within_runs(&statistics)
-            .into_iter()
-            .flat_map(|run| {
-                let scaled = |q: usize| Variance {
-                    value: run[q].value / scales[q].powi(2),
-                    ..run[q]
-                };
-                [0, 1, 2].map(scaled)
-            })
-            .collect();
+        let RunValues {
+            scales,
+            values,
+            within,
+        } = RunValues::of(&found.runs);
         let fit = &found.fit;
         let Intervals {
             sphere_radius, chi, ..
@@ -84,12 +64,10 @@ impl Sought {
         campaign: &Campaign,
         data: &CampaignData,
         found: &CampaignFit,
-        paths: &[JointPath],
         estimate: &Estimate,
     ) -> Option<[f64; 2]> {
-        let observed =
-            |(path, run): (&JointPath, &RunResult)| Observation::new(path.clone(), &run.cycles);
-        let runs: Vec<Observation> = paths.iter().zip(&found.runs).map(observed).collect();
+        let observed = |run: &RunResult| Observation::new(run.path.clone(), &run.cycles);
+        let runs: Vec<Observation> = found.runs.iter().map(observed).collect();
         let gaits: Vec<AnyGait> = data.runs.iter().map(|run| run.gait.clone()).collect();
         let factors: Vec<[f64; 3]> = estimate
             .weights

@@ -69,7 +69,7 @@ impl Surface {
     /// Asks the model at 64 points; `None` where it cannot swim at one.
     pub(super) fn new(
         start: &Swimmer<f64>,
-        paths: &[JointPath],
+        paths: &[&JointPath],
         scales: [f64; 3],
         projection: &Projection,
         rectangle: Rectangle,
@@ -140,7 +140,7 @@ impl Surface {
 /// X, ΔY, Δθ of every run by the model itself.
 pub(super) fn predictions(
     start: &Swimmer<f64>,
-    paths: &[JointPath],
+    paths: &[&JointPath],
     scales: [f64; 3],
     projection: &Projection,
     [radius, log_chi]: [f64; 2],
@@ -185,6 +185,7 @@ mod tests {
     fn the_surface_is_the_model() {
         let start = Swimmer::<f64>::robot();
         let paths = [0.6, 1.8].map(|amplitude| JointPath::Ideal(AnyGait::circle(amplitude)));
+        let paths = paths.each_ref();
         let projection = Projection::new();
         let scales = [0.01, 0.02, 0.5];
         let centre = [start.sphere_radius / start.total_length(), start.chi.ln()];

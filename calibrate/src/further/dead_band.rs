@@ -4,11 +4,11 @@
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use super::least::Data;
+use super::Slot;
 use super::setting::Setting;
-use super::{Slot, measured};
 use crate::campaign::{CampaignData, CampaignFit};
 use crate::fit::FitWarning;
+use crate::fit::measured::RunValues;
 use crate::golden::golden;
 use swimmer_files::Campaign;
 
@@ -36,9 +36,9 @@ pub(crate) fn noticed(
         return None;
     }
     let slots = vec![Slot::SphereRadius, Slot::Chi, Slot::DeadBand];
-    let setting = Setting::new(&campaign.swimmer, data, found, slots).ok()?;
+    let values = RunValues::of(&found.runs);
+    let setting = Setting::new(&campaign.swimmer, data, found, slots, values.scales).ok()?;
     let begun = setting.begin(found);
-    let values = measured(found, setting.scales);
     let jacobian = setting.with_slots(vec![Slot::SphereRadius, Slot::Chi]);
     let jacobian = jacobian.jacobian(&begun[..2])?;
     let search = Search {
@@ -77,7 +77,7 @@ pub(crate) fn noticed(
 
 struct Search<'a> {
     setting: &'a Setting<'a>,
-    values: &'a Data,
+    values: &'a RunValues,
     /// By r_s/L and ln χ.
     jacobian: DMatrix<f64>,
     begun: &'a [f64],

@@ -4,19 +4,12 @@ use nalgebra::{DMatrix, DVector};
 
 use super::setting::Setting;
 use crate::fit::components::Components;
-use crate::fit::errors::Variance;
+use crate::fit::measured::RunValues;
 
 /// Steps of one minimisation.
 const STEPS: usize = 40;
 /// Rounds of parameters and variances.
 const ROUNDS: usize = 8;
-
-/// Measured values in units of their scales, and their variances within runs.
-#[derive(Debug, Clone)]
-pub(crate) struct Data {
-    pub(crate) values: Vec<f64>,
-    pub(crate) within: Vec<Variance>,
-}
 
 /// A minimum.
 #[derive(Debug, Clone)]
@@ -29,7 +22,7 @@ pub(crate) struct Minimum {
 /// Levenberg–Marquardt; a parameter at its bound that would leave it stands still.
 pub(crate) fn minimise(
     setting: &Setting<'_>,
-    data: &Data,
+    data: &RunValues,
     weights: &[f64],
     start: &[f64],
 ) -> Option<Minimum> {
@@ -110,7 +103,7 @@ const APART: f64 = 1e-4;
 /// From several starts to minima of least squares, from each of them to a largest likelihood, of which the largest counts.
 pub(crate) fn likeliest(
     setting: &Setting<'_>,
-    data: &Data,
+    data: &RunValues,
     starts: &[Vec<f64>],
 ) -> Option<Likeliest> {
     let even = vec![1.0; data.values.len()];
@@ -135,7 +128,7 @@ pub(crate) fn likeliest(
 /// Weights from the residuals, parameters from the weights, in turn.
 fn likeliest_from(
     setting: &Setting<'_>,
-    data: &Data,
+    data: &RunValues,
     even: Vec<f64>,
     end: Minimum,
 ) -> Option<Likeliest> {

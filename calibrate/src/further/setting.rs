@@ -1,11 +1,13 @@
 //! The model's answers where more than r_s and χ may differ from what the files say.
 
+use std::borrow::Cow;
+
 use nalgebra::{DMatrix, Vector2};
 use swimmer_files::{ServoFile, SwimmerFile};
 use swimmer_model::{Swimmer, TangentialDrag};
 
 use super::Slot;
-use crate::campaign::{CalibrateError, CampaignData, CampaignFit};
+use crate::campaign::{CalibrateError, CampaignData, CampaignFit, RunResult};
 use crate::cycles::{Harmonics, Projection};
 use crate::prediction::JointPath;
 
@@ -19,7 +21,7 @@ const MARKERS: [f64; 2] = [-0.5, 0.5];
 pub(crate) struct Setting<'a> {
     start: &'a SwimmerFile,
     data: &'a CampaignData,
-    paths: Vec<JointPath>,
+    runs: &'a [RunResult],
     /// Headings by which the measured cycles were cut.
     cut_by: Vec<Harmonics>,
     projection: Projection,
@@ -32,36 +34,25 @@ impl<'a> Setting<'a> {
     pub(crate) fn new(
         start: &'a SwimmerFile,
         data: &'a CampaignData,
-        found: &CampaignFit,
+        found: &'a CampaignFit,
         slots: Vec<Slot>,
+        scales: [f64; 3],
     ) -> Result<Self, CalibrateError> {
         let projection = Projection::new();
-        let mut paths = Vec::with_capacity(data.runs.len());
-        let mut cut_by = Vec::with_capacity(data.runs.len());
-        for run in &data.runs {
-            let path = JointPath::new(&run.gait, start.servo.as_ref(), run.period_s);
-            let path = path.map_err(|cause| CalibrateError::Prediction {
-                file: run.file.clone(),
-                cause,
-            })?;
-            cut_by.push(path.predict(&found.swimmer.swimmer, &projection)?.1);
-            paths.push(path);
-        }
-        let largest = |of: fn(&crate::Cycles) -> f64| {
-            let sizes = found.runs.iter().map(|run| of(&run.cycles).abs());
-            sizes.fold(0.0, f64::max)
-        };
+        let heading =
+            |run: &RunResult| Ok(run.path.predict(&found.swimmer.swimmer, &projection)?.1);
+        let cut_by = found
+            .runs
+            .iter()
+            .map(heading)
+            .collect::<Result<_, CalibrateError>>()?;
         Ok(Self {
             start,
             data,
-            paths,
+            runs: &found.runs,
             cut_by,
             projection,
-            scales: [
-                largest(|c| c.x.mean),
-                largest(|c| c.delta_y.mean),
-                largest(|c| c.delta_theta.mean),
-            ],
+            scales,
             slots,
         })
     }
@@ -71,7 +62,7 @@ impl<'a> Setting<'a> {
         Self {
             start: self.start,
             data: self.data,
-            paths: self.paths.clone(),
+            runs: self.runs,
             cut_by: self.cut_by.clone(),
             projection: self.projection.clone(),
             scales: self.scales,
@@ -115,15 +106,17 @@ impl<'a> Setting<'a> {
         let offsets = [Slot::FrontOffset, Slot::BackOffset].map(|slot| self.value(z, slot));
         let marker = [Slot::MarkerAlong, Slot::MarkerAcross]
             .map(|slot| self.value(z, slot).unwrap_or(0.0) * self.length());
-        let mut out = Vec::with_capacity(3 * self.paths.len());
-        for ((path, run), cut_by) in self.paths.iter().zip(&self.data.runs).zip(&self.cut_by) {
+        let mut out = Vec::with_capacity(3 * self.runs.len());
+        for ((played, run), cut_by) in self.runs.iter().zip(&self.data.runs).zip(&self.cut_by) {
             let mut path = match dead_band {
-                None => path.clone(),
-                Some(_) => JointPath::new(&run.gait, file.servo.as_ref(), run.period_s).ok()?,
+                None => Cow::Borrowed(&played.path),
+                Some(_) => {
+                    Cow::Owned(JointPath::new(&run.gait, file.servo.as_ref(), run.period_s).ok()?)
+                }
             };
             if offsets.iter().any(Option::is_some) {
                 let [front, back] = offsets.map(|offset| offset.unwrap_or(0.0));
-                path = path.moved(Vector2::new(front, back));
+                path = Cow::Owned(path.moved(Vector2::new(front, back)));
             }
             let cycle = path.predict_as_cut(&file.swimmer, &self.projection, marker.into(), cut_by);
             let cycle = cycle.ok()?;
@@ -135,7 +128,7 @@ impl<'a> Setting<'a> {
 
     /// Derivatives by differences, wide for what is not smooth, one-sided next to a bound.
     pub(crate) fn jacobian(&self, z: &[f64]) -> Option<DMatrix<f64>> {
-        let mut jacobian = DMatrix::zeros(3 * self.paths.len(), z.len());
+        let mut jacobian = DMatrix::zeros(3 * self.runs.len(), z.len());
         for (column, slot) in self.slots.iter().enumerate() {
             let (low, high) = slot.bounds(self.length(), &self.start.swimmer);
             let at = |value: f64| {

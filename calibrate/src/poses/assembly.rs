@@ -66,7 +66,9 @@ impl Assembly<'_> {
     fn bridge(&self, seen: &[Seen], after: usize) -> Option<Bridge> {
         let (before, next) = (seen.get(after.checked_sub(1)?)?, seen.get(after)?);
         let gap_s = next.time_s - before.time_s;
-        let may = next.row - before.row > 1 && gap_s <= self.longest_s + 1.5 / self.track.rate_hz;
+        let may = !next.begins
+            && next.row - before.row > 1
+            && gap_s <= self.longest_s + 1.5 / self.track.rate_hz;
         may.then(|| Bridge::over(seen, after)).flatten()
     }
 

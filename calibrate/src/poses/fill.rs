@@ -28,6 +28,8 @@ pub(super) struct Seen {
     pub(super) back: Vector2<f64>,
     /// Beside a gap.
     pub(super) tail: bool,
+    /// The first after a jump or a long gap: nothing is filled across.
+    pub(super) begins: bool,
 }
 
 /// Marks the samples beside gaps; returns how many.

@@ -7,13 +7,16 @@
 //! between both, the order could be exchanged unseen: there a new segment begins, and only the labels can say which end is
 //! which. Where they cannot, the segment is left out.
 
+mod elsewhere;
 mod search;
 
 use nalgebra::{Vector2, Vector3};
 use swimmer_files::{PointName, Reflectors};
 
+use super::frozen::{Frozen, take_frozen};
 use super::{PoseError, PoseOptions};
 use crate::TrackFile;
+use elsewhere::{Elsewhere, MOVED};
 pub(super) use search::is_called;
 use search::{Candidate, REACH, Search, prepare};
 
@@ -24,6 +27,8 @@ pub struct FollowReport {
     pub followed: usize,
     /// Rows without.
     pub missing: usize,
+    /// Those of them in which both were held: copies of the row before, digit for digit.
+    pub frozen: usize,
     /// Stretches in which the labels were exchanged, and were set right.
     pub swaps_repaired: usize,
     /// Points that were in followed rows and are no reflector.
@@ -44,6 +49,8 @@ pub(super) struct Row {
     labels: Option<bool>,
     /// How far both were from their predicted places \[m\].
     miss: Option<f64>,
+    /// Whether a segment begins with it.
+    pub(super) begins: bool,
 }
 
 pub(super) struct Followed<'a> {
@@ -54,6 +61,7 @@ pub(super) struct Followed<'a> {
     pub(super) order_known: bool,
     pub(super) lost_segments: usize,
     pub(super) lost_rows: usize,
+    pub(super) frozen: Frozen,
 }
 
 /// Smoothing time of the velocity \[s\].
@@ -164,6 +172,7 @@ fn walk(search: &Search<'_>) -> (Vec<Row>, Vec<usize>) {
     let mut candidates = Vec::new();
     // Points of the row before that are no reflectors.
     let mut others: Vec<Vector3<f64>> = Vec::new();
+    let mut elsewhere: Option<Elsewhere> = None;
     for (row, time) in search.track.times.iter().copied().enumerate() {
         search.candidates(row, &mut candidates);
         let longest = if top_speed > 0.0 {
@@ -176,6 +185,18 @@ fn walk(search: &Search<'_>) -> (Vec<Row>, Vec<usize>) {
             None => search.begin(&candidates),
             Some(state) => next(search, state, time, top_speed, &candidates, &others),
         };
+        elsewhere = match (&state, &found) {
+            (Some(_), None) => Elsewhere::seen(elsewhere, search, row, top_speed, &candidates),
+            _ => None,
+        };
+        if let Some(there) = elsewhere.take_if(|there| there.rows.len() > MOVED) {
+            // The frame jumped: a new segment, from the first of these rows on.
+            starts.push(rows.len());
+            rows.extend(there.rows);
+            state = Some(there.state);
+            others.clear();
+            continue;
+        }
         let Some((front, back)) = found else {
             // Who is another point stays one; who is new may yet be a reflector.
             match &state {
@@ -227,6 +248,7 @@ fn walk(search: &Search<'_>) -> (Vec<Row>, Vec<usize>) {
             front: front.1,
             back: back.1,
             labels: search.labels(front.0, back.0),
+            begins: miss.is_none(),
             miss,
         });
     }
@@ -332,6 +354,7 @@ fn settle<'a>(
             kept.push(row);
         }
     }
+    let frozen = take_frozen(&mut kept);
     let count = kept.len().max(1) as f64;
     let distance = |row: &Row| (row.front - row.back).norm();
     let distance_m = kept.iter().map(distance).sum::<f64>() / count;
@@ -345,6 +368,7 @@ fn settle<'a>(
         report: FollowReport {
             followed: kept.len(),
             missing: frames - kept.len(),
+            frozen: frozen.rows,
             swaps_repaired: swaps,
             ghosts_rejected: 0,
             segments: starts.len(),
@@ -356,5 +380,6 @@ fn settle<'a>(
         order_known: false,
         lost_segments,
         lost_rows,
+        frozen,
     }
 }

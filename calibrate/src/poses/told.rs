@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::Jump;
+
 /// Why a track gave no poses.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PoseError {
@@ -44,6 +46,14 @@ pub enum PoseError {
         /// Rows that were searched.
         frames: usize,
     },
+    /// Front and back are one and the same point.
+    #[error(
+        "front and back both name `{point}`: it is at no distance from itself; name another point for one of them in the campaign"
+    )]
+    SamePoint {
+        /// The point's name.
+        point: String,
+    },
     /// The named points have another distance than `at` says.
     #[error(
         "the reflectors are {measured_m:.5} m apart in the track but {expected_m:.5} m by `at`; if the track is in other units, a \
@@ -83,7 +93,19 @@ pub enum PoseWarning {
         /// Rows in them.
         rows: usize,
     },
+    /// Both reflectors were held while others moved on: copies, which count as missing.
+    Frozen {
+        /// Stretches of copies.
+        stretches: usize,
+        /// Rows in them.
+        rows: usize,
+    },
+    /// The pose jumps as no robot can.
+    Jumps(Vec<Jump>),
 }
+
+/// Jumps that are told one by one.
+const MOST_JUMPS: usize = 3;
 
 impl fmt::Display for PoseWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -110,6 +132,30 @@ impl fmt::Display for PoseWarning {
                 f,
                 "{segments} stretches ({rows} rows) come after gaps too long to tell front from back; they are left out"
             ),
+            Self::Frozen { stretches, rows } => write!(
+                f,
+                "{rows} rows in {stretches} stretches repeat the row before them, digit for digit, for both reflectors: they are copies, \
+                 not measurements, and count as missing; record without filling gaps"
+            ),
+            Self::Jumps(jumps) => {
+                f.write_str("the pose jumps as no robot can")?;
+                for (i, jump) in jumps.iter().take(MOST_JUMPS).enumerate() {
+                    write!(
+                        f,
+                        "{} at {:.2} s by {:.1} mm and {:+.1}°",
+                        if i == 0 { "," } else { ";" },
+                        jump.after_s,
+                        1e3 * jump.moved_m,
+                        jump.turned_rad.to_degrees()
+                    )?;
+                }
+                if jumps.len() > MOST_JUMPS {
+                    write!(f, "; and {} times more", jumps.len() - MOST_JUMPS)?;
+                }
+                f.write_str(
+                    ": was the frame of the cameras moved, or the robot? No step and no cycle across it is used",
+                )
+            }
         }
     }
 }

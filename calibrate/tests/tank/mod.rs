@@ -357,6 +357,7 @@ pub(crate) fn campaign(
         });
     let campaign = Campaign {
         swimmer: known(&tank.swimmer, tank.servo),
+        swimmer_path: None,
         reflectors,
         tracks: TrackSettings::default(),
         runs: listed.collect(),

@@ -132,6 +132,7 @@ impl Laboratory {
             at: [at, 0.0],
         };
         let campaign = Campaign {
+            swimmer_path: None,
             swimmer: SwimmerFile {
                 name: "known".into(),
                 swimmer: Swimmer {

@@ -16,7 +16,7 @@ use swimmer_files::{Campaign, GaitSpec, PointName, SwimmerFile};
 use self::answer::RunsAnswer;
 pub(crate) use self::answer::{FitAnswer, RunAnswer};
 use self::asked::{Asked, AskedAnswer};
-use crate::arguments::{gait, load_swimmer, seconds};
+use crate::arguments::{gait, load_swimmer, say_if_stale, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
@@ -95,6 +95,9 @@ pub(crate) struct RunCycles {
 /// As reading and fitting.
 pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
     let campaign = Campaign::load(path)?;
+    if let Some(swimmer) = &campaign.swimmer_path {
+        say_if_stale(swimmer)?;
+    }
     let data = CampaignData::load(&campaign)?;
     let found = calibrate_campaign(&campaign, &data, FitOptions { level })?;
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
@@ -202,11 +205,8 @@ impl Calibrate {
                 .push(format!("no estimate by likelihood: {cause}")),
         }
         if let Some(folder) = folder {
-            if let Some(further) = further {
-                further.save(&folder.draft().join("fitted-further.toml"))?;
-            }
             let weighed = (&evidence?, options);
-            folder::write(&fitted, weighed, &self.file, folder.draft(), folder.place())?;
+            folder::write(&fitted, further.as_ref(), weighed, &self.file, &folder)?;
             folder.publish()?;
         }
         output.answer(&fitted.answer);

@@ -84,7 +84,17 @@ impl Demo {
         };
         let interrupt = Interrupt::install()?;
         let line = self.robot.line(&truth, self.seed, &self.board)?;
-        let round = Round::new(truth, line, self.seed, folder.draft(), interrupt)?.go()?;
+        // Wherever it was: in the middle of an upload as of a play.
+        let broken_off = |failure| {
+            if interrupt.requested() {
+                Failure::Tried("Ctrl-C: the robot was stopped, nothing was kept".to_owned())
+            } else {
+                failure
+            }
+        };
+        let round = Round::new(truth, line, self.seed, folder.draft(), interrupt.clone())
+            .and_then(Round::go)
+            .map_err(broken_off)?;
         let page = report::page(&picture::report(&round)?)?;
         write_atomically(&folder.draft().join(REPORT), page.as_bytes())?;
         let place = folder.place().to_owned();
@@ -167,8 +177,7 @@ impl<'a> Round<'a> {
         let inputs = Campaign::files(&self.draft.join(CAMPAIGN))?;
         let made_by = concat!("swimmer demo ", env!("CARGO_PKG_VERSION"));
         let provenance = Provenance::of_files(made_by, &inputs, self.draft)?;
-        let text = fitted.to_toml() + &provenance.to_toml();
-        write_atomically(&self.draft.join(FITTED), text.as_bytes())?;
+        provenance.save_with(&fitted, &self.draft.join(FITTED))?;
         self.laboratory.configure(&fitted, &self.servo)?;
         self.doing("optimising a gait with the fitted model");
         let (best, best_gait, bound, period_s) = self.upload_best(&fitted)?;

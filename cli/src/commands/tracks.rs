@@ -25,7 +25,8 @@ struct Holdings {
     #[serde(skip)]
     file: String,
     format: String,
-    rate_hz: f64,
+    /// Null where a single frame tells no rate.
+    rate_hz: Option<f64>,
     unit: String,
     frames: usize,
     points: Vec<Point>,
@@ -48,7 +49,11 @@ impl fmt::Display for Holdings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
         rows.row("format", &self.format)
-            .row("rate", format!("{} Hz", self.rate_hz))
+            .row(
+                "rate",
+                self.rate_hz
+                    .map_or_else(|| "unknown".to_owned(), |rate| format!("{rate} Hz")),
+            )
             .row("unit", &self.unit)
             .row("frames", self.frames.to_string());
         let mut table = Table::new(["point", "kind", "present", "gaps", "longest gap"]);
@@ -82,7 +87,7 @@ impl Holdings {
         Self {
             file,
             format: tracks.format.to_string(),
-            rate_hz: tracks.rate_hz,
+            rate_hz: Some(tracks.rate_hz).filter(|rate| *rate > 0.0),
             unit: tracks.unit.to_string(),
             frames: tracks.frames(),
             points: tracks

@@ -72,7 +72,19 @@ fn the_papers_robot_and_what_the_demo_leaves_behind() {
 
 /// Report, tables and the fitted swimmer with the hashes of its inputs, from the demo's own campaign.
 fn what_a_calibration_leaves_behind(demo: &Path) {
-    let run = swimmer_in(demo, &["calibrate", "campaign.toml", "-o", "fit"]).with_status(0);
+    let run = swimmer_in(
+        demo,
+        &[
+            "calibrate",
+            "campaign.toml",
+            "--advise",
+            "--fit-also",
+            "deadband",
+            "-o",
+            "fit",
+        ],
+    )
+    .with_status(0);
     assert!(
         run.stdout.contains("phase by heading; left out at"),
         "{run}"
@@ -80,6 +92,10 @@ fn what_a_calibration_leaves_behind(demo: &Path) {
     let fit = demo.join("fit");
     let read = |name: &str| std::fs::read_to_string(fit.join(name)).unwrap();
     let report = read("report.html");
+    for asked in ["What else may be off", "dead band", "What to measure next"] {
+        assert!(report.contains(asked), "no `{asked}` on the page");
+    }
+    assert!(read("fitted-further.toml").contains("[[provenance.input]]"));
     // X, ΔY, Δθ, ridge, two profiles, residuals, without a run; three for each of nine runs.
     assert_eq!(report.matches("<svg").count(), 8 + 27);
     for outside in ["src=", "href=", "url(", "@import"] {
@@ -149,6 +165,16 @@ fn what_a_calibration_leaves_behind(demo: &Path) {
             .contains("../circle-050.csv, which has changed since"),
         "{run}"
     );
+    // A campaign that starts from it says so too.
+    let campaign = std::fs::read_to_string(demo.join("campaign.toml")).unwrap();
+    let again = campaign.replace("\"start.toml\"", "\"fit/fitted.toml\"");
+    assert_ne!(again, campaign);
+    std::fs::write(demo.join("again.toml"), again).unwrap();
+    let run = swimmer_in(demo, &["calibrate", "again.toml"]).with_status(0);
+    assert!(
+        run.stderr.contains("fit/fitted.toml was fitted from"),
+        "{run}"
+    );
 }
 
 /// The same with the real firmware in the middle.
@@ -197,9 +223,9 @@ fn a_swimmer_without_a_sphere() {
 #[test]
 fn ctrl_c_leaves_nothing_behind() {
     let folder = tempfile::tempdir().unwrap();
-    let mut child = crate::binary::command(folder.path(), &["demo", "-o", "out"])
+    let child = crate::binary::command(folder.path(), &["demo", "-o", "out"])
         .stdout(std::process::Stdio::null())
-        .stderr(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
         .spawn()
         .unwrap();
     let patience = std::time::Instant::now() + std::time::Duration::from_secs(20);
@@ -223,6 +249,11 @@ fn ctrl_c_leaves_nothing_behind() {
         std::thread::sleep(std::time::Duration::from_millis(2));
     }
     crate::binary::interrupt(&child);
-    assert_eq!(child.wait().unwrap().code(), Some(1));
+    let ended = child.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(1));
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert!(said.contains("nothing was kept"), "{said}");
+    // The log went with the folder.
+    assert!(!said.contains("link log"), "{said}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }

@@ -65,6 +65,16 @@ fn a_module_is_set_up_then_found_right() {
         answer["differed"].as_array().unwrap().is_empty(),
         "{answer:#}"
     );
+    let (module, finished) = set_up(module, &["--baud", "9600", "--check", "--json"]);
+    let answer = finished.with_status(1).json();
+    assert_eq!(answer["before"]["baud"], 115_200, "{answer:#}");
+    assert!(
+        answer["error"]
+            .as_str()
+            .unwrap()
+            .contains("without --check"),
+        "{answer:#}"
+    );
     let (module, finished) = set_up(module, &["--baud", "9600", "--check"]);
     let text = finished.with_status(1).stdout;
     assert!(

@@ -3,10 +3,13 @@
 
 mod binary;
 mod certify;
+mod contract_keys;
 mod demo;
 mod emulated;
 #[cfg(unix)]
 mod hc05;
+#[cfg(unix)]
+mod left_behind;
 mod numbers;
 mod output_discipline;
 mod paper;

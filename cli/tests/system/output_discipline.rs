@@ -26,6 +26,10 @@ fn bad_usage_and_bad_input_exit_with_two() {
         &["robot", "info"],
         &["robot", "play", "--port", "twin", "--detach"],
         &["twin"],
+        &["twin", "--tcp", "foo"],
+        &["twin", "--tcp", "127.0.0.1:99999"],
+        #[cfg(unix)]
+        &["twin", "--pty", "no-such-folder/robot"],
         &["calibrate", "no-such-campaign.toml"],
         &["tracks", "no-such-track.csv"],
         &["dance"],
@@ -85,6 +89,15 @@ fn what_fails_leaves_nothing_behind() {
         &["robot", "upload", "square:3.1", "--port", "twin"],
     )
     .with_status(1);
+    // No frame passed: again, and the log is no hindrance.
+    for _ in 0..2 {
+        let words = ["robot", "info", "--port", "gone", "--log", "z.mcap"];
+        swimmer_in(folder.path(), &words).with_status(1);
+    }
+    // Input is read before the robot is met.
+    let words = "robot play --gait x.gait --cycles 1 --port twin --log z.mcap";
+    let words: Vec<&str> = words.split(' ').collect();
+    swimmer_in(folder.path(), &words).with_status(2);
     swimmer_in(
         folder.path(),
         &[
@@ -117,6 +130,41 @@ fn what_fails_leaves_nothing_behind() {
     assert_eq!(left(), 1);
 }
 
+/// What is answered with status 1 says why under the key that every failure has.
+#[test]
+fn a_foretold_refusal_is_an_error_for_scripts() {
+    let words = "robot upload circle:150deg --dry-run --swimmer robot --json";
+    let words: Vec<&str> = words.split(' ').collect();
+    let ran = swimmer(&words).with_status(1);
+    let answer = ran.json();
+    let refused = answer["preflight"]["refused"].as_str().unwrap();
+    assert_eq!(
+        answer["error"],
+        format!("the robot would refuse circle:150deg: {refused}"),
+        "{answer:#}"
+    );
+    assert!(ran.stderr.contains(refused), "{ran}");
+}
+
+/// Help is for people, also where a script asks.
+#[test]
+fn help_takes_json_and_stays_text() {
+    for words in [
+        &["help", "--json"][..],
+        &["help", "optimize", "--json"],
+        &["robot", "help", "play", "--json"],
+        &["optimize", "--help", "--json"],
+    ] {
+        let ran = swimmer(words).with_status(0);
+        assert!(
+            ran.stdout.contains("Usage: swimmer") && ran.stderr.is_empty(),
+            "{words:?}: {ran}"
+        );
+    }
+    swimmer(&["help", "dance", "--json"]).with_status(2).json();
+    swimmer(&["dance", "help", "--json"]).with_status(2).json();
+}
+
 #[test]
 fn a_gait_made_for_another_swimmer_needs_force() {
     let folder = tempfile::tempdir().unwrap();
@@ -146,6 +194,17 @@ fn a_gait_made_for_another_swimmer_needs_force() {
         refused.stderr.contains("made for `purcell`") && refused.stderr.contains("--force"),
         "{refused}"
     );
+    // What is foretold is no more than what the upload does.
+    let foretold = robot(&["upload", "purcell.gait", "--dry-run"]).with_status(1);
+    assert_eq!(foretold.stderr, refused.stderr);
+    robot(&["upload", "purcell.gait", "--dry-run", "--force"]).with_status(0);
+    let other = robot(&["upload", "robot.gait", "--swimmer", "purcell"]).with_status(0);
+    assert!(
+        other.stderr.contains("another swimmer than `purcell`"),
+        "{other}"
+    );
+    let same = robot(&["upload", "robot.gait", "--swimmer", "robot"]).with_status(0);
+    assert!(!same.stderr.contains("another swimmer"), "{same}");
     robot(&["play", "--gait", "purcell.gait", "--cycles", "1"]).with_status(1);
     robot(&["upload", "purcell.gait", "--force"]).with_status(0);
 }

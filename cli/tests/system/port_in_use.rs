@@ -1,5 +1,6 @@
 //! One program has the port; what a second one of the same user can do then: stop the robot, above all.
 
+use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 use std::process::{Child, Stdio};
 use std::thread::sleep;
@@ -52,15 +53,7 @@ impl Scene {
     }
 
     fn wait_for(&self, state: &str) {
-        let patience = Instant::now() + Duration::from_secs(20);
-        loop {
-            let status = self.status();
-            if status["state"] == state {
-                return;
-            }
-            assert!(Instant::now() < patience, "never {state}: {status:#}");
-            sleep(Duration::from_millis(100));
-        }
+        wait_for(state, || self.status());
     }
 
     /// How the play ended, and what it said of it.
@@ -69,6 +62,18 @@ impl Scene {
         let mut text = String::new();
         std::io::Read::read_to_string(&mut self.play.stderr.take().unwrap(), &mut text).unwrap();
         (status, text)
+    }
+}
+
+fn wait_for(state: &str, status: impl Fn() -> Value) {
+    let patience = Instant::now() + Duration::from_secs(20);
+    loop {
+        let status = status();
+        if status["state"] == state {
+            return;
+        }
+        assert!(Instant::now() < patience, "never {state}: {status:#}");
+        sleep(Duration::from_millis(100));
     }
 }
 
@@ -106,10 +111,23 @@ fn an_estop_does_too_and_stays_latched() {
 #[test]
 fn a_pause_and_a_resume_keep_the_play_that_holds_the_port_waiting() {
     let mut scene = Scene::playing();
-    scene.robot(&["pause"]).with_status(0);
-    assert_eq!(scene.status()["state"], "paused");
-    scene.robot(&["resume"]).with_status(0);
-    scene.wait_for("playing");
+    let is_detached = |status: &Value| {
+        let flags = status["flags"].as_array().unwrap();
+        flags.contains(&"detached".into())
+    };
+    // Without --detach the play's own link holds the pose, and without a limit.
+    for (words, sentence, detached) in [
+        (&["pause"][..], "this one need not wait", false),
+        (&["pause", "--detach"], "at most 60 s, then stops", true),
+    ] {
+        let paused = scene.robot(words).with_status(0);
+        assert!(paused.stdout.contains(sentence), "{paused}");
+        let status = scene.status();
+        assert_eq!(status["state"], "paused", "{status:#}");
+        assert_eq!(is_detached(&status), detached, "{status:#}");
+        scene.robot(&["resume"]).with_status(0);
+        scene.wait_for("playing");
+    }
     assert!(scene.play.try_wait().unwrap().is_none(), "the play goes on");
     interrupt(&scene.play);
     let (status, said) = scene.play_ended();
@@ -137,11 +155,15 @@ fn a_watch_sees_the_robot_through_the_play_that_holds_the_port() {
 
     let folder = scene.folder.path().to_owned();
     let words = ["robot", "watch", "--port", "robot"];
-    let watch = command(&folder, &words)
-        .stdout(Stdio::null())
+    let mut watch = command(&folder, &words)
+        .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
+    // It must have come in before the play leaves, else it would have the port to itself.
+    let mut shown = BufReader::new(watch.stdout.take().unwrap()).lines();
+    let first = shown.next().unwrap().unwrap();
+    assert!(first.contains("playing"), "{first}");
     scene.robot(&["stop"]).with_status(0);
     let (status, said) = scene.play_ended();
     assert_eq!(status, Some(1), "{said}");
@@ -154,6 +176,10 @@ fn a_watch_sees_the_robot_through_the_play_that_holds_the_port() {
 #[test]
 fn what_needs_the_port_for_itself_is_told_who_has_it_and_how_to_stop() {
     let scene = Scene::playing();
+    // The last stop, before this play, explains nothing of it.
+    let told = scene.robot(&["status"]).with_status(0).stdout;
+    assert_eq!(told.lines().next(), Some("  state      playing"), "{told}");
+    assert_eq!(scene.status()["cause"], "boot");
     let refused = scene.robot(&["info"]).with_status(1);
     for words in [
         "`swimmer robot play` (process ",
@@ -229,4 +255,46 @@ fn a_detached_play_is_attached_to_again() {
             begun.elapsed()
         );
     }
+}
+
+/// Another play is refused before anything is sent, and the one that goes on is left alone.
+#[test]
+fn a_play_is_refused_while_one_goes_on_detached_and_leaves_it_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let _twin = TwinProcess::start(folder.path(), &[]);
+    let robot = |words: &[&str]| {
+        let words = [&["robot"], words, &["--port", "robot", "--json"]].concat();
+        swimmer_in(folder.path(), &words)
+    };
+    let play = ["play", "--cycles", "60", "--period", "3"];
+    robot(&["upload", "circle:30deg"]).with_status(0);
+    robot(&[&play[..], &["--detach"]].concat()).with_status(0);
+    let gait = robot(&["status"]).with_status(0).json()["gait"].clone();
+    for more in [&[][..], &["--gait", "circle:50deg"]] {
+        let refused = robot(&[&play[..], more].concat()).with_status(1);
+        let reason = refused.json()["error"].as_str().unwrap().to_owned();
+        for words in [
+            " of 60, ",
+            "`swimmer robot play --attach`",
+            "`swimmer robot stop`",
+        ] {
+            assert!(reason.contains(words), "{refused}");
+        }
+        assert!(!refused.stderr.contains("ploading"), "{refused}");
+        let status = robot(&["status"]).with_status(0).json();
+        assert!(
+            status["state"] == "playing" || status["state"] == "starting",
+            "{status:#}"
+        );
+        assert_eq!(status["gait"], gait);
+    }
+    wait_for("playing", || robot(&["status"]).with_status(0).json());
+    robot(&["pause", "--detach"]).with_status(0);
+    let refused = robot(&play).with_status(1);
+    assert!(
+        refused.stderr.contains("`swimmer robot resume`"),
+        "{refused}"
+    );
+    assert_eq!(robot(&["status"]).with_status(0).json()["state"], "paused");
+    robot(&["stop"]).with_status(0);
 }

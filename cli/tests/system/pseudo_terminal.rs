@@ -275,6 +275,8 @@ fn a_logged_play_is_replayed() {
     let without = run(&["replay", "again.mcap"]).with_status(1);
     assert_eq!(without.json()["same"], false, "{without}");
     assert!(without.stderr.contains("name it with --gait"), "{without}");
+    let error = without.json()["error"].as_str().unwrap().to_owned();
+    assert!(error.contains("name it with --gait"), "{without}");
     run(&["replay", "again.mcap", "--gait", "circle:30deg"]).with_status(0);
 
     let listened = run(&["log", "idle.mcap", "--seconds", "1", "--port", "robot"]).with_status(0);

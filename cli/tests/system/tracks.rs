@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
-use crate::binary::{number, swimmer, swimmer_in};
+use crate::binary::{swimmer, swimmer_in};
 
 /// What must be said of each file.
 struct Expected {
@@ -126,8 +126,13 @@ fn every_real_file_is_read() {
         let held = ran.with_status(0).json();
         assert_eq!(held["format"], expected.format, "{held:#}");
         // Stamps are rounded, or jitter.
-        let off = number(&held, "rate_hz") - expected.rate_hz;
-        assert!(off.abs() <= 5e-3 * expected.rate_hz, "{held:#}");
+        let rate = &held["rate_hz"];
+        if expected.frames == 1 {
+            assert!(rate.is_null(), "a single frame tells no rate: {held:#}");
+        } else {
+            let off = rate.as_f64().unwrap() - expected.rate_hz;
+            assert!(off.abs() <= 5e-3 * expected.rate_hz, "{held:#}");
+        }
         assert_eq!(held["unit"], expected.unit, "{held:#}");
         assert_eq!(held["frames"], expected.frames, "{held:#}");
         assert!(!held["points"].as_array().unwrap().is_empty(), "{held:#}");
@@ -154,4 +159,24 @@ fn an_unclosed_quote_has_a_place() {
     std::fs::write(folder.path().join("quote.csv"), text).unwrap();
     let ran = swimmer_in(folder.path(), &["tracks", "quote.csv"]).with_status(2);
     assert!(ran.stderr.contains("quote.csv:1:"), "{ran}");
+}
+
+#[test]
+fn a_single_frame_tells_no_rate() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("one.csv"),
+        "t,x1,y1,x2,y2\n0.5,0.1,0.2,0.3,0.4\n",
+    )
+    .unwrap();
+    let words = ["tracks", "one.csv", "--scale", "1"];
+    let ran = swimmer_in(folder.path(), &[&words[..], &["--json"]].concat()).with_status(0);
+    let holdings = ran.json();
+    assert_eq!(holdings.get("rate_hz"), Some(&Value::Null), "{ran}");
+    assert_eq!(holdings["frames"], 1);
+    let ran = swimmer_in(folder.path(), &words).with_status(0);
+    assert!(
+        ran.stdout.contains("unknown") && !ran.stdout.contains("0 Hz"),
+        "{ran}"
+    );
 }

@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use swimmer_files::{PointName, Reflector, Reflectors};
 
 use super::Row;
+use crate::median::median;
 use crate::poses::{PoseError, PoseOptions};
 use crate::{TrackFile, TrackPoint};
 
@@ -158,6 +159,10 @@ impl Search<'_> {
         most.is_ne().then_some(most.is_gt())
     }
 
+    pub(super) fn has_both_labels(&self, front: usize, back: usize) -> bool {
+        self.fronts.contains(&front) && self.backs.contains(&back)
+    }
+
     /// The best ordered pair by a cost that may refuse it.
     pub(super) fn best(
         &self,
@@ -200,6 +205,14 @@ pub(super) fn prepare<'a>(
 ) -> Result<Search<'a>, PoseError> {
     let fronts = labelled(track, &reflectors.front, "front")?;
     let backs = labelled(track, &reflectors.back, "back")?;
+    if let ([front], [back]) = (fronts.as_slice(), backs.as_slice())
+        && front == back
+    {
+        let point = track.points.get(*front).map(|point| point.name.clone());
+        return Err(PoseError::SamePoint {
+            point: point.unwrap_or_default(),
+        });
+    }
     let measured = |i: &usize| {
         track
             .points
@@ -257,12 +270,6 @@ fn median_distance(track: &TrackFile, fronts: &[usize], backs: &[usize]) -> Opti
     };
     let distance = |row| Some((first(fronts, row)? - first(backs, row)?).norm());
     median((0..track.frames()).filter_map(distance))
-}
-
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.collect();
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// Without names: the two points that are most often the right distance apart serve as labels, in either order.

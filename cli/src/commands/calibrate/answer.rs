@@ -11,7 +11,7 @@ use swimmer_files::GaitSpec;
 use super::asked::AskedAnswer;
 use crate::quantity::{self, Rows, Table};
 
-/// The cycles of one run, and what they brought.
+/// The cycles of one run, and what they brought. Deviations of a single cycle are not numbers; JSON has null.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct RunAnswer {
     pub(crate) file: String,
@@ -92,7 +92,7 @@ pub(crate) struct FitAnswer {
     /// What to know about the runs and the fit.
     pub(crate) warnings: Vec<String>,
     #[serde(flatten)]
-    pub(super) asked: AskedAnswer,
+    pub(crate) asked: AskedAnswer,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -232,18 +232,30 @@ fn table(runs: &[RunAnswer]) -> Table {
             run.file.clone(),
             run.gait.clone(),
             run.cycles.to_string(),
-            format!("{:.3} ± {:.3}", run.x_m * 1e3, run.x_sd_m * 1e3),
+            with_deviation([run.x_m, run.x_sd_m], millimetres),
             format!("{:.3}", run.y_m * 1e3),
-            format!("{:.3} ± {:.3}", run.delta_y_m * 1e3, run.delta_y_sd_m * 1e3),
-            format!(
-                "{} ± {}",
-                quantity::angle(run.delta_theta_rad),
-                quantity::angle(run.delta_theta_sd_rad)
+            with_deviation([run.delta_y_m, run.delta_y_sd_m], millimetres),
+            with_deviation(
+                [run.delta_theta_rad, run.delta_theta_sd_rad],
+                quantity::angle,
             ),
             format!("{:.3}", run.period_s),
         ]);
     }
     table
+}
+
+fn millimetres(metres: f64) -> String {
+    format!("{:.3}", metres * 1e3)
+}
+
+/// A mean with its deviation, where there is one: a single cycle has none.
+fn with_deviation([mean, deviation]: [f64; 2], written: fn(f64) -> String) -> String {
+    if deviation.is_nan() {
+        written(mean)
+    } else {
+        format!("{} ± {}", written(mean), written(deviation))
+    }
 }
 
 impl RunAnswer {

@@ -80,7 +80,7 @@ impl Asked {
 
 /// The answers.
 #[derive(Debug, Clone, Default, Serialize)]
-pub(super) struct AskedAnswer {
+pub(crate) struct AskedAnswer {
     #[serde(skip_serializing_if = "Option::is_none")]
     further: Option<FurtherAnswer>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -159,15 +159,28 @@ impl AdviceAnswer {
     }
 }
 
+/// One answer as people read it, in the terminal and on the page.
+pub(crate) struct Shown {
+    pub(crate) title: &'static str,
+    pub(crate) table: Table,
+    pub(crate) notes: Vec<String>,
+}
+
+impl AskedAnswer {
+    pub(crate) fn shown(&self) -> Vec<Shown> {
+        let further = self.further.as_ref().map(FurtherAnswer::shown);
+        let advice = self.advice.as_ref().map(AdviceAnswer::shown);
+        further.into_iter().chain(advice).collect()
+    }
+}
+
 impl fmt::Display for AskedAnswer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(further) = &self.further {
-            write!(f, "\n\n{further}")?;
-        }
-        if let Some(advice) = &self.advice {
-            write!(f, "\n\n{advice}")?;
-        }
-        Ok(())
+        self.shown().iter().try_for_each(|shown| {
+            write!(f, "\n\n{}", shown.table)?;
+            let mut notes = shown.notes.iter();
+            notes.try_for_each(|note| write!(f, "\n  {note}"))
+        })
     }
 }
 
@@ -180,30 +193,37 @@ fn readable(unit: &str, value: f64) -> String {
     }
 }
 
-impl fmt::Display for FurtherAnswer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let percent = format!("{:.0} %", self.level * 100.0);
+impl FurtherAnswer {
+    fn shown(&self) -> Shown {
         let mut table = Table::new(["by likelihood", "before", "fitted", "from", "to"]);
         for p in &self.parameters {
             let [from, to] = p.interval.map(|end| readable(p.unit, end));
             let (before, value) = (readable(p.unit, p.before), readable(p.unit, p.value));
             table.line([p.name.to_owned(), before, value, from, to]);
         }
-        write!(
-            f,
-            "{table}\n  intervals of {percent}; log-likelihood {:+.1} over r_s and chi alone",
+        let mut notes = vec![format!(
+            "intervals of {:.0} %; log-likelihood {:+.1} over r_s and chi alone",
+            self.level * 100.0,
             self.log_likelihood_gain
-        )?;
-        let mut warnings = self.warnings.iter();
-        warnings.try_for_each(|warning| write!(f, "\n  note: {warning}"))
+        )];
+        notes.extend(
+            self.warnings
+                .iter()
+                .map(|warning| format!("note: {warning}")),
+        );
+        Shown {
+            title: "What else may be off",
+            table,
+            notes,
+        }
     }
 }
 
 /// Lines of advice that people read; JSON has all.
 const SHOWN: usize = 8;
 
-impl fmt::Display for AdviceAnswer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl AdviceAnswer {
+    fn shown(&self) -> Shown {
         let mut table = Table::new(["measure next", "interval of r_s", "of χ", "both"]);
         let percent = |width: f64| format!("{:+.1} %", 100.0 * (width - 1.0));
         for candidate in self.candidates.iter().take(SHOWN) {
@@ -214,10 +234,14 @@ impl fmt::Display for AdviceAnswer {
                 percent(candidate.both),
             ]);
         }
-        write!(
-            f,
-            "{table}\n  one run more with a cycle of {} s, and as many cycles and errors as the others",
+        let notes = vec![format!(
+            "one run more with a cycle of {} s, and as many cycles and errors as the others",
             self.period_s
-        )
+        )];
+        Shown {
+            title: "What to measure next",
+            table,
+            notes,
+        }
     }
 }

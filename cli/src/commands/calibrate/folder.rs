@@ -3,29 +3,32 @@
 use std::path::Path;
 
 use calibrate::{Evidence, EvidenceOptions};
-use swimmer_files::{Campaign, Provenance, write_atomically};
+use swimmer_files::{Campaign, Provenance, SwimmerFile, write_atomically};
 
 use super::FittedCampaign;
 use crate::failure::Outcome;
+use crate::new_folder::NewFolder;
 use crate::output::document;
 use crate::report::calibration::{Calibration, evidence_json, page, tables};
 
 const FITTED: &str = "fitted.toml";
+const FITTED_FURTHER: &str = "fitted-further.toml";
 const FIT: &str = "fit.json";
 const EVIDENCE: &str = "evidence.json";
 const REPORT: &str = "report.html";
 
-/// Fills `draft`, which will stand at `place`.
+/// Fills the folder; `further` is the swimmer with all that was fitted also.
 ///
 /// # Errors
 /// As hashing the inputs and writing.
 pub(super) fn write(
     fitted: &FittedCampaign,
+    further: Option<&SwimmerFile>,
     (evidence, options): (&Evidence, EvidenceOptions),
     file: &Path,
-    draft: &Path,
-    place: &Path,
+    folder: &NewFolder,
 ) -> Outcome {
+    let (draft, place) = (folder.draft(), folder.place());
     let FittedCampaign {
         answer,
         found,
@@ -35,7 +38,7 @@ pub(super) fn write(
     let made_by = concat!("swimmer calibrate ", env!("CARGO_PKG_VERSION"));
     let provenance = Provenance::of_files(made_by, &Campaign::files(file)?, place)?;
     let save = |name: &str, text: &str| write_atomically(&draft.join(name), text.as_bytes());
-    save(FITTED, &(found.swimmer.to_toml() + &provenance.to_toml()))?;
+    provenance.save_with(&found.swimmer, &draft.join(FITTED))?;
     save(FIT, &document(answer))?;
     let names: Vec<String> = answer.runs.iter().map(|run| run.file.clone()).collect();
     save(
@@ -56,6 +59,13 @@ pub(super) fn write(
             "likelihood, profiles, ridge, bootstrap, fits without each run",
         ),
     ];
+    if let Some(further) = further {
+        provenance.save_with(further, &draft.join(FITTED_FURTHER))?;
+        files.insert(
+            1,
+            (FITTED_FURTHER, "the same with all that was fitted also"),
+        );
+    }
     for (name, what, text) in tables(found, evidence, &names) {
         save(name, &text)?;
         files.push((name, what));

@@ -11,7 +11,7 @@ use link_protocol::{StateName, TableInfo};
 use swimmer_files::{ServoFile, SwimmerFile};
 use twin::{VirtualRobot as _, configuration};
 
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use crate::interrupt::Interrupt;
 use crate::link_log::{Recorder, Sink};
 use crate::virtual_robot::VirtualLine;
@@ -70,19 +70,9 @@ impl Laboratory {
             .start_recording(track)?;
         let interrupt = self.interrupt.clone();
         let robot = &mut self.robot;
-        let played = robot
-            .arm(false)
-            .and_then(|()| robot.play(cycles, period, false))
-            .and_then(|()| robot.wait_until_finished(|_| go_on(&interrupt)));
-        match played {
-            Ok(_) => {}
-            Err(LinkError::Interrupted { .. }) => {
-                return Err(Failure::Tried(
-                    "Ctrl-C: the robot was stopped, nothing was kept".into(),
-                ));
-            }
-            Err(error) => return Err(error.into()),
-        }
+        robot.arm(false)?;
+        robot.play(cycles, period, false)?;
+        robot.wait_until_finished(|_| go_on(&interrupt))?;
         robot
             .port_mut()
             .inner_mut()

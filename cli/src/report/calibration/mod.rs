@@ -43,7 +43,8 @@ impl Calibration<'_> {
                     clockwise,
                 } => {
                     let cycles = &run.cycles;
-                    let of = |s: &calibrate::Statistics| (s.mean, s.sd);
+                    // A single cycle has no deviation, and its point no bar.
+                    let of = |s: &calibrate::Statistics| (s.mean, s.sd.max(0.0));
                     let (x, sd) = of(&cycles.x);
                     Some(MeasuredCircle {
                         amplitude: *amplitude,

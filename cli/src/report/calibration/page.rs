@@ -24,6 +24,7 @@ pub(crate) fn page(calibration: &Calibration<'_>) -> Outcome<String> {
     over_amplitude(&mut html, calibration)?;
     evidence(&mut html, calibration)?;
     html.push_str("</section>");
+    asked(&mut html, calibration);
     runs(&mut html, calibration);
     left_out(&mut html, calibration);
     each_run(&mut html, calibration)?;
@@ -217,6 +218,38 @@ fn evidence(html: &mut String, calibration: &Calibration<'_>) -> Outcome {
     Ok(())
 }
 
+/// What was asked beyond the fit: the tables that the command prints.
+fn asked(html: &mut String, calibration: &Calibration<'_>) {
+    for shown in calibration.answer.asked.shown() {
+        let _ = write!(
+            html,
+            "<section><h2>{}</h2><table class=asked>",
+            escaped(shown.title)
+        );
+        for (index, line) in shown.table.lines().iter().enumerate() {
+            // The first line and the first column are headings.
+            let cells = line.iter().enumerate().map(|(column, cell)| {
+                if index == 0 || column == 0 {
+                    format!("<th>{}", escaped(cell))
+                } else {
+                    format!("<td>{}", escaped(&minus(cell)))
+                }
+            });
+            let cells: String = cells.collect();
+            let _ = match index {
+                0 => write!(html, "<thead><tr>{cells}</tr></thead><tbody>"),
+                _ => write!(html, "<tr>{cells}</tr>"),
+            };
+        }
+        let notes: Vec<String> = shown.notes.iter().map(|note| escaped(note)).collect();
+        let _ = write!(
+            html,
+            "</tbody></table><p class=note>{}</p></section>",
+            notes.join("<br>")
+        );
+    }
+}
+
 fn names(calibration: &Calibration<'_>) -> Vec<String> {
     let runs = calibration.answer.runs.iter();
     runs.map(|run| run.file.clone()).collect()
@@ -236,7 +269,11 @@ fn runs(html: &mut String, calibration: &Calibration<'_>) {
     {
         let cycles = &run.cycles;
         // Adding zero turns a rounded -0.000 into 0.000.
-        let three = |value: f64| minus(&format!("{:.3}", (value * 1e3).round() / 1e3 + 0.0));
+        let three = |value: f64| match value {
+            // Of a single cycle there is no deviation.
+            none if none.is_nan() => "–".to_owned(),
+            value => minus(&format!("{:.3}", (value * 1e3).round() / 1e3 + 0.0)),
+        };
         let millimetres = |metres: f64| three(metres * 1e3);
         let degrees = |radians: f64| three(radians.to_degrees());
         let _ = write!(

@@ -149,7 +149,13 @@ fn runs(found: &CampaignFit, names: &[String]) -> String {
             let Statistics {
                 mean, sd, se, lag1, ..
             } = statistics;
-            let _ = write!(text, ",{mean:?},{sd:?},{se:?},{lag1:?}");
+            for value in [mean, sd, se, lag1] {
+                text.push(',');
+                // A single cycle has no deviation: an empty cell.
+                if !value.is_nan() {
+                    let _ = write!(text, "{value:?}");
+                }
+            }
         }
         text.push('\n');
     }

@@ -1,0 +1,86 @@
+//! Keys that scripts find in every answer of a command, whatever made it.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::binary::{number, swimmer};
+
+/// The keys that only gaits for efficiency have.
+#[track_caller]
+fn has_efficiency_figures(gait: &Value, most_residual: f64, most_variation: f64) {
+    assert!(number(gait, "residual").abs() <= most_residual, "{gait:#}");
+    let variation = number(gait, "power_variation");
+    assert!((0.0..=most_variation).contains(&variation), "{gait:#}");
+    assert_eq!(gait["method"], "fourier");
+}
+
+#[test]
+fn an_atlas_counts_the_starts_that_were_asked_for() {
+    let atlas = |objective| {
+        let words = [
+            "atlas",
+            "--swimmer",
+            "purcell",
+            "--objective",
+            objective,
+            "--starts",
+            "1",
+            "--json",
+        ];
+        swimmer(&words).with_status(0).json()
+    };
+    let found = atlas("efficiency");
+    assert_eq!(
+        (&found["starts"], &found["known_starts"]),
+        (&1.into(), &2.into())
+    );
+    let optima = found["optima"].as_array().unwrap();
+    assert!(!optima.is_empty());
+    for optimum in optima {
+        has_efficiency_figures(optimum, 1e-10, 1e-6);
+    }
+    let found = atlas("displacement");
+    assert_eq!(found["starts"], 1);
+    for optimum in found["optima"].as_array().unwrap() {
+        assert!(optimum.get("residual").is_none(), "{optimum:#}");
+    }
+}
+
+#[test]
+fn a_robust_gait_has_the_keys_of_its_objective() {
+    let fit = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cmd/robust.in/fit.json");
+    let found = swimmer(&[
+        "optimize",
+        "efficiency",
+        "--swimmer",
+        "robot",
+        "--order",
+        "2",
+        "--robust",
+        fit.to_str().unwrap(),
+        "--json",
+    ])
+    .with_status(0)
+    .json();
+    // Timed as the series runs, not at constant power.
+    has_efficiency_figures(&found, 1e-8, 2.0);
+    assert!(number(&found, "power_variation") > 1e-3, "{found:#}");
+}
+
+#[test]
+fn a_sideways_gait_has_no_angle_to_gain_by_bridges() {
+    let found = swimmer(&[
+        "optimize",
+        "sideways",
+        "--swimmer",
+        "robot",
+        "--max-angle",
+        "2.8",
+        "--json",
+    ])
+    .with_status(0)
+    .json();
+    assert_eq!(found.get("bridged_supremum_rad"), Some(&Value::Null));
+    number(&found, "bridged_supremum_over_length");
+}
