@@ -73,7 +73,10 @@ mod tests {
         assert_eq!(pieces.expected(MS * 20), MS * 220);
         // Eight, eight and four: two answers are waited for before the last ones go out.
         assert_eq!(pieces.expected(MS * 1000), MS * (3 * 1010 + 3 * 10));
-        let one_by_one = Pieces { at_once: 0, ..pieces };
+        let one_by_one = Pieces {
+            at_once: 0,
+            ..pieces
+        };
         assert_eq!(one_by_one.expected(MS * 90), MS * 2000);
         assert_eq!(Pieces { count: 0, ..pieces }.expected(MS), Duration::ZERO);
     }

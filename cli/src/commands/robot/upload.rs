@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use gait_player::GaitTable;
-use host_link::{LinkError, Port as _, Robot};
+use host_link::{LinkError, Port as _};
 use link_protocol::{Configuration, MAX_KNOTS, TableInfo};
 use serde::Serialize;
 use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
@@ -14,7 +14,7 @@ use swimmer_model::Gait as _;
 use super::access::{Access, Line};
 use super::answers::{Gait, answer_no};
 use super::configure::is_configured_as;
-use super::port::{AnyPort, BAUD, Pace};
+use super::port::Pace;
 use super::preflight::{Player, Preflight};
 use super::{Owner, Upload};
 use crate::arguments::{load_gait, load_swimmer};
