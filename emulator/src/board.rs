@@ -1,6 +1,9 @@
 //! The emulated board as a child process that is driven command by command; it lives only while a command runs, so the caller
 //! owns its time.
 
+mod config;
+mod error;
+
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -13,110 +16,11 @@ use serde_json::{Value, json};
 use crate::events::{Answer, Events, Stack, nanos};
 use crate::log::Log;
 
+pub use config::{BoardConfig, BoardKind};
+pub use error::EmulatorError;
+
 /// A float in nanoseconds is exact for so long that this is plenty.
 const ROUNDING: Duration = Duration::from_nanos(10);
-
-/// Which board the firmware was built for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BoardKind {
-    /// Arduino Nano RP2040 Connect.
-    NanoConnect,
-    /// Raspberry Pi Pico.
-    Pico,
-}
-
-impl BoardKind {
-    /// The word in the names of images and features.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::NanoConnect => "nano-connect",
-            Self::Pico => "pico",
-        }
-    }
-}
-
-/// What is needed to start a board.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BoardConfig {
-    /// The folder of `serve.mjs` with its `node_modules`.
-    pub scripts: PathBuf,
-    /// The firmware's ELF file, as it is flashed.
-    pub firmware: PathBuf,
-    /// The board it was built for.
-    pub kind: BoardKind,
-}
-
-impl BoardConfig {
-    /// The first thing that is needed and not there: firmware, script, emulator or Node.js.
-    pub fn missing(&self) -> Option<EmulatorError> {
-        let script = self.scripts.join("serve.mjs");
-        let emulator = self.scripts.join("node_modules/rp2040js");
-        let needed = [
-            (
-                "the firmware",
-                &self.firmware,
-                "build it with `cargo xtask firmware`",
-            ),
-            (
-                "its script",
-                &script,
-                "name the folder `emulator/board` of the sources",
-            ),
-            (
-                "the RP2040 emulator",
-                &emulator,
-                "install it with `cargo xtask emulator`",
-            ),
-        ];
-        let absent = needed.into_iter().find(|(_, path, _)| !path.exists());
-        if let Some((what, path, advice)) = absent {
-            return Some(EmulatorError::Missing {
-                what,
-                path: path.clone(),
-                advice,
-            });
-        }
-        let node = Command::new("node")
-            .arg("--version")
-            .stdout(Stdio::null())
-            .status();
-        node.err().map(EmulatorError::Node)
-    }
-}
-
-/// Why the emulated board does not do what it was told.
-#[derive(Debug, thiserror::Error)]
-pub enum EmulatorError {
-    /// Something that a start needs is not there.
-    #[error("the emulated board cannot start: {what} is not at {path}; {advice}")]
-    Missing {
-        /// What.
-        what: &'static str,
-        /// Where it was looked for.
-        path: PathBuf,
-        /// What to do.
-        advice: &'static str,
-    },
-    /// Node could not be started.
-    #[error("the emulated board cannot start: running `node`: {0}; install Node.js 18 or newer")]
-    Node(#[source] std::io::Error),
-    /// The process went away.
-    #[error("the emulated board ended while it was asked to `{command}`: {why}")]
-    Gone {
-        /// What it was asked.
-        command: String,
-        /// What is known.
-        why: String,
-    },
-    /// The emulation itself failed.
-    #[error("the emulated board failed while it was asked to `{command}`:\n{why}")]
-    Failed {
-        /// What it was asked.
-        command: String,
-        /// Its own words.
-        why: String,
-    },
-}
 
 /// An emulated board with the unmodified firmware in its flash.
 #[derive(Debug)]

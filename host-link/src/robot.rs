@@ -249,6 +249,12 @@ impl<P: Port> Robot<P> {
         }
     }
 
+    /// What [`upload`](Self::upload) takes for a table of `bytes` where nothing is lost and the robot stands still; zero without a
+    /// session.
+    pub fn expected_upload(&self, bytes: usize) -> Duration {
+        self.session.expected_upload(bytes).unwrap_or_default()
+    }
+
     fn check_heard(&self, doing: &'static str) -> Result<(), LinkError> {
         let silent = self.port.now().saturating_sub(self.session.last_heard());
         if silent < LONGEST_SILENCE {

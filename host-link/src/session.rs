@@ -27,6 +27,7 @@ mod receive;
 mod round_trip;
 mod under_way;
 mod upload;
+mod upload_time;
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -246,14 +247,17 @@ impl Session {
         self.config.key = key;
     }
 
-    /// A window of pieces as large as frames have room for.
-    fn window(&self, total: usize, wanted: usize) -> Window {
-        let piece = if self.config.key.is_some() {
+    /// Bytes of a piece: as many as frames have room for.
+    fn piece(&self) -> usize {
+        if self.config.key.is_some() {
             MAX_SIGNED_CHUNK
         } else {
             MAX_CHUNK
-        };
-        Window::new(total, wanted, piece)
+        }
+    }
+
+    fn window(&self, total: usize, wanted: usize) -> Window {
+        Window::new(total, wanted, self.piece())
     }
 
     /// Breaks the upload off, without an event. The robot keeps what has arrived and the table it plays.

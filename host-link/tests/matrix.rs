@@ -20,6 +20,10 @@ const SEEDS: u64 = 9;
 fn upload_time(faults: Faults, seed: u64) -> Option<Duration> {
     let mut robot = Robot::connect(faulty(Faults::none(), seed), seed).unwrap();
     robot.port_mut().set_plan(FaultPlan::at_host(faults));
+    timed(&mut robot)
+}
+
+fn timed(robot: &mut Robot<impl Port>) -> Option<Duration> {
     let table = circle(1.2);
     let began = robot.port().now();
     let info = robot
@@ -70,6 +74,23 @@ fn the_matrix_of_upload_times() {
 ",
     );
     insta::assert_snapshot!(text);
+}
+
+#[test]
+fn what_an_upload_takes_is_foretold() {
+    for latency in [0, 5, 20, 50, 100, 200, 500] {
+        let slow = Faults {
+            delay: MS * latency,
+            ..Faults::none()
+        };
+        let mut robot = Robot::connect(faulty(slow, 1), 1).unwrap();
+        // Whoever uploads has asked something before: without an answer a slow line's round trip is not known.
+        robot.status().unwrap();
+        let foretold = robot.expected_upload(2048).as_secs_f64();
+        let took = timed(&mut robot).unwrap().as_secs_f64();
+        println!("{latency} ms each way: {foretold:.2} s foretold, {took:.2} s taken");
+        assert!((foretold / took - 1.0).abs() < 0.1, "{latency} ms each way");
+    }
 }
 
 /// What a line passes when bytes are poured in at its end for a while, bytes a second.

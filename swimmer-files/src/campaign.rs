@@ -1,9 +1,8 @@
 //! The campaign file: the runs of one experiment, and where the reflectors sit. Paths in it are relative to it.
 
-use std::path::{Path, PathBuf};
+mod read;
 
-use serde::Deserialize;
-use toml::Spanned;
+use std::path::{Path, PathBuf};
 
 use crate::place::read_text;
 use crate::{Axes, FileError, GaitSpec, SwimmerFile};
@@ -122,71 +121,23 @@ pub struct CampaignRun {
     pub timing: RunTiming,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawCampaign {
-    swimmer: Spanned<String>,
-    reflectors: RawReflectors,
-    #[serde(default)]
-    tracks: RawTracks,
-    #[serde(default)]
-    run: Vec<RawRun>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawTracks {
-    scale: Option<Spanned<f64>>,
-    rate_hz: Option<Spanned<f64>>,
-    axes: Option<Spanned<String>>,
-    likelihood: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawReflectors {
-    front: RawReflector,
-    back: Spanned<RawReflector>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawReflector {
-    point: RawPoint,
-    at: Spanned<[f64; 2]>,
-}
-
-#[derive(Deserialize)]
-#[serde(
-    untagged,
-    expecting = "a point is a name, a pair of column names, { near = [x, y] }, or \"auto\""
-)]
-enum RawPoint {
-    Name(String),
-    Columns([String; 2]),
-    Near { near: [f64; 2] },
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawRun {
-    track: Spanned<String>,
-    gait: Spanned<String>,
-    period_s: Spanned<f64>,
-    front: Option<Spanned<RawPoint>>,
-    cycle_start_s: Option<Spanned<f64>>,
-    log: Option<Spanned<String>>,
-    play: Option<Spanned<usize>>,
-    clock_offset_s: Option<Spanned<f64>>,
-}
-
 impl Campaign {
-    /// Reads a campaign file and the swimmer that it names; tracks and gait files are not opened.
+    /// Reads a campaign file and the swimmer that it names; tracks, gait files and logs must be there and are not opened.
     ///
     /// # Errors
     /// [`FileError`] with the place in this file, or in the swimmer file.
     pub fn load(path: &Path) -> Result<Self, FileError> {
-        Self::parse(&read_text(path)?, path)
+        let is_there = |file: &Path| !matches!(file.try_exists(), Ok(false));
+        read::campaign(&read_text(path)?, path, &is_there)
+    }
+
+    /// Reads a campaign's text; `path` says which folder its paths start from. Whether the files of its runs are there is not
+    /// looked at.
+    ///
+    /// # Errors
+    /// As [`Campaign::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, FileError> {
+        read::campaign(text, path, &|_| true)
     }
 
     /// The files that a campaign is made of, each once: itself, its swimmer where that is a file, tracks, gait files, link logs.
@@ -198,184 +149,21 @@ impl Campaign {
         let mut files = vec![path.to_path_buf()];
         files.extend(campaign.swimmer_path);
         for run in campaign.runs {
-            files.push(run.track);
-            if let GaitSpec::File { path, .. } = run.gait {
-                files.push(path);
-            }
-            files.extend(run.timing.log);
+            files.extend(run.files().into_iter().flatten().cloned());
         }
         let mut seen = std::collections::HashSet::new();
         files.retain(|file| seen.insert(file.clone()));
         Ok(files)
     }
+}
 
-    /// Reads a campaign's text; `path` says which folder its paths start from.
-    ///
-    /// # Errors
-    /// As [`Campaign::load`].
-    pub fn parse(text: &str, path: &Path) -> Result<Self, FileError> {
-        let raw: RawCampaign = crate::toml_text::parse(text, path)?;
-        let folder = path.parent().unwrap_or_else(|| Path::new(""));
-        let error =
-            |offset: usize, problem: String| FileError::at_offset(path, text, offset, problem);
-        let swimmer =
-            SwimmerFile::find_from(raw.swimmer.get_ref(), folder).map_err(|cause| match cause {
-                FileError::Read { .. } => error(raw.swimmer.span().start, cause.to_string()),
-                other => other,
-            })?;
-        let is_preset = SwimmerFile::preset(raw.swimmer.get_ref()).is_some();
-        let swimmer_path = (!is_preset).then(|| folder.join(raw.swimmer.get_ref()));
-        let back_place = raw.reflectors.back.span().start;
-        let reflectors = Reflectors {
-            front: reflector(raw.reflectors.front, &error)?,
-            back: reflector(raw.reflectors.back.into_inner(), &error)?,
+impl CampaignRun {
+    /// Its track, and its gait and log where these are files.
+    fn files(&self) -> [Option<&PathBuf>; 3] {
+        let gait = match &self.gait {
+            GaitSpec::File { path, .. } => Some(path),
+            _ => None,
         };
-        let [front, back] = [reflectors.front.at, reflectors.back.at];
-        if (front[0] - back[0]).hypot(front[1] - back[1]) <= 0.0 {
-            return Err(error(
-                back_place,
-                "both reflectors sit at the same place, so they show no heading".to_owned(),
-            ));
-        }
-        if raw.run.is_empty() {
-            return Err(error(
-                text.len(),
-                "no [[run]]: a campaign needs at least one".to_owned(),
-            ));
-        }
-        let tracks = track_settings(raw.tracks, &error)?;
-        let runs = raw
-            .run
-            .into_iter()
-            .map(|raw| run(raw, folder, &error))
-            .collect::<Result<_, _>>()?;
-        Ok(Self {
-            swimmer,
-            swimmer_path,
-            reflectors,
-            tracks,
-            runs,
-        })
+        [Some(&self.track), gait, self.timing.log.as_ref()]
     }
-}
-
-fn track_settings(
-    raw: RawTracks,
-    error: &impl Fn(usize, String) -> FileError,
-) -> Result<TrackSettings, FileError> {
-    let positive = |value: Option<Spanned<f64>>, name: &str| {
-        let Some(value) = value else { return Ok(None) };
-        let number = *value.get_ref();
-        if number.is_finite() && number > 0.0 {
-            return Ok(Some(number));
-        }
-        let problem = format!("{name} = {number} must be a positive number");
-        Err(error(value.span().start, problem))
-    };
-    let axes = raw.axes.map(|axes| {
-        let parsed = axes.get_ref().parse();
-        parsed.map_err(|cause| error(axes.span().start, cause))
-    });
-    Ok(TrackSettings {
-        scale: positive(raw.scale, "scale")?,
-        rate_hz: positive(raw.rate_hz, "rate_hz")?,
-        axes: axes.transpose()?,
-        likelihood: positive(raw.likelihood, "likelihood")?,
-    })
-}
-
-fn reflector(
-    raw: RawReflector,
-    error: &impl Fn(usize, String) -> FileError,
-) -> Result<Reflector, FileError> {
-    let at = *raw.at.get_ref();
-    if !at.iter().all(|value| value.is_finite()) {
-        return Err(error(
-            raw.at.span().start,
-            format!("at = {at:?} must be two finite lengths in metres"),
-        ));
-    }
-    let point = point(raw.point).map_err(|problem| error(raw.at.span().start, problem))?;
-    Ok(Reflector { point, at })
-}
-
-fn point(raw: RawPoint) -> Result<PointName, String> {
-    match raw {
-        RawPoint::Name(name) if name == "auto" => Ok(PointName::Auto),
-        RawPoint::Name(name) => Ok(PointName::Named(name)),
-        RawPoint::Columns([x, y]) => Ok(PointName::Columns(x, y)),
-        RawPoint::Near { near } if near.iter().all(|v| v.is_finite()) => Ok(PointName::Near(near)),
-        RawPoint::Near { near } => Err(format!(
-            "near = {near:?} must be two finite lengths in metres"
-        )),
-    }
-}
-
-fn run(
-    raw: RawRun,
-    folder: &Path,
-    error: &impl Fn(usize, String) -> FileError,
-) -> Result<CampaignRun, FileError> {
-    if raw.track.get_ref().is_empty() {
-        return Err(error(
-            raw.track.span().start,
-            "track is the path of a tracking file".to_owned(),
-        ));
-    }
-    let gait: GaitSpec = raw
-        .gait
-        .get_ref()
-        .parse()
-        .map_err(|cause| error(raw.gait.span().start, format!("gait: {cause}")))?;
-    let period_s = *raw.period_s.get_ref();
-    if !(period_s.is_finite() && period_s > 0.0) {
-        return Err(error(
-            raw.period_s.span().start,
-            format!("period_s = {period_s} must be a positive number of seconds"),
-        ));
-    }
-    let front = raw.front.map(|front| {
-        let place = front.span().start;
-        point(front.into_inner()).map_err(|problem| error(place, problem))
-    });
-    let finite = |value: Option<Spanned<f64>>, name: &str| {
-        let Some(value) = value else { return Ok(None) };
-        let number = *value.get_ref();
-        if number.is_finite() {
-            return Ok(Some(number));
-        }
-        let problem = format!("{name} = {number} must be a finite number of seconds");
-        Err(error(value.span().start, problem))
-    };
-    // What says something about the log says nothing without it.
-    let of_log = [
-        ("play", raw.play.as_ref().map(Spanned::span)),
-        (
-            "clock_offset_s",
-            raw.clock_offset_s.as_ref().map(Spanned::span),
-        ),
-    ];
-    let lonely = of_log
-        .into_iter()
-        .find_map(|(name, span)| Some((name, span?)));
-    if let (None, Some((name, span))) = (&raw.log, lonely) {
-        let problem = format!("{name} is about the robot's log; name it by `log`");
-        return Err(error(span.start, problem));
-    }
-    if let Some(play) = raw.play.as_ref().filter(|play| *play.get_ref() == 0) {
-        let problem = "play counts the log's plays from 1".to_owned();
-        return Err(error(play.span().start, problem));
-    }
-    Ok(CampaignRun {
-        track: folder.join(raw.track.into_inner()),
-        gait: gait.from_folder(folder),
-        period_s,
-        front: front.transpose()?,
-        timing: RunTiming {
-            cycle_start_s: finite(raw.cycle_start_s, "cycle_start_s")?,
-            log: raw.log.map(|log| folder.join(log.into_inner())),
-            play: raw.play.map(Spanned::into_inner),
-            clock_offset_s: finite(raw.clock_offset_s, "clock_offset_s")?,
-        },
-    })
 }

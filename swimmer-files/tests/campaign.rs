@@ -58,6 +58,11 @@ fn a_swimmer_file_beside_it() {
     swimmer.save(&folder.path().join("our-robot.toml")).unwrap();
     let path = folder.path().join("campaign.toml");
     std::fs::write(&path, EXAMPLE.replace("robot-slender", "our-robot.toml")).unwrap();
+    for file in ["eps030.csv", "tracks/b.csv", "b.gait"] {
+        let file = folder.path().join(file);
+        std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+        std::fs::write(file, "").unwrap();
+    }
     assert_eq!(Campaign::load(&path).unwrap().swimmer, swimmer);
     // A mistake in the swimmer file is reported there.
     std::fs::write(folder.path().join("our-robot.toml"), "name = 1").unwrap();
@@ -67,6 +72,29 @@ fn a_swimmer_file_beside_it() {
             .to_string()
             .contains("our-robot.toml:1:8")
     );
+}
+
+#[test]
+fn a_file_that_is_not_there_is_told_with_the_line_that_names_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("campaign.toml");
+    let text = format!("{EXAMPLE}log = \"b.mcap\"\n");
+    std::fs::write(&path, &text).unwrap();
+    std::fs::create_dir(folder.path().join("tracks")).unwrap();
+    for (file, line) in [
+        ("eps030.csv", 6),
+        ("tracks/b.csv", 10),
+        ("b.gait", 11),
+        ("b.mcap", 13),
+    ] {
+        let error = Campaign::load(&path).unwrap_err();
+        assert_eq!(error.place().map(|place| place.0), Some(line), "{error}");
+        let file = folder.path().join(file);
+        let told = format!("no file {}", file.display());
+        assert!(error.to_string().contains(&told), "{error}");
+        std::fs::write(file, "").unwrap();
+    }
+    assert_eq!(Campaign::load(&path).unwrap().runs.len(), 2);
 }
 
 #[test]
@@ -181,6 +209,9 @@ cycle_start_s = 4.5
     let path = folder.path().join("campaign.toml");
     std::fs::write(&path, text.replace("circle:50deg", "b.gait")).unwrap();
     let files = ["campaign.toml", "a.csv", "link.mcap", "b.csv", "b.gait"];
+    for file in &files[1..] {
+        std::fs::write(folder.path().join(file), "").unwrap();
+    }
     assert_eq!(
         Campaign::files(&path).unwrap(),
         files.map(|file| folder.path().join(file))

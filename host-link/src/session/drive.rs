@@ -25,7 +25,7 @@ const PING_EVERY: Duration = Duration::from_secs(1);
 /// Times an upload may begin anew because the robot lost it.
 const RENEWALS: u32 = 8;
 /// Bytes on the wire of the longest chunk's frame.
-const CHUNK_COST: usize = 126;
+pub(super) const CHUNK_COST: usize = 126;
 
 impl Session {
     /// Does what is due at `now`. Call it after [`receive`](Self::receive) and when

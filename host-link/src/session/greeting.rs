@@ -25,8 +25,11 @@ impl Session {
             session: reply.session,
             host_nonce: greeting.nonce,
         };
+        let since_first = now.saturating_sub(greeting.first_sent);
         if greeting.tries == 1 {
-            self.trip.sample(now.saturating_sub(greeting.first_sent));
+            self.trip.sample(since_first);
+        } else {
+            self.trip.bound(since_first);
         }
         self.last_heard = now;
         if let Err(error) = versions_meet(&HelloReplyStart::from(&reply)) {

@@ -120,8 +120,11 @@ impl Session {
         if let Some(pending) = self.pending.take_if(|pending| pending.sequence == sequence) {
             // Neither a repeat's answer tells the round trip, nor one that the robot worked for.
             let once = pending.tries == 1 && pending.last_sent == pending.first_sent;
-            if once && !matches!(pending.request, Request::Commit { .. } | Request::Play(_)) {
-                self.trip.sample(now.saturating_sub(pending.first_sent));
+            let since_first = now.saturating_sub(pending.first_sent);
+            match pending.request {
+                Request::Commit { .. } | Request::Play(_) => {}
+                _ if once => self.trip.sample(since_first),
+                _ => self.trip.bound(since_first),
             }
             if !matches!(reply, Reply::Refused(Refusal::Busy)) {
                 self.busy = 0;

@@ -13,6 +13,8 @@ const FIRST: Duration = Duration::from_millis(200);
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct RoundTrip {
     smoothed: Option<Duration>,
+    /// The least time from a first sending to an answer that could belong to a repeat.
+    at_most: Option<Duration>,
 }
 
 impl RoundTrip {
@@ -27,6 +29,17 @@ impl RoundTrip {
     /// The smoothed round trip, once there is one.
     pub(crate) fn smoothed(&self) -> Option<Duration> {
         self.smoothed
+    }
+
+    /// Takes the time from the first sending of a frame that was sent more than once: the round trip is no longer. On a slow
+    /// line nothing better is known at first, since all is repeated before its answer comes.
+    pub(crate) fn bound(&mut self, longest: Duration) {
+        self.at_most = Some(self.at_most.map_or(longest, |least| least.min(longest)));
+    }
+
+    /// The smoothed round trip, else the best that is known of it, else what a first wait takes for it.
+    pub(crate) fn assumed(&self) -> Duration {
+        self.smoothed.or(self.at_most).unwrap_or(FIRST / 2)
     }
 
     /// The wait after sending number `tries` (from 1): twice the smoothed round trip, doubled for each repeat, since a
@@ -59,6 +72,20 @@ mod tests {
         assert_eq!(slow.wait(3), MS * 2400);
         assert_eq!(slow.wait(4), LONGEST);
         assert_eq!(slow.wait(u32::MAX), LONGEST);
+    }
+
+    #[test]
+    fn what_is_assumed_is_the_best_that_is_known() {
+        let mut trip = RoundTrip::default();
+        assert_eq!(trip.assumed(), FIRST / 2);
+        trip.bound(MS * 900);
+        trip.bound(MS * 400);
+        trip.bound(MS * 500);
+        assert_eq!(trip.assumed(), MS * 400);
+        // Waits need a sample.
+        assert_eq!(trip.wait(1), FIRST);
+        trip.sample(MS * 380);
+        assert_eq!(trip.assumed(), MS * 380);
     }
 
     #[test]

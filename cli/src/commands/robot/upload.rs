@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use gait_player::GaitTable;
-use host_link::{LinkError, Port as _, Robot};
-use link_protocol::{Configuration, MAX_CHUNK, MAX_ENCODED, MAX_KNOTS, TableInfo};
+use host_link::{LinkError, Port as _};
+use link_protocol::{Configuration, MAX_KNOTS, TableInfo};
 use serde::Serialize;
 use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
 use swimmer_model::Gait as _;
@@ -14,7 +14,7 @@ use swimmer_model::Gait as _;
 use super::access::{Access, Line};
 use super::answers::{Gait, answer_no};
 use super::configure::is_configured_as;
-use super::port::{AnyPort, BAUD, Pace};
+use super::port::Pace;
 use super::preflight::{Player, Preflight};
 use super::{Owner, Upload};
 use crate::arguments::{load_gait, load_swimmer};
@@ -26,8 +26,6 @@ use crate::quantity;
 
 /// An upload over a link that loses frames may take this long.
 const PATIENCE: Duration = Duration::from_mins(2);
-/// A round trip that has not been measured yet.
-const ROUND_TRIP: Duration = Duration::from_millis(50);
 
 #[derive(Debug, Serialize)]
 struct Uploaded {
@@ -116,7 +114,7 @@ pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcom
         }
         Err(failure) => return Err(failure),
     };
-    let predicted = predicted_time(&line.robot, gait.table.bytes().len());
+    let predicted = line.robot.expected_upload(gait.table.bytes().len());
     let begun = line.robot.port().now();
     let info = send(&mut line, &gait, &interrupt)?;
     let seconds = line.robot.port().now().saturating_sub(begun).as_secs_f64();
@@ -145,15 +143,6 @@ fn foretell_alone(arguments: &Upload, gait: &Prepared, player: &Player, output: 
     }
     output.answer(&foretold);
     Ok(())
-}
-
-/// What an upload takes on a line without faults: the chunks' bytes at the line's speed, and a round trip for each of
-/// Begin, last chunk and Commit.
-fn predicted_time(robot: &Robot<AnyPort>, bytes: usize) -> Duration {
-    let on_the_line = bytes.div_ceil(MAX_CHUNK) * (MAX_ENCODED - MAX_CHUNK) + bytes;
-    let bytes_per_second = f64::from(BAUD) / 10.0;
-    let trip = robot.link_counters().round_trip.unwrap_or(ROUND_TRIP);
-    Duration::from_secs_f64(on_the_line as f64 / bytes_per_second) + 3 * trip
 }
 
 /// The gait of a play, read before any robot is met.
@@ -270,7 +259,7 @@ pub(crate) fn table_of(gait: &AnyGait) -> Result<GaitTable, gait_player::table::
 fn send(line: &mut Line, gait: &Prepared, interrupt: &Interrupt) -> Outcome<TableInfo> {
     let bytes = gait.table.bytes();
     let progress = Progress::of_bytes(bytes.len() as u64);
-    let time = predicted_time(&line.robot, bytes.len());
+    let time = line.robot.expected_upload(bytes.len());
     progress.doing(format!(
         "uploading {}, about {:.1} s",
         gait.name,
