@@ -1,3 +1,5 @@
+#![allow(clippy::cast_sign_loss, reason = "periods are above 0")]
+
 use super::*;
 use crate::{DisplacementProblem, displacement};
 use gait_player::table::check::Checker;
