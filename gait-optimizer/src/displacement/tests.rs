@@ -108,8 +108,8 @@ fn the_best_known_grows_with_the_bound() {
     let mut outdone = 0;
     for swimmer in swimmers {
         let mut best = 0.0;
-        for step in 0..=34 {
-            let max_angle = 1.3 + 0.05 * f64::from(step);
+        for step in 0..=17 {
+            let max_angle = 1.3 + 0.1 * f64::from(step);
             let problem = DisplacementProblem::new(swimmer).with_max_angle(max_angle);
             let (found, farther) = match displacement(&problem) {
                 Ok(gait) => (gait.displacement_over_length, gait.outdone_over_length),
