@@ -133,6 +133,10 @@ fn is_gait(gait: &OptimalGait) -> bool {
 /// Most samples of a quarter, as a multiple of those asked for.
 const FINEST: usize = 16;
 
+/// Samples this close to each other \[rad\] are not asked further: gaits with steps of 0.1 rad pass, and asking costs as much as
+/// finding the gait.
+const CLOSE: f64 = 0.08;
+
 /// The gait with as many samples as its own certificate needs when it is worked out from the samples alone; as it is where no
 /// number of them will do.
 fn finely_sampled(
@@ -141,6 +145,13 @@ fn finely_sampled(
     within: (&Bounds, &Region),
     (candidate, gait): (&Candidate, OptimalGait),
 ) -> OptimalGait {
+    let steps = gait.phi().windows(2).filter_map(|pair| match pair {
+        [from, to] => Some((to - from).norm()),
+        _ => None,
+    });
+    if steps.fold(0.0, f64::max) < CLOSE {
+        return gait;
+    }
     let mut finer = *problem;
     let mut sampled = gait.clone();
     while !samples_suffice(model, &sampled) {
