@@ -30,6 +30,9 @@ use crate::immobile::refuse_immobile;
 use crate::region::Region;
 use crate::{Immobile, OptimalGait};
 
+/// Samples of a cycle where nothing else is asked for.
+const SAMPLES: usize = 1024;
+
 /// What to make an atlas of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AtlasProblem {
@@ -63,7 +66,7 @@ impl AtlasProblem {
             seed: 1,
             order: 6,
             threads: 1,
-            samples: 1024,
+            samples: SAMPLES,
         }
     }
 

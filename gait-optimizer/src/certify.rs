@@ -21,6 +21,7 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{Gait as _, InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, swim};
 
+use crate::OptimalGait;
 use crate::certificate::{
     Certificate, Check, SHARE, SWUM_AGAIN, simple_and_turning_once, turning_number,
 };
@@ -123,6 +124,28 @@ pub fn certify(
     certify_turned(&model, gait, objective, limits, &curve)
 }
 
+/// Whether the samples of a gait that an optimiser made are as close as [`certify`] asks for.
+pub(crate) fn samples_suffice(model: &Model<f64>, gait: &OptimalGait) -> bool {
+    let file = gait.gait_file("");
+    let subject = Subject::new(model, &file, Limits::new(&gait.bounds, &gait.swimmer.links));
+    sampling(gait.objective, subject.openness())
+        .iter()
+        .all(|check| check.pass)
+}
+
+/// What the sampling may leave open.
+fn sampling(objective: Objective, open: Openness) -> [Check; 2] {
+    let coarsest = if objective == Objective::Efficiency {
+        COARSEST
+    } else {
+        COARSEST_WEAKLY
+    };
+    [
+        Check::at_most("sampling_slope_error", open.slope, coarsest),
+        Check::at_most("sampling_pose_error", open.pose, COARSEST),
+    ]
+}
+
 /// As [`certify`] of a counter-clockwise gait.
 fn certify_turned(
     model: &Model<f64>,
@@ -134,13 +157,7 @@ fn certify_turned(
     let subject = Subject::new(model, gait, limits);
     let open = subject.openness();
     let mut checks = subject.of_the_curve(gait);
-    let coarsest = if objective == Objective::Efficiency {
-        COARSEST
-    } else {
-        COARSEST_WEAKLY
-    };
-    checks.push(Check::at_most("sampling_slope_error", open.slope, coarsest));
-    checks.push(Check::at_most("sampling_pose_error", open.pose, COARSEST));
+    checks.extend(sampling(objective, open));
     let stroke = swim(model, curve, &Tolerance::default());
     let [x, y, theta] = subject.path.end();
     let apart = |[a, b]: [f64; 2]| (a - x).hypot(b - y);

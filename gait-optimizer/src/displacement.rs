@@ -1,5 +1,6 @@
 //! Gaits of most net displacement, by Pontryagin's maximum principle (paper, section IV).
 
+mod best;
 mod error;
 pub(crate) mod flow;
 pub(crate) mod height;
@@ -9,11 +10,12 @@ mod trunk;
 use std::fmt;
 
 use crate::region::Region;
+use best::{best, candidates};
 pub use error::{DisplacementError, Fates};
-use search::{Candidate, Search};
+use nalgebra::Vector2;
+use search::{Candidate, LOOKS};
 use swimmer_files::{ArcKind, Bounds, Objective};
 use swimmer_model::{Links, Model, Swimmer};
-use trunk::trunks;
 
 use crate::cycle::{Cycle, QuarterTrace};
 use crate::immobile::refuse_immobile;
@@ -167,8 +169,12 @@ impl DisplacementProblem {
 /// A simple curve with these symmetries keeps each quarter between the diagonals φ₂ = ±φ₁. Where a region that the gait
 /// should go round is cut off by a bound, no such curve is the best one: the best ones touch their own images along a
 /// diagonal (as the paper's gait in the sector does). Such a gait, with its `diagonal` arcs, is returned where bounds on the
-/// angles leave no other forward gait, or only one that ends in a corner of the bounds and carries less far. Its bounds say so:
-/// they have the sector.
+/// angles leave no other forward gait, or only one that carries less far and ends in a corner of the bounds or goes round a
+/// straight shape at which it loses. Its bounds say so: they have the sector.
+///
+/// Shapes that a gait should not go round may lie off all bounds. Then the gaits that carry farthest reach them along a slit,
+/// out and back along itself. Slits along the diagonals are found; others are not, and what is returned may carry less far
+/// than a gait that is no optimum: [`OptimalGait::outdone_over_length`].
 ///
 /// # Errors
 /// [`DisplacementError`]: what is wrong with the problem, or why it has no optimum.
@@ -176,18 +182,41 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
     problem.validate()?;
     let model = Model::new(&problem.swimmer.of_unit_length())?;
     refuse_immobile(&model, &problem.bounds)?;
-    let found = best(problem, &model, &problem.bounds);
-    if !problem.may_touch() || found.as_ref().is_ok_and(|gait| !cut_off(gait)) {
+    let (found, _) = best(problem, &model, &problem.bounds);
+    if !touches(problem, &model, found.as_ref().ok()) {
         return found;
     }
-    let touching = best(problem, &model, &problem.touching());
+    let (touching, farthest) = best(problem, &model, &problem.touching());
     let carries =
         |gait: &Result<OptimalGait, _>| gait.as_ref().map_or(0.0, |gait| gait.displacement);
-    if carries(&touching) > carries(&found) {
+    let mut answer = if carries(&touching) > carries(&found) {
         touching
     } else {
         found
+    };
+    match &mut answer {
+        Ok(gait) => {
+            let least = gait.displacement_over_length * (1.0 + OUTDONE);
+            gait.outdone_over_length = farthest.filter(|farthest| *farthest > least);
+        }
+        Err(DisplacementError::NoOptimum { outdone, .. }) => *outdone = farthest,
+        Err(_) => {}
     }
+    answer
+}
+
+/// How much farther, relatively, a gait that is no optimum must carry to be told of.
+const OUTDONE: f64 = 1e-6;
+
+/// Whether gaits that touch their own images are to be looked at beside the best of the others: where there is none, or it
+/// is cut off, or it goes round a straight shape that it had better not.
+fn touches(problem: &DisplacementProblem, model: &Model<f64>, best: Option<&OptimalGait>) -> bool {
+    problem.may_touch() && best.is_none_or(|gait| cut_off(gait) || loses_when_straight(model))
+}
+
+/// Whether going round the straight shape counter-clockwise carries the swimmer backwards.
+fn loses_when_straight(model: &Model<f64>) -> bool {
+    model.first_derivatives(&Vector2::zeros()).curvature().x < 0.0
 }
 
 /// Every gait that the search finds, farthest first: also those that fail their certificate, and those that touch their own
@@ -198,15 +227,15 @@ pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, D
     refuse_immobile(&model, &problem.bounds)?;
     let of = |bounds: &Bounds| {
         let region = Region::new(bounds, &problem.swimmer.links);
-        let (candidates, _) = candidates(problem, &model, bounds, &region);
-        let gaits = candidates
+        let gaits = candidates(problem, &model, (bounds, &region), LOOKS)
+            .found
             .into_iter()
             .filter_map(|candidate| certified(problem, &model, (bounds, &region), &candidate));
         gaits.collect::<Vec<_>>()
     };
     let mut gaits = of(&problem.bounds);
     let best = gaits.iter().find(|gait| gait.certificate.pass());
-    if problem.may_touch() && best.is_none_or(cut_off) {
+    if touches(problem, &model, best) {
         gaits.extend(of(&problem.touching()));
     }
     gaits.sort_by(|a, b| b.displacement.abs().total_cmp(&a.displacement.abs()));
@@ -217,62 +246,6 @@ pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, D
 fn cut_off(gait: &OptimalGait) -> bool {
     let last = gait.arcs.last().map(|arc| arc.kind);
     last != Some(ArcKind::Singular)
-}
-
-/// The extremals within these bounds that head the right way, farthest first, and what became of all.
-fn candidates(
-    problem: &DisplacementProblem,
-    model: &Model<f64>,
-    bounds: &Bounds,
-    region: &Region,
-) -> (Vec<Candidate>, Fates) {
-    let sign = problem.heading().sign();
-    let mut search = Search {
-        model,
-        region,
-        sign,
-        touches: 0,
-    };
-    let trunks = trunks(search.extremal(0.0), bounds, region);
-    let (mut candidates, fates) = search.candidates(&trunks);
-    if region.has_diagonals() {
-        search.touches = 1;
-        candidates.extend(search.candidates(&trunks).0);
-    }
-    candidates.retain(|candidate| sign * candidate.quarter.end[2] > 0.0);
-    candidates.sort_by(|a, b| b.quarter.end[2].abs().total_cmp(&a.quarter.end[2].abs()));
-    (candidates, fates)
-}
-
-/// The best gait that certifies within these bounds, which may be tighter than the problem's.
-fn best(
-    problem: &DisplacementProblem,
-    model: &Model<f64>,
-    bounds: &Bounds,
-) -> Result<OptimalGait, DisplacementError> {
-    let region = Region::new(bounds, &problem.swimmer.links);
-    let heading = problem.heading();
-    let (candidates, fates) = candidates(problem, model, bounds, &region);
-    let mut refused = None;
-    for candidate in &candidates {
-        let Some(gait) = certified(problem, model, (bounds, &region), candidate) else {
-            continue;
-        };
-        if gait.certificate.pass() {
-            return Ok(gait);
-        }
-        refused.get_or_insert(gait);
-    }
-    Err(match refused {
-        Some(gait) => DisplacementError::NotCertified {
-            displacement_over_length: gait.displacement_over_length,
-            failed: gait.certificate.failures(),
-        },
-        None if problem.bounds == Bounds::default() => {
-            DisplacementError::NoUnboundedOptimum { fates }
-        }
-        None => DisplacementError::NoOptimum { heading, fates },
-    })
 }
 
 /// A candidate as a full cycle with its certificate and the bounds that it was found within, which are those that it can be

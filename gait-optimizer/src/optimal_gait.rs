@@ -52,6 +52,9 @@ pub struct OptimalGait {
     pub certificate: Certificate,
     /// What only efficiency gaits have.
     pub efficiency_figures: Option<EfficiencyFigures>,
+    /// X over L of a gait within the same bounds that carries farther, but is no extremal, and so no optimum: none where the
+    /// search saw no such gait. Then the largest displacement belongs to a kind of gait that the search does not know.
+    pub outdone_over_length: Option<f64>,
     pub(crate) cycle: Cycle,
 }
 
@@ -94,6 +97,7 @@ impl OptimalGait {
             links_cross: solution.links_cross,
             certificate: solution.certificate,
             efficiency_figures: None,
+            outdone_over_length: None,
             cycle,
         }
     }

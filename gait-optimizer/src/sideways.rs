@@ -23,6 +23,7 @@ use swimmer_model::{Model, Swimmer, Tolerance, trajectory};
 pub use error::SidewaysError;
 
 use crate::certificate::{Certificate, Check, SWUM_AGAIN, again_within};
+use crate::certify::samples_suffice;
 use crate::cycle::Cycle;
 use crate::loops::LoopTrace;
 use crate::optimal_gait::Solution;
@@ -140,8 +141,27 @@ fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sid
     })
 }
 
-/// As [`sideways`], from one end.
+/// As [`sideways`], from one end, with as many samples as the gait's own certificate needs when it is worked out from the
+/// samples alone.
 fn from_this_end(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
+    let found = sampled_as_asked(problem)?;
+    let model = Model::new(&problem.swimmer.of_unit_length()).map_err(crate::AtlasError::from)?;
+    let mut finer = *problem;
+    let mut sampled = found.clone();
+    while !samples_suffice(&model, &sampled.gait) {
+        finer.samples *= 2;
+        if finer.samples > FINEST * problem.samples {
+            return Ok(found);
+        }
+        sampled = sampled_as_asked(&finer)?;
+    }
+    Ok(sampled)
+}
+
+/// Most samples, as a multiple of those asked for.
+const FINEST: usize = 16;
+
+fn sampled_as_asked(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
     let loops = atlas(&AtlasProblem {
         bounds: problem.bounds,
         starts: problem.starts,

@@ -2,12 +2,12 @@
 
 use gait_optimizer::{
     Bounds, Branch, Certificate, DisplacementProblem, EfficiencyProblem, Heading, Objective,
-    TurningProblem, certify, displacement, efficiency, turning,
+    SidewaysProblem, TurningProblem, certify, displacement, efficiency, sideways, turning,
 };
 use nalgebra::Vector2;
 use std::path::Path;
 use swimmer_files::{AnyGait, GaitFile};
-use swimmer_model::Swimmer;
+use swimmer_model::{Links, Swimmer};
 
 fn certificate(swimmer: &Swimmer<f64>, file: &GaitFile) -> Certificate {
     certify(swimmer, file, file.objective, &file.bounds).unwrap()
@@ -254,4 +254,42 @@ fn sparse_samples_are_enough_or_say_so() {
         "{}",
         refused.failures()
     );
+}
+
+/// Swimmers with a short middle link race through some shapes, and their gaits have as many samples as the certificate from the
+/// file asks for.
+#[test]
+fn gaits_of_short_middle_links_are_sampled_as_closely_as_is_asked() {
+    let with = |middle| Swimmer {
+        links: Links {
+            middle,
+            front: 1.0,
+            back: 1.0,
+        },
+        ..Swimmer::purcell()
+    };
+    let mut finer = 0;
+    for middle in [0.02, 0.05, 0.1, 1.0] {
+        let swimmer = with(middle);
+        let gait = displacement(&DisplacementProblem::new(swimmer)).unwrap();
+        let file = gait.gait_file("short");
+        let certificate = certify(&swimmer, &file, file.objective, &file.bounds).unwrap();
+        assert!(certificate.pass(), "{middle}: {}", certificate.failures());
+        finer += usize::from(file.u.len() > 1024);
+    }
+    assert_eq!(finer, 2);
+    let swimmer = with(0.1);
+    let gait = sideways(&SidewaysProblem {
+        bounds: Bounds {
+            max_angle: Some(2.5),
+            ..Bounds::default()
+        },
+        starts: 6,
+        ..SidewaysProblem::new(swimmer)
+    })
+    .unwrap()
+    .gait;
+    let file = gait.gait_file("short");
+    let certificate = certify(&swimmer, &file, file.objective, &file.bounds).unwrap();
+    assert!(certificate.pass(), "{}", certificate.failures());
 }

@@ -7,7 +7,8 @@
 pub mod check;
 
 use core::fmt;
-use link_protocol::{ANGLE_UNIT_RAD, Joint, MAX_KNOTS, MAX_TABLE, crc32c};
+pub use link_protocol::MAX_KNOTS;
+use link_protocol::{ANGLE_UNIT_RAD, Joint, MAX_TABLE, crc32c};
 
 /// Fewest knots of a table.
 pub const MIN_KNOTS: usize = 2;

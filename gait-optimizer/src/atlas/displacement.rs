@@ -7,11 +7,11 @@
 use swimmer_files::Objective;
 use swimmer_model::Model;
 
-use super::AtlasProblem;
 use super::distinct::Outline;
 use super::gates::guesses;
 use super::newton::{Settings, Stationary};
 use super::pipeline::{Seek, distance};
+use super::{AtlasProblem, SAMPLES};
 use crate::closed_curve::Functional;
 use crate::loops::{Closed, LoopTrace, close};
 use crate::optimal_gait::Solution;
@@ -44,10 +44,14 @@ impl Seek for Displacement<'_> {
         [Heading::Forwards, Heading::Backwards]
             .into_iter()
             .filter_map(|heading| {
+                let usual = DisplacementProblem::new(problem.swimmer);
+                // As many times finer as the atlas is asked for.
+                let finer = (problem.samples / SAMPLES).max(1);
                 crate::displacement(&DisplacementProblem {
                     bounds: problem.bounds,
                     heading: Some(heading),
-                    ..DisplacementProblem::new(problem.swimmer)
+                    quarter_samples: usual.quarter_samples * finer,
+                    ..usual
                 })
                 .ok()
             })

@@ -98,13 +98,16 @@ pub enum DisplacementError {
     },
     /// Under these bounds there is no optimum with this sign of X.
     #[error(
-        "no {heading} optimum under these bounds ({fates}); try other bounds or the other direction"
+        "no {heading} optimum under these bounds ({fates}){}; try other bounds or the other direction",
+        outdone_words(*.outdone)
     )]
     NoOptimum {
         /// Direction asked for.
         heading: Heading,
         /// What the search saw.
         fates: Fates,
+        /// X over L of a gait within the bounds that is no extremal; none where the search saw no such gait.
+        outdone: Option<f64>,
     },
     /// Extremals were found, but the best of them fails its certificate.
     #[error(
@@ -116,4 +119,14 @@ pub enum DisplacementError {
         /// The checks that it fails, with their values.
         failed: String,
     },
+}
+
+/// That there are gaits all the same.
+fn outdone_words(outdone: Option<f64>) -> String {
+    outdone.map_or_else(String::new, |carried| {
+        format!(
+            ". There are gaits: one that is no extremal carries X/L = {carried:.6}, and the farthest go round shapes off all \
+             bounds along a slit, which this search does not know"
+        )
+    })
 }

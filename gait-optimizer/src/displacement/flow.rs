@@ -16,59 +16,20 @@
 
 mod event;
 mod motion;
+mod quarter;
 
 use event::{Event, MOST_EVENTS, Watched, first_event};
+
+use swimmer_files::ArcKind;
 
 use super::height::{Extremal, State, pose_rates, shape};
 use crate::region::{Bound, Region};
 use crate::runge_kutta::{Point, StepControl, System, controlled_step, exact_step};
 pub(crate) use motion::{Motion, Track};
+pub(crate) use quarter::{Fate, Leg, MOST_ARCS, Quarter};
 
-/// One arc of a quarter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Leg {
-    pub(crate) motion: Motion,
-    pub(crate) from: State,
-    pub(crate) to: State,
-    /// Of its curve in the (φ₁, φ₂) plane \[rad\].
-    pub(crate) length: f64,
-}
-
-/// How a quarter came to its end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Fate {
-    /// On φ₁ = −φ₂, as it should.
-    Ended,
-    /// Back on φ₁ = φ₂, where its mirror image would cross it.
-    CameBack,
-    /// Beyond the horizon.
-    LeftHorizon,
-    /// The singular control is not defined: no step is short enough.
-    Stalled,
-    /// Arc after arc without an end.
-    TooManyArcs,
-}
-
-/// Most arcs of a quarter.
-pub(crate) const MOST_ARCS: usize = 12;
 /// Longest curve of a quarter \[rad\].
 const LONGEST_CURVE: f64 = 40.0;
-/// A quarter gait.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Quarter {
-    legs: [Leg; MOST_ARCS],
-    count: usize,
-    /// How often it touched φ₁ = −φ₂ and went on along it.
-    pub(crate) touched: usize,
-    pub(crate) fate: Fate,
-    pub(crate) end: State,
-}
-
-impl Quarter {
-    pub(crate) fn legs(&self) -> &[Leg] {
-        self.legs.get(..self.count).unwrap_or_default()
-    }
-}
 
 /// The dynamics of an arc with |u| = 1 (paper, the constraint on the shape's rate of change).
 pub(crate) struct Drive<'a> {
@@ -100,6 +61,10 @@ pub(crate) struct Course {
     pub(crate) control: StepControl,
     /// How often to go on along φ₁ = −φ₂, where that is a bound, instead of ending there.
     pub(crate) touches: usize,
+    /// How often the quarter has touched that line before the state that is followed from.
+    pub(crate) touched: usize,
+    /// φ₁ + φ₂ where the quarter began.
+    pub(crate) began: f64,
 }
 
 /// Follows arcs from a state until the quarter is over, leaving bounds where the multiplier falls to zero.
@@ -113,17 +78,19 @@ pub(crate) fn follow(
     arcs(extremal, region, start, first, course, true)
 }
 
-/// Follows the bounds from a state on one of them, never leaving them.
+/// Follows the bounds from a state on one of them, never leaving them, touching φ₁ = −φ₂ as often as told.
 pub(crate) fn along_bounds(
     extremal: Extremal<'_>,
     region: &Region,
     start: State,
     first: Track,
-    control: StepControl,
+    (control, touches): (StepControl, usize),
 ) -> Quarter {
     let course = Course {
         control,
-        touches: 0,
+        touches,
+        touched: 0,
+        began: start[0] + start[1],
     };
     arcs(extremal, region, start, Motion::Along(first), course, false)
 }
@@ -145,7 +112,7 @@ fn arcs(
     let mut quarter = Quarter {
         legs: [still; MOST_ARCS],
         count: 0,
-        touched: 0,
+        touched: course.touched,
         fate: Fate::TooManyArcs,
         end: start,
     };
@@ -156,6 +123,8 @@ fn arcs(
             region,
             control: course.control,
             leaves,
+            began: course.began,
+            ends_straight: quarter.touched > 0,
         };
         let (end, length, event) = tracer.arc(quarter.end);
         *leg = Leg {
@@ -193,6 +162,10 @@ struct Tracer<'a> {
     control: StepControl,
     /// Whether bounds are left where the multiplier falls to zero.
     leaves: bool,
+    /// φ₁ + φ₂ where the quarter began.
+    began: f64,
+    /// Whether a quarter ends in the straight shape. One that has touched φ₁ = −φ₂ must, or it would meet itself.
+    ends_straight: bool,
 }
 
 impl Tracer<'_> {
@@ -261,7 +234,7 @@ impl Tracer<'_> {
     fn on_diagonal(&self) -> bool {
         match self.drive.motion {
             Motion::Singular => false,
-            Motion::Along(track) => track.bound.kind() == swimmer_files::ArcKind::Diagonal,
+            Motion::Along(track) => track.bound.kind() == ArcKind::Diagonal,
         }
     }
 
@@ -353,12 +326,18 @@ impl Tracer<'_> {
                 let Some(track) = Track::new(self.region, index, &phi, 1.0) else {
                     return Err(Fate::Stalled);
                 };
+                let is_straight = self.on_diagonal() && track.bound.kind() == ArcKind::Diagonal;
+                if is_straight && self.ends_straight {
+                    return Err(Fate::Ended);
+                }
                 let along = track.direction(&phi);
-                // A singular arc may turn either way on a bound; the way towards φ₁ = −φ₂ closes the loop. In a corner of
-                // the region the only way is back inside.
+                // A singular arc may turn either way on a bound; the way towards φ₁ = −φ₂ closes the loop. On φ₁ = φ₂ it
+                // leads away from where the quarter began. In a corner of the region the only way is back inside.
                 let forwards = match self.drive.motion {
                     Motion::Singular => {
-                        let towards_end = -(along.x + along.y);
+                        let outwards = is_start_line(&track.bound) && phi.x + phi.y > self.began;
+                        let away = if outwards { 1.0 } else { -1.0 };
+                        let towards_end = away * (along.x + along.y);
                         if towards_end.abs() > 1e-9 {
                             towards_end
                         } else {
@@ -377,7 +356,12 @@ impl Tracer<'_> {
     }
 }
 
+/// The edge φ₂ ≥ φ₁ of the sector, on which quarters begin.
+fn is_start_line(bound: &Bound) -> bool {
+    matches!(bound, Bound::Straight(edge) if edge.kind == ArcKind::Diagonal && edge.normal.x > 0.0)
+}
+
 /// The edge φ₂ ≥ −φ₁ of the sector, which is also where quarters end.
-fn is_end_line(bound: &Bound) -> bool {
-    matches!(bound, Bound::Straight(edge) if edge.kind == swimmer_files::ArcKind::Diagonal && edge.normal.x < 0.0)
+pub(crate) fn is_end_line(bound: &Bound) -> bool {
+    matches!(bound, Bound::Straight(edge) if edge.kind == ArcKind::Diagonal && edge.normal.x < 0.0)
 }

@@ -9,7 +9,7 @@ use swimmer_model::Model;
 
 use super::Fates;
 use super::flow::{Course, Fate, Leg, Motion, Quarter, follow};
-use super::height::{Extremal, shape};
+use super::height::{Extremal, State, shape};
 use super::trunk::{Place, Trunk};
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
@@ -31,10 +31,22 @@ pub(crate) struct Search<'a> {
     pub(crate) sign: f64,
     /// How often the quarter touches φ₁ = −φ₂ before it ends there.
     pub(crate) touches: usize,
+    /// Places to look at on each trunk.
+    pub(crate) looks: usize,
 }
 
-/// Places looked at on each trunk, and how near to a fold the search looks.
-const LOOKS: usize = 40;
+/// What a scan saw beside the candidates.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Seen {
+    pub(crate) fates: Fates,
+    /// Extremals that end, whatever their λ₄ there: the trunk's index, the place on it and λ₃ x.
+    ended: Vec<(usize, f64, f64)>,
+}
+
+/// Places looked at on each trunk.
+pub(crate) const LOOKS: usize = 40;
+/// The same where that finds no optimum: the places from which extremals end may lie in a narrow gap.
+pub(crate) const CLOSER_LOOKS: usize = 320;
 const COARSE: StepControl = StepControl {
     tolerance: 1e-4,
     longest: 0.7,
@@ -61,24 +73,37 @@ enum Look {
 
 impl<'a> Search<'a> {
     /// All candidates, in the order of the trunks, and what became of the rest.
-    pub(crate) fn candidates(&self, trunks: &[Trunk]) -> (Vec<Candidate>, Fates) {
-        let mut fates = Fates::default();
+    pub(crate) fn candidates(&self, trunks: &[Trunk]) -> (Vec<Candidate>, Seen) {
+        let mut seen = Seen::default();
         let mut found = Vec::new();
-        for trunk in trunks {
-            self.scan(trunk, &mut fates, &mut found);
+        for (index, trunk) in trunks.iter().enumerate() {
+            self.scan((index, trunk), &mut seen, &mut found);
             found.extend(self.never_leaving(trunk));
         }
-        (found, fates)
+        (found, seen)
     }
 
-    fn scan(&self, trunk: &Trunk, fates: &mut Fates, found: &mut Vec<Candidate>) {
+    /// Those of the extremals seen that carry farthest, best first, traced finely one after the other: gaits within the bounds,
+    /// but no optima, since their λ₄ does not end at zero.
+    pub(crate) fn farthest(
+        self,
+        trunks: &[Trunk],
+        mut seen: Seen,
+    ) -> impl Iterator<Item = Candidate> {
+        const MOST: usize = 24;
+        seen.ended.sort_by(|a, b| b.2.total_cmp(&a.2));
+        let best = seen.ended.into_iter().take(MOST);
+        best.filter_map(move |(index, p, _)| self.candidate(trunks.get(index)?, p))
+    }
+
+    fn scan(&self, (index, trunk): (usize, &Trunk), seen: &mut Seen, found: &mut Vec<Candidate>) {
         let [low, high] = trunk.range();
-        let place = |look: usize| low + (high - low) * (look as f64 + 0.5) / LOOKS as f64;
+        let place = |look: usize| low + (high - low) * (look as f64 + 0.5) / self.looks as f64;
         let mut before = Look::Nothing;
         let mut last_p = low;
-        for look in 0..LOOKS {
+        for look in 0..self.looks {
             let p = place(look);
-            let here = self.look(trunk, p, fates);
+            let here = self.look((index, trunk), p, seen);
             match (before, here) {
                 (Look::Miss { p: p0, lambda4: r0 }, Look::Miss { lambda4: r1, .. }) => {
                     self.between(trunk, (p0, r0), (p, r1), found);
@@ -105,14 +130,15 @@ impl<'a> Search<'a> {
     }
 
     /// One extremal of the scan.
-    fn look(&self, trunk: &Trunk, p: f64, fates: &mut Fates) -> Look {
+    fn look(&self, (index, trunk): (usize, &Trunk), p: f64, seen: &mut Seen) -> Look {
+        let fates = &mut seen.fates;
         fates.sent += 1;
         let Some((quarter, final_y)) = self.shoot(trunk, p, COARSE) else {
             fates.wrong_way += 1;
             return Look::Nothing;
         };
         match quarter.fate {
-            Fate::Ended if quarter.touched == self.touches => {
+            Fate::Ended if self.ended(&quarter) => {
                 fates.ended += 1;
                 let lambda4 = quarter.end[3] - final_y;
                 fates.nearest = Some(
@@ -120,6 +146,7 @@ impl<'a> Search<'a> {
                         .nearest
                         .map_or(lambda4.abs(), |nearest| nearest.min(lambda4.abs())),
                 );
+                seen.ended.push((index, p, self.sign * quarter.end[2]));
                 return Look::Miss { p, lambda4 };
             }
             Fate::Ended => fates.ended += 1,
@@ -252,7 +279,7 @@ impl<'a> Search<'a> {
         let whole = match trunk {
             Trunk::StartLine { .. } => quarter,
             // Again from the start: the multiplier itself must fall to zero at p.
-            Trunk::Bounds(_) => {
+            Trunk::Bounds { .. } => {
                 let start = trunk.start()?;
                 let extremal = self.extremal(final_y);
                 let whole = follow(
@@ -260,7 +287,7 @@ impl<'a> Search<'a> {
                     self.region,
                     start.state,
                     start.motion,
-                    self.course(FINE),
+                    self.course(FINE, &start.state, 0),
                 );
                 let left = whole
                     .legs()
@@ -278,6 +305,9 @@ impl<'a> Search<'a> {
 
     /// The extremal that runs along the bounds to the very end.
     fn never_leaving(&self, trunk: &Trunk) -> Option<Candidate> {
+        if trunk.on_diagonal() {
+            return None; // which would be no loop
+        }
         let final_y = trunk.end()?[3];
         let start = trunk.start()?;
         let extremal = self.extremal(final_y);
@@ -286,7 +316,7 @@ impl<'a> Search<'a> {
             self.region,
             start.state,
             start.motion,
-            self.course(FINE),
+            self.course(FINE, &start.state, 0),
         );
         let stayed = quarter
             .legs()
@@ -315,6 +345,7 @@ impl<'a> Search<'a> {
             Motion::Singular => direction.y - direction.x,
             Motion::Along(track) => track.inwards(&phi).dot(&direction),
         };
+        let began = trunk.start().map_or(state, |start| start.state);
         (inwards > 0.0).then(|| {
             (
                 follow(
@@ -322,22 +353,25 @@ impl<'a> Search<'a> {
                     self.region,
                     state,
                     Motion::Singular,
-                    self.course(control),
+                    self.course(control, &began, trunk.touched()),
                 ),
                 final_y,
             )
         })
     }
 
-    fn course(&self, control: StepControl) -> Course {
+    /// From a state of a quarter that began in another.
+    fn course(&self, control: StepControl, began: &State, touched: usize) -> Course {
         Course {
             control,
             touches: self.touches,
+            touched,
+            began: began[0] + began[1],
         }
     }
 
     fn ended(&self, quarter: &Quarter) -> bool {
-        quarter.fate == Fate::Ended && quarter.touched == self.touches
+        quarter.fate == Fate::Ended && quarter.touched == self.touches && !quarter.ends_in_a_spike()
     }
 
     fn place(&self, trunk: &Trunk, p: f64) -> Option<Place> {

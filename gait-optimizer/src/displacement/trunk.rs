@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use swimmer_files::{ArcKind, Bounds};
 
-use super::flow::{Drive, Fate, Leg, Motion, Track, along_bounds};
+use super::flow::{Drive, Fate, Leg, Motion, Track, along_bounds, is_end_line};
 use super::height::{Extremal, State};
 use super::search::{FINE, lasting};
 use crate::region::{Bound, Piece, Region};
@@ -16,7 +16,13 @@ pub(crate) enum Trunk {
     /// φ₁ = φ₂ = p.
     StartLine { low: f64, high: f64 },
     /// Along bounds; p is the way along them. Poses are carried along.
-    Bounds(Vec<Stretch>),
+    Bounds {
+        stretches: Vec<Stretch>,
+        /// Where arcs may begin at the earliest.
+        low: f64,
+        /// How often φ₁ = −φ₂ was touched up to there.
+        touched: usize,
+    },
 }
 
 /// A part of the way along bounds.
@@ -62,20 +68,64 @@ pub(crate) fn trunks(extremal: Extremal<'_>, bounds: &Bounds, region: &Region) -
                 Piece::Tips
             });
         }
-        let way = along_bounds(extremal, region, state, track, FINE);
-        let mut p = 0.0;
-        let stretches: Vec<Stretch> = lasting(way.legs())
-            .filter_map(|leg| {
-                let stretch = stretch(leg, p)?;
-                p = stretch.span[1];
-                Some(stretch)
-            })
-            .collect();
+        let way = along_bounds(extremal, region, state, track, (FINE, 0));
+        let stretches = stretches(way.legs());
         if way.fate == Fate::Ended && !stretches.is_empty() {
-            trunks.push(Trunk::Bounds(stretches));
+            trunks.push(Trunk::Bounds {
+                stretches,
+                low: 0.0,
+                touched: 0,
+            });
         }
     }
     trunks
+}
+
+/// The trunks along φ₁ = −φ₂, where that is a bound, inwards from where those along other bounds meet it. Quarters leave them
+/// to go round shapes about the straight one that the other bounds do not meet.
+pub(crate) fn trunks_on_the_diagonal(
+    extremal: Extremal<'_>,
+    region: &Region,
+    trunks: &[Trunk],
+) -> Vec<Trunk> {
+    let mut found = Vec::new();
+    let Some(index) = region.bounds().position(|bound| is_end_line(&bound)) else {
+        return found;
+    };
+    for trunk in trunks {
+        let Some(Place {
+            state,
+            motion: Motion::Along(track),
+        }) = trunk.start()
+        else {
+            continue;
+        };
+        let way = along_bounds(extremal, region, state, track, (FINE, 1));
+        let stretches = stretches(way.legs());
+        let touching = stretches
+            .iter()
+            .find(|stretch| stretch.track.index == index);
+        if let (Fate::Ended, Some(touching)) = (way.fate, touching) {
+            found.push(Trunk::Bounds {
+                low: touching.span[0],
+                stretches,
+                touched: 1,
+            });
+        }
+    }
+    found
+}
+
+/// Legs along bounds, one after the other.
+fn stretches(legs: &[Leg]) -> Vec<Stretch> {
+    let mut p = 0.0;
+    lasting(legs)
+        .filter_map(|leg| {
+            let stretch = stretch(leg, p)?;
+            p = stretch.span[1];
+            Some(stretch)
+        })
+        .collect()
 }
 
 /// Where a bound that leads towards φ₁ = −φ₂ meets φ₁ = φ₂ > 0, and which way round it is run from there.
@@ -110,7 +160,27 @@ impl Trunk {
     pub(crate) fn range(&self) -> [f64; 2] {
         match self {
             Self::StartLine { low, high } => [*low, *high],
-            Self::Bounds(stretches) => [0.0, stretches.last().map_or(0.0, |last| last.span[1])],
+            Self::Bounds { stretches, low, .. } => {
+                [*low, stretches.last().map_or(*low, |last| last.span[1])]
+            }
+        }
+    }
+
+    /// How often a quarter has touched φ₁ = −φ₂ where it leaves the trunk.
+    pub(crate) fn touched(&self) -> usize {
+        match self {
+            Self::StartLine { .. } => 0,
+            Self::Bounds { touched, .. } => *touched,
+        }
+    }
+
+    /// Whether the places lie on φ₁ = −φ₂.
+    pub(crate) fn on_diagonal(&self) -> bool {
+        match self {
+            Self::StartLine { .. } => false,
+            Self::Bounds { stretches, .. } => stretches
+                .last()
+                .is_some_and(|last| is_end_line(&last.track.bound)),
         }
     }
 
@@ -121,7 +191,7 @@ impl Trunk {
                 state: [p, p, 0.0, 0.0, 0.0, 0.0],
                 motion: Motion::Singular,
             }),
-            Self::Bounds(stretches) => {
+            Self::Bounds { stretches, .. } => {
                 let stretch = stretches
                     .iter()
                     .find(|stretch| p >= stretch.span[0] && p <= stretch.span[1])?;
@@ -138,7 +208,7 @@ impl Trunk {
     pub(crate) fn start(&self) -> Option<Place> {
         match self {
             Self::StartLine { .. } => None,
-            Self::Bounds(stretches) => stretches.first().map(|first| Place {
+            Self::Bounds { stretches, .. } => stretches.first().map(|first| Place {
                 state: first.from,
                 motion: Motion::Along(first.track),
             }),
@@ -149,7 +219,7 @@ impl Trunk {
     pub(crate) fn end(&self) -> Option<State> {
         match self {
             Self::StartLine { .. } => None,
-            Self::Bounds(stretches) => stretches.last().map(|last| last.to),
+            Self::Bounds { stretches, .. } => stretches.last().map(|last| last.to),
         }
     }
 }

@@ -115,7 +115,8 @@ pub enum EfficiencyError {
     /// Shooting does not converge from the best start that there is.
     #[error(
         "no {branch} gait: the Fourier gait of order {order} has efficiency {efficiency:.9e}, but shooting does not \
-         converge from it to a residual of 1e-10"
+         converge from it to a residual of 1e-10; such a gait may be met from a swimmer that works: follow its gait with \
+         `swimmer atlas --objective efficiency --continue chi=FROM..TO` or `link-ratio=FROM..TO`"
     )]
     NotConverged {
         /// Which gait.

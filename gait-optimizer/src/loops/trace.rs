@@ -48,8 +48,10 @@ const CONTROL: StepControl = StepControl {
     tolerance: 1e-13,
     longest: f64::INFINITY,
 };
-/// Fewest samples of an arc: the interpolation takes five on the same side of a corner.
+/// Fewest samples of an arc: the interpolation takes five on the same side of a corner, and needs more where the arc is
+/// curved.
 const FEWEST: usize = 8;
+const FEWEST_CURVED: usize = 24;
 /// Arcs below this share of the cycle are crossings of a corner, not arcs.
 const LASTING: f64 = 1e-9;
 
@@ -283,9 +285,13 @@ impl LoopTrace {
             let set_out = system.direction(&here);
             // Samples fall on the quarters of the cycle, where a symmetric loop has its images meet.
             for (from, to) in between_quarters(done / total, (done + length) / total) {
-                let intervals = (FEWEST..samples)
+                let fewest = match motion {
+                    Motion::Edge { .. } => FEWEST,
+                    Motion::Singular | Motion::Clearance { .. } => FEWEST_CURVED,
+                };
+                let intervals = (fewest..samples)
                     .find(|&count| count as f64 >= samples as f64 * (to - from))
-                    .unwrap_or(samples.max(FEWEST));
+                    .unwrap_or(samples.max(fewest));
                 for interval in 0..intervals {
                     evidence.look(&system, region, &here);
                     let step = (to - from) * total / intervals as f64;

@@ -23,9 +23,13 @@
 //! k = T/∫p and the energy is (∫p)²/T, the constant-power value of the paper; Lighthill's ξ goes with 1/(E T), so the cap
 //! costs the share 1 − (∫p)²/(T E) of ξ.
 
+mod table;
+
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, GaitArc, GaitFile};
 use swimmer_model::{Gait, InvalidSamples, Model};
+
+pub use table::timing_of_table;
 
 /// Cells of a cycle, at least; those of a sampled gait end at its samples.
 const CELLS: f64 = 2048.0;
@@ -95,6 +99,8 @@ pub struct Timing {
     pub efficiency_loss: f64,
     /// Highest power over μ \[m³/s²\]: that of every stretch where no servo is at its limit.
     pub power: f64,
+    /// k.
+    pour: f64,
     cells: Vec<Cell>,
 }
 
@@ -113,6 +119,8 @@ struct Sample {
     weight: f64,
     power_root: f64,
     turn: f64,
+    /// τ·r, or more where the curve shall be slower.
+    floor: f64,
 }
 
 /// The shortest period \[s\] in which joints of at most `max_rate` \[rad/s\] can run a gait: ∫ maxᵢ|φᵢ'| du / r.
@@ -147,85 +155,118 @@ pub fn timing<G: Gait<f64> + ?Sized>(
     max_rate: f64,
 ) -> Result<Timing, TimingError> {
     check_rate(max_rate)?;
-    if !(period.is_finite() && period > 0.0) {
-        return Err(TimingError::Period { period });
-    }
-    let cells = cells(gait);
-    let samples: Vec<[Sample; 4]> = cells
-        .iter()
-        .map(|&(start, end)| {
-            RULE.map(|(at, weight)| {
-                let point = gait.at(start + at * (end - start));
-                let power = point
-                    .rate
-                    .dot(&(model.power_matrix(&point.phi) * point.rate));
-                Sample {
-                    weight: weight * (end - start),
-                    power_root: power.max(0.0).sqrt(),
-                    turn: point.rate.amax(),
-                }
-            })
-        })
-        .collect();
-    let all = || samples.iter().flatten();
-    let length: f64 = all().map(|s| s.weight * s.power_root).sum();
-    let turned: f64 = all().map(|s| s.weight * s.turn).sum();
-    if !(length > 0.0 && turned > 0.0) {
-        return Err(TimingError::Still);
-    }
-    let shortest_period = turned / max_rate;
-    if period < shortest_period {
+    check_period(period)?;
+    let curve = Curve::new(model, gait)?;
+    let shortest = curve.shortest(max_rate);
+    if period < shortest {
         return Err(TimingError::TooFast {
             period,
             rate: max_rate,
-            shortest: shortest_period,
+            shortest,
         });
     }
-    let k = pour(all, period, max_rate, period / length);
-    let (mut time, mut energy, mut limited, mut fastest) = (0.0, 0.0, 0.0, 0.0_f64);
-    let mut timed = Vec::with_capacity(cells.len() + 1);
-    timed.push((0.0, 0.0, 0.0));
-    for (&(_, end), samples) in cells.iter().zip(&samples) {
-        let (mut lasts, mut spends) = (0.0, 0.0);
-        for s in samples {
-            let (floor, poured) = (s.turn / max_rate, k * s.power_root);
-            let slowness = floor.max(poured);
-            lasts += s.weight * slowness;
-            if slowness > 0.0 {
-                spends += s.weight * s.power_root * s.power_root / slowness;
-            }
-            if floor > poured {
-                limited += s.weight * floor;
-            }
-            if s.power_root > 0.0 {
-                fastest = fastest.max(s.turn / s.power_root);
-            }
+    Ok(curve.timing(period, max_rate))
+}
+
+/// A curve with what its timing depends on.
+struct Curve {
+    /// From and to.
+    cells: Vec<(f64, f64)>,
+    samples: Vec<[Sample; 4]>,
+    /// ∫p: the power length.
+    length: f64,
+}
+
+impl Curve {
+    fn new<G: Gait<f64> + ?Sized>(model: &Model<f64>, gait: &G) -> Result<Self, TimingError> {
+        let cells = cells(gait);
+        let samples: Vec<[Sample; 4]> = cells
+            .iter()
+            .map(|&(start, end)| {
+                RULE.map(|(at, weight)| {
+                    let point = gait.at(start + at * (end - start));
+                    let power = point
+                        .rate
+                        .dot(&(model.power_matrix(&point.phi) * point.rate));
+                    let turn = point.rate.amax();
+                    Sample {
+                        weight: weight * (end - start),
+                        power_root: power.max(0.0).sqrt(),
+                        turn,
+                        floor: turn,
+                    }
+                })
+            })
+            .collect();
+        let all = || samples.iter().flatten();
+        let length: f64 = all().map(|s| s.weight * s.power_root).sum();
+        if length > 0.0 && all().any(|s| s.turn > 0.0) {
+            Ok(Self {
+                cells,
+                samples,
+                length,
+            })
+        } else {
+            Err(TimingError::Still)
         }
-        time += lasts;
-        energy += spends;
-        timed.push((end, time, if lasts > 0.0 { spends / lasts } else { 0.0 }));
     }
-    // The last digits of the sum, so that the cycle ends at its period.
-    let scale = period / time;
-    let cells: Vec<Cell> = timed
-        .into_iter()
-        .map(|(u, time, power)| Cell {
-            u,
-            time: if u >= 1.0 { period } else { time * scale },
-            power,
-        })
-        .collect();
-    Ok(Timing {
-        period,
-        shortest_period,
-        max_rate,
-        at_limit: limited / period,
-        rate_at_constant_power: fastest * length / period,
-        energy,
-        efficiency_loss: (1.0 - length * length / (period * energy)).max(0.0),
-        power: cells.iter().map(|cell| cell.power).fold(0.0, f64::max),
-        cells,
-    })
+
+    /// ∫τ.
+    fn shortest(&self, max_rate: f64) -> f64 {
+        let all = self.samples.iter().flatten();
+        all.map(|s| s.weight * s.floor).sum::<f64>() / max_rate
+    }
+
+    /// The best timing with a period that is no shorter than the shortest.
+    fn timing(&self, period: f64, max_rate: f64) -> Timing {
+        let (length, all) = (self.length, || self.samples.iter().flatten());
+        let k = pour(all, period, max_rate, period / length);
+        let (mut time, mut energy, mut limited, mut fastest) = (0.0, 0.0, 0.0, 0.0_f64);
+        let mut timed = Vec::with_capacity(self.cells.len() + 1);
+        timed.push((0.0, 0.0, 0.0));
+        for (&(_, end), samples) in self.cells.iter().zip(&self.samples) {
+            let (mut lasts, mut spends) = (0.0, 0.0);
+            for s in samples {
+                let (floor, poured) = (s.floor / max_rate, k * s.power_root);
+                let slowness = floor.max(poured);
+                lasts += s.weight * slowness;
+                if slowness > 0.0 {
+                    spends += s.weight * s.power_root * s.power_root / slowness;
+                }
+                if floor > poured {
+                    limited += s.weight * floor;
+                }
+                if s.power_root > 0.0 {
+                    fastest = fastest.max(s.turn / s.power_root);
+                }
+            }
+            time += lasts;
+            energy += spends;
+            timed.push((end, time, if lasts > 0.0 { spends / lasts } else { 0.0 }));
+        }
+        // The last digits of the sum, so that the cycle ends at its period.
+        let scale = period / time;
+        let cells: Vec<Cell> = timed
+            .into_iter()
+            .map(|(u, time, power)| Cell {
+                u,
+                time: if u >= 1.0 { period } else { time * scale },
+                power,
+            })
+            .collect();
+        Timing {
+            period,
+            shortest_period: self.shortest(max_rate),
+            max_rate,
+            at_limit: limited / period,
+            rate_at_constant_power: fastest * length / period,
+            energy,
+            efficiency_loss: (1.0 - length * length / (period * energy)).max(0.0),
+            power: cells.iter().map(|cell| cell.power).fold(0.0, f64::max),
+            pour: k,
+            cells,
+        }
+    }
 }
 
 /// The k with ∫ max(τ, k p) du = T. The left side is convex and grows with k, piecewise linear for a finite rule; from the
@@ -240,7 +281,7 @@ fn pour<'a, I: Iterator<Item = &'a Sample>>(
     for _ in 0..STEPS {
         let (mut time, mut slope) = (0.0, 0.0);
         for s in samples() {
-            let (floor, poured) = (s.turn / max_rate, k * s.power_root);
+            let (floor, poured) = (s.floor / max_rate, k * s.power_root);
             time += s.weight * floor.max(poured);
             if poured > floor {
                 slope += s.weight * s.power_root;
@@ -378,6 +419,14 @@ fn check_rate(rate: f64) -> Result<(), TimingError> {
         Ok(())
     } else {
         Err(TimingError::Rate { rate })
+    }
+}
+
+fn check_period(period: f64) -> Result<(), TimingError> {
+    if period.is_finite() && period > 0.0 {
+        Ok(())
+    } else {
+        Err(TimingError::Period { period })
     }
 }
 

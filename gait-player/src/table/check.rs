@@ -66,8 +66,7 @@ impl Facts {
 
     /// Shortest period at which no joint is faster than allowed, µs.
     pub fn min_period_us(&self, limits: &Limits) -> u32 {
-        let seconds = fabsf(self.slope.value) * ANGLE_UNIT_RAD * f32::from(self.knots)
-            / (limits.max_rate * RATE_SLACK);
+        let seconds = shortest_period(fabsf(self.slope.value), self.knots, limits);
         libm::ceilf(seconds * 1e6) as u32
     }
 
@@ -86,6 +85,22 @@ impl Facts {
             });
         }
         Ok(())
+    }
+}
+
+/// Shortest period, s, at which a joint of this slope (1e-4 rad an interval) is no faster than allowed.
+fn shortest_period(slope: f32, knots: u16, limits: &Limits) -> f32 {
+    slope * ANGLE_UNIT_RAD * f32::from(knots) / (limits.max_rate * RATE_SLACK)
+}
+
+impl GaitTable {
+    /// Shortest period at which no joint is faster than allowed within one interval, s. The longest of all intervals is that
+    /// of [`Facts::min_period_us`]; who times a gait sees by this where it is too fast.
+    pub fn interval_period(&self, interval: usize, limits: &Limits) -> f32 {
+        let slopes = self
+            .interval(interval)
+            .map(|cubic| fabsf(cubic.largest_slope()));
+        shortest_period(slopes[0].max(slopes[1]), self.knots() as u16, limits)
     }
 }
 

@@ -75,6 +75,7 @@ impl Displacement {
         output.answer(&Found {
             name: file.name,
             quarter: (&gait).into(),
+            outdone_over_length: gait.outdone_over_length,
             closing: Closing::new(&gait, timing, seconds, self.output),
         });
         Ok(())
@@ -87,6 +88,9 @@ struct Found {
     name: String,
     #[serde(flatten)]
     quarter: Quarter,
+    /// X/L of a gait within the bounds that carries farther but is no extremal; left out where none was seen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outdone_over_length: Option<f64>,
     #[serde(flatten)]
     closing: Closing,
 }
@@ -95,6 +99,15 @@ impl fmt::Display for Found {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
         self.quarter.rows(&mut rows);
+        if let Some(carried) = self.outdone_over_length {
+            rows.row(
+                "not the farthest",
+                format!(
+                    "a gait that is no extremal carries X/L = {carried:.6}; the farthest reach shapes off all bounds along \
+                     a slit, which this search does not know"
+                ),
+            );
+        }
         self.closing.rows(&mut rows);
         write!(f, "{}, most displacement\n{rows}", self.name)
     }

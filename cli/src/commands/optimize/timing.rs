@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use gait_optimizer::OptimalGait;
-use gait_optimizer::playable::{Timing, TimingError, timing};
+use gait_optimizer::playable::{Timing, TimingError, timing_of_table};
 use serde::Serialize;
 use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::{Model, Tolerance, swim};
@@ -37,7 +37,7 @@ struct Timed {
 #[derive(Debug, Serialize)]
 pub(crate) struct TimingAnswer {
     period_s: f64,
-    /// The shortest period in which such servos can run the gait at all.
+    /// The shortest period in which such servos can run the gait's table at all.
     period_min_s: f64,
     max_rate_rad_s: f64,
     /// Fastest joint at constant power, without the limit.
@@ -59,9 +59,7 @@ impl ServoTiming {
         };
         let broken = |error: &dyn std::error::Error| Failure::tried(error);
         let model = Model::new(&gait.swimmer).map_err(|error| broken(&error))?;
-        let curve = gait.gait().map_err(|error| broken(&error))?;
-        let timing = timing(&model, &curve, period, max_rate)?;
-        let file = timing.retime_file(file);
+        let (timing, file) = timing_of_table(&model, file, period, max_rate)?;
         let timed = AnyGait::from_file(&file).map_err(|error| broken(&error))?;
         Ok(Some(Timed {
             efficiency: swim(&model, &timed, &Tolerance::default()).efficiency(),

@@ -36,6 +36,7 @@ fn the_second_variation_agrees_with_the_neighbours() {
                         region: &region,
                         sign,
                         touches: 0,
+                        looks: LOOKS,
                     };
                     for trunk in trunks(search.extremal(0.0), &bounds, &region) {
                         let (found, _) = search.candidates(std::slice::from_ref(&trunk));
@@ -74,7 +75,7 @@ fn neighbour_gain(search: &Search<'_>, trunk: &Trunk, candidate: &Candidate) -> 
         .find(|leg| leg.motion == Motion::Singular)?;
     let p = match trunk {
         Trunk::StartLine { .. } => first.from[0],
-        Trunk::Bounds(_) => candidate
+        Trunk::Bounds { .. } => candidate
             .quarter
             .legs()
             .iter()
