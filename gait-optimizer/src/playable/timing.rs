@@ -23,12 +23,15 @@
 //! k = T/∫p and the energy is (∫p)²/T, the constant-power value of the paper; Lighthill's ξ goes with 1/(E T), so the cap
 //! costs the share 1 − (∫p)²/(T E) of ξ.
 
+mod error;
 mod table;
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, GaitArc, GaitFile};
 use swimmer_model::{Gait, InvalidSamples, Model};
 
+pub use error::TimingError;
+use error::{check_period, check_rate};
 pub use table::timing_of_table;
 
 /// Cells of a cycle, at least; those of a sampled gait end at its samples.
@@ -44,42 +47,6 @@ const RULE: [(f64, f64); 4] = [
 /// Newton's steps on a convex, piecewise linear function end by themselves; this only bounds them.
 const STEPS: usize = 200;
 
-/// Why a gait has no timing.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum TimingError {
-    /// A limit that is none.
-    #[error("the servos' largest rate is {rate} rad/s; give a number above 0")]
-    Rate {
-        /// The rate \[rad/s\].
-        rate: f64,
-    },
-    /// A period that is none.
-    #[error("the period is {period} s; give a finite number above 0")]
-    Period {
-        /// The period \[s\].
-        period: f64,
-    },
-    /// The servos are too slow.
-    #[error(
-        "no timing runs this gait in {period} s with joints of at most {rate} rad/s: the shortest possible period is \
-         {shortest:.4} s; give a longer period or faster servos"
-    )]
-    TooFast {
-        /// The period asked for \[s\].
-        period: f64,
-        /// The servos' rate \[rad/s\].
-        rate: f64,
-        /// The shortest period at that rate \[s\].
-        shortest: f64,
-    },
-    /// The gait does not move.
-    #[error("the gait stands still, so it has no timing; give one that moves")]
-    Still,
-    /// The retimed samples make no gait.
-    #[error("the gait cannot be retimed: {0}")]
-    Samples(#[from] InvalidSamples),
-}
-
 /// The best timing of a gait under a rate limit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timing {
@@ -89,7 +56,7 @@ pub struct Timing {
     pub shortest_period: f64,
     /// The rate limit \[rad/s\]; infinite for none.
     pub max_rate: f64,
-    /// Share of the period in which a servo runs at its limit.
+    /// Share of the period in which a servo runs at its limit, or as much below it as the table of a corner asks.
     pub at_limit: f64,
     /// Fastest joint at constant power, without the limit \[rad/s\].
     pub rate_at_constant_power: f64,
@@ -412,22 +379,6 @@ fn cells<G: Gait<f64> + ?Sized>(gait: &G) -> Vec<(f64, f64)> {
         start = end;
     }
     cells
-}
-
-fn check_rate(rate: f64) -> Result<(), TimingError> {
-    if rate > 0.0 {
-        Ok(())
-    } else {
-        Err(TimingError::Rate { rate })
-    }
-}
-
-fn check_period(period: f64) -> Result<(), TimingError> {
-    if period.is_finite() && period > 0.0 {
-        Ok(())
-    } else {
-        Err(TimingError::Period { period })
-    }
 }
 
 #[cfg(test)]
