@@ -47,6 +47,7 @@ impl Seek for Displacement<'_> {
                 crate::displacement(&DisplacementProblem {
                     bounds: problem.bounds,
                     heading: Some(heading),
+                    quarter_samples: problem.samples.div_ceil(4),
                     ..DisplacementProblem::new(problem.swimmer)
                 })
                 .ok()
