@@ -4,11 +4,12 @@
 //!    ([`newton`]).
 //! 2. Curves that are one and the same gait are put together ([`distinct`]), images under the swimmer's own symmetries
 //!    and the reversed curve included.
-//! 3. Each that is left is polished by the maximum principle to an exact extremal, and certified. What cannot be polished is
+//! 3. Each that is left is polished by the maximum principle to an exact extremal, and certified, by its second variation over
+//!    all closed curves too. From a saddle of displacement the search goes on along the way up. What cannot be polished is
 //!    counted, never listed.
 //!
-//! Gaits that the solvers of quarter gaits find are starts, too. Those that are certified for the very bounds of the atlas
-//! are listed in any case, each counted as one start that ended in it.
+//! Gaits that the solvers of quarter gaits find are starts, too. Those that are certified for the very bounds of the atlas, and
+//! of displacement are no saddles among all closed curves, are listed in any case, each counted as one start that ended in it.
 
 mod curve;
 mod displacement;

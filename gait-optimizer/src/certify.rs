@@ -9,6 +9,7 @@
 //! arc. Polynomials of degree six tell how much the sampling leaves open: that much is added to the tolerances, and a gait
 //! that is sampled too coarsely fails the check of its sampling instead of passing the others by their width.
 
+mod around;
 mod grid;
 mod limits;
 mod neighbours;
@@ -24,6 +25,7 @@ use swimmer_model::{Gait as _, InvalidSamples, InvalidSwimmer, Model, Swimmer, T
 use crate::certificate::{
     Certificate, Check, SHARE, SWUM_AGAIN, simple_and_turning_once, turning_number,
 };
+pub(crate) use around::{Curve, around};
 use grid::{Along, Degree, Grid};
 use limits::{Limit, Limits, image};
 use path::Path;

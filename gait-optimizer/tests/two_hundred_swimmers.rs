@@ -389,7 +389,7 @@ fn sideways_gaits_of_all() {
 #[test]
 #[ignore = "minutes: part of the soak"]
 fn displacement_atlases_of_all() {
-    ask("displacement atlas", 1, 10, displacement_atlas);
+    ask("displacement atlas", 1, 0, displacement_atlas);
 }
 
 #[test]

@@ -47,6 +47,21 @@ const FLAT: f64 = 1e-5;
 /// Differences of gradients leave less than this part of the Hessian open by rounding.
 const ROUNDING: f64 = 1e-9;
 
+/// The directions that lead up from a curve.
+pub(super) struct Ascents {
+    /// How many are independent.
+    pub(super) count: usize,
+    /// The steepest, as a push at every node; the farthest push is 1 rad. Empty where it is
+    /// not known.
+    pub(super) steepest: Vec<Vector2<f64>>,
+}
+
+impl Ascents {
+    pub(super) fn check(&self) -> Check {
+        Check::at_most("ascent_directions", self.count as f64, 0.0)
+    }
+}
+
 impl Subject<'_> {
     /// How many pushes of the curve would gain, with this multiplier of the rotation; none where no push is free.
     pub(super) fn ascents(&self, gain: Gain, rotation: f64) -> Option<Check> {
@@ -58,14 +73,13 @@ impl Subject<'_> {
             rotation,
             symmetric: self.symmetric,
         };
-        let count = neighbours.ascents()?;
-        Some(Check::at_most("ascent_directions", count as f64, 0.0))
+        Some(neighbours.ascents()?.check())
     }
 }
 
 impl Neighbours<'_> {
-    /// How many independent directions lead up; none where the curve cannot be pushed.
-    pub(super) fn ascents(&self) -> Option<usize> {
+    /// Which directions lead up; none where the curve cannot be pushed.
+    pub(super) fn ascents(&self) -> Option<Ascents> {
         let slopes = self.grid.slopes(self.shapes, Degree::Fine);
         let waves = self.waves(&slopes);
         let size = waves.len();
@@ -92,7 +106,11 @@ impl Neighbours<'_> {
         }
         let hessian = 0.5 * (&hessian + hessian.transpose());
         if !hessian.iter().all(|entry| entry.is_finite()) {
-            return None;
+            // Nothing is known of any.
+            return Some(Ascents {
+                count: size,
+                steepest: Vec::new(),
+            });
         }
         let before = hessian.amax();
         let reduced = if self.gain == Gain::Turning || turned.norm() <= 1e-9 * reach {
@@ -100,10 +118,25 @@ impl Neighbours<'_> {
         } else {
             without(&hessian, &turned)
         };
-        let values = reduced.symmetric_eigenvalues();
+        let eigen = reduced.symmetric_eigen();
+        let values = &eigen.eigenvalues;
         // Where next to nothing is free all waves are alike, and but for rounding none is left that turns nothing.
         let level = (FLAT * values.amax()).max(ROUNDING * before);
-        Some(values.iter().filter(|&&value| value > level).count())
+        let weights = eigen.eigenvectors.column(values.imax());
+        let mut steepest = vec![Vector2::zeros(); self.shapes.len()];
+        for (wave, weight) in waves.iter().zip(&weights) {
+            for (sum, push) in steepest.iter_mut().zip(wave) {
+                *sum += push * *weight;
+            }
+        }
+        let farthest = steepest.iter().map(Vector2::norm).fold(0.0, f64::max);
+        for push in &mut steepest {
+            *push /= farthest;
+        }
+        Some(Ascents {
+            count: values.iter().filter(|&&value| value > level).count(),
+            steepest,
+        })
     }
 
     /// The pushes at every node.
