@@ -4,11 +4,12 @@
 //!    ([`newton`]).
 //! 2. Curves that are one and the same gait are put together ([`distinct`]), images under the swimmer's own symmetries
 //!    and the reversed curve included.
-//! 3. Each that is left is polished by the maximum principle to an exact extremal, and certified. What cannot be polished is
+//! 3. Each that is left is polished by the maximum principle to an exact extremal, and certified, by its second variation over
+//!    all closed curves too. From a saddle of displacement the search goes on along the way up. What cannot be polished is
 //!    counted, never listed.
 //!
-//! Gaits that the solvers of quarter gaits find are starts, too. Those that are certified for the very bounds of the atlas
-//! are listed in any case, each counted as one start that ended in it.
+//! Gaits that the solvers of quarter gaits find are starts, too. Those that are certified for the very bounds of the atlas, and
+//! of displacement are no saddles among all closed curves, are listed in any case, each counted as one start that ended in it.
 
 mod curve;
 mod displacement;
@@ -29,9 +30,6 @@ use crate::extremal::Walls;
 use crate::immobile::refuse_immobile;
 use crate::region::Region;
 use crate::{Immobile, OptimalGait};
-
-/// Samples of a cycle where nothing else is asked for.
-const SAMPLES: usize = 1024;
 
 /// What to make an atlas of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,7 +64,7 @@ impl AtlasProblem {
             seed: 1,
             order: 6,
             threads: 1,
-            samples: SAMPLES,
+            samples: 1024,
         }
     }
 

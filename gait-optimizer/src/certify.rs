@@ -9,6 +9,8 @@
 //! arc. Polynomials of degree six tell how much the sampling leaves open: that much is added to the tolerances, and a gait
 //! that is sampled too coarsely fails the check of its sampling instead of passing the others by their width.
 
+mod around;
+mod bounds;
 mod grid;
 mod limits;
 mod neighbours;
@@ -25,6 +27,7 @@ use crate::OptimalGait;
 use crate::certificate::{
     Certificate, Check, SHARE, SWUM_AGAIN, simple_and_turning_once, turning_number,
 };
+pub(crate) use around::{Curve, around};
 use grid::{Along, Degree, Grid};
 use limits::{Limit, Limits, image};
 use path::Path;
@@ -36,8 +39,6 @@ const TOUCHING: f64 = 1e-9;
 /// An arc along the links' clearance lies on it up to this \[rad\]: solvers keep a hair off the corner where tip meets tip,
 /// at which the bound has no tangent.
 const TOUCHING_CURVED: f64 = 1e-7;
-/// How far beside the curve the sides of a bound are told apart \[rad\].
-const ASIDE: f64 = 1e-6;
 /// Poses by polynomials of degree eight and six through the samples may differ by this, over L and in radians; so may slopes,
 /// over the slope, where a condition asks for slopes.
 const COARSEST: f64 = 1e-5;
@@ -268,107 +269,6 @@ impl<'a> Subject<'a> {
             .nodes
             .get(node)
             .map_or(Along::Free, |node| node.along)
-    }
-
-    /// Every bound at every node.
-    fn all_limits(&self) -> impl Iterator<Item = (usize, Limit)> {
-        (0..self.grid.nodes.len()).flat_map(|node| {
-            let limits = self.limits_at(node);
-            limits.into_iter().map(move |limit| (node, limit))
-        })
-    }
-
-    fn limits_at(&self, node: usize) -> Vec<Limit> {
-        let shape = self.shapes.get(node).copied().unwrap_or_default();
-        self.limits.at(&shape, self.quarter(node))
-    }
-
-    /// Which quarter of the cycle a node belongs to; where two meet, the one of its piece.
-    fn quarter(&self, node: usize) -> usize {
-        let u = |node: usize| self.grid.nodes.get(node).map_or(0.0, |node| node.u);
-        let beside = if self.grid.before(node).is_some() {
-            node - 1
-        } else {
-            node + 1
-        };
-        let inside = f64::midpoint(u(node), u(beside));
-        (0..3)
-            .find(|&quarter| inside < 0.25 * (quarter + 1) as f64)
-            .unwrap_or(3)
-    }
-
-    /// The bound that a node of a bound arc runs along: near, and in the direction of the motion.
-    fn bound_followed(&self, node: usize) -> Option<Limit> {
-        let limits = self.limits_at(node);
-        limits.get(self.bound_followed_at(node)?).copied()
-    }
-
-    /// Its place among the bounds.
-    fn bound_followed_at(&self, node: usize) -> Option<usize> {
-        let rate = self.path.places.get(node)?.rate;
-        // At a corner between two bounds the normal may be the other's; a bound farther away is still not followed.
-        let askew = |limit: &Limit| {
-            let far = if limit.margin.abs() > TOUCHING_CURVED {
-                1.0 + limit.margin.abs()
-            } else {
-                0.0
-            };
-            far + (limit.normal.dot(&rate) / rate.norm()).abs()
-        };
-        let limits = self.limits_at(node).into_iter().enumerate();
-        limits
-            .min_by(|(_, a), (_, b)| askew(a).total_cmp(&askew(b)))
-            .map(|(at, _)| at)
-    }
-
-    /// On which side of the motion the bound lies that a bound arc runs along: 1 for the right, −1 for the left. Where an arc
-    /// ends the bound may have a corner, so the node beside is asked there.
-    fn bound_side(&self, node: usize) -> Option<f64> {
-        let inside = if self.grid.before(node).is_none() {
-            node + 1
-        } else if self.grid.before(node + 1).is_none() {
-            node - 1
-        } else {
-            node
-        };
-        // Right on the links' clearance its slope may point either way by rounding, so both sides are asked.
-        let place = self.path.places.get(inside)?;
-        let right = Vector2::new(place.rate.y, -place.rate.x).normalize() * ASIDE;
-        let bound = self.bound_followed_at(inside)?;
-        let margin = |shape: Vector2<f64>| {
-            let limits = self.limits.at(&shape, self.quarter(inside));
-            limits.get(bound).map(|limit| limit.margin)
-        };
-        let (on_right, on_left) = (margin(place.phi + right)?, margin(place.phi - right)?);
-        Some(if on_right < on_left { 1.0 } else { -1.0 })
-    }
-
-    /// Whether the curve is bent round a corner of the forbidden shapes between these nodes, the end of a piece and the
-    /// beginning of the next: like a string round an edge it may have a kink there, towards the corner.
-    fn bent_round_a_corner(&self, end: usize, start: usize) -> bool {
-        const BESIDE: f64 = 1e-5;
-        let (Some(before), Some(after)) = (self.path.places.get(end), self.path.places.get(start))
-        else {
-            return false;
-        };
-        let (into, out) = (before.rate.normalize(), after.rate.normalize());
-        let curved = |shape: Vector2<f64>, node: usize| {
-            let limits = self.limits.at(&shape, self.quarter(node));
-            limits.into_iter().find(|limit| limit.curved)
-        };
-        let (Some(here), Some(first), Some(second)) = (
-            curved(before.phi, end),
-            curved(before.phi - into * BESIDE, end),
-            curved(after.phi + out * BESIDE, start),
-        ) else {
-            return false;
-        };
-        let corner = first.normal.perp(&second.normal).abs() > 1e-3;
-        let towards = (out - into) * BESIDE;
-        let inside = curved(before.phi + towards, end);
-        here.margin.abs() <= TOUCHING_CURVED
-            && corner
-            && inside.is_some_and(|limit| limit.margin < 0.0)
     }
 
     /// y over L at a quarter of the cycle.

@@ -1,12 +1,13 @@
 //! Certificates from the curve alone: every optimum passes, nothing else does.
 
 use gait_optimizer::{
-    Bounds, Branch, Certificate, DisplacementProblem, EfficiencyProblem, Heading, Objective,
-    SidewaysProblem, TurningProblem, certify, displacement, efficiency, sideways, turning,
+    AtlasProblem, Bounds, Branch, Certificate, DisplacementProblem, EfficiencyProblem, Heading,
+    Objective, SidewaysProblem, TurningProblem, atlas, certify, displacement, efficiency, sideways,
+    turning,
 };
 use nalgebra::Vector2;
 use std::path::Path;
-use swimmer_files::{AnyGait, GaitFile};
+use swimmer_files::{AnyGait, ArcKind, GaitArc, GaitFile};
 use swimmer_model::{Links, Swimmer};
 
 fn certificate(swimmer: &Swimmer<f64>, file: &GaitFile) -> Certificate {
@@ -102,6 +103,29 @@ fn every_displacement_gait_passes() {
         let silent = self::certificate(&swimmer, &silent);
         assert!(silent.pass(), "{:?}: {}", file.bounds, silent.failures());
     }
+}
+
+/// A loop with bounds all round but for a sliver across a corner: there all pushes are one, which turns.
+#[test]
+fn a_sliver_between_bounds_leads_nowhere() {
+    let problem = AtlasProblem {
+        bounds: Bounds {
+            max_angle: Some(2.45),
+            ..Bounds::default()
+        },
+        starts: 4,
+        ..AtlasProblem::new(Swimmer::purcell(), Objective::Displacement)
+    };
+    let found = atlas(&problem).unwrap();
+    let mut slivers = 0;
+    for one in &found.optima {
+        let file = one.gait.gait_file("purcell");
+        let brief = |arc: &GaitArc| arc.kind == ArcKind::Singular && arc.to - arc.from < 1e-6;
+        slivers += file.arcs.iter().filter(|arc| brief(arc)).count();
+        let certificate = certificate(&Swimmer::purcell(), &file);
+        assert!(certificate.pass(), "{}", certificate.failures());
+    }
+    assert!(slivers > 0);
 }
 
 /// Pushed in by a thousandth of a radian, so that no bound notices.

@@ -361,7 +361,8 @@ fn some_of_each() {
 }
 
 // The files that `certify` refuses below are known gaps, and shall only get fewer: sharp turns sampled too coarsely for its
-// slopes (efficiency, turning), and loops of most displacement in whose second variation it sees a way up (the rest).
+// slopes. Loops of most displacement have none left. Those in whose second variation it saw a way up were saddles, which the
+// atlas lists no more; for three swimmers (115, 117, 144) the few starts here find nothing else, more starts do.
 #[test]
 #[ignore = "minutes: part of the soak"]
 fn small_gaits_of_all() {
@@ -383,13 +384,13 @@ fn turning_gaits_of_all() {
 #[test]
 #[ignore = "minutes: part of the soak"]
 fn sideways_gaits_of_all() {
-    ask("sideways", 1, 12, most_sideways);
+    ask("sideways", 1, 0, most_sideways);
 }
 
 #[test]
 #[ignore = "minutes: part of the soak"]
 fn displacement_atlases_of_all() {
-    ask("displacement atlas", 1, 10, displacement_atlas);
+    ask("displacement atlas", 1, 0, displacement_atlas);
 }
 
 #[test]

@@ -4,14 +4,18 @@
 //! So the starts are led to it through −ln |d|² + κ ln E with κ falling, as far as the curve stays simple; the last one
 //! is close enough to close the exact loop from.
 
+use nalgebra::DMatrix;
 use swimmer_files::Objective;
 use swimmer_model::Model;
 
+use super::AtlasProblem;
 use super::distinct::Outline;
+use super::fence::Fence;
 use super::gates::guesses;
 use super::newton::{Settings, Stationary};
 use super::pipeline::{Seek, distance};
-use super::{AtlasProblem, SAMPLES};
+use super::starts::through;
+use crate::certify::{Curve, around};
 use crate::closed_curve::Functional;
 use crate::loops::{Closed, LoopTrace, close};
 use crate::optimal_gait::Solution;
@@ -20,6 +24,8 @@ use crate::{Certificate, DisplacementProblem, Heading, OptimalGait};
 
 /// Curves are symmetric to within this, the sag of the outline that they are compared by \[rad\].
 const SYMMETRIC: f64 = 0.01;
+/// Gaits that gain less than this over another, over L, are not on the way up from it.
+const HIGHER: f64 = 1e-9;
 
 pub(super) struct Displacement<'a> {
     pub(super) problem: &'a AtlasProblem,
@@ -44,30 +50,69 @@ impl Seek for Displacement<'_> {
         [Heading::Forwards, Heading::Backwards]
             .into_iter()
             .filter_map(|heading| {
-                let usual = DisplacementProblem::new(problem.swimmer);
-                // As many times finer as the atlas is asked for.
-                let finer = (problem.samples / SAMPLES).max(1);
                 crate::displacement(&DisplacementProblem {
                     bounds: problem.bounds,
                     heading: Some(heading),
-                    quarter_samples: usual.quarter_samples * finer,
-                    ..usual
+                    quarter_samples: problem.samples.div_ceil(4),
+                    ..DisplacementProblem::new(problem.swimmer)
                 })
                 .ok()
             })
+            // Optimal among gaits of its symmetry; there it may be a saddle among all.
+            .map(|gait| self.asked(gait).0)
             .collect()
     }
 
-    fn polished(&self, functional: &Functional<'_>, coarse: &Stationary) -> Option<OptimalGait> {
-        let (model, region) = (self.model, self.region);
-        guesses(functional, model, region, coarse)
-            .into_iter()
-            .filter_map(|guess| close(model, region, guess.gate, guess.from, guess.length))
-            .find_map(|closed| self.certified(&closed))
+    fn polished(
+        &self,
+        functional: &Functional<'_>,
+        fence: &Fence,
+        coarse: &Stationary,
+    ) -> Option<OptimalGait> {
+        let (gait, pushed) = self.asked(self.extremals(functional, &coarse.coefficients).next()?);
+        if gait.certificate.pass() {
+            return Some(gait);
+        }
+        // A saddle. Where it is pushed up, a better extremal may be near.
+        pushed.iter().find_map(|pushed| {
+            self.extremals(functional, &through(pushed, functional.basis, fence))
+                .filter(|there| distance(there) > distance(&gait) + HIGHER)
+                .map(|there| self.asked(there).0)
+                .find(|there| there.certificate.pass())
+        })
     }
 }
 
 impl Displacement<'_> {
+    /// The closed extremals that a coarse curve leads to.
+    fn extremals(
+        &self,
+        functional: &Functional<'_>,
+        coarse: &DMatrix<f64>,
+    ) -> impl Iterator<Item = OptimalGait> {
+        let (model, region) = (self.model, self.region);
+        guesses(functional, model, region, coarse)
+            .into_iter()
+            .filter_map(|guess| close(model, region, guess.gate, guess.from, guess.length))
+            .filter_map(|closed| self.certified(&closed))
+    }
+
+    /// The gait with the second variation over all closed curves in its certificate; where it is a saddle, curves on the way
+    /// up from it.
+    fn asked(&self, gait: OptimalGait) -> (OptimalGait, Vec<Curve>) {
+        let Some(around) = around(self.model, &gait) else {
+            return (gait, Vec::new());
+        };
+        let mut checks = gait.certificate.checks().to_vec();
+        checks.push(around.check);
+        let certificate = Certificate::new(checks);
+        let gait = OptimalGait {
+            certificate,
+            ..gait
+        };
+        (gait, around.up)
+    }
+
     /// A closed loop as a gait, where its certificate holds.
     fn certified(&self, closed: &Closed) -> Option<OptimalGait> {
         let (problem, model) = (self.problem, self.model);

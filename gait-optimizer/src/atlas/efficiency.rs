@@ -5,6 +5,7 @@ use swimmer_model::{Fourier, Gait, GaitPoint, Harmonic, Model};
 
 use super::AtlasProblem;
 use super::distinct::Outline;
+use super::fence::Fence;
 use super::newton::{Settings, Stationary};
 use super::pipeline::Seek;
 use crate::certificate::{Certificate, Check};
@@ -45,7 +46,12 @@ impl Seek for Efficiency<'_> {
             .collect()
     }
 
-    fn polished(&self, _functional: &Functional<'_>, coarse: &Stationary) -> Option<OptimalGait> {
+    fn polished(
+        &self,
+        _functional: &Functional<'_>,
+        _fence: &Fence,
+        coarse: &Stationary,
+    ) -> Option<OptimalGait> {
         let curve = series(&coarse.coefficients);
         let start = Shifted {
             by: home(&curve),

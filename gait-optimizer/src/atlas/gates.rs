@@ -1,9 +1,8 @@
 //! From a coarse optimum of displacement to guesses for its closed loop: where a loop may be opened, and the momentum there.
 
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, Vector2};
 use swimmer_model::Model;
 
-use super::newton::Stationary;
 use crate::closed_curve::Functional;
 use crate::loops::{Gate, Loop};
 use crate::region::Region;
@@ -27,10 +26,10 @@ pub(crate) fn guesses(
     functional: &Functional<'_>,
     model: &Model<f64>,
     region: &Region,
-    coarse: &Stationary,
+    coarse: &DMatrix<f64>,
 ) -> Vec<Guess> {
     let mut work = functional.workspace();
-    let values = functional.values(&coarse.coefficients, &mut work);
+    let values = functional.values(coarse, &mut work);
     let nodes = functional.basis.nodes();
     let shape = |node: usize| {
         let node = node % nodes;

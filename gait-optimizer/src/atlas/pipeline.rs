@@ -34,11 +34,17 @@ pub(super) trait Seek: Sync {
     /// What is to be large.
     fn value(gait: &OptimalGait) -> f64;
 
-    /// Gaits known from elsewhere, to start from beside the random ones.
+    /// Gaits known from elsewhere, to start from beside the random ones, with all that their certificates need
+    /// to be listed.
     fn known(&self, problem: &AtlasProblem) -> Vec<OptimalGait>;
 
     /// The certified gait that a coarse curve, run counter-clockwise, leads to.
-    fn polished(&self, functional: &Functional<'_>, coarse: &Stationary) -> Option<OptimalGait>;
+    fn polished(
+        &self,
+        functional: &Functional<'_>,
+        fence: &Fence,
+        coarse: &Stationary,
+    ) -> Option<OptimalGait>;
 }
 
 /// Where a start ended.
@@ -113,7 +119,7 @@ pub(super) fn run<S: Seek>(problem: &AtlasProblem, model: &Model<f64>, seek: &S)
         || (),
         |(), class| {
             let first = coarse_classes.get(class)?.first()?;
-            seek.polished(&functional, &settled.get(*first)?.0.stationary)
+            seek.polished(&functional, &fence, &settled.get(*first)?.0.stationary)
         },
     );
     let mut gaits: Vec<(OptimalGait, usize)> = Vec::new();

@@ -84,6 +84,28 @@ pub(crate) fn fitted(gait: &OptimalGait, basis: &Basis, fence: &Fence) -> DMatri
     curve
 }
 
+/// A closed curve through these shapes, each with its u from 0 to 1, as a series of the basis's order, shrunk into the fence.
+pub(crate) fn through(
+    points: &[(f64, Vector2<f64>)],
+    basis: &Basis,
+    fence: &Fence,
+) -> DMatrix<f64> {
+    let mut curve = DMatrix::zeros(2, basis.functions());
+    let mut here = vec![(0.0, 0.0); basis.functions()];
+    for (&(from, a), &(to, b)) in points.iter().zip(points.iter().skip(1)) {
+        for (u, phi) in [(from, a), (to, b)] {
+            basis.at(u, &mut here);
+            for (j, (value, _)) in here.iter().enumerate() {
+                let weight = if j == 0 { 0.5 } else { 1.0 } * (to - from);
+                curve[(0, j)] += weight * value * phi.x;
+                curve[(1, j)] += weight * value * phi.y;
+            }
+        }
+    }
+    shrink_into(&mut curve, basis, fence);
+    curve
+}
+
 /// Scales a curve about the straight swimmer until it lies inside the fence.
 pub(crate) fn shrink_into(curve: &mut DMatrix<f64>, basis: &Basis, fence: &Fence) {
     for _ in 0..200 {

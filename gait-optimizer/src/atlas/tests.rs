@@ -1,7 +1,10 @@
-use swimmer_files::{Bounds, Objective};
-use swimmer_model::{Model, Swimmer, Tolerance, swim};
+use nalgebra::Vector2;
+use swimmer_files::{AnyGait, Bounds, Objective};
+use swimmer_model::{Links, Model, Swimmer, TangentialDrag, Tolerance, swim, trajectory};
 
 use super::{AtlasError, AtlasProblem, atlas};
+use crate::OptimalGait;
+use crate::certify::around;
 
 fn problem(swimmer: Swimmer<f64>) -> AtlasProblem {
     AtlasProblem {
@@ -82,6 +85,96 @@ fn no_certified_gait_is_lost() {
     let counted: usize = found.optima.iter().map(|one| one.found).sum();
     let rest = found.unsettled + found.left + found.uncertified;
     assert_eq!(counted + rest, found.starts);
+}
+
+fn swimmer(middle: f64, chi: f64) -> Swimmer<f64> {
+    Swimmer {
+        links: Links {
+            middle,
+            front: 1.0,
+            back: 1.0,
+        },
+        chi,
+        ..Swimmer::purcell()
+    }
+}
+
+/// Best among gaits with the paper's symmetries, and a saddle among all closed curves: it has no place in an atlas. That a push
+/// out of the symmetry gains is told by the adaptive integrator, too.
+#[test]
+fn what_is_best_of_its_symmetry_only_is_not_listed() {
+    let bounds = Bounds {
+        max_angle: Some(2.895),
+        ..Bounds::default()
+    };
+    let swimmer = swimmer(0.302, 1.8425);
+    let known = crate::displacement(&crate::DisplacementProblem {
+        bounds,
+        heading: Some(crate::Heading::Backwards),
+        ..crate::DisplacementProblem::new(swimmer)
+    })
+    .unwrap();
+    assert!(known.certificate.pass());
+    let found = atlas(&AtlasProblem {
+        bounds,
+        starts: 4,
+        ..problem(swimmer)
+    })
+    .unwrap();
+    let distance = |one: &OptimalGait| one.displacement_over_length.abs();
+    let model = Model::new(&known.swimmer.of_unit_length()).unwrap();
+    let tolerance = Tolerance::new(1e-10);
+    let mut y = 0.0;
+    trajectory(&model, &known.gait().unwrap(), &tolerance, 4, |point| {
+        if point.u.to_bits() == 0.25_f64.to_bits() {
+            y = point.pose.position().y;
+        }
+    });
+    // The multiplier of rotation pays for what a push turns.
+    let c = -known.displacement_over_length.signum() * y;
+    let around = around(&model, &known).unwrap();
+    assert!(!around.check.pass);
+    for pushed in around.up.iter().take(2) {
+        let mut pushed = pushed.clone();
+        pushed.dedup_by(|a, b| a.0.to_bits() == b.0.to_bits());
+        let (u, phi): (Vec<f64>, Vec<Vector2<f64>>) = pushed.into_iter().unzip();
+        let curve = AnyGait::from_samples(&u, &phi, &corners(&known, &u)).unwrap();
+        let stroke = swim(&model, &curve, &tolerance);
+        let gained = stroke.displacement.norm() + c * stroke.rotation - distance(&known);
+        assert!(gained > 1e-5, "{gained:e}");
+    }
+    let listed = |one: &super::Optimum| (one.distance_over_length - distance(&known)).abs() < 1e-6;
+    assert!(!found.optima.is_empty() && !found.optima.iter().any(listed));
+}
+
+/// Where the corners of a gait lie among these u.
+fn corners(gait: &OptimalGait, among: &[f64]) -> Vec<usize> {
+    let place = |corner: &f64| among.iter().position(|u| (u - corner).abs() < 1e-12);
+    gait.corners().iter().filter_map(place).collect()
+}
+
+/// The loop that this swimmer's starts run into is a saddle; above it lies an optimum.
+#[test]
+fn the_search_goes_on_from_a_saddle() {
+    let found = atlas(&AtlasProblem {
+        bounds: Bounds {
+            max_angle: Some(2.864),
+            no_overlap: true,
+            ..Bounds::default()
+        },
+        starts: 4,
+        order: 4,
+        ..problem(Swimmer {
+            tangential_drag: TangentialDrag::HalfThickness(0.01324),
+            sphere_radius: 1.24273,
+            ..swimmer(2.72859, 1.88721)
+        })
+    })
+    .unwrap();
+    let best = found.optima.first().unwrap();
+    assert_eq!(best.gait.certificate.value("ascent_directions"), Some(0.0));
+    // The saddle has 0.001178.
+    assert!(best.distance_over_length > 0.0013 && best.found >= 4);
 }
 
 #[test]

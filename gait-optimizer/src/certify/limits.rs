@@ -55,9 +55,15 @@ impl Limits {
             let shape = image(*phi, quarter);
             let gradient = bound.gradient(&shape);
             let slope = gradient.norm();
+            // Right where tip meets tip the distance has no slope: the shape lies on the bound, and out is away from straight.
+            let (margin, out) = if slope > f64::EPSILON {
+                (bound.margin(&shape) / slope, -gradient / slope)
+            } else {
+                (bound.margin(&shape), shape.normalize())
+            };
             Limit {
-                margin: bound.margin(&shape) / slope,
-                normal: image(-gradient / slope, quarter),
+                margin,
+                normal: image(out, quarter),
                 curved: matches!(bound, crate::region::Bound::Clearance(_)),
             }
         };
@@ -72,5 +78,35 @@ pub(super) fn image(v: Vector2<f64>, quarter: usize) -> Vector2<f64> {
         2 => -v,
         3 => Vector2::new(v.y, v.x),
         _ => v,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Gaits may start in the corner of the forbidden shapes, where the distance of the tips is zero, and so is its slope.
+    #[test]
+    fn the_shape_with_tip_on_tip_lies_on_the_bound() {
+        let bounds = Bounds {
+            no_overlap: true,
+            ..Bounds::default()
+        };
+        for tenths in 3..20 {
+            let middle = 0.1 * f64::from(tenths);
+            let links = Links {
+                middle,
+                front: 1.0,
+                back: 1.0,
+            };
+            let limits = Limits::new(&bounds, &links);
+            for corner in [1.0, -1.0].map(|side| Vector2::repeat(side * (-0.5 * middle).acos())) {
+                let at = limits.at(&corner, 0);
+                let curved = at.iter().find(|limit| limit.curved).unwrap();
+                assert!(curved.margin.abs() < 1e-7, "{middle}: {}", curved.margin);
+                assert!((curved.normal.norm() - 1.0).abs() < 1e-12, "{middle}");
+                assert!(curved.normal.dot(&corner) > 0.0, "{middle}");
+            }
+        }
     }
 }

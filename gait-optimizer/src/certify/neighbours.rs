@@ -44,6 +44,23 @@ const WAVES: [usize; 2] = [10, 17];
 const PUSH: f64 = 1e-4;
 /// Eigenvalues below this part of the largest are not told from zero.
 const FLAT: f64 = 1e-5;
+/// Differences of gradients leave less than this part of the Hessian open by rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The directions that lead up from a curve.
+pub(super) struct Ascents {
+    /// How many are independent.
+    pub(super) count: usize,
+    /// The steepest, as a push at every node; the farthest push is 1 rad. Empty where it is
+    /// not known.
+    pub(super) steepest: Vec<Vector2<f64>>,
+}
+
+impl Ascents {
+    pub(super) fn check(&self) -> Check {
+        Check::at_most("ascent_directions", self.count as f64, 0.0)
+    }
+}
 
 impl Subject<'_> {
     /// How many pushes of the curve would gain, with this multiplier of the rotation; none where no push is free.
@@ -56,31 +73,24 @@ impl Subject<'_> {
             rotation,
             symmetric: self.symmetric,
         };
-        let count = neighbours.ascents()?;
-        Some(Check::at_most("ascent_directions", count as f64, 0.0))
+        Some(neighbours.ascents()?.check())
     }
 }
 
 impl Neighbours<'_> {
-    /// How many independent directions lead up; none where the curve cannot be pushed.
-    pub(super) fn ascents(&self) -> Option<usize> {
+    /// Which directions lead up; none where the curve cannot be pushed.
+    pub(super) fn ascents(&self) -> Option<Ascents> {
         let slopes = self.grid.slopes(self.shapes, Degree::Fine);
         let waves = self.waves(&slopes);
         let size = waves.len();
         if size == 0 {
             return None;
         }
-        let turned = DVector::from_iterator(size, {
-            let momentum = Momentum {
-                p: Vector2::zeros(),
-                c: 1.0,
-            };
-            let path = Path::new(self.model, self.grid, self.shapes, Degree::Fine);
-            waves
-                .iter()
-                .map(|wave| self.enclosed(&path, &momentum, wave))
-                .collect::<Vec<_>>()
-        });
+        let path = Path::new(self.model, self.grid, self.shapes, Degree::Fine);
+        let turned = waves.iter().map(|wave| self.turned(&path, wave, |by| by));
+        let turned = DVector::from_iterator(size, turned);
+        let reach = waves.iter().map(|wave| self.turned(&path, wave, f64::abs));
+        let reach = reach.fold(0.0, f64::max);
         let mut hessian = DMatrix::zeros(size, size);
         for (k, wave) in waves.iter().enumerate() {
             let pushed = |by: f64| {
@@ -96,16 +106,37 @@ impl Neighbours<'_> {
         }
         let hessian = 0.5 * (&hessian + hessian.transpose());
         if !hessian.iter().all(|entry| entry.is_finite()) {
-            return None;
+            // Nothing is known of any.
+            return Some(Ascents {
+                count: size,
+                steepest: Vec::new(),
+            });
         }
-        let reduced = if self.gain == Gain::Turning || turned.norm() < 1e-9 {
+        let before = hessian.amax();
+        let reduced = if self.gain == Gain::Turning || turned.norm() <= 1e-9 * reach {
             hessian
         } else {
             without(&hessian, &turned)
         };
-        let values = reduced.symmetric_eigenvalues();
-        let scale = values.amax();
-        Some(values.iter().filter(|&&value| value > FLAT * scale).count())
+        let eigen = reduced.symmetric_eigen();
+        let values = &eigen.eigenvalues;
+        // Where next to nothing is free all waves are alike, and but for rounding none is left that turns nothing.
+        let level = (FLAT * values.amax()).max(ROUNDING * before);
+        let weights = eigen.eigenvectors.column(values.imax());
+        let mut steepest = vec![Vector2::zeros(); self.shapes.len()];
+        for (wave, weight) in waves.iter().zip(&weights) {
+            for (sum, push) in steepest.iter_mut().zip(wave) {
+                *sum += push * *weight;
+            }
+        }
+        let farthest = steepest.iter().map(Vector2::norm).fold(0.0, f64::max);
+        for push in &mut steepest {
+            *push /= farthest;
+        }
+        Some(Ascents {
+            count: values.iter().filter(|&&value| value > level).count(),
+            steepest,
+        })
     }
 
     /// The pushes at every node.
@@ -213,6 +244,18 @@ impl Neighbours<'_> {
             }
         };
         DVector::from_iterator(waves.len(), waves.iter().map(of_wave))
+    }
+
+    /// First variation of Δθ under a push of the curve, each part of it taken as told.
+    fn turned(&self, path: &Path, wave: &[Vector2<f64>], part: fn(f64) -> f64) -> f64 {
+        let parts: Vec<f64> = path
+            .places
+            .iter()
+            .zip(wave)
+            .map(|(place, push)| part(place.first.curvature().z * push.perp(&place.rate)))
+            .collect();
+        let integrals = self.grid.integrals(&parts, 0.0, Degree::Fine);
+        integrals.last().copied().unwrap_or_default()
     }
 
     /// First variation of p · d + cΔθ under a push of the curve.

@@ -232,7 +232,7 @@ impl Subject<'_> {
     }
 
     /// The multipliers: p along the displacement (across the heading at the start for a sideways gait), c from what must vanish on the free arcs. None where nothing is gained.
-    fn weak_momentum(&self, gain: Gain) -> Option<Momentum> {
+    pub(super) fn weak_momentum(&self, gain: Gain) -> Option<Momentum> {
         let gained = self.gained(gain);
         if gained.is_nan() || gained <= 1e-6 {
             return None;
