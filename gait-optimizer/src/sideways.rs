@@ -73,6 +73,11 @@ pub struct Sideways {
 /// those that are found and certified. Random starts know no front and back, so a swimmer whose side links differ is looked
 /// at from both ends.
 ///
+/// A loop with a bridge to its start is not simple, so there need not be a farthest one, and the answer can fall as a bound
+/// B is widened: from the corner (B, −B) of Purcell's swimmer an extremal runs along the bound at 1.005 rad and none does at
+/// 1.01, where the next best loop carries .026 L and that one carried .034. What bridges would bring is
+/// [`Sideways::bridged_supremum_over_length`].
+///
 /// # Errors
 /// [`SidewaysError`]: what is wrong with the problem, or that there is no such gait.
 pub fn sideways(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {

@@ -19,7 +19,8 @@ use super::answer::{Arc, Closing, arcs};
 /// Find the simple closed gait of most displacement across the heading at its first sample, without net rotation
 ///
 /// The first sample is free to choose, so it is part of what is optimised: either the heading there is square to the
-/// displacement, or as near to it as the loop gets. Bridges to another start do not count.
+/// displacement, or as near to it as the loop gets. Bridges to another start do not count, so a wider bound can lower the
+/// answer: where a loop can no longer run into the corner that it starts from, only a bridge would lead there.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Sideways {
     /// purcell, robot, robot-slender or a swimmer file
