@@ -9,7 +9,7 @@ use swimmer_model::Model;
 
 use super::Subject;
 use super::grid::{Along, Degree, Grid};
-use super::path::Path;
+use super::path::{Path, Place};
 use crate::certificate::Check;
 use crate::momentum::Momentum;
 
@@ -248,32 +248,38 @@ impl Neighbours<'_> {
 
     /// First variation of Δθ under a push of the curve, each part of it taken as told.
     fn turned(&self, path: &Path, wave: &[Vector2<f64>], part: fn(f64) -> f64) -> f64 {
-        let parts: Vec<f64> = path
-            .places
-            .iter()
-            .zip(wave)
-            .map(|(place, push)| part(place.first.curvature().z * push.perp(&place.rate)))
-            .collect();
-        let integrals = self.grid.integrals(&parts, 0.0, Degree::Fine);
-        integrals.last().copied().unwrap_or_default()
+        self.summed(path, wave, |place, swept| {
+            part(place.first.curvature().z * swept)
+        })
     }
 
     /// First variation of p · d + cΔθ under a push of the curve.
     fn enclosed(&self, path: &Path, momentum: &Momentum, wave: &[Vector2<f64>]) -> f64 {
-        let gained: Vec<f64> = path
-            .places
-            .iter()
-            .zip(wave)
-            .map(|(place, push)| place.height(momentum) * push.perp(&place.rate))
-            .collect();
-        let inside = self.grid.integrals(&gained, 0.0, Degree::Fine);
+        let inside = self.summed(path, wave, |place, swept| place.height(momentum) * swept);
         let ends = match (path.places.first(), path.places.last(), wave.first()) {
             (Some(first), Some(last), Some(push)) => (momentum.at(&last.pose)
                 - momentum.at(&first.pose))
             .dot(&(first.first.connection * push)),
             _ => 0.0,
         };
-        inside.last().copied().unwrap_or_default() + ends
+        inside + ends
+    }
+
+    /// The integral round the curve of what is gained at a place that sweeps so much area \[rad² per u\] as it is pushed.
+    fn summed(
+        &self,
+        path: &Path,
+        wave: &[Vector2<f64>],
+        gained: impl Fn(&Place, f64) -> f64,
+    ) -> f64 {
+        let gained: Vec<f64> = path
+            .places
+            .iter()
+            .zip(wave)
+            .map(|(place, push)| gained(place, push.perp(&place.rate)))
+            .collect();
+        let integrals = self.grid.integrals(&gained, 0.0, Degree::Fine);
+        integrals.last().copied().unwrap_or_default()
     }
 
     /// First variation of ∮√P under a push of the curve.
