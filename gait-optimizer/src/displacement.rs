@@ -182,11 +182,17 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
     problem.validate()?;
     let model = Model::new(&problem.swimmer.of_unit_length())?;
     refuse_immobile(&model, &problem.bounds)?;
-    let (found, _) = best(problem, &model, &problem.bounds);
+    let links = &problem.swimmer.links;
+    let region = Region::new(&problem.bounds, links);
+    let (found, _) = best(problem, &model, (&problem.bounds, &region));
     if !touches(problem, &model, found.as_ref().ok()) {
         return found;
     }
-    let (touching, farthest) = best(problem, &model, &problem.touching());
+    let bounds = problem.touching();
+    let region = Region::new(&bounds, links);
+    let within = (&bounds, &region);
+    let (touching, seen) = best(problem, &model, within);
+    let farthest = seen.farthest(problem, &model, within);
     let carries =
         |gait: &Result<OptimalGait, _>| gait.as_ref().map_or(0.0, |gait| gait.displacement);
     let mut answer = if carries(&touching) > carries(&found) {

@@ -1,31 +1,34 @@
 //! Of all that the search finds within some bounds, the best that is certified; and how far gaits carry that are no optima.
 
+use std::cmp::Ordering;
+
 use swimmer_files::Bounds;
 use swimmer_model::Model;
 
-use super::search::{CLOSER_LOOKS, Candidate, LOOKS, Search};
-use super::trunk::{trunks, trunks_on_the_diagonal};
+use super::search::{CLOSER_LOOKS, Candidate, LOOKS, Search, Seen};
+use super::trunk::{Trunk, trunks, trunks_on_the_diagonal};
 use super::{DisplacementError, DisplacementProblem, Fates, certified};
 use crate::OptimalGait;
 use crate::certify::samples_suffice;
 use crate::region::Region;
 
 /// What a search within some bounds came to.
-pub(super) struct Extremals {
+pub(super) struct Extremals<'a> {
     /// The extremals that head the right way, farthest first.
     pub(super) found: Vec<Candidate>,
-    /// Gaits that carry far but are no extremals; only of quarters that may touch their images.
-    farthest: Vec<Candidate>,
+    /// What the scans saw beside them; only of quarters that may touch their images.
+    scans: Vec<(Search<'a>, Seen)>,
+    trunks: Vec<Trunk>,
     /// What became of all that were sent out along the bounds and from φ₁ = φ₂.
     fates: Fates,
 }
 
-pub(super) fn candidates(
+pub(super) fn candidates<'a>(
     problem: &DisplacementProblem,
-    model: &Model<f64>,
-    (bounds, region): (&Bounds, &Region),
+    model: &'a Model<f64>,
+    (bounds, region): (&Bounds, &'a Region),
     looks: usize,
-) -> Extremals {
+) -> Extremals<'a> {
     let sign = problem.heading().sign();
     let mut search = Search {
         model,
@@ -37,9 +40,9 @@ pub(super) fn candidates(
     let mut trunks = trunks(search.extremal(0.0), bounds, region);
     let (mut found, seen) = search.candidates(&trunks);
     let fates = seen.fates;
-    let mut farthest = Vec::new();
+    let mut scans = Vec::new();
     if region.has_diagonals() {
-        farthest.extend(search.farthest(&trunks, seen));
+        scans.push((search, seen));
         search.touches = 1;
         trunks.extend(trunks_on_the_diagonal(
             search.extremal(0.0),
@@ -48,57 +51,71 @@ pub(super) fn candidates(
         ));
         let (touching, seen) = search.candidates(&trunks);
         found.extend(touching);
-        farthest.extend(search.farthest(&trunks, seen));
+        scans.push((search, seen));
     }
     found.retain(|candidate| sign * candidate.quarter.end[2] > 0.0);
-    let far = |a: &Candidate, b: &Candidate| {
-        let [a, b] = [a, b].map(|candidate| candidate.quarter.end[2].abs());
-        b.total_cmp(&a)
-    };
-    found.sort_by(far);
-    farthest.sort_by(far);
+    found.sort_by(farther);
     Extremals {
         found,
-        farthest,
+        scans,
+        trunks,
         fates,
     }
 }
 
-/// The best gait that certifies within these bounds, which may be tighter than the problem's; and how far, over L, gaits
-/// carry at least that may touch their images.
-pub(super) fn best(
-    problem: &DisplacementProblem,
-    model: &Model<f64>,
-    bounds: &Bounds,
-) -> (Result<OptimalGait, DisplacementError>, Option<f64>) {
-    let region = Region::new(bounds, &problem.swimmer.links);
-    let within = (bounds, &region);
-    let heading = problem.heading();
-    let mut refused = None;
-    let mut farthest = None;
-    let mut fates = Fates::default();
-    for looks in [LOOKS, CLOSER_LOOKS] {
-        let seen = candidates(problem, model, within, looks);
-        farthest = seen.farthest.iter().find_map(|candidate| {
+/// The farther one first.
+fn farther(a: &Candidate, b: &Candidate) -> Ordering {
+    let [a, b] = [a, b].map(|candidate| candidate.quarter.end[2].abs());
+    b.total_cmp(&a)
+}
+
+impl Extremals<'_> {
+    /// How far, over L, gaits carry at least that are no extremals; none where no such gait was seen.
+    pub(super) fn farthest(
+        self,
+        problem: &DisplacementProblem,
+        model: &Model<f64>,
+        within: (&Bounds, &Region),
+    ) -> Option<f64> {
+        let trunks = &self.trunks;
+        let scans = self.scans.into_iter();
+        let mut carried: Vec<Candidate> = scans
+            .flat_map(|(search, seen)| search.farthest(trunks, seen))
+            .collect();
+        carried.sort_by(farther);
+        carried.iter().find_map(|candidate| {
             let gait = certified(problem, model, within, candidate)?;
             is_gait(&gait).then_some(gait.displacement_over_length)
-        });
+        })
+    }
+}
+
+/// The best gait that certifies within these bounds, which may be tighter than the problem's; and what else was seen there.
+pub(super) fn best<'a>(
+    problem: &DisplacementProblem,
+    model: &'a Model<f64>,
+    within: (&Bounds, &'a Region),
+) -> (Result<OptimalGait, DisplacementError>, Extremals<'a>) {
+    let mut refused = None;
+    let mut seen = candidates(problem, model, within, LOOKS);
+    for closer in [true, false] {
         for candidate in &seen.found {
             let Some(gait) = certified(problem, model, within, candidate) else {
                 continue;
             };
             if gait.certificate.pass() {
                 let finer = finely_sampled(problem, model, within, (candidate, gait));
-                return (Ok(finer), farthest);
+                return (Ok(finer), seen);
             }
             refused.get_or_insert(gait);
         }
-        fates = seen.fates;
         // Where many get lost, closer looks would only lose more.
-        if refused.is_some() || 8 * fates.lost > fates.sent {
+        if !closer || refused.is_some() || 8 * seen.fates.lost > seen.fates.sent {
             break;
         }
+        seen = candidates(problem, model, within, CLOSER_LOOKS);
     }
+    let fates = seen.fates;
     let error = match refused {
         Some(gait) => DisplacementError::NotCertified {
             displacement_over_length: gait.displacement_over_length,
@@ -108,12 +125,12 @@ pub(super) fn best(
             DisplacementError::NoUnboundedOptimum { fates }
         }
         None => DisplacementError::NoOptimum {
-            heading,
+            heading: problem.heading(),
             fates,
             outdone: None,
         },
     };
-    (Err(error), farthest)
+    (Err(error), seen)
 }
 
 /// Whether all holds that makes a curve a gait within its bounds, optimal or not.
