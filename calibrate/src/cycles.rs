@@ -10,29 +10,31 @@
 //! * X and Y are the step of SE(2) from one cycle to the next in the frame of the cycle's first heading. ΔY and Δθ are half
 //!   of max − min of the cycle's harmonics, drawn about the drift from one cycle's mean to the next one's.
 
-mod beginnings;
 mod clock;
 mod curve;
-mod drawn;
+mod error;
+mod fitted_cycle;
 mod integral;
-mod repeats;
+mod periodicity;
+mod phase;
 mod statistics;
-mod told;
+mod warning;
 
 use swimmer_model::Pose;
 
 use crate::poses::{Jump, Origin, PoseSample, PoseTrack};
-use beginnings::Beginnings;
-pub use beginnings::{Phase, Timing};
 use clock::Bin;
 pub(crate) use clock::shift;
 pub(crate) use curve::{Curve, Harmonics, Projection};
-use drawn::Drawn;
-pub use repeats::Repeats;
-use repeats::Verdict;
+pub use error::CycleError;
+use fitted_cycle::FittedCycle;
+use periodicity::Judgement;
+pub use periodicity::Periodicity;
+use phase::CycleStarts;
+pub use phase::{Phase, Timing};
 pub use statistics::Statistics;
-use told::SAME_PHASE;
-pub use told::{CycleError, CycleWarning, LeftOut};
+use warning::SAME_PHASE;
+pub use warning::{CycleWarning, LeftOut};
 
 /// Times that a start is refined: each leaves the square of the error before.
 const REFINEMENTS: usize = 2;
@@ -104,7 +106,7 @@ pub(crate) struct Clock {
     /// When it moved first.
     motion_s: f64,
     steady: Vec<Bin>,
-    beginnings: Beginnings,
+    starts: CycleStarts,
     warnings: Vec<CycleWarning>,
 }
 
@@ -160,17 +162,17 @@ impl Clock {
                 found_s: period.seconds,
             });
         }
-        match repeats::judge(&steady, period.seconds, timing.play.is_some()) {
-            Verdict::Fine => {}
-            Verdict::Doubtful(repeats) => warnings.push(CycleWarning::Repeats(repeats)),
-            Verdict::Hopeless(repeats) => return Err(CycleError::OtherPeriod(repeats)),
+        match periodicity::judge(&steady, period.seconds, timing.play.is_some()) {
+            Judgement::Fine => {}
+            Judgement::Doubtful(repeats) => warnings.push(CycleWarning::Repeats(repeats)),
+            Judgement::Hopeless(repeats) => return Err(CycleError::OtherPeriod(repeats)),
         }
         Ok(Self {
             period_s: period.seconds,
             active_s,
             motion_s: motion.map_or(active_s.0, |(first, _)| first),
             steady,
-            beginnings: Beginnings::new(timing, period.seconds),
+            starts: CycleStarts::new(timing, period.seconds),
             warnings,
         })
     }
@@ -178,11 +180,11 @@ impl Clock {
     /// A start of a cycle \[s\], matched with the model's heading: roughly from averages, then from the cycles' own curves,
     /// which are drawn as the model's is.
     pub(crate) fn start(&self, track: &PoseTrack, model: &Harmonics) -> Result<f64, CycleError> {
-        if let Some(known) = self.beginnings.known(self.motion_s) {
+        if let Some(known) = self.starts.known(self.motion_s) {
             return Ok(known);
         }
         let rough = self.rough_start(model)?;
-        let mut start = self.beginnings.nearest(rough, self.motion_s, self.period_s);
+        let mut start = self.starts.nearest(rough, self.motion_s, self.period_s);
         for _ in 0..REFINEMENTS {
             // Why there are no cycles, the caller will hear when it asks for them.
             let Ok(cycles) = self.cycles(track, start) else {
@@ -208,7 +210,7 @@ impl Clock {
         cycles: &mut Cycles,
         model: &Harmonics,
     ) -> Result<(), CycleError> {
-        if let Some(repeats) = repeats::several_times(&cycles.heading, model, self.period_s) {
+        if let Some(repeats) = periodicity::several_times(&cycles.heading, model, self.period_s) {
             return Err(CycleError::OtherPeriod(repeats));
         }
         let by_s = self.phase_error(cycles, model);
@@ -224,7 +226,7 @@ impl Clock {
     /// Where whole cycles may lie \[s\].
     fn window(&self, track: &PoseTrack) -> (f64, f64) {
         let ends = track.samples.first().zip(track.samples.last());
-        match ends.filter(|_| self.beginnings.has_log()) {
+        match ends.filter(|_| self.starts.has_log()) {
             Some((first, last)) => (first.time_s, last.time_s),
             None => self.active_s,
         }
@@ -248,10 +250,10 @@ impl Clock {
     pub(crate) fn cycles(&self, track: &PoseTrack, start_s: f64) -> Result<Cycles, CycleError> {
         let period = self.period_s;
         let (from, to) = self.window(track);
-        let mut drawn: Vec<Drawn> = Vec::new();
+        let mut drawn: Vec<FittedCycle> = Vec::new();
         let mut left_out = Vec::new();
         let mut warnings = self.warnings.clone();
-        let listed = self.beginnings.listed(start_s, period, (from, to));
+        let listed = self.starts.listed(start_s, period, (from, to));
         left_out.extend(listed.unsteady.iter().map(|s| (*s, LeftOut::Unsteady)));
         let starts = listed.starts;
         if listed.with_start_up && starts.len() == 1 {
@@ -277,7 +279,7 @@ impl Clock {
                 1.0 / (period * track.rate_hz),
             );
             match curve.filter(|_| missing <= MOST_MISSING) {
-                Some((curve, residual_m)) => drawn.push(Drawn {
+                Some((curve, residual_m)) => drawn.push(FittedCycle {
                     start_s: start,
                     missing,
                     curve,
@@ -287,9 +289,9 @@ impl Clock {
                 None => left_out.push((start, LeftOut::Missing(missing))),
             }
         }
-        drawn::drop_unlike(&mut drawn, &mut left_out);
-        let drawn = drawn::settle(drawn, period, track.report.distance_m, &mut left_out);
-        let Some(Drawn { curve: lone, .. }) = drawn.first() else {
+        fitted_cycle::drop_unlike(&mut drawn, &mut left_out);
+        let drawn = fitted_cycle::settle(drawn, period, track.report.distance_m, &mut left_out);
+        let Some(FittedCycle { curve: lone, .. }) = drawn.first() else {
             let (from_s, active_s) = (from, to - from);
             return Err(CycleError::NoCycle {
                 from_s,
@@ -299,7 +301,7 @@ impl Clock {
             });
         };
         let lone = lone.own_step();
-        let heading = drawn::mean_heading(&drawn);
+        let heading = fitted_cycle::mean_heading(&drawn);
         let cycles: Vec<Cycle> = drawn
             .iter()
             .enumerate()
@@ -320,7 +322,7 @@ impl Clock {
             delta_theta: Statistics::of(cycles.iter().map(|cycle| cycle.delta_theta)),
             cycles,
             left_out,
-            phase: self.beginnings.phase(),
+            phase: self.starts.phase(),
             warnings,
             heading,
         })

@@ -9,22 +9,19 @@
 
 mod bootstrap;
 mod curves;
-mod deletion;
-mod estimate;
+mod leave_one_out;
+mod likelihood_problem;
 mod profile;
-mod sought;
 mod surface;
 
-use swimmer_files::Campaign;
-
-use crate::campaign::{CalibrateError, CampaignData, CampaignFit};
-use crate::cycles::Projection;
-use crate::fit::{FitError, Intervals};
-use crate::prediction::JointPath;
-use bootstrap::Drawn;
+use crate::error::FitError;
+use crate::fit::parameter::Parameter;
+use crate::fit::run_model::RunModel;
+use crate::fit::run_values::{NAMES, QUANTITIES, TELLING};
+use crate::fit::{CampaignFit, Intervals};
 pub use curves::{CurvePoint, circle_curve};
+use likelihood_problem::{LikelihoodProblem, RECTANGLES};
 use profile::Scale;
-use sought::{RECTANGLES, Sought};
 use surface::Surface;
 
 /// How much to compute.
@@ -47,9 +44,10 @@ impl Default for EvidenceOptions {
 }
 
 /// r_s and χ by one way of fitting.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Pair {
     /// r_s \[m\].
+    #[serde(rename = "sphere_radius_m")]
     pub sphere_radius: f64,
     /// χ.
     pub chi: f64,
@@ -73,11 +71,7 @@ impl Quantity {
 
 impl std::fmt::Display for Quantity {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::X => "X",
-            Self::DeltaY => "ΔY",
-            Self::DeltaTheta => "Δθ",
-        })
+        f.write_str(NAMES[*self as usize])
     }
 }
 
@@ -148,15 +142,13 @@ pub struct Contour {
     pub corners: Vec<(f64, f64)>,
 }
 
-/// The cycle bootstrap of the paper's fit.
+/// The bootstrap of the paper's fit, by runs and cycles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CycleBootstrap {
     /// Where the draws came from.
     pub seed: u64,
     /// How many.
     pub draws: usize,
-    /// Whether runs were drawn too (from five on), or only cycles within them.
-    pub runs_drawn: bool,
     /// Draws whose fit ended at the border of what was looked at: intervals mean little where they are many.
     pub at_border: usize,
     /// Bias-corrected and accelerated intervals.
@@ -197,13 +189,13 @@ pub struct Evidence {
     /// The estimate of greatest likelihood.
     pub likelihood: Likelihood,
     /// X, ΔY and Δθ of each run against it.
-    pub run_errors: Vec<[RunError; 3]>,
+    pub run_errors: Vec<[RunError; TELLING]>,
     /// Profiles of r_s and of χ.
     pub profiles: [Profile; 2],
     /// Both together.
     pub ridge: Ridge,
-    /// The cycle bootstrap of the paper's fit.
-    pub bootstrap: CycleBootstrap,
+    /// The bootstrap of the paper's fit; `None` of fewer than five runs, which draw nothing worth the name.
+    pub bootstrap: Option<CycleBootstrap>,
     /// Both fits without each run.
     pub without_run: Vec<WithoutRun>,
     /// What stands out.
@@ -222,36 +214,24 @@ const ELSEWHERE: f64 = 1e-3;
 /// Weighs what a campaign's runs say about its fit.
 ///
 /// # Errors
-/// [`CalibrateError`]: the data do not determine the parameters.
-pub fn weigh_evidence(
-    campaign: &Campaign,
-    data: &CampaignData,
-    found: &CampaignFit,
-    options: EvidenceOptions,
-) -> Result<Evidence, CalibrateError> {
-    let projection = Projection::new();
-    let start = &campaign.swimmer;
-    let paths: Vec<&JointPath> = found.runs.iter().map(|run| &run.path).collect();
-    let sought = Sought::of(found, start.swimmer.total_length());
-    let nothing = || CalibrateError::Fit(FitError::NoConvergence { starts: RECTANGLES });
-    let ask = |rectangle| {
-        Surface::new(
-            &start.swimmer,
-            &paths,
-            sought.scales,
-            &projection,
-            rectangle,
-        )
-    };
-    let mut settled = sought.settle(sought.paper, ask).ok_or_else(nothing)?;
-    let far = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() + (a[1] - b[1]).abs() > ELSEWHERE;
-    let best = sought.sought_widely(campaign, data, found, &settled.2);
-    if let Some(best) = best.filter(|best| far(*best, settled.2.at)) {
-        settled = sought.settle(best, ask).ok_or_else(nothing)?;
+/// [`FitError`]: the data do not determine the parameters.
+pub fn weigh_evidence(found: &CampaignFit, options: EvidenceOptions) -> Result<Evidence, FitError> {
+    let problem = LikelihoodProblem::of(found)?;
+    let scales = problem.data.scales;
+    let plain = vec![Parameter::SphereRadius, Parameter::Chi];
+    let played = found.runs.iter().map(|run| run.played.clone()).collect();
+    let model = RunModel::new(found.start.clone(), played, scales, plain);
+    let nothing = || FitError::NoConvergence { starts: RECTANGLES };
+    let ask = |rectangle| Surface::new(&model, rectangle);
+    let mut settled = problem.settle(problem.paper, ask).ok_or_else(nothing)?;
+    let far = |a: [f64; 2], b: &[f64]| (a[0] - b[0]).abs() + (a[1] - b[1]).abs() > ELSEWHERE;
+    let best = problem.sought_widely(&model, &settled.2);
+    if let Some(best) = best.filter(|best| far(*best, &settled.2.at)) {
+        settled = problem.settle(best, ask).ok_or_else(nothing)?;
     }
     let (surface, data_used, estimate, unexpected) = settled;
     let scale = Scale {
-        length: sought.length,
+        length: found.length(),
     };
     let level = found.fit.intervals.level;
     let profile =
@@ -264,35 +244,33 @@ pub fn weigh_evidence(
         sphere_radius: scale.natural(0, at[0]),
         chi: scale.natural(1, at[1]),
     };
-    let drawn: Vec<Drawn> = found
+    let drawn: Vec<bootstrap::Drawn> = found
         .runs
         .iter()
-        .map(|run| sought.drawn(&run.cycles))
+        .map(|run| problem.drawn(&run.cycles))
         .collect();
-    let drawn =
-        bootstrap::bootstrap(&surface, &drawn, sought.paper, level, options).ok_or_else(nothing)?;
+    let drawn = bootstrap::bootstrap(&surface, &drawn, problem.paper, level, options);
     let natural = |parameter: usize, ends: [f64; 2]| ends.map(|end| scale.natural(parameter, end));
-    let covariance = estimate.components.covariance();
-    let period_s = data.usual_period_s();
+    let period_s = found.usual_period_s();
     Ok(Evidence {
         likelihood: Likelihood {
-            estimate: pair(estimate.at),
+            estimate: pair([estimate.at[0], estimate.at[1]]),
             intervals: Intervals {
                 sphere_radius: profiles[0].interval,
                 chi: profiles[1].interval,
                 level,
             },
-            between_runs: [0, 1, 2]
-                .map(|q| estimate.components.between[q].sqrt() * sought.scales[q]),
-            correlation: covariance[(0, 1)] / (covariance[(0, 0)] * covariance[(1, 1)]).sqrt(),
+            between_runs: std::array::from_fn(|q| {
+                estimate.components.between[q].sqrt() * scales[q]
+            }),
+            correlation: estimate.components.correlation(0, 1),
         },
-        run_errors: sought.run_errors(&estimate),
+        run_errors: problem.run_errors(&estimate),
         ridge: profile::ridge(&surface, &data_used, &estimate, &scale).ok_or_else(nothing)?,
         profiles,
-        bootstrap: CycleBootstrap {
+        bootstrap: drawn.map(|drawn| CycleBootstrap {
             seed: drawn.seed,
             draws: drawn.draws,
-            runs_drawn: drawn.runs_drawn,
             at_border: drawn.at_border,
             intervals: Intervals {
                 sphere_radius: natural(0, drawn.intervals[0]),
@@ -300,19 +278,24 @@ pub fn weigh_evidence(
                 level,
             },
             points: drawn.points.into_iter().map(pair).collect(),
-        },
-        without_run: sought.without_runs(&surface, &data_used, estimate.at, pair),
+        }),
+        without_run: problem.without_runs(
+            &surface,
+            &data_used,
+            [estimate.at[0], estimate.at[1]],
+            pair,
+        ),
         outliers: unexpected
             .into_iter()
             .map(|value| Outlier {
-                run: value.row / 3,
-                quantity: Quantity::ALL[value.row % 3],
-                deviation: value.deviation * sought.scales[value.row % 3],
+                run: value.row / QUANTITIES,
+                quantity: Quantity::ALL[value.row % QUANTITIES],
+                deviation: value.deviation * scales[value.row % QUANTITIES],
                 standard_errors: value.standard_errors,
                 chance: value.chance,
             })
             .collect(),
-        start_curve: circle_curve(start, period_s),
+        start_curve: circle_curve(&found.start, period_s),
         fitted_curve: circle_curve(&found.swimmer, period_s),
         surface_error: surface.error,
     })

@@ -1,10 +1,9 @@
 //! The paper's fit (eq. RMSE): r_s and χ that minimise √Σ(w_x q_x + w_y q_y + w_θ q_θ) over runs, with
 //! q = ((simulated − measured)/max measured)², w_x = 0.5 and w_y = w_θ = 0.25.
 //!
-//! Parameters are r_s = L p² and χ = eᵏ, which keep them where they make sense; the border r_s = 0 is fitted by itself.
-//! Levenberg–Marquardt (the MINPACK port) starts from the best of a grid, with ideal servos; its distinct ends then start the
-//! fit with the path that the servos really played. Jacobians are central differences of fourth order of a simulation that
-//! is smooth to 1e-10.
+//! It is the least squares (`least_squares.rs`) of a model of the runs (`run_model.rs`) with two parameters, r_s/L ≥ 0 and ln χ,
+//! and fixed weights; what else may be off is more parameters of the same model, the likelihood the same squares with weights
+//! that the data tell (`likelihood.rs`).
 //!
 //! Intervals are Student's t, with the variances of what goes into the fit: between the cycles of a run (`errors.rs`) and
 //! from run to run (`components.rs`), and Satterthwaite's degrees of freedom. They are the ones that were chosen by counting:
@@ -12,24 +11,35 @@
 
 pub(crate) mod components;
 pub(crate) mod errors;
-mod intervals;
-pub(crate) mod measured;
+pub(crate) mod intervals;
+pub(crate) mod least_squares;
+pub(crate) mod likelihood;
 pub(crate) mod outliers;
-mod problem;
+pub(crate) mod parameter;
+pub(crate) mod prior;
+pub(crate) mod run_model;
+pub(crate) mod run_values;
 mod search;
+pub(crate) mod tangent;
 
-use swimmer_model::{InvalidSwimmer, Swimmer, TangentialDrag};
+use std::path::PathBuf;
 
-use crate::cycles::{Cycles, Projection, Statistics};
-use crate::prediction::{JointPath, PredictedCycle};
+use swimmer_files::{Known, SwimmerFile};
+use swimmer_model::{Swimmer, TangentialDrag};
+
+use crate::error::FitError;
+use crate::median::median;
+use crate::prediction::{Played, PredictedCycle};
+use crate::run::RunResult;
 pub use intervals::Intervals;
-use problem::{Problem, natural};
+use least_squares::{Minimum, cost};
+use parameter::Parameter;
+use run_model::RunModel;
+use run_values::{NAMES, QUANTITIES, RunValues};
+pub(crate) use search::search;
 
-/// Weights of X, ΔY and Δθ in the paper's criterion.
-pub const WEIGHTS: [f64; 3] = [0.5, 0.25, 0.25];
-
-/// Their names.
-const QUANTITIES: [&str; 3] = ["X", "ΔY", "Δθ"];
+/// Weights of X, ΔY and Δθ in the paper's criterion, which leaves out Y and net turn.
+pub(crate) const WEIGHTS: [f64; QUANTITIES] = [0.5, 0.25, 0.25, 0.0, 0.0];
 
 /// What a fit is made from besides the data.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,80 +52,6 @@ impl Default for FitOptions {
     /// 95 %.
     fn default() -> Self {
         Self { level: 0.95 }
-    }
-}
-
-/// Why nothing was fitted.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum FitError {
-    /// The starting swimmer is none.
-    #[error("{0}")]
-    Swimmer(#[from] InvalidSwimmer),
-    /// A level that is no share.
-    #[error("the level of the intervals is {level}; give a share between 0 and 1, such as 0.95")]
-    Level {
-        /// The level.
-        level: f64,
-    },
-    /// One of X, ΔY, Δθ is zero in all runs, so the criterion is undefined.
-    #[error("{quantity} is zero in all runs, so the criterion cannot be scaled by it")]
-    NothingMeasured {
-        /// Which one.
-        quantity: &'static str,
-    },
-    /// X has the other sign than the model's in every run.
-    #[error(
-        "in all {runs} runs the robot swam against the model (X of the first: {measured_m:.5} m, model {predicted_m:.5} m); either the \
-         gaits ran clockwise (add :cw to `gait`), or front and back reflectors are exchanged (exchange `at`)"
-    )]
-    SignOpposes {
-        /// How many runs.
-        runs: usize,
-        /// The first run's X \[m\].
-        measured_m: f64,
-        /// What the model swims \[m\].
-        predicted_m: f64,
-    },
-    /// The data say nothing about some combination of what was asked.
-    #[error(
-        "these runs do not determine {parameters} together; fit fewer parameters, or measure other gaits and amplitudes"
-    )]
-    Undetermined {
-        /// Their names.
-        parameters: String,
-    },
-    /// No start led anywhere.
-    #[error(
-        "the fit did not converge from any of {starts} starts; look at X, ΔY and Δθ of the runs first"
-    )]
-    NoConvergence {
-        /// How many starts.
-        starts: usize,
-    },
-}
-
-/// One run as the fit sees it.
-#[derive(Debug, Clone)]
-pub(crate) struct Observation {
-    pub(crate) path: JointPath,
-    /// X, ΔY, Δθ.
-    pub(crate) measured: [Statistics; 3],
-}
-
-impl Observation {
-    pub(crate) fn new(path: JointPath, cycles: &Cycles) -> Self {
-        Self {
-            path,
-            measured: [cycles.x, cycles.delta_y, cycles.delta_theta],
-        }
-    }
-
-    /// The same run with servos that do as they are told, for the search.
-    fn ideal(&self, gait: &swimmer_files::AnyGait) -> Self {
-        Self {
-            path: JointPath::Ideal(gait.clone()),
-            measured: self.measured,
-        }
     }
 }
 
@@ -191,6 +127,17 @@ pub enum FitWarning {
         found: f64,
         /// Gain in log-likelihood.
         gain: f64,
+        /// What explains them nearly as well, and by how much.
+        rival: Option<(&'static str, f64)>,
+    },
+    /// Another servo gain would explain the runs much better.
+    Gain {
+        /// As the runs say.
+        found: f64,
+        /// Growth of the log-likelihood.
+        gain: f64,
+        /// What explains them nearly as well, and by how much.
+        rival: Option<(&'static str, f64)>,
     },
     /// The residuals say more than cycles' deviations: factor between both standard errors.
     ModelMisfit {
@@ -225,13 +172,30 @@ impl std::fmt::Display for FitWarning {
                 run + 1,
                 standard_errors.abs()
             ),
-            Self::DeadBand { known, found, gain } => write!(
-                f,
-                "the runs look as if the servos had a dead band of {:.1}°, where the swimmer file says {:.1}° (log-likelihood \
-                 +{gain:.1}): r_s and chi are off if it is so; see --fit-also deadband, then [servo] dead_band in the swimmer file",
-                found.to_degrees(),
-                known.to_degrees()
-            ),
+            Self::DeadBand {
+                known,
+                found,
+                gain,
+                rival,
+            } => {
+                write!(
+                    f,
+                    "the runs look as if the servos had a dead band of {:.1}°, where the swimmer file says {:.1}° (log-likelihood \
+                     +{gain:.1}): r_s and chi are off if it is so; see --fit-also deadband, then [servo] dead_band in the swimmer file",
+                    found.to_degrees(),
+                    known.to_degrees()
+                )?;
+                alike(f, *rival)
+            }
+            Self::Gain { found, gain, rival } => {
+                write!(
+                    f,
+                    "the runs look as if the servos turned {found:.4} times what they are told (log-likelihood +{gain:.1}): r_s and \
+                     chi are off if it is so; see --fit-also gain, then slope_rad_per_us in the swimmer file or gain under [known] in \
+                     the campaign"
+                )?;
+                alike(f, *rival)
+            }
             Self::NoSphere => f.write_str("the best fit has no sphere: r_s = 0 is at its bound"),
             Self::ModelMisfit { ratio } => write!(
                 f,
@@ -239,6 +203,16 @@ impl std::fmt::Display for FitWarning {
             ),
         }
     }
+}
+
+/// What explains the runs as well.
+fn alike(f: &mut std::fmt::Formatter<'_>, rival: Option<(&str, f64)>) -> std::fmt::Result {
+    rival.map_or(Ok(()), |(name, gain)| {
+        write!(
+            f,
+            "; a {name} explains them as well (+{gain:.1}), and these runs do not tell which"
+        )
+    })
 }
 
 /// The c_t form in words, as `c_t_form` reports it.
@@ -250,105 +224,135 @@ pub fn c_t_form(drag: &TangentialDrag<f64>) -> String {
     }
 }
 
-/// The paper's fit. `gaits` belong to `runs`.
+/// A run that is not in the fit.
+#[derive(Debug, Clone)]
+pub struct ExcludedRun {
+    /// Its place in the campaign.
+    pub index: usize,
+    /// Its tracking file.
+    pub file: PathBuf,
+    /// Why: as the campaign says, or because of its sign.
+    pub reason: String,
+    /// Whether it was left out because it swims against the model.
+    pub by_sign: bool,
+    /// What came of it, where it was looked at.
+    pub result: Option<RunResult>,
+}
+
+/// A campaign's outcome.
+#[derive(Debug, Clone)]
+pub struct CampaignFit {
+    /// The swimmer that the fit started from.
+    pub start: SwimmerFile,
+    /// What the campaign states to be known beforehand.
+    pub known: Known,
+    /// The runs that were fitted, in the campaign's order.
+    pub runs: Vec<RunResult>,
+    /// Those that were not.
+    pub excluded: Vec<ExcludedRun>,
+    /// The fit.
+    pub fit: Fit,
+    /// The swimmer with the fitted parameters, ready to be saved.
+    pub swimmer: SwimmerFile,
+}
+
+impl CampaignFit {
+    /// L \[m\].
+    pub(crate) fn length(&self) -> f64 {
+        self.start.swimmer.total_length()
+    }
+
+    /// The paper's optimum, (r_s/L, ln χ).
+    pub(crate) fn optimum(&self) -> [f64; 2] {
+        [self.fit.sphere_radius / self.length(), self.fit.chi.ln()]
+    }
+
+    /// What its runs measured.
+    pub(crate) fn values(&self) -> Result<RunValues, FitError> {
+        RunValues::of(self.runs.iter().map(|run| &run.cycles))
+    }
+
+    /// The model of its runs with these parameters; cycles stay cut as they are.
+    pub(crate) fn model(
+        &self,
+        data: &RunValues,
+        parameters: Vec<Parameter>,
+    ) -> Result<RunModel, FitError> {
+        let Self {
+            start,
+            runs,
+            swimmer,
+            ..
+        } = self;
+        Ok(RunModel::of_runs(
+            start,
+            runs,
+            swimmer,
+            data.scales,
+            parameters,
+        )?)
+    }
+
+    /// The median of the runs' commanded periods \[s\], for a gait that none of them swam.
+    pub(crate) fn usual_period_s(&self) -> f64 {
+        median(self.runs.iter().map(|run| run.played.period_s)).unwrap_or(1.0)
+    }
+}
+
+/// The paper's fit of these runs, from this swimmer.
 pub(crate) fn fit(
-    start: &Swimmer<f64>,
-    runs: &[Observation],
-    gaits: &[swimmer_files::AnyGait],
+    start: &SwimmerFile,
+    runs: Vec<Played>,
+    data: &RunValues,
     level: f64,
 ) -> Result<Fit, FitError> {
-    start.validate()?;
+    start.swimmer.validate()?;
     if !(level > 0.0 && level < 1.0) {
         return Err(FitError::Level { level });
     }
-    let scales = scales(runs)?;
-    let row = [0, 1, 2].map(|i| WEIGHTS[i].sqrt() / scales[i]);
-    let factors = vec![row; runs.len()];
-    let projection = Projection::new();
-    let problem = Problem::new(start, runs, &factors, &projection);
-    let (p, cost) = search::search(&problem, gaits)?;
-    summary(&problem, p, cost, level).ok_or(FitError::NoConvergence { starts: 1 })
+    let parameters = vec![Parameter::SphereRadius, Parameter::Chi];
+    let model = RunModel::new(start.clone(), runs, data.scales, parameters);
+    let weights: Vec<f64> = WEIGHTS
+        .into_iter()
+        .cycle()
+        .take(data.values.len())
+        .collect();
+    let optimum = search(&model, data, &weights)?;
+    summary(&model, data, &weights, &optimum, level).ok_or(FitError::NoConvergence { starts: 1 })
 }
 
-/// The optimum (r_s/L, ln χ) of least squares with other factors of the residuals, sought from as many starts.
-pub(crate) fn with_factors(
-    start: &Swimmer<f64>,
-    runs: &[Observation],
-    gaits: &[swimmer_files::AnyGait],
-    factors: &[[f64; 3]],
-) -> Result<[f64; 2], FitError> {
-    let projection = Projection::new();
-    let problem = Problem::new(start, runs, factors, &projection);
-    let ([p, k], _) = search::search(&problem, gaits)?;
-    Ok([p * p, k])
-}
-
-/// Whether the model swims the other way in every run.
-pub(crate) fn check_signs(start: &Swimmer<f64>, runs: &[Observation]) -> Result<(), FitError> {
-    let projection = Projection::new();
-    let mut first = None;
-    for run in runs {
-        let predicted_m = run.path.predict(start, &projection)?.0.x_m;
-        let Statistics {
-            mean: measured_m,
-            se,
-            ..
-        } = run.measured[0];
-        if measured_m * predicted_m >= 0.0 || measured_m.abs() < 3.0 * se {
-            return Ok(());
-        }
-        first.get_or_insert((measured_m, predicted_m));
-    }
-    match first {
-        Some((measured_m, predicted_m)) => Err(FitError::SignOpposes {
-            runs: runs.len(),
-            measured_m,
-            predicted_m,
-        }),
-        None => Ok(()),
-    }
-}
-
-/// The largest measured value of each quantity, as the criterion divides by it.
-fn scales(runs: &[Observation]) -> Result<[f64; 3], FitError> {
-    let largest = |i: usize| {
-        runs.iter()
-            .map(|run| run.measured[i].mean.abs())
-            .fold(0.0, f64::max)
-    };
-    let scales = [0, 1, 2].map(largest);
-    for (scale, quantity) in scales.iter().zip(QUANTITIES) {
-        if !(*scale > 0.0 && scale.is_finite()) {
-            return Err(FitError::NothingMeasured { quantity });
-        }
-    }
-    Ok(scales)
-}
-
-fn summary(problem: &Problem<'_>, p: [f64; 2], cost: f64, level: f64) -> Option<Fit> {
-    let swimmer = natural(problem.start, p);
-    let (r_s, chi) = (swimmer.sphere_radius, swimmer.chi);
-    let spread = intervals::spread(problem, r_s, chi, level)?;
-    let mut residuals = Vec::with_capacity(problem.runs.len());
-    for (run, parts) in problem
-        .runs
-        .iter()
-        .zip(problem.residuals(&swimmer)?.chunks(3))
-    {
-        let predicted = run.path.predict(&swimmer, problem.projection).ok()?.0;
-        let [x, y, theta] = run.measured.map(|measured| measured.mean);
-        residuals.push(RunResidual {
-            predicted,
-            x_m: predicted.x_m - x,
-            delta_y_m: predicted.delta_y_m - y,
-            delta_theta_rad: predicted.delta_theta_rad - theta,
-            share: parts.iter().map(|r| r * r).sum(),
-        });
-    }
+fn summary(
+    model: &RunModel,
+    data: &RunValues,
+    weights: &[f64],
+    optimum: &Minimum,
+    level: f64,
+) -> Option<Fit> {
+    let start = &model.start.swimmer;
+    let Swimmer {
+        sphere_radius, chi, ..
+    } = model.file(&optimum.at).swimmer;
+    let spread = intervals::spread(optimum, data, weights, start.total_length(), level)?;
+    let predicted = model.cycles(&optimum.at)?;
+    let rows = optimum.residuals.chunks(QUANTITIES);
+    let residuals: Vec<RunResidual> = rows
+        .zip(weights.chunks(QUANTITIES))
+        .zip(predicted)
+        .map(|((residuals, weights), predicted)| {
+            let left = |q: usize| residuals[q] * data.scales[q];
+            RunResidual {
+                predicted,
+                x_m: left(0),
+                delta_y_m: left(1),
+                delta_theta_rad: left(2),
+                share: cost(residuals, weights),
+            }
+        })
+        .collect();
     let mut warnings = Vec::new();
-    if problem.runs.len() < 3 {
+    if residuals.len() < 3 {
         warnings.push(FitWarning::FewRuns {
-            runs: problem.runs.len(),
+            runs: residuals.len(),
         });
     }
     if spread.correlation.abs() > 0.99 || spread.condition > 100.0 {
@@ -357,13 +361,13 @@ fn summary(problem: &Problem<'_>, p: [f64; 2], cost: f64, level: f64) -> Option<
             condition: spread.condition,
         });
     }
-    if r_s < 1e-4 * problem.start.total_length() {
+    if sphere_radius < 1e-4 * start.total_length() {
         warnings.push(FitWarning::NoSphere);
     }
     if let Some(outlier) = spread.outlier {
         warnings.push(FitWarning::Outlier {
-            run: outlier.row / 3,
-            quantity: QUANTITIES[outlier.row % 3],
+            run: outlier.row / QUANTITIES,
+            quantity: NAMES[outlier.row % QUANTITIES],
             standard_errors: outlier.standard_errors,
         });
     }
@@ -373,11 +377,11 @@ fn summary(problem: &Problem<'_>, p: [f64; 2], cost: f64, level: f64) -> Option<
         });
     }
     Some(Fit {
-        sphere_radius: r_s,
+        sphere_radius,
         chi,
-        rmse: cost.sqrt(),
+        rmse: optimum.cost.sqrt(),
         intervals: spread.intervals,
-        c_t_form: problem.start.tangential_drag,
+        c_t_form: start.tangential_drag,
         residuals,
         condition: spread.condition,
         correlation: spread.correlation,

@@ -5,7 +5,7 @@
 //!          (tracks)                 (poses)             (cycles)    (fit)
 //! ```
 //! [`weigh_evidence`] then tells, on demand, what the data say beyond the fit: likelihood, profiles, ridge, bootstrap, outliers;
-//! [`fit_further`] fits what else may be off, and [`advise`] says what to measure next.
+//! [`fit_further`] fits what else may be off, [`assess`] says whether the answer can be used, and [`advise`] what to measure next.
 //! Lengths are metres, angles radians, times seconds. Nothing here opens a file, except [`CampaignData::load`] and
 //! [`load_run`], which read what the caller names. [`predict`] is the model's side of the fit, for anyone who wants to know
 //! beforehand what the cameras will see.
@@ -14,34 +14,41 @@
 #![allow(clippy::doc_markdown)]
 
 mod advice;
+pub mod assessment;
 mod campaign;
 pub mod cycles;
+mod data;
+mod error;
 pub mod evidence;
 pub mod fit;
-pub mod further;
 mod golden;
 mod median;
+pub mod nuisance;
 pub mod poses;
 mod prediction;
+mod run;
 pub mod tracks;
 
 pub use advice::{Advice, Candidate, advise};
-pub use campaign::{
-    CalibrateError, CampaignData, CampaignFit, RunData, RunResult, calibrate_campaign,
-    calibrate_run, load_run, load_tracks, track_options,
-};
+pub use assessment::{Assessment, Verdict, assess};
+pub use campaign::calibrate_campaign;
 pub use cycles::{
-    Cycle, CycleError, CycleWarning, Cycles, LeftOut, Phase, Repeats, Statistics, Timing,
+    Cycle, CycleError, CycleWarning, Cycles, LeftOut, Periodicity, Phase, Statistics, Timing,
 };
+pub use data::{CampaignData, RunData, load_run, load_tracks, survey_file, track_options};
+pub use error::{CalibrateError, FitError};
 pub use evidence::{Evidence, EvidenceOptions, weigh_evidence};
-pub use fit::{Fit, FitError, FitOptions, FitWarning, Intervals, RunResidual, c_t_form};
-pub use further::{Further, FurtherFit, fit_further};
+pub use fit::{
+    CampaignFit, ExcludedRun, Fit, FitOptions, FitWarning, Intervals, RunResidual, c_t_form,
+};
+pub use nuisance::{Further, FurtherFit, fit_further};
 pub use poses::{
-    FrontRule, Jump, Origin, PoseError, PoseOptions, PoseSample, PoseTrack, PoseWarning, poses,
-    usual_reflectors,
+    Drift, FollowReport, FrontRule, Jump, Origin, PoseError, PoseOptions, PoseSample, PoseTrack,
+    PoseWarning, Stretch, poses, usual_reflectors,
 };
 pub use prediction::{PredictedCycle, PredictionError, joint_path, predict};
+pub use run::{RunResult, calibrate_run};
 pub use tracks::{
-    PointKind, TrackError, TrackFile, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
-    TrackWarning, Unit, read_tracks, read_tracks_with,
+    PointKind, PointPresence, TrackError, TrackFile, TrackFormat, TrackOptions, TrackPoint,
+    TrackProblem, TrackSurvey, TrackWarning, Unit, read_tracks, read_tracks_with, survey_tracks,
 };

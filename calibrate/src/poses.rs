@@ -10,13 +10,15 @@
 //! gait with corners, and where samples are missing that rest does not average out. Longer gaps stay gaps.
 
 mod assembly;
+mod error;
 mod fill;
 mod follow;
 mod frozen;
 mod jumps;
 mod pchip;
 mod plane;
-mod told;
+mod rest;
+mod warning;
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -27,11 +29,13 @@ use swimmer_model::{Pose, Swimmer};
 
 use crate::TrackFile;
 use assembly::Assembly;
+pub use error::PoseError;
 use fill::Seen;
-pub use follow::FollowReport;
+pub use follow::{FollowReport, Stretch};
 pub use jumps::Jump;
 pub use plane::Plane;
-pub use told::{PoseError, PoseWarning};
+pub use rest::Drift;
+pub use warning::PoseWarning;
 
 /// Limits of the way from points to poses.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -157,6 +161,8 @@ pub struct PoseTrack {
     pub report: FollowReport,
     /// Where the pose jumps: nothing that spans one of these is a measurement.
     pub jumps: Vec<Jump>,
+    /// How the resting robot moves, where it rests before or after its cycles: what the fluid does.
+    pub drift: Option<Drift>,
     /// How front and back were told apart.
     pub front: FrontRule,
     /// What to know about them.
@@ -271,6 +277,12 @@ pub fn poses(
             rows: followed.frozen.rows,
         });
     }
+    if let Some(share) = followed.contested {
+        warnings.push(PoseWarning::LabelsContested {
+            stretches: followed.report.swaps.clone(),
+            share,
+        });
+    }
     let mut seen: Vec<Seen> = followed
         .rows
         .iter()
@@ -297,6 +309,7 @@ pub fn poses(
         warnings.push(PoseWarning::Jumps(jumps.clone()));
     }
     let mut poses = PoseTrack {
+        drift: rest::drift(&samples),
         samples,
         jumps,
         frames: track.frames(),

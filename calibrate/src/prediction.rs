@@ -22,8 +22,8 @@ use crate::cycles::{self, Curve, Harmonics, Projection};
 
 /// Knots of the table that a robot is given.
 const KNOTS: usize = 512;
-/// Pieces of a gait that becomes a path: chords cut off 1e-6 of it.
-const PIECES: usize = 2048;
+/// Pieces of a gait that becomes a path: chords cut off 1e-4 of its area.
+const PIECES: usize = 256;
 
 /// Why a cycle cannot be predicted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -124,19 +124,16 @@ impl JointPath {
         }
     }
 
-    /// The same way with both joints elsewhere by a constant \[rad\]. A gait becomes a path of fine pieces.
-    pub(crate) fn moved(&self, by: Vector2<f64>) -> Self {
-        match self {
-            Self::Ideal(gait) => Self::Played(
-                (0..=PIECES)
-                    .map(|i| i as f64 / PIECES as f64)
-                    .map(|u| (u, gait.at(u).phi + by))
-                    .collect(),
-            ),
-            Self::Played(vertices) => {
-                Self::Played(vertices.iter().map(|(u, phi)| (*u, phi + by)).collect())
-            }
-        }
+    /// The same way with each joint's angle multiplied, and elsewhere by a constant \[rad\]. A gait becomes a path of fine pieces.
+    pub(crate) fn moved(&self, gain: Vector2<f64>, by: Vector2<f64>) -> Self {
+        let place = |phi: &Vector2<f64>| phi.component_mul(&gain) + by;
+        Self::Played(match self {
+            Self::Ideal(gait) => (0..=PIECES)
+                .map(|i| i as f64 / PIECES as f64)
+                .map(|u| (u, place(&gait.at(u).phi)))
+                .collect(),
+            Self::Played(vertices) => vertices.iter().map(|(u, phi)| (*u, place(phi))).collect(),
+        })
     }
 
     /// The predicted cycle and its heading's harmonics.
@@ -145,21 +142,22 @@ impl JointPath {
         swimmer: &Swimmer<f64>,
         projection: &Projection,
     ) -> Result<(PredictedCycle, Harmonics), InvalidSwimmer> {
-        let (curve, next) = self.curves(swimmer, projection, Vector2::zeros())?;
+        let (curve, next) = self.curves(swimmer, projection, Pose::identity())?;
         Ok((cycle(&curve, &next, 0.0), curve.heading_harmonics()))
     }
 
-    /// The cycle as it is measured when another model tells where cycles start, with these harmonics of its heading, and when
-    /// the point that is taken for the middle link's centre lies `marker` \[m\] off it, along and across the link.
+    /// The cycle as it is measured when another model may tell where cycles start, with these harmonics of its heading, and when
+    /// the point that is taken for the middle link's centre lies at `marker` on it, and what is taken for its heading is turned so.
     pub(crate) fn predict_as_cut(
         &self,
         swimmer: &Swimmer<f64>,
         projection: &Projection,
-        marker: Vector2<f64>,
-        cut_by: &Harmonics,
+        marker: Pose<f64>,
+        cut_by: Option<&Harmonics>,
     ) -> Result<PredictedCycle, InvalidSwimmer> {
         let (curve, next) = self.curves(swimmer, projection, marker)?;
-        let start = cycles::shift(&curve.heading_harmonics(), cut_by).unwrap_or(0.0);
+        let shift = |cut_by: &Harmonics| cycles::shift(&curve.heading_harmonics(), cut_by);
+        let start = cut_by.and_then(shift).unwrap_or(0.0);
         Ok(cycle(&curve, &next, start - start.round()))
     }
 
@@ -168,21 +166,32 @@ impl JointPath {
         &self,
         swimmer: &Swimmer<f64>,
         projection: &Projection,
-        marker: Vector2<f64>,
+        marker: Pose<f64>,
     ) -> Result<(Curve, Curve), InvalidSwimmer> {
         let model = Model::new(swimmer)?;
         let (mut poses, end) = match self {
             Self::Ideal(gait) => swum(&model, gait),
             Self::Played(vertices) => swum_along(&model, vertices),
         };
-        if marker != Vector2::zeros() {
-            let marker = Pose::new(marker.x, marker.y, 0.0);
+        if marker != Pose::identity() {
             poses = poses.into_iter().map(|pose| pose * marker).collect();
         }
         let next: Vec<Pose<f64>> = poses.iter().map(|pose| end * *pose).collect();
         let (curve, next) = (projection.curve(&poses), projection.curve(&next));
         Ok((curve.drifting(&curve, &next, 1.0), next))
     }
+}
+
+/// What was played in one run.
+#[derive(Debug, Clone)]
+pub(crate) struct Played {
+    pub(crate) gait: AnyGait,
+    /// One cycle as commanded \[s\].
+    pub(crate) period_s: f64,
+    /// The way of the joints, as the starting swimmer's servos play the gait.
+    pub(crate) path: JointPath,
+    /// The heading by which its cycles were cut, where that is not each model's own.
+    pub(crate) cut_by: Option<Harmonics>,
 }
 
 fn cycle(curve: &Curve, next: &Curve, start: f64) -> PredictedCycle {

@@ -11,11 +11,14 @@
 //! | DeepLabCut CSV, one animal or several | `deeplabcut` | `deeplabcut` |
 //! | TRC | `trc` | `trc` |
 //! | Qualisys TSV | `qtm` | `qtm` |
-//! | Vicon Nexus CSV | `vicon` | `vicon` |
+//! | Vicon CSV: trajectories, objects, segments | `vicon` | `vicon` |
+//! | SLEAP analysis CSV | `sleap` | `sleap` |
+//! | Kinovea, text of trajectories and CSV | `kinovea` | `kinovea`, `table` |
 //! | a table with named columns | `table` | `table` |
 //!
-//! Files go by line by line; what is kept are the places of points, so memory grows with those alone. A unit that the file
-//! does not say is never guessed: [`Unit::Pixel`] and [`Unit::Unknown`] need a scale before there can be poses.
+//! Files go by line by line. [`read_tracks`] keeps the places of points, so memory grows with those alone; [`survey_tracks`] keeps
+//! none and needs the same memory for any length of file (but for exports with a clock for each track: Tracker side by side
+//! and Kinovea's text). A unit that the file does not say is never guessed: [`Unit::Pixel`] and [`Unit::Unknown`] need a scale before there can be poses.
 //!
 //! What [`TrackFile::points`] lists: every group of columns that holds a position — measured markers, unlabeled ones,
 //! rigid bodies and their solved markers —, in the order of the file, keyed by type, name and ID together, also when it is
@@ -29,15 +32,20 @@ mod detect;
 mod error;
 mod grid;
 mod headerless;
+mod kinovea;
 mod lines;
+mod merged;
 mod number;
 mod options;
 mod point;
 mod qtm;
 mod records;
 mod rows;
+mod sleap;
 mod source;
+mod survey;
 mod table;
+mod timeline;
 mod tracker;
 mod trc;
 mod unit;
@@ -54,6 +62,7 @@ use swimmer_files::Axes;
 pub use error::{Place, TrackError, TrackProblem};
 pub use options::TrackOptions;
 pub use point::{PointKind, TrackPoint};
+pub use survey::{PointPresence, TrackSurvey};
 pub use unit::Unit;
 pub use warning::TrackWarning;
 
@@ -81,6 +90,10 @@ pub enum TrackFormat {
     Qtm,
     /// Vicon Nexus.
     Vicon,
+    /// SLEAP.
+    Sleap,
+    /// Kinovea.
+    Kinovea,
     /// A table with named columns.
     Table,
 }
@@ -96,6 +109,8 @@ impl fmt::Display for TrackFormat {
             Self::Trc => "trc",
             Self::Qtm => "qtm",
             Self::Vicon => "vicon",
+            Self::Sleap => "sleap",
+            Self::Kinovea => "kinovea",
             Self::Table => "table",
         })
     }
@@ -106,7 +121,7 @@ impl fmt::Display for TrackFormat {
 pub struct TrackFile {
     /// Its format.
     pub format: TrackFormat,
-    /// Rows a second: as the header says, else by the median of the time steps; 0 for a single row without either.
+    /// Rows a second: as the user says, else the header, else rows over the time they span; 0 for a single row without any.
     pub rate_hz: f64,
     /// The unit of length in the file.
     pub unit: Unit,
@@ -138,6 +153,14 @@ impl TrackFile {
     }
 }
 
+/// What is being read, how, and whether the places of points are kept or only counted.
+#[derive(Debug, Clone, Copy)]
+struct Reading<'a> {
+    file: &'a Path,
+    options: &'a TrackOptions,
+    keeps_places: bool,
+}
+
 /// What a reader hands over.
 struct Draft {
     format: TrackFormat,
@@ -152,59 +175,53 @@ struct Draft {
 }
 
 impl Draft {
-    fn finish(mut self, options: &TrackOptions) -> TrackFile {
+    fn finish(mut self, reading: &Reading<'_>) -> Result<Finished, TrackError> {
+        let options = reading.options;
         let mut warnings = std::mem::take(&mut self.body.warnings);
         warnings.extend(self.warnings);
-        let rate_hz = self.rate_hz.unwrap_or_else(|| {
-            let median = median_rate(&self.body.times, &mut warnings);
-            // Real stamps of numbered frames: their mean is surer than the median of what jitters.
-            let numbered = self.format != TrackFormat::Table && self.format != TrackFormat::Tracker;
-            mean_rate(&self.body).filter(|_| numbered).unwrap_or(median)
-        });
+        // Real stamps of numbered frames: their mean is surer than the median of what jitters.
+        let numbered = matches!(
+            self.format,
+            TrackFormat::Motive(_) | TrackFormat::TrackingTools
+        );
+        let timing = self.body.timeline;
+        let timing = timing
+            .finish(self.rate_hz, options.rate(), numbered)
+            .map_err(|repeated| {
+                let line = lines::Line {
+                    number: repeated.line,
+                    text: "",
+                    ended: true,
+                };
+                let (previous, time) = (repeated.time, repeated.time);
+                line.error(reading.file, 0, TrackProblem::TimeOrder { previous, time })
+            })?;
+        warnings.extend(timing.warnings);
         let down = self.image.then_some(Axes::IMAGE);
         if down.is_some() && options.axes.is_none() && self.format == TrackFormat::Table {
             warnings.push(TrackWarning::PixelsDown);
         }
-        TrackFile {
+        let file = TrackFile {
             format: self.format,
-            rate_hz,
+            rate_hz: timing.rate_hz,
             unit: self.unit,
-            frame_numbers: self.body.frame_numbers,
-            times: self.body.times,
+            frame_numbers: timing.frames,
+            times: timing.times,
             axes: options.axes.or(down),
             points: self.body.points,
             warnings,
-        }
+        };
+        Ok(Finished {
+            file,
+            rows: timing.rows,
+        })
     }
 }
 
-/// Frames over time between the first and the last.
-fn mean_rate(body: &Body) -> Option<f64> {
-    let frames = body.frame_numbers.last()? - body.frame_numbers.first()?;
-    let span = body.times.last()? - body.times.first()?;
-    (span > 0.0).then(|| frames as f64 / span)
-}
-
-/// The median rate \[Hz\]; 0 for a single row.
-fn median_rate(times: &[f64], warnings: &mut Vec<TrackWarning>) -> f64 {
-    let step = |pair: &[f64]| match pair {
-        [before, after] => after - before,
-        _ => 0.0,
-    };
-    let mut steps: Vec<f64> = times.windows(2).map(step).collect();
-    steps.sort_by(f64::total_cmp);
-    let (Some(shortest), Some(longest), Some(median)) =
-        (steps.first(), steps.last(), steps.get(steps.len() / 2))
-    else {
-        return 0.0;
-    };
-    if longest - shortest > 0.01 * median {
-        warnings.push(TrackWarning::UnevenTimes {
-            shortest: *shortest,
-            longest: *longest,
-        });
-    }
-    1.0 / median
+/// A file that was read, and how many rows it has also where they were not kept.
+struct Finished {
+    file: TrackFile,
+    rows: usize,
 }
 
 /// Reads a tracking file that explains itself.
@@ -226,21 +243,51 @@ pub fn read_tracks_with(
     file: &Path,
     options: &TrackOptions,
 ) -> Result<TrackFile, TrackError> {
+    let reading = Reading {
+        file,
+        options,
+        keeps_places: true,
+    };
+    Ok(read(bytes, &reading)?.file)
+}
+
+/// What a tracking file holds, in the same memory for any length of it.
+///
+/// # Errors
+/// As [`read_tracks_with`].
+pub fn survey_tracks(
+    bytes: impl Read,
+    file: &Path,
+    options: &TrackOptions,
+) -> Result<TrackSurvey, TrackError> {
+    let reading = Reading {
+        file,
+        options,
+        keeps_places: false,
+    };
+    let Finished { file, rows } = read(bytes, &reading)?;
+    Ok(TrackSurvey::of(file, rows))
+}
+
+fn read(bytes: impl Read, reading: &Reading<'_>) -> Result<Finished, TrackError> {
+    let file = reading.file;
     let text = match source::open(bytes).map_err(|cause| TrackError::read(file, 1, &cause))? {
         Source::Text(text) => text,
         Source::Binary(format) => return Err(TrackError::not_read(file, format)),
     };
     let mut lines = Lines::open(text, file)?;
     let draft = match detect::detect(&lines, file)? {
-        Detected::Wide(delimiter) => wide::read(&mut lines, file, delimiter, options),
-        Detected::Headerless(delimiter) => headerless::read(&mut lines, file, delimiter, options),
-        Detected::Records(delimiter) => records::read(&mut lines, file, delimiter, options),
-        Detected::Tracker(delimiter) => tracker::read(&mut lines, file, delimiter, options),
-        Detected::DeepLabCut(delimiter) => deeplabcut::read(&mut lines, file, delimiter, options),
-        Detected::Trc => trc::read(&mut lines, file, options),
-        Detected::Qtm => qtm::read(&mut lines, file, options),
-        Detected::Vicon(delimiter) => vicon::read(&mut lines, file, delimiter, options),
-        Detected::Table(layout) => table::read(&mut lines, file, &layout, options),
+        Detected::Wide(delimiter) => wide::read(&mut lines, reading, delimiter),
+        Detected::Headerless(delimiter) => headerless::read(&mut lines, reading, delimiter),
+        Detected::Records(delimiter) => records::read(&mut lines, reading, delimiter),
+        Detected::Tracker(delimiter) => tracker::read(&mut lines, reading, delimiter),
+        Detected::DeepLabCut(delimiter) => deeplabcut::read(&mut lines, reading, delimiter),
+        Detected::Trc => trc::read(&mut lines, reading),
+        Detected::Qtm => qtm::read(&mut lines, reading),
+        Detected::Vicon(delimiter) => vicon::read(&mut lines, reading, delimiter),
+        Detected::Kinovea => kinovea::read(&mut lines, reading),
+        Detected::Sleap(delimiter) => sleap::read(&mut lines, reading, delimiter),
+        Detected::Table(layout) => table::read(&mut lines, reading, &layout),
     }?;
-    Ok(draft.finish(options))
+    draft.finish(reading)
 }

@@ -17,7 +17,7 @@ fn widths(amplitudes: &[f64]) -> [f64; 2] {
         let (campaign, data) = laboratory(amplitudes, seed).campaign();
         let found = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
         let options = EvidenceOptions { draws: 10, seed };
-        let evidence = weigh_evidence(&campaign, &data, &found, options).unwrap();
+        let evidence = weigh_evidence(&found, options).unwrap();
         for (log, profile) in logs.iter_mut().zip(&evidence.profiles) {
             let [low, high] = profile.interval;
             *log += (high / low).ln().ln() / CAMPAIGNS as f64;
@@ -40,7 +40,7 @@ fn advice_that_is_followed_narrows_the_intervals() {
     let base = [45.0, 55.0, 65.0, 75.0];
     let (campaign, data) = laboratory(&base, 1).campaign();
     let found = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
-    let advice = advise(&campaign, &data, &found).unwrap();
+    let advice = advise(&campaign, &found).unwrap();
     let circle = |degrees: f64| -> Candidate {
         let is = |c: &&Candidate| matches!(c.gait, GaitSpec::Circle { amplitude, .. } if (amplitude.to_degrees() - degrees).abs() < 1e-9);
         advice.candidates.iter().find(is).unwrap().clone()

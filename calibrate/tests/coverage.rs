@@ -58,16 +58,16 @@ fn count_one_by_one(campaigns: RangeInclusive<u64>) -> Count {
         let (campaign, data) = laboratory.campaign();
         let found = calibrate_campaign(&campaign, &data, FitOptions { level: LEVEL }).unwrap();
         let options = EvidenceOptions { draws: 1000, seed };
-        let evidence = weigh_evidence(&campaign, &data, &found, options).unwrap();
+        let evidence = weigh_evidence(&found, options).unwrap();
         let truth = &laboratory.swimmer;
         let all = [
             &found.fit.intervals,
             &evidence.likelihood.intervals,
-            &evidence.bootstrap.intervals,
+            &evidence.bootstrap.as_ref().unwrap().intervals,
         ];
         for warning in &found.fit.warnings {
             match warning {
-                FitWarning::DeadBand { .. } => count.false_alarms[0] += 1,
+                FitWarning::DeadBand { .. } | FitWarning::Gain { .. } => count.false_alarms[0] += 1,
                 FitWarning::Outlier { .. } => count.false_alarms[1] += 1,
                 _ => {}
             }

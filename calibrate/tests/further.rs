@@ -2,7 +2,7 @@
 
 mod twin_campaigns;
 
-use calibrate::further::{FittedParameter, FurtherFit, FurtherWarning};
+use calibrate::nuisance::{FittedParameter, FurtherFit, FurtherWarning};
 use calibrate::{CampaignFit, FitOptions, FitWarning, Further, calibrate_campaign, fit_further};
 use swimmer_files::ServoFile;
 use twin_campaigns::Laboratory;
@@ -17,7 +17,7 @@ fn noticed(found: &CampaignFit) -> Option<(f64, f64)> {
 fn fitted(laboratory: &Laboratory, further: &[Further]) -> FurtherFit {
     let (campaign, data) = laboratory.campaign();
     let found = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
-    fit_further(&campaign, &data, &found, further).unwrap()
+    fit_further(&found, further).unwrap()
 }
 
 fn assert_holds(parameter: &FittedParameter, truth: f64) {
@@ -65,7 +65,7 @@ fn a_dead_band_is_noticed_and_fitted() {
             "{text}"
         );
 
-        let fit = fit_further(&campaign, &data, &found, &[Further::DeadBand]).unwrap();
+        let fit = fit_further(&found, &[Further::DeadBand]).unwrap();
         assert_holds(fit.parameter("dead band").unwrap(), truth);
         assert_holds(
             fit.parameter("r_s").unwrap(),
@@ -113,7 +113,7 @@ fn reflectors_beside_the_middle_are_found() {
     campaign.reflectors.front.at[0] += 0.03;
     campaign.reflectors.back.at[0] += 0.03;
     let found = calibrate_campaign(&campaign, &data, FitOptions::default()).unwrap();
-    let fit = fit_further(&campaign, &data, &found, &[Further::MarkerOffset]).unwrap();
+    let fit = fit_further(&found, &[Further::MarkerOffset]).unwrap();
     let along = fit.parameter("marker offset along").unwrap();
     assert_holds(along, -0.03);
     assert!(

@@ -5,7 +5,8 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use calibrate::{
-    PointKind, TrackFile, TrackOptions, TrackPoint, TrackWarning, Unit, read_tracks_with,
+    PointKind, TrackFile, TrackFormat, TrackOptions, TrackPoint, TrackWarning, Unit,
+    read_tracks_with,
 };
 
 const ROWS: usize = 12;
@@ -179,6 +180,35 @@ fn samples() -> Vec<Sample> {
             z_up,
         ),
         Sample::new(
+            "cortex.trc",
+            "trc",
+            100.0,
+            mm,
+            ["Front", "Back", "Unlabeled 7"],
+            y_up,
+        ),
+        Sample {
+            names: [Some("robot"), Some("tool"), None],
+            ..Sample::new("vicon-objects.csv", "vicon", 100.0, mm, plain, z_up)
+        },
+        Sample::new(
+            "sleap.csv",
+            "sleap",
+            50.0,
+            PIXEL,
+            ["robot:front", "robot:back", "ghost:front"],
+            image,
+        ),
+        Sample::new("kinovea.txt", "kinovea", 50.0, PIXEL, plain, z_up),
+        Sample::new(
+            "kinovea.csv",
+            "kinovea",
+            50.0,
+            PIXEL,
+            ["front/0", "back/0", "ghost/0"],
+            z_up,
+        ),
+        Sample::new(
             "table-pixels.csv",
             "table",
             50.0,
@@ -199,11 +229,11 @@ fn folder() -> PathBuf {
 fn options(sample: &Sample) -> TrackOptions {
     TrackOptions {
         metres_per_unit: match sample.unit {
-            Unit::Scaled(_) if sample.format == "tracker" => Some(1.0),
+            Unit::Scaled(_) if matches!(sample.format, "tracker" | "kinovea") => Some(1.0),
             Unit::Scaled(metres) => Some(metres),
             _ => None,
         },
-        rate_hz: (sample.format == "deeplabcut").then_some(50.0),
+        rate_hz: matches!(sample.format, "deeplabcut" | "sleap").then_some(50.0),
         ..TrackOptions::default()
     }
 }
@@ -214,7 +244,11 @@ fn read(sample: &Sample) -> TrackFile {
 }
 
 fn named<'f>(file: &'f TrackFile, name: &str) -> &'f TrackPoint {
-    let measured = |point: &&TrackPoint| point.name == name && point.kind.is_measured();
+    // Vicon's objects are solved bodies.
+    let measured = |point: &&TrackPoint| {
+        let body = file.format == TrackFormat::Vicon && point.kind == PointKind::RigidBody;
+        point.name == name && (point.kind.is_measured() || body)
+    };
     file.points
         .iter()
         .find(measured)
@@ -291,7 +325,7 @@ fn units_are_told_or_left_open() {
         };
         let file = read_tracks_with(File::open(&path).unwrap(), &path, &options).unwrap();
         let expected = match (sample.unit, sample.format) {
-            (Unit::Scaled(_), "deeplabcut" | "table") => Unit::Pixel,
+            (Unit::Scaled(_), "deeplabcut" | "sleap" | "table") => Unit::Pixel,
             (Unit::Scaled(_), _) => Unit::Unknown,
             (unit, _) => unit,
         };

@@ -360,7 +360,23 @@ fn frames_that_jump_or_do_not_grow() {
             frames: 3
         }]
     );
-    let (line, column, problem) = broken(&SAMPLE.replace("\n2,", "\n1,"));
+    // The number of the frame before, at a time of its own: the time counts.
+    let file = read(&SAMPLE.replace("\n2,", "\n1,")).unwrap();
+    assert!((file.times[2] - 0.02).abs() < 1e-12);
+    assert_eq!(
+        file.warnings,
+        [
+            TrackWarning::FrameJumps {
+                jumps: 1,
+                frames: 1
+            },
+            TrackWarning::Renumbered {
+                count: 1,
+                first_line: 10
+            }
+        ]
+    );
+    let (line, column, problem) = broken(&SAMPLE.replace("\n2,0.020000", "\n1,0.010000"));
     assert_eq!(
         (line, column, problem),
         (

@@ -53,6 +53,9 @@ enum Step {
     Link {
         up: bool,
     },
+    Jumper {
+        closed: bool,
+    },
     Reset {
         reason: u8,
     },
@@ -154,6 +157,9 @@ fuzz_target!(|story: (Start, Vec<Step>)| {
     let (start, story) = story;
     let mut robot = FuzzedRobot::default();
     let mut host = Host::default();
+    // The bench window is open at first: a first key needs it.
+    robot.inputs.present = true;
+    robot.tick(0);
     robot.receive(&wire::frame(Header::new(0, 1), &wire::hello(1)));
     host.hear(&mut robot);
     prelude(&mut robot, &mut host, &start);
@@ -231,8 +237,13 @@ fn tell(robot: &mut FuzzedRobot, host: &mut Host, step: &Step) {
             if let Request::SetKey(key) = request {
                 host.asked_key = Some((host.sequence, key));
             }
-            let frame = host.frame(host.sequence, &Message::Request(request));
-            robot.receive(&frame);
+            // What powers the servos takes a host that has just heard the robot.
+            let heartbeat = wire::heartbeat(robot.now_us());
+            for (sequence, message) in [(0, heartbeat), (host.sequence, Message::Request(request))]
+            {
+                let frame = host.frame(sequence, &message);
+                robot.receive(&frame);
+            }
         }
         Step::Unsigned(ask) => {
             host.sequence = host.sequence.wrapping_add(1);
@@ -304,7 +315,7 @@ fn tell(robot: &mut FuzzedRobot, host: &mut Host, step: &Step) {
         Step::Ticks { count, keep_alive } => {
             for _ in 0..*count {
                 if *keep_alive {
-                    let frame = host.frame(0, &Message::KeepAlive);
+                    let frame = host.frame(0, &wire::heartbeat(robot.now_us()));
                     robot.receive(&frame);
                 }
                 robot.tick(0);
@@ -312,6 +323,7 @@ fn tell(robot: &mut FuzzedRobot, host: &mut Host, step: &Step) {
         }
         Step::Late { us } => drop(robot.tick(*us)),
         Step::Battery { mv } => robot.inputs.battery_mv = *mv,
+        Step::Jumper { closed } => robot.inputs.present = *closed,
         Step::Link { up } => robot.inputs.link_up = *up,
         Step::Reset { reason } => {
             let reasons = [

@@ -139,6 +139,7 @@ impl Scene {
             match event {
                 Event::Connected { ticket, .. }
                 | Event::Answered { ticket, .. }
+                | Event::StoppedByItself { ticket, .. }
                 | Event::Failed { ticket, .. } => {
                     assert!(
                         self.open.remove(&ticket).is_some(),

@@ -1,7 +1,7 @@
 //! A flash that holds anything: the brain wakes up stopped, and nothing it loads lets a pulse out of the window.
 #![no_main]
 
-use gait_player::{Inputs, Limits, TICK_US};
+use gait_player::{Inputs, Limits, TICK_US, Transport};
 use libfuzzer_sys::fuzz_target;
 use link_protocol::{Arm, Header, Message, Play, Request, StateName};
 use swimmer_fuzz::robot::{WildStorage, woken};
@@ -11,21 +11,22 @@ fuzz_target!(|data: (&[u8], &[u8])| {
     let (settings, slots) = data;
     let mut brain = woken(&mut WildStorage { slots, settings });
     let inputs = Inputs {
-        battery_mv: None,
         link_up: true,
+        ..Inputs::default()
     };
     assert_eq!(brain.tick(20_000, &inputs).state, StateName::Stopped);
-    brain.receive(20_000, &wire::frame(Header::new(0, 0), &wire::hello(1)));
+    brain.receive(
+        20_000,
+        Transport::Uart,
+        &wire::frame(Header::new(0, 0), &wire::hello(1)),
+    );
     // The session that a start with this seed opens first.
     let ask = |brain: &mut gait_player::Brain, now, sequence, request: Request| {
         for session in [0x1000, 0x1001] {
-            brain.receive(
-                now,
-                &wire::frame(
-                    Header::new(session, sequence),
-                    &Message::Request(request.clone()),
-                ),
-            );
+            let header = Header::new(session, sequence);
+            for message in [wire::heartbeat(now), Message::Request(request.clone())] {
+                brain.receive(now, Transport::Uart, &wire::frame(header, &message));
+            }
         }
     };
     ask(

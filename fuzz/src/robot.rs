@@ -1,14 +1,15 @@
 //! The brain in its shell, with the witness of promises R4 and R6 on its pulses.
 
-use gait_player::storage::{MAX_SETTINGS, PAGE, Storage};
-use gait_player::{Boot, Brain, BrainConfig, Identity, Inputs, Limits, Output, TICK_US};
+use gait_player::storage::{MAX_SETTINGS, MemoryStorage, PAGE, Storage};
+use gait_player::{
+    Boot, Brain, BrainConfig, Identity, Inputs, Limits, Output, ShortStarts, TICK_US, Transport,
+};
 use link_protocol::{Board, FirmwareVersion, ResetReason, StateName};
-use twin::VirtualFlash;
 
 /// The robot: brain, storage that outlives resets, and a clock that starts anew with each.
 pub struct FuzzedRobot {
     brain: Brain,
-    pub storage: VirtualFlash,
+    pub storage: MemoryStorage,
     pub inputs: Inputs,
     now_us: u64,
     starts: u16,
@@ -24,10 +25,11 @@ impl Default for FuzzedRobot {
         let boot = Boot::power_on(1, 0x1000);
         Self {
             brain: brain(boot),
-            storage: VirtualFlash::erased(),
+            storage: MemoryStorage::erased(),
             inputs: Inputs {
                 battery_mv: Some(5_000),
                 link_up: true,
+                ..Inputs::default()
             },
             now_us: 0,
             starts: 0,
@@ -57,14 +59,19 @@ fn brain(boot: Boot) -> Brain {
 impl FuzzedRobot {
     /// Bytes from the line.
     pub fn receive(&mut self, bytes: &[u8]) {
-        self.brain.receive(self.now_us, bytes);
+        self.brain.receive(self.now_us, Transport::Uart, bytes);
+    }
+
+    /// The robot's clock, µs.
+    pub fn now_us(&self) -> u64 {
+        self.now_us
     }
 
     /// Bytes to the line.
     pub fn transmit(&mut self, out: &mut Vec<u8>) {
         let mut bytes = [0; 64];
         loop {
-            let count = self.brain.transmit(&mut bytes);
+            let count = self.brain.transmit(Transport::Uart, &mut bytes);
             if count == 0 {
                 return;
             }
@@ -179,6 +186,14 @@ impl Storage for WildStorage<'_> {
     }
 
     fn save_settings(&mut self, _bytes: &[u8]) -> Result<(), ()> {
+        Err(())
+    }
+
+    fn load_starts(&mut self, bytes: &mut [u8; ShortStarts::LEN]) -> Result<bool, ()> {
+        self.read(0, 0, bytes).map(|()| true)
+    }
+
+    fn save_starts(&mut self, _bytes: &[u8; ShortStarts::LEN]) -> Result<(), ()> {
         Err(())
     }
 }

@@ -2,7 +2,8 @@
 
 use arbitrary::Arbitrary;
 use link_protocol::{
-    Header, Hello, MAX_ENCODED, Message, SCHEMA_KEY, Seal, encode, encode_body, encode_signed,
+    Header, Heartbeat, Hello, MAX_ENCODED, Message, SCHEMA_KEY, Seal, encode, encode_body,
+    encode_signed,
 };
 
 /// One message as bytes on the wire.
@@ -35,6 +36,14 @@ pub fn hello(host_nonce: u32) -> Message {
         protocol_current: link_protocol::PROTOCOL_CURRENT,
         schema_key: SCHEMA_KEY,
         host_nonce,
+    })
+}
+
+/// A keep-alive of a host that heard the robot then.
+pub fn heartbeat(heard_us: u64) -> Message {
+    Message::Heartbeat(Heartbeat {
+        host_us: 0,
+        heard_us,
     })
 }
 

@@ -1,11 +1,13 @@
 //! The campaign file: the runs of one experiment, and where the reflectors sit. Paths in it are relative to it.
 
+mod known;
 mod read;
 
 use std::path::{Path, PathBuf};
 
 use crate::place::read_text;
 use crate::{Axes, FileError, GaitSpec, SwimmerFile};
+pub use known::{Known, KnownValue};
 
 /// A campaign, with its swimmer read and its paths resolved.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +20,8 @@ pub struct Campaign {
     pub reflectors: Reflectors,
     /// What the tracking files do not say themselves.
     pub tracks: TrackSettings,
+    /// What is known beforehand of what a fit takes for granted.
+    pub known: Known,
     /// The runs, in the file's order.
     pub runs: Vec<CampaignRun>,
 }
@@ -119,6 +123,8 @@ pub struct CampaignRun {
     pub front: Option<PointName>,
     /// When its cycles began, where that is known.
     pub timing: RunTiming,
+    /// `exclude`: why it is not to be fitted.
+    pub exclude: Option<String>,
 }
 
 impl Campaign {
@@ -138,6 +144,12 @@ impl Campaign {
     /// As [`Campaign::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, FileError> {
         read::campaign(text, path, &|_| true)
+    }
+
+    /// The places of the runs that are not excluded.
+    pub fn included(&self) -> impl Iterator<Item = usize> {
+        let runs = self.runs.iter().enumerate();
+        runs.filter_map(|(index, run)| run.exclude.is_none().then_some(index))
     }
 
     /// The files that a campaign is made of, each once: itself, its swimmer where that is a file, tracks, gait files, link logs.

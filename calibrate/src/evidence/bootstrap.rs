@@ -1,9 +1,9 @@
-//! The cycle bootstrap of the paper's fit: whole cycles drawn anew within runs and, from five runs on, the runs too; every
-//! drawn campaign is fitted again, exactly, on the surface. Intervals are bias-corrected and accelerated (Efron's `BCa`), with
+//! The bootstrap of the paper's fit: runs drawn anew, and whole cycles within them; every drawn campaign is fitted again,
+//! exactly, on the surface. Fewer than five runs draw nothing worth the name, and are refused. Intervals are bias-corrected and accelerated (Efron's `BCa`), with
 //! the acceleration from leaving out each run.
 //!
 //! From few runs a bootstrap is too narrow: what is drawn varies by (n − 1)/n less than what it was drawn from, and normal
-//! quantiles know nothing of a variance that is itself estimated. Where runs are drawn, the quantiles are therefore those of
+//! quantiles know nothing of a variance that is itself estimated. The quantiles are therefore those of
 //! Student's t, widened by √(n/(n − 1)) (the expanded percentiles of T. Hesterberg, The American Statistician 69, 371, 2015).
 //!
 //! Means of drawn cycles vary by (n − 1)/n less than means of true ones, and drawing breaks the order in which neighbouring
@@ -14,26 +14,26 @@ use rand_chacha::ChaCha8Rng;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use super::EvidenceOptions;
-use super::estimate::minimise;
 use super::surface::Surface;
 use crate::fit::WEIGHTS;
+use crate::fit::least_squares::{Model as _, minimise};
+use crate::fit::run_values::QUANTITIES;
 
-/// From how many runs on runs are drawn too.
-const ENOUGH_RUNS: usize = 5;
+/// From fewer runs it says nothing.
+pub(super) const ENOUGH_RUNS: usize = 5;
 
 /// What is drawn from: one run's values of single cycles about their mean, each quantity in units of its scale.
 #[derive(Debug, Clone)]
 pub(super) struct Drawn {
-    pub(super) means: [f64; 3],
+    pub(super) means: [f64; QUANTITIES],
     /// Deviations from the mean, widened.
-    pub(super) deviations: [Vec<f64>; 3],
+    pub(super) deviations: [Vec<f64>; QUANTITIES],
 }
 
 /// What came of it, in (r_s/L, ln χ).
 pub(super) struct Bootstrap {
     pub(super) seed: u64,
     pub(super) draws: usize,
-    pub(super) runs_drawn: bool,
     pub(super) at_border: usize,
     pub(super) intervals: [[f64; 2]; 2],
     pub(super) points: Vec<[f64; 2]>,
@@ -48,21 +48,19 @@ pub(super) fn bootstrap(
     options: EvidenceOptions,
 ) -> Option<Bootstrap> {
     let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
-    let resampled = runs.len() >= ENOUGH_RUNS;
+    if runs.len() < ENOUGH_RUNS {
+        return None;
+    }
     let measured: Vec<f64> = runs.iter().flat_map(|run| run.means).collect();
     let mut draws: Vec<[f64; 2]> = Vec::with_capacity(options.draws);
     let mut at_border = 0;
     for _ in 0..options.draws {
         let mut weights = vec![0.0; runs.len()];
-        if resampled {
-            for _ in runs {
-                weights[rng.random_range(0..runs.len())] += 1.0;
-            }
-        } else {
-            weights.fill(1.0);
+        for _ in runs {
+            weights[rng.random_range(0..runs.len())] += 1.0;
         }
         let mut values = measured.clone();
-        for (run, values) in runs.iter().zip(values.chunks_mut(3)) {
+        for (run, values) in runs.iter().zip(values.chunks_mut(QUANTITIES)) {
             for (value, deviations) in values.iter_mut().zip(&run.deviations) {
                 let mut sum = 0.0;
                 for _ in deviations {
@@ -82,14 +80,9 @@ pub(super) fn bootstrap(
             papers_fit(surface, &measured, &weights, optimum)
         })
         .collect();
-    let normal = Normal::standard().inverse_cdf(f64::midpoint(1.0, level));
-    let reach = if resampled {
-        let runs = runs.len() as f64;
-        let student = StudentsT::new(0.0, 1.0, runs - 1.0).ok()?;
-        (runs / (runs - 1.0)).sqrt() * student.inverse_cdf(f64::midpoint(1.0, level))
-    } else {
-        normal
-    };
+    let count = runs.len() as f64;
+    let student = StudentsT::new(0.0, 1.0, count - 1.0).ok()?;
+    let reach = (count / (count - 1.0)).sqrt() * student.inverse_cdf(f64::midpoint(1.0, level));
     let interval = |parameter: usize| {
         accelerated(
             draws.iter().map(|at| at[parameter]).collect(),
@@ -101,7 +94,6 @@ pub(super) fn bootstrap(
     Some(Bootstrap {
         seed: options.seed,
         draws: options.draws,
-        runs_drawn: resampled,
         at_border,
         intervals: [interval(0)?, interval(1)?],
         points: draws,
@@ -115,15 +107,18 @@ pub(super) fn papers_fit(
     runs: &[f64],
     start: [f64; 2],
 ) -> [f64; 2] {
-    let mut scales = [0.0_f64; 3];
+    let mut scales = [0.0_f64; QUANTITIES];
     for (row, value) in values.iter().enumerate() {
-        if runs[row / 3] > 0.0 {
-            scales[row % 3] = scales[row % 3].max(value.abs());
+        if runs[row / QUANTITIES] > 0.0 {
+            scales[row % QUANTITIES] = scales[row % QUANTITIES].max(value.abs());
         }
     }
-    let weigh = |row: usize| runs[row / 3] * WEIGHTS[row % 3] / scales[row % 3].powi(2);
+    let weigh = |row: usize| {
+        runs[row / QUANTITIES] * WEIGHTS[row % QUANTITIES] / scales[row % QUANTITIES].powi(2)
+    };
     let weights: Vec<f64> = (0..values.len()).map(weigh).collect();
-    minimise(surface, values, &weights, start)
+    minimise(surface, values, &weights, &start, &surface.bounds())
+        .map_or(start, |end| [end.at[0], end.at[1]])
 }
 
 /// `BCa`: percentiles of the draws, moved by how far the optimum is from their median and by how the spread changes with it. The

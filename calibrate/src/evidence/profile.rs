@@ -4,9 +4,11 @@ use std::f64::consts::TAU;
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
-use super::estimate::{Estimate, Measured, minimise_along};
 use super::surface::Surface;
 use super::{Contour, Profile, Ridge};
+use crate::fit::least_squares::{Model as _, minimise};
+use crate::fit::likelihood::Estimate;
+use crate::fit::run_values::RunValues;
 
 /// Points of a profile.
 const POINTS: usize = 61;
@@ -39,26 +41,30 @@ impl Scale {
 /// By how much the log-likelihood falls where one parameter is held fast and the other is free.
 fn fall(
     surface: &Surface,
-    data: &Measured,
+    data: &RunValues,
     estimate: &Estimate,
     parameter: usize,
     value: f64,
 ) -> f64 {
-    let mut start = estimate.at;
+    let mut start = estimate.at.clone();
     // Along the ridge: where the other parameter goes to first order.
     let covariance = estimate.components.covariance();
     let other = 1 - parameter;
     let slope = covariance[(0, 1)] / covariance[(parameter, parameter)];
     start[other] += slope * (value - start[parameter]);
     start[parameter] = value;
-    let at = minimise_along(surface, &data.values, &estimate.weights, start, parameter);
-    estimate.log_ratio(surface, data, at)
+    let mut bounds = surface.bounds();
+    bounds[parameter] = (value, value);
+    minimise(surface, &data.values, &estimate.weights, &start, &bounds)
+        .map_or(f64::NEG_INFINITY, |end| {
+            ((estimate.cost - end.cost) / 2.0).min(0.0)
+        })
 }
 
 /// The profile of one parameter with its interval.
 pub(super) fn profile(
     surface: &Surface,
-    data: &Measured,
+    data: &RunValues,
     estimate: &Estimate,
     scale: &Scale,
     parameter: usize,
@@ -116,7 +122,7 @@ pub(super) fn profile(
 /// The log-likelihood over both parameters.
 pub(super) fn ridge(
     surface: &Surface,
-    data: &Measured,
+    data: &RunValues,
     estimate: &Estimate,
     scale: &Scale,
 ) -> Option<Ridge> {
@@ -148,7 +154,7 @@ pub(super) fn ridge(
                 let middle = f64::midpoint(inside, outside);
                 let at = ray(angle, middle);
                 let within = surface.rectangle.contains(at);
-                if within && estimate.log_ratio(surface, data, at) >= threshold {
+                if within && estimate.log_ratio(surface, data, &at) >= threshold {
                     inside = middle;
                 } else {
                     outside = middle;
@@ -178,7 +184,7 @@ pub(super) fn ridge(
     };
     let axes = [axis(0), axis(1)];
     let row = |chi: &f64| {
-        let ratio = |radius: &f64| estimate.log_ratio(surface, data, [*radius, *chi]);
+        let ratio = |radius: &f64| estimate.log_ratio(surface, data, &[*radius, *chi]);
         axes[0].iter().map(ratio).collect()
     };
     let log_ratio = axes[1].iter().map(row).collect();

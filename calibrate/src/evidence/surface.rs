@@ -4,10 +4,8 @@
 use std::f64::consts::PI;
 
 use nalgebra::DMatrix;
-use swimmer_model::Swimmer;
 
-use crate::cycles::Projection;
-use crate::prediction::JointPath;
+use crate::fit::least_squares::Model;
 
 /// Degree of the polynomials in each parameter.
 const DEGREE: usize = 7;
@@ -27,10 +25,6 @@ impl Rectangle {
             low: [(centre[0] - half[0]).max(0.0), centre[1] - half[1]],
             high: [centre[0] + half[0], centre[1] + half[1]],
         }
-    }
-
-    pub(super) fn clamp(&self, q: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|i| q[i].clamp(self.low[i], self.high[i]))
     }
 
     /// Whether a point lies inside or on the border.
@@ -66,16 +60,10 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// Asks the model at 64 points; `None` where it cannot swim at one.
-    pub(super) fn new(
-        start: &Swimmer<f64>,
-        paths: &[&JointPath],
-        scales: [f64; 3],
-        projection: &Projection,
-        rectangle: Rectangle,
-    ) -> Option<Self> {
-        let columns = 3 * paths.len();
-        let ask = |q: [f64; 2]| predictions(start, paths, scales, projection, q);
+    /// Asks a model of r_s/L and ln χ at 64 points; `None` where it cannot swim at one.
+    pub(super) fn new(model: &impl Model, rectangle: Rectangle) -> Option<Self> {
+        let ask = |q: [f64; 2]| model.values(&q);
+        let columns = ask(rectangle.low)?.len();
         let node = |i: usize| (PI * (i as f64 + 0.5) / NODES as f64).cos();
         let at = |u: [f64; 2]| {
             let Rectangle { low, high } = rectangle;
@@ -103,65 +91,51 @@ impl Surface {
             error: 0.0,
         };
         for u in [[0.0, 0.0], [0.83, -0.9], [-0.97, 0.97]] {
-            let off = surface.at(at(u));
-            let off = ask(at(u))?.into_iter().zip(off.0);
+            let off = surface.values(&at(u))?.into_iter().zip(ask(at(u))?);
             surface.error = off.fold(surface.error, |worst, (a, b)| worst.max((a - b).abs()));
         }
         Some(surface)
     }
 
-    /// Values, and their derivatives by r_s/L and ln χ.
-    pub(super) fn at(&self, q: [f64; 2]) -> (Vec<f64>, DMatrix<f64>) {
-        let [u, v] = self.rectangle.place(q);
-        let ((a, da), (b, db)) = (chebyshev(u), chebyshev(v));
-        let inner = [0, 1].map(|i| 2.0 / (self.rectangle.high[i] - self.rectangle.low[i]));
-        let columns = self.coefficients.ncols();
-        let mut values = vec![0.0; columns];
-        let mut jacobian = DMatrix::zeros(columns, 2);
+    /// Sums over pairs of degrees with these factors for them.
+    fn sum(&self, factor: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+        let mut out = vec![0.0; self.coefficients.ncols()];
         for m in 0..NODES {
             for n in 0..NODES {
-                let weights = [
-                    a[m] * b[n],
-                    da[m] * b[n] * inner[0],
-                    a[m] * db[n] * inner[1],
-                ];
-                for (column, value) in values.iter_mut().enumerate() {
-                    let c = self.coefficients[(m * NODES + n, column)];
-                    *value += weights[0] * c;
-                    jacobian[(column, 0)] += weights[1] * c;
-                    jacobian[(column, 1)] += weights[2] * c;
+                let factor = factor(m, n);
+                for (out, c) in out.iter_mut().zip(&self.coefficients.row(m * NODES + n)) {
+                    *out += factor * c;
                 }
             }
         }
-        (values, jacobian)
+        out
     }
 }
 
-/// X, ΔY, Δθ of every run by the model itself.
-pub(super) fn predictions(
-    start: &Swimmer<f64>,
-    paths: &[&JointPath],
-    scales: [f64; 3],
-    projection: &Projection,
-    [radius, log_chi]: [f64; 2],
-) -> Option<Vec<f64>> {
-    let swimmer = Swimmer {
-        sphere_radius: radius * start.total_length(),
-        chi: log_chi.exp(),
-        ..*start
-    };
-    let mut out = Vec::with_capacity(3 * paths.len());
-    for path in paths {
-        let cycle = path.predict(&swimmer, projection).ok()?.0;
-        let values = [cycle.x_m, cycle.delta_y_m, cycle.delta_theta_rad];
-        out.extend(
-            values
-                .iter()
-                .zip(scales)
-                .map(|(value, scale)| value / scale),
-        );
+impl Model for Surface {
+    fn bounds(&self) -> Vec<(f64, f64)> {
+        let Rectangle { low, high } = self.rectangle;
+        low.into_iter().zip(high).collect()
     }
-    out.iter().all(|value| value.is_finite()).then_some(out)
+
+    fn values(&self, at: &[f64]) -> Option<Vec<f64>> {
+        let [u, v] = self.rectangle.place([at[0], at[1]]);
+        let ((a, _), (b, _)) = (chebyshev(u), chebyshev(v));
+        Some(self.sum(|m, n| a[m] * b[n]))
+    }
+
+    fn jacobian(&self, at: &[f64]) -> Option<DMatrix<f64>> {
+        let [u, v] = self.rectangle.place([at[0], at[1]]);
+        let ((a, da), (b, db)) = (chebyshev(u), chebyshev(v));
+        let inner = [0, 1].map(|i| 2.0 / (self.rectangle.high[i] - self.rectangle.low[i]));
+        let columns = [
+            self.sum(|m, n| da[m] * b[n] * inner[0]),
+            self.sum(|m, n| a[m] * db[n] * inner[1]),
+        ];
+        Some(DMatrix::from_fn(columns[0].len(), 2, |row, column| {
+            columns[column][row]
+        }))
+    }
 }
 
 /// Chebyshev polynomials and their derivatives.
@@ -179,22 +153,35 @@ fn chebyshev(u: f64) -> ([f64; NODES], [f64; NODES]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use swimmer_files::AnyGait;
+    use crate::fit::parameter::Parameter;
+    use crate::fit::run_model::RunModel;
+    use crate::prediction::{JointPath, Played};
+    use swimmer_files::{AnyGait, SwimmerFile};
 
     #[test]
     fn the_surface_is_the_model() {
-        let start = Swimmer::<f64>::robot();
-        let paths = [0.6, 1.8].map(|amplitude| JointPath::Ideal(AnyGait::circle(amplitude)));
-        let paths = paths.each_ref();
-        let projection = Projection::new();
-        let scales = [0.01, 0.02, 0.5];
-        let centre = [start.sphere_radius / start.total_length(), start.chi.ln()];
+        let start = SwimmerFile::preset("robot").unwrap();
+        let played = [0.6, 1.8].map(|amplitude| Played {
+            gait: AnyGait::circle(amplitude),
+            period_s: 10.0,
+            path: JointPath::Ideal(AnyGait::circle(amplitude)),
+            cut_by: None,
+        });
+        let robot = start.swimmer;
+        let parameters = vec![Parameter::SphereRadius, Parameter::Chi];
+        let model = RunModel::new(
+            start,
+            played.to_vec(),
+            [0.01, 0.02, 0.5, 0.01, 0.5],
+            parameters,
+        );
+        let centre = [robot.sphere_radius / robot.total_length(), robot.chi.ln()];
         let rectangle = Rectangle::about(centre, [0.05, 0.2]);
-        let surface = Surface::new(&start, &paths, scales, &projection, rectangle).unwrap();
+        let surface = Surface::new(&model, rectangle).unwrap();
         assert!(surface.error < 1e-6, "{}", surface.error);
         let q = [centre[0] + 0.02, centre[1] - 0.1];
-        let ask = |q| predictions(&start, &paths, scales, &projection, q).unwrap();
-        let (values, jacobian) = surface.at(q);
+        let ask = |q: [f64; 2]| model.values(&q).unwrap();
+        let (values, jacobian) = (surface.values(&q).unwrap(), surface.jacobian(&q).unwrap());
         for (row, (value, truth)) in values.iter().zip(ask(q)).enumerate() {
             assert!((value - truth).abs() < 1e-6, "{value} {truth}");
             for parameter in 0..2 {

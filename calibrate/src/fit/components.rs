@@ -1,18 +1,20 @@
 //! What a fit leaves has two causes: errors within runs (`errors.rs`), and something that all cycles of a run share and the next
-//! run does not: the fluid drifted, a reflector was glued on anew. For the second there is one variance for each of X, ΔY and
-//! Δθ, by the method of moments. Both together say how sure the parameters are.
+//! run does not: the fluid drifted, a reflector was glued on anew. For the second there is one variance for each of X, ΔY,
+//! Δθ, Y and turn, by the method of moments. Both together say how sure the parameters are.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::errors::{MOST_FREEDOM, Variance};
+use super::least_squares::weighted;
+use super::run_values::QUANTITIES;
 
 /// Variances of all residuals, and what they mean for the parameters.
 #[derive(Debug, Clone)]
 pub(crate) struct Components {
-    /// Variance from run to run of X, ΔY, Δθ, in the residuals' units squared.
-    pub(crate) between: [f64; 3],
+    /// Variance from run to run of each quantity, in the residuals' units squared.
+    pub(crate) between: [f64; QUANTITIES],
     /// Degrees of freedom that each rests on.
-    pub(crate) freedom: [f64; 3],
+    pub(crate) freedom: [f64; QUANTITIES],
     /// Variance of each residual within its run, in the residuals' order.
     pub(crate) within: Vec<Variance>,
     /// (JᵀWJ)⁻¹JᵀW: what each residual moves the parameters by.
@@ -20,7 +22,7 @@ pub(crate) struct Components {
 }
 
 impl Components {
-    /// From the residuals (X, ΔY, Δθ of each run) of a least-squares fit with this Jacobian and these weights; `None` where
+    /// From the residuals (the values of each run, then what is known beforehand) of a least-squares fit with this Jacobian and these weights; `None` where
     /// it is singular. A residual without weight says nothing.
     pub(crate) fn of(
         jacobian: &DMatrix<f64>,
@@ -28,28 +30,30 @@ impl Components {
         residuals: &[f64],
         within: Vec<Variance>,
     ) -> Option<Self> {
-        let mut weighted = jacobian.clone();
-        for (mut row, weight) in weighted.row_iter_mut().zip(weights) {
-            row *= *weight;
-        }
+        let weighted = weighted(jacobian, weights);
         let inverse = weighted.tr_mul(jacobian).try_inverse()?;
         let gain = inverse * weighted.transpose();
         let rows = jacobian.nrows();
         let left = DMatrix::identity(rows, rows) - jacobian * &gain;
         // What residuals of one quantity owe to the errors of another.
-        let mut owed = DMatrix::<f64>::zeros(3, 3);
-        let mut sums = DVector::<f64>::zeros(3);
-        let mut traces = [0.0; 3];
+        let mut owed = DMatrix::<f64>::zeros(QUANTITIES, QUANTITIES);
+        let mut sums = DVector::<f64>::zeros(QUANTITIES);
+        let mut traces = [0.0; QUANTITIES];
         for k in (0..rows).filter(|k| weights.get(*k).is_some_and(|w| *w > 0.0)) {
-            sums[k % 3] += residuals.get(k)?.powi(2);
-            traces[k % 3] += left[(k, k)];
-            for (l, within) in within.iter().enumerate() {
+            let Some(q) = quantity(&within, k) else {
+                continue;
+            };
+            sums[q] += residuals.get(k)?.powi(2);
+            traces[q] += left[(k, k)];
+            for (l, error) in within.iter().enumerate() {
                 let share = left[(k, l)].powi(2);
-                owed[(k % 3, l % 3)] += share;
-                sums[k % 3] -= share * within.value;
+                sums[q] -= share * error.value;
+                if let Some(other) = quantity(&within, l) {
+                    owed[(q, other)] += share;
+                }
             }
         }
-        let freedom = [0, 1, 2].map(|q| (traces[q].powi(2) / owed[(q, q)]).max(1.0));
+        let freedom = std::array::from_fn(|q| (traces[q].powi(2) / owed[(q, q)]).max(1.0));
         Some(Self {
             between: non_negative(&owed, &sums),
             freedom,
@@ -60,7 +64,8 @@ impl Components {
 
     /// Variance of residual `row`.
     pub(crate) fn variance(&self, row: usize) -> f64 {
-        self.within.get(row).map_or(0.0, |within| within.value) + self.between[row % 3]
+        let between = quantity(&self.within, row).map_or(0.0, |q| self.between[q]);
+        self.within.get(row).map_or(0.0, |within| within.value) + between
     }
 
     /// Covariance of the parameters.
@@ -72,17 +77,22 @@ impl Components {
         scaled * self.gain.transpose()
     }
 
+    /// Correlation between the errors of two parameters.
+    pub(crate) fn correlation(&self, i: usize, j: usize) -> f64 {
+        let covariance = self.covariance();
+        covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt()
+    }
+
     /// A parameter's variance and the degrees of freedom that it rests on (Satterthwaite).
     pub(crate) fn of_parameter(&self, parameter: usize) -> Variance {
         let (mut sum, mut uncertainty) = (0.0, 0.0);
-        let mut shared = [0.0; 3];
+        let mut shared = [0.0; QUANTITIES];
         for (row, within) in self.within.iter().enumerate() {
             let part = self.gain[(parameter, row)].powi(2) * self.variance(row);
             sum += part;
-            if self.between[row % 3] > 0.0 {
-                shared[row % 3] += part;
-            } else {
-                uncertainty += part.powi(2) / within.freedom.max(1.0);
+            match quantity(&self.within, row) {
+                Some(q) if self.between[q] > 0.0 => shared[q] += part,
+                _ => uncertainty += part.powi(2) / within.freedom.max(1.0),
             }
         }
         for (part, freedom) in shared.iter().zip(self.freedom) {
@@ -99,9 +109,16 @@ impl Components {
     }
 }
 
+/// Which of a run's values this is; `None` for what is known beforehand.
+fn quantity(within: &[Variance], row: usize) -> Option<usize> {
+    let of_run = within.get(row).is_some_and(|v| v.freedom.is_finite());
+    of_run.then_some(row % QUANTITIES)
+}
+
 /// Solves A x = b where x must not be negative: what comes out below zero is zero, and the rest is solved again.
-fn non_negative(a: &DMatrix<f64>, b: &DVector<f64>) -> [f64; 3] {
-    let mut kept = vec![0, 1, 2];
+fn non_negative(a: &DMatrix<f64>, b: &DVector<f64>) -> [f64; QUANTITIES] {
+    // What no residual is of has no variance.
+    let mut kept: Vec<usize> = (0..QUANTITIES).filter(|q| a[(*q, *q)] > 0.0).collect();
     while !kept.is_empty() {
         let matrix = DMatrix::from_fn(kept.len(), kept.len(), |i, j| a[(kept[i], kept[j])]);
         let right = DVector::from_fn(kept.len(), |i, _| b[kept[i]]);
@@ -114,7 +131,7 @@ fn non_negative(a: &DMatrix<f64>, b: &DVector<f64>) -> [f64; 3] {
                 kept.remove(i);
             }
             _ => {
-                let mut out = [0.0; 3];
+                let mut out = [0.0; QUANTITIES];
                 for (place, value) in kept.iter().zip(solution.iter()) {
                     out[*place] = *value;
                 }
@@ -122,7 +139,7 @@ fn non_negative(a: &DMatrix<f64>, b: &DVector<f64>) -> [f64; 3] {
             }
         }
     }
-    [0.0; 3]
+    [0.0; QUANTITIES]
 }
 
 #[cfg(test)]
@@ -132,13 +149,23 @@ mod tests {
     #[test]
     fn the_variance_from_run_to_run_is_recovered() {
         // A straight line through twelve runs, with errors of 0.1, 0.2 and 0 from run to run.
-        let jacobian = DMatrix::from_fn(
-            36,
-            2,
-            |k, j| if j == 0 { 1.0 } else { (k / 3) as f64 / 12.0 },
-        );
-        let wave = |k: usize| if (k / 3).is_multiple_of(2) { 1.0 } else { -1.0 };
-        let errors = DVector::from_fn(36, |k, _| wave(k) * [0.1, 0.2, 0.0][k % 3]);
+        let jacobian = DMatrix::from_fn(60, 2, |k, j| {
+            if j == 0 {
+                1.0
+            } else {
+                (k / QUANTITIES) as f64 / 12.0
+            }
+        });
+        let wave = |k: usize| {
+            if (k / QUANTITIES).is_multiple_of(2) {
+                1.0
+            } else {
+                -1.0
+            }
+        };
+        let errors = DVector::from_fn(60, |k, _| {
+            wave(k) * [0.1, 0.2, 0.0, 0.0, 0.0][k % QUANTITIES]
+        });
         let inverse = jacobian.tr_mul(&jacobian).try_inverse().unwrap();
         let left = &errors - &jacobian * (inverse * jacobian.transpose() * &errors);
         let within = vec![
@@ -146,9 +173,9 @@ mod tests {
                 value: 1e-8,
                 freedom: 9.0
             };
-            36
+            60
         ];
-        let found = Components::of(&jacobian, &[1.0; 36], left.as_slice(), within).unwrap();
+        let found = Components::of(&jacobian, &[1.0; 60], left.as_slice(), within).unwrap();
         assert!(
             (found.between[0].sqrt() / 0.1 - 1.0).abs() < 0.1,
             "{found:?}"
@@ -166,8 +193,8 @@ mod tests {
 
     #[test]
     fn nothing_below_zero() {
-        let a = DMatrix::identity(3, 3);
-        let [x, y, z] = non_negative(&a, &DVector::from_vec(vec![1.0, -1.0, 2.0]));
+        let a = DMatrix::identity(QUANTITIES, QUANTITIES);
+        let [x, y, z, ..] = non_negative(&a, &DVector::from_vec(vec![1.0, -1.0, 2.0, 0.0, 0.0]));
         assert!((x - 1.0).abs() + y.abs() + (z - 2.0).abs() < 1e-12);
     }
 }

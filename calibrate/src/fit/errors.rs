@@ -9,12 +9,14 @@
 
 use statrs::function::gamma::digamma;
 
+use super::run_values::{QUANTITIES, TELLING};
 use crate::cycles::Statistics;
 
 /// A squared standard error and how many degrees of freedom it rests on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Variance {
     pub(crate) value: f64,
+    /// Infinite for what is known beforehand, of no run.
     pub(crate) freedom: f64,
 }
 
@@ -24,17 +26,18 @@ const ROUNDING: f64 = 1e-12;
 pub(super) const MOST_FREEDOM: f64 = 1e4;
 
 /// Variances of the means of X, ΔY, Δθ, run by run, from the deviations between cycles.
-pub(crate) fn within_runs(measured: &[[Statistics; 3]]) -> Vec<[Variance; 3]> {
+pub(crate) fn within_runs(measured: &[[Statistics; QUANTITIES]]) -> Vec<[Variance; QUANTITIES]> {
     let nothing = Variance {
         value: 0.0,
         freedom: 0.0,
     };
-    let mut out = vec![[nothing; 3]; measured.len()];
-    for quantity in 0..3 {
+    let mut out = vec![[nothing; QUANTITIES]; measured.len()];
+    for quantity in 0..QUANTITIES {
         let of_runs: Vec<Statistics> = measured.iter().map(|run| run[quantity]).collect();
-        let largest = of_runs.iter().map(|s| s.mean.abs()).fold(0.0, f64::max);
+        let sizes = of_runs.iter().map(|s| s.mean.abs());
+        let largest = sizes.fold(0.0, f64::max);
         // Only steps have a reason to be correlated.
-        let lag1 = if quantity == 0 {
+        let lag1 = if quantity == 0 || quantity >= TELLING {
             common_lag(&of_runs)
         } else {
             0.0

@@ -1,13 +1,12 @@
 //! How sure is it? Intervals from the curvature at the optimum.
 
-use nalgebra::{DMatrix, Dyn, OMatrix, OVector, U2};
 use statrs::distribution::{ContinuousCDF, StudentsT};
-use swimmer_model::Swimmer;
 
 use super::components::Components;
-use super::errors::{self, Variance};
+use super::errors::Variance;
+use super::least_squares::{Minimum, weighted};
 use super::outliers::{self, Unlike};
-use super::problem::{Problem, difference};
+use super::run_values::RunValues;
 
 /// Intervals of both parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +19,26 @@ pub struct Intervals {
     pub level: f64,
 }
 
+impl Intervals {
+    /// About (r_s/L, ln χ), with half widths in these.
+    pub(crate) fn about(at: [f64; 2], half: [f64; 2], length: f64, level: f64) -> Self {
+        Self {
+            sphere_radius: [
+                (at[0] - half[0]).max(0.0) * length,
+                (at[0] + half[0]) * length,
+            ],
+            chi: [(at[1] - half[1]).exp(), (at[1] + half[1]).exp()],
+            level,
+        }
+    }
+}
+
+/// How far an interval of this level reaches to either side.
+pub(crate) fn half_width(variance: Variance, level: f64) -> Option<f64> {
+    let student = StudentsT::new(0.0, 1.0, variance.freedom).ok()?;
+    Some(student.inverse_cdf(0.5 + level / 2.0) * variance.value.sqrt())
+}
+
 pub(super) struct Spread {
     pub(super) intervals: Intervals,
     pub(super) condition: f64,
@@ -30,95 +49,37 @@ pub(super) struct Spread {
     pub(super) misfit: f64,
 }
 
-/// Step in r_s/L and in ln χ.
-const STEP: f64 = 1e-3;
-
-pub(super) fn spread(problem: &Problem<'_>, r_s: f64, chi: f64, level: f64) -> Option<Spread> {
-    let length = problem.start.total_length();
-    let jacobian = jacobian(problem, r_s / length, chi.ln())?;
-    let swimmer = Swimmer {
-        sphere_radius: r_s,
-        chi,
-        ..*problem.start
-    };
-    let residuals = problem.residuals(&swimmer)?;
-    let measured: Vec<_> = problem.runs.iter().map(|run| run.measured).collect();
-    let within: Vec<Variance> = errors::within_runs(&measured)
-        .into_iter()
-        .zip(problem.factors)
-        .flat_map(|(run, factors)| {
-            let scaled = |(v, factor): (Variance, &f64)| Variance {
-                value: v.value * factor.powi(2),
-                ..v
-            };
-            run.into_iter().zip(factors).map(scaled).collect::<Vec<_>>()
-        })
-        .collect();
-    let dynamic = DMatrix::from_fn(jacobian.nrows(), 2, |i, j| jacobian[(i, j)]);
-    let outlier = outliers::worst(&dynamic, &residuals, &within);
-    let mut components = Components::of(&dynamic, &vec![1.0; residuals.len()], &residuals, within)?;
-    let error = |components: &Components, i: usize| -> Option<(f64, f64)> {
-        let Variance { value, freedom } = components.of_parameter(i);
-        let quantile = StudentsT::new(0.0, 1.0, freedom)
-            .ok()?
-            .inverse_cdf(0.5 + level / 2.0);
-        Some((value.sqrt(), quantile))
-    };
-    let ((sr, tr), (sk, tk)) = (error(&components, 0)?, error(&components, 1)?);
-    let (dr, dk) = (tr * sr * length, tk * sk);
-    let covariance = components.covariance();
-    components.between = [0.0; 3];
-    let ratio = (sr / error(&components, 0)?.0).max(sk / error(&components, 1)?.0);
-    let singular = jacobian.clone().svd(false, false).singular_values;
+pub(super) fn spread(
+    optimum: &Minimum,
+    data: &RunValues,
+    weights: &[f64],
+    length: f64,
+    level: f64,
+) -> Option<Spread> {
+    let Minimum {
+        residuals,
+        jacobian,
+        ..
+    } = optimum;
+    let at = [optimum.at[0], optimum.at[1]];
+    let within = data.within.clone();
+    let outlier = outliers::worst(jacobian, weights, residuals, &within);
+    let mut components = Components::of(jacobian, weights, residuals, within)?;
+    let errors = |components: &Components| [0, 1].map(|i| components.of_parameter(i));
+    let [radius, chi] = errors(&components);
+    let half = [half_width(radius, level)?, half_width(chi, level)?];
+    let correlation = components.correlation(0, 1);
+    components.between = Default::default();
+    let [radius_within, chi_within] = errors(&components);
+    let ratio = |all: Variance, within: Variance| (all.value / within.value).sqrt();
+    let ratio = ratio(radius, radius_within).max(ratio(chi, chi_within));
+    let roots: Vec<f64> = weights.iter().map(|w| w.sqrt()).collect();
+    let singular = weighted(jacobian, &roots).svd(false, false).singular_values;
     Some(Spread {
-        intervals: Intervals {
-            sphere_radius: [(r_s - dr).max(0.0), r_s + dr],
-            chi: [chi * (-dk).exp(), chi * dk.exp()],
-            level,
-        },
+        intervals: Intervals::about(at, half, length, level),
         condition: singular.max() / singular.min(),
-        correlation: covariance[(0, 1)] / (covariance[(0, 0)] * covariance[(1, 1)]).sqrt(),
+        correlation,
         outlier,
         misfit: if ratio.is_finite() { ratio } else { 0.0 },
     })
-}
-
-/// Derivatives of the weighted residuals by r_s/L and ln χ; one-sided in r_s next to its bound.
-fn jacobian(problem: &Problem<'_>, radius: f64, log_chi: f64) -> Option<OMatrix<f64, Dyn, U2>> {
-    let length = problem.start.total_length();
-    let at = |radius: f64, log_chi: f64| {
-        problem.residuals(&Swimmer {
-            sphere_radius: length * radius,
-            chi: log_chi.exp(),
-            ..*problem.start
-        })
-    };
-    let chi = difference(
-        &at(radius, log_chi - 2.0 * STEP)?,
-        &at(radius, log_chi - STEP)?,
-        &at(radius, log_chi + STEP)?,
-        &at(radius, log_chi + 2.0 * STEP)?,
-        STEP,
-    )?;
-    let sphere = if radius > 2.0 * STEP {
-        difference(
-            &at(radius - 2.0 * STEP, log_chi)?,
-            &at(radius - STEP, log_chi)?,
-            &at(radius + STEP, log_chi)?,
-            &at(radius + 2.0 * STEP, log_chi)?,
-            STEP,
-        )?
-    } else {
-        let (here, one, two) = (
-            at(radius, log_chi)?,
-            at(radius + STEP, log_chi)?,
-            at(radius + 2.0 * STEP, log_chi)?,
-        );
-        let rows = here.iter().zip(&one).zip(&two);
-        OVector::<f64, Dyn>::from_vec(
-            rows.map(|((h, a), b)| (4.0 * a - b - 3.0 * h) / (2.0 * STEP))
-                .collect(),
-        )
-    };
-    Some(OMatrix::<f64, Dyn, U2>::from_columns(&[sphere, chi]))
 }

@@ -7,6 +7,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::components::Components;
 use super::errors::Variance;
+use super::run_values::QUANTITIES;
 
 /// Chance that some value of a campaign without fault is called an outlier.
 pub(crate) const FALSE_ALARM: f64 = 0.01;
@@ -22,24 +23,29 @@ pub(crate) struct Unlike {
 }
 
 /// The worst value, if it stands out.
-pub(super) fn worst(
+pub(crate) fn worst(
     jacobian: &DMatrix<f64>,
+    weights: &[f64],
     residuals: &[f64],
     within: &[Variance],
 ) -> Option<Unlike> {
-    let rows = residuals.len();
-    let all = (0..rows).filter_map(|row| unlike(jacobian, residuals, within, row));
+    let is_of_run = |row: &usize| weights[*row] > 0.0 && within[*row].freedom.is_finite();
+    let rows: Vec<usize> = (0..residuals.len()).filter(is_of_run).collect();
+    let looks = rows.len();
+    let unlike = |row: usize| unlike(jacobian, weights, residuals, within, (row, looks));
+    let all = rows.into_iter().filter_map(unlike);
     let worst = all.min_by(|a, b| a.chance.total_cmp(&b.chance))?;
     (worst.chance < FALSE_ALARM).then_some(worst)
 }
 
 fn unlike(
     jacobian: &DMatrix<f64>,
+    weights: &[f64],
     residuals: &[f64],
     within: &[Variance],
-    row: usize,
+    (row, looks): (usize, usize),
 ) -> Option<Unlike> {
-    let mut weights = vec![1.0; residuals.len()];
+    let mut weights = weights.to_vec();
     weights[row] = 0.0;
     let first = Components::of(jacobian, &weights, residuals, within.to_vec())?;
     let step = &first.gain * DVector::from_column_slice(residuals);
@@ -51,7 +57,7 @@ fn unlike(
     Some(Unlike {
         row,
         standard_errors,
-        chance: chance(&others, row, standard_errors, residuals.len())?,
+        chance: chance(&others, row, standard_errors, looks)?,
     })
 }
 
@@ -63,10 +69,10 @@ pub(crate) fn chance(
     looks: usize,
 ) -> Option<f64> {
     // Where nothing differs from run to run, the cycles' own variances are all there is.
-    let freedom = if others.between[row % 3] > 0.0 {
-        others.freedom[row % 3]
+    let freedom = if others.between[row % QUANTITIES] > 0.0 {
+        others.freedom[row % QUANTITIES]
     } else {
-        others.freedom[row % 3].min(others.within.get(row)?.freedom)
+        others.freedom[row % QUANTITIES].min(others.within.get(row)?.freedom)
     };
     let student = StudentsT::new(0.0, 1.0, freedom.max(1.0)).ok()?;
     Some((2.0 * student.sf(standard_errors.abs()) * looks as f64).min(1.0))
@@ -77,20 +83,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_in_eighteen() {
-        let jacobian = DMatrix::from_fn(18, 2, |k, j| if j == 0 { 1.0 } else { (k / 3) as f64 });
+    fn one_in_thirty() {
+        let jacobian = DMatrix::from_fn(
+            30,
+            2,
+            |k, j| if j == 0 { 1.0 } else { (k / QUANTITIES) as f64 },
+        );
         let within = vec![
             Variance {
                 value: 1e-6,
                 freedom: 9.0
             };
-            18
+            30
         ];
         let noise = |k: usize| 1e-3 * ((k * k * 7919) as f64).sin();
-        let mut residuals: Vec<f64> = (0..18).map(noise).collect();
-        assert_eq!(worst(&jacobian, &residuals, &within), None);
+        let mut residuals: Vec<f64> = (0..30).map(noise).collect();
+        assert_eq!(worst(&jacobian, &[1.0; 30], &residuals, &within), None);
         residuals[7] += 0.1;
-        let found = worst(&jacobian, &residuals, &within).unwrap();
+        let found = worst(&jacobian, &[1.0; 30], &residuals, &within).unwrap();
         assert!(found.row == 7 && found.standard_errors > 20.0, "{found:?}");
     }
 }

@@ -4,10 +4,11 @@
 //! no reflector a row ago than to where constant velocity puts the reflectors: they are that other point still. Chosen is the
 //! ordered pair nearest to the predicted places, among the pairs whose distance is right. A label that moves to the other
 //! reflector, or to a ghost, thus changes nothing. After a gap in which a reflector could have covered half of the distance
-//! between both, the order could be exchanged unseen: there a new segment begins, and only the labels can say which end is
-//! which. Where they cannot, the segment is left out.
+//! between both, the order could be exchanged unseen: there a new segment begins, and what joins segments, or turns one round,
+//! is told in `identity`.
 
-mod elsewhere;
+mod frame_jump;
+mod identity;
 mod search;
 
 use nalgebra::{Vector2, Vector3};
@@ -16,7 +17,7 @@ use swimmer_files::{PointName, Reflectors};
 use super::frozen::{Frozen, take_frozen};
 use super::{PoseError, PoseOptions};
 use crate::TrackFile;
-use elsewhere::{Elsewhere, MOVED};
+use frame_jump::{FrameJump, MOVED};
 pub(super) use search::is_called;
 use search::{Candidate, REACH, Search, prepare};
 
@@ -29,16 +30,56 @@ pub struct FollowReport {
     pub missing: usize,
     /// Those of them in which both were held: copies of the row before, digit for digit.
     pub frozen: usize,
-    /// Stretches in which the labels were exchanged, and were set right.
+    /// How many stretches there are in which the labels were exchanged, and were set right.
     pub swaps_repaired: usize,
+    /// These stretches.
+    pub swaps: Vec<Stretch>,
     /// Points that were in followed rows and are no reflector.
     pub ghosts_rejected: usize,
+    /// Stretches of rows with such points.
+    pub ghosts: Vec<Stretch>,
     /// Stretches without an ambiguous gap.
     pub segments: usize,
     /// Mean distance between the reflectors \[m\].
     pub distance_m: f64,
     /// Its standard deviation \[m\].
     pub distance_sd_m: f64,
+    /// What it is by `at` \[m\].
+    pub expected_m: f64,
+}
+
+/// Rows one after another in which something held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// The first of them \[s\].
+    pub from_s: f64,
+    /// The last of them \[s\].
+    pub until_s: f64,
+    /// How many.
+    pub rows: usize,
+}
+
+impl Stretch {
+    /// The stretches of what holds, among times in order.
+    fn of(times: impl Iterator<Item = (f64, bool)>) -> Vec<Self> {
+        let (mut stretches, mut open): (Vec<Self>, bool) = (Vec::new(), false);
+        for (time, holds) in times {
+            match stretches.last_mut().filter(|_| open && holds) {
+                Some(stretch) => {
+                    stretch.until_s = time;
+                    stretch.rows += 1;
+                }
+                None if holds => stretches.push(Self {
+                    from_s: time,
+                    until_s: time,
+                    rows: 1,
+                }),
+                None => {}
+            }
+            open = holds;
+        }
+        stretches
+    }
 }
 
 pub(super) struct Row {
@@ -62,6 +103,8 @@ pub(super) struct Followed<'a> {
     pub(super) lost_segments: usize,
     pub(super) lost_rows: usize,
     pub(super) frozen: Frozen,
+    /// The share of rows whose labels contradict the others', where it is too large to say which are right.
+    pub(super) contested: Option<f64>,
 }
 
 /// Smoothing time of the velocity \[s\].
@@ -148,12 +191,19 @@ pub(super) fn follow<'a>(
     let has_name = |point: &PointName| !matches!(point, PointName::Auto | PointName::Near(_));
     let named = has_name(&reflectors.front.point) || has_name(&reflectors.back.point);
     let mut followed = settle(search, rows, &starts, expected_m);
-    followed.order_known = named && followed.rows.iter().any(|row| row.labels.is_some());
+    followed.order_known = named
+        && followed.contested.is_none()
+        && followed.rows.iter().any(|row| row.labels.is_some());
+    followed.contested = followed.contested.filter(|_| named);
     let mut candidates = Vec::new();
+    let mut crowded = Vec::with_capacity(followed.rows.len());
     for row in &followed.rows {
         followed.search.candidates(row.index, &mut candidates);
-        followed.report.ghosts_rejected += candidates.len().saturating_sub(2);
+        let ghosts = candidates.len().saturating_sub(2);
+        followed.report.ghosts_rejected += ghosts;
+        crowded.push((followed.search.time(row), ghosts > 0));
     }
+    followed.report.ghosts = Stretch::of(crowded.into_iter());
     Ok(followed)
 }
 
@@ -172,7 +222,7 @@ fn walk(search: &Search<'_>) -> (Vec<Row>, Vec<usize>) {
     let mut candidates = Vec::new();
     // Points of the row before that are no reflectors.
     let mut others: Vec<Vector3<f64>> = Vec::new();
-    let mut elsewhere: Option<Elsewhere> = None;
+    let mut jump: Option<FrameJump> = None;
     for (row, time) in search.track.times.iter().copied().enumerate() {
         search.candidates(row, &mut candidates);
         let longest = if top_speed > 0.0 {
@@ -185,11 +235,11 @@ fn walk(search: &Search<'_>) -> (Vec<Row>, Vec<usize>) {
             None => search.begin(&candidates),
             Some(state) => next(search, state, time, top_speed, &candidates, &others),
         };
-        elsewhere = match (&state, &found) {
-            (Some(_), None) => Elsewhere::seen(elsewhere, search, row, top_speed, &candidates),
+        jump = match (&state, &found) {
+            (Some(_), None) => FrameJump::seen(jump, search, row, top_speed, &candidates),
             _ => None,
         };
-        if let Some(there) = elsewhere.take_if(|there| there.rows.len() > MOVED) {
+        if let Some(there) = jump.take_if(|there| there.rows.len() > MOVED) {
             // The frame jumped: a new segment, from the first of these rows on.
             starts.push(rows.len());
             rows.extend(there.rows);
@@ -307,53 +357,18 @@ fn next(
     })
 }
 
-/// Lets the labels of each segment decide which end is the front, and counts.
+/// Says who is who in every segment, and counts.
 fn settle<'a>(
     search: Search<'a>,
     rows: Vec<Row>,
     starts: &[usize],
     expected_m: f64,
 ) -> Followed<'a> {
-    let (length, frames) = (rows.len(), search.track.frames());
-    let ends = starts.iter().skip(1).copied().chain([length]);
-    let mut segments: Vec<(usize, usize, Option<bool>)> = Vec::new();
-    for (start, end) in starts.iter().copied().zip(ends) {
-        let votes = rows
-            .get(start..end)
-            .unwrap_or(&[])
-            .iter()
-            .filter_map(|row| row.labels);
-        let balance: i64 = votes.map(|agrees| if agrees { 1 } else { -1 }).sum();
-        segments.push((start, end, (balance != 0).then_some(balance > 0)));
-    }
-    // A segment that no label speaks for is of use only if it is the only one.
-    let silent = segments.len() > 1;
-    let mut kept = Vec::with_capacity(length);
-    let (mut swaps, mut lost_segments, mut lost_rows, mut index) = (0, 0, 0, 0);
-    let mut rows = rows.into_iter();
-    for (start, end, verdict) in segments {
-        debug_assert_eq!(start, index);
-        index = end;
-        let segment = rows.by_ref().take(end - start);
-        if verdict.is_none() && silent {
-            lost_segments += 1;
-            lost_rows += segment.count();
-            continue;
-        }
-        let exchange = verdict == Some(false);
-        let mut contradicted = false;
-        for mut row in segment {
-            if exchange {
-                std::mem::swap(&mut row.front, &mut row.back);
-                row.labels = row.labels.map(|agrees| !agrees);
-            }
-            if let Some(agrees) = row.labels {
-                swaps += usize::from(!agrees && !contradicted);
-                contradicted = !agrees;
-            }
-            kept.push(row);
-        }
-    }
+    let frames = search.track.frames();
+    let told = identity::settle(&search, rows, starts);
+    let mut kept = told.rows;
+    let named = kept.iter().filter_map(|row| Some((row, row.labels?)));
+    let swaps = Stretch::of(named.map(|(row, agrees)| (search.time(row), !agrees)));
     let frozen = take_frozen(&mut kept);
     let count = kept.len().max(1) as f64;
     let distance = |row: &Row| (row.front - row.back).norm();
@@ -369,17 +384,21 @@ fn settle<'a>(
             followed: kept.len(),
             missing: frames - kept.len(),
             frozen: frozen.rows,
-            swaps_repaired: swaps,
+            swaps_repaired: swaps.len(),
+            swaps,
             ghosts_rejected: 0,
+            ghosts: Vec::new(),
             segments: starts.len(),
             distance_m,
             distance_sd_m: variance.sqrt(),
+            expected_m,
         },
         rows: kept,
         expected_m,
         order_known: false,
-        lost_segments,
-        lost_rows,
+        lost_segments: told.lost_segments,
+        lost_rows: told.lost_rows,
         frozen,
+        contested: told.contested,
     }
 }

@@ -7,18 +7,18 @@ use super::cells::{Cell, cell_at, split};
 use super::grid::{self, Clock, Columns, Grid};
 use super::lines::{Delimiter, Line, Lines};
 use super::{
-    Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
-    TrackWarning, Unit,
+    Draft, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem, TrackWarning,
+    Unit,
 };
 
 /// # Errors
 /// [`TrackError::Broken`] with line and column.
 pub(super) fn read(
     lines: &mut Lines<'_>,
-    file: &Path,
+    reading: &Reading<'_>,
     delimiter: Delimiter,
-    options: &TrackOptions,
 ) -> Result<Draft, TrackError> {
+    let Reading { file, options, .. } = *reading;
     let mut rows: Vec<(Line<'_>, Vec<Cell<'_>>)> = Vec::new();
     for line in lines.head().filter(|line| !line.is_blank()).take(4) {
         rows.push((line, split(&line, delimiter, file)?));
@@ -78,7 +78,7 @@ pub(super) fn read(
         rate_hz: Some(rate_hz),
         unit,
         image: true,
-        body: grid::read(lines, file, grid)?,
+        body: grid::read(lines, reading, grid)?,
         warnings,
     })
 }

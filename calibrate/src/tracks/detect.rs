@@ -5,7 +5,7 @@ use std::path::Path;
 use super::cells::{Cell, split};
 use super::lines::{Delimiter, Line, Lines};
 use super::number::{Number, number};
-use super::{TrackError, TrackProblem};
+use super::{TrackError, TrackProblem, sleap};
 
 /// A format that there is a reader for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +26,10 @@ pub(super) enum Detected {
     Qtm,
     /// Vicon's CSV.
     Vicon(Delimiter),
+    /// Kinovea's text.
+    Kinovea,
+    /// SLEAP's analysis CSV.
+    Sleap(Delimiter),
     /// A table with named columns.
     Table(TableLayout),
 }
@@ -59,6 +63,12 @@ pub(super) fn detect(lines: &Lines<'_>, file: &Path) -> Result<Detected, TrackEr
             file: file.to_owned(),
         });
     };
+    if first.text.starts_with("#Kinovea") {
+        return Ok(Detected::Kinovea);
+    }
+    if sleap::is_header(&first, Delimiter::of(first.text), file) {
+        return Ok(Detected::Sleap(Delimiter::of(first.text)));
+    }
     if let Some(delimiter) = wide_delimiter(&first) {
         return Ok(Detected::Wide(delimiter));
     }
@@ -100,7 +110,7 @@ fn by_first_lines(first: &Line<'_>, below: &[Line<'_>], file: &Path) -> Option<D
         "scorer" => Detected::DeepLabCut(delimiter),
         "PathFileType" => Detected::Trc,
         "NO_OF_FRAMES" => Detected::Qtm,
-        "Trajectories" if alone => {
+        "Trajectories" | "Objects" | "Segments" if alone => {
             Detected::Vicon(Delimiter::of(below.get(1).map_or("", |line| line.text)))
         }
         _ if word.to_ascii_lowercase().starts_with("#multi:") => {

@@ -9,7 +9,8 @@ use super::cells::Cells;
 use super::lines::{Delimiter, Line, Lines};
 use super::number::{Decimals, Number};
 use super::rows::{TakesRows, read_rows};
-use super::{TrackError, TrackPoint, TrackProblem, TrackWarning};
+use super::timeline::Timeline;
+use super::{Reading, TrackError, TrackPoint, TrackProblem, TrackWarning};
 use notes::Notes;
 
 /// Where a row's time comes from.
@@ -100,15 +101,23 @@ impl Grid {
 
 /// The rows, read.
 pub(super) struct Body {
-    pub(super) frame_numbers: Vec<u64>,
-    pub(super) times: Vec<f64>,
+    pub(super) timeline: Timeline,
     pub(super) points: Vec<TrackPoint>,
     pub(super) warnings: Vec<TrackWarning>,
 }
 
 /// # Errors
 /// [`TrackError::Broken`] with line and column.
-pub(super) fn read(lines: &mut Lines<'_>, file: &Path, grid: Grid) -> Result<Body, TrackError> {
+pub(super) fn read(
+    lines: &mut Lines<'_>,
+    reading: &Reading<'_>,
+    mut grid: Grid,
+) -> Result<Body, TrackError> {
+    let file = reading.file;
+    for point in &mut grid.points {
+        point.keep_places(reading.keeps_places);
+    }
+    let rate_is_given = reading.options.rate().is_some();
     let mut reader = Reader {
         decimals: if grid.delimiter.allows_decimal_comma() {
             Decimals::Open
@@ -120,11 +129,12 @@ pub(super) fn read(lines: &mut Lines<'_>, file: &Path, grid: Grid) -> Result<Bod
         cells: Cells::default(),
         notes: Notes::default(),
         body: Body {
-            frame_numbers: Vec::new(),
-            times: Vec::new(),
+            timeline: Timeline::new(reading.keeps_places),
             points: Vec::new(),
             warnings: Vec::new(),
         },
+        stamps_from: None,
+        rate_is_given,
         last_decimals: 0,
         extent: None,
         grid,
@@ -143,6 +153,10 @@ struct Reader<'f> {
     places: Vec<Option<[f64; 3]>>,
     notes: Notes,
     body: Body,
+    /// Where frame numbers failed: a stamp and the time that was given to it. From there on stamps count.
+    stamps_from: Option<(f64, f64)>,
+    /// Whether the rate is the user's, to which the time column need not keep.
+    rate_is_given: bool,
     last_decimals: usize,
     extent: Option<usize>,
 }
@@ -156,7 +170,7 @@ impl TakesRows for Reader<'_> {
     }
 
     fn has_rows(&self) -> bool {
-        !self.body.times.is_empty()
+        self.body.timeline.len() > 0
     }
 
     fn ends_at_blank(&self) -> bool {
@@ -181,17 +195,16 @@ impl Reader<'_> {
             *place = self.place(line, index)?;
         }
         let decimals = decimals(self.cells.last(line).map_or("", |cell| cell.raw));
-        let first = self.body.times.is_empty();
+        let first = self.body.timeline.len() == 0;
         may_be_cut(line, first || decimals < self.last_decimals, self.file)?;
         self.last_decimals = decimals;
-        let row = self.body.times.len();
-        if let (Some(previous), Clock::Numbered { .. }) =
-            (self.body.frame_numbers.last(), self.grid.clock)
+        let row = self.body.timeline.len();
+        if let (Some((previous, _)), Clock::Numbered { .. }) =
+            (self.body.timeline.last(), self.grid.clock)
         {
-            self.notes.jumped(frame - previous - 1);
+            self.notes.jumped(frame.saturating_sub(previous + 1));
         }
-        self.body.frame_numbers.push(frame);
-        self.body.times.push(time);
+        self.body.timeline.push(frame, time);
         for (point, place) in self.grid.points.iter_mut().zip(&places) {
             if let Some(place) = place {
                 point.push(row, place.map(|value| value * self.grid.metres));
@@ -202,7 +215,7 @@ impl Reader<'_> {
     }
 
     fn clock(&mut self, line: &Line<'_>) -> Result<(u64, f64), TrackError> {
-        let row = self.body.times.len() as u64;
+        let row = self.body.timeline.len() as u64;
         let (frame, time) = match self.grid.clock {
             Clock::Counted { rate_hz } => return Ok((row, row as f64 / rate_hz)),
             Clock::Numbered {
@@ -212,21 +225,20 @@ impl Reader<'_> {
                 time,
             } => {
                 let number = self.frame(line, frame)?;
-                if let Some(previous) = self.body.frame_numbers.last().copied()
-                    && number <= previous
-                {
-                    let problem = TrackProblem::FrameOrder {
-                        previous,
-                        frame: number,
-                    };
-                    return Err(line.error(self.file, 0, problem));
+                let stamp = time.and_then(|time| self.cells.text(line, time));
+                let stamp = match stamp.map(|text| self.decimals.number(text)) {
+                    Some(Number::Finite(stamp)) => Some(stamp),
+                    _ => None,
+                };
+                let before = self.notes.last_stamp();
+                self.grows(line, number, stamp.zip(before))?;
+                if let Some(stamp) = stamp {
+                    self.notes.time(number, stamp);
                 }
-                if let Some(text) = time.and_then(|time| self.cells.text(line, time))
-                    && let Number::Finite(time) = self.decimals.number(text)
-                {
-                    self.notes.time(number, time);
+                match (self.stamps_from, stamp) {
+                    (Some((from, at)), Some(stamp)) => (number, at + stamp - from),
+                    _ => (number, (number as f64 - first as f64) / rate_hz),
                 }
-                (number, (number as f64 - first as f64) / rate_hz)
             }
             Clock::Stamped {
                 time,
@@ -242,16 +254,45 @@ impl Reader<'_> {
                     return Err(line.error(self.file, cell.at, problem));
                 };
                 let number = frame.map_or(Ok(row), |column| self.frame(line, column))?;
+                self.body.timeline.written(cell.raw, seconds);
                 (number, stamp * seconds)
             }
         };
-        if let Some(previous) = self.body.times.last().copied()
+        if let Some((_, previous)) = self.body.timeline.last()
             && time <= previous
         {
+            // Rounded stamps may be equal; whether these are, all of them together say.
+            if time >= previous && self.body.timeline.may_repeat() {
+                self.body.timeline.repeats(line.number);
+                return Ok((frame, time));
+            }
             let problem = TrackProblem::TimeOrder { previous, time };
             return Err(line.error(self.file, 0, problem));
         }
         Ok((frame, time))
+    }
+
+    /// That a frame number grows, or that at least its stamp does, after the one of the row before.
+    fn grows(
+        &mut self,
+        line: &Line<'_>,
+        frame: u64,
+        stamps: Option<(f64, f64)>,
+    ) -> Result<(), TrackError> {
+        let Some((previous, time)) = self.body.timeline.last() else {
+            return Ok(());
+        };
+        if frame > previous {
+            return Ok(());
+        }
+        match stamps {
+            Some((stamp, before)) if stamp > before => {
+                self.stamps_from.get_or_insert((before, time));
+                self.body.timeline.renumbered(line.number);
+                Ok(())
+            }
+            _ => Err(line.error(self.file, 0, TrackProblem::FrameOrder { previous, frame })),
+        }
     }
 
     fn frame(&self, line: &Line<'_>, column: usize) -> Result<u64, TrackError> {
@@ -282,8 +323,8 @@ impl Reader<'_> {
                 Number::Wrong => return Err(self.not_a_number(line, column, index, axis)),
             }
         }
-        if blank > 0 {
-            if blank < asked {
+        if blank > 0 || asked == 0 {
+            if 0 < blank && blank < asked {
                 self.notes.half_blank(line.number);
             }
             return Ok(None);
@@ -328,12 +369,12 @@ impl Reader<'_> {
     }
 
     fn finish(mut self) -> Body {
-        let rows = self.body.times.len();
+        let rows = self.body.timeline.len();
         for point in &mut self.grid.points {
             point.finish(rows);
         }
         let rate_hz = match self.grid.clock {
-            Clock::Numbered { rate_hz, .. } => Some(rate_hz),
+            Clock::Numbered { rate_hz, .. } if !self.rate_is_given => Some(rate_hz),
             _ => None,
         };
         self.notes

@@ -1,15 +1,13 @@
 //! A wide Motive export whose header was switched off: frame, time, data. Nothing says what the columns are, nor the unit, so
 //! they are taken for positions, three by three, only where nothing speaks against it, and a scale must be given.
 
-use std::path::Path;
-
 use super::cells::{Cell, split};
 use super::grid::{self, Clock, Columns, Grid};
 use super::lines::{Delimiter, Line, Lines};
 use super::number::{Number, number};
 use super::{
-    Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
-    TrackWarning, Unit,
+    Draft, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem, TrackWarning,
+    Unit,
 };
 
 /// Rows that are looked at for rotations.
@@ -21,10 +19,10 @@ const UNIT_LENGTH: f64 = 1e-4;
 /// [`TrackError::Broken`] with line and column.
 pub(super) fn read(
     lines: &mut Lines<'_>,
-    file: &Path,
+    reading: &Reading<'_>,
     delimiter: Delimiter,
-    options: &TrackOptions,
 ) -> Result<Draft, TrackError> {
+    let Reading { file, options, .. } = *reading;
     let rows = lines.head().filter(|line| !line.is_blank());
     let rows: Vec<(Line<'_>, Vec<Cell<'_>>)> = rows
         .take(LOOKED_AT)
@@ -72,9 +70,9 @@ pub(super) fn read(
         }
         _ => None,
     };
-    let rate_hz = match told {
-        Some(rate) => rate,
-        None => options.need_rate(first, file)?,
+    let (rate_hz, other_rate) = match told {
+        Some(rate) => options.rate_over(rate),
+        None => (options.need_rate(first, file)?, None),
     };
     // The frame at time zero: 0 in Motive, 1 elsewhere.
     let first = clock(cells).map_or(0.0, |(frame, time)| frame - (time * rate_hz).round());
@@ -106,8 +104,10 @@ pub(super) fn read(
         rate_hz: Some(rate_hz),
         unit,
         image: false,
-        body: grid::read(lines, file, grid)?,
-        warnings: vec![TrackWarning::NoHeader],
+        body: grid::read(lines, reading, grid)?,
+        warnings: std::iter::once(TrackWarning::NoHeader)
+            .chain(other_rate)
+            .collect(),
     })
 }
 

@@ -11,7 +11,7 @@ use std::path::Path;
 pub struct TrackOptions {
     /// Metres per unit of the file (per pixel); `None` where the file says its unit.
     pub metres_per_unit: Option<f64>,
-    /// Rows a second, for files with frame numbers and no times.
+    /// Rows a second: needed for files with frame numbers and no times, and wins over what any file says.
     pub rate_hz: Option<f64>,
     /// Which of the file's axes are the tank's x and y.
     pub axes: Option<Axes>,
@@ -41,6 +41,17 @@ impl TrackOptions {
     /// The rate that the user gave.
     pub(super) fn rate(&self) -> Option<f64> {
         self.rate_hz.filter(|rate| *rate > 0.0 && rate.is_finite())
+    }
+
+    /// The rate that holds where a header says this one, and a warning where the user's is another.
+    pub(super) fn rate_over(&self, header_hz: f64) -> (f64, Option<TrackWarning>) {
+        let Some(used_hz) = self.rate() else {
+            return (header_hz, None);
+        };
+        let file_hz = header_hz;
+        let other = (used_hz / file_hz - 1.0).abs() > 1e-4;
+        let warning = other.then_some(TrackWarning::RateOverridden { file_hz, used_hz });
+        (used_hz, warning)
     }
 
     /// The same where nothing else can tell it.

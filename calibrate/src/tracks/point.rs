@@ -66,12 +66,32 @@ pub struct TrackPoint {
     pub id: String,
     /// The names of its columns in a plain table (x, y and perhaps z); empty otherwise.
     pub columns: Vec<String>,
+    /// Whether places are kept, or only counted.
+    keeps: bool,
+    presence: Presence,
     /// First row and first place of each run of rows in which it is there. Markers come and go: what is missing costs nothing.
     runs: Vec<(usize, usize)>,
     /// The places of all runs \[m\].
     places: Vec<[f64; 3]>,
-    /// Rows of the file.
-    rows: usize,
+}
+
+/// In which rows a point was, counted as they go by.
+#[derive(Debug, Clone, Copy, Default)]
+struct Presence {
+    present: usize,
+    gaps: usize,
+    longest_gap: usize,
+    /// The row after the last one that counts.
+    next: usize,
+}
+
+impl Presence {
+    /// Missing until this row.
+    fn missing_until(&mut self, row: usize) {
+        let gap = row.saturating_sub(self.next);
+        self.gaps += usize::from(gap > 0);
+        self.longest_gap = self.longest_gap.max(gap);
+    }
 }
 
 impl TrackPoint {
@@ -81,10 +101,16 @@ impl TrackPoint {
             kind,
             id,
             columns,
+            keeps: true,
+            presence: Presence::default(),
             runs: Vec::new(),
             places: Vec::new(),
-            rows: 0,
         }
+    }
+
+    /// Before the first place: whether places are kept, or only counted.
+    pub(super) fn keep_places(&mut self, keeps: bool) {
+        self.keeps = keeps;
     }
 
     /// Where the point was in this row \[m\], in the file's own axes; `None` where it is missing.
@@ -98,54 +124,39 @@ impl TrackPoint {
 
     /// In how many rows it is there.
     pub fn present(&self) -> usize {
-        self.places.len()
+        self.presence.present
     }
 
     /// How many runs of rows it is missing in.
     pub fn gaps(&self) -> usize {
-        self.missing().count()
+        self.presence.gaps
     }
 
     /// The longest run of rows that it is missing in.
     pub fn longest_gap(&self) -> usize {
-        self.missing().max().unwrap_or(0)
-    }
-
-    /// Lengths of the runs of rows that it is missing in.
-    fn missing(&self) -> impl Iterator<Item = usize> {
-        let next_place = |index: usize| self.runs.get(index).map_or(self.places.len(), |run| run.1);
-        let ends = self
-            .runs
-            .iter()
-            .enumerate()
-            .map(move |(index, (start, first))| start + next_place(index + 1) - first);
-        let starts = self.runs.iter().map(|(start, _)| *start);
-        starts
-            .chain([self.rows])
-            .zip(std::iter::once(0).chain(ends))
-            .map(|(start, before)| start - before)
-            .filter(|length| *length > 0)
+        self.presence.longest_gap
     }
 
     /// It was there in this row; rows come in order, and the first place in a row holds.
     pub(super) fn push(&mut self, row: usize, place: [f64; 3]) {
-        if row < self.rows {
+        if row < self.presence.next {
             return;
         }
-        let next = self
-            .runs
-            .last()
-            .map(|(start, first)| start + self.places.len() - first);
-        if next != Some(row) {
-            self.runs.push((row, self.places.len()));
+        if self.keeps {
+            if row > self.presence.next || self.runs.is_empty() {
+                self.runs.push((row, self.places.len()));
+            }
+            self.places.push(place);
         }
-        self.places.push(place);
-        self.rows = row + 1;
+        self.presence.missing_until(row);
+        self.presence.present += 1;
+        self.presence.next = row + 1;
     }
 
     /// So many rows has the file.
     pub(super) fn finish(&mut self, rows: usize) {
-        self.rows = rows;
+        self.presence.missing_until(rows);
+        self.presence.next = self.presence.next.max(rows);
     }
 }
 

@@ -7,17 +7,14 @@ use super::grid::{self, Clock, Columns, Grid};
 use super::lines::{Delimiter, Line, Lines};
 use super::number;
 use super::{
-    Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
-    TrackWarning, Unit,
+    Draft, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem, TrackWarning,
+    Unit,
 };
 
 /// # Errors
 /// [`TrackError::Broken`] with line and column.
-pub(super) fn read(
-    lines: &mut Lines<'_>,
-    file: &Path,
-    options: &TrackOptions,
-) -> Result<Draft, TrackError> {
+pub(super) fn read(lines: &mut Lines<'_>, reading: &Reading<'_>) -> Result<Draft, TrackError> {
+    let Reading { file, options, .. } = *reading;
     let delimiter = Delimiter::Tab;
     let mut head: Vec<(Line<'_>, Vec<Cell<'_>>)> = Vec::new();
     for line in lines.head().filter(|line| !line.is_blank()) {
@@ -40,7 +37,7 @@ pub(super) fn read(
     };
     let (line, cells) = find("FREQUENCY")?;
     let rate = cell_at(cells, 1);
-    let rate_hz = number::rate(&rate, line, file, true)?;
+    let (rate_hz, other_rate) = options.rate_over(number::rate(&rate, line, file, true)?);
     let (names_line, names) = find("MARKER_NAMES")?;
     let names: Vec<String> = names
         .iter()
@@ -86,9 +83,9 @@ pub(super) fn read(
         origin_is_missing: true,
         ..Grid::under(last.number, delimiter, width, points)
     };
-    let body = grid::read(lines, file, grid)?;
-    let mut warnings: Vec<TrackWarning> = overridden.into_iter().collect();
-    warnings.extend(TrackWarning::frame_count(total, body.times.len()));
+    let body = grid::read(lines, reading, grid)?;
+    let mut warnings: Vec<TrackWarning> = overridden.into_iter().chain(other_rate).collect();
+    warnings.extend(TrackWarning::frame_count(total, body.timeline.len()));
     Ok(Draft {
         format: TrackFormat::Qtm,
         rate_hz: Some(rate_hz),

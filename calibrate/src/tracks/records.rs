@@ -16,9 +16,10 @@ use super::grid::Body;
 use super::lines::{Delimiter, Line, Lines};
 use super::number::Number;
 use super::rows::{TakesRows, read_rows};
+use super::timeline::Timeline;
 use super::{
-    Draft, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
-    TrackWarning, Unit,
+    Draft, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem, TrackWarning,
+    Unit,
 };
 use record::{Place, Record};
 
@@ -29,12 +30,12 @@ const MOST: usize = 100_000;
 /// [`TrackError::Broken`] with line and column.
 pub(super) fn read(
     lines: &mut Lines<'_>,
-    file: &Path,
+    reading: &Reading<'_>,
     delimiter: Delimiter,
-    options: &TrackOptions,
 ) -> Result<Draft, TrackError> {
+    let Reading { file, options, .. } = *reading;
     let (unit, metres, overridden) = options.unit(Unit::Metre);
-    let mut reader = Reader::new(metres);
+    let mut reader = Reader::new(metres, reading.keeps_places);
     reader.warnings.extend(overridden);
     let mut taker = Records {
         reader,
@@ -63,7 +64,7 @@ impl TakesRows for Records<'_> {
     }
 
     fn has_rows(&self) -> bool {
-        !self.reader.times.is_empty()
+        self.reader.timeline.len() > 0
     }
 }
 
@@ -81,8 +82,10 @@ struct Reader {
     version: String,
     left_handed: bool,
     frames: Option<u64>,
-    frame_numbers: Vec<u64>,
-    times: Vec<f64>,
+    timeline: Timeline,
+    keeps_places: bool,
+    /// Frames that are not in the file: how often, how many.
+    skipped: (usize, u64),
     points: Vec<TrackPoint>,
     bodies: HashMap<String, RigidBody>,
     /// Points of a frame's markers: by place in the list (1.0) or by number (1.1).
@@ -92,15 +95,16 @@ struct Reader {
 }
 
 impl Reader {
-    fn new(metres: f64) -> Self {
+    fn new(metres: f64, keeps_places: bool) -> Self {
         Self {
             metres,
             strides: (4, 3),
             version: "1.0".to_owned(),
             left_handed: false,
             frames: None,
-            frame_numbers: Vec::new(),
-            times: Vec::new(),
+            timeline: Timeline::new(keeps_places),
+            keeps_places,
+            skipped: (0, 0),
             points: Vec::new(),
             bodies: HashMap::new(),
             markers: HashMap::new(),
@@ -118,7 +122,7 @@ impl Reader {
             }
             "info" => self.info(record),
             "frame" => self.frame(record),
-            "trackable" | "rigidbody" if self.times.is_empty() => self.definition(record),
+            "trackable" | "rigidbody" if self.timeline.len() == 0 => self.definition(record),
             "trackable" | "rigidbody" => self.extended(record),
             _ => Err(record.unknown()),
         }
@@ -152,9 +156,11 @@ impl Reader {
     }
 
     fn body(&mut self, name: &str, id: &str, markers: usize) {
+        let keeps_places = self.keeps_places;
         let mut add = |name: String, kind, id: &str| {
-            self.points
-                .push(TrackPoint::new(name, kind, id.to_owned(), Vec::new()));
+            let mut point = TrackPoint::new(name, kind, id.to_owned(), Vec::new());
+            point.keep_places(keeps_places);
+            self.points.push(point);
             self.points.len() - 1
         };
         let pivot = add(name.to_owned(), PointKind::RigidBody, id);
@@ -184,16 +190,15 @@ impl Reader {
         let markers = record.count(markers_at, "markers")?;
         let stride = self.strides.0;
         record.expect(markers_at + 1 + stride * markers)?;
-        if let Some(previous) = self.frame_numbers.last().copied()
-            && number <= previous
-        {
-            let frame = number;
-            return Err(record.error(1, TrackProblem::FrameOrder { previous, frame }));
-        }
-        if let Some(previous) = self.times.last().copied()
-            && time <= previous
-        {
-            return Err(record.error(2, TrackProblem::TimeOrder { previous, time }));
+        let frame = number;
+        if let Some((previous, before)) = self.timeline.last() {
+            if frame <= previous && time <= before {
+                return Err(record.error(1, TrackProblem::FrameOrder { previous, frame }));
+            }
+            if time <= before {
+                let previous = before;
+                return Err(record.error(2, TrackProblem::TimeOrder { previous, time }));
+            }
         }
         let mut seen: Vec<(usize, [f64; 3])> = Vec::with_capacity(bodies + markers);
         for body in 0..bodies {
@@ -213,9 +218,16 @@ impl Reader {
             let point = self.marker(record, at, marker);
             seen.extend(place.map(|place| (point, place)));
         }
-        let row = self.times.len();
-        self.frame_numbers.push(number);
-        self.times.push(time);
+        let row = self.timeline.len();
+        if let Some((previous, _)) = self.timeline.last() {
+            let left_out = frame.saturating_sub(previous + 1);
+            self.skipped.0 += usize::from(left_out > 0);
+            self.skipped.1 += left_out;
+            if frame <= previous {
+                self.timeline.renumbered(record.line());
+            }
+        }
+        self.timeline.push(frame, time);
         self.push(row, &seen);
         Ok(())
     }
@@ -248,8 +260,9 @@ impl Reader {
             format!("Unlabeled {id}")
         };
         let kind = PointKind::of_marker(&name);
-        self.points
-            .push(TrackPoint::new(name, kind, id.clone(), Vec::new()));
+        let mut point = TrackPoint::new(name, kind, id.clone(), Vec::new());
+        point.keep_places(self.keeps_places);
+        self.points.push(point);
         self.markers.insert(id, self.points.len() - 1);
         self.points.len() - 1
     }
@@ -264,8 +277,9 @@ impl Reader {
         let stride = self.strides.1;
         let cloud_at = 7 + stride * markers;
         record.expect(cloud_at + 5 * markers + 1)?;
-        if self.frame_numbers.last() != Some(&number) {
-            let previous = self.frame_numbers.last().copied().unwrap_or(0);
+        let last = self.timeline.last().map(|(frame, _)| frame);
+        if last != Some(number) {
+            let previous = last.unwrap_or(0);
             let frame = number;
             return Err(record.error(1, TrackProblem::FrameOrder { previous, frame }));
         }
@@ -294,7 +308,7 @@ impl Reader {
                 seen.push((point, place));
             }
         }
-        self.push(self.times.len() - 1, &seen);
+        self.push(self.timeline.len() - 1, &seen);
         Ok(())
     }
 
@@ -308,7 +322,7 @@ impl Reader {
     }
 
     fn finish(mut self, unit: Unit) -> Draft {
-        let rows = self.times.len();
+        let rows = self.timeline.len();
         for point in &mut self.points {
             point.finish(rows);
         }
@@ -319,18 +333,9 @@ impl Reader {
             let warning = TrackWarning::HalfBlank { count, first_line };
             self.warnings.push(warning);
         }
-        let (mut jumps, mut skipped) = (0, 0);
-        for pair in self.frame_numbers.windows(2) {
-            if let [before, after] = pair {
-                jumps += usize::from(after - before > 1);
-                skipped += after - before - 1;
-            }
-        }
-        if jumps > 0 {
-            self.warnings.push(TrackWarning::FrameJumps {
-                jumps,
-                frames: skipped,
-            });
+        if let (jumps @ 1.., frames) = self.skipped {
+            self.warnings
+                .push(TrackWarning::FrameJumps { jumps, frames });
         }
         self.warnings
             .extend(TrackWarning::frame_count(self.frames, rows));
@@ -344,8 +349,7 @@ impl Reader {
             unit,
             image: false,
             body: Body {
-                frame_numbers: self.frame_numbers,
-                times: self.times,
+                timeline: self.timeline,
                 points: self.points,
                 warnings: Vec::new(),
             },

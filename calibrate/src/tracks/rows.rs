@@ -13,6 +13,9 @@ pub(super) trait TakesRows {
     /// Whether any row was taken yet.
     fn has_rows(&self) -> bool;
 
+    /// A blank line.
+    fn blank(&mut self) {}
+
     /// Whether a blank line ends the rows.
     fn ends_at_blank(&self) -> bool {
         false
@@ -39,6 +42,7 @@ pub(super) fn read_rows(
             if taker.ends_at_blank() && taker.has_rows() {
                 break;
             }
+            taker.blank();
             continue;
         }
         match taker.take_line(&line) {

@@ -9,22 +9,20 @@
 
 mod header;
 
-use std::path::Path;
-
 use super::detect::TableLayout;
-use super::grid::{self, Grid};
+use super::grid::{self, Clock, Grid};
 use super::lines::Lines;
-use super::{Draft, TrackError, TrackFormat, TrackOptions, Unit};
+use super::{Draft, Reading, TrackError, TrackFormat, Unit};
 use header::Header;
 
 /// # Errors
 /// [`TrackError::Broken`] with line and column.
 pub(super) fn read(
     lines: &mut Lines<'_>,
-    file: &Path,
+    reading: &Reading<'_>,
     layout: &TableLayout,
-    options: &TrackOptions,
 ) -> Result<Draft, TrackError> {
+    let Reading { file, options, .. } = *reading;
     let at = layout.header_line;
     let Some(line) = lines.head().find(|line| line.number == at) else {
         return Err(TrackError::Empty {
@@ -32,7 +30,23 @@ pub(super) fn read(
         });
     };
     let header = Header::read(line, file, layout, options)?;
-    let (unit, metres, overridden) = options.unit(header.unit.unwrap_or(Unit::Metre));
+    // Kinovea writes pixels, or what its user calibrated.
+    let unsaid = if header.kinovea {
+        Unit::Unknown
+    } else {
+        Unit::Metre
+    };
+    let (unit, metres, overridden) = options.unit(header.unit.unwrap_or(unsaid));
+    let format = if header.kinovea {
+        TrackFormat::Kinovea
+    } else {
+        TrackFormat::Table
+    };
+    // Numbered rows have the rate that the user gave.
+    let rate_hz = match header.clock {
+        Clock::Numbered { rate_hz, .. } => Some(rate_hz),
+        _ => None,
+    };
     let grid = Grid {
         clock: header.clock,
         metres,
@@ -40,10 +54,10 @@ pub(super) fn read(
         comments: true,
         ..Grid::under(at, layout.delimiter, header.width, header.points)
     };
-    let body = grid::read(lines, file, grid)?;
+    let body = grid::read(lines, reading, grid)?;
     Ok(Draft {
-        format: TrackFormat::Table,
-        rate_hz: None,
+        format,
+        rate_hz,
         unit,
         image: header.unit == Some(Unit::Pixel),
         body,

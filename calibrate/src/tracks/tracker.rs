@@ -5,20 +5,16 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::cells::{Cell, Cells, cell_at, split};
-use super::grid::{Body, decimals, may_be_cut, row_length};
+use super::grid::{self, Body, Clock, Columns, Grid, decimals, may_be_cut, row_length};
 use super::lines::{Delimiter, Line, Lines};
+use super::merged::{Seen, merged};
 use super::number::{Decimals, Number};
 use super::rows::{TakesRows, read_rows};
+use super::timeline::Timeline;
 use super::{
-    Draft, Place, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
+    Draft, Place, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem,
     TrackWarning, Unit,
 };
-
-/// Times that differ by less than this share of the usual step are the same frame, written by two tracks.
-const SAME_FRAME: f64 = 0.25;
-
-/// When and where a track was.
-type Seen = (f64, [f64; 3]);
 
 /// Columns of one track, and what they said.
 struct Track {
@@ -26,19 +22,32 @@ struct Track {
     time: usize,
     /// x and y; `None` for a track of other quantities.
     place: Option<[usize; 2]>,
-    seen: Vec<Seen>,
+    /// With the row that it was on.
+    seen: Vec<(usize, Seen)>,
 }
 
 /// # Errors
 /// [`TrackError::Broken`] with line and column.
 pub(super) fn read(
     lines: &mut Lines<'_>,
-    file: &Path,
+    reading: &Reading<'_>,
     delimiter: Delimiter,
-    options: &TrackOptions,
 ) -> Result<Draft, TrackError> {
+    let Reading { file, options, .. } = *reading;
     let (unit, metres, _) = options.unit(Unit::Unknown);
-    let mut reader = Reader::begin(lines, file, delimiter)?;
+    let mut reader = Reader::begin(lines, reading, delimiter)?;
+    if let [(time, _)] = reader.clocks[..] {
+        // One clock: rows as in any table, which go by without being kept.
+        let warnings = std::mem::take(&mut reader.warnings);
+        return Ok(Draft {
+            format: TrackFormat::Tracker,
+            rate_hz: None,
+            unit,
+            image: false,
+            body: grid::read(lines, reading, reader.grid(time, metres))?,
+            warnings,
+        });
+    }
     let header_line = reader.header_line;
     let cut = read_rows(lines, file, header_line, &mut reader)?;
     reader.warnings.extend(cut);
@@ -51,9 +60,37 @@ pub(super) fn read(
         rate_hz: None,
         unit,
         image: false,
-        body: merge(reader.times, reader.tracks, metres),
+        body: body(reader.timeline, reader.tracks, metres, reader.together),
         warnings: reader.warnings,
     })
+}
+
+/// Tracks whose clocks agree in every row have rows as they stand; else one row for each time that any track has.
+fn body(timeline: Timeline, tracks: Vec<Track>, metres: f64, together: bool) -> Body {
+    if !together {
+        let of = |track: Track| {
+            let seen = track.seen.into_iter().map(|(_, seen)| seen);
+            (track.name, seen.collect())
+        };
+        return merged(
+            timeline.emptied(),
+            tracks.into_iter().map(of).collect(),
+            metres,
+        );
+    }
+    let points = tracks.into_iter().map(|track| {
+        let mut point = TrackPoint::new(track.name, PointKind::Marker, String::new(), Vec::new());
+        for (row, (_, place)) in track.seen {
+            point.push(row, place.map(|value| value * metres));
+        }
+        point.finish(timeline.len());
+        point
+    });
+    Body {
+        points: points.collect(),
+        timeline,
+        warnings: Vec::new(),
+    }
 }
 
 struct Reader<'f> {
@@ -67,8 +104,10 @@ struct Reader<'f> {
     tracks: Vec<Track>,
     warnings: Vec<TrackWarning>,
     cells: Cells,
-    /// All times, of whatever column.
-    times: Vec<f64>,
+    /// Times of the rows, by the first clock that has one.
+    timeline: Timeline,
+    /// Whether all clocks agreed in every row yet.
+    together: bool,
     last_decimals: usize,
     extent: Option<usize>,
     half_blank: Option<(usize, usize)>,
@@ -80,13 +119,18 @@ impl TakesRows for Reader<'_> {
     }
 
     fn has_rows(&self) -> bool {
-        !self.times.is_empty()
+        self.timeline.len() > 0
     }
 }
 
 impl<'f> Reader<'f> {
     /// Reads names and columns.
-    fn begin(lines: &Lines<'_>, file: &'f Path, delimiter: Delimiter) -> Result<Self, TrackError> {
+    fn begin(
+        lines: &Lines<'_>,
+        reading: &Reading<'f>,
+        delimiter: Delimiter,
+    ) -> Result<Self, TrackError> {
+        let file = reading.file;
         let multi = |line: &Line<'_>| line.text.to_ascii_lowercase().starts_with("#multi:");
         let mut rows = lines.head().filter(|line| !line.is_blank() && !multi(line));
         let (Some(names), Some(titles)) = (rows.next(), rows.next()) else {
@@ -118,7 +162,8 @@ impl<'f> Reader<'f> {
             tracks: Vec::new(),
             warnings: Vec::new(),
             cells: Cells::default(),
-            times: Vec::new(),
+            timeline: Timeline::new(reading.keeps_places),
+            together: true,
             last_decimals: 0,
             extent: None,
             half_blank: None,
@@ -135,6 +180,32 @@ impl<'f> Reader<'f> {
             return Err(names.error(file, 0, TrackProblem::NoPoints));
         }
         Ok(reader)
+    }
+
+    /// The same as a table of one clock.
+    fn grid(&mut self, time: usize, metres: f64) -> Grid {
+        let tracks = std::mem::take(&mut self.tracks);
+        let columns = tracks.iter().map(|track| Columns {
+            axes: track
+                .place
+                .map_or([None; 3], |[x, y]| [Some(x), Some(y), None]),
+            likelihood: None,
+        });
+        let columns = columns.collect();
+        let point = |track: Track| {
+            TrackPoint::new(track.name, PointKind::Marker, String::new(), Vec::new())
+        };
+        let points = tracks.into_iter().map(point).collect();
+        Grid {
+            clock: Clock::Stamped {
+                time,
+                seconds: 1.0,
+                frame: None,
+            },
+            metres,
+            columns,
+            ..Grid::under(self.header_line, self.delimiter, self.width, points)
+        }
     }
 
     fn track(
@@ -193,7 +264,11 @@ impl<'f> Reader<'f> {
                 continue;
             };
             let stamp = self.value(line, column, "time")?;
-            if let Some(time) = stamp.filter(|time| *time <= previous) {
+            let text = self.cells.at(line, column).raw;
+            self.timeline.written(text, 1.0);
+            let rounded = self.together && self.timeline.may_repeat();
+            let wrong = |time: &f64| *time < previous || (*time <= previous && !rounded);
+            if let Some(time) = stamp.filter(wrong) {
                 let at = self.cells.at(line, column).at;
                 let problem = TrackProblem::TimeOrder { previous, time };
                 return Err(line.error(self.file, at, problem));
@@ -234,7 +309,7 @@ impl<'f> Reader<'f> {
             });
         }
         let decimals = decimals(self.cells.last(line).map_or("", |cell| cell.raw));
-        let first = self.times.is_empty();
+        let first = self.timeline.len() == 0;
         may_be_cut(line, first || decimals < self.last_decimals, self.file)?;
         self.last_decimals = decimals;
         if half_blank {
@@ -243,9 +318,17 @@ impl<'f> Reader<'f> {
         for ((_, last), stamp) in self.clocks.iter_mut().zip(&stamps) {
             *last = stamp.unwrap_or(*last);
         }
-        self.times.extend(stamps.into_iter().flatten());
+        let mut stamps = stamps.into_iter().flatten();
+        let row = self.timeline.len();
+        if let Some(time) = stamps.next() {
+            self.together &= stamps.all(|other| (other - time).abs() < 1e-9);
+            if self.timeline.last().is_some_and(|(_, last)| time <= last) {
+                self.timeline.repeats(line.number);
+            }
+            self.timeline.push(row as u64, time);
+        }
         for (track, place) in self.tracks.iter_mut().zip(places) {
-            track.seen.extend(place);
+            track.seen.extend(place.map(|place| (row, place)));
         }
         Ok(())
     }
@@ -268,42 +351,5 @@ impl<'f> Reader<'f> {
                 Err(line.error(self.file, cell.at, problem))
             }
         }
-    }
-}
-
-/// One row for each time that any track has.
-fn merge(mut times: Vec<f64>, tracks: Vec<Track>, metres: f64) -> Body {
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    let mut steps: Vec<f64> = times
-        .windows(2)
-        .filter_map(|pair| Some(pair.last()? - pair.first()?))
-        .collect();
-    steps.sort_by(f64::total_cmp);
-    // Two roundings of one time are far nearer than frames: the upper half of the steps are between frames.
-    let step = steps.get(steps.len() * 3 / 4).copied().unwrap_or(0.0);
-    let mut rows: Vec<f64> = Vec::with_capacity(times.len());
-    for time in times {
-        if rows
-            .last()
-            .is_none_or(|last| time - last > SAME_FRAME * step)
-        {
-            rows.push(time);
-        }
-    }
-    let points = tracks.into_iter().map(|track| {
-        let mut point = TrackPoint::new(track.name, PointKind::Marker, String::new(), Vec::new());
-        for (time, place) in track.seen {
-            let row = rows.partition_point(|row| *row <= time).saturating_sub(1);
-            point.push(row, place.map(|value| value * metres));
-        }
-        point.finish(rows.len());
-        point
-    });
-    Body {
-        frame_numbers: (0..rows.len() as u64).collect(),
-        points: points.collect(),
-        times: rows,
-        warnings: Vec::new(),
     }
 }

@@ -1,4 +1,5 @@
-//! Vicon Nexus' CSV, the section of trajectories: its name, the rate, `subject:marker` above x, y, z, a row of units.
+//! Vicon's CSV, a section of trajectories (`X,Y,Z`) or of rigid bodies (`Objects`, `Segments`: `RX,RY,RZ,TX,TY,TZ`, of which the
+//! positions are read): its name, the rate, names above the axes, a row of units.
 
 use std::path::Path;
 
@@ -7,7 +8,7 @@ use super::grid::{self, Clock, Columns, Grid};
 use super::lines::{Delimiter, Line, Lines};
 use super::number;
 use super::{
-    Draft, Place, PointKind, TrackError, TrackFormat, TrackOptions, TrackPoint, TrackProblem,
+    Draft, Place, PointKind, Reading, TrackError, TrackFormat, TrackPoint, TrackProblem,
     TrackWarning, Unit,
 };
 
@@ -15,10 +16,10 @@ use super::{
 /// [`TrackError::Broken`] with line and column.
 pub(super) fn read(
     lines: &mut Lines<'_>,
-    file: &Path,
+    reading: &Reading<'_>,
     delimiter: Delimiter,
-    options: &TrackOptions,
 ) -> Result<Draft, TrackError> {
+    let Reading { file, options, .. } = *reading;
     let rows: Vec<Line<'_>> = lines
         .head()
         .filter(|line| !line.is_blank())
@@ -38,6 +39,7 @@ pub(super) fn read(
     };
     let rate = cell_at(&split(rate_line, delimiter, file)?, 0);
     let rate_hz = number::rate(&rate, rate_line, file, delimiter.allows_decimal_comma())?;
+    let (rate_hz, other_rate) = options.rate_over(rate_hz);
     let name_cells = split(names, delimiter, file)?;
     let axis_cells = split(axes, delimiter, file)?;
     let unit_cells = split(units, delimiter, file)?;
@@ -45,19 +47,28 @@ pub(super) fn read(
         return Err(axes.error(file, 0, TrackProblem::NoAxisRow));
     }
     let (mut points, mut columns, mut own) = (Vec::new(), Vec::new(), None);
-    for (column, cell) in name_cells.iter().enumerate() {
-        if cell.raw.is_empty() {
-            continue;
-        }
-        for (offset, axis) in ["X", "Y", "Z"].into_iter().enumerate() {
-            let letter = cell_at(&axis_cells, column + offset);
-            if !letter.is(axis) {
+    let named = |column: &usize| !cell_at(&name_cells, *column).raw.is_empty();
+    let starts: Vec<usize> = (0..name_cells.len()).filter(named).collect();
+    for (index, column) in starts.iter().copied().enumerate() {
+        let cell = cell_at(&name_cells, column);
+        let end = starts.get(index + 1).copied().unwrap_or(axis_cells.len());
+        let body = (column..end).any(|at| cell_at(&axis_cells, at).is("TX"));
+        let letters = if body {
+            ["TX", "TY", "TZ"]
+        } else {
+            ["X", "Y", "Z"]
+        };
+        let mut places = [0; 3];
+        for (place, axis) in places.iter_mut().zip(letters) {
+            let found = (column..end).find(|at| cell_at(&axis_cells, *at).is(axis));
+            let Some(at) = found else {
                 let point = cell.text().into_owned();
-                let axis = axis.chars().next().unwrap_or('?');
+                let axis = axis.chars().next_back().unwrap_or('?');
                 let problem = TrackProblem::MissingAxis { point, axis };
-                return Err(axes.error(file, letter.at, problem));
-            }
-            let text = cell_at(&unit_cells, column + offset);
+                return Err(axes.error(file, cell_at(&axis_cells, column).at, problem));
+            };
+            *place = at;
+            let text = cell_at(&unit_cells, at);
             let unit = unit_of(units, &text, file)?;
             if *own.get_or_insert(unit) != unit {
                 let text = format!("{unit} beside another unit");
@@ -65,19 +76,19 @@ pub(super) fn read(
             }
         }
         let name = cell.text().into_owned();
-        let kind = PointKind::of_marker(&name);
+        let kind = if body {
+            PointKind::RigidBody
+        } else {
+            PointKind::of_marker(&name)
+        };
         points.push(TrackPoint::new(name, kind, String::new(), Vec::new()));
-        columns.push(Columns::of([column, column + 1, column + 2]));
+        columns.push(Columns::of(places));
     }
     let Some(own) = own else {
         return Err(names.error(file, 0, TrackProblem::NoPoints));
     };
-    let width = columns
-        .iter()
-        .flat_map(|columns: &Columns| columns.axes)
-        .flatten()
-        .max()
-        .map_or(0, |last| last + 1);
+    let last = axis_cells.iter().rposition(|cell| !cell.raw.is_empty());
+    let width = last.map_or(0, |last| last + 1);
     let (unit, metres, overridden) = options.unit(own);
     let grid = Grid {
         clock: Clock::Numbered {
@@ -91,13 +102,13 @@ pub(super) fn read(
         section: true,
         ..Grid::under(units.number, delimiter, width, points)
     };
-    let warnings: Vec<TrackWarning> = overridden.into_iter().collect();
+    let warnings: Vec<TrackWarning> = overridden.into_iter().chain(other_rate).collect();
     Ok(Draft {
         format: TrackFormat::Vicon,
         rate_hz: Some(rate_hz),
         unit,
         image: false,
-        body: grid::read(lines, file, grid)?,
+        body: grid::read(lines, reading, grid)?,
         warnings,
     })
 }

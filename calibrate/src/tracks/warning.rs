@@ -65,6 +65,27 @@ pub enum TrackWarning {
         /// The file's unit.
         unit: String,
     },
+    /// The user's rate was used instead of the file's own.
+    RateOverridden {
+        /// The file's rate \[Hz\].
+        file_hz: f64,
+        /// The user's \[Hz\].
+        used_hz: f64,
+    },
+    /// Times were rounded; the rows were counted over their span.
+    RoundedTimes {
+        /// The last digit's unit \[s\].
+        unit_s: f64,
+        /// The rate \[Hz\].
+        rate_hz: f64,
+    },
+    /// Frame numbers that do not grow while times do: the times were used.
+    Renumbered {
+        /// How many.
+        count: usize,
+        /// The first line with one.
+        first_line: usize,
+    },
     /// The time steps of a table differ by more than a hundredth.
     UnevenTimes {
         /// The shortest \[s\].
@@ -132,6 +153,18 @@ impl fmt::Display for TrackWarning {
             Self::UnitOverridden { unit } => write!(
                 f,
                 "the file says its lengths are in {unit}; the scale that was given was used instead"
+            ),
+            Self::RateOverridden { file_hz, used_hz } => write!(
+                f,
+                "the file's own rate is {file_hz:.6} Hz; the {used_hz} Hz that were given were used instead"
+            ),
+            Self::RoundedTimes { unit_s, rate_hz } => write!(
+                f,
+                "times are rounded to {unit_s} s; counting rows over their span gives {rate_hz:.4} Hz, and rows are that far apart"
+            ),
+            Self::Renumbered { count, first_line } => write!(
+                f,
+                "{count} frame numbers do not grow, the first on line {first_line}, but the times do; the times were used"
             ),
             Self::UnevenTimes { shortest, longest } => {
                 write!(f, "time steps range from {shortest:.6} s to {longest:.6} s")

@@ -15,7 +15,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use swimmer_files::{
-    AnyGait, Campaign, CampaignRun, GaitSpec, PointName, Reflector, Reflectors, RunTiming,
+    AnyGait, Campaign, CampaignRun, GaitSpec, Known, PointName, Reflector, Reflectors, RunTiming,
     ServoFile, SwimmerFile, TrackSettings,
 };
 use swimmer_model::{Gait, Model, Pose, Swimmer};
@@ -354,12 +354,14 @@ pub(crate) fn campaign(
             period_s: run.period_s,
             front: None,
             timing: RunTiming::default(),
+            exclude: None,
         });
     let campaign = Campaign {
         swimmer: known(&tank.swimmer, tank.servo),
         swimmer_path: None,
         reflectors,
         tracks: TrackSettings::default(),
+        known: Known::default(),
         runs: listed.collect(),
     };
     (campaign, calibrate::CampaignData { runs })

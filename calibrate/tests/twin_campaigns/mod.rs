@@ -16,7 +16,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use swimmer_files::{
-    AnyGait, Campaign, CampaignRun, GaitSpec, PointName, Reflector, Reflectors, RunTiming,
+    AnyGait, Campaign, CampaignRun, GaitSpec, Known, PointName, Reflector, Reflectors, RunTiming,
     ServoFile, SwimmerFile, TrackSettings,
 };
 use swimmer_model::{Gait as _, Swimmer};
@@ -124,6 +124,7 @@ impl Laboratory {
                 period_s: run.period_s,
                 front: None,
                 timing: RunTiming::default(),
+                exclude: None,
             }
         });
         let reach = self.swimmer.links.middle / 2.0;
@@ -148,6 +149,7 @@ impl Laboratory {
                 back: reflector("Back", -reach),
             },
             tracks: TrackSettings::default(),
+            known: Known::default(),
             runs: listed.collect(),
         };
         (campaign, CampaignData { runs })

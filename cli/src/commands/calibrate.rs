@@ -1,21 +1,25 @@
 //! `swimmer calibrate`: tracks → poses → cycles → fitted sphere radius and χ.
 
 mod answer;
-mod asked;
+mod assessment;
+mod diagnoses;
 mod folder;
+mod further;
 
 use std::path::{Path, PathBuf};
 
 use calibrate::{
-    CalibrateError, CampaignData, CampaignFit, EvidenceOptions, FitOptions, RunResult,
-    TrackOptions, c_t_form, calibrate_campaign, calibrate_run, load_run, usual_reflectors,
-    weigh_evidence,
+    CalibrateError, CampaignData, CampaignFit, EvidenceOptions, ExcludedRun, FitError, FitOptions,
+    RunResult, TrackOptions, assess, c_t_form, calibrate_campaign, calibrate_run, load_run,
+    usual_reflectors, weigh_evidence,
 };
 use swimmer_files::{Campaign, GaitSpec, PointName, SwimmerFile};
 
 use self::answer::RunsAnswer;
 pub(crate) use self::answer::{FitAnswer, RunAnswer};
-use self::asked::{Asked, AskedAnswer};
+pub(crate) use self::assessment::AssessmentAnswer;
+pub(crate) use self::further::Shown;
+use self::further::{BeyondFit, FurtherAnswers};
 use crate::arguments::{gait, load_swimmer, say_if_stale, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
@@ -52,7 +56,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "SHARE", default_value_t = 0.95, value_parser = level)]
     level: f64,
     #[command(flatten)]
-    asked: Asked,
+    beyond: BeyondFit,
     /// Write report, fitted swimmer file, fit and every intermediate into this folder
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -80,7 +84,6 @@ pub(crate) struct FittedCampaign {
     pub(crate) answer: FitAnswer,
     pub(crate) found: CampaignFit,
     pub(crate) campaign: Campaign,
-    data: CampaignData,
 }
 
 /// One run's cycles with what is printed of them.
@@ -104,8 +107,7 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
     let runs = found
         .runs
         .iter()
-        .zip(&campaign.runs)
-        .map(|(run, named)| RunAnswer::new(run, &named.gait, folder))
+        .map(|run| RunAnswer::new(run, &campaign.runs[run.index].gait, folder))
         .collect();
     let fit = &found.fit;
     let of_runs = found.runs.iter().flat_map(|run| run_warnings(run, folder));
@@ -118,16 +120,16 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
         correlation: fit.correlation,
         c_t_form: c_t_form(&fit.c_t_form),
         likelihood: None,
+        assessment: None,
         warnings: of_runs
             .chain(fit.warnings.iter().map(ToString::to_string))
             .collect(),
-        asked: AskedAnswer::default(),
+        beyond: FurtherAnswers::default(),
     };
     Ok(FittedCampaign {
         answer,
         found,
         campaign,
-        data,
     })
 }
 
@@ -191,12 +193,10 @@ impl Calibrate {
         }
         let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
         let mut fitted = fit_campaign(&self.file, self.level)?;
-        let (answer, further) = self
-            .asked
-            .answer(&fitted.campaign, &fitted.data, &fitted.found)?;
-        fitted.answer.asked = answer;
+        let (answer, further) = self.beyond.answer(&fitted.campaign, &fitted.found)?;
+        fitted.answer.beyond = answer;
         let options = EvidenceOptions::default();
-        let evidence = weigh_evidence(&fitted.campaign, &fitted.data, &fitted.found, options);
+        let evidence = weigh_evidence(&fitted.found, options);
         match &evidence {
             Ok(evidence) => fitted.answer.likelihood = Some((&evidence.likelihood).into()),
             Err(cause) => fitted
@@ -204,9 +204,28 @@ impl Calibrate {
                 .warnings
                 .push(format!("no estimate by likelihood: {cause}")),
         }
+        let assessed = assess(&fitted.found, evidence.as_ref().ok())?;
+        let of_folder = self.file.parent().unwrap_or_else(|| Path::new(""));
+        let name = |run: &ExcludedRun| {
+            let path = run.file.strip_prefix(of_folder).unwrap_or(&run.file);
+            path.display().to_string()
+        };
+        fitted.answer.assessment = Some(AssessmentAnswer::new(
+            &assessed,
+            &fitted.found,
+            &fitted.answer.runs,
+            name,
+        ));
         if let Some(folder) = folder {
             let weighed = (&evidence?, options);
-            folder::write(&fitted, further.as_ref(), weighed, &self.file, &folder)?;
+            folder::write(
+                &fitted,
+                further.as_ref(),
+                assessed.systematics.as_ref(),
+                weighed,
+                &self.file,
+                &folder,
+            )?;
             folder.publish()?;
         }
         output.answer(&fitted.answer);
@@ -226,7 +245,7 @@ impl Calibrate {
                 "-o goes with a campaign: a single run is not fitted".to_owned(),
             ));
         }
-        if let Some(flag) = self.asked.given() {
+        if let Some(flag) = self.beyond.given() {
             return Err(Failure::BadInput(format!(
                 "{flag} goes with a campaign: a single run is not fitted"
             )));
@@ -245,6 +264,12 @@ impl Calibrate {
             warnings,
         });
         Ok(())
+    }
+}
+
+impl From<FitError> for Failure {
+    fn from(error: FitError) -> Self {
+        CalibrateError::from(error).into()
     }
 }
 

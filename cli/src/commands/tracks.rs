@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use calibrate::{TrackError, TrackFile, load_tracks};
+use calibrate::{TrackError, TrackSurvey, survey_file};
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
@@ -76,33 +76,33 @@ impl fmt::Display for Holdings {
 impl Tracks {
     /// Reads the file and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
-        let tracks = load_tracks(&self.file, &self.recording.options())?;
-        output.answer(&Holdings::new(self.file.display().to_string(), &tracks));
+        let survey = survey_file(&self.file, &self.recording.options())?;
+        output.answer(&Holdings::new(self.file.display().to_string(), survey));
         Ok(())
     }
 }
 
 impl Holdings {
-    fn new(file: String, tracks: &TrackFile) -> Self {
+    fn new(file: String, survey: TrackSurvey) -> Self {
         Self {
             file,
-            format: tracks.format.to_string(),
-            rate_hz: Some(tracks.rate_hz).filter(|rate| *rate > 0.0),
-            unit: tracks.unit.to_string(),
-            frames: tracks.frames(),
-            points: tracks
+            format: survey.format.to_string(),
+            rate_hz: Some(survey.rate_hz).filter(|rate| *rate > 0.0),
+            unit: survey.unit.to_string(),
+            frames: survey.frames,
+            points: survey
                 .points
-                .iter()
+                .into_iter()
                 .map(|point| Point {
-                    name: point.name.clone(),
+                    name: point.name,
                     kind: point.kind.to_string(),
-                    id: point.id.clone(),
-                    present: point.present(),
-                    gaps: point.gaps(),
-                    longest_gap: point.longest_gap(),
+                    id: point.id,
+                    present: point.present,
+                    gaps: point.gaps,
+                    longest_gap: point.longest_gap,
                 })
                 .collect(),
-            warnings: tracks.warnings.iter().map(ToString::to_string).collect(),
+            warnings: survey.warnings.iter().map(ToString::to_string).collect(),
         }
     }
 }

@@ -56,6 +56,8 @@ pub(crate) enum Series {
         points: Vec<(f64, f64, f64)>,
         color: RGBColor,
     },
+    /// Names under 1, 2, 3 … of the horizontal axis instead of numbers.
+    Names(Vec<String>),
     /// A short word beside a point.
     Word {
         at: Point,
@@ -101,6 +103,7 @@ impl Chart {
         Ok(text)
     }
 
+    #[allow(clippy::too_many_lines)] // one chart, part after part
     fn draw(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), String> {
         let said = |error: &dyn std::fmt::Display| error.to_string();
         let label_width = 64 * SCALE;
@@ -111,6 +114,7 @@ impl Chart {
             self.size.1 * SCALE - label_height - top,
         );
         let (x_range, y_range) = self.ranges(inside);
+        let x_label = label_format(&x_range, 7);
         let mut chart = ChartBuilder::on(area)
             .margin_top(top)
             .margin_right(right)
@@ -121,9 +125,9 @@ impl Chart {
         let text = |size: i32| ("sans-serif", size * SCALE).into_font().color(&INK);
         chart
             .configure_mesh()
-            .x_labels(7)
+            .x_labels(self.names().map_or(7, |names| names.len() + 2))
             .y_labels(6)
-            .x_label_formatter(&label_format(&x_range, 7))
+            .x_label_formatter(&|value| self.x_name(*value).unwrap_or_else(|| x_label(value)))
             .y_label_formatter(&label_format(&y_range, 6))
             .max_light_lines(0)
             .bold_line_style(ShapeStyle {
@@ -190,6 +194,7 @@ impl Chart {
                         .map(|&(x, y, _)| Circle::new((x, y), pixels(3.6), color.filled()));
                     chart.draw_series(discs).map_err(|error| said(&error))?;
                 }
+                Series::Names(_) => {}
                 Series::Word { at, text, color } => {
                     let style = ("sans-serif", 15 * SCALE).into_font().color(color);
                     let word = EmptyElement::at(*at)
@@ -201,6 +206,24 @@ impl Chart {
             }
         }
         Ok(())
+    }
+
+    /// What stands under 1, 2, 3 …, where the horizontal axis is no scale.
+    fn names(&self) -> Option<&[String]> {
+        self.series.iter().find_map(|series| match series {
+            Series::Names(names) => Some(names.as_slice()),
+            _ => None,
+        })
+    }
+
+    fn x_name(&self, value: f64) -> Option<String> {
+        let mut names = self.names()?.iter().enumerate();
+        let is_there = |(place, _): &(usize, &String)| (*place as f64 + 1.0 - value).abs() < 1e-6;
+        Some(
+            names
+                .find(is_there)
+                .map_or_else(String::new, |(_, name)| name.clone()),
+        )
     }
 
     /// The axes' ranges: all points with some air, and with equal units where asked.
@@ -229,6 +252,7 @@ impl Series {
                 .flat_map(|&(x, y, half)| [(x, y - half), (x, y + half)])
                 .collect(),
             Self::Word { at, .. } => vec![*at],
+            Self::Names(_) => Vec::new(),
         }
     }
 }

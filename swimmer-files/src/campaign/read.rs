@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::known::{self, RawKnown};
 use super::{Campaign, CampaignRun, PointName, Reflector, Reflectors, RunTiming, TrackSettings};
 use crate::{FileError, GaitSpec, SwimmerFile};
 
@@ -15,6 +16,8 @@ struct RawCampaign {
     reflectors: RawReflectors,
     #[serde(default)]
     tracks: RawTracks,
+    #[serde(default)]
+    known: RawKnown,
     #[serde(default)]
     run: Vec<RawRun>,
 }
@@ -64,6 +67,7 @@ struct RawRun {
     log: Option<Spanned<String>>,
     play: Option<Spanned<usize>>,
     clock_offset_s: Option<Spanned<f64>>,
+    exclude: Option<Spanned<String>>,
 }
 
 /// The campaign of `text`; `is_there` says whether a file that a run names can be found.
@@ -101,16 +105,25 @@ pub(super) fn campaign(
         ));
     }
     let tracks = track_settings(raw.tracks, &error)?;
-    let runs = raw
+    let known = known::known(raw.known, &error)?;
+    let places: Vec<usize> = raw.run.iter().map(|run| run.track.span().start).collect();
+    let runs: Vec<CampaignRun> = raw
         .run
         .into_iter()
         .map(|raw| run(raw, folder, is_there, &error))
         .collect::<Result<_, _>>()?;
+    if let (Some(place), true) = (places.first(), runs.iter().all(|run| run.exclude.is_some())) {
+        return Err(error(
+            *place,
+            "all runs are excluded: a campaign needs at least one that counts".to_owned(),
+        ));
+    }
     Ok(Campaign {
         swimmer,
         swimmer_path,
         reflectors,
         tracks,
+        known,
         runs,
     })
 }
@@ -225,6 +238,13 @@ fn run(
         let problem = "play counts the log's plays from 1".to_owned();
         return Err(error(play.span().start, problem));
     }
+    let exclude = match raw.exclude {
+        Some(reason) if reason.get_ref().trim().is_empty() => {
+            let problem = "exclude says why the run is not to be fitted".to_owned();
+            return Err(error(reason.span().start, problem));
+        }
+        reason => reason.map(Spanned::into_inner),
+    };
     let run = CampaignRun {
         track: folder.join(raw.track.into_inner()),
         gait: gait.from_folder(folder),
@@ -236,6 +256,7 @@ fn run(
             play: raw.play.map(Spanned::into_inner),
             clock_offset_s: finite(raw.clock_offset_s, "clock_offset_s")?,
         },
+        exclude,
     };
     for (file, place) in run.files().into_iter().zip(places) {
         if let Some(file) = file.filter(|file| !is_there(file)) {

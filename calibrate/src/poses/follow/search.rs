@@ -118,6 +118,11 @@ impl Search<'_> {
         }
     }
 
+    /// When a row was \[s\].
+    pub(super) fn time(&self, row: &Row) -> f64 {
+        self.track.times.get(row.index).copied().unwrap_or(0.0)
+    }
+
     fn is_label(&self, point: usize) -> bool {
         self.fronts.contains(&point) || self.backs.contains(&point)
     }

@@ -23,6 +23,11 @@ impl Notes {
         self.half_blank.get_or_insert((0, line)).0 += 1;
     }
 
+    /// The row's before in the time column.
+    pub(super) fn last_stamp(&self) -> Option<f64> {
+        self.last_time.map(|(_, time)| time)
+    }
+
     pub(super) fn time(&mut self, frame: u64, time: f64) {
         self.first_time.get_or_insert((frame, time));
         self.last_time = Some((frame, time));
@@ -52,7 +57,7 @@ impl Notes {
         if let (Some((f0, t0)), Some((f1, t1)), Some(rate_hz)) =
             (self.first_time, self.last_time, rate_hz)
         {
-            let (frames, time) = ((f1 - f0) as f64, t1 - t0);
+            let (frames, time) = (f1.saturating_sub(f0) as f64, t1 - t0);
             // Two rounded times may be a unit of their last digit off, whatever the span.
             if f1 > f0 && (time - frames / rate_hz).abs() > 1e-3 * (1.0 + frames / rate_hz) {
                 warnings.push(TrackWarning::TimeColumn {

@@ -10,6 +10,8 @@ use crate::tracks::{PointKind, TrackError, TrackOptions, TrackPoint, TrackProble
 
 pub(super) struct Header {
     pub(super) width: usize,
+    /// Whether the columns are called as Kinovea calls them (`Time`, `ball/0/X`).
+    pub(super) kinovea: bool,
     pub(super) clock: Clock,
     /// The unit that the columns' names say; `None` where they say none.
     pub(super) unit: Option<Unit>,
@@ -101,8 +103,14 @@ impl Header {
                 columns.iter().map(whole).collect(),
             )
         };
+        let kinovea = names.first().is_some_and(|name| name.whole == "Time")
+            && names
+                .iter()
+                .skip(1)
+                .all(|name| name.whole.ends_with("/X") || name.whole.ends_with("/Y"));
         Ok(Self {
             width: cells.len(),
+            kinovea,
             clock,
             unit,
             points: groups.iter().map(point).collect(),
@@ -230,7 +238,7 @@ fn stems(
 /// `x1` → (0, `1`), `front_y` → (1, `front`), `Back X` → (0, `Back`). A letter inside a word (`box`) is no axis.
 fn axis_and_stem(bare: &str) -> Option<(usize, &str)> {
     let axis = |letter: char| "xyz".find(letter.to_ascii_lowercase());
-    let separators = [' ', '_', '.', '-', ':'];
+    let separators = [' ', '_', '.', '-', ':', '/'];
     let mut chars = bare.chars();
     if let Some(index) = chars.next().and_then(axis) {
         let rest = chars.as_str();

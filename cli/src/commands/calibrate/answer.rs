@@ -8,7 +8,9 @@ use calibrate::{Origin, RunResult};
 use serde::Serialize;
 use swimmer_files::GaitSpec;
 
-use super::asked::AskedAnswer;
+use super::assessment::AssessmentAnswer;
+use super::diagnoses;
+use super::further::{FurtherAnswers, Shown};
 use crate::quantity::{self, Rows, Table};
 
 /// The cycles of one run, and what they brought. Deviations of a single cycle are not numbers; JSON has null.
@@ -33,6 +35,8 @@ pub(crate) struct RunAnswer {
     /// How the starts of cycles were found: heading, flash, log or log-and-heading.
     phase: &'static str,
     left_out: Vec<LeftOutAnswer>,
+    /// What is noteworthy about its track and its cycles.
+    pub(crate) diagnoses: Vec<String>,
     pub(crate) samples: Samples,
     #[serde(skip)]
     pub(crate) front_words: String,
@@ -91,8 +95,11 @@ pub(crate) struct FitAnswer {
     pub(super) likelihood: Option<LikelihoodAnswer>,
     /// What to know about the runs and the fit.
     pub(crate) warnings: Vec<String>,
+    /// Whether it can be used, and why.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub(crate) assessment: Option<AssessmentAnswer>,
     #[serde(flatten)]
-    pub(crate) asked: AskedAnswer,
+    pub(crate) beyond: FurtherAnswers,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -158,6 +165,9 @@ fn left_out(f: &mut fmt::Formatter<'_>, runs: &[RunAnswer]) -> fmt::Result {
         for cycle in &run.left_out {
             write!(f, "; left out at {:.2} s: {}", cycle.start_s, cycle.reason)?;
         }
+        for diagnosis in &run.diagnoses {
+            write!(f, "; {diagnosis}")?;
+        }
     }
     Ok(())
 }
@@ -173,12 +183,17 @@ impl fmt::Display for FitAnswer {
         let mut rows = Rows::default();
         let [radius, chi] = with_intervals(self.sphere_radius_m, self.chi, &self.intervals);
         rows.row("sphere radius r_s", radius)
-            .row("drag ratio χ", chi)
-            .row(
-                "RMSE",
-                format!("{} (the paper's weights)", quantity::small(self.rmse)),
-            )
-            .row("form of c_t", &self.c_t_form);
+            .row("drag ratio χ", chi);
+        if let Some(systematics) = self.assessment.iter().find_map(AssessmentAnswer::estimate) {
+            let [radius, chi] = systematics;
+            rows.row("r_s with systematics", radius)
+                .row("χ with systematics", chi);
+        }
+        rows.row(
+            "RMSE",
+            format!("{} (the paper's weights)", quantity::small(self.rmse)),
+        )
+        .row("form of c_t", &self.c_t_form);
         if let Some(LikelihoodAnswer {
             sphere_radius_m,
             chi,
@@ -191,28 +206,34 @@ impl fmt::Display for FitAnswer {
         }
         write!(f, "{}", table(&self.runs))?;
         left_out(f, &self.runs)?;
+        if let Some(assessment) = &self.assessment {
+            write!(f, "{}", assessment.heading())?;
+        }
         write!(f, "\n\n{rows}")?;
         notes(f, &self.warnings)?;
-        write!(f, "{}", self.asked)
+        let assessed = self.assessment.iter().flat_map(AssessmentAnswer::shown);
+        let all: Vec<Shown> = assessed.chain(self.beyond.shown()).collect();
+        all.iter().try_for_each(|shown| write!(f, "\n\n{shown}"))
     }
 }
 
-/// `r_s` and χ with their intervals, for people.
-fn with_intervals(sphere_radius_m: f64, chi: f64, intervals: &Intervals) -> [String; 2] {
-    let Intervals {
-        sphere_radius_m: [r_low, r_high],
-        chi: [chi_low, chi_high],
-        level,
-    } = intervals;
-    let percent = level * 100.0;
-    [
+/// `r_s` and χ with their intervals, for people: as many decimals as these give sense to.
+pub(super) fn with_intervals(sphere_radius_m: f64, chi: f64, intervals: &Intervals) -> [String; 2] {
+    let percent = intervals.level * 100.0;
+    let of = |value: f64, ends: [f64; 2], unit: &str| {
+        let decimals = quantity::decimals(ends);
+        let [low, high] = ends;
         format!(
-            "{:.3} mm   ({percent:.0} %: {:.3} … {:.3} mm)",
+            "{value:.decimals$}{unit}   ({percent:.0} %: {low:.decimals$} … {high:.decimals$}{unit})"
+        )
+    };
+    [
+        of(
             sphere_radius_m * 1e3,
-            r_low * 1e3,
-            r_high * 1e3
+            intervals.sphere_radius_m.map(|end| end * 1e3),
+            " mm",
         ),
-        format!("{chi:.4}      ({percent:.0} %: {chi_low:.4} … {chi_high:.4})"),
+        of(chi, intervals.chi, ""),
     ]
 }
 
@@ -307,6 +328,7 @@ impl RunAnswer {
                     reason: why.to_string(),
                 })
                 .collect(),
+            diagnoses: diagnoses::of_run(run),
             samples: Samples {
                 frames: run.poses.frames,
                 seen: run.poses.seen().count(),

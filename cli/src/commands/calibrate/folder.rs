@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use calibrate::assessment::Systematics;
 use calibrate::{Evidence, EvidenceOptions};
 use swimmer_files::{Campaign, Provenance, SwimmerFile, write_atomically};
 
@@ -24,6 +25,7 @@ const REPORT: &str = "report.html";
 pub(super) fn write(
     fitted: &FittedCampaign,
     further: Option<&SwimmerFile>,
+    systematics: Option<&Systematics>,
     (evidence, options): (&Evidence, EvidenceOptions),
     file: &Path,
     folder: &NewFolder,
@@ -38,7 +40,14 @@ pub(super) fn write(
     let made_by = concat!("swimmer calibrate ", env!("CARGO_PKG_VERSION"));
     let provenance = Provenance::of_files(made_by, &Campaign::files(file)?, place)?;
     let save = |name: &str, text: &str| write_atomically(&draft.join(name), text.as_bytes());
-    provenance.save_with(&found.swimmer, &draft.join(FITTED))?;
+    let recommended = answer.assessment.as_ref().map_or_else(
+        || found.swimmer.clone(),
+        |assessment| {
+            let headline = &assessment.headline;
+            found.start.fitted(headline.sphere_radius_m, headline.chi)
+        },
+    );
+    provenance.save_with(&recommended, &draft.join(FITTED))?;
     save(FIT, &document(answer))?;
     let names: Vec<String> = answer.runs.iter().map(|run| run.file.clone()).collect();
     save(
@@ -48,7 +57,7 @@ pub(super) fn write(
     let mut files = vec![
         (
             FITTED,
-            "the swimmer with the fitted drag, for swimmer optimize, and the hashes of its inputs",
+            "the swimmer with the recommended drag, for swimmer optimize, and the hashes of its inputs",
         ),
         (
             FIT,
@@ -75,6 +84,7 @@ pub(super) fn write(
         found,
         evidence,
         answer,
+        systematics,
         options,
         provenance: &provenance,
         files,

@@ -37,6 +37,10 @@ pub(super) fn track(run: &RunResult) -> Outcome<String> {
         .filter(|s| s.is_filled())
         .map(place)
         .collect();
+    let jumps = run.poses.jumps.iter().filter_map(|jump| {
+        let after = samples.iter().find(|sample| sample.time_s >= jump.after_s);
+        after.map(place)
+    });
     let starts = run.cycles.cycles.iter().map(|cycle| {
         let pose = cycle.at(0.0);
         (pose.x * 1e3, pose.y * 1e3)
@@ -61,6 +65,11 @@ pub(super) fn track(run: &RunResult) -> Outcome<String> {
                     points: starts.collect(),
                     color: INK,
                     radius: 2.6,
+                },
+                Series::Dots {
+                    points: jumps.collect(),
+                    color: BOUND,
+                    radius: 4.0,
                 },
             ],
         )
@@ -127,10 +136,47 @@ pub(super) fn cycles(run: &RunResult, coordinate: Coordinate) -> Outcome<String>
     chart(["fraction of the cycle", label], SMALL, series).svg()
 }
 
+/// `r_s` and χ with systematics beside the statistical intervals, as bars: (estimate, low, high) each.
+pub(super) fn bars(rows: &[(&str, [f64; 3])], label: &str) -> Outcome<String> {
+    let mut series = Vec::new();
+    let names: Vec<String> = rows.iter().map(|(name, _)| (*name).to_owned()).collect();
+    for (place, (_, [value, low, high])) in rows.iter().enumerate() {
+        let at = place as f64 + 1.0;
+        let color = if place + 1 == rows.len() {
+            PREDICTED
+        } else {
+            MEASURED
+        };
+        series.push(Series::Line {
+            points: vec![(at, *low), (at, *high)],
+            color,
+            width: 3.0,
+        });
+        series.push(Series::Dots {
+            points: vec![(at, *value)],
+            color,
+            radius: 4.5,
+        });
+    }
+    let count = rows.len() as f64;
+    series.push(Series::Line {
+        points: rows.first().map_or_else(Vec::new, |(_, [value, ..])| {
+            vec![(0.5, *value), (count + 0.5, *value)]
+        }),
+        color: SINGULAR,
+        width: 1.0,
+    });
+    series.push(Series::Names(names));
+    chart(["", label], LOW, series).svg()
+}
+
 /// The ridge: joint regions, draws of the bootstrap, both estimates.
 pub(super) fn ridge(evidence: &Evidence, paper: (f64, f64)) -> Outcome<String> {
     let point = |(radius, chi): (f64, f64)| (radius * 1e3, chi);
-    let draws = &evidence.bootstrap.points;
+    let draws = evidence
+        .bootstrap
+        .as_ref()
+        .map_or(&[][..], |bootstrap| &bootstrap.points);
     let every = draws.len().div_ceil(400).max(1);
     let mut series = vec![Series::Dots {
         points: draws
@@ -169,8 +215,12 @@ pub(super) fn ridge(evidence: &Evidence, paper: (f64, f64)) -> Outcome<String> {
     chart(["sphere radius r_s [mm]", "drag ratio χ"], SQUARE, series).svg()
 }
 
-/// Both fits without each run, named by its number.
-pub(super) fn without_run(evidence: &Evidence, paper: (f64, f64)) -> Outcome<String> {
+/// Both fits without each run, by its name.
+pub(super) fn without_run(
+    evidence: &Evidence,
+    paper: (f64, f64),
+    names: &[String],
+) -> Outcome<String> {
     let mut series = Vec::new();
     for without in &evidence.without_run {
         let at = (without.paper.sphere_radius * 1e3, without.paper.chi);
@@ -188,7 +238,7 @@ pub(super) fn without_run(evidence: &Evidence, paper: (f64, f64)) -> Outcome<Str
         });
         series.push(Series::Word {
             at,
-            text: (without.run + 1).to_string(),
+            text: names.get(without.run).cloned().unwrap_or_default(),
             color: MEASURED,
         });
     }
@@ -229,8 +279,8 @@ pub(super) fn profile(profile: &Profile, label: &str, unit: f64) -> Outcome<Stri
     chart([label, "log-likelihood ratio"], LOW, series).svg()
 }
 
-/// What is left of each run over its standard error, by the run's number.
-pub(super) fn residuals(evidence: &Evidence) -> Outcome<String> {
+/// What is left of each run over its standard error, by the run's name.
+pub(super) fn residuals(evidence: &Evidence, names: &[String]) -> Outcome<String> {
     let count = evidence.run_errors.len() as f64;
     let band = |at: f64| Series::Dashes {
         points: vec![(0.5, at), (count + 0.5, at)],
@@ -264,5 +314,6 @@ pub(super) fn residuals(evidence: &Evidence) -> Outcome<String> {
             radius: 3.6,
         });
     }
-    chart(["run", "residual / standard error"], LOW, series).svg()
+    series.push(Series::Names(names.to_vec()));
+    chart(["", "residual / standard error"], LOW, series).svg()
 }

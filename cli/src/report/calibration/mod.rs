@@ -5,6 +5,7 @@ mod json;
 mod page;
 mod tables;
 
+use calibrate::assessment::Systematics;
 use calibrate::evidence::{CurvePoint, Evidence};
 use calibrate::{CampaignFit, EvidenceOptions};
 use swimmer_files::{Campaign, GaitSpec, Provenance, SwimmerFile};
@@ -21,6 +22,8 @@ pub(crate) struct Calibration<'a> {
     pub(crate) found: &'a CampaignFit,
     pub(crate) evidence: &'a Evidence,
     pub(crate) answer: &'a FitAnswer,
+    /// The estimate with systematics, where there is one.
+    pub(crate) systematics: Option<&'a Systematics>,
     pub(crate) options: EvidenceOptions,
     pub(crate) provenance: &'a Provenance,
     /// What else lies in the folder: file name and what it holds.
@@ -34,29 +37,27 @@ impl Calibration<'_> {
 
     /// The runs that were circles, as points over the amplitude; clockwise ones count as what they are, mirrored.
     fn circles(&self) -> Vec<MeasuredCircle> {
-        let gaits = self.campaign.runs.iter().map(|run| &run.gait);
-        gaits
-            .zip(&self.found.runs)
-            .filter_map(|(gait, run)| match gait {
-                GaitSpec::Circle {
-                    amplitude,
-                    clockwise,
-                } => {
-                    let cycles = &run.cycles;
-                    // A single cycle has no deviation, and its point no bar.
-                    let of = |s: &calibrate::Statistics| (s.mean, s.sd.max(0.0));
-                    let (x, sd) = of(&cycles.x);
-                    Some(MeasuredCircle {
-                        amplitude: *amplitude,
-                        cycles: cycles.cycles.len(),
-                        x: (if *clockwise { -x } else { x }, sd),
-                        delta_y: of(&cycles.delta_y),
-                        delta_theta: of(&cycles.delta_theta),
-                    })
-                }
-                _ => None,
-            })
-            .collect()
+        let runs = self.found.runs.iter();
+        runs.filter_map(|run| match &self.campaign.runs[run.index].gait {
+            GaitSpec::Circle {
+                amplitude,
+                clockwise,
+            } => {
+                let cycles = &run.cycles;
+                // A single cycle has no deviation, and its point no bar.
+                let of = |s: &calibrate::Statistics| (s.mean, s.sd.max(0.0));
+                let (x, sd) = of(&cycles.x);
+                Some(MeasuredCircle {
+                    amplitude: *amplitude,
+                    cycles: cycles.cycles.len(),
+                    x: (if *clockwise { -x } else { x }, sd),
+                    delta_y: of(&cycles.delta_y),
+                    delta_theta: of(&cycles.delta_theta),
+                })
+            }
+            _ => None,
+        })
+        .collect()
     }
 }
 

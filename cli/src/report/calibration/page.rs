@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use calibrate::Intervals;
+use calibrate::evidence::Pair;
 
 use super::figures::{self, Coordinate};
 use super::{Calibration, model_circles};
+use crate::commands::calibrate::{AssessmentAnswer, Shown};
 use crate::failure::Outcome;
 use crate::quantity;
 use crate::report::figures as circles;
@@ -18,13 +19,15 @@ use crate::report::page::{END, escaped, figure, figure_pair, head, minus};
 pub(crate) fn page(calibration: &Calibration<'_>) -> Outcome<String> {
     let mut html = head(&format!("Calibration of {}", calibration.start().name));
     heading(&mut html, calibration);
-    parameters(&mut html, calibration);
+    verdict(&mut html, calibration);
+    parameters(&mut html, calibration)?;
     warnings(&mut html, calibration);
+    assessed(&mut html, calibration);
     html.push_str("<section class=grid>");
     over_amplitude(&mut html, calibration)?;
     evidence(&mut html, calibration)?;
     html.push_str("</section>");
-    asked(&mut html, calibration);
+    beyond(&mut html, calibration);
     runs(&mut html, calibration);
     left_out(&mut html, calibration);
     each_run(&mut html, calibration)?;
@@ -46,77 +49,155 @@ fn heading(html: &mut String, calibration: &Calibration<'_>) {
     );
 }
 
-fn parameters(html: &mut String, calibration: &Calibration<'_>) {
-    let (fit, evidence) = (&calibration.found.fit, calibration.evidence);
-    let percent = fit.intervals.level * 100.0;
+/// What to do with the answer, before anything else.
+fn verdict(html: &mut String, calibration: &Calibration<'_>) {
+    let Some(assessment) = &calibration.answer.assessment else {
+        return;
+    };
+    let class = assessment.verdict.replace(' ', "-");
     let _ = write!(
         html,
-        "<section class=top><table class=fit><thead><tr><th>parameter<th>start<th>the paper’s fit<th>{percent:.0} %\
-         <th>greatest likelihood<th>{percent:.0} % by profile<th>{percent:.0} % by bootstrap</tr></thead><tbody>"
+        "<section class='verdict {class}'><h2>Verdict: {}</h2>",
+        escaped(assessment.verdict)
+    );
+    if assessment.reasons.is_empty() {
+        html.push_str("<p class=note>Nothing speaks against it: the runs agree with the model and with what is known.</p>");
+    } else {
+        html.push_str("<ul>");
+        for reason in &assessment.reasons {
+            let _ = write!(html, "<li>{}", escaped(reason));
+        }
+        html.push_str("</ul>");
+    }
+    html.push_str("</section>");
+}
+
+/// The answer four ways, as a table and as bars.
+#[allow(clippy::too_many_lines)] // one table, row after row
+fn parameters(html: &mut String, calibration: &Calibration<'_>) -> Outcome {
+    let (fit, evidence) = (&calibration.found.fit, calibration.evidence);
+    let level = fit.intervals.level * 100.0;
+    let likelihood = &evidence.likelihood;
+    let paper = (fit.sphere_radius, fit.chi);
+    let mut ways = vec![
+        ("the paper’s fit", Some(paper), &fit.intervals),
+        (
+            "greatest likelihood",
+            Some((likelihood.estimate.sphere_radius, likelihood.estimate.chi)),
+            &likelihood.intervals,
+        ),
+    ];
+    if let Some(bootstrap) = &evidence.bootstrap {
+        ways.push(("bootstrap", None, &bootstrap.intervals));
+    }
+    if let Some(systematics) = calibration.systematics {
+        let Pair { sphere_radius, chi } = systematics.estimate;
+        ways.push((
+            "with systematics",
+            Some((sphere_radius, chi)),
+            &systematics.intervals,
+        ));
+    }
+    let headline = calibration
+        .answer
+        .assessment
+        .as_ref()
+        .map_or("paper", |a| a.headline.by);
+    let _ = write!(
+        html,
+        "<section class=top><table class=fit><thead><tr><th>estimate<th>r<sub>s</sub> [mm]<th>{level:.0} %<th>χ<th>{level:.0} %\
+         </tr></thead><tbody>"
     );
     let start = calibration.start().swimmer;
-    let likelihood = &evidence.likelihood;
-    let mut row = |name: &str, unit: f64, values: [f64; 3], ends: fn(&Intervals) -> [f64; 2]| {
-        let digits = digits(ends(&fit.intervals).map(|end| end * unit));
-        let between = |intervals: &Intervals| {
-            let [low, high] = ends(intervals).map(|end| end * unit);
-            format!("{low:.digits$} … {high:.digits$}")
+    let cells = |values: [f64; 3]| {
+        let [value, low, high] = values;
+        let digits = quantity::decimals([low, high]);
+        (
+            format!("{value:.digits$}"),
+            format!("{low:.digits$} … {high:.digits$}"),
+        )
+    };
+    let mut bars: [Vec<(&str, [f64; 3])>; 2] = [Vec::new(), Vec::new()];
+    for (name, estimate, intervals) in ways {
+        let recommended = match headline {
+            "paper" => name == "the paper’s fit",
+            _ => name == "with systematics",
         };
-        let [start, paper, likely] = values.map(|value| value * unit);
+        let (radius, chi) = estimate.unwrap_or(paper);
+        let radius = [
+            radius,
+            intervals.sphere_radius[0],
+            intervals.sphere_radius[1],
+        ]
+        .map(|r| 1e3 * r);
+        let chi = [chi, intervals.chi[0], intervals.chi[1]];
+        let ((r, r_interval), (c, c_interval)) = (cells(radius), cells(chi));
+        let class = if recommended { " class=main" } else { "" };
+        let shown = |text: String| {
+            if estimate.is_some() {
+                text
+            } else {
+                "–".to_owned()
+            }
+        };
         let _ = write!(
             html,
-            "<tr><th>{name}<td>{start:.digits$}<td class=main>{paper:.digits$}<td>{}<td class=main>{likely:.digits$}<td>{}<td>{}</tr>",
-            between(&fit.intervals),
-            between(&likelihood.intervals),
-            between(&evidence.bootstrap.intervals),
+            "<tr><th{class}>{name}{}<td{class}>{}<td>{r_interval}<td{class}>{}<td>{c_interval}</tr>",
+            if recommended { " (recommended)" } else { "" },
+            shown(r),
+            shown(c),
         );
-    };
-    row(
-        "r<sub>s</sub> [mm]",
-        1e3,
-        [
-            start.sphere_radius,
-            fit.sphere_radius,
-            likelihood.estimate.sphere_radius,
-        ],
-        |intervals| intervals.sphere_radius,
-    );
-    row(
-        "χ",
-        1.0,
-        [start.chi, fit.chi, likelihood.estimate.chi],
-        |intervals| intervals.chi,
+        let word = name
+            .rsplit(' ')
+            .next()
+            .filter(|_| name != "the paper’s fit")
+            .unwrap_or("paper");
+        bars[0].push((word, radius));
+        bars[1].push((word, chi));
+    }
+    let _ = write!(
+        html,
+        "<tr><th>start<td>{:.1}<td><td>{:.2}<td></tr>",
+        1e3 * start.sphere_radius,
+        start.chi
     );
     let [x, y, theta] = likelihood.between_runs;
+    let bootstrap = evidence.bootstrap.as_ref().map_or_else(
+        || "No bootstrap: fewer than five runs draw nothing worth the name.".to_owned(),
+        |bootstrap| {
+            format!(
+                "Bootstrap: {} draws of runs and cycles, seed {}.",
+                bootstrap.draws, calibration.options.seed
+            )
+        },
+    );
     let _ = write!(
         html,
         "</tbody></table><p class=note>RMSE {} with the paper’s weights; correlation of r<sub>s</sub> and ln χ {}. The likelihood \
-         weighs every X, ΔY and Δθ by its own error: from the run’s cycles, and from run to run {} mm, {} mm and {}°. \
-         Bootstrap: {} draws of {}, seed {}.</p></section>",
+         weighs every X, ΔY and Δθ by its own error: from the run’s cycles, and from run to run {} mm, {} mm and {}°. {bootstrap} \
+         All but the last interval hold random scatter only; with systematics, what is known by halves may move as far as it is known.\
+         </p></section><section class=grid>",
         minus(&quantity::small(fit.rmse)),
         minus(&format!("{:.3}", fit.correlation)),
         minus(&quantity::small(x * 1e3)),
         minus(&quantity::small(y * 1e3)),
         minus(&quantity::small(theta.to_degrees())),
-        evidence.bootstrap.draws,
-        if evidence.bootstrap.runs_drawn {
-            "runs and cycles"
-        } else {
-            "cycles"
-        },
-        calibration.options.seed,
     );
-}
-
-/// Decimals that show an interval's width to two digits.
-fn digits([low, high]: [f64; 2]) -> usize {
-    let width = high - low;
-    if !(width.is_finite() && width > 0.0) {
-        return 4;
-    }
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between 1 and 9
-    let digits = (1.0 - width.log10().floor()).clamp(1.0, 9.0) as usize;
-    digits
+    let [radius, chi] = bars;
+    figure(
+        html,
+        &figures::bars(&radius, "r_s [mm]")?,
+        "Sphere radius",
+        "Estimates and intervals; the last one holds systematic errors too.",
+    );
+    figure(
+        html,
+        &figures::bars(&chi, "χ")?,
+        "Drag ratio",
+        "The same of χ.",
+    );
+    html.push_str("</section>");
+    Ok(())
 }
 
 fn warnings(html: &mut String, calibration: &Calibration<'_>) {
@@ -200,17 +281,17 @@ fn evidence(html: &mut String, calibration: &Calibration<'_>) -> Outcome {
     );
     figure(
         html,
-        &figures::residuals(evidence)?,
+        &figures::residuals(evidence, &short_names(calibration))?,
         "What is left of each run",
         "<i class=dot style='color:#1f6fb2'></i>X <i class=dot style='color:#3a9d5d'></i>ΔY \
-         <i class=dot style='color:#d35b1e'></i>Δθ; dashes at ±2. Runs are numbered as in the table below.",
+         <i class=dot style='color:#d35b1e'></i>Δθ; dashes at ±2.",
     );
     if !evidence.without_run.is_empty() {
         figure(
             html,
-            &figures::without_run(evidence, paper)?,
+            &figures::without_run(evidence, paper, &short_names(calibration))?,
             "Without one run",
-            "<i class=dot style='color:#1f6fb2'></i>the paper’s fit without the run of that number \
+            "<i class=dot style='color:#1f6fb2'></i>the paper’s fit without that run \
              <i class=dot style='color:#d35b1e'></i>likelihood without it <i class='dot ink'></i>with all. \
              One point far from the others: the answer hangs on that run.",
         );
@@ -218,12 +299,22 @@ fn evidence(html: &mut String, calibration: &Calibration<'_>) -> Outcome {
     Ok(())
 }
 
-/// What was asked beyond the fit: the tables that the command prints.
-fn asked(html: &mut String, calibration: &Calibration<'_>) {
-    for shown in calibration.answer.asked.shown() {
+/// Budget, explanations and the runs' numbers: the tables that the command prints.
+fn assessed(html: &mut String, calibration: &Calibration<'_>) {
+    let assessment = calibration.answer.assessment.iter();
+    tables(html, assessment.flat_map(AssessmentAnswer::shown));
+}
+
+/// What was fitted beyond `r_s` and χ.
+fn beyond(html: &mut String, calibration: &Calibration<'_>) {
+    tables(html, calibration.answer.beyond.shown().into_iter());
+}
+
+fn tables(html: &mut String, all: impl Iterator<Item = Shown>) {
+    for shown in all {
         let _ = write!(
             html,
-            "<section><h2>{}</h2><table class=asked>",
+            "<section><h2>{}</h2><table class=beyond>",
             escaped(shown.title)
         );
         for (index, line) in shown.table.lines().iter().enumerate() {
@@ -248,6 +339,16 @@ fn asked(html: &mut String, calibration: &Calibration<'_>) {
             notes.join("<br>")
         );
     }
+}
+
+/// The runs' names without what their files end in, for axes.
+fn short_names(calibration: &Calibration<'_>) -> Vec<String> {
+    let stem = |name: String| {
+        let path = std::path::Path::new(&name);
+        path.file_stem()
+            .map_or(name.clone(), |stem| stem.to_string_lossy().into_owned())
+    };
+    names(calibration).into_iter().map(stem).collect()
 }
 
 fn names(calibration: &Calibration<'_>) -> Vec<String> {
@@ -296,7 +397,32 @@ fn runs(html: &mut String, calibration: &Calibration<'_>) {
             cycles.phase.word().replace('-', " "),
         );
     }
-    html.push_str("</tbody></table><p class=note>sd between cycles; standard errors and lag-1 correlations are in runs.csv.</p></section>");
+    html.push_str("</tbody></table><p class=note>sd between cycles; standard errors and lag-1 correlations are in runs.csv.</p>");
+    html.push_str("<ul class=diagnoses>");
+    for run in &calibration.answer.runs {
+        if !run.diagnoses.is_empty() {
+            let _ = write!(
+                html,
+                "<li><b>{}</b>: {}",
+                escaped(&run.file),
+                escaped(&run.diagnoses.join("; "))
+            );
+        }
+    }
+    let excluded = calibration
+        .answer
+        .assessment
+        .iter()
+        .flat_map(|a| &a.excluded);
+    for run in excluded {
+        let _ = write!(
+            html,
+            "<li class=excluded><b>{}</b> is not fitted: {}",
+            escaped(&run.file),
+            escaped(&run.reason)
+        );
+    }
+    html.push_str("</ul></section>");
 }
 
 fn left_out(html: &mut String, calibration: &Calibration<'_>) {
@@ -330,7 +456,8 @@ fn left_out(html: &mut String, calibration: &Calibration<'_>) {
 
 fn each_run(html: &mut String, calibration: &Calibration<'_>) -> Outcome {
     html.push_str("<section><h2>Tracks and cycles</h2><p class=note>Left: the centre of the middle link, \
-         <i class=dot style='color:#1d242c'></i>where cycles begin, <i class=dot style='color:#d35b1e'></i>filled. \
+         <i class=dot style='color:#1d242c'></i>where cycles begin, <i class=dot style='color:#d35b1e'></i>filled, \
+         <i class=dot style='color:#d8b9e6'></i>where the frame jumped. \
          Middle and right: all cycles over one another, seen from each one’s first pose, and their mean harmonic curve.</p>");
     for (index, (answer, run)) in calibration
         .answer
@@ -349,6 +476,24 @@ fn each_run(html: &mut String, calibration: &Calibration<'_>) -> Outcome {
             figures::cycles(run, Coordinate::Y)?,
             figures::cycles(run, Coordinate::Theta)?,
         );
+    }
+    for excluded in &calibration.found.excluded {
+        if let Some(run) = &excluded.result {
+            let _ = write!(
+                html,
+                "<figure class='run excluded'><h2>{} · not fitted</h2><div>{}{}{}</div></figure>",
+                escaped(
+                    &excluded
+                        .file
+                        .file_name()
+                        .unwrap_or_default()
+                        .to_string_lossy()
+                ),
+                figures::track(run)?,
+                figures::cycles(run, Coordinate::Y)?,
+                figures::cycles(run, Coordinate::Theta)?,
+            );
+        }
     }
     html.push_str("</section>");
     Ok(())
@@ -377,18 +522,4 @@ fn inputs(html: &mut String, calibration: &Calibration<'_>) {
         );
     }
     html.push_str("</table></figure></section>");
-}
-
-#[cfg(test)]
-mod tests {
-    use super::digits;
-
-    #[test]
-    fn intervals_are_told_apart() {
-        // 69.177 … 69.209, 3.5960 … 3.5989, 60 … 75.
-        assert_eq!(digits([69.177, 69.209]), 3);
-        assert_eq!(digits([3.5960, 3.5989]), 4);
-        assert_eq!(digits([60.0, 75.0]), 1);
-        assert_eq!(digits([1.0, 1.0]), 4);
-    }
 }

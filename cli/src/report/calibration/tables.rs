@@ -212,7 +212,11 @@ fn profiles(evidence: &Evidence) -> String {
 
 fn bootstrap(evidence: &Evidence) -> String {
     let mut text = String::from("sphere_radius_m,chi\n");
-    for pair in &evidence.bootstrap.points {
+    for pair in evidence
+        .bootstrap
+        .iter()
+        .flat_map(|bootstrap| &bootstrap.points)
+    {
         let _ = writeln!(text, "{:?},{:?}", pair.sphere_radius, pair.chi);
     }
     text

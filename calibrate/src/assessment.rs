@@ -1,0 +1,134 @@
+//! Can the answer be used? Random scatter shows in the intervals by itself; what all cycles of all runs share does not. Here stands
+//! what noise cannot hide: how well the model explains the runs at all (`goodness.rs`), what else would explain them, side by side
+//! (`explanations.rs`), how r_s and χ move with what the files take for granted, and the estimate that lets it move as far as it
+//! is known (`systematics.rs`). The verdict (`verdict.rs`) sums up, with its reasons.
+
+mod budget;
+mod explanations;
+mod goodness;
+mod known;
+mod systematics;
+mod verdict;
+
+pub use budget::BudgetLine;
+pub use explanations::{Explained, Explanation};
+pub use goodness::{Goodness, RunGoodness, SignTest};
+pub use systematics::{Nuisance, Systematics, Unforeseen};
+pub use verdict::{Headline, Verdict};
+
+use crate::error::FitError;
+use crate::evidence::Evidence;
+use crate::fit::CampaignFit;
+use crate::fit::likelihood::Estimate;
+use crate::fit::parameter::Parameter;
+use crate::fit::run_model::RunModel;
+use crate::fit::run_values::RunValues;
+use crate::fit::tangent::Tangent;
+
+/// What the runs say of the fit's errors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assessment {
+    /// What to do with the answer.
+    pub verdict: Verdict,
+    /// Why; empty where there is nothing against it.
+    pub reasons: Vec<String>,
+    /// The answer that is recommended.
+    pub headline: Headline,
+    /// How well the model explains the runs.
+    pub goodness: Goodness,
+    /// r_s and χ where what is known by halves may move; `None` where the runs are too few for it.
+    pub systematics: Option<Systematics>,
+    /// How r_s and χ move with what is taken for granted.
+    pub budget: Vec<BudgetLine>,
+    /// What explains the runs beside r_s and χ, the likeliest first.
+    pub explanations: Vec<Explanation>,
+}
+
+/// The plain model of r_s and χ, and where its likelihood is largest.
+struct Plain {
+    /// All values, with Y and net turn.
+    data: RunValues,
+    model: RunModel,
+    /// By X, ΔY and Δθ.
+    telling: Estimate,
+    /// By all values.
+    all: Estimate,
+}
+
+impl Plain {
+    fn of(found: &CampaignFit) -> Result<Self, FitError> {
+        let data = found.values()?;
+        let model = found.model(&data, vec![Parameter::SphereRadius, Parameter::Chi])?;
+        let undetermined = || FitError::Undetermined {
+            parameters: "r_s, chi".to_owned(),
+        };
+        let at = found.optimum();
+        let estimate = |data: &RunValues| {
+            let even = data.weights(|_| 1.0);
+            Some(Tangent::estimate(&model, data, &at, &even)?.0)
+        };
+        let telling = estimate(&data).ok_or_else(undetermined)?;
+        let data = data.with_all();
+        let all = estimate(&data).ok_or_else(undetermined)?;
+        Ok(Self {
+            data,
+            model,
+            telling,
+            all,
+        })
+    }
+
+    /// The same with more parameters, and what the files say of these.
+    fn with(&self, more: &[Parameter], values: &[f64]) -> (RunModel, Vec<f64>) {
+        let parameters = [self.model.parameters.as_slice(), more].concat();
+        let at = [self.all.at.as_slice(), values].concat();
+        (self.model.with(parameters), at)
+    }
+
+    /// L \[m\].
+    fn length(&self) -> f64 {
+        self.model.start.swimmer.total_length()
+    }
+
+    /// What the files say of a parameter.
+    fn filed(&self, parameter: Parameter) -> f64 {
+        match parameter {
+            Parameter::DeadBand => self.model.start.servo.map_or(0.0, |servo| servo.dead_band),
+            _ => 0.0,
+        }
+    }
+}
+
+/// Assesses a finished fit; `evidence` where it was weighed.
+///
+/// # Errors
+/// [`FitError`]: the runs do not determine r_s and χ.
+pub fn assess(found: &CampaignFit, evidence: Option<&Evidence>) -> Result<Assessment, FitError> {
+    let plain = Plain::of(found)?;
+    let priors = known::priors(found);
+    let joint = systematics::Joint::of(&plain, &priors);
+    let systematics = joint
+        .as_ref()
+        .and_then(|joint| joint.systematics(&plain, found.fit.intervals.level));
+    let goodness = goodness::goodness(found, &plain, joint.as_ref());
+    let explanations = explanations::explanations(&plain);
+    let budget = budget::budget(&plain, &priors);
+    let headline = verdict::headline(found, evidence, systematics.as_ref());
+    let (verdict, reasons) = verdict::verdict(
+        found,
+        evidence,
+        &goodness,
+        systematics.as_ref(),
+        &explanations,
+        &headline,
+    );
+    Ok(Assessment {
+        verdict,
+        reasons,
+        headline,
+        goodness,
+        systematics,
+        budget,
+        explanations,
+    })
+}

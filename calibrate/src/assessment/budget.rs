@@ -1,0 +1,76 @@
+//! How far r_s and χ are off where what the files take for granted is off by a little.
+
+use serde::Serialize;
+
+use super::Plain;
+use super::known::Known;
+use crate::fit::least_squares::Model as _;
+use crate::fit::parameter::Parameter;
+
+/// One line of the budget.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BudgetLine {
+    /// What is off.
+    pub name: &'static str,
+    /// By how much: a share, m or rad.
+    pub by: f64,
+    /// m, rad, or nothing for a share.
+    pub unit: &'static str,
+    /// What that adds to the r_s of greatest likelihood \[m\].
+    #[serde(rename = "sphere_radius_m")]
+    pub sphere_radius: f64,
+    /// What it adds to χ.
+    pub chi: f64,
+    /// How well it is known, in the same unit; `None` where it is taken for exact.
+    pub width: Option<f64>,
+    /// Whether the campaign states that.
+    pub stated: bool,
+}
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+const MILLIMETRE: f64 = 1e-3;
+const PERCENT: f64 = 0.01;
+
+/// What the budget asks after, and by how much it is off.
+const LINES: [(Parameter, f64); 10] = [
+    (Parameter::Gain, PERCENT),
+    (Parameter::Scale, PERCENT),
+    (Parameter::MarkerAlong, MILLIMETRE),
+    (Parameter::MarkerAcross, MILLIMETRE),
+    (Parameter::MarkerAngle, DEGREE),
+    (Parameter::FrontOffset, DEGREE),
+    (Parameter::BackOffset, DEGREE),
+    (Parameter::DeadBand, DEGREE),
+    (Parameter::TangentialDrag, PERCENT),
+    (Parameter::Period, PERCENT),
+];
+
+/// The budget of the estimate of greatest likelihood.
+pub(super) fn budget(plain: &Plain, known: &[Known]) -> Vec<BudgetLine> {
+    let length = plain.length();
+    let line = |(parameter, by): (Parameter, f64)| -> Option<BudgetLine> {
+        let per = if parameter.unit() == "m" { length } else { 1.0 };
+        let filed = plain.filed(parameter);
+        let (model, _) = plain.with(&[parameter], &[]);
+        let at = |value: f64| model.values(&[plain.telling.at.as_slice(), &[value]].concat());
+        let (here, there) = (at(filed)?, at(filed + by / per)?);
+        let change = nalgebra::DVector::from_iterator(
+            here.len(),
+            there.iter().zip(&here).map(|(there, here)| there - here),
+        );
+        let shift = &plain.telling.components.gain * change;
+        let known = known
+            .iter()
+            .find(|known| known.prior.parameter == parameter);
+        Some(BudgetLine {
+            name: parameter.name(),
+            by,
+            unit: parameter.unit(),
+            sphere_radius: shift[0] * length,
+            chi: plain.telling.at[1].exp() * shift[1].exp_m1(),
+            width: known.map(|known| known.prior.width * per),
+            stated: known.is_some_and(|known| known.stated),
+        })
+    };
+    LINES.into_iter().filter_map(line).collect()
+}

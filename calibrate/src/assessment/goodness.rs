@@ -1,0 +1,182 @@
+//! How well does the model explain the runs? Against the cycles' own scatter, which what all cycles share does not widen.
+
+use serde::Serialize;
+
+use super::Plain;
+use super::systematics::Joint;
+use crate::fit::CampaignFit;
+use crate::fit::least_squares::{Model as _, minimise};
+use crate::fit::likelihood::Estimate;
+use crate::fit::run_values::{NAMES, QUANTITIES, TELLING, measured};
+use swimmer_model::Gait as _;
+
+/// The signs of what is left of one quantity, from the smallest gait to the largest.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SignTest {
+    /// X, ΔY or Δθ.
+    pub quantity: &'static str,
+    /// Signs of simulated less measured, one of each run.
+    pub signs: Vec<i8>,
+    /// Stretches of one sign.
+    pub stretches: usize,
+    /// Chance of as few or fewer, if signs fell by chance.
+    pub chance: f64,
+}
+
+/// What one run says by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RunGoodness {
+    /// Y over X, and its standard error by the run's cycles: a symmetric gait has none.
+    pub y_over_x: [f64; 2],
+    /// Net turn of a cycle \[rad\], and its standard error by the run's cycles: a symmetric gait has none.
+    pub turn_rad: [f64; 2],
+    /// What would explain X, and Y, beyond the model: velocity along and across the heading \[m/s\].
+    pub drift_m_per_s: [f64; 2],
+    /// Lengths over those that the other runs foretell, and its standard error: what a wall makes of a run.
+    pub scale: Option<[f64; 2]>,
+}
+
+/// How well the model explains the runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Goodness {
+    /// χ² of X, ΔY and Δθ by the cycles' own scatter, over the degrees of freedom; `None` where cycles tell of none.
+    pub reduced_chi2: Option<f64>,
+    /// Values less parameters.
+    pub freedom: usize,
+    /// The signs of what the likeliest r_s and χ leave.
+    pub signs: Vec<SignTest>,
+    /// Run by run.
+    pub runs: Vec<RunGoodness>,
+}
+
+/// Points of a gait at which its size is looked for.
+const POINTS: usize = 64;
+
+pub(super) fn goodness(found: &CampaignFit, plain: &Plain, joint: Option<&Joint>) -> Goodness {
+    let data = plain.data.without(|row| row % QUANTITIES >= TELLING);
+    let told = data.within.iter().all(|within| within.freedom > 0.0);
+    let weights = data.weights(|row| data.within[row].value);
+    let (model, at) = (&plain.model, &plain.telling.at);
+    let end = minimise(model, &data.values, &weights, at, &model.bounds());
+    let freedom = data.count().saturating_sub(2);
+    let sizes: Vec<f64> = found
+        .runs
+        .iter()
+        .map(|run| {
+            let points = (0..POINTS).map(|i| run.played.gait.at(i as f64 / POINTS as f64));
+            points.map(|point| point.phi.norm()).fold(0.0, f64::max)
+        })
+        .collect();
+    let mut order: Vec<usize> = (0..sizes.len()).collect();
+    order.sort_by(|a, b| sizes[*a].total_cmp(&sizes[*b]));
+    Goodness {
+        reduced_chi2: end
+            .filter(|_| told && freedom > 0)
+            .map(|end| end.cost / freedom as f64),
+        freedom,
+        signs: (0..TELLING)
+            .map(|q| {
+                let residual = |run: &usize| plain.telling.residuals[QUANTITIES * run + q];
+                signs(NAMES[q], order.iter().map(residual))
+            })
+            .collect(),
+        runs: (0..sizes.len())
+            .map(|run| of_run(found, plain, joint, run))
+            .collect(),
+    }
+}
+
+fn signs(quantity: &'static str, residuals: impl Iterator<Item = f64>) -> SignTest {
+    let signs: Vec<i8> = residuals.map(|r| if r < 0.0 { -1 } else { 1 }).collect();
+    let stretches = 1 + signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    let up = signs.iter().filter(|sign| **sign > 0).count();
+    SignTest {
+        chance: chance_of_stretches(up, signs.len() - up, stretches),
+        quantity,
+        signs,
+        stretches,
+    }
+}
+
+/// Of at most so many stretches among orders of `a` and `b` signs (Wald and Wolfowitz); where all have one sign, of that.
+fn chance_of_stretches(a: usize, b: usize, stretches: usize) -> f64 {
+    if a == 0 || b == 0 {
+        return (0.5_f64).powf((a + b) as f64 - 1.0).min(1.0);
+    }
+    let choose = |n: usize, k: usize| -> f64 {
+        if k > n {
+            return 0.0;
+        }
+        (0..k).map(|i| (n - i) as f64 / (i + 1) as f64).product()
+    };
+    let exactly = |r: usize| {
+        let half = r / 2;
+        if r.is_multiple_of(2) {
+            2.0 * choose(a - 1, half - 1) * choose(b - 1, half - 1)
+        } else {
+            choose(a - 1, half - 1) * choose(b - 1, half)
+                + choose(a - 1, half) * choose(b - 1, half - 1)
+        }
+    };
+    let sum: f64 = (2..=stretches).map(exactly).sum();
+    (sum / choose(a + b, a)).min(1.0)
+}
+
+fn of_run(found: &CampaignFit, plain: &Plain, joint: Option<&Joint>, run: usize) -> RunGoodness {
+    let estimate = joint.map_or(&plain.all, |joint| &joint.estimate);
+    let result = &found.runs[run];
+    let row = |q: usize| QUANTITIES * run + q;
+    let scale = |q: usize| plain.data.scales[q];
+    let value = |q: usize| plain.data.values[row(q)] * scale(q);
+    let error = |q: usize| plain.data.within[row(q)].value.sqrt() * scale(q);
+    let beyond = |q: usize| -estimate.residuals[row(q)] * scale(q) / result.cycles.period_s;
+    let [x, .., turn] = measured(&result.cycles).map(|statistics| statistics.mean);
+    RunGoodness {
+        y_over_x: [value(3) / x, (error(3) / x).abs()],
+        turn_rad: [turn, error(4)],
+        drift_m_per_s: [beyond(0), beyond(3)],
+        scale: joint.and_then(|joint| length_scale(joint, run)),
+    }
+}
+
+/// A run's X and ΔY over what the others foretell of them.
+fn length_scale(joint: &Joint, run: usize) -> Option<[f64; 2]> {
+    let rows: Vec<usize> = [0, 1].map(|q| QUANTITIES * run + q).into();
+    let rows: Vec<usize> = rows
+        .into_iter()
+        .filter(|row| joint.data.used[*row])
+        .collect();
+    let without = joint
+        .data
+        .without(|row| row / QUANTITIES == run && row % QUANTITIES < 2);
+    let weights = without.weights(|row| joint.estimate.components.variance(row));
+    let rest = Estimate::of_weighted(&joint.tangent, &without, &joint.estimate.at, weights)?;
+    let covariance = rest.components.covariance();
+    let (mut product, mut square) = (0.0, 0.0);
+    for row in rows {
+        let gradient = rest.jacobian.row(row);
+        let foretold = (gradient * &covariance * gradient.transpose())[(0, 0)];
+        let weight = 1.0 / (foretold + rest.components.variance(row));
+        let measured = joint.data.values[row];
+        let predicted = measured + rest.residuals[row];
+        product += weight * measured * predicted;
+        square += weight * predicted * predicted;
+    }
+    (square > 0.0).then(|| [product / square, 1.0 / square.sqrt()])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretches_of_signs() {
+        // All orders of three and three, counted by hand: 20, of which 2 have two stretches and 4 three.
+        assert!((chance_of_stretches(3, 3, 2) - 0.1).abs() < 1e-12);
+        assert!((chance_of_stretches(3, 3, 3) - 0.3).abs() < 1e-12);
+        assert!((chance_of_stretches(3, 3, 6) - 1.0).abs() < 1e-12);
+        assert!((chance_of_stretches(6, 0, 1) - 2.0 / 64.0).abs() < 1e-12);
+        let found = signs("X", [1.0, 2.0, -1.0, -3.0].into_iter());
+        assert_eq!((found.stretches, found.signs), (2, vec![1, 1, -1, -1]));
+    }
+}

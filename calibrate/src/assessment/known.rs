@@ -1,0 +1,86 @@
+//! What is known beforehand, and how well: as the campaign states it, else as a careful laboratory knows it.
+
+use swimmer_files::KnownValue;
+
+use crate::fit::CampaignFit;
+use crate::fit::parameter::Parameter;
+use crate::fit::prior::Prior;
+
+/// A servo's gain, joint offsets \[rad\], the reflectors' place \[m\] and the cameras' scale, where the campaign says nothing.
+const GAIN: f64 = 0.005;
+const OFFSET: f64 = 0.3 * std::f64::consts::PI / 180.0;
+const REFLECTOR: f64 = 5e-4;
+const SCALE: f64 = 0.002;
+
+/// What is known of one parameter.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Known {
+    pub(super) prior: Prior,
+    /// Whether the campaign states it.
+    pub(super) stated: bool,
+}
+
+/// All that has a width.
+pub(super) fn priors(found: &CampaignFit) -> Vec<Known> {
+    let (length, known) = (found.length(), &found.known);
+    let distance = found
+        .runs
+        .first()
+        .map_or(length, |run| run.poses.report.distance_m);
+    let reflector = known.reflector.map_or(REFLECTOR, |known| known.width);
+    let usual = |value: f64, width: f64| KnownValue { value, width };
+    // Both reflectors are placed as well as their middle, to a factor that nobody knows.
+    let angle = usual(0.0, std::f64::consts::SQRT_2 * reflector / distance);
+    let of = |parameter: Parameter, stated: Option<KnownValue>, usual: Option<KnownValue>| {
+        let KnownValue { value, width } = stated.or(usual)?;
+        let (centre, unit) = match parameter {
+            Parameter::Gain | Parameter::Scale | Parameter::Period => (value - 1.0, 1.0),
+            Parameter::TangentialDrag => (value.ln(), value),
+            Parameter::MarkerAlong | Parameter::MarkerAcross => (value / length, length),
+            _ => (value, 1.0),
+        };
+        (width > 0.0).then_some(Known {
+            prior: Prior {
+                parameter,
+                value: centre,
+                width: width / unit,
+            },
+            stated: stated.is_some(),
+        })
+    };
+    [
+        of(Parameter::Gain, known.gain, Some(usual(1.0, GAIN))),
+        of(
+            Parameter::Scale,
+            known.camera_scale,
+            Some(usual(1.0, SCALE)),
+        ),
+        of(
+            Parameter::MarkerAlong,
+            known.reflector,
+            Some(usual(0.0, REFLECTOR)),
+        ),
+        of(
+            Parameter::MarkerAcross,
+            known.reflector,
+            Some(usual(0.0, REFLECTOR)),
+        ),
+        of(Parameter::MarkerAngle, known.reflector_angle, Some(angle)),
+        of(
+            Parameter::FrontOffset,
+            known.offset,
+            Some(usual(0.0, OFFSET)),
+        ),
+        of(
+            Parameter::BackOffset,
+            known.offset,
+            Some(usual(0.0, OFFSET)),
+        ),
+        of(Parameter::DeadBand, known.dead_band, None),
+        of(Parameter::TangentialDrag, known.c_t, None),
+        of(Parameter::Period, known.period, None),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}

@@ -1,0 +1,182 @@
+//! Does the heading repeat with the period at all? A wrong period cuts a run into stretches that look clean, each well drawn
+//! by its own harmonics, and a fit to them is wrong and sure of itself. What gives it away is the heading over all of the
+//! run: harmonics of a wrong period leave most of it unexplained, and of several periods only every second or third one is
+//! there.
+
+// Indices come from bounded, positive numbers.
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+
+use std::fmt;
+
+use super::clock::{BINS, Bin, PERIOD_HARMONICS, PERIOD_RANGE, harmonic_fit};
+use super::curve::{HARMONICS, Harmonics};
+use crate::golden::golden;
+use crate::median::median;
+
+/// How well the heading repeats with the period that was told.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Periodicity {
+    /// The period that was told \[s\].
+    pub period_s: f64,
+    /// The share of the heading's swing that harmonics of this period explain.
+    pub share: f64,
+    /// The period with which it does repeat \[s\], where one is found.
+    pub found_s: Option<f64>,
+}
+
+impl fmt::Display for Periodicity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (period_s, percent) = (self.period_s, 100.0 * self.share);
+        match self.found_s {
+            Some(found_s) if found_s < period_s && self.share > WELL => write!(
+                f,
+                "the heading repeats every {found_s:.3} s already, {:.0} times in what was taken for one cycle of {period_s:.3} s",
+                period_s / found_s
+            )?,
+            found => {
+                write!(
+                    f,
+                    "the heading does not repeat every {period_s:.3} s: harmonics of that period explain only {percent:.0} % of it"
+                )?;
+                if let Some(found_s) = found {
+                    write!(f, "; it repeats about every {found_s:.2} s")?;
+                }
+            }
+        }
+        f.write_str("; check period_s")
+    }
+}
+
+/// What to make of a heading and a period.
+pub(super) enum Judgement {
+    Fine,
+    /// Worth a word.
+    Doubtful(Periodicity),
+    /// Cycles of this period would be none.
+    Hopeless(Periodicity),
+}
+
+/// Where harmonics explain this share of the heading, it repeats.
+const WELL: f64 = 0.9;
+/// Where they explain no more than this, it does not.
+const BADLY: f64 = 0.5;
+/// Another period is one, rather than chance, where it leaves at most this share of what the first one leaves.
+const FAR_LESS: f64 = 0.3;
+/// Periods that are looked at: those told, up to so many times longer or shorter.
+const RANGE: f64 = 8.0;
+/// Periods of the run that the search for another one takes: enough to tell, few enough to be quick.
+const SEARCHED: f64 = 24.0;
+/// Of the model's swing at least so much must be in harmonics that the measured one lacks, and of that at most so much may
+/// be there.
+const LACKS: (f64, f64) = (0.5, 0.02);
+
+/// Sums of squares of the heading about its drift, less what noise of the cameras is.
+struct Swing<'a> {
+    bins: &'a [Bin],
+    total: f64,
+    noise: f64,
+}
+
+impl<'a> Swing<'a> {
+    /// `None` where the heading shows nothing but noise.
+    fn of(bins: &'a [Bin], period_s: f64) -> Option<Self> {
+        let (_, total) = harmonic_fit(bins, period_s, 0.0, 0)?;
+        // Median of a normal variable's size over its deviation, and six variances in a second difference.
+        let bends = bins.windows(3).filter_map(|w| match w {
+            [a, b, c] if c.time_s - a.time_s < 2.5 * period_s / BINS => {
+                Some((a.theta - 2.0 * b.theta + c.theta).abs())
+            }
+            _ => None,
+        });
+        let deviation = median(bends).unwrap_or(0.0) / 0.6745 / 6f64.sqrt();
+        let noise = deviation.powi(2) * bins.len() as f64;
+        (total > 4.0 * noise).then_some(Self { bins, total, noise })
+    }
+
+    fn share(&self, period_s: f64) -> f64 {
+        let rest = harmonic_fit(self.bins, period_s, 0.0, PERIOD_HARMONICS)
+            .map_or(self.total, |(_, rest)| rest);
+        1.0 - (rest - self.noise).max(0.0) / (self.total - self.noise)
+    }
+
+    /// The shortest period that explains about as much as any does, and how much.
+    fn best_period(&self, near_s: f64) -> Option<(f64, f64)> {
+        let span = self.bins.last()?.time_s - self.bins.first()?.time_s;
+        // Three cycles at least: with fewer, harmonics draw any heading that wanders.
+        let (highest, lowest) = (RANGE / near_s, (2.9 / span).max(1.0 / RANGE / near_s));
+        // The peak of the highest harmonic is 1/(span · harmonics) wide.
+        let step = 1.0 / (2.0 * PERIOD_HARMONICS as f64 * span);
+        let looks = ((highest - lowest) / step).ceil().max(2.0) as usize;
+        let frequency = |i: usize| highest + (lowest - highest) * i as f64 / looks as f64;
+        let shares: Vec<f64> = (0..=looks)
+            .map(|i| self.share(1.0 / frequency(i)))
+            .collect();
+        let most = shares.iter().copied().fold(0.0, f64::max);
+        let first = shares.iter().position(|share| *share > 0.9 * most)?;
+        // Up to the peak, and between its neighbours.
+        let climbs = shares.get(first..)?.windows(2);
+        let peak = first + climbs.take_while(|w| matches!(w, [a, b] if b > a)).count();
+        let ends = [
+            frequency(peak.saturating_sub(1)),
+            frequency((peak + 1).min(looks)),
+        ];
+        let (best, unexplained) = golden(ends[1], ends[0], 40, |f| 1.0 - self.share(1.0 / f));
+        Some((1.0 / best, 1.0 - unexplained))
+    }
+}
+
+/// Whether the heading repeats with the period. Where the robot's log told the period, a heading that does not fit another
+/// one clearly may have been paused.
+pub(super) fn judge(bins: &[Bin], period_s: f64, logged: bool) -> Judgement {
+    let Some(whole) = Swing::of(bins, period_s) else {
+        return Judgement::Fine;
+    };
+    let share = whole.share(period_s);
+    if share > WELL {
+        return Judgement::Fine;
+    }
+    let from = bins.first().map_or(0.0, |bin| bin.time_s);
+    let until = bins.partition_point(|bin| bin.time_s < from + SEARCHED * period_s);
+    let other = bins
+        .get(..until)
+        .and_then(|bins| Swing::of(bins, period_s))
+        .and_then(|part| part.best_period(period_s))
+        .filter(|(found_s, _)| (found_s / period_s - 1.0).abs() > PERIOD_RANGE)
+        .filter(|(_, explained)| 1.0 - explained < FAR_LESS * (1.0 - share));
+    let repeats = Periodicity {
+        period_s,
+        share,
+        found_s: other.map(|(found_s, _)| found_s),
+    };
+    match other {
+        Some((_, explained)) if explained > WELL && share < BADLY && !logged => {
+            Judgement::Hopeless(repeats)
+        }
+        Some((_, explained)) if explained > WELL || !logged => Judgement::Doubtful(repeats),
+        None if share < BADLY && !logged => Judgement::Doubtful(repeats),
+        _ => Judgement::Fine,
+    }
+}
+
+/// Whether a cycle holds several of the model's: then only multiples of their number are among its harmonics, though the
+/// model has others.
+pub(super) fn several_times(
+    measured: &Harmonics,
+    model: &Harmonics,
+    period_s: f64,
+) -> Option<Periodicity> {
+    let between = |harmonics: &Harmonics, times: usize| {
+        let energy = |(_, [c, s]): (usize, &[f64; 2])| c * c + s * s;
+        let numbered = || (1..).zip(harmonics);
+        let total: f64 = numbered().map(energy).sum();
+        let others = numbered().filter(|(number, _)| number % times != 0);
+        others.map(energy).sum::<f64>() / total
+    };
+    let lacks =
+        |times: &usize| between(model, *times) > LACKS.0 && between(measured, *times) < LACKS.1;
+    (2..=HARMONICS).rev().find(lacks).map(|times| Periodicity {
+        period_s,
+        share: 1.0,
+        found_s: Some(period_s / times as f64),
+    })
+}

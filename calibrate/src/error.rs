@@ -1,0 +1,153 @@
+//! Why there is no calibration: what can go wrong from a campaign's files to its fit.
+
+use std::path::PathBuf;
+
+use swimmer_files::{FileError, LinkLogError};
+use swimmer_model::InvalidSwimmer;
+
+use crate::cycles::CycleError;
+use crate::poses::PoseError;
+use crate::prediction::PredictionError;
+use crate::tracks::TrackError;
+
+/// Why there is no calibration.
+#[derive(Debug, thiserror::Error)]
+pub enum CalibrateError {
+    /// A tracking file cannot be opened.
+    #[error("cannot read {}: {cause}; check the path and its permissions", file.display())]
+    Open {
+        /// The file.
+        file: PathBuf,
+        /// The system's reason.
+        cause: String,
+    },
+    /// A tracking file is broken, or in a format that is not read.
+    #[error(transparent)]
+    Track(#[from] TrackError),
+    /// A gait file is wrong.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A link log is broken.
+    #[error(transparent)]
+    Log(#[from] LinkLogError),
+    /// A link log does not say which of its plays a run was.
+    #[error("{}: {problem}", log.display())]
+    Play {
+        /// The log.
+        log: PathBuf,
+        /// What is missing.
+        problem: String,
+    },
+    /// A track gave no poses.
+    #[error("{}: {cause}", file.display())]
+    Poses {
+        /// The tracking file.
+        file: PathBuf,
+        /// Why.
+        cause: PoseError,
+    },
+    /// A track gave no cycles.
+    #[error("{}: {cause}", file.display())]
+    Cycles {
+        /// The tracking file.
+        file: PathBuf,
+        /// Why.
+        cause: CycleError,
+    },
+    /// A gait could not have been played.
+    #[error("{}: {cause}", file.display())]
+    Prediction {
+        /// The tracking file of the run.
+        file: PathBuf,
+        /// Why.
+        cause: PredictionError,
+    },
+    /// Nothing was fitted.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+}
+
+impl CalibrateError {
+    /// Whether the input is to blame (bad usage, exit 2) rather than the outcome (exit 1).
+    pub fn is_bad_input(&self) -> bool {
+        match self {
+            Self::Open { .. }
+            | Self::Track(_)
+            | Self::File(_)
+            | Self::Log(_)
+            | Self::Play { .. }
+            | Self::Prediction { .. } => true,
+            Self::Poses { cause, .. } => {
+                matches!(
+                    cause,
+                    PoseError::NoPoint { .. }
+                        | PoseError::SamePlace
+                        | PoseError::SamePoint { .. }
+                        | PoseError::NoScale { .. }
+                )
+            }
+            Self::Fit(cause) => matches!(cause, FitError::Level { .. } | FitError::Swimmer(_)),
+            Self::Cycles { .. } => false,
+        }
+    }
+}
+
+impl From<InvalidSwimmer> for CalibrateError {
+    fn from(cause: InvalidSwimmer) -> Self {
+        Self::Fit(FitError::Swimmer(cause))
+    }
+}
+
+/// Why nothing was fitted.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// The starting swimmer is none.
+    #[error("{0}")]
+    Swimmer(#[from] InvalidSwimmer),
+    /// A level that is no share.
+    #[error("the level of the intervals is {level}; give a share between 0 and 1, such as 0.95")]
+    Level {
+        /// The level.
+        level: f64,
+    },
+    /// One of X, ΔY, Δθ is zero in all runs, so the criterion is undefined.
+    #[error("{quantity} is zero in all runs, so the criterion cannot be scaled by it")]
+    NothingMeasured {
+        /// Which one.
+        quantity: &'static str,
+    },
+    /// X has the other sign than the model's in too many runs.
+    #[error(
+        "in {opposed} of {runs} runs the robot swam against the model ({files}; X of the first: {measured_m:.5} m, model \
+         {predicted_m:.5} m); either the gaits ran clockwise (add :cw to `gait`), or front and back reflectors are exchanged \
+         (exchange `at`)"
+    )]
+    SignOpposes {
+        /// In how many.
+        opposed: usize,
+        /// Of how many runs.
+        runs: usize,
+        /// Which.
+        files: String,
+        /// The first one's X \[m\].
+        measured_m: f64,
+        /// What the model swims \[m\].
+        predicted_m: f64,
+    },
+    /// The data say nothing about some combination of what was asked.
+    #[error(
+        "these runs do not determine {parameters} together; fit fewer parameters, or measure other gaits and amplitudes"
+    )]
+    Undetermined {
+        /// Their names.
+        parameters: String,
+    },
+    /// No start led anywhere.
+    #[error(
+        "the fit did not converge from any of {starts} starts; look at X, ΔY and Δθ of the runs first"
+    )]
+    NoConvergence {
+        /// How many starts.
+        starts: usize,
+    },
+}

@@ -1,0 +1,114 @@
+//! What can be fitted: r_s, χ, and what else may not be as the files say.
+
+use swimmer_model::Swimmer;
+
+/// One number that is fitted, in units of order one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Parameter {
+    /// r_s/L.
+    SphereRadius,
+    /// ln χ.
+    Chi,
+    /// ln of c_t/μ over the files' one.
+    TangentialDrag,
+    /// Offset of the front joint \[rad\].
+    FrontOffset,
+    /// Offset of the back joint \[rad\].
+    BackOffset,
+    /// The servos' dead band \[rad\].
+    DeadBand,
+    /// Place of the reflectors' middle along the middle link, over L.
+    MarkerAlong,
+    /// The same across it.
+    MarkerAcross,
+    /// By how much the reflectors' line is turned against the link \[rad\].
+    MarkerAngle,
+    /// What both servos turn over what they are told, less 1.
+    Gain,
+    /// The same of the front servo alone.
+    FrontGain,
+    /// The same of the back servo alone.
+    BackGain,
+    /// Lengths as the cameras give them over true ones, less 1.
+    Scale,
+    /// The period over the commanded one, less 1.
+    Period,
+}
+
+impl Parameter {
+    /// Least and largest value, as the fit takes it.
+    pub(crate) fn bounds(self, swimmer: &Swimmer<f64>) -> (f64, f64) {
+        let reach = swimmer.links.middle / swimmer.total_length();
+        match self {
+            Self::SphereRadius => (0.0, 1.0),
+            Self::Chi => (0.05_f64.ln(), 50_f64.ln()),
+            Self::TangentialDrag => (-(20_f64.ln()), 20_f64.ln()),
+            Self::FrontOffset | Self::BackOffset | Self::MarkerAngle => (-0.35, 0.35),
+            Self::Gain | Self::FrontGain | Self::BackGain | Self::Scale | Self::Period => {
+                (-0.3, 0.3)
+            }
+            Self::DeadBand => (0.0, 0.35),
+            Self::MarkerAlong | Self::MarkerAcross => (-reach, reach),
+        }
+    }
+
+    /// Whether it moves the joints off what the gait says.
+    pub(crate) fn moves_joints(self) -> bool {
+        matches!(
+            self,
+            Self::FrontOffset | Self::BackOffset | Self::Gain | Self::FrontGain | Self::BackGain
+        )
+    }
+
+    /// Half a difference's width. Paths have kinks in the dead band.
+    pub(crate) fn step(self) -> f64 {
+        if self == Self::DeadBand { 4e-3 } else { 1e-3 }
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::SphereRadius => "r_s",
+            Self::Chi => "chi",
+            Self::TangentialDrag => "c_t/mu",
+            Self::FrontOffset => "front joint offset",
+            Self::BackOffset => "back joint offset",
+            Self::DeadBand => "dead band",
+            Self::MarkerAlong => "marker offset along",
+            Self::MarkerAcross => "marker offset across",
+            Self::MarkerAngle => "marker angle",
+            Self::Gain => "gain",
+            Self::FrontGain => "front gain",
+            Self::BackGain => "back gain",
+            Self::Scale => "camera scale",
+            Self::Period => "period",
+        }
+    }
+
+    pub(crate) fn unit(self) -> &'static str {
+        match self {
+            Self::SphereRadius | Self::MarkerAlong | Self::MarkerAcross => "m",
+            Self::FrontOffset | Self::BackOffset | Self::DeadBand | Self::MarkerAngle => "rad",
+            _ => "",
+        }
+    }
+
+    /// In units of people: m, rad, or the plain number.
+    pub(crate) fn natural(self, value: f64, swimmer: &Swimmer<f64>) -> f64 {
+        match self {
+            Self::SphereRadius | Self::MarkerAlong | Self::MarkerAcross => {
+                value * swimmer.total_length()
+            }
+            Self::Chi => value.exp(),
+            Self::TangentialDrag => over_viscosity(swimmer) * value.exp(),
+            Self::Gain | Self::FrontGain | Self::BackGain | Self::Scale | Self::Period => {
+                1.0 + value
+            }
+            Self::FrontOffset | Self::BackOffset | Self::DeadBand | Self::MarkerAngle => value,
+        }
+    }
+}
+
+/// c_t/μ of the side links.
+pub(crate) fn over_viscosity(swimmer: &Swimmer<f64>) -> f64 {
+    swimmer.tangential_drag.over_viscosity(swimmer.links.front)
+}

@@ -1,0 +1,116 @@
+//! What the runs of a fit measured, in the units in which everything compares.
+
+use super::errors::{Variance, within_runs};
+use crate::cycles::{Cycles, Statistics};
+use crate::error::FitError;
+use crate::prediction::PredictedCycle;
+
+/// Values of one run: X, ΔY, Δθ, and what symmetric gaits have none of: Y and the net turn.
+pub(crate) const QUANTITIES: usize = 5;
+/// How many of them, from the first, tell r_s and χ.
+pub(crate) const TELLING: usize = 3;
+/// Their names.
+pub(crate) const NAMES: [&str; QUANTITIES] = ["X", "ΔY", "Δθ", "Y", "net turn"];
+/// In whose scale each is told.
+const SCALED_LIKE: [usize; QUANTITIES] = [0, 1, 2, 0, 2];
+
+/// The values of a predicted cycle, in this order.
+pub(crate) fn predicted(cycle: &PredictedCycle) -> [f64; QUANTITIES] {
+    let PredictedCycle {
+        x_m,
+        y_m,
+        rotation_rad,
+        delta_y_m,
+        delta_theta_rad,
+    } = *cycle;
+    [x_m, delta_y_m, delta_theta_rad, y_m, rotation_rad]
+}
+
+/// X, ΔY, Δθ, Y and net turn of every run, each in units of its scale.
+#[derive(Debug, Clone)]
+pub(crate) struct RunValues {
+    /// Largest measured X, ΔY \[m\], Δθ \[rad\]; Y goes with X, the turn with Δθ.
+    pub(crate) scales: [f64; QUANTITIES],
+    /// Five of each run.
+    pub(crate) values: Vec<f64>,
+    /// Their variances within runs.
+    pub(crate) within: Vec<Variance>,
+    /// Which of them count: Y and turn only where they are asked for.
+    pub(crate) used: Vec<bool>,
+}
+
+/// What a run's cycles measured, in the order of the values.
+pub(crate) fn measured(cycles: &Cycles) -> [Statistics; QUANTITIES] {
+    let Cycles {
+        x,
+        y,
+        rotation,
+        delta_y,
+        delta_theta,
+        ..
+    } = cycles;
+    [*x, *delta_y, *delta_theta, *y, *rotation]
+}
+
+impl RunValues {
+    pub(crate) fn of<'a>(runs: impl Iterator<Item = &'a Cycles>) -> Result<Self, FitError> {
+        let statistics: Vec<[Statistics; QUANTITIES]> = runs.map(measured).collect();
+        let mut scales = [0.0_f64; QUANTITIES];
+        for (q, scale) in scales.iter_mut().enumerate() {
+            let sizes = statistics.iter().map(|run| run[SCALED_LIKE[q]].mean.abs());
+            *scale = sizes.fold(0.0, f64::max);
+            if !(*scale > 0.0 && scale.is_finite()) {
+                return Err(FitError::NothingMeasured { quantity: NAMES[q] });
+            }
+        }
+        let scaled = |run: [Variance; QUANTITIES]| {
+            std::array::from_fn::<_, QUANTITIES, _>(|q| Variance {
+                value: run[q].value / scales[q].powi(2),
+                ..run[q]
+            })
+        };
+        let values: Vec<f64> = statistics
+            .iter()
+            .flat_map(|run| std::array::from_fn::<_, QUANTITIES, _>(|q| run[q].mean / scales[q]))
+            .collect();
+        Ok(Self {
+            scales,
+            used: (0..values.len())
+                .map(|row| row % QUANTITIES < TELLING)
+                .collect(),
+            values,
+            within: within_runs(&statistics)
+                .into_iter()
+                .flat_map(scaled)
+                .collect(),
+        })
+    }
+
+    /// The same with Y and net turn.
+    pub(crate) fn with_all(&self) -> Self {
+        Self {
+            used: vec![true; self.values.len()],
+            ..self.clone()
+        }
+    }
+
+    /// How many count.
+    pub(crate) fn count(&self) -> usize {
+        self.used.iter().filter(|used| **used).count()
+    }
+
+    /// The same without some values.
+    pub(crate) fn without(&self, left_out: impl Fn(usize) -> bool) -> Self {
+        let mut out = self.clone();
+        for (row, used) in out.used.iter_mut().enumerate() {
+            *used = *used && !left_out(row);
+        }
+        out
+    }
+
+    /// Weights of least squares for these variances.
+    pub(crate) fn weights(&self, variance: impl Fn(usize) -> f64) -> Vec<f64> {
+        let weigh = |(row, used): (usize, &bool)| if *used { 1.0 / variance(row) } else { 0.0 };
+        self.used.iter().enumerate().map(weigh).collect()
+    }
+}

@@ -1,0 +1,329 @@
+//! What else may not be as the files say: c_t/μ, where the joints' zero is, how far a servo's dead band reaches, where the
+//! reflectors sit. Each can be fitted along with r_s and χ; where the data cannot tell two apart, the answer says so. A dead
+//! band that nobody knew of is looked for in every fit (`scan.rs`).
+
+pub(crate) mod scan;
+
+use swimmer_files::SwimmerFile;
+
+use crate::error::FitError;
+use crate::fit::intervals::half_width;
+use crate::fit::least_squares::{Model as _, weighted};
+use crate::fit::likelihood::Estimate;
+use crate::fit::parameter::Parameter;
+use crate::fit::run_model::RunModel;
+use crate::fit::{CampaignFit, Intervals};
+
+/// What can be fitted along with r_s and χ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Further {
+    /// c_t/μ, common to all links.
+    TangentialDrag,
+    /// A constant offset of each joint.
+    JointOffsets,
+    /// The servos' dead band.
+    DeadBand,
+    /// Where the reflectors' middle sits on the middle link, along and across.
+    MarkerOffset,
+    /// What both servos turn over what they are told.
+    Gain,
+    /// The same of each servo.
+    Gains,
+    /// Lengths as the cameras give them over true ones.
+    Scale,
+}
+
+impl Further {
+    fn parameters(self) -> &'static [Parameter] {
+        match self {
+            Self::TangentialDrag => &[Parameter::TangentialDrag],
+            Self::JointOffsets => &[Parameter::FrontOffset, Parameter::BackOffset],
+            Self::DeadBand => &[Parameter::DeadBand],
+            Self::MarkerOffset => &[Parameter::MarkerAlong, Parameter::MarkerAcross],
+            Self::Gain => &[Parameter::Gain],
+            Self::Gains => &[Parameter::FrontGain, Parameter::BackGain],
+            Self::Scale => &[Parameter::Scale],
+        }
+    }
+}
+
+/// A parameter with its interval.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FittedParameter {
+    /// What it is.
+    pub name: &'static str,
+    /// m, rad, or nothing.
+    pub unit: &'static str,
+    /// What the files say, or the fit without the further parameters.
+    pub before: f64,
+    /// The estimate.
+    pub value: f64,
+    /// Its interval: Student's t, within the bounds.
+    pub interval: [f64; 2],
+    /// Where it was looked for.
+    pub bounds: [f64; 2],
+}
+
+/// What to know about a fit of further parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FurtherWarning {
+    /// Two parameters that the data cannot tell apart.
+    Alike {
+        /// Their names.
+        names: [&'static str; 2],
+        /// Correlation of their errors.
+        correlation: f64,
+    },
+    /// The interval is everything that was allowed.
+    Unbounded {
+        /// The parameter.
+        name: &'static str,
+    },
+    /// The best value is the largest or least allowed.
+    AtBound {
+        /// The parameter.
+        name: &'static str,
+        /// The bound.
+        bound: f64,
+    },
+    /// Some combination of parameters hardly shows in the data.
+    IllConditioned {
+        /// Condition number of the Jacobian with columns of length 1.
+        condition: f64,
+    },
+    /// The data are explained no better than without.
+    NoBetter {
+        /// Gain in log-likelihood.
+        gain: f64,
+        /// Parameters more.
+        parameters: usize,
+    },
+}
+
+impl std::fmt::Display for FurtherWarning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Alike {
+                names: [a, b],
+                correlation,
+            } => write!(
+                f,
+                "these runs cannot tell {a} from {b} (correlation {correlation:+.4}): believe their combination, neither alone"
+            ),
+            Self::Unbounded { name } => write!(
+                f,
+                "these runs say nothing about {name}: its interval is all that was allowed"
+            ),
+            Self::AtBound { name, bound } => {
+                write!(
+                    f,
+                    "{name} ended at its bound {bound:.4}: something else is wrong"
+                )
+            }
+            Self::IllConditioned { condition } => write!(
+                f,
+                "some combination of the parameters hardly shows in these runs (condition {condition:.0}): fit fewer, or measure other gaits"
+            ),
+            Self::NoBetter { gain, parameters } => write!(
+                f,
+                "{parameters} parameter(s) more explain the runs no better (log-likelihood +{gain:.1}): the files' values stand"
+            ),
+        }
+    }
+}
+
+/// r_s, χ and further parameters, by likelihood.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FurtherFit {
+    /// r_s \[m\], χ, then the others.
+    pub parameters: Vec<FittedParameter>,
+    /// Level of the intervals.
+    pub level: f64,
+    /// Correlations between all of them.
+    pub correlations: Vec<Vec<f64>>,
+    /// Condition number of the Jacobian with columns of length 1.
+    pub condition: f64,
+    /// By how much the log-likelihood grows over that of r_s and χ alone.
+    pub log_likelihood_gain: f64,
+    /// The swimmer with all that it can hold: r_s, χ, c_t/μ, dead band.
+    pub swimmer: SwimmerFile,
+    /// What to know about it.
+    pub warnings: Vec<FurtherWarning>,
+}
+
+/// Fits further parameters along with r_s and χ.
+///
+/// # Errors
+/// [`FitError::Undetermined`] where the data say nothing about some combination of them.
+pub fn fit_further(found: &CampaignFit, further: &[Further]) -> Result<FurtherFit, FitError> {
+    let mut wanted = further.to_vec();
+    wanted.sort_unstable();
+    wanted.dedup();
+    let plain = vec![Parameter::SphereRadius, Parameter::Chi];
+    let mut parameters = plain.clone();
+    parameters.extend(wanted.iter().flat_map(|further| further.parameters()));
+    let mut data = found.values()?;
+    // Y and the net turn tell the front from the back; all that is symmetric leaves them alone.
+    if wanted
+        .iter()
+        .any(|further| matches!(further, Further::JointOffsets | Further::Gains))
+    {
+        data = data.with_all();
+    }
+    let plain = found.model(&data, plain)?;
+    let model = plain.with(parameters);
+    let undetermined = || {
+        let names: Vec<&str> = model.parameters.iter().map(|p| p.name()).collect();
+        FitError::Undetermined {
+            parameters: names.join(", "),
+        }
+    };
+    let begun = begin(&model, found);
+    let before = Estimate::of(&plain, &data, &begun[..2]).ok_or_else(undetermined)?;
+    let after =
+        Estimate::best_of(&model, &data, &starts(&model, &begun)).ok_or_else(undetermined)?;
+    let gain = after.log_likelihood - before.log_likelihood;
+    summary(&model, &begun, &after, gain, found.fit.intervals.level).ok_or_else(undetermined)
+}
+
+/// What the files say of each parameter, and the fit of r_s and χ.
+fn begin(model: &RunModel, found: &CampaignFit) -> Vec<f64> {
+    let [radius, chi] = found.optimum();
+    let of = |parameter: &Parameter| match parameter {
+        Parameter::SphereRadius => radius,
+        Parameter::Chi => chi,
+        Parameter::DeadBand => found.start.servo.map_or(0.0, |servo| servo.dead_band),
+        _ => 0.0,
+    };
+    model.parameters.iter().map(of).collect()
+}
+
+/// Dead bands to start from \[rad\], beside the files'.
+const DEAD_BANDS: [f64; 3] = [0.03, 0.09, 0.18];
+/// Offsets of the reflectors' middle to start from, as shares of the largest: seen from the wrong side of the joints' middle a link
+/// sways nearly as much, so that there are two minima.
+const MARKERS: [f64; 2] = [-0.5, 0.5];
+
+/// Where a search begins, more than once for what has more than one minimum.
+fn starts(model: &RunModel, begun: &[f64]) -> Vec<Vec<f64>> {
+    let mut starts = vec![begun.to_vec()];
+    for (place, (parameter, (_, high))) in model.parameters.iter().zip(model.bounds()).enumerate() {
+        let others: &[f64] = match parameter {
+            Parameter::DeadBand => &DEAD_BANDS,
+            Parameter::MarkerAlong | Parameter::MarkerAcross => &MARKERS.map(|share| share * high),
+            _ => &[],
+        };
+        starts.extend(others.iter().map(|value| {
+            let mut start = begun.to_vec();
+            start[place] = *value;
+            start
+        }));
+    }
+    starts
+}
+
+/// Beyond these, a correlation or a condition number is worth a warning.
+const ALIKE: f64 = 0.99;
+const ILL_CONDITIONED: f64 = 300.0;
+/// Gain in log-likelihood that one parameter brings by chance in one of fifty cases.
+const BY_CHANCE: f64 = 2.7;
+
+fn summary(
+    model: &RunModel,
+    begun: &[f64],
+    found: &Estimate,
+    gain: f64,
+    level: f64,
+) -> Option<FurtherFit> {
+    let at = &found.at;
+    let mut parameters = Vec::with_capacity(at.len());
+    let mut warnings = Vec::new();
+    for (i, (slot, (low, high))) in model.parameters.iter().zip(model.bounds()).enumerate() {
+        let half = half_width(found.components.of_parameter(i), level)?;
+        let natural = |value: f64| model.natural(*slot, value);
+        let (from, to) = ((at[i] - half).max(low), (at[i] + half).min(high));
+        if from <= low && to >= high {
+            warnings.push(FurtherWarning::Unbounded { name: slot.name() });
+        } else if at[i] >= high || (at[i] <= low && low < 0.0) {
+            warnings.push(FurtherWarning::AtBound {
+                name: slot.name(),
+                bound: natural(at[i]),
+            });
+        }
+        parameters.push(FittedParameter {
+            name: slot.name(),
+            unit: slot.unit(),
+            before: natural(begun[i]),
+            value: natural(at[i]),
+            interval: [natural(from), natural(to)],
+            bounds: [natural(low), natural(high)],
+        });
+    }
+    let correlation = |i: usize, j: usize| found.components.correlation(i, j);
+    let count = at.len();
+    for i in 0..count {
+        for j in 0..i {
+            let correlation = correlation(i, j);
+            if correlation.abs() > ALIKE {
+                warnings.push(FurtherWarning::Alike {
+                    names: [model.parameters[j].name(), model.parameters[i].name()],
+                    correlation,
+                });
+            }
+        }
+    }
+    let condition = condition(found)?;
+    if condition > ILL_CONDITIONED {
+        warnings.push(FurtherWarning::IllConditioned { condition });
+    }
+    if count > 2 && gain < BY_CHANCE * (count - 2) as f64 {
+        warnings.push(FurtherWarning::NoBetter {
+            gain,
+            parameters: count - 2,
+        });
+    }
+    let mut swimmer = model.file(at);
+    swimmer = swimmer.fitted(swimmer.swimmer.sphere_radius, swimmer.swimmer.chi);
+    Some(FurtherFit {
+        parameters,
+        level,
+        correlations: (0..count)
+            .map(|i| (0..count).map(|j| correlation(i, j)).collect())
+            .collect(),
+        condition,
+        log_likelihood_gain: gain,
+        swimmer,
+        warnings,
+    })
+}
+
+/// Of the weighted Jacobian, each column scaled to length 1.
+fn condition(found: &Estimate) -> Option<f64> {
+    let roots: Vec<f64> = found.weights.iter().map(|weight| weight.sqrt()).collect();
+    let mut weighted = weighted(&found.jacobian, &roots);
+    for mut column in weighted.column_iter_mut() {
+        let norm = column.norm();
+        if norm <= 0.0 {
+            return None;
+        }
+        column /= norm;
+    }
+    let singular = weighted.svd(false, false).singular_values;
+    Some(singular.max() / singular.min())
+}
+
+impl FurtherFit {
+    /// A parameter by its name.
+    pub fn parameter(&self, name: &str) -> Option<&FittedParameter> {
+        self.parameters.iter().find(|p| p.name == name)
+    }
+
+    /// Intervals of r_s and χ.
+    pub fn intervals(&self) -> Option<Intervals> {
+        Some(Intervals {
+            sphere_radius: self.parameter(Parameter::SphereRadius.name())?.interval,
+            chi: self.parameter(Parameter::Chi.name())?.interval,
+            level: self.level,
+        })
+    }
+}

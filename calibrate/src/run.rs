@@ -1,0 +1,215 @@
+//! One run from its track to its cycles: everything that a fit takes from it.
+
+use std::path::PathBuf;
+
+use swimmer_files::{Reflectors, SwimmerFile};
+use swimmer_model::Swimmer;
+
+use crate::cycles::{Clock, Cycles, Projection};
+use crate::data::RunData;
+use crate::error::CalibrateError;
+use crate::poses::{self, FrontRule, PoseOptions, PoseTrack, PoseWarning};
+use crate::prediction::{JointPath, Played};
+
+/// One run's outcome.
+#[derive(Debug, Clone)]
+pub struct RunResult {
+    /// Its place in the campaign.
+    pub index: usize,
+    /// The tracking file.
+    pub file: PathBuf,
+    /// The gait as it was named.
+    pub gait: String,
+    /// The poses.
+    pub poses: PoseTrack,
+    /// The cycles: X, Y, rotation, ΔY, Δθ with deviations, the refined period.
+    pub cycles: Cycles,
+    /// What reader, poses and cycles had to say.
+    pub warnings: Vec<String>,
+    /// How far apart the reflectors are by the campaign \[m\].
+    pub reflector_distance_m: f64,
+    /// What was played.
+    pub(crate) played: Played,
+}
+
+/// A run that swims against the model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Opposed {
+    pub(crate) measured_m: f64,
+    pub(crate) predicted_m: f64,
+}
+
+impl std::fmt::Display for Opposed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "it swims against the model (X {:.3} mm, model {:.3} mm): the gait ran clockwise (add :cw to `gait`), or front and back are \
+             exchanged (say so by `front` in its [[run]])",
+            1e3 * self.measured_m,
+            1e3 * self.predicted_m
+        )
+    }
+}
+
+/// X over the model's, of a run that swam the other way: the model may be that of the search, which is not the robot yet.
+const REVERSED: std::ops::Range<f64> = -8.0..-0.12;
+
+/// A run on its way: everything that does not change when the model does.
+pub(crate) struct Run<'a> {
+    pub(crate) data: &'a RunData,
+    index: usize,
+    reflectors: Reflectors,
+    poses: PoseTrack,
+    pub(crate) clock: Clock,
+    pub(crate) played: Played,
+}
+
+impl<'a> Run<'a> {
+    pub(crate) fn begin(
+        data: &'a RunData,
+        index: usize,
+        common: &Reflectors,
+        swimmer: &SwimmerFile,
+    ) -> Result<Self, CalibrateError> {
+        let file = || data.file.clone();
+        let reflectors = data.reflectors(common);
+        let options = PoseOptions::of_period(data.period_s);
+        let poses = poses::poses(&data.track, &reflectors, &options).map_err(|cause| {
+            CalibrateError::Poses {
+                file: file(),
+                cause,
+            }
+        })?;
+        let clock = Clock::find(&poses, data.period_s, &data.timing).map_err(|cause| {
+            CalibrateError::Cycles {
+                file: file(),
+                cause,
+            }
+        })?;
+        let path =
+            JointPath::new(&data.gait, swimmer.servo.as_ref(), data.period_s).map_err(|cause| {
+                CalibrateError::Prediction {
+                    file: file(),
+                    cause,
+                }
+            })?;
+        Ok(Self {
+            data,
+            index,
+            reflectors,
+            poses,
+            clock,
+            played: Played {
+                gait: data.gait.clone(),
+                period_s: data.period_s,
+                path,
+                cut_by: None,
+            },
+        })
+    }
+
+    /// A cycle's start by this model's heading, as a fraction of the period.
+    pub(crate) fn start(
+        &self,
+        swimmer: &Swimmer<f64>,
+        projection: &Projection,
+    ) -> Result<f64, CalibrateError> {
+        let (_, heading) = self.played.path.predict(swimmer, projection)?;
+        self.clock
+            .start(&self.poses, &heading)
+            .map_err(|cause| CalibrateError::Cycles {
+                file: self.data.file.clone(),
+                cause,
+            })
+    }
+
+    fn cycles(&self, start_s: f64) -> Result<Cycles, CalibrateError> {
+        self.clock
+            .cycles(&self.poses, start_s)
+            .map_err(|cause| CalibrateError::Cycles {
+                file: self.data.file.clone(),
+                cause,
+            })
+    }
+
+    /// Where no label tells front from back, the direction of travel does: X has the model's sign. And where log or flash told
+    /// when cycles began, the heading may object.
+    pub(crate) fn settled(
+        &mut self,
+        start_s: f64,
+        swimmer: &Swimmer<f64>,
+        projection: &Projection,
+    ) -> Result<Cycles, CalibrateError> {
+        let (predicted, heading) = self.played.path.predict(swimmer, projection)?;
+        let mut cycles = self.cycles(start_s)?;
+        if self.poses.front == FrontRule::Travel && predicted.x_m * cycles.x.mean < 0.0 {
+            self.poses.turn_round(&self.reflectors);
+            cycles = self.cycles(start_s)?;
+        }
+        self.clock
+            .check_heading(&mut cycles, &heading)
+            .map_err(|cause| CalibrateError::Cycles {
+                file: self.data.file.clone(),
+                cause,
+            })?;
+        Ok(cycles)
+    }
+
+    /// Whether X has the other sign than the model's, and about its size.
+    pub(crate) fn opposes(
+        &self,
+        cycles: &Cycles,
+        swimmer: &Swimmer<f64>,
+        projection: &Projection,
+    ) -> Result<Option<Opposed>, CalibrateError> {
+        let predicted_m = self.played.path.predict(swimmer, projection)?.0.x_m;
+        let measured_m = cycles.x.mean;
+        let reversed = REVERSED.contains(&(measured_m / predicted_m));
+        // A lone cycle has no error, and its word counts.
+        let sure = cycles.x.se.is_nan() || measured_m.abs() > 3.0 * cycles.x.se;
+        Ok((reversed && sure).then_some(Opposed {
+            measured_m,
+            predicted_m,
+        }))
+    }
+
+    pub(crate) fn finish(self, cycles: Cycles) -> RunResult {
+        let reader = self.data.track.warnings.iter().map(ToString::to_string);
+        let poses = self.poses.warnings.iter().map(ToString::to_string);
+        let own = cycles.warnings.iter().map(ToString::to_string);
+        let mut warnings: Vec<String> = reader.chain(poses).chain(own).collect();
+        let contested =
+            |warning: &PoseWarning| matches!(warning, PoseWarning::LabelsContested { .. });
+        let told = self.poses.warnings.iter().any(contested);
+        if self.poses.front == FrontRule::Travel && !told {
+            warnings.push("no label tells the front reflector from the back one; the direction of travel was taken for forwards".to_owned());
+        }
+        let [front, back] = [self.reflectors.front.at, self.reflectors.back.at];
+        RunResult {
+            index: self.index,
+            file: self.data.file.clone(),
+            gait: self.data.gait_name.clone(),
+            cycles,
+            poses: self.poses,
+            warnings,
+            reflector_distance_m: (front[0] - back[0]).hypot(front[1] - back[1]),
+            played: self.played,
+        }
+    }
+}
+
+/// The cycles of a single run.
+///
+/// # Errors
+/// [`CalibrateError`]: no poses, no cycles, or a gait that the swimmer's servos cannot play.
+pub fn calibrate_run(
+    run: &RunData,
+    reflectors: &Reflectors,
+    swimmer: &SwimmerFile,
+) -> Result<RunResult, CalibrateError> {
+    let projection = Projection::new();
+    let mut begun = Run::begin(run, 0, reflectors, swimmer)?;
+    let start_s = begun.start(&swimmer.swimmer, &projection)?;
+    let cycles = begun.settled(start_s, &swimmer.swimmer, &projection)?;
+    Ok(begun.finish(cycles))
+}

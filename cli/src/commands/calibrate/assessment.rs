@@ -1,0 +1,330 @@
+//! Whether the answer can be used: the verdict with its reasons, and the tables they come from.
+
+use std::fmt::Write as _;
+
+use calibrate::assessment::{
+    Assessment, BudgetLine, Explanation, Headline, Nuisance, RunGoodness, SignTest, Unforeseen,
+};
+use calibrate::{CampaignFit, ExcludedRun};
+use serde::Serialize;
+
+use super::answer::{Intervals, RunAnswer, with_intervals};
+use super::further::{Shown, readable};
+use crate::quantity::{self, Table};
+
+/// What `swimmer calibrate` says of its own answer.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct AssessmentAnswer {
+    pub(crate) verdict: &'static str,
+    pub(crate) reasons: Vec<String>,
+    /// χ² by the cycles' own scatter over the degrees of freedom; null where cycles tell of none.
+    pub(crate) reduced_chi2: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    intervals_with_systematics: Option<Intervals>,
+    pub(crate) headline: HeadlineAnswer,
+    goodness: GoodnessAnswer,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    systematics: Option<SystematicsAnswer>,
+    budget: Vec<BudgetLine>,
+    explanations: Vec<Explanation>,
+    pub(crate) excluded: Vec<ExcludedAnswer>,
+}
+
+/// The recommended answer.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct HeadlineAnswer {
+    /// `paper` or `systematics`.
+    pub(crate) by: &'static str,
+    pub(crate) sphere_radius_m: f64,
+    pub(crate) chi: f64,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct GoodnessAnswer {
+    freedom: usize,
+    reduced_chi2_with_systematics: Option<f64>,
+    signs: Vec<SignTest>,
+    runs: Vec<RunGoodnessAnswer>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct RunGoodnessAnswer {
+    file: String,
+    #[serde(flatten)]
+    goodness: RunGoodness,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct SystematicsAnswer {
+    sphere_radius_m: f64,
+    chi: f64,
+    parameters: Vec<Nuisance>,
+    unforeseen: Vec<Unforeseen>,
+    outliers: Vec<OutlierAnswer>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct OutlierAnswer {
+    file: String,
+    quantity: &'static str,
+}
+
+/// A run that was not fitted.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct ExcludedAnswer {
+    pub(crate) file: String,
+    pub(crate) reason: String,
+}
+
+impl AssessmentAnswer {
+    /// `name` tells a file as the campaign does.
+    pub(super) fn new(
+        assessment: &Assessment,
+        found: &CampaignFit,
+        runs: &[RunAnswer],
+        name: impl Fn(&ExcludedRun) -> String,
+    ) -> Self {
+        let Assessment {
+            goodness,
+            systematics,
+            headline,
+            ..
+        } = assessment;
+        let file = |run: usize| {
+            runs.get(run)
+                .map_or_else(String::new, |run| run.file.clone())
+        };
+        let systematics_answer = systematics.as_ref().map(|systematics| SystematicsAnswer {
+            sphere_radius_m: systematics.estimate.sphere_radius,
+            chi: systematics.estimate.chi,
+            parameters: systematics.nuisances.clone(),
+            unforeseen: systematics.unforeseen.clone(),
+            outliers: systematics
+                .outliers
+                .iter()
+                .map(|(run, quantity)| OutlierAnswer {
+                    file: file(*run),
+                    quantity,
+                })
+                .collect(),
+        });
+        Self {
+            verdict: assessment.verdict.word(),
+            reasons: assessment.reasons.clone(),
+            reduced_chi2: goodness.reduced_chi2,
+            intervals_with_systematics: systematics.as_ref().map(|s| (&s.intervals).into()),
+            headline: HeadlineAnswer::new(headline),
+            goodness: GoodnessAnswer {
+                freedom: goodness.freedom,
+                reduced_chi2_with_systematics: systematics.as_ref().and_then(|s| s.reduced_chi2),
+                signs: goodness.signs.clone(),
+                runs: goodness
+                    .runs
+                    .iter()
+                    .enumerate()
+                    .map(|(run, goodness)| RunGoodnessAnswer {
+                        file: file(run),
+                        goodness: *goodness,
+                    })
+                    .collect(),
+            },
+            systematics: systematics_answer,
+            budget: assessment.budget.clone(),
+            explanations: assessment.explanations.clone(),
+            excluded: found
+                .excluded
+                .iter()
+                .map(|run| ExcludedAnswer {
+                    file: name(run),
+                    reason: run.reason.clone(),
+                })
+                .collect(),
+        }
+    }
+
+    /// The verdict and its reasons, as the terminal shows them.
+    pub(super) fn heading(&self) -> String {
+        let mut text = format!("\n\n  verdict: {}", self.verdict);
+        for reason in &self.reasons {
+            // Writing to a String cannot fail.
+            let _ = write!(text, "\n    - {reason}");
+        }
+        for run in &self.excluded {
+            let _ = write!(text, "\n    not fitted: {}: {}", run.file, run.reason);
+        }
+        if self.headline.by != "paper" {
+            let _ = write!(text, "\n    recommended: the estimate with systematics");
+        }
+        text
+    }
+
+    /// `r_s` and χ with systematics, for people.
+    pub(super) fn estimate(&self) -> Option<[String; 2]> {
+        let systematics = self.systematics.as_ref()?;
+        let intervals = self.intervals_with_systematics.as_ref()?;
+        let SystematicsAnswer {
+            sphere_radius_m,
+            chi,
+            ..
+        } = systematics;
+        Some(with_intervals(*sphere_radius_m, *chi, intervals))
+    }
+
+    /// Its tables: what is known by halves, the budget, explanations, the runs' numbers.
+    pub(crate) fn shown(&self) -> Vec<Shown> {
+        let known = self.systematics.as_ref().map(known);
+        let tables = [self.budget(), self.explained(), self.of_runs()];
+        known.into_iter().chain(tables).collect()
+    }
+
+    fn budget(&self) -> Shown {
+        let mut table = Table::new(["if off by", "", "r_s moves by", "χ moves by", "known to ±"]);
+        for line in &self.budget {
+            let width = line.width.map_or_else(
+                || "exact".to_owned(),
+                |width| {
+                    format!(
+                        "{}{}",
+                        change(line.unit, width),
+                        if line.stated { "" } else { " (usual)" }
+                    )
+                },
+            );
+            table.line([
+                line.name.to_owned(),
+                change(line.unit, line.by),
+                format!("{:+.3} mm", 1e3 * line.sphere_radius),
+                format!("{:+.4}", line.chi),
+                width,
+            ]);
+        }
+        Shown {
+            title: "The budget of systematic errors",
+            table,
+            notes: vec![
+                "how far r_s and χ of greatest likelihood come out wrong where the truth is off by so much from what the files say; \
+                 what is known to ± something else is stated under [known] in the campaign"
+                    .to_owned(),
+            ],
+        }
+    }
+
+    fn explained(&self) -> Shown {
+        let mut table = Table::new(["what may be off", "log-likelihood", "would be", "r_s", "χ"]);
+        for explanation in &self.explanations {
+            let values = explanation
+                .parameters
+                .iter()
+                .map(|p| readable(p.unit, p.value));
+            table.line([
+                explanation.name.to_owned(),
+                format!("{:+.1}", explanation.gain),
+                values.collect::<Vec<_>>().join(", "),
+                format!("{:.2} mm", 1e3 * explanation.estimate.sphere_radius),
+                format!("{:.3}", explanation.estimate.chi),
+            ]);
+        }
+        Shown {
+            title: "What would explain the runs, side by side",
+            table,
+            notes: vec![
+                "each alone, free of what is known, by X, ΔY, Δθ, Y and net turn, over r_s and χ alone; within 2 of each other the runs do \
+                 not tell which"
+                    .to_owned(),
+            ],
+        }
+    }
+
+    fn of_runs(&self) -> Shown {
+        let mut table = Table::new(["run", "Y/X", "net turn", "drift along, across", "lengths"]);
+        for RunGoodnessAnswer { file, goodness } in &self.goodness.runs {
+            let [ratio, error] = goodness.y_over_x;
+            let [turn, turn_error] = goodness.turn_rad.map(f64::to_degrees);
+            let [along, across] = goodness.drift_m_per_s.map(|speed| 1e3 * speed);
+            let lengths = goodness.scale.map_or_else(
+                || "–".to_owned(),
+                |[scale, error]| format!("{scale:.4} ± {error:.4}"),
+            );
+            table.line([
+                file.clone(),
+                format!("{ratio:+.4} ± {error:.4}"),
+                format!("{turn:+.3} ± {turn_error:.3}°"),
+                format!("{along:+.4}, {across:+.4} mm/s"),
+                lengths,
+            ]);
+        }
+        let chi2 = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), quantity::small);
+        let mut notes = vec![format!(
+            "reduced χ² by the cycles' own scatter {} ({} degrees of freedom), with systematics {}; lengths are X and ΔY over what the \
+             other runs foretell",
+            chi2(self.reduced_chi2),
+            self.goodness.freedom,
+            chi2(self.goodness.reduced_chi2_with_systematics)
+        )];
+        for test in &self.goodness.signs {
+            let signs = test
+                .signs
+                .iter()
+                .map(|sign| if *sign > 0 { '+' } else { '−' });
+            notes.push(format!(
+                "signs of simulated − measured {} from the smallest gait to the largest: {} ({} stretches, chance {:.2})",
+                test.quantity,
+                signs.collect::<String>(),
+                test.stretches,
+                test.chance
+            ));
+        }
+        Shown {
+            title: "How well the model explains the runs",
+            table,
+            notes,
+        }
+    }
+}
+
+impl HeadlineAnswer {
+    fn new(headline: &Headline) -> Self {
+        Self {
+            by: headline.by,
+            sphere_radius_m: headline.estimate.sphere_radius,
+            chi: headline.estimate.chi,
+        }
+    }
+}
+
+/// A change as people read it: mm, degrees, or a share in per cent.
+fn change(unit: &str, by: f64) -> String {
+    match unit {
+        "m" => format!("{:.2} mm", 1e3 * by),
+        "rad" => format!("{:.2}°", by.to_degrees()),
+        _ => format!("{:.2} %", 100.0 * by),
+    }
+}
+
+fn known(systematics: &SystematicsAnswer) -> Shown {
+    let mut table = Table::new(["known by halves", "known", "±", "found", "±", "pull"]);
+    for nuisance in &systematics.parameters {
+        let of = |value: f64| readable(nuisance.unit, value);
+        let ([known, width], [found, deviation]) = (nuisance.known, nuisance.found);
+        table.line([
+            nuisance.name.to_owned(),
+            of(known),
+            format!(
+                "{}{}",
+                of(width),
+                if nuisance.stated { "" } else { " (usual)" }
+            ),
+            of(found),
+            of(deviation),
+            format!("{:+.1}", nuisance.pull),
+        ]);
+    }
+    Shown {
+        title: "What is known by halves, and what the runs make of it",
+        table,
+        notes: vec![
+            "pull: how far the runs alone contradict what is known, in standard deviations"
+                .to_owned(),
+        ],
+    }
+}

@@ -1,0 +1,36 @@
+//! What is noteworthy about one run's track, in a few words each.
+
+use calibrate::RunResult;
+
+/// Reflectors whose distance differs by more from what `at` says are worth a word, as a share.
+const FAR: f64 = 0.01;
+
+/// Swaps, ghosts, the reflectors' distance and jumps of the frame.
+pub(super) fn of_run(run: &RunResult) -> Vec<String> {
+    let report = &run.poses.report;
+    let mut out = Vec::new();
+    if report.swaps_repaired > 0 {
+        out.push(format!(
+            "labels exchanged {} times, set right",
+            report.swaps_repaired
+        ));
+    }
+    if report.ghosts_rejected > 0 {
+        out.push(format!(
+            "{} points that are no reflector",
+            report.ghosts_rejected
+        ));
+    }
+    let apart = report.distance_m / run.reflector_distance_m - 1.0;
+    if apart.abs() > FAR {
+        out.push(format!(
+            "reflectors {:.2} mm apart, {:+.1} % from what `at` says",
+            1e3 * report.distance_m,
+            100.0 * apart
+        ));
+    }
+    for jump in &run.poses.jumps {
+        out.push(format!("the frame jumped at {:.2} s", jump.after_s));
+    }
+    out
+}

@@ -1,0 +1,9 @@
+//! SLEAP's CSV.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| swimmer_fuzz::tracks::read(
+    bytes,
+    &["track,frame_idx,instance.score,"]
+));
