@@ -50,6 +50,18 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A longer time on the command line, as `90min`, `2h` or seconds; in seconds.
+pub(crate) fn time(text: &str) -> Result<f64, String> {
+    let units = [("min", 60.0), ("h", 3600.0), ("s", 1.0)];
+    let (number, unit) = units
+        .iter()
+        .find_map(|(name, unit)| Some((text.trim().strip_suffix(name)?, *unit)))
+        .unwrap_or((text, 1.0));
+    seconds(number.trim())
+        .and_then(|number| seconds(&(number * unit).to_string()))
+        .map_err(|_| "write a time above zero, as 90min, 2h or 5400 for seconds".to_owned())
+}
+
 /// The duration of a cycle that a robot shall play, in seconds.
 pub(crate) fn period(text: &str) -> Result<f64, String> {
     let period = above_zero(text)?;
@@ -128,6 +140,22 @@ impl From<swimmer_files::FileError> for Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn times_have_units() {
+        for (text, seconds) in [
+            ("90min", 5400.0),
+            ("2h", 7200.0),
+            ("1.5 h", 5400.0),
+            ("30s", 30.0),
+            ("45", 45.0),
+        ] {
+            assert_eq!(time(text), Ok(seconds), "{text}");
+        }
+        for text in ["", "h", "-1h", "1d", "0", "1e9h"] {
+            assert!(time(text).is_err(), "{text}");
+        }
+    }
 
     #[test]
     fn times_are_positive() {

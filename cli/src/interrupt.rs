@@ -1,5 +1,7 @@
 //! Ctrl-C, or a polite kill: a value that a command looks at, so that what moves is stopped before the program ends. Where no
 //! command looks, the drafts of what it was to write are removed and the program ends.
+//!
+//! Who holds a robot takes Ctrl-Z for the same: a suspended program keeps its port and feeds no lease.
 
 use std::process::exit;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -21,9 +23,13 @@ static IN_CHARGE: Mutex<Option<Interrupt>> = Mutex::new(None);
 /// How a program that ends in the middle says so.
 static OUTPUT: OnceLock<Output> = OnceLock::new();
 
-/// Whether the operator asked the program to end (Ctrl-C, or a polite kill). Clones share the answer.
+/// Whether the operator asked the program to end (Ctrl-C, a polite kill, and where it holds a robot Ctrl-Z). Clones share the
+/// answer.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Interrupt(Arc<AtomicBool>);
+pub(crate) struct Interrupt {
+    ended: Arc<AtomicBool>,
+    suspended: Arc<AtomicBool>,
+}
 
 impl Interrupt {
     /// From here on Ctrl-C no longer ends the program: whoever calls this looks at [`Self::requested`].
@@ -42,9 +48,37 @@ impl Interrupt {
         Ok(interrupt)
     }
 
-    /// Whether Ctrl-C was pressed.
+    /// The same for a program that holds a robot: Ctrl-Z does not suspend it either.
+    ///
+    /// # Errors
+    /// As [`Self::install`].
+    pub(crate) fn install_with_a_robot() -> Outcome<Self> {
+        let interrupt = Self::install()?;
+        #[cfg(unix)]
+        signal_hook::flag::register(
+            signal_hook::consts::SIGTSTP,
+            Arc::clone(&interrupt.suspended),
+        )
+        .map_err(|error| {
+            Failure::Tried(format!(
+                "cannot listen for Ctrl-Z ({error}), and a suspended program would keep the robot's port and not its link; nothing was started"
+            ))
+        })?;
+        Ok(interrupt)
+    }
+
+    /// Whether Ctrl-C was pressed, or Ctrl-Z where that ends the program too.
     pub(crate) fn requested(&self) -> bool {
-        self.0.load(Ordering::SeqCst)
+        self.ended.load(Ordering::SeqCst) || self.suspended.load(Ordering::SeqCst)
+    }
+
+    /// What was pressed, and what that means where it is not what the operator meant.
+    pub(crate) fn pressed(&self) -> &'static str {
+        if self.suspended.load(Ordering::SeqCst) {
+            "Ctrl-Z (a suspended program keeps no link, so it ends instead)"
+        } else {
+            "Ctrl-C"
+        }
     }
 }
 
@@ -71,7 +105,7 @@ fn heard() {
     let in_charge = locked(&IN_CHARGE).clone();
     match in_charge {
         Some(interrupt) => {
-            if interrupt.0.swap(true, Ordering::SeqCst) {
+            if interrupt.ended.swap(true, Ordering::SeqCst) {
                 Drafts::held().remove();
                 exit(AT_ONCE);
             }

@@ -13,6 +13,17 @@ pub(crate) fn length(metres: f64) -> String {
     }
 }
 
+/// Decimals that show an interval's width to two digits.
+pub(crate) fn decimals([low, high]: [f64; 2]) -> usize {
+    let width = high - low;
+    if !(width.is_finite() && width > 0.0) {
+        return 4;
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between 0 and 9
+    let decimals = (1.0 - width.log10().floor()).clamp(0.0, 9.0) as usize;
+    decimals
+}
+
 /// A gait as people name it: a round number of degrees is said so.
 pub(crate) fn gait(gait: &GaitSpec) -> String {
     let (word, amplitude, clockwise) = match gait {
@@ -156,6 +167,14 @@ impl fmt::Display for Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn intervals_are_told_apart() {
+        assert_eq!(decimals([69.177, 69.209]), 3);
+        assert_eq!(decimals([3.5960, 3.5989]), 4);
+        assert_eq!(decimals([60.0, 75.0]), 0);
+        assert_eq!(decimals([1.0, 1.0]), 4);
+    }
 
     #[test]
     fn units_follow_the_size() {

@@ -10,7 +10,7 @@ pub(crate) struct Recording {
     /// Metres per unit of the recording (per pixel), where it does not say its unit
     #[arg(long, value_name = "METRES", value_parser = positive)]
     scale: Option<f64>,
-    /// Frames a second, where the recording has frame numbers and no times
+    /// Frames a second, where the recording does not say or is wrong
     #[arg(long, value_name = "HZ", value_parser = positive)]
     rate: Option<f64>,
     /// Which of the recording's axes are the tank's x and y: x,-y for an image, z,x for Y up

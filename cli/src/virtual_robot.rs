@@ -71,20 +71,32 @@ impl Carrier {
         seed: u64,
         board: &EmulatedBoard,
     ) -> Outcome<VirtualLine> {
-        let config = TwinConfig::new(file, seed);
+        self.line_with(file, &TwinConfig::new(file, seed), board)
+    }
+
+    /// The same with the servos that the configuration names.
+    ///
+    /// # Errors
+    /// As [`line`](Self::line).
+    pub(crate) fn line_with(
+        self,
+        file: &SwimmerFile,
+        config: &TwinConfig,
+        board: &EmulatedBoard,
+    ) -> Outcome<VirtualLine> {
         let no_swimmer =
             |error| Failure::BadInput(format!("the swimmer `{}` cannot swim: {error}", file.name));
         match self {
             Self::Twin => {
-                let twin = Twin::new(config).map_err(no_swimmer)?;
+                let twin = Twin::new(config.clone()).map_err(no_swimmer)?;
                 Ok(VirtualPort::new(Box::new(twin), WireSpeed::robot()))
             }
             Self::Emulator => {
-                let world = World::new(&config).map_err(no_swimmer)?;
+                let world = World::new(config).map_err(no_swimmer)?;
                 let robot = EmulatedRobot::new(Board::start(&board.config()?)?, world)?
                     .with_log_reader(log_reader(board.firmware_log.as_deref())?)
                     .without_events();
-                let line = commission(robot, &config)?;
+                let line = commission(robot, config)?;
                 Ok(line.map_device(|robot| Box::new(robot) as Box<dyn VirtualRobot>))
             }
         }

@@ -1,5 +1,5 @@
-// The swimmer's board: an emulated RP2040 with its flash, the servos' pins, the battery's divider, the HC-05's STATE pin, and
-// the mains switch. Time is emulated time in nanoseconds and never the machine's.
+// The swimmer's board: an emulated RP2040 with its flash, the servos' pins, the battery's divider, the HC-05's STATE pin, the
+// USB socket, jumper, button, and the mains switch. Time is emulated time in nanoseconds and never the machine's.
 
 import fs from 'node:fs';
 import { RP2040 } from 'rp2040js';
@@ -8,6 +8,7 @@ import { quicken } from './quick.mjs';
 import { noise, paint, unpainted } from './ram.mjs';
 import { Rtt } from './rtt.mjs';
 import { fillGaps } from './shims.mjs';
+import { Cable } from './usb.mjs';
 import { FlashCache } from './xip.mjs';
 
 const FLASH_START = 0x10000000;
@@ -27,10 +28,12 @@ const ALL_PERIPHERALS = 0x1ffffff;
 const HAD_POR = 0x100, HAD_RUN = 0x10000;
 /** Of the ring oscillator's random bits, which go on over resets and power cycles. */
 const CHANCE = 0x2545f491;
-export const PINS = { front: 16, back: 17, state: { 'nano-connect': 25, pico: 22 }, led: { 'nano-connect': 6, pico: 25 } };
+export const PINS = { front: 16, back: 17, presence: 5, state: { 'nano-connect': 25, pico: 22 }, led: { 'nano-connect': 6, pico: 25 } };
 
 /** Thrown inside the emulation when the power goes. */
 class PowerCut extends Error {}
+/** Thrown inside the emulation when the program hands the chip over to the loader in its boot ROM. */
+class HandedOver extends Error {}
 
 export class Board {
   constructor(elf, kind) {
@@ -42,6 +45,9 @@ export class Board {
     this.logBlock = elf.symbols._SEGGER_RTT;
     this.randomBit = ringOscillator(CHANCE, () => this.now);
     this.connected = false;
+    this.plugged = false;
+    this.jumper = false;
+    this.button = false;
     this.battery = 0;
     this.before = 0;
     this.cached = false;
@@ -50,6 +56,7 @@ export class Board {
     this.flashBytesLeft = Infinity;
     this.eraseNs = ERASE_NS;
     this.powered = true;
+    this.loading = false;
     this.powerOn();
   }
 
@@ -64,7 +71,26 @@ export class Board {
   }
 
   /** Characters towards the board, at its baud rate; above the byte the error bits of the UART's data register. */
-  feed(characters) { if (this.powered) this.mcu.uart[0].feed(characters); }
+  feed(characters) { if (this.running) this.mcu.uart[0].feed(characters); }
+
+  /** Bytes to the board's USB port; they wait until it is open. */
+  feedUsb(bytes) { if (this.running) this.cable.feed(bytes); }
+
+  /** A computer's cable in the USB socket, whose power does not matter here. */
+  setPlugged(plugged) {
+    this.plugged = plugged;
+    if (plugged) this.cable.plug();
+    else this.cable.unplug();
+  }
+
+  /** The presence jumper, from its pin to ground. */
+  setJumper(closed) {
+    this.jumper = closed;
+    this.mcu.gpio[PINS.presence].setInputValue(!closed);
+  }
+
+  /** The BOOTSEL button. */
+  setButton(pressed) { this.button = pressed; }
 
   /** The HC-05's STATE pin. */
   setConnected(connected) {
@@ -149,17 +175,23 @@ export class Board {
     new DataView(this.mcu.flash.buffer, this.mcu.flash.byteOffset).setUint16((address & ~1) - FLASH_START, halfword, true);
   }
 
+  /** The program runs: there is power, and it has not handed the chip over. */
+  get running() { return this.powered && !this.loading; }
+
   /** Runs until emulated time `until` [ns], or until the power is cut, or for `afterByte` from the first byte that it sends. */
   run(until, afterByte = Infinity) {
     this.until = until;
     this.afterByte = afterByte;
-    while (this.powered && this.now < this.until) {
+    while (this.running && this.now < this.until) {
       try {
         this.runUntilReset();
       } catch (thrown) {
-        if (!(thrown instanceof PowerCut)) throw thrown;
-        this.powered = false;
-        this.events.power_cuts.push({ at: this.now });
+        if (thrown instanceof PowerCut) {
+          this.powered = false;
+          this.events.power_cuts.push({ at: this.now });
+        } else if (thrown instanceof HandedOver) {
+          this.loading = true;
+        } else throw thrown;
       }
       this.takeLog();
       if (this.reset) {
@@ -168,7 +200,7 @@ export class Board {
         this.start({ ...this.reset, ram: this.mcu.sram });
       }
     }
-    if (!this.powered) this.before += Math.max(0, this.until - this.now);
+    if (!this.running) this.before += Math.max(0, this.until - this.now);
   }
 
   /** A character has left the UART. */
@@ -176,6 +208,21 @@ export class Board {
     this.until = Math.min(this.until, this.now + this.afterByte);
     this.events.uart.push(byte);
     this.events.uart_at.push(this.now);
+  }
+
+  /** A packet has reached the computer's port. */
+  sendUsb(bytes) {
+    this.until = Math.min(this.until, this.now + this.afterByte);
+    for (const byte of bytes) {
+      this.events.usb.push(byte);
+      this.events.usb_at.push(this.now);
+    }
+  }
+
+  /** The program has asked the boot ROM for its loader: the chip belongs to the computer until that resets it. */
+  handOver({ activityPins, disabledInterfaces }) {
+    this.events.loader.push({ at: this.now, activity_pins: activityPins >>> 0, disabled_interfaces: disabledInterfaces >>> 0 });
+    throw new HandedOver();
   }
 
   /** What the firmware has logged; it has a ring for no more than a kilobyte. */
@@ -258,6 +305,7 @@ export class Board {
   /** The chip comes out of reset as its boot ROM leaves it: at the second-stage loader. RAM outlives all but the power. */
   start({ reason, scratch, ram, chipReset = HAD_POR, heldInReset = ALL_PERIPHERALS }) {
     this.reset = null;
+    this.loading = false;
     this.busy = 0;
     this.control = 0;
     this.count = 0;
@@ -277,7 +325,9 @@ export class Board {
       onByte: (byte) => this.send(byte),
       onReset: (reset) => { this.reset = reset; },
       flash: { erase: (at, count) => this.erase(at, count), program: (at, bytes) => this.program(at, bytes) },
+      onLoader: (asked) => this.handOver(asked),
       randomBit: this.randomBit,
+      button: () => this.button,
       warn: (text) => { this.events.warnings[text] = (this.events.warnings[text] ?? 0) + 1; },
     });
     mcu.flash.set(this.flash, 0);
@@ -288,7 +338,10 @@ export class Board {
     dog.scratchData.set(scratch);
     mcu.peripherals[0x40064].writeUint32(8, chipReset);
     mcu.peripherals[0x4000c].reset = heldInReset;
+    this.cable = new Cable(mcu, (bytes) => this.sendUsb(bytes));
+    if (this.plugged) this.cable.plug();
     this.setConnected(this.connected);
+    this.setJumper(this.jumper);
     this.setBattery(this.battery);
     this.watchPulses();
     quicken(mcu);
@@ -369,5 +422,8 @@ function entry(elf, part) {
 }
 
 function emptyEvents() {
-  return { uart: [], uart_at: [], log: [], periods: [], edges: [], led: [], resets: [], power_cuts: [], patch_reached: [], warnings: {}, erased: 0, programmed: 0 };
+  return {
+    uart: [], uart_at: [], usb: [], usb_at: [], log: [], periods: [], edges: [], led: [], resets: [], power_cuts: [], loader: [],
+    patch_reached: [], warnings: {}, erased: 0, programmed: 0,
+  };
 }

@@ -24,19 +24,33 @@ class RingOscillator extends Registers {
   readUint32(offset) { return (offset & 0xfff) === RANDOMBIT ? this.randomBit() : super.readUint32(offset); }
 }
 
+const SELECT_STATUS = 0x08, SELECT_CONTROL = 0x0c, DRIVER_MASK = 0x3000, DRIVER_OFF = 0x2000, LEVEL_AT_PAD = 1 << 17;
+
+/** The flash chip's pins. Its select line is pulled low by the BOOTSEL button where the chip does not drive it. */
+class FlashPins extends Registers {
+  constructor(pressed) {
+    super({});
+    this.pressed = pressed;
+  }
+  readUint32(offset) {
+    if ((offset & 0xfff) !== SELECT_STATUS) return super.readUint32(offset);
+    const floats = (super.readUint32(SELECT_CONTROL) & DRIVER_MASK) === DRIVER_OFF;
+    return floats && this.pressed() ? 0 : LEVEL_AT_PAD;
+  }
+}
+
 /**
- * Fills every gap of a fresh `mcu`. `flash` performs erase and program; `onReset` hears the watchdog; `randomBit` is the ring
- * oscillator's; returns code traps.
+ * Fills every gap of a fresh `mcu`. `flash` performs erase and program; `onReset` hears the watchdog, `onLoader` the boot ROM
+ * asked for its loader; `randomBit` is the ring oscillator's, `button` whether BOOTSEL is pressed; returns code traps.
  */
-export function fillGaps(mcu, { onByte, onReset, flash, randomBit, warn }) {
+export function fillGaps(mcu, { onByte, onReset, onLoader, flash, randomBit, button, warn }) {
   uarts(mcu, onByte);
-  blocksThatAreMissing(mcu, randomBit);
+  blocksThatAreMissing(mcu, randomBit, button);
   interruptController(mcu.core, mcu.ppb);
   sendEvent(mcu, warn);
   undefinedInstructions(mcu);
   watchdog(mcu.peripherals[0x40058], onReset);
-  mcu.pwm.channels.forEach(({ timer }) => counting(timer));
-  return bootRom(mcu, flash);
+  return bootRom(mcu, flash, onLoader);
 }
 
 // Gap: UART without FIFOs, bit times and a falling transmit interrupt (uart.mjs).
@@ -48,8 +62,10 @@ function uarts(mcu, onByte) {
   }
 }
 
-// Gap: ring oscillator, voltage regulator and XIP cache control do not answer; embassy waits for their ready bits.
-function blocksThatAreMissing(mcu, randomBit) {
+// Gap: ring oscillator, voltage regulator and XIP cache control do not answer; embassy waits for their ready bits. Nor do the
+// flash chip's pins.
+function blocksThatAreMissing(mcu, randomBit, button) {
+  mcu.peripherals[0x40018] = new FlashPins(button);
   mcu.peripherals[0x40060] = new RingOscillator(randomBit);
   mcu.peripherals[0x40064] = new Registers({ 0: 0xb1, 8: 0x100 });         // VREG_AND_CHIP_RESET: had a power-on reset
   mcu.peripherals[0x14000] = new Registers({ 0: 3, 8: 3 });                // XIP_CTRL: flush ready, FIFO empty
@@ -120,23 +136,11 @@ function watchdog(dog, onReset) {
   };
 }
 
-// Gap: a PWM counter is rounded to a whole count when its divider or top is written, even with what they already are, and
-// so drifts under a program that writes all of a slice's registers at every tick. What does not change changes nothing.
-function counting(timer) {
-  for (const name of ['prescaler', 'top']) {
-    const { get, set } = Object.getOwnPropertyDescriptor(Object.getPrototypeOf(timer), name);
-    Object.defineProperty(timer, name, {
-      get() { return get.call(this); },
-      set(value) { if (value !== get.call(this)) set.call(this, value); },
-    });
-  }
-}
-
 // Gap: no boot ROM. A stub with the header and function table that programs look into; its functions trap into the emulator.
 const RETURN = 0x4770; // bx lr
 const TABLE = 0x100, LOOK_UP = 0x80, FIRST_FUNCTION = 0x400, ROM_SIZE = 16384;
 
-function bootRom(mcu, flash) {
+function bootRom(mcu, flash, onLoader) {
   const rom = Buffer.alloc(ROM_SIZE);
   for (let at = 0x80; at < 0x2000; at += 2) rom.writeUInt16LE(RETURN, at);
   rom.writeUInt32LE(0x20041f00, 0x00);
@@ -158,6 +162,7 @@ function bootRom(mcu, flash) {
     RE: ([offset, count]) => flash.erase(offset, count),
     RP: ([offset, source, count]) =>
       flash.program(offset, Uint8Array.from({ length: count }, (_, i) => mcu.readUint8(source + i))),
+    UB: ([activityPins, disabledInterfaces]) => onLoader({ activityPins, disabledInterfaces }),
     C4: ([to, from, count]) => copy(to, from, count), MC: ([to, from, count]) => copy(to, from, count),
     S4: ([to, value, count]) => fill(to, value, count), MS: ([to, value, count]) => fill(to, value, count),
   };

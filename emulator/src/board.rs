@@ -3,6 +3,7 @@
 
 mod config;
 mod error;
+mod hands;
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{BufRead, BufReader, Write};
@@ -22,6 +23,16 @@ pub use error::EmulatorError;
 /// A float in nanoseconds is exact for so long that this is plenty.
 const ROUNDING: Duration = Duration::from_nanos(10);
 
+/// What leads from the board to a computer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Line {
+    /// The UART to the HC-05.
+    #[default]
+    Uart,
+    /// The USB cable.
+    Usb,
+}
+
 /// An emulated board with the unmodified firmware in its flash.
 #[derive(Debug)]
 pub struct Board {
@@ -31,8 +42,8 @@ pub struct Board {
     now: Duration,
     powered: bool,
     events: Events,
-    /// What left the UART, and when.
-    sent: VecDeque<(Duration, u8)>,
+    /// What left the UART and the USB port, and when.
+    sent: [VecDeque<(Duration, u8)>; 2],
     log: Log,
 }
 
@@ -67,7 +78,7 @@ impl Board {
             now: Duration::ZERO,
             powered: true,
             events: Events::default(),
-            sent: VecDeque::new(),
+            sent: Default::default(),
             log,
         })
     }
@@ -133,45 +144,21 @@ impl Board {
         self.perform(&json!({ "do": "feed", "characters": bytes }))
     }
 
-    /// The same with what a UART can find wrong with each: see [`heard`](host_link::port::heard) for a wrong baud rate.
+    /// Bytes to the board's USB port; they wait until it is plugged in and open.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn feed_usb(&mut self, bytes: &[u8]) -> Result<(), EmulatorError> {
+        self.perform(&json!({ "do": "feed_usb", "bytes": bytes }))
+    }
+
+    /// The same as [`Self::feed`] with what a UART can find wrong with each: see [`heard`](host_link::port::heard) for a wrong baud rate.
     ///
     /// # Errors
     /// As [`Self::run`].
     pub fn feed_characters(&mut self, characters: &[Character]) -> Result<(), EmulatorError> {
         let characters: Vec<u16> = characters.iter().copied().map(data_register).collect();
         self.perform(&json!({ "do": "feed", "characters": characters }))
-    }
-
-    /// The radio's STATE pin.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
-    pub fn set_connected(&mut self, up: bool) -> Result<(), EmulatorError> {
-        self.perform(&json!({ "do": "connected", "up": up }))
-    }
-
-    /// Voltage at the battery's ADC pin \[V\], 0 to 3.3.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
-    pub fn set_battery(&mut self, volts: f64) -> Result<(), EmulatorError> {
-        self.perform(&json!({ "do": "battery", "volts": volts }))
-    }
-
-    /// The power goes when so many more bytes of flash have been erased or programmed.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
-    pub fn cut_power_after(&mut self, flash_bytes: u32) -> Result<(), EmulatorError> {
-        self.perform(&json!({ "do": "cut", "flashBytes": flash_bytes }))
-    }
-
-    /// How long the flash chip takes to erase a sector from now on; 45 ms at first.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
-    pub fn set_erase_time(&mut self, time: Duration) -> Result<(), EmulatorError> {
-        self.perform(&json!({ "do": "erase_time", "ns": time.as_nanos() as f64 }))
     }
 
     /// Writes all that the flash chip holds to a file.
@@ -208,38 +195,6 @@ impl Board {
         self.perform(&json!({ "do": "cache" }))
     }
 
-    /// Off and on again: RAM is lost, flash stays.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
-    pub fn power_cycle(&mut self) -> Result<(), EmulatorError> {
-        self.perform(&json!({ "do": "power_cycle" }))
-    }
-
-    /// The reset pin: RAM stays, the watchdog's scratch registers do not.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
-    pub fn pin_reset(&mut self) -> Result<(), EmulatorError> {
-        self.perform(&json!({ "do": "pin_reset" }))
-    }
-
-    /// The reset with which the chip's boot ROM ends the writing of flash over USB: by the watchdog, though nothing hung.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
-    pub fn boot_rom_reset(&mut self) -> Result<(), EmulatorError> {
-        self.perform(&json!({ "do": "boot_rom_reset" }))
-    }
-
-    /// A debugger's reset, of the core alone: RAM, the watchdog's scratch registers and its last reason stay.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
-    pub fn debugger_reset(&mut self) -> Result<(), EmulatorError> {
-        self.perform(&json!({ "do": "debugger_reset" }))
-    }
-
     /// Changes two bytes of the running code, until the next reset.
     ///
     /// # Errors
@@ -271,15 +226,20 @@ impl Board {
         std::mem::take(&mut self.events)
     }
 
-    /// Takes at most `room` bytes of what the board has sent until `now`.
-    pub fn take_sent(&mut self, now: Duration, room: usize, out: &mut Vec<u8>) {
-        let sent = self.sent.iter().take_while(|(at, _)| *at <= now).count();
-        out.extend(self.sent.drain(..sent.min(room)).map(|(_, byte)| byte));
+    /// Takes at most `room` bytes of what the board has sent over a line until `now`.
+    pub fn take_sent(&mut self, line: Line, now: Duration, room: usize, out: &mut Vec<u8>) {
+        let queue = &mut self.sent[line as usize];
+        let sent = queue.iter().take_while(|(at, _)| *at <= now).count();
+        out.extend(queue.drain(..sent.min(room)).map(|(_, byte)| byte));
     }
 
     fn take_in(&mut self, answer: Answer) {
-        let times = answer.uart_at.into_iter().map(nanos);
-        self.sent.extend(times.zip(answer.uart));
+        for (queue, times, bytes) in [
+            (Line::Uart, answer.uart_at, answer.uart),
+            (Line::Usb, answer.usb_at, answer.usb),
+        ] {
+            self.sent[queue as usize].extend(times.into_iter().map(nanos).zip(bytes));
+        }
         self.events.append(answer.events);
         for chunk in &answer.log {
             self.events.log.extend(self.log.read(chunk));

@@ -23,7 +23,7 @@ impl BoardConfig {
             scripts: root.join(SCRIPTS),
             firmware: target
                 .join(IMAGES)
-                .join(format!("firmware-{}.elf", kind.word())),
+                .join(format!("swimmer-{}.elf", kind.word())),
             kind,
         }
     }
@@ -41,7 +41,7 @@ mod tests {
         assert_eq!(config.scripts, root.join("emulator/board"));
         assert_eq!(
             config.firmware,
-            root.join("target/firmware-images/firmware-pico.elf")
+            root.join("target/firmware-images/swimmer-pico.elf")
         );
     }
 
@@ -51,7 +51,7 @@ mod tests {
         let config = BoardConfig::of_checkout(&place, Some(&place), BoardKind::NanoConnect);
         assert_eq!(
             config.firmware,
-            place.join("firmware-images/firmware-nano-connect.elf")
+            place.join("firmware-images/swimmer-nano-connect.elf")
         );
         assert!(config.missing().is_some());
     }

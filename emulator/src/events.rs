@@ -160,6 +160,24 @@ impl PowerCut {
     }
 }
 
+/// The firmware handed the chip over to the loader in its boot ROM, which ends with
+/// [`Board::boot_rom_reset`](crate::Board::boot_rom_reset).
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct Loader {
+    at: f64,
+    /// Pins that show its activity, a bit each.
+    pub activity_pins: u32,
+    /// Interfaces it shall not have: 1 the drive, 2 picotool's.
+    pub disabled_interfaces: u32,
+}
+
+impl Loader {
+    /// When.
+    pub fn at(&self) -> Duration {
+        nanos(self.at)
+    }
+}
+
 /// Everything since the last time it was taken.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 pub struct Events {
@@ -173,6 +191,8 @@ pub struct Events {
     pub resets: Vec<Reset>,
     /// When the power was cut, as [`Board::cut_power_after`](crate::Board::cut_power_after) asked.
     pub power_cuts: Vec<PowerCut>,
+    /// When the chip was handed over to its loader.
+    pub loader: Vec<Loader>,
     /// When patched code first ran.
     pub patch_reached: Vec<PatchReached>,
     /// Sectors of flash erased.
@@ -196,6 +216,7 @@ impl Events {
         self.led.extend(later.led);
         self.resets.extend(later.resets);
         self.power_cuts.extend(later.power_cuts);
+        self.loader.extend(later.loader);
         self.patch_reached.extend(later.patch_reached);
         self.erased += later.erased;
         self.programmed += later.programmed;
@@ -230,6 +251,8 @@ pub(crate) struct Answer {
     pub(crate) powered: bool,
     pub(crate) uart: Vec<u8>,
     pub(crate) uart_at: Vec<f64>,
+    pub(crate) usb: Vec<u8>,
+    pub(crate) usb_at: Vec<f64>,
     pub(crate) log: Vec<Chunk>,
     #[serde(flatten)]
     pub(crate) events: Events,

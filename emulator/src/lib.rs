@@ -13,8 +13,8 @@ mod events;
 mod log;
 mod robot;
 
-pub use board::{Board, BoardConfig, BoardKind, EmulatorError};
+pub use board::{Board, BoardConfig, BoardKind, EmulatorError, Line};
 pub use commission::commission;
-pub use events::{Edge, Events, Led, PatchReached, Period, PowerCut, Reset, Servo, Stack};
+pub use events::{Edge, Events, Led, Loader, PatchReached, Period, PowerCut, Reset, Servo, Stack};
 pub use log::{LogLevel, LogLine};
 pub use robot::EmulatedRobot;

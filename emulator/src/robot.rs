@@ -8,12 +8,13 @@ use std::time::Duration;
 use host_link::port::{Device, WireSpeed};
 use twin::{VirtualRobot, World};
 
-use crate::{Board, EmulatorError, Events, LogLine, Period};
+use crate::{Board, EmulatorError, Events, Line, LogLine, Period};
 
 /// A robot whose brain is the real firmware.
 #[derive(Debug)]
 pub struct EmulatedRobot {
     board: Board,
+    line: Line,
     world: World,
     /// How far the robot has lived; the board may be ahead, within `quiet`.
     now: Duration,
@@ -53,6 +54,7 @@ impl EmulatedRobot {
         board.set_connected(true)?;
         Ok(Self {
             board,
+            line: Line::Uart,
             world,
             now: Duration::ZERO,
             quiet: Quiet::default(),
@@ -64,6 +66,17 @@ impl EmulatedRobot {
             reader: None,
             failed: None,
         })
+    }
+
+    /// Talks over the USB cable, which is plugged in, and not over the radio, which nobody is connected to.
+    ///
+    /// # Errors
+    /// [`EmulatorError`] when the board does not answer.
+    pub fn over_usb(mut self) -> Result<Self, EmulatorError> {
+        self.line = Line::Usb;
+        self.board.set_connected(false)?;
+        self.board.set_plugged(true)?;
+        Ok(self)
     }
 
     /// Shows every line of the firmware's log to `reader`, when it is written.
@@ -90,7 +103,7 @@ impl EmulatedRobot {
         std::mem::take(&mut self.events)
     }
 
-    /// When the last byte that came over the line was in the board's UART.
+    /// When the last byte that came over the line was in the board's UART, or on its way through the cable.
     pub fn last_heard(&self) -> Duration {
         self.heard
     }
@@ -142,13 +155,22 @@ impl Device for EmulatedRobot {
     }
 
     fn receive(&mut self, bytes: &[u8]) {
-        let count = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
-        self.heard = self.heard.max(self.board.now()) + WireSpeed::robot().byte_time() * count;
-        self.attempt(|robot| robot.board.feed(bytes));
+        match self.line {
+            Line::Uart => {
+                let count = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
+                self.heard =
+                    self.heard.max(self.board.now()) + WireSpeed::robot().byte_time() * count;
+                self.attempt(|robot| robot.board.feed(bytes));
+            }
+            Line::Usb => {
+                self.heard = self.board.now();
+                self.attempt(|robot| robot.board.feed_usb(bytes));
+            }
+        }
     }
 
     fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
-        self.board.take_sent(self.now, room, out);
+        self.board.take_sent(self.line, self.now, room, out);
     }
 
     fn expect_quiet(&mut self, until: Duration, travel: Duration) {

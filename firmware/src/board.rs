@@ -4,8 +4,10 @@ use crate::build_setting::number;
 use embassy_rp::Peri;
 use embassy_rp::Peripherals;
 use embassy_rp::gpio::AnyPin;
+#[cfg(feature = "pico")]
+use embassy_rp::peripherals::BOOTSEL;
 use embassy_rp::peripherals::{
-    ADC, FLASH, PIN_0, PIN_1, PIN_16, PIN_17, PIN_26, PWM_SLICE0, UART0, WATCHDOG,
+    ADC, FLASH, PIN_0, PIN_1, PIN_5, PIN_16, PIN_17, PIN_26, PWM_SLICE0, UART0, USB, WATCHDOG,
 };
 
 #[cfg(all(feature = "nano-connect", feature = "pico"))]
@@ -18,7 +20,13 @@ compile_error!("no board chosen: add `--features nano-connect` or `--features pi
 /// GPIO of the HC-05's STATE where it is not the board's usual one.
 const STATE_PIN: Option<u32> = number(option_env!("SWIMMER_STATE_PIN"));
 
-/// What the boards share and where they differ (LED and STATE pin only).
+/// GPIO of the on-board LED.
+#[cfg(feature = "nano-connect")]
+pub(crate) const LED: u32 = 6;
+#[cfg(not(feature = "nano-connect"))]
+pub(crate) const LED: u32 = 25;
+
+/// What the boards share and where they differ (LED, STATE pin and BOOTSEL button only).
 pub(crate) struct Board {
     /// The serial link to the HC-05: UART0.
     pub(crate) uart: Peri<'static, UART0>,
@@ -28,6 +36,13 @@ pub(crate) struct Board {
     pub(crate) link_rx: Peri<'static, PIN_1>,
     /// The HC-05's STATE, high while connected: Nano D2 = GPIO25, Pico GP22, unless [`STATE_PIN`] names another.
     pub(crate) link_state: Peri<'static, AnyPin>,
+    /// The USB socket.
+    pub(crate) usb: Peri<'static, USB>,
+    /// The presence jumper, to ground: GPIO5 (Nano D10, Pico GP5).
+    pub(crate) presence: Peri<'static, PIN_5>,
+    /// The Pico's button.
+    #[cfg(feature = "pico")]
+    pub(crate) bootsel: Peri<'static, BOOTSEL>,
     /// Both servos on one slice, so that they switch in the same period.
     pub(crate) servo_slice: Peri<'static, PWM_SLICE0>,
     /// Front joint φ₁: GPIO16, channel A (Nano D4, Pico GP16).
@@ -72,6 +87,10 @@ impl Board {
             link_tx: p.PIN_0,
             link_rx: p.PIN_1,
             link_state,
+            usb: p.USB,
+            presence: p.PIN_5,
+            #[cfg(feature = "pico")]
+            bootsel: p.BOOTSEL,
             servo_slice: p.PWM_SLICE0,
             servo_front: p.PIN_16,
             servo_back: p.PIN_17,

@@ -7,7 +7,7 @@ use link_protocol::{Board, FirmwareVersion, ResetReason};
 
 use crate::uart::RECEIVE_BUFFER;
 use crate::watchdog::Watchdog;
-use crate::{random, survivors};
+use crate::{random, retained_ram};
 
 /// Everything [`gait_player::Brain::new`] asks for.
 pub(crate) fn brain_config(watchdog: &mut Watchdog, whole_chip: bool) -> BrainConfig {
@@ -53,10 +53,11 @@ fn boot(watchdog: &mut Watchdog, whole_chip: bool) -> Boot {
         session_seed: (random >> 32) as u16,
         // The scratch register is empty after the reset pin: an e-stop must outlive that too.
         kept: match watchdog.kept() {
-            0 => survivors::kept(),
+            0 => retained_ram::kept(),
             word => word,
         },
-        crash_message: survivors::take_note().message(),
+        crash_message: retained_ram::take_note().message(),
+        starts: retained_ram::starts(),
     }
 }
 

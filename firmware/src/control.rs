@@ -1,17 +1,17 @@
 //! The control task: the one place that calls the brain, at every servo period and whenever bytes came.
 
-use embassy_futures::select::{Either, select};
+use embassy_futures::select::{Either3, select3};
 use embassy_rp::gpio::Input;
+use embassy_rp::rom_data::reset_to_usb_boot;
 use embassy_time::{Duration, Instant, Timer};
-use gait_player::{Brain, Inputs, TICK_US};
+use gait_player::{Brain, Inputs, Output, TICK_US, Transport};
 
-use crate::battery;
 use crate::led::Led;
+use crate::presence::{Presence, button};
 use crate::servos::Servos;
 use crate::storage::FlashStorage;
-use crate::survivors;
-use crate::uart::{RECEIVED, TO_SEND};
 use crate::watchdog::Watchdog;
+use crate::{battery, board, retained_ram, uart, usb};
 
 const TICK: Duration = Duration::from_micros(TICK_US as u64);
 
@@ -23,18 +23,24 @@ pub(crate) struct Control {
     pub(crate) watchdog: Watchdog,
     pub(crate) storage: FlashStorage,
     pub(crate) link_state: &'static Input<'static>,
+    pub(crate) presence: Presence,
 }
 
 /// Runs for ever in the interrupt executor.
 #[embassy_executor::task]
 pub(crate) async fn control(mut control: Control) {
-    let mut bytes = [0; 64];
+    let (mut over_uart, mut over_usb) = ([0; 64], [0; 64]);
     let mut next_tick = Instant::now() + TICK;
     control.servos.start();
     loop {
         // The tick stands first: a flood of bytes cannot hold it up.
-        match select(Timer::at(next_tick), RECEIVED.read(&mut bytes)).await {
-            Either::First(()) => {
+        let event = select3(
+            Timer::at(next_tick),
+            uart::LINE.received.read(&mut over_uart),
+            usb::LINE.received.read(&mut over_usb),
+        );
+        match event.await {
+            Either3::First(()) => {
                 control.tick();
                 next_tick += TICK;
                 // Erasing flash stops everything. Ticks missed meanwhile are left out; the others stay where they were.
@@ -42,29 +48,43 @@ pub(crate) async fn control(mut control: Control) {
                     next_tick += TICK;
                 }
             }
-            Either::Second(count) => control
-                .brain
-                .receive(now_us(), bytes.get(..count).unwrap_or_default()),
+            Either3::Second(count) => control.receive(Transport::Uart, over_uart.get(..count)),
+            Either3::Third(count) => control.receive(Transport::Usb, over_usb.get(..count)),
         }
         // Before the answer leaves: an e-stop that was acknowledged outlives a reset that comes before the next tick.
         control.watchdog.keep(control.brain.kept());
-        survivors::keep(control.brain.kept());
+        retained_ram::keep(control.brain.kept());
         control.hand_over_bytes();
     }
 }
 
 impl Control {
-    /// A function of its own, for `memory.x` to put it into RAM.
+    /// A function of its own, in RAM: `memory.x` says why.
+    // SAFETY of the section: it holds code of the chip, and is copied to RAM before any code of ours runs.
+    #[allow(unsafe_code)]
+    #[unsafe(link_section = ".fast.tick")]
     #[inline(never)]
     fn tick(&mut self) {
         let inputs = Inputs {
             battery_mv: battery::lowest_mv(),
             link_up: self.link_state.is_high(),
+            usb_up: usb::is_up(),
+            present: self.presence.shows(),
         };
         let output = self.brain.tick(now_us(), &inputs);
         self.servos.set(output.pulses_ns);
         self.led.set(output.led);
         self.watchdog.feed();
+        button::may_be_looked_at(output.pulses_ns.is_none());
+        retained_ram::keep_starts(output.starts);
+        if output.storage_wanted || output.boot_loader {
+            self.while_stopped(&output);
+        }
+    }
+
+    /// What takes its time.
+    #[inline(never)]
+    fn while_stopped(&mut self, output: &Output) {
         if output.storage_wanted
             && let Err(error) = self
                 .brain
@@ -72,25 +92,23 @@ impl Control {
         {
             defmt::warn!("storing gait or settings: {}; the brain tries again", error);
         }
+        if output.boot_loader {
+            defmt::info!("leaving for the boot loader");
+            self.watchdog.hand_over();
+            reset_to_usb_boot(1 << board::LED, 0);
+        }
     }
 
-    /// Moves what the brain wants to send into the pipe of the UART task, as far as it has room.
+    fn receive(&mut self, transport: Transport, bytes: Option<&[u8]>) {
+        let bytes = bytes.unwrap_or_default();
+        self.brain.receive(now_us(), transport, bytes);
+    }
+
+    /// Moves what the brain wants to send to where it leaves, as far as there is room.
     fn hand_over_bytes(&mut self) {
-        let mut bytes = [0; 64];
-        loop {
-            let room = TO_SEND.free_capacity().min(bytes.len());
-            let count = self.brain.transmit(&mut bytes[..room]);
-            if count == 0 {
-                return;
-            }
-            // There is room, for this task is the only writer; but one write ends where the pipe's ring wraps.
-            let mut rest = &bytes[..count];
-            while let Ok(written) = TO_SEND.try_write(rest)
-                && written < rest.len()
-            {
-                rest = &rest[written..];
-            }
-        }
+        let brain = &mut *self.brain;
+        uart::LINE.fill(|bytes| brain.transmit(Transport::Uart, bytes));
+        usb::LINE.fill(|bytes| brain.transmit(Transport::Usb, bytes));
     }
 }
 

@@ -7,7 +7,7 @@ use embassy_rp::pac;
 use gait_player::CrashNote;
 use portable_atomic::{AtomicBool, Ordering};
 
-use crate::survivors;
+use crate::retained_ram;
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
@@ -31,7 +31,7 @@ fn end(note: impl FnOnce() -> CrashNote) -> ! {
     // A crash while a crash is told has only the reset left.
     if !ENDING.swap(true, Ordering::Relaxed) {
         let note = note();
-        survivors::leave(note);
+        retained_ram::leave(note);
         defmt::error!("crashed: {=str}", note.message().as_str());
     }
     // All but the oscillators is reset, the pins too.

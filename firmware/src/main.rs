@@ -2,12 +2,15 @@
 //! decides nothing.
 //!
 //! ```text
-//!  thread executor                        interrupt executor (SWI_IRQ_1), above the thread, below the UART
-//!  ┌────────────────┐   RECEIVED  ┌──────────────────────────────────────────────┐
+//!  thread executor                        interrupt executor (SWI_IRQ_1), above the thread and USB, below the UART
+//!  ┌────────────────┐   a Line    ┌──────────────────────────────────────────────┐
 //!  │ uart::receive  │ ──────────► │ control, at every 20 ms tick and when bytes  │ ──► servos (PWM slice)
 //!  │ uart::send     │ ◄────────── │ came: Brain::receive, tick, transmit         │ ──► LED, watchdog
-//!  │ battery::sample│   TO_SEND   │ only while stopped: Brain::serve_storage     │ ◄─► storage (flash)
-//!  │ watchdog::beat │             └──────────────────────────────────────────────┘
+//!  │ usb::receive   │   another   │ only while stopped: Brain::serve_storage,    │ ◄─► storage (flash)
+//!  │ usb::send, run │ ◄─────────► │ and the way to the boot loader               │ ──► boot ROM
+//!  │ battery::sample│             └──────────────────────────────────────────────┘
+//!  │ watchdog::beat │                                  ▲ presence (jumper)
+//!  │ button::watch  │ ─────────────────────────────────┘ on the Pico: BOOTSEL, while pulses are off
 //!  └────────────────┘
 //! ```
 //!
@@ -19,6 +22,8 @@
 
 #[cfg(target_os = "none")]
 mod battery;
+#[cfg(target_os = "none")]
+mod binary_info;
 #[cfg(target_os = "none")]
 mod board;
 #[cfg(target_os = "none")]
@@ -32,7 +37,13 @@ mod crash;
 #[cfg(target_os = "none")]
 mod led;
 #[cfg(target_os = "none")]
+mod line;
+#[cfg(target_os = "none")]
+mod presence;
+#[cfg(target_os = "none")]
 mod random;
+#[cfg(target_os = "none")]
+mod retained_ram;
 #[cfg(target_os = "none")]
 mod servos;
 #[cfg(target_os = "none")]
@@ -40,9 +51,9 @@ mod start;
 #[cfg(target_os = "none")]
 mod storage;
 #[cfg(target_os = "none")]
-mod survivors;
-#[cfg(target_os = "none")]
 mod uart;
+#[cfg(target_os = "none")]
+mod usb;
 #[cfg(target_os = "none")]
 mod watchdog;
 

@@ -6,6 +6,7 @@
 //! cut or doubled.
 
 use embassy_rp::Peri;
+use embassy_rp::pac;
 use embassy_rp::peripherals::{PIN_16, PIN_17, PWM_SLICE0};
 use embassy_rp::pwm::{Config, Pwm};
 
@@ -19,9 +20,13 @@ const TOP: u16 = 62_499;
 /// its promised 2 ms of CPU before a set-point comes a period late.
 const LEAD: u16 = 37_500;
 
-/// The PWM slice of both servos.
+/// The PWM slice of both servos. Divider, top and control are written once. From then on only the compare values are: what
+/// a write of the divider does to the count that is under way is not in the datasheet, and a period must not depend on it.
 pub(crate) struct Servos {
-    slice: Pwm<'static>,
+    /// Holds the pins: dropped, it gives them back.
+    _slice: Pwm<'static>,
+    /// Those of [`PWM_SLICE0`].
+    registers: pac::pwm::Channel,
 }
 
 impl Servos {
@@ -31,33 +36,32 @@ impl Servos {
         front: Peri<'static, PIN_16>,
         back: Peri<'static, PIN_17>,
     ) -> Self {
+        let mut config = Config::default();
+        config.divider = DIVIDER.into();
+        config.top = TOP;
+        config.enable = false;
         Self {
-            slice: Pwm::new_output_ab(slice, front, back, config(None, false)),
+            _slice: Pwm::new_output_ab(slice, front, back, config),
+            registers: pac::PWM.ch(0),
         }
     }
 
     /// Starts the counter, to be called at a control tick: from then on every wrap comes 12 ms after a tick, and as
     /// counter and ticks share one crystal they never drift apart.
     pub(crate) fn start(&mut self) {
-        self.slice.set_counter(TOP - LEAD);
-        self.slice.set_config(&config(None, true));
+        self.registers.ctr().write(|ctr| ctr.set_ctr(TOP - LEAD));
+        self.registers.csr().modify(|csr| csr.set_en(true));
     }
 
     /// Sets both pulses [ns] from the next period on; `None` leaves both outputs low.
     pub(crate) fn set(&mut self, pulses_ns: Option<[u32; 2]>) {
-        self.slice.set_config(&config(pulses_ns, true));
+        let [front, back] = pulses_ns.map_or([0; 2], |pulses| pulses.map(counts));
+        // One write for both: they are latched together.
+        self.registers.cc().write(|compare| {
+            compare.set_a(front);
+            compare.set_b(back);
+        });
     }
-}
-
-fn config(pulses_ns: Option<[u32; 2]>, enable: bool) -> Config {
-    let [compare_a, compare_b] = pulses_ns.map_or([0; 2], |pulses| pulses.map(counts));
-    let mut config = Config::default();
-    config.divider = DIVIDER.into();
-    config.top = TOP;
-    config.compare_a = compare_a;
-    config.compare_b = compare_b;
-    config.enable = enable;
-    config
 }
 
 /// Nearest count; past the period's end the output would stay high, so the count is held below it.

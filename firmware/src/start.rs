@@ -11,10 +11,11 @@ use static_cell::StaticCell;
 use crate::board::Board;
 use crate::control::{Control, control};
 use crate::led::Led;
+use crate::presence::Presence;
 use crate::servos::Servos;
 use crate::storage::FlashStorage;
 use crate::watchdog::Watchdog;
-use crate::{battery, boot, uart, watchdog};
+use crate::{battery, boot, uart, usb, watchdog};
 
 /// Runs `control` from an interrupt, so that no other task can hold it up.
 static ABOVE_THE_THREAD: InterruptExecutor = InterruptExecutor::new();
@@ -45,6 +46,8 @@ async fn main(spawner: Spawner) {
         board.link_state,
     );
 
+    usb::start(spawner, board.usb);
+
     static BRAIN: StaticCell<Brain> = StaticCell::new();
     let brain = BRAIN.init_with(|| Brain::new(boot::brain_config(&mut watchdog, whole_chip)));
     let mut storage = FlashStorage::new(board.flash);
@@ -59,6 +62,8 @@ async fn main(spawner: Spawner) {
 
     spawner.spawn(unwrap!(battery::sample(board.adc, board.battery)));
     spawner.spawn(unwrap!(watchdog::beat()));
+    #[cfg(feature = "pico")]
+    spawner.spawn(unwrap!(crate::presence::button::watch(board.bootsel)));
 
     // Priority 0, where the UART and the timer are, stays above: bytes are not lost while a tick is computed.
     interrupt::SWI_IRQ_1.set_priority(Priority::P1);
@@ -71,5 +76,6 @@ async fn main(spawner: Spawner) {
             watchdog,
             storage,
             link_state,
+            presence: Presence::new(board.presence),
         })));
 }

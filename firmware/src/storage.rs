@@ -1,4 +1,5 @@
-//! Flash behind the brain's storage trait: two raw slots for gait tables, a `sequential-storage` map for the settings.
+//! Flash behind the brain's storage trait: two raw slots for gait tables, a `sequential-storage` map for the settings, and
+//! another for the count of short starts, which is written so often that it must not wear the settings' pages.
 //!
 //! Erasing and programming stop the program (interrupts too) for as long as the flash is busy; the brain asks for it
 //! only while stopped. Addresses come from `memory.x`.
@@ -10,6 +11,7 @@ use embassy_rp::Peri;
 use embassy_rp::flash::{Blocking, ERASE_SIZE, Error as FlashError, Flash, READ_SIZE, WRITE_SIZE};
 use embassy_rp::peripherals::FLASH;
 use embedded_storage_async::nor_flash::{ErrorType, NorFlash, ReadNorFlash};
+use gait_player::ShortStarts;
 use gait_player::storage::{MAX_SETTINGS, PAGE, SLOT_PAGES, SLOTS, Storage};
 use sequential_storage::cache::{Cache, Uncached};
 use sequential_storage::map::{MapConfig, MapStorage};
@@ -18,8 +20,8 @@ use crate::watchdog::Watchdog;
 
 /// The smaller of the boards' flash chips (the Pico's).
 const FLASH_SIZE: usize = 2 * 1024 * 1024;
-/// The only key of the settings map.
-const SETTINGS_KEY: u8 = 0;
+/// The only key of each map.
+const KEY: u8 = 0;
 
 const _: () =
     assert!(SLOTS == 2 && SLOT_PAGES * PAGE <= ERASE_SIZE && PAGE == embassy_rp::flash::PAGE_SIZE);
@@ -34,6 +36,8 @@ unsafe extern "C" {
     static __gait_slot_1_end: u8;
     static __settings_start: u8;
     static __settings_end: u8;
+    static __starts_start: u8;
+    static __starts_end: u8;
 }
 
 /// Offset into the flash chip that a linker symbol stands for.
@@ -46,8 +50,8 @@ fn offset(symbol: *const u8) -> u32 {
 pub(crate) enum Error {
     /// The chip's driver refused.
     Flash(FlashError),
-    /// The settings map could not be read or written.
-    Settings(sequential_storage::Error<FlashError>),
+    /// A map could not be read or written.
+    Map(sequential_storage::Error<FlashError>),
     /// There is something where the settings are, but no settings can be made of it.
     SettingsLost,
     /// The brain asked for a slot or a page that there is not.
@@ -67,6 +71,7 @@ pub(crate) struct FlashStorage {
     chip: Chip,
     slots: [Range<u32>; SLOTS],
     settings: Range<u32>,
+    starts: Range<u32>,
 }
 
 /// The same in use, with the watchdog that must not fire meanwhile.
@@ -74,6 +79,7 @@ pub(crate) struct StorageInUse<'a> {
     flash: FedFlash<'a>,
     slots: &'a [Range<u32>; SLOTS],
     settings: &'a Range<u32>,
+    starts: &'a Range<u32>,
 }
 
 /// A flash chip whose erases the watchdog bears: a sector may take nearly as long as it waits, and nothing else can feed it
@@ -126,8 +132,7 @@ impl NorFlash for FedFlash<'_> {
     }
 }
 
-type SettingsMap<'a, 'b> =
-    MapStorage<u8, &'a mut FedFlash<'b>, Cache<Uncached, Uncached, Uncached, u8>>;
+type Map<'a, 'b> = MapStorage<u8, &'a mut FedFlash<'b>, Cache<Uncached, Uncached, Uncached, u8>>;
 
 impl FlashStorage {
     pub(crate) fn new(flash: Peri<'static, FLASH>) -> Self {
@@ -138,6 +143,7 @@ impl FlashStorage {
                 offset(&raw const __gait_slot_1_start)..offset(&raw const __gait_slot_1_end),
             ],
             settings: offset(&raw const __settings_start)..offset(&raw const __settings_end),
+            starts: offset(&raw const __starts_start)..offset(&raw const __starts_end),
         }
     }
 
@@ -150,6 +156,7 @@ impl FlashStorage {
             },
             slots: &self.slots,
             settings: &self.settings,
+            starts: &self.starts,
         }
     }
 }
@@ -171,12 +178,37 @@ impl<'b> StorageInUse<'b> {
         Ok(true)
     }
 
-    fn settings(&mut self) -> SettingsMap<'_, 'b> {
+    fn map(&mut self, place: Range<u32>) -> Map<'_, 'b> {
         MapStorage::new(
             &mut self.flash,
-            MapConfig::new(self.settings.clone()),
+            MapConfig::new(place),
             Cache::new_uncached(),
         )
+    }
+
+    /// The bytes of a map's one item.
+    fn load(&mut self, place: Range<u32>, bytes: &mut [u8]) -> Result<Option<usize>, Error> {
+        let mut buffer = [0; MAX_SETTINGS + 32];
+        let found =
+            block_on(self.map(place).fetch_item::<&[u8]>(&mut buffer, &KEY)).map_err(Error::Map)?;
+        Ok(found.and_then(|found| {
+            bytes.get_mut(..found.len())?.copy_from_slice(found);
+            Some(found.len())
+        }))
+    }
+
+    fn save(&mut self, place: Range<u32>, bytes: &[u8]) -> Result<(), Error> {
+        let mut buffer = [0; MAX_SETTINGS + 32];
+        let mut map = self.map(place);
+        let mut store = |map: &mut Map<'_, '_>| block_on(map.store_item(&mut buffer, &KEY, &bytes));
+        match store(&mut map) {
+            // Nothing in there can be read any more: what is new is better than nothing.
+            Err(sequential_storage::Error::Corrupted { .. }) => {
+                block_on(map.erase_all()).map_err(Error::Map)?;
+                store(&mut map).map_err(Error::Map)
+            }
+            outcome => outcome.map_err(Error::Map),
+        }
     }
 }
 
@@ -211,16 +243,7 @@ impl Storage for StorageInUse<'_> {
     }
 
     fn load_settings(&mut self, bytes: &mut [u8; MAX_SETTINGS]) -> Result<Option<usize>, Error> {
-        let mut buffer = [0; MAX_SETTINGS + 32];
-        let found = block_on(
-            self.settings()
-                .fetch_item::<&[u8]>(&mut buffer, &SETTINGS_KEY),
-        )
-        .map_err(Error::Settings)?;
-        let found = found.and_then(|found| {
-            bytes.get_mut(..found.len())?.copy_from_slice(found);
-            Some(found.len())
-        });
+        let found = self.load(self.settings.clone(), bytes)?;
         // The map reads past what it does not understand: then it has none, which is not the same as none yet.
         if found.is_none() && !self.settings_are_blank()? {
             return Err(Error::SettingsLost);
@@ -229,18 +252,15 @@ impl Storage for StorageInUse<'_> {
     }
 
     fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Error> {
-        let mut buffer = [0; MAX_SETTINGS + 32];
-        let mut settings = self.settings();
-        let mut store = |settings: &mut SettingsMap<'_, '_>| {
-            block_on(settings.store_item(&mut buffer, &SETTINGS_KEY, &bytes))
-        };
-        match store(&mut settings) {
-            // Nothing in there can be read any more: what is new is better than nothing.
-            Err(sequential_storage::Error::Corrupted { .. }) => {
-                block_on(settings.erase_all()).map_err(Error::Settings)?;
-                store(&mut settings).map_err(Error::Settings)
-            }
-            outcome => outcome.map_err(Error::Settings),
-        }
+        self.save(self.settings.clone(), bytes)
+    }
+
+    fn load_starts(&mut self, bytes: &mut [u8; ShortStarts::LEN]) -> Result<bool, Error> {
+        let found = self.load(self.starts.clone(), bytes)?;
+        Ok(found == Some(ShortStarts::LEN))
+    }
+
+    fn save_starts(&mut self, bytes: &[u8; ShortStarts::LEN]) -> Result<(), Error> {
+        self.save(self.starts.clone(), bytes)
     }
 }

@@ -9,12 +9,11 @@ use embassy_rp::peripherals::{PIN_0, PIN_1, UART0};
 use embassy_rp::uart::{
     BufferedInterruptHandler, BufferedUart, BufferedUartRx, BufferedUartTx, Config,
 };
-use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
-use embassy_sync::pipe::Pipe;
 use embedded_io_async::{Read, Write};
 use static_cell::StaticCell;
 
 use crate::build_setting::number;
+use crate::line::{Line, RECEIVED};
 
 /// What the HC-05 is set to by `swimmer robot hc05`.
 const BAUD: u32 = match number(option_env!("SWIMMER_LINK_BAUD")) {
@@ -25,19 +24,15 @@ const _: () = assert!(
     BAUD >= 9_600 && BAUD <= 460_800,
     "SWIMMER_LINK_BAUD must lie between 9600 and 460800"
 );
-/// The receiver's ring, and as much again in the pipe behind it.
+/// The receiver's ring.
 const RECEIVE_RING: usize = 1024;
-/// Bytes that may wait for the brain: what Hello advertises, and what the host keeps in flight at most.
-pub(crate) const RECEIVE_BUFFER: usize = 2 * RECEIVE_RING;
-/// Bytes that may wait for the UART, a few frames.
-const SEND_BUFFER: usize = 512;
+/// With the line behind it: what Hello advertises, and what the host keeps in flight at most.
+pub(crate) const RECEIVE_BUFFER: usize = RECEIVE_RING + RECEIVED;
 /// The transmitter's ring. Short, because what is in it still leaves after the connection is gone.
 const SEND_RING: usize = 32;
 
-/// Bytes from the link, for the control task.
-pub(crate) static RECEIVED: Pipe<CriticalSectionRawMutex, RECEIVE_RING> = Pipe::new();
-/// Bytes for the link, from the control task.
-pub(crate) static TO_SEND: Pipe<CriticalSectionRawMutex, SEND_BUFFER> = Pipe::new();
+/// Bytes from and to the HC-05.
+pub(crate) static LINE: Line = Line::new();
 
 bind_interrupts!(struct Interrupts {
     UART0_IRQ => BufferedInterruptHandler<UART0>;
@@ -72,7 +67,7 @@ async fn receive(mut rx: BufferedUartRx) {
     let mut bytes = [0; 64];
     loop {
         match rx.read(&mut bytes).await {
-            Ok(count) => RECEIVED.write_all(&bytes[..count]).await,
+            Ok(count) => LINE.received.write_all(&bytes[..count]).await,
             // The frames' checksums find what is missing.
             Err(error) => defmt::debug!("UART: {}", error),
         }
@@ -83,7 +78,7 @@ async fn receive(mut rx: BufferedUartRx) {
 async fn send(mut tx: BufferedUartTx, state: &'static Input<'static>) {
     let mut bytes = [0; SEND_RING];
     loop {
-        let count = TO_SEND.read(&mut bytes).await;
+        let count = LINE.to_send.read(&mut bytes).await;
         // While nobody is connected the HC-05 takes bytes for AT commands: they are dropped.
         if state.is_high()
             && let Err(error) = tx.write_all(&bytes[..count]).await

@@ -17,7 +17,7 @@ const TIMEOUT: Duration = Duration::from_millis(430);
 /// Ticks in a row without a beat that are forgiven: 40 ms.
 const PATIENCE: u8 = 2;
 /// The scratch registers we use. The boot ROM has 4 to 7, and writes 0 and 1 where a program asks it to take a new program
-/// over USB. They outlive every reset but those of power and reset pin (`survivors.rs` has what must outlive the pin too).
+/// over USB. They outlive every reset but those of power and reset pin (`retained_ram.rs` has what must outlive the pin too).
 const KEPT: usize = 0;
 const STARTS: usize = 1;
 const ARMED: usize = 2;
@@ -82,6 +82,11 @@ impl Watchdog {
         if self.missed_beats <= PATIENCE {
             self.peripheral.feed(TIMEOUT);
         }
+    }
+
+    /// The chip is the boot ROM's from here on: what it resets it by is none of our faults.
+    pub(crate) fn hand_over(&mut self) {
+        self.peripheral.set_scratch(ARMED, 0);
     }
 
     /// Feeds it around the erase of a sector of flash, while no pulses go out.

@@ -14,6 +14,7 @@
 //!       └──────────┘            └──────────┘                           └────────┘
 //!
 //!       any state ── e-stop ──► EStopped ── arm with clear_estop ──► Holding
+//!                                        ── clear e-stop ──► Stopped
 //! ```
 //!
 //! # Glossary
@@ -21,8 +22,13 @@
 //! - **set-point**: the two joint angles commanded in a tick; **pulse**: what the servo map makes of them.
 //! - **tick**: 20 ms, the servo period. Motion counts ticks on a grid, so a tick that comes late or early within 10 ms
 //!   changes no set-point, and nothing drifts.
-//! - **lease**: a link is alive for 460 ms after a valid frame of the open session; silence stops what is powered, but
+//! - **lease**: a link is alive for 460 ms after a fresh keep-alive of the open session; silence stops what is powered, but
 //!   for a detached play of a finite number of cycles (which goes on to its end) and a detached pause (60 s).
+//! - **fresh**: its host had heard the robot at most a second ago, and later than by any keep-alive before. Nothing else feeds
+//!   the lease, and what powers the servos is refused while it is empty: a dead host's bytes do nothing, however many wait.
+//! - **transport**: UART or USB, each with its decoder and its way out. The session is that of the greeting that came last.
+//! - **presence**: somebody is at the robot: the request came over USB, or the **bench window** is open, for two minutes from
+//!   when the jumper closes. A first key, lengths and limits beyond those as built and the boot loader need it.
 //! - **latched**: the stopped states are left by an explicit arm only. A link or a battery that comes back, a reset, a
 //!   request of an earlier session resume nothing.
 //! - **active** and **staging** table: the one that plays, and the one that an upload fills. A commit checks staging and
@@ -36,6 +42,7 @@
 
 mod actions;
 mod battery;
+mod bench;
 mod config;
 #[cfg(test)]
 mod enumeration;
@@ -51,16 +58,17 @@ mod state;
 mod tables;
 mod work;
 
-pub use config::{Boot, BrainConfig, Identity, Inputs, Output};
+pub use config::{Boot, BrainConfig, Identity, Inputs, Output, Transport};
 
-use crate::TICK_US;
 use crate::clamp::Clamp;
 use crate::limits::Limits;
 use crate::odometer::Odometer;
 use crate::ramp::NEUTRAL;
 use crate::storage::{MAX_SETTINGS, Storage};
+use crate::{ShortStarts, TICK_US};
 use battery::Battery;
-use link_protocol::{Counters, Decoder, StopCause};
+use bench::Bench;
+use link_protocol::{Configuration, Counters, Decoder, StopCause};
 use outbox::Outbox;
 use persist::Persist;
 use resets::Resets;
@@ -71,7 +79,7 @@ use swimmer_model::{Model, Swimmer};
 use tables::{Swap, Tables};
 use work::Work;
 
-/// The brain. About 6 kB; no heap. A clone goes on by itself from the same state: whoever replays a log tries with it what
+/// The brain. About 7 kB; no heap. A clone goes on by itself from the same state: whoever replays a log tries with it what
 /// may have come when.
 #[derive(Clone)]
 pub struct Brain {
@@ -81,12 +89,15 @@ pub struct Brain {
     /// The firmware's own limits, and the same tightened by the configuration.
     firmware_limits: Limits,
     limits: Limits,
+    /// The configuration as built.
+    built: Configuration,
     settings: Settings,
     model: Model<f32>,
 
-    decoder: Decoder,
+    /// One for each transport.
+    decoders: [Decoder; 2],
     session: Session,
-    outbox: Outbox,
+    outboxes: [Outbox; 2],
     counted: Counters,
     telemetry_sequence: u16,
 
@@ -100,6 +111,9 @@ pub struct Brain {
     battery: Battery,
     battery_stops: bool,
     resets: Resets,
+    /// To be kept, the present run included.
+    starts: ShortStarts,
+    bench: Bench,
 
     /// Time of the first tick; the grid's origin.
     origin_us: Option<u64>,
@@ -114,6 +128,7 @@ pub struct Brain {
 impl Brain {
     /// A brain in Stopped (or e-stopped, where a reset found it so). A configuration that the limits do not allow is
     /// replaced by the paper's robot within them.
+    #[inline] // where it is to lie: the chip's stack has no room for several on their way there
     pub fn new(config: BrainConfig) -> Self {
         let BrainConfig {
             identity,
@@ -126,6 +141,7 @@ impl Brain {
         let mut settings = Settings {
             configuration,
             servos,
+            ranges: [None; 2],
             key: None,
         };
         let model =
@@ -150,18 +166,22 @@ impl Brain {
             state: state.name(),
             kept: resets.word(),
             storage_wanted: false,
+            starts: ShortStarts::default(),
+            boot_loader: false,
         };
-        Self {
+        let before = boot.starts.unwrap_or_default();
+        let mut brain = Self {
             session: Session::new(boot.session_seed, boot.nonce),
             identity,
             boot,
             buffer,
             firmware_limits,
             limits,
+            built: settings.configuration,
             settings,
             model,
-            decoder: Decoder::new(),
-            outbox: Outbox::new(),
+            decoders: [const { Decoder::new() }; 2],
+            outboxes: [const { Outbox::new() }; 2],
             counted: Counters::default(),
             telemetry_sequence: 0,
             state,
@@ -173,17 +193,42 @@ impl Brain {
             battery: Battery::default(),
             battery_stops: false,
             resets,
+            starts: ShortStarts::default(),
+            bench: Bench::default(),
             origin_us: None,
             tick: 0,
             commanded: NEUTRAL,
             clamp: Clamp::new(),
             odometer: Odometer::new(),
             output,
+        };
+        brain.count_start(before);
+        brain
+    }
+
+    /// Counts this start to those before it. Too many short ones lock arming, as three resets do.
+    fn count_start(&mut self, before: ShortStarts) {
+        self.starts = before.start();
+        self.output.starts = self.starts;
+        if before.runs >= ShortStarts::MOST {
+            self.resets.lock();
+            self.output.kept = self.resets.word();
+            if self.boot.crash_message.is_empty() {
+                self.boot.crash_message = BROWN_OUT.try_into().unwrap_or_default();
+            }
         }
     }
 
-    /// Takes what was stored: settings and the newest whole table, each where it can be read. Call once, before the first
-    /// tick. What is not valid is as if it were not there, and is told by [`link_protocol::Flags::STORAGE_FAILED`] until
+    /// This run is none of the short ones.
+    fn clear_starts(&mut self) {
+        if self.starts.runs > 0 {
+            self.starts = ShortStarts::default();
+            self.persist.starts_changed(self.starts);
+        }
+    }
+
+    /// Takes what was stored: settings and the newest whole table, each where it can be read, and the count of short starts,
+    /// to which it writes this one. Call once, before the first tick. What is not valid is as if it were not there, and is told by [`link_protocol::Flags::STORAGE_FAILED`] until
     /// something is stored again.
     ///
     /// # Errors
@@ -206,7 +251,19 @@ impl Brain {
         if outcome.is_err() {
             self.persist.lost();
         }
-        outcome
+        outcome.and(self.load_starts(storage))
+    }
+
+    /// What the RAM kept is newer than what the storage holds; both are to know of this start before it can end.
+    fn load_starts<S: Storage>(&mut self, storage: &mut S) -> Result<(), S::Error> {
+        let mut bytes = [0; ShortStarts::LEN];
+        if self.boot.starts.is_none()
+            && storage.load_starts(&mut bytes)?
+            && let Some(before) = ShortStarts::decode(&bytes)
+        {
+            self.count_start(before);
+        }
+        storage.save_starts(&self.starts.encode())
     }
 
     /// Takes stored settings; false where they are none that the limits allow.
@@ -220,20 +277,34 @@ impl Brain {
         let Ok(model) = model else { return false };
         self.settings = settings;
         self.model = model;
-        self.limits = self.firmware_limits.tightened(&settings.configuration);
+        self.limits = self.limits_now();
         true
     }
 
-    /// Takes bytes from the link: any bytes, in any split. Acts at once, but pulses change only in [`Self::tick`].
-    pub fn receive(&mut self, now_us: u64, bytes: &[u8]) {
+    /// The firmware's limits, tightened by the configuration and the servos' end stops.
+    fn limits_now(&self) -> Limits {
+        let limits = self.firmware_limits.tightened(&self.settings.configuration);
+        let reach = self.settings.reach(&self.firmware_limits);
+        Limits {
+            // What was set was found to meet.
+            max_angle: limits.max_angle.min(reach.unwrap_or(f32::INFINITY)),
+            ..limits
+        }
+    }
+
+    /// Takes bytes that came over a transport: any bytes, in any split. Acts at once, but pulses change only in
+    /// [`Self::tick`].
+    pub fn receive(&mut self, now_us: u64, transport: Transport, bytes: &[u8]) {
         for &byte in bytes {
-            if let Some(received) = self.decoder.push(byte) {
+            let decoder = &mut self.decoders[transport.index()];
+            if let Some(received) = decoder.push(byte) {
                 let admission = self.session.admit(
+                    transport,
                     received.header.session,
-                    self.decoder.signed_bytes(),
+                    decoder.signed_bytes(),
                     received.signature.as_ref(),
                 );
-                self.handle(now_us, received, admission);
+                self.handle(now_us, transport, received, admission);
             }
         }
     }
@@ -252,6 +323,10 @@ impl Brain {
             count(&mut self.counted.late_ticks);
         }
         self.resets.up_for(now_us);
+        if self.resets.lasted() {
+            self.clear_starts();
+        }
+        self.bench.look(now_us, inputs.present);
         self.battery_stops =
             self.battery
                 .measure(now_us, inputs.battery_mv, self.limits.battery_limit_mv);
@@ -273,26 +348,51 @@ impl Brain {
         self.output = Output {
             pulses_ns,
             setpoint: self.commanded,
-            led: self.led(),
+            led: self.led(now_us),
             cycle_flash: self.cycle_flash(),
             state: self.state.name(),
             kept: self.resets.word(),
             storage_wanted: self.state == State::Stopped && self.persist.wanted(now_us),
+            starts: self.starts,
+            boot_loader: self.leaves(now_us),
         };
-        self.outbox.tick();
-        if inputs.link_up {
+        for (outbox, up) in self
+            .outboxes
+            .iter_mut()
+            .zip([inputs.link_up, inputs.usb_up])
+        {
+            outbox.tick();
+            if !up {
+                outbox.clear();
+            }
+        }
+        let up = self
+            .session
+            .transport()
+            .is_some_and(|transport| match transport {
+                Transport::Uart => inputs.link_up,
+                Transport::Usb => inputs.usb_up,
+            });
+        if up {
             self.send_telemetry(now_us);
-        } else {
-            self.outbox.clear();
         }
         self.output
     }
 
+    /// The boot loader was asked for, nothing moves and all is stored.
+    fn leaves(&mut self, now_us: u64) -> bool {
+        if self.state != State::Stopped || !matches!(self.work, Work::Idle) {
+            self.bench.stay();
+        }
+        self.bench.leaves(now_us) && self.persist.all_stored()
+    }
+
     /// Through the clamp to the pulses, with the swimmer following.
     fn command(&mut self, wanted: [f32; 2]) -> [u32; 2] {
+        let windows = [0, 1].map(|joint| self.settings.window(joint, &self.limits));
         let clamped = self
             .clamp
-            .apply(wanted, &self.settings.maps(), &self.limits);
+            .apply(wanted, &self.settings.maps(), &windows, &self.limits);
         if clamped.cut.is_some() {
             count(&mut self.counted.clamped);
         }
@@ -307,9 +407,9 @@ impl Brain {
         self.resets.word()
     }
 
-    /// Takes bytes to be sent; returns how many.
-    pub fn transmit(&mut self, out: &mut [u8]) -> usize {
-        self.outbox.take(out)
+    /// Takes bytes to be sent over a transport; returns how many.
+    pub fn transmit(&mut self, transport: Transport, out: &mut [u8]) -> usize {
+        self.outboxes[transport.index()].take(out)
     }
 
     /// One bounded step of storing what is not stored yet (an erase, a page, the settings); nothing unless Stopped.
@@ -333,6 +433,9 @@ impl Brain {
             .step(now_us, storage, self.tables.active(), settings)
     }
 }
+
+/// What a crash would tell, where it was no crash.
+const BROWN_OUT: &str = "3 starts in a row after less than 60 s each: a weak supply under the servos, or quick plug-ins";
 
 /// The paper's robot: a swimmer that is valid whatever was configured.
 fn robot_model() -> Model<f32> {

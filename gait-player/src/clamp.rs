@@ -3,6 +3,7 @@
 
 use crate::Limits;
 use crate::servo::ServoMap;
+use link_protocol::PulseRange;
 
 /// Remembers the last pulses, so that the next ones are not too far away.
 #[derive(Clone, Copy, Debug)]
@@ -34,11 +35,12 @@ impl Clamp {
         self.last
     }
 
-    /// The pulses for wanted angles \[rad\].
+    /// The pulses for wanted angles \[rad\] within each servo's window.
     pub(crate) fn apply(
         &mut self,
         wanted: [f32; 2],
         maps: &[ServoMap; 2],
+        windows: &[PulseRange; 2],
         limits: &Limits,
     ) -> Clamped {
         let (mut pulses_ns, mut angles, mut cut) = ([0; 2], wanted, false);
@@ -56,7 +58,8 @@ impl Clamp {
                 );
             }
             // Last of all, so that nothing overrides it. A window that is none holds the pulse at its lower end.
-            pulse = pulse.min(limits.pulse_max_ns).max(limits.pulse_min_ns);
+            let window = windows[joint];
+            pulse = pulse.min(window.longest_ns).max(window.shortest_ns);
             if pulse != ideal || (angle - wanted[joint]).abs() > 0.0 || wanted[joint].is_nan() {
                 cut = true;
                 angles[joint] = map.angle(pulse);
@@ -75,6 +78,11 @@ impl Clamp {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    const WINDOWS: [PulseRange; 2] = [PulseRange {
+        shortest_ns: Limits::ROBOT.pulse_min_ns,
+        longest_ns: Limits::ROBOT.pulse_max_ns,
+    }; 2];
 
     fn any_angle() -> impl Strategy<Value = f32> {
         prop_oneof![
@@ -98,7 +106,7 @@ mod tests {
             let mut clamp = Clamp::new();
             let mut last: Option<[u32; 2]> = None;
             for wanted in wanted {
-                let pulses = clamp.apply(wanted, &maps, &limits).pulses_ns;
+                let pulses = clamp.apply(wanted, &maps, &WINDOWS, &limits).pulses_ns;
                 for joint in 0..2 {
                     prop_assert!((limits.pulse_min_ns..=limits.pulse_max_ns).contains(&pulses[joint]));
                     if let Some(last) = last {
@@ -114,15 +122,20 @@ mod tests {
     fn what_is_allowed_passes_unchanged() {
         let mut clamp = Clamp::new();
         let maps = [ServoMap::ROBOT; 2];
-        let clamped = clamp.apply([2.0, -2.8], &maps, &Limits::ROBOT);
+        let clamped = clamp.apply([2.0, -2.8], &maps, &WINDOWS, &Limits::ROBOT);
         assert_eq!(clamped.cut, None);
         assert_eq!(
             clamped.pulses_ns,
             [maps[0].pulse_ns(2.0), maps[1].pulse_ns(-2.8)]
         );
-        assert_eq!(clamp.apply([2.07, -2.73], &maps, &Limits::ROBOT).cut, None);
+        assert_eq!(
+            clamp
+                .apply([2.07, -2.73], &maps, &WINDOWS, &Limits::ROBOT)
+                .cut,
+            None
+        );
         let cut = clamp
-            .apply([2.3, -2.73], &maps, &Limits::ROBOT)
+            .apply([2.3, -2.73], &maps, &WINDOWS, &Limits::ROBOT)
             .cut
             .unwrap();
         assert!(
@@ -130,7 +143,12 @@ mod tests {
             "{cut:?}"
         );
         clamp.off();
-        assert_eq!(clamp.apply([-2.0, 2.0], &maps, &Limits::ROBOT).cut, None);
+        assert_eq!(
+            clamp
+                .apply([-2.0, 2.0], &maps, &WINDOWS, &Limits::ROBOT)
+                .cut,
+            None
+        );
     }
 
     /// Where the pulses may be anywhere, only the angle's own limit is left.
@@ -138,7 +156,7 @@ mod tests {
     fn an_angle_that_is_cut_is_told_although_its_pulse_is_the_limits_own() {
         let maps = [ServoMap::ROBOT; 2];
         for (wanted, limit) in [(2.9, 2.8), (-2.9, -2.8), (f32::NAN, -2.8)] {
-            let clamped = Clamp::new().apply([0.1, wanted], &maps, &Limits::ROBOT);
+            let clamped = Clamp::new().apply([0.1, wanted], &maps, &WINDOWS, &Limits::ROBOT);
             let cut = clamped.cut.unwrap();
             assert!((cut[0] - 0.1).abs() < 1e-6, "{cut:?}");
             assert!((cut[1] - limit).abs() < 1e-4, "{cut:?}");

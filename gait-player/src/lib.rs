@@ -4,9 +4,9 @@
 //! A shell owns the hardware and drives a [`Brain`]:
 //!
 //! 1. at start: [`Brain::new`], then [`Brain::load`] with its [`storage::Storage`];
-//! 2. whenever bytes came: [`Brain::receive`];
+//! 2. whenever bytes came: [`Brain::receive`], with the [`Transport`] they came over;
 //! 3. every [`TICK_US`], in step with the servo period: [`Brain::tick`], whose [`Output`] is the only door out;
-//! 4. whenever the transmitter has room: [`Brain::transmit`];
+//! 4. whenever a transmitter has room: [`Brain::transmit`];
 //! 5. when [`Output::storage_wanted`] says so: [`Brain::serve_storage`], one bounded step a call.
 //!
 //! Hosts share three truths with the robot: [`servo::ServoMap`], [`servo::plant`] (what a servo makes of pulses) and
@@ -25,12 +25,14 @@ pub mod playback;
 pub mod ramp;
 mod route;
 pub mod servo;
+mod starts;
 pub mod storage;
 pub mod table;
 
-pub use brain::{Boot, Brain, BrainConfig, Identity, Inputs, Output};
+pub use brain::{Boot, Brain, BrainConfig, Identity, Inputs, Output, Transport};
 pub use crash::CrashNote;
 pub use limits::Limits;
+pub use starts::ShortStarts;
 pub use table::GaitTable;
 
 /// Duration of a tick, µs: the servo period.

@@ -3,6 +3,13 @@
 //! A slot is written in the order erase, data, header; its header carries length, checksum and generation under a
 //! checksum of its own. A cut at any byte leaves that slot invalid and the other as it was: old or new, never a mix.
 
+#[cfg(any(test, feature = "testing"))]
+mod memory;
+
+use crate::ShortStarts;
+#[cfg(any(test, feature = "testing"))]
+pub use memory::MemoryStorage;
+
 /// Bytes of a page: the unit of [`Storage::program`].
 pub const PAGE: usize = 256;
 /// Number of table slots.
@@ -50,4 +57,17 @@ pub trait Storage {
     /// # Errors
     /// The memory cannot be written.
     fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Self::Error>;
+
+    /// Reads the record of short starts; false where there is none.
+    ///
+    /// # Errors
+    /// The memory cannot be read.
+    fn load_starts(&mut self, bytes: &mut [u8; ShortStarts::LEN]) -> Result<bool, Self::Error>;
+
+    /// Replaces it, old or new over a power cut. Asked for at most twice a start: from [`crate::Brain::load`], before any pulse,
+    /// and once the run has lasted for a minute.
+    ///
+    /// # Errors
+    /// The memory cannot be written.
+    fn save_starts(&mut self, bytes: &[u8; ShortStarts::LEN]) -> Result<(), Self::Error>;
 }

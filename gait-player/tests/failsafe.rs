@@ -5,13 +5,14 @@ mod bench;
 
 use bench::stops::*;
 use bench::*;
+use gait_player::Transport;
 use link_protocol::*;
 
 #[test]
 fn r5_a_silent_link_starts_the_ramp_within_half_a_second() {
     for mut bench in powered() {
         let name = bench.output.state;
-        bench.send(Header::new(bench.session, 0), &Message::KeepAlive);
+        bench.beat();
         bench.keep_alive = false;
         let took = until_stopping(&mut bench, SECOND);
         println!(
@@ -45,7 +46,9 @@ fn frames_of_other_sessions_do_not_keep_the_link_alive() {
             bench.send(stale, &Message::KeepAlive);
             bench.send(stale, &Message::Ping(Ping { host_us: 1 }));
             bench.send(stale, &Message::Request(Request::Status));
-            bench.brain.receive(bench.now_us, &[0, 5, 1, 2, 3, 4, 0]);
+            bench
+                .brain
+                .receive(bench.now_us, Transport::Uart, &[0, 5, 1, 2, 3, 4, 0]);
             bench.tick();
             assert!(bench.now_us - start <= 500_000);
         }
@@ -88,6 +91,9 @@ fn another_host_can_take_over_a_detached_play() {
     assert!(status.flags.contains(Flags::DETACHED));
     bench.done(Request::Pause { detached: true });
     bench.run(SECOND);
+    // Whoever sets it in motion again has to be there.
+    assert_eq!(bench.refused(Request::Resume), Refusal::NotFresh);
+    bench.beat();
     bench.done(Request::Resume);
     bench.run(SECOND);
     bench.done(Request::Stop);

@@ -3,10 +3,9 @@
 mod bench;
 
 use bench::*;
-use gait_player::storage::{MAX_SETTINGS, PAGE, Storage};
-use gait_player::{Boot, Brain, BrainConfig};
+use gait_player::storage::MemoryStorage;
+use gait_player::{Boot, Brain, BrainConfig, Transport};
 use link_protocol::*;
-use std::convert::Infallible;
 
 const KEY: Key = Key(*b"sixteen letters!");
 
@@ -23,6 +22,7 @@ impl Host {
     fn new() -> Self {
         let mut bench = Bench::new();
         bench.upload(&circle(1.2));
+        bench.come_near();
         bench.done(Request::SetKey(Some(KEY)));
         // The session in which it was set goes on as it was.
         bench.status();
@@ -51,11 +51,16 @@ impl Host {
         let header = Header::new(self.bench.session, sequence);
         let len = encode_signed(header, message, &self.seal, self.counter, &mut frame).unwrap();
         self.recorded.push(frame[..len].to_vec());
-        self.bench.brain.receive(self.bench.now_us, &frame[..len]);
+        self.bench
+            .brain
+            .receive(self.bench.now_us, Transport::Uart, &frame[..len]);
         self.bench.drain();
     }
 
     fn ask(&mut self, request: Request) -> Reply {
+        if request.is_powering() {
+            self.beat();
+        }
         let before = self.bench.replies.len();
         self.bench.sequence = self.bench.sequence.wrapping_add(1);
         self.say(self.bench.sequence, &Message::Request(request));
@@ -68,11 +73,19 @@ impl Host {
         panic!("no reply within 4 s");
     }
 
+    fn beat(&mut self) {
+        let heartbeat = Heartbeat {
+            host_us: 0,
+            heard_us: self.bench.now_us,
+        };
+        self.say(0, &Message::Heartbeat(heartbeat));
+    }
+
     /// Ticks, with signed keep-alives.
     fn run(&mut self, us: u64) {
         for tick in 0..us / TICK {
             if tick % 2 == 0 {
-                self.say(0, &Message::KeepAlive);
+                self.beat();
             }
             self.bench.tick();
         }
@@ -156,7 +169,7 @@ fn a_recording_moves_nothing() {
     let recorded = host.recorded.clone();
     assert!(recorded.len() > 100);
     let mut bench = host.bench;
-    let mut stored = Memory::default();
+    let mut stored = MemoryStorage::erased();
     bench
         .brain
         .serve_storage(bench.now_us, &mut stored)
@@ -175,7 +188,7 @@ fn a_recording_moves_nothing() {
             assert_eq!(reply.session, bench.session);
         }
         for frame in &recorded {
-            bench.brain.receive(bench.now_us, frame);
+            bench.brain.receive(bench.now_us, Transport::Uart, frame);
             bench.tick();
             assert_eq!(bench.output.pulses_ns, None, "round {round}");
             assert_eq!(bench.output.state, StateName::Stopped, "round {round}");
@@ -200,45 +213,9 @@ fn a_key_is_set_only_while_stopped_and_changed_only_with_the_old_one() {
     assert!(!host.bench.status().flags.contains(Flags::KEY_SET));
 }
 
-/// Settings alone, as a flash holds them.
-#[derive(Default)]
-struct Memory {
-    settings: Vec<u8>,
-}
-
-impl Storage for Memory {
-    type Error = Infallible;
-
-    fn read(&mut self, _: usize, _: usize, bytes: &mut [u8]) -> Result<(), Infallible> {
-        bytes.fill(0xFF);
-        Ok(())
-    }
-
-    fn erase(&mut self, _: usize) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn program(&mut self, _: usize, _: usize, _: &[u8; PAGE]) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn load_settings(
-        &mut self,
-        bytes: &mut [u8; MAX_SETTINGS],
-    ) -> Result<Option<usize>, Infallible> {
-        bytes[..self.settings.len()].copy_from_slice(&self.settings);
-        Ok((!self.settings.is_empty()).then_some(self.settings.len()))
-    }
-
-    fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Infallible> {
-        self.settings = bytes.to_vec();
-        Ok(())
-    }
-}
-
 #[test]
 fn a_key_outlives_a_power_cut_and_limits_that_have_changed() {
-    let mut memory = Memory::default();
+    let mut memory = MemoryStorage::erased();
     let mut bench = Bench::new();
     bench.done(Request::SetServo {
         joint: Joint::Front,
@@ -249,7 +226,8 @@ fn a_key_outlives_a_power_cut_and_limits_that_have_changed() {
         .brain
         .serve_storage(bench.now_us, &mut memory)
         .unwrap();
-    let before = memory.settings.clone();
+    let before = memory.settings.clone().unwrap();
+    bench.come_near();
     bench.done(Request::SetKey(Some(KEY)));
     bench.run(SECOND);
     bench
@@ -257,7 +235,7 @@ fn a_key_outlives_a_power_cut_and_limits_that_have_changed() {
         .serve_storage(bench.now_us, &mut memory)
         .unwrap();
     // Behind a record that is otherwise what it was before there were keys.
-    assert_eq!(memory.settings, [&before[..], &KEY.0].concat());
+    assert_eq!(memory.settings, Some([&before[..], &KEY.0].concat()));
     for max_angle in [2.8, 1.0] {
         let mut config = config();
         config.limits.max_angle = max_angle;
@@ -267,7 +245,7 @@ fn a_key_outlives_a_power_cut_and_limits_that_have_changed() {
         bench.greet(3);
         assert_eq!(bench.refused(ARM), Refusal::KeyNeeded, "{max_angle}");
     }
-    memory.settings = before;
+    memory.settings = Some(before);
     let mut brain = Brain::new(config());
     brain.load(&mut memory).unwrap();
     let mut bench = Bench::around(brain);

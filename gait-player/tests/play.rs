@@ -5,7 +5,7 @@ mod bench;
 
 use bench::*;
 use gait_player::ramp::Ramp;
-use gait_player::{GaitTable, Limits, TICK_US};
+use gait_player::{GaitTable, Limits, TICK_US, Transport};
 use link_protocol::*;
 use swimmer_model::{Circle, Model, Swimmer, Tolerance, swim};
 
@@ -225,11 +225,14 @@ impl Bench {
         let mut frame = [0; MAX_ENCODED];
         let len = encode(
             Header::new(self.session, 0),
-            &Message::KeepAlive,
+            &Message::Heartbeat(Heartbeat {
+                host_us: 0,
+                heard_us: now_us,
+            }),
             &mut frame,
         )
         .unwrap();
-        self.brain.receive(now_us, &frame[..len]);
+        self.brain.receive(now_us, Transport::Uart, &frame[..len]);
     }
 }
 

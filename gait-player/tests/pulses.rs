@@ -5,7 +5,7 @@ mod bench;
 
 use bench::*;
 use gait_player::storage::{MAX_SETTINGS, PAGE, Storage};
-use gait_player::{Brain, Inputs, Limits, Output};
+use gait_player::{Brain, Inputs, Limits, Output, ShortStarts, Transport};
 use link_protocol::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -144,6 +144,20 @@ impl Storage for WildStorage {
         }
     }
 
+    fn load_starts(&mut self, bytes: &mut [u8; ShortStarts::LEN]) -> Result<bool, ()> {
+        if self.random.random_ratio(1, 2) {
+            *bytes = ShortStarts {
+                runs: self.random.random_range(0..5),
+            }
+            .encode();
+        }
+        self.read(0, 0, &mut []).map(|()| true)
+    }
+
+    fn save_starts(&mut self, _bytes: &[u8; ShortStarts::LEN]) -> Result<(), ()> {
+        self.erase(0)
+    }
+
     fn load_settings(&mut self, bytes: &mut [u8; MAX_SETTINGS]) -> Result<Option<usize>, ()> {
         let len = self.settings.len().min(MAX_SETTINGS);
         bytes[..len].copy_from_slice(&self.settings[..len]);
@@ -251,8 +265,8 @@ fn wild_run(seed: u64) -> u64 {
             let garbage: Vec<u8> = (0..random.random_range(0..300))
                 .map(|_| random.random())
                 .collect();
-            bench.brain.receive(bench.now_us, &garbage);
-            bench.brain.receive(bench.now_us, &[0]);
+            bench.brain.receive(bench.now_us, Transport::Uart, &garbage);
+            bench.brain.receive(bench.now_us, Transport::Uart, &[0]);
         }
         let sequence = bench.sequence.wrapping_add(1);
         bench.sequence = sequence;
@@ -287,9 +301,10 @@ fn wild_run(seed: u64) -> u64 {
         }
         for _ in 0..random.random_range(1..40) {
             bench.inputs = Inputs {
-                battery_mv: Some(5_000),
                 link_up: random.random_ratio(19, 20),
+                ..bench.inputs
             };
+            bench.inputs.battery_mv = Some(5_000);
             if random.random_ratio(1, 30) {
                 bench.inputs.battery_mv = Some(random.random());
                 bench.now_us += random.random_range(0..300_000);
@@ -342,7 +357,7 @@ fn r4_whatever_the_clock_does() {
                 let request = request(&mut random, 3);
                 bench.send_request(sequence, request);
             }
-            bench.send(Header::new(bench.session, 0), &Message::KeepAlive);
+            bench.beat();
             let output = bench.brain.tick(bench.now_us, &bench.inputs);
             witness.see(&output, &Limits::ROBOT);
         }
@@ -360,8 +375,10 @@ fn random_and_mutated_frames_never_move_a_stopped_robot_that_no_arm_reached() {
         let len = encode(header, &message, &mut frame).unwrap();
         let at = random.random_range(1..len - 1);
         frame[at] ^= 1 << random.random_range(0..8);
-        bench.brain.receive(bench.now_us, &frame[..len]);
-        bench.brain.receive(bench.now_us, &[0]);
+        bench
+            .brain
+            .receive(bench.now_us, Transport::Uart, &frame[..len]);
+        bench.brain.receive(bench.now_us, Transport::Uart, &[0]);
     }
     bench.drain();
     let output = bench.tick();

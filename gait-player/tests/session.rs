@@ -4,7 +4,7 @@
 mod bench;
 
 use bench::*;
-use gait_player::Brain;
+use gait_player::{Brain, Transport};
 use link_protocol::*;
 use rand::{RngExt, SeedableRng, seq::SliceRandom};
 use rand_chacha::ChaCha8Rng;
@@ -22,6 +22,7 @@ fn nothing_but_stops_acts_without_the_open_session() {
     bench.upload(&circle(1.2));
     bench.done(ARM);
     let open = bench.session;
+    bench.keep_alive = false;
     for session in [0, open.wrapping_sub(1), open.wrapping_add(1)] {
         bench.session = session;
         for request in [
@@ -50,7 +51,7 @@ fn a_stop_is_answered_in_a_flood_that_drowns_all_other_answers() {
     let mut encoded = [0; MAX_ENCODED];
     let mut send = |brain: &mut Brain, now_us, header, message: &Message| {
         let len = encode(header, message, &mut encoded).unwrap();
-        brain.receive(now_us, &encoded[..len]);
+        brain.receive(now_us, Transport::Uart, &encoded[..len]);
     };
     let now_us = bench.now_us;
     for host_nonce in 0..100 {
@@ -117,7 +118,9 @@ fn stops_act_whatever_their_session_and_number() {
         &mut frame,
     )
     .unwrap();
-    bench.brain.receive(bench.now_us, &frame[..len]);
+    bench
+        .brain
+        .receive(bench.now_us, Transport::Uart, &frame[..len]);
     assert_eq!(bench.tick().state, StateName::EStopped);
 }
 
@@ -337,7 +340,13 @@ fn a_host_of_another_version_is_told() {
             host_nonce: 5,
         })
     };
-    for (min, current, opens) in [(2, 9, false), (0, 0, false), (1, 9, true), (0, 1, true)] {
+    for (min, current, opens) in [
+        (3, 9, false),
+        (0, 0, false),
+        (2, 9, true),
+        (1, 1, true),
+        (0, 1, true),
+    ] {
         bench.send(
             Header {
                 version: current,
@@ -351,13 +360,13 @@ fn a_host_of_another_version_is_told() {
         };
         assert_eq!(
             (header.version, reply.protocol_min, reply.protocol_current),
-            (1, 1, 1)
+            (current, 1, 2)
         );
         assert_eq!(reply.session != 0, opens);
     }
     bench.send(
         Header {
-            version: 2,
+            version: 3,
             session: 0x1000,
             sequence: 3,
         },
@@ -365,7 +374,7 @@ fn a_host_of_another_version_is_told() {
     );
     assert_eq!(
         bench.replies.pop().unwrap().1,
-        Reply::Refused(Refusal::Version { min: 1, current: 1 })
+        Reply::Refused(Refusal::Version { min: 1, current: 2 })
     );
 }
 
@@ -381,7 +390,9 @@ fn requests_of_the_future_are_answered() {
         &mut frame,
     )
     .unwrap();
-    bench.brain.receive(bench.now_us, &frame[..len]);
+    bench
+        .brain
+        .receive(bench.now_us, Transport::Uart, &frame[..len]);
     bench.drain();
     assert_eq!(
         bench.replies.pop().unwrap(),

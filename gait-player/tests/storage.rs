@@ -5,7 +5,7 @@ mod bench;
 
 use bench::*;
 use gait_player::storage::{MAX_SETTINGS, PAGE, SLOT_PAGES, SLOTS, Storage};
-use gait_player::{Brain, GaitTable};
+use gait_player::{Brain, GaitTable, ShortStarts};
 use link_protocol::*;
 
 /// NOR flash that loses power after so many bytes: what it was at is done up to there, nothing after.
@@ -13,6 +13,7 @@ use link_protocol::*;
 struct Flash {
     slots: [Vec<u8>; SLOTS],
     settings: Option<Vec<u8>>,
+    starts: Option<[u8; ShortStarts::LEN]>,
     /// The settings' own store refuses to write.
     settings_broken: bool,
     /// It cannot be read either.
@@ -33,6 +34,7 @@ impl Flash {
         Self {
             slots: [slot.clone(), slot],
             settings: None,
+            starts: None,
             settings_broken: false,
             settings_unreadable: false,
             unreadable: None,
@@ -87,6 +89,19 @@ impl Storage for Flash {
         }))
     }
 
+    fn load_starts(&mut self, bytes: &mut [u8; ShortStarts::LEN]) -> Result<bool, PowerCut> {
+        if let Some(starts) = &self.starts {
+            *bytes = *starts;
+        }
+        Ok(self.starts.is_some())
+    }
+
+    fn save_starts(&mut self, bytes: &[u8; ShortStarts::LEN]) -> Result<(), PowerCut> {
+        // Old or new, in a part of its own.
+        self.starts = Some(*bytes);
+        Ok(())
+    }
+
     fn save_settings(&mut self, bytes: &[u8]) -> Result<(), PowerCut> {
         // Old or new: the record's own store sees to that.
         self.spend()?;
@@ -99,7 +114,9 @@ impl Storage for Flash {
     }
 }
 
+/// A start after a run that was not short.
 fn boot(flash: &mut Flash) -> Bench {
+    flash.starts = None;
     let mut brain = Brain::new(config());
     brain.load(flash).unwrap();
     let mut bench = Bench::around(brain);

@@ -4,6 +4,7 @@ mod bench;
 
 use bench::stops::*;
 use bench::*;
+use gait_player::Transport;
 use link_protocol::*;
 
 /// How many ticks the LED is on and off in turn, from its next change on.
@@ -105,8 +106,10 @@ fn telemetry_and_status_tell_the_set_point_and_the_frames() {
     assert_eq!(status.setpoint, units(bench.output));
     assert!(status.setpoint[0] != status.setpoint[1] && status.setpoint[0].abs() > 100);
     let before = bench.brain.counters().frames;
-    bench.send(Header::new(bench.session, 0), &Message::KeepAlive);
-    bench.brain.receive(bench.now_us, &[0, 5, 1, 2, 3, 4, 0]);
+    bench.beat();
+    bench
+        .brain
+        .receive(bench.now_us, Transport::Uart, &[0, 5, 1, 2, 3, 4, 0]);
     let after = bench.brain.counters().frames;
     assert_eq!(after.ok, before.ok + 1);
     assert!(after.bad() > before.bad());

@@ -3,7 +3,7 @@
 mod bench;
 
 use bench::*;
-use gait_player::GaitTable;
+use gait_player::{GaitTable, Transport};
 use link_protocol::*;
 use std::f64::consts::TAU;
 
@@ -128,12 +128,16 @@ fn what_waits_when_the_radio_goes_is_not_sent_when_it_comes_back() {
     let mut frame = [0; MAX_ENCODED];
     let header = Header::new(bench.session, bench.sequence + 1);
     let len = encode(header, &Message::Request(Request::Status), &mut frame).unwrap();
-    let waiting = |bench: &mut Bench| bench.brain.transmit(&mut [0; MAX_ENCODED]);
-    bench.brain.receive(bench.now_us, &frame[..len]);
+    let waiting = |bench: &mut Bench| bench.brain.transmit(Transport::Uart, &mut [0; MAX_ENCODED]);
+    bench
+        .brain
+        .receive(bench.now_us, Transport::Uart, &frame[..len]);
     assert!(waiting(&mut bench) > 0, "no answer to lose");
     let header = Header::new(bench.session, bench.sequence + 2);
     let len = encode(header, &Message::Request(Request::Status), &mut frame).unwrap();
-    bench.brain.receive(bench.now_us, &frame[..len]);
+    bench
+        .brain
+        .receive(bench.now_us, Transport::Uart, &frame[..len]);
     bench.now_us += 20_000;
     bench.inputs.link_up = false;
     bench.brain.tick(bench.now_us, &bench.inputs);

@@ -9,5 +9,5 @@ pub mod robot;
 pub mod session;
 
 pub use port::Port;
-pub use robot::Robot;
+pub use robot::{Robot, StoppedBy};
 pub use session::LinkError;

@@ -4,6 +4,8 @@
 //! waits, so that an hour of link time is tested in a second and twice the same.
 
 mod baud;
+#[cfg(unix)]
+mod beside;
 mod faults;
 mod faulty;
 mod frames;
@@ -22,6 +24,8 @@ use std::io;
 use std::time::Duration;
 
 pub use baud::{Character, heard};
+#[cfg(unix)]
+pub use beside::BesidePort;
 pub use faults::{Faults, FaultsError, FaultsProblem, Outage};
 pub use faulty::{FaultPlan, FaultyPort};
 pub use injector::{FaultCounts, FaultInjector};

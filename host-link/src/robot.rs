@@ -9,12 +9,12 @@ pub use finish::time_left;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use link_protocol::{HelloReply, Reply, Request, TableInfo, Telemetry};
+use link_protocol::{HelloReply, Reply, Request, StopCause, TableInfo, Telemetry};
 
 use crate::port::Port;
 use crate::session::{
     ClockFit, Event, LONGEST_SILENCE, LinkCounters, LinkError, Session, SessionConfig, Ticket,
-    UploadProgress,
+    UploadProgress, cause_in_words,
 };
 
 /// How often a caller is asked whether to go on while nothing happens.
@@ -26,9 +26,31 @@ const SHORTEST_WAIT: Duration = Duration::from_micros(100);
 /// Sees every piece of telemetry and when it arrived, on the port's clock.
 pub type Observer = Box<dyn FnMut(&Telemetry, Duration) + Send>;
 
+/// What ended the motion after a stop was sent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StoppedBy {
+    /// The stop: the robot answered it.
+    Request,
+    /// The robot itself, for this reason, by its telemetry; the stop's answer has not come.
+    Itself(StopCause),
+}
+
+impl std::fmt::Display for StoppedBy {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Request => write!(f, "the robot answered the stop"),
+            Self::Itself(cause) => write!(
+                f,
+                "the robot has stopped by itself ({}); the stop is still on its way",
+                cause_in_words(*cause)
+            ),
+        }
+    }
+}
+
 /// A robot behind a port.
 ///
-/// The robot stops by itself when it hears nothing for half a second, so that between requests somebody must
+/// The robot stops by itself when it hears nothing fresh for half a second, so that between requests somebody must
 /// [`listen`](Robot::listen): every method here keeps the lease fed while it waits, and none does between calls.
 pub struct Robot<P> {
     port: P,
@@ -71,11 +93,12 @@ impl<P: Port> Robot<P> {
     }
 
     /// Sends a stop, or an e-stop, without greeting first, until it is answered: the quickest way to a robot at rest.
-    /// Gives the port back.
+    /// Gives the port back, and says what ended the motion: where the stop waits behind other bytes, the robot may have
+    /// stopped by itself before.
     ///
     /// # Errors
     /// No answer, or a port that failed.
-    pub fn stop_at_once(port: P, seed: u64, estop: bool) -> Result<P, LinkError> {
+    pub fn stop_at_once(port: P, seed: u64, estop: bool) -> Result<(P, StoppedBy), LinkError> {
         let mut shell = Shell {
             port,
             session: Session::new(SessionConfig::new(seed)),
@@ -87,7 +110,11 @@ impl<P: Port> Robot<P> {
             match shell.step(now + Duration::from_hours(1), "stopping")? {
                 Some(Event::Answered {
                     ticket: answered, ..
-                }) if answered == ticket => return Ok(shell.port),
+                }) if answered == ticket => return Ok((shell.port, StoppedBy::Request)),
+                Some(Event::StoppedByItself {
+                    ticket: stopped,
+                    cause,
+                }) if stopped == ticket => return Ok((shell.port, StoppedBy::Itself(cause))),
                 Some(Event::Failed {
                     ticket: failed,
                     error,
@@ -150,6 +177,11 @@ impl<P: Port> Robot<P> {
     /// The robot's clock on the port's; `None` before the first ping came back.
     pub fn clock(&self) -> Option<ClockFit> {
         self.session.clock()
+    }
+
+    /// Whether the robot has shown in this session that it has the key: it signs its answers. `None` without a key.
+    pub fn answers_signed(&self) -> Option<bool> {
+        self.session.answers_signed()
     }
 
     /// The last telemetry that came.

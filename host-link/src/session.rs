@@ -3,7 +3,7 @@
 //! ```text
 //!             connect                 HelloReply, versions meet
 //!  Closed ──────────────► Greeting ─────────────────────────────► Open ──┐ requests, upload, keep-alive
-//!    ▲                     │   ▲                                   │     │ every 50 ms, telemetry
+//!    ▲                     │   ▲                                   │     │ as they are answered, telemetry
 //!    │   no answer,        │   └──── upload goes on ───────────────┤ ◄───┘
 //!    └── other version ────┘                StaleSession           │
 //!    ▲                                                             │
@@ -12,11 +12,13 @@
 //!
 //! Glossary. *Request*: asked of the robot, acts at most once, one at a time under way, in the order asked. *Ticket*: names
 //! a request until its event comes; every ticket ends in exactly one event. *Upload*: a table as Begin, a window of chunks,
-//! Commit. *Lease*: the robot stops when it hears nothing for half a second; keep-alives feed it.
+//! Commit. *Lease*: the robot stops when it hears no fresh keep-alive for half a second: one that tells a robot's time that
+//! was heard not long ago.
 //!
 //! Stop and e-stop end every unanswered request and the upload (their tickets fail with [`LinkError::Dropped`]), go out at
 //! once, ahead of chunks, and even without an open session.
 
+mod beats;
 mod clock_fit;
 mod counters;
 mod drive;
@@ -34,18 +36,20 @@ use std::time::Duration;
 
 use link_protocol::{
     Begin, Decoder, Header, HelloReply, Key, MAX_CHUNK, MAX_ENCODED, MAX_SIGNED_CHUNK, Message,
-    Request, Seal, crc32c, encode, encode_signed,
+    PROTOCOL_CURRENT, Request, STOP_VERSION, Seal, Telemetry, crc32c, encode, encode_signed,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+pub use beats::KEEP_ALIVE;
 pub use clock_fit::{ClockFit, ClockSamples};
 pub use counters::LinkCounters;
-pub use error::{LinkError, cause_in_words};
+pub use error::{LinkError, cause_in_words, cycles_in_words};
 pub use event::{Event, Ticket};
 pub(crate) use greeting::firmware_name;
 pub use upload::{UploadPhase, UploadProgress};
 
+use beats::Beats;
 use round_trip::RoundTrip;
 use under_way::{Greeting, Link, Owner, Pending, Upload, describe};
 use upload::Window;
@@ -54,8 +58,6 @@ use upload::Window;
 pub const TRIES: u32 = 5;
 /// Silence after which an upload is given up.
 pub const LONGEST_SILENCE: Duration = Duration::from_secs(5);
-/// Longest time without a frame to the robot while a session is open.
-pub const KEEP_ALIVE: Duration = Duration::from_millis(50);
 
 /// What a session must be told before it starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,10 +92,14 @@ pub struct Session {
     link: Link,
     /// The session number of the last open session: a stop goes out under it.
     number: u16,
-    /// Signs the frames of that session.
+    /// The protocol's version in that session.
+    version: u8,
+    /// Signs the frames of that session, and verifies the robot's.
     seal: Option<Seal>,
     /// Frames signed in it.
     signed: u64,
+    /// Counter of the last frame that the robot signed in it; 0 before the first one.
+    proven: u64,
     sequence: u16,
     next_ticket: u64,
     queue: VecDeque<(Ticket, Request)>,
@@ -101,10 +107,10 @@ pub struct Session {
     upload: Option<Upload>,
     trip: RoundTrip,
     clock: ClockSamples,
-    last_sent: Duration,
+    beats: Beats,
     last_heard: Duration,
-    next_ping: Duration,
-    pings: u32,
+    /// What the robot told of itself last in this session.
+    told: Option<Telemetry>,
     /// When the line has carried the chunks handed out so far.
     line_free: Duration,
     /// Nothing new is put under way before: the robot is busy.
@@ -129,8 +135,10 @@ impl Session {
             outgoing: Vec::new(),
             link: Link::Closed,
             number: 0,
+            version: PROTOCOL_CURRENT,
             seal: None,
             signed: 0,
+            proven: 0,
             sequence,
             next_ticket: 0,
             queue: VecDeque::new(),
@@ -138,10 +146,9 @@ impl Session {
             upload: None,
             trip: RoundTrip::default(),
             clock: ClockSamples::default(),
-            last_sent: Duration::ZERO,
+            beats: Beats::default(),
             last_heard: Duration::ZERO,
-            next_ping: Duration::ZERO,
-            pings: 0,
+            told: None,
             line_free: Duration::ZERO,
             hold_until: Duration::ZERO,
             busy: 0,
@@ -267,6 +274,13 @@ impl Session {
             .take_if(|pending| pending.owner == Owner::Upload);
     }
 
+    /// Nobody waits for this any longer: it holds up nothing that is asked next, and ends without an event. It may still act.
+    pub fn forget(&mut self, ticket: Ticket) {
+        self.queue.retain(|(queued, _)| *queued != ticket);
+        self.pending
+            .take_if(|pending| pending.owner == Owner::Ticket(ticket));
+    }
+
     /// Gives the bytes that are to be sent now, in order.
     pub fn take_outgoing(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.outgoing)
@@ -304,6 +318,12 @@ impl Session {
         self.last_heard
     }
 
+    /// Whether the robot has shown in this session that it has the key: it signs its answers. `None` without a key. One that
+    /// does not has no key, or older firmware, or is another than it seems.
+    pub fn answers_signed(&self) -> Option<bool> {
+        self.seal.as_ref().map(|_| self.proven > 0)
+    }
+
     fn ticket(&mut self) -> Ticket {
         self.next_ticket += 1;
         Ticket(self.next_ticket)
@@ -315,9 +335,18 @@ impl Session {
     }
 
     /// Encodes a message into the outgoing bytes; returns its length on the wire.
-    fn send(&mut self, sequence: u16, message: &Message, now: Duration) -> usize {
+    fn send(&mut self, sequence: u16, message: &Message) -> usize {
         let mut frame = [0; MAX_ENCODED];
-        let header = Header::new(self.number, sequence);
+        let version = match message {
+            Message::Request(request) if request.is_stop() => STOP_VERSION,
+            Message::Hello(_) => PROTOCOL_CURRENT,
+            _ => self.version,
+        };
+        let header = Header {
+            version,
+            session: self.number,
+            sequence,
+        };
         let encoded = match &self.seal {
             Some(seal) if !matches!(message, Message::Hello(_)) => {
                 self.signed += 1;
@@ -333,7 +362,6 @@ impl Session {
             .extend_from_slice(frame.get(..len).unwrap_or_default());
         self.counters.frames_sent += 1;
         self.counters.bytes_sent += len as u64;
-        self.last_sent = now;
         len
     }
 

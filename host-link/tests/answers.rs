@@ -47,7 +47,7 @@ fn an_answer_that_this_program_does_not_know_fails_its_request_at_once() {
     for (version, answer) in [
         (PROTOCOL_CURRENT, newer_refusal()),
         (PROTOCOL_CURRENT, longer),
-        (PROTOCOL_CURRENT + 1, done),
+        (PROTOCOL_CURRENT + 1, body(&Message::Reply(Reply::Working))),
     ] {
         let mut script = Script::open(MS * 10);
         let asked = script.session.request(script.now, Request::Status);
@@ -140,10 +140,10 @@ fn a_greeting_answered_by_an_unknown_board_names_the_firmware() {
     let connecting = script.session.connect(script.now);
     script.collect();
     let (sequence, mut reply) = script.greeting();
-    (reply.protocol_min, reply.protocol_current) = (2, 3);
+    (reply.protocol_min, reply.protocol_current) = (3, 4);
     script.say_body(header(sequence), Kind::HelloReply, &newer_board(reply));
     let version = error(&script, connecting);
-    assert!(version.contains("versions 2 to 3"), "{version}");
+    assert!(version.contains("versions 3 to 4"), "{version}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ mod tank_less;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use host_link::port::{FaultyPort, Outage};
+use host_link::port::{FaultPlan, FaultyPort, Outage};
 use host_link::robot::time_left;
 use host_link::{LinkError, Port, Robot};
 use link_protocol::{StateName, StopCause};
@@ -145,15 +145,59 @@ fn a_stop_works_without_a_greeting() {
     robot
         .listen(MS * 2000, |_| ControlFlow::Continue(()))
         .unwrap();
-    let mut port = Robot::stop_at_once(robot.into_port(), 80, false).unwrap();
+    let (mut port, _) = Robot::stop_at_once(robot.into_port(), 80, false).unwrap();
     port.inner_mut().pass(MS * 1600);
     assert!(port.inner().device().output.unwrap().pulses_ns.is_none());
-    let mut port = Robot::stop_at_once(port, 81, true).unwrap();
+    let (mut port, _) = Robot::stop_at_once(port, 81, true).unwrap();
     port.inner_mut().pass(MS * 20);
     assert_eq!(
         port.inner().device().output.unwrap().state,
         StateName::EStopped
     );
+}
+
+/// The robot hears nothing any more and is still heard: what it tells of its stop is the answer, at once and in its words.
+#[test]
+fn a_lost_link_that_telemetry_tells_ends_the_wait_at_once() {
+    for (cycles, words) in [(3, "0 of 3 cycles"), (0, "0 cycles of a play without end")] {
+        let mut robot = connect("", 13);
+        upload(&mut robot, circle(1.0).bytes()).unwrap();
+        robot.arm(false).unwrap();
+        robot.play(cycles, MS * 8000, false).unwrap();
+        robot
+            .listen(MS * 3000, |_| ControlFlow::Continue(()))
+            .unwrap();
+        let deaf = FaultPlan {
+            written: "drop=100%".parse().unwrap(),
+            ..FaultPlan::default()
+        };
+        let mut robot = robot.map_port(|port| FaultyPort::new(port, deaf, 1));
+        let mut told = None;
+        let mut now = robot.port().now();
+        let error = loop {
+            let waited = robot.wait_while(|telemetry| {
+                let over =
+                    telemetry.is_some_and(|telemetry| telemetry.cause == StopCause::LinkLost);
+                if told.is_none() && over {
+                    return ControlFlow::Break(());
+                }
+                ControlFlow::Continue(())
+            });
+            now = robot.port().now().max(now);
+            match waited {
+                Ok(None) => told = Some(now),
+                Ok(Some(status)) => panic!("{status:?}"),
+                Err(error) => break error,
+            }
+        };
+        let waited = now.saturating_sub(told.unwrap());
+        assert!(waited < MS * 2000, "{waited:?}");
+        let said = error.to_string();
+        assert!(
+            said.contains("it lost the link") && said.contains(words),
+            "{said}"
+        );
+    }
 }
 
 /// Plays three cycles of eight seconds; the link is cut for a while from 3 s after the start on.
@@ -285,6 +329,7 @@ fn every_ticket_ends_exactly_once() {
                 match event {
                     Event::Connected { ticket, .. }
                     | Event::Answered { ticket, .. }
+                    | Event::StoppedByItself { ticket, .. }
                     | Event::Uploaded { ticket, .. } => {
                         ended_well += 1;
                         *ends.get_mut(&ticket).unwrap() += 1;

@@ -51,7 +51,7 @@ fn without_the_key_or_with_a_wrong_one_the_error_says_so_and_stops_work() {
         "{error}"
     );
     robot.stop().unwrap();
-    let mut port = Robot::stop_at_once(robot.into_port(), 4, true).unwrap();
+    let (mut port, _) = Robot::stop_at_once(robot.into_port(), 4, true).unwrap();
     port.inner_mut().pass(MS * 20);
     assert_eq!(
         port.inner().device().output.unwrap().state,

@@ -5,8 +5,10 @@ mod scripted;
 
 use std::time::Duration;
 
-use host_link::session::Event;
-use link_protocol::{Message, Refusal, Reply, Request, TableInfo};
+use host_link::session::{Event, Session, SessionConfig};
+use link_protocol::{
+    Message, Pong, Refusal, Reply, Request, SCHEMA_KEY_V1, StateName, StopCause, TableInfo,
+};
 use scripted::{MS, SESSION, Script};
 
 fn times(script: &Script) -> Vec<u128> {
@@ -136,7 +138,7 @@ fn replies_to_other_sessions_and_numbers_count_for_nothing() {
 #[test]
 fn another_version_is_a_sentence_and_not_silence() {
     for (min, current, advice) in [
-        (2, 3, "update this program"),
+        (3, 4, "update this program"),
         (0, 0, "update the robot's firmware"),
     ] {
         let mut script = Script::new();
@@ -164,21 +166,132 @@ fn another_schema_is_a_sentence_too() {
 }
 
 #[test]
-fn an_idle_session_feeds_the_lease_every_50_ms() {
+fn an_idle_session_feeds_the_lease_every_50_ms_as_it_is_answered() {
     let mut script = Script::open(MS * 10);
-    script.run_to(MS * 3010);
+    // The first one goes out with the greeting's answer; this takes its place.
+    script.run_to(MS * 90);
+    let mut heard = Vec::new();
+    for round in 1..60_u64 {
+        let (at, header, message) = script.sent.last().cloned().unwrap();
+        let Message::Heartbeat(heartbeat) = message else {
+            panic!("{message:?}")
+        };
+        assert_eq!(heartbeat.host_us, u64::try_from(at.as_micros()).unwrap());
+        heard.push(heartbeat.heard_us);
+        script.run_to(at + MS * 10);
+        let pong = Message::Pong(Pong {
+            host_us: heartbeat.host_us,
+            received_us: 1_000 * round,
+            sent_us: 1_000 * round,
+        });
+        script.say(SESSION, header.sequence, &pong);
+        script.run_to(at + MS * 50);
+    }
     let gaps: Vec<u128> = times(&script)
         .windows(2)
         .map(|pair| pair[1] - pair[0])
         .collect();
     assert!(gaps.iter().all(|&gap| gap == 50), "{gaps:?}");
-    let pings = script
-        .sent
-        .iter()
-        .filter(|(.., message)| matches!(message, Message::Ping(_)))
-        .count();
-    // Eight at once for the clock, then one a second.
-    assert_eq!(pings, 10);
+    // Nothing at first, then what the robot said last.
+    assert!(
+        heard
+            .iter()
+            .zip(0..)
+            .all(|(&heard, before)| heard == 1_000 * before),
+        "{heard:?}"
+    );
+}
+
+#[test]
+fn unanswered_keep_alives_are_few() {
+    let mut script = Script::open(MS * 10);
+    script.run_to(MS * 60_010);
+    // One, and what takes a lost one's place.
+    assert!(script.sent.len() < 30, "{}", script.sent.len());
+}
+
+#[test]
+fn a_line_that_echoes_is_named() {
+    let mut session = Session::new(SessionConfig::new(1));
+    let mut now = Duration::ZERO;
+    session.connect(now);
+    loop {
+        let echo = session.take_outgoing();
+        session.receive(now, &echo);
+        if let Some(event) = session.next_event() {
+            let Event::Failed { error, .. } = event else {
+                panic!("{event:?}")
+            };
+            assert!(error.to_string().contains("the line echoes"), "{error}");
+            return;
+        }
+        now = session.next_deadline().unwrap();
+        session.poll(now);
+    }
+}
+
+/// The stop waits behind other bytes: what the robot tells says what ended the motion.
+#[test]
+fn a_stop_that_the_lease_overtook_ends_with_that() {
+    let mut script = Script::open(MS * 10);
+    script.tell(StateName::Playing, StopCause::Boot);
+    let ticket = script.session.request(script.now, Request::Stop);
+    script.collect();
+    // At once, it is not overtaken but only just sent.
+    script.tell(StateName::Stopping, StopCause::LinkLost);
+    script.run_to(MS * 600);
+    assert_eq!(script.outcome(ticket), None);
+    script.tell(StateName::Playing, StopCause::LinkLost);
+    assert_eq!(script.outcome(ticket), None);
+    script.tell(StateName::Stopping, StopCause::LinkLost);
+    assert!(script.events.iter().any(
+        |event| matches!(event, Event::StoppedByItself { ticket: stopped, cause: StopCause::LinkLost } if *stopped == ticket)
+    ));
+    // The stop's own work, whose answer was lost.
+    let ticket = script.session.request(script.now, Request::Stop);
+    script.run_to(MS * 1_300);
+    script.tell(StateName::Settling, StopCause::Requested);
+    assert_eq!(script.outcome(ticket), Some(Ok(())));
+    // To an e-stop only the latch is an answer.
+    let ticket = script.session.request(script.now, Request::EStop);
+    script.run_to(MS * 2_000);
+    script.tell(StateName::Stopped, StopCause::LinkLost);
+    assert_eq!(script.outcome(ticket), None);
+    script.tell(StateName::EStopped, StopCause::EStop);
+    assert_eq!(script.outcome(ticket), Some(Ok(())));
+}
+
+/// A robot of version 1 hears version 1; a stop goes out in the frame that every robot reads.
+#[test]
+fn to_a_robot_of_version_1_a_session_speaks_it() {
+    let mut script = Script::new();
+    script.session.connect(script.now);
+    script.collect();
+    script.run_to(MS * 10);
+    script.greet(|reply| {
+        (reply.protocol_min, reply.protocol_current) = (1, 1);
+        reply.schema_key = SCHEMA_KEY_V1;
+    });
+    script.session.request(script.now, Request::Status);
+    script.collect();
+    let (_, header, _) = script.sent.last().unwrap();
+    assert_eq!(header.version, 1);
+    assert!(script.sent.iter().any(|(_, header, message)| {
+        header.version == 1 && matches!(message, Message::Ping(_))
+    }));
+    assert!(
+        !script
+            .sent
+            .iter()
+            .any(|(.., message)| matches!(message, Message::Heartbeat(_)))
+    );
+    let mut script = Script::open(MS * 10);
+    script.session.request(script.now, Request::Status);
+    script.collect();
+    assert_eq!(script.sent.last().unwrap().1.version, 2);
+    script.session.request(script.now, Request::Stop);
+    script.collect();
+    assert_eq!(script.sent.last().unwrap().1.version, 1);
 }
 
 #[test]
@@ -298,6 +411,7 @@ fn a_lost_session_fails_requests_until_greeted_again() {
 #[test]
 fn chunks_in_flight_stay_below_the_window_and_at_the_line_s_pace() {
     let mut script = Script::open(MS * 150);
+    script.tell(StateName::Stopped, StopCause::Boot);
     let upload = script
         .session
         .upload(script.now, 0, &[3; 2048], MS * 60_000);

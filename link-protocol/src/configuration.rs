@@ -64,3 +64,13 @@ pub struct ServoSettings {
     /// Added to every angle, in units of 1e-4 rad; set by [`crate::Request::Trim`].
     pub trim: i16,
 }
+
+/// The pulses that a servo's end stops allow: a robot sends none outside. It tightens the firmware's own window, never
+/// loosens it; joint angles beyond are refused with the gait that has them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct PulseRange {
+    /// Shortest pulse, ns.
+    pub shortest_ns: u32,
+    /// Longest pulse, ns.
+    pub longest_ns: u32,
+}

@@ -55,6 +55,8 @@ pub enum Kind {
     Ping = 7,
     /// [`crate::Pong`].
     Pong = 8,
+    /// [`crate::Heartbeat`]; since version 2.
+    Heartbeat = 9,
 }
 
 impl Kind {
@@ -69,6 +71,7 @@ impl Kind {
             6 => Self::KeepAlive,
             7 => Self::Ping,
             8 => Self::Pong,
+            9 => Self::Heartbeat,
             _ => return None,
         })
     }
@@ -131,7 +134,7 @@ pub enum EncodeError {
 /// Encodes `message` under `header` into `out`, burst start and delimiter included; returns the number of bytes.
 ///
 /// # Errors
-/// `out` is shorter than [`MAX_ENCODED`]; no message of version 1 has a body that is too long.
+/// `out` is shorter than [`MAX_ENCODED`]; no message has a body that is too long.
 pub fn encode(header: Header, message: &Message, out: &mut [u8]) -> Result<usize, EncodeError> {
     let mut body = [0; crate::MAX_BODY];
     let body = message

@@ -16,8 +16,13 @@
 //! # Versions
 //!
 //! [`PROTOCOL_CURRENT`] is spoken, [`PROTOCOL_MIN`] still understood. [`Hello`] and [`HelloReply`] keep their encoding
-//! for ever, in frames of any version, so that two ends that do not match can say so. Enum variants are only appended.
-//! `tests/golden/v1.txt` holds the bytes of every message of version 1; it is never edited.
+//! for ever, in frames of any version, so that two ends that do not match can say so; so do [`Request::Stop`],
+//! [`Request::EStop`] and the [`Reply::Done`] that answers them, so that every end stops every robot. Enum variants are only
+//! appended. `tests/golden/` holds the bytes of every message, a file for each version and one for what is for ever; they
+//! are never edited.
+//!
+//! Version 2 is version 1 with another keep-alive, the [`Heartbeat`], and with signed answers where there is a key. A host of
+//! version 1 may read and stop a robot of version 2; to power the servos takes [`POWER_SINCE`].
 //!
 //! # Authentication
 //!
@@ -39,7 +44,7 @@ mod seal;
 mod telemetry;
 
 pub use checksum::{Checksum, crc32c};
-pub use configuration::{Configuration, Joint, ServoSettings, TangentialDrag};
+pub use configuration::{Configuration, Joint, PulseRange, ServoSettings, TangentialDrag};
 pub use decoder::{DecodeCounters, Decoder, Received};
 pub use frame::{Direction, EncodeError, Header, Kind, Signature, encode, encode_body};
 pub use hello::{
@@ -47,15 +52,19 @@ pub use hello::{
 };
 pub use message::{BodyError, Message};
 pub use refusal::{CrossingPlace, Refusal};
-pub use reply::{Counters, Reply, Status, TableInfo};
+pub use reply::{BenchStatus, Counters, Reply, Status, TableInfo};
 pub use request::{Arm, Begin, Chunk, Play, Request};
 pub use seal::{Binding, Key, Seal, encode_signed};
-pub use telemetry::{Flags, Ping, Pong, Pose, StateName, StopCause, Telemetry};
+pub use telemetry::{Flags, Heartbeat, Ping, Pong, Pose, StateName, StopCause, Telemetry};
 
 /// Lowest protocol version this crate understands.
 pub const PROTOCOL_MIN: u8 = 1;
 /// The protocol version this crate speaks.
-pub const PROTOCOL_CURRENT: u8 = 1;
+pub const PROTOCOL_CURRENT: u8 = 2;
+/// Lowest version whose requests may power the servos: keep-alives before it could be old without anybody knowing.
+pub const POWER_SINCE: u8 = 2;
+/// The version of the frames that stops go out in: every robot there is reads them.
+pub const STOP_VERSION: u8 = 1;
 /// Most raw bytes of a frame: header, body and CRC, before COBS.
 pub const MAX_RAW: usize = 128;
 /// Bytes of the header.
@@ -78,10 +87,12 @@ pub const MAX_TABLE: usize = 4 * MAX_KNOTS;
 pub const ANGLE_UNIT_RAD: f32 = 1e-4;
 /// Top bit of the kind byte: the frame carries a [`Signature`].
 pub const KIND_SIGNED: u8 = 0x80;
-/// Identifies the set of messages by their structure: two ends with the same key read the same fields. It is that of
-/// version 1 as it was frozen ([`postcard_schema`]'s key of all messages then); variants appended since change no byte of
-/// what was there, and an end that does not know one says so ([`Refusal::NotUnderstood`]).
-pub const SCHEMA_KEY: [u8; 8] = [0xC7, 0x47, 0x8B, 0x1F, 0x03, 0x22, 0x6B, 0x44];
+/// Identifies the set of messages of version 1 by their structure ([`postcard_schema`]'s key of all messages as they were
+/// frozen): what a robot or host of that version says of itself.
+pub const SCHEMA_KEY_V1: [u8; 8] = [0xC7, 0x47, 0x8B, 0x1F, 0x03, 0x22, 0x6B, 0x44];
+/// The same of version 2: two ends with the same key read the same fields. Variants appended since change no byte of what was
+/// there, and an end that does not know one says so ([`Refusal::NotUnderstood`]).
+pub const SCHEMA_KEY: [u8; 8] = [0xCF, 0x6C, 0x35, 0xBC, 0x8D, 0x1E, 0x81, 0xB9];
 /// The structure of all messages as they are now, appended variants too: for the golden files, never on the wire.
 pub const SCHEMA_NOW: [u8; 8] =
-    postcard_schema::key::Key::for_path::<message::Schemas>("swimmer/link/v1").to_bytes();
+    postcard_schema::key::Key::for_path::<message::Schemas>("swimmer/link/v2").to_bytes();

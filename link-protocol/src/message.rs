@@ -1,6 +1,6 @@
 //! All messages in one enum, and their bodies' decoding: the kind says which type, and every byte must be used.
 
-use crate::{Hello, HelloReply, Kind, Ping, Pong, Reply, Request, Telemetry};
+use crate::{Heartbeat, Hello, HelloReply, Kind, Ping, Pong, Reply, Request, Telemetry};
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
@@ -18,12 +18,14 @@ pub enum Message {
     Reply(Reply),
     /// Tells unasked.
     Telemetry(Telemetry),
-    /// Feeds the lease, nothing else. The body is empty.
+    /// Version 1's: says nothing but that a host lives. The body is empty.
     KeepAlive,
     /// Asks for the time.
     Ping(Ping),
     /// Tells it.
     Pong(Pong),
+    /// Feeds the lease while it is fresh, and asks for the time.
+    Heartbeat(Heartbeat),
 }
 
 /// Everything whose structure the schema key vouches for.
@@ -37,12 +39,14 @@ pub(crate) struct Schemas {
     telemetry: Telemetry,
     ping: Ping,
     pong: Pong,
+    heartbeat: Heartbeat,
 }
 
 /// Why the body of a whole frame is no message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyError {
-    /// The frame's version is outside [`crate::PROTOCOL_MIN`]`..=`[`crate::PROTOCOL_CURRENT`] and it is no greeting.
+    /// The frame's version is outside [`crate::PROTOCOL_MIN`]`..=`[`crate::PROTOCOL_CURRENT`], and it is neither a greeting nor a
+    /// stop nor the answer to one.
     Version(u8),
     /// No message has this kind.
     UnknownKind(u8),
@@ -64,6 +68,7 @@ impl Message {
             Self::KeepAlive => Kind::KeepAlive,
             Self::Ping(_) => Kind::Ping,
             Self::Pong(_) => Kind::Pong,
+            Self::Heartbeat(_) => Kind::Heartbeat,
         }
     }
 
@@ -81,6 +86,7 @@ impl Message {
             Self::KeepAlive => Ok(&mut out[..0]),
             Self::Ping(body) => postcard::to_slice(body, out),
             Self::Pong(body) => postcard::to_slice(body, out),
+            Self::Heartbeat(body) => postcard::to_slice(body, out),
         }
     }
 
@@ -90,6 +96,9 @@ impl Message {
     /// See [`BodyError`].
     pub fn decode_body(version: u8, kind: u8, body: &[u8]) -> Result<Self, BodyError> {
         let kind = Kind::from_byte(kind).ok_or(BodyError::UnknownKind(kind))?;
+        if let Some(frozen) = frozen(kind, body) {
+            return Ok(frozen);
+        }
         let understood = (crate::PROTOCOL_MIN..=crate::PROTOCOL_CURRENT).contains(&version);
         if !understood && !matches!(kind, Kind::Hello | Kind::HelloReply) {
             return Err(BodyError::Version(version));
@@ -104,7 +113,19 @@ impl Message {
             Kind::KeepAlive => Err(BodyError::TrailingBytes(body.len())),
             Kind::Ping => whole(body).map(Self::Ping),
             Kind::Pong => whole(body).map(Self::Pong),
+            Kind::Heartbeat => whole(body).map(Self::Heartbeat),
         }
+    }
+}
+
+/// What every version obeys and reads, whatever the frame's version says: a stop, an e-stop, and the answer to either.
+/// Their bodies are one byte each, frozen like the greeting.
+fn frozen(kind: Kind, body: &[u8]) -> Option<Message> {
+    match (kind, body) {
+        (Kind::Request, [14]) => Some(Message::Request(Request::Stop)),
+        (Kind::Request, [15]) => Some(Message::Request(Request::EStop)),
+        (Kind::Reply, [0]) => Some(Message::Reply(Reply::Done)),
+        _ => None,
     }
 }
 

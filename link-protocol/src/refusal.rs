@@ -39,7 +39,7 @@ pub enum Refusal {
         /// The limit, mV.
         limit_mv: u16,
     },
-    /// Three resets in 60 s: wait, then clear.
+    /// Three resets in 60 s, or three starts in a row after runs of under 60 s: wait, then clear.
     ResetLoop {
         /// Seconds until it may be cleared.
         wait_s: u16,
@@ -128,6 +128,10 @@ pub enum Refusal {
     KeyNeeded,
     /// The frame is signed, but not with the robot's key for this session.
     WrongKey,
+    /// Only with somebody at the robot: a first key, lengths or limits beyond those as built, the boot loader.
+    NeedsPresence,
+    /// No fresh keep-alive was heard just now: this came late, or the link was only just opened. Ask again.
+    NotFresh,
 }
 
 impl Refusal {
@@ -161,6 +165,8 @@ impl Refusal {
             Self::Busy => 24,
             Self::KeyNeeded => 25,
             Self::WrongKey => 26,
+            Self::NeedsPresence => 27,
+            Self::NotFresh => 28,
         }
     }
 }
@@ -214,7 +220,7 @@ impl core::fmt::Display for Refusal {
             }
             Self::ResetLoop { wait_s } => write!(
                 f,
-                "three resets within 60 s: wait {wait_s} s, look for the cause, then clear"
+                "three resets within 60 s, or three starts in a row after less than 60 s each (a supply that breaks down under the servos does that; so do three quick plug-ins): wait {wait_s} s, look for the cause, then clear"
             ),
             Self::NoTable => write!(f, "the robot holds no gait: upload one"),
             Self::NoSuchSlot(slot) => write!(f, "there is no gait slot {slot}, only 0"),
@@ -310,6 +316,14 @@ impl core::fmt::Display for Refusal {
             Self::WrongKey => write!(
                 f,
                 "this was signed with another key than the robot's: give the right one with --key FILE (stop and estop need none)"
+            ),
+            Self::NeedsPresence => write!(
+                f,
+                "a first key, lengths more than a tenth from those it was built with, limits beyond them and its boot loader are for somebody at the robot: connect over its USB cable, or close its bench jumper (on a Pico press BOOTSEL) and try again within two minutes"
+            ),
+            Self::NotFresh => write!(
+                f,
+                "it has heard nothing fresh from here: the link is slower than a second, or was only just opened; try again, nearer to it"
             ),
         }
     }

@@ -1,6 +1,8 @@
 //! What the robot answers to a request. Variants are only appended.
 
-use crate::{Configuration, DecodeCounters, Flags, Refusal, ServoSettings, StateName, StopCause};
+use crate::{
+    Configuration, DecodeCounters, Flags, PulseRange, Refusal, ServoSettings, StateName, StopCause,
+};
 use heapless::String;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -35,6 +37,23 @@ pub enum Reply {
     CrashMessage(String<96>),
     /// Answer to [`crate::Request::Table`] and, once the table has passed every check, to [`crate::Request::Commit`].
     Table(Option<TableInfo>),
+    /// Answer to [`crate::Request::Bench`].
+    Bench(BenchStatus),
+    /// Answer to [`crate::Request::PulseRange`].
+    PulseRange(PulseRange),
+}
+
+/// What the bench asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
+pub struct BenchStatus {
+    /// Seconds for which the bench window is still open; 0: it is closed.
+    pub window_s: u16,
+    /// This session came over the USB cable, which is presence for as long as it lasts.
+    pub usb: bool,
+    /// Starts in a row that each followed a run of under 60 s, this one included; 0 once this run has lasted for 60 s.
+    pub short_starts: u8,
+    /// The configuration as built: what presence is measured by.
+    pub built: Configuration,
 }
 
 /// What the robot is doing.

@@ -1,6 +1,6 @@
 //! What a host may ask of the robot. Variants are only appended.
 
-use crate::{Configuration, Joint, Key, MAX_CHUNK, ServoSettings};
+use crate::{Configuration, Joint, Key, MAX_CHUNK, PulseRange, ServoSettings};
 use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,8 @@ pub enum Request {
     Counters,
     /// The configuration in force. Answered by [`crate::Reply::Configuration`].
     Configuration,
-    /// Sets the configuration; only while Stopped.
+    /// Sets the configuration; only while Stopped. Lengths more than a tenth from those as built, and limits beyond those as
+    /// built, need presence.
     Configure(Configuration),
     /// The settings of a servo. Answered by [`crate::Reply::Servo`].
     Servo(Joint),
@@ -55,25 +56,48 @@ pub enum Request {
     },
     /// Goes on from where [`Request::Pause`] held.
     Resume,
-    /// Ramps to neutral, then drops the pulses. Acts in every state, whatever session and sequence number.
+    /// Ramps to neutral, then drops the pulses. Acts in every state, whatever session and sequence number, in frames of any
+    /// version.
     Stop,
-    /// Drops the pulses within one tick, latched. Acts in every state, whatever session and sequence number.
+    /// Drops the pulses within one tick, latched. Acts as [`Request::Stop`] does.
     EStop,
-    /// Clears the latch of three resets in 60 s, once the robot has been up for 60 s.
+    /// Clears the latch of three resets in 60 s, or of three short starts, once the robot has been up for 60 s.
     ClearResets,
     /// The message of the crash before the last start. Answered by [`crate::Reply::CrashMessage`].
     CrashMessage,
     /// Names the table that is active. Answered by [`crate::Reply::Table`].
     Table,
     /// Sets, changes or removes the shared key; only while Stopped; in force from the next session on. A robot with a key
-    /// takes it only signed with that key. The new key crosses the wire in the clear: send it over a cable.
+    /// takes it only signed with that key; the first key needs presence. The new key crosses the wire in the clear: send it
+    /// over a cable.
     SetKey(Option<Key>),
+    /// What only the bench asks for: presence, short starts. Answered by [`crate::Reply::Bench`].
+    Bench,
+    /// The pulses that a servo's end stops allow. Answered by [`crate::Reply::PulseRange`].
+    PulseRange(Joint),
+    /// Sets them; only while Stopped.
+    SetPulseRange {
+        /// Which joint.
+        joint: Joint,
+        /// Its range.
+        range: PulseRange,
+    },
+    /// Clears a latched e-stop to Stopped, without arming.
+    ClearEStop,
+    /// Leaves the firmware for the chip's boot loader, which takes a new one over USB; only while Stopped, with presence. The
+    /// answer comes before.
+    EnterBootLoader,
 }
 
 impl Request {
     /// It ends motion: it acts in any session and under any number, and the more often the safer.
     pub fn is_stop(&self) -> bool {
         matches!(self, Self::Stop | Self::EStop)
+    }
+
+    /// It turns pulses on or sets joints in motion: it takes a host whose keep-alives are fresh.
+    pub fn is_powering(&self) -> bool {
+        matches!(self, Self::Arm(_) | Self::Play(_) | Self::Resume)
     }
 }
 

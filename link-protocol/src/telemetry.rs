@@ -66,6 +66,12 @@ impl Flags {
     pub const STORAGE_FAILED: Self = Self(128);
     /// A shared key is set: from the next session on only signed frames act, but for stops.
     pub const KEY_SET: Self = Self(256);
+    /// Somebody is at the robot: its bench window is open, or the session came over the USB cable. What needs presence may
+    /// be asked for.
+    pub const PRESENT: Self = Self(512);
+    /// Arming is refused because of starts that followed each other too quickly, as in a servo's brown-out; with
+    /// [`Flags::RESET_LOOP`].
+    pub const SHORT_STARTS: Self = Self(1024);
 
     /// All bits of `other` are set.
     pub fn contains(self, other: Self) -> bool {
@@ -126,17 +132,28 @@ pub struct Pose {
     pub theta: f32,
 }
 
-/// Host to robot, outside the order of requests: what time is it? Feeds the lease.
+/// Host to robot, outside the order of requests: what time is it? Version 1's; it feeds no lease of a robot of version 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Ping {
     /// The host's clock when it sent this, µs.
     pub host_us: u64,
 }
 
-/// Robot to host: the answer to [`Ping`], under its sequence number.
+/// Host to robot, outside the order of requests: the keep-alive of version 2, and its ping. It feeds the lease where it is
+/// fresh: where the host has heard the robot not long ago, and later than it had when it sent the one before. So neither a
+/// recorded one nor those that a dead host left in a buffer feed anything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Heartbeat {
+    /// The host's clock when it sent this, µs.
+    pub host_us: u64,
+    /// The latest time of the robot's clock that the host has heard in this session, µs; 0 where it has heard none yet.
+    pub heard_us: u64,
+}
+
+/// Robot to host: the answer to [`Ping`] and [`Heartbeat`], under its sequence number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Pong {
-    /// [`Ping::host_us`].
+    /// As in the question.
     pub host_us: u64,
     /// The robot's clock when the ping was read, µs.
     pub received_us: u64,

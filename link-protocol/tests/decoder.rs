@@ -32,7 +32,7 @@ fn raw_frame(kind: u8, version: u8, body: &[u8]) -> Vec<u8> {
 #[test]
 fn every_message_comes_back_and_fits() {
     for (name, message) in samples::messages() {
-        let frame = samples::frame(&message);
+        let frame = samples::frame(2, &message);
         assert!(frame.len() < MAX_ENCODED, "{name}");
         let mut decoder = Decoder::new();
         let received = push_all(&mut decoder, &frame);
@@ -40,7 +40,7 @@ fn every_message_comes_back_and_fits() {
         assert_eq!(received[0].message, Ok(message), "{name}");
         assert_eq!(
             (received[0].header.version, received[0].signature),
-            (1, None),
+            (2, None),
             "{name}"
         );
         assert_eq!(
@@ -81,7 +81,7 @@ fn kind_and_body_of_the_last_frame_can_be_told() {
     // A body that is no message is told too, but neither one of no kind nor one too short for its signature.
     push_all(&mut decoder, &raw_frame(4, 1, &[200]));
     assert_eq!(decoder.kind_and_body(), Some((Kind::Reply, &[200][..])));
-    push_all(&mut decoder, &raw_frame(9, 1, &[200]));
+    push_all(&mut decoder, &raw_frame(10, 1, &[200]));
     assert_eq!(decoder.kind_and_body(), None);
 }
 
@@ -184,7 +184,7 @@ fn the_largest_values_of_status_and_counters_fit() {
 #[test]
 fn every_split_point_decodes_the_same() {
     for (_, message) in samples::messages() {
-        let frame = samples::frame(&message);
+        let frame = samples::frame(2, &message);
         for split in 0..=frame.len() {
             let mut decoder = Decoder::new();
             let mut received = push_all(&mut decoder, &frame[..split]);
@@ -197,7 +197,7 @@ fn every_split_point_decodes_the_same() {
 
 #[test]
 fn each_fault_has_its_counter() {
-    let good = samples::frame(&Message::KeepAlive);
+    let good = samples::frame(2, &Message::KeepAlive);
     let mut decoder = Decoder::new();
     // A flipped bit within the CRC.
     let mut flipped = good.clone();
@@ -246,10 +246,10 @@ fn each_fault_has_its_counter() {
     );
     expect(
         &mut decoder,
-        &raw_frame(9, 1, &[]),
-        BodyError::UnknownKind(9),
+        &raw_frame(10, 1, &[]),
+        BodyError::UnknownKind(10),
     );
-    expect(&mut decoder, &raw_frame(6, 2, &[]), BodyError::Version(2));
+    expect(&mut decoder, &raw_frame(6, 3, &[]), BodyError::Version(3));
     expect(&mut decoder, &raw_frame(6, 0, &[]), BodyError::Version(0));
     let expected = DecodeCounters {
         ok: 1,
@@ -360,7 +360,7 @@ proptest! {
         prop_assert!(push_all(&mut decoder, &garbage).is_empty());
         // The burst start ends the garbage.
         prop_assert!(decoder.push(0).is_none());
-        let received = push_all(&mut decoder, &samples::frame(message));
+        let received = push_all(&mut decoder, &samples::frame(2, message));
         prop_assert_eq!(received.len(), 1);
         prop_assert_eq!(received[0].message.as_ref(), Ok(message));
     }

@@ -1,7 +1,9 @@
 //! What a twin is: the truth that only the tank knows, and what its brain believes at first.
 
+use gait_player::servo::ServoMap;
 use gait_player::servo::plant::PlantParameters;
-use gait_player::{Boot, Brain, BrainConfig, Identity, Limits};
+use gait_player::storage::MemoryStorage;
+use gait_player::{Boot, Brain, BrainConfig, Identity, Limits, Transport};
 use link_protocol::{Board, Configuration, FirmwareVersion, ResetReason, ServoSettings};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -9,7 +11,6 @@ use swimmer_files::{ServoFile, SwimmerFile};
 use swimmer_model::{Scalar, Swimmer, TangentialDrag};
 
 use crate::camera::CameraConfig;
-use crate::flash::VirtualFlash;
 
 /// Pulses outside are never sent by any servo of this kind, µs: beyond, a sail winch may spin on.
 const PULSE_WINDOW_US: (f64, f64) = (600.0, 2400.0);
@@ -27,14 +28,18 @@ pub struct TwinConfig {
     pub limits: Limits,
     /// What the brain believes of swimmer and limits until it is configured.
     pub belief: Configuration,
-    /// The servos' maps, in the brain until others are set, and in truth for ever.
+    /// The servos' maps in the brain, until others are set.
     pub servos: [ServoSettings; 2],
+    /// The same in truth: what a pulse turns them to. A robot that nobody has set up yet does not know.
+    pub shafts: [ServoMap; 2],
     /// Its battery, mV; the limits' own is 4400.
     pub battery_mv: u16,
     /// The cameras over the tank.
     pub camera: CameraConfig,
     /// Its non-volatile memory.
-    pub flash: VirtualFlash,
+    pub flash: MemoryStorage,
+    /// What its port is to it. Whoever runs a twin sits beside it: USB, until it is to play a robot across the room.
+    pub transport: Transport,
     /// How it came up.
     pub reset_reason: ResetReason,
     /// Where noise, starting pose and the boot nonce come from.
@@ -80,9 +85,11 @@ impl TwinConfig {
             belief: configuration(&swimmer, servo),
             swimmer,
             servos: [settings; 2],
+            shafts: [settings.into(); 2],
             battery_mv: 5_200,
             camera: CameraConfig::default(),
-            flash: VirtualFlash::erased(),
+            flash: MemoryStorage::erased(),
+            transport: Transport::Usb,
             reset_reason: ResetReason::PowerOn,
             seed,
         }
@@ -115,10 +122,7 @@ impl TwinConfig {
             buffer: 2048,
             boot: Boot {
                 reset_reason: self.reset_reason,
-                nonce: rng.random(),
-                session_seed: rng.random(),
-                kept: 0,
-                crash_message: heapless::String::new(),
+                ..Boot::power_on(rng.random(), rng.random())
             },
         })
     }

@@ -10,7 +10,6 @@
 
 mod camera;
 mod config;
-mod flash;
 mod replay;
 mod service;
 mod servos;
@@ -21,7 +20,6 @@ mod world;
 
 pub use camera::{Camera, CameraConfig, Frame, MotiveFile, Point, TrackError};
 pub use config::{TwinConfig, configuration};
-pub use flash::VirtualFlash;
 pub use host_link::port::{VirtualPort, WireSpeed};
 pub use replay::{Difference, ReplayError, Replayed, replay};
 pub use service::serve;

@@ -10,15 +10,17 @@
 
 mod events;
 
-use gait_player::{Boot, Brain, BrainConfig, GaitTable, Identity, Inputs, Limits, TICK_US};
+use gait_player::storage::MemoryStorage;
+use gait_player::{
+    Boot, Brain, BrainConfig, GaitTable, Identity, Inputs, Limits, TICK_US, Transport,
+};
 use link_protocol::{
-    Begin, Chunk, Configuration, Decoder, Header, Hello, HelloReply, MAX_CHUNK, MAX_ENCODED,
-    Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Request, SCHEMA_KEY, StateName, Telemetry, crc32c,
-    encode,
+    Begin, Chunk, Configuration, Decoder, Header, Heartbeat, Hello, HelloReply, MAX_CHUNK,
+    MAX_ENCODED, Message, POWER_SINCE, PROTOCOL_CURRENT, PROTOCOL_MIN, Request, SCHEMA_KEY,
+    StateName, Telemetry, crc32c, encode,
 };
 use swimmer_files::LinkFrame;
 
-use crate::VirtualFlash;
 use events::{Events, Moving};
 
 /// Why a log cannot be lived again.
@@ -75,6 +77,8 @@ pub struct Difference {
     pub replayed: Option<Telemetry>,
 }
 
+/// What was granted then is granted again: over the cable nothing asks for more.
+const VIA: Transport = Transport::Usb;
 /// Ticks that are lived before the log begins.
 const BEFORE: u64 = 10;
 /// Ticks before and after the bracket of a request in which it may have been read too.
@@ -126,27 +130,33 @@ struct Count {
 #[derive(Clone)]
 struct Life {
     brain: Brain,
-    flash: VirtualFlash,
+    flash: MemoryStorage,
     decoder: Decoder,
+    /// The robot's clock a period before tick 0, µs.
+    origin_us: u64,
     /// The next tick to be lived.
     tick: u64,
     /// The next of the log's still frames.
     still: usize,
+    /// The brain has told something.
+    greeted: bool,
     battery_mv: Option<u16>,
 }
 
 impl Life {
     /// A robot just switched on as the log found it.
     fn new(events: &Events, table: Option<&GaitTable>) -> Self {
-        let mut flash = table.map_or_else(VirtualFlash::erased, |table| stored(table, events));
+        let mut flash = table.map_or_else(MemoryStorage::erased, |table| stored(table, events));
         let mut brain = brain(events, events.hello.session);
         let Ok(()) = brain.load(&mut flash);
         let mut life = Self {
             brain,
             flash,
             decoder: Decoder::new(),
+            origin_us: events.origin_us,
             tick: 0,
             still: 0,
+            greeted: false,
             battery_mv: events.battery_at_start,
         };
         if events.state_at_start == StateName::EStopped {
@@ -157,8 +167,10 @@ impl Life {
 
     /// Takes bytes in the middle between two ticks.
     fn receive(&mut self, bytes: &[u8]) {
-        self.brain
-            .receive(time_of(self.tick) - u64::from(TICK_US) / 2, bytes);
+        let now = time_of(self.tick) - u64::from(TICK_US) / 2;
+        for bytes in today(bytes, now, self.origin_us) {
+            self.brain.receive(now, VIA, &bytes);
+        }
     }
 
     /// Lives until a request is read just before a tick. A line keeps the order: what was sent before is read before.
@@ -188,6 +200,11 @@ impl Life {
                 continue;
             };
             self.battery_mv = logged.battery_mv;
+            // The greeting may be read here a tick later than it was: until then nobody is told anything.
+            self.greeted |= told.is_some();
+            if !self.greeted {
+                continue;
+            }
             count.compared += 1;
             if told.is_none_or(|told| !same(&told, logged)) {
                 count.different += 1;
@@ -204,7 +221,8 @@ impl Life {
         let now = time_of(self.tick);
         let inputs = Inputs {
             battery_mv: self.battery_mv,
-            link_up: true,
+            usb_up: true,
+            ..Inputs::default()
         };
         let output = self.brain.tick(now, &inputs);
         if output.storage_wanted {
@@ -214,7 +232,7 @@ impl Life {
         let mut told = None;
         let mut bytes = [0; MAX_ENCODED];
         loop {
-            let length = self.brain.transmit(&mut bytes);
+            let length = self.brain.transmit(VIA, &mut bytes);
             if length == 0 {
                 return told;
             }
@@ -253,6 +271,47 @@ impl Life {
 /// The brain's clock at a tick: its first is one period after its start.
 fn time_of(tick: u64) -> u64 {
     (tick + 1) * u64::from(TICK_US)
+}
+
+/// What was sent, as this brain is to hear it: keep-alives that tell times of its own clock, as fresh as they were; and what a
+/// host of version 1 sent as one of today would, for whatever it sent fed its lease, and it could power the servos.
+fn today(bytes: &[u8], now_us: u64, origin_us: u64) -> Vec<Vec<u8>> {
+    let mut decoder = Decoder::new();
+    let Some(received) = bytes.iter().find_map(|&byte| decoder.push(byte)) else {
+        return vec![bytes.to_vec()];
+    };
+    let Header {
+        version,
+        session,
+        sequence,
+    } = received.header;
+    let heartbeat = |heard_us| {
+        let heartbeat = Heartbeat {
+            host_us: 0,
+            heard_us,
+        };
+        frame(session, sequence, &Message::Heartbeat(heartbeat))
+    };
+    match received.message {
+        Ok(Message::Heartbeat(told)) => {
+            // Frames are read here in the middle of a tick: what was heard later in it counts as heard just now.
+            let heard_us = told.heard_us.wrapping_sub(origin_us);
+            let heard_us = heard_us.wrapping_add(u64::from(TICK_US));
+            let ahead = heard_us.wrapping_sub(now_us) <= 2 * u64::from(TICK_US);
+            vec![heartbeat(if ahead { now_us } else { heard_us })]
+        }
+        Ok(Message::Hello(hello)) if version < POWER_SINCE => {
+            let hello = Hello {
+                protocol_current: PROTOCOL_CURRENT,
+                ..hello
+            };
+            vec![frame(session, sequence, &Message::Hello(hello))]
+        }
+        Ok(message) if version < POWER_SINCE => {
+            vec![heartbeat(now_us), frame(session, sequence, &message)]
+        }
+        _ => vec![bytes.to_vec()],
+    }
 }
 
 /// What the tank sees is the same; and, while a play is under way, its place in it (before, the robot still tells of the play
@@ -318,19 +377,23 @@ fn brain(events: &Events, session: u16) -> Brain {
 }
 
 /// A flash in which another brain has stored this table.
-fn stored(table: &GaitTable, events: &Events) -> VirtualFlash {
+fn stored(table: &GaitTable, events: &Events) -> MemoryStorage {
     let mut brain = brain(events, 1);
-    let mut flash = VirtualFlash::erased();
+    let mut flash = MemoryStorage::erased();
     let bytes = table.bytes();
     let mut sequence = 0;
     let mut now: u64 = 0;
+    let inputs = Inputs {
+        usb_up: true,
+        ..Inputs::default()
+    };
     let mut ask = |brain: &mut Brain, message: &Message| {
         sequence += 1;
-        brain.receive(now, &frame(1, sequence, message));
+        brain.receive(now, VIA, &frame(1, sequence, message));
         // Checking a table takes up to a second, storing it a little longer.
         for _ in 0..100 {
             now += u64::from(TICK_US);
-            let output = brain.tick(now, &Inputs::default());
+            let output = brain.tick(now, &inputs);
             if output.storage_wanted {
                 let Ok(()) = brain.serve_storage(now, &mut flash);
             }

@@ -1,4 +1,5 @@
-//! Two servos between pulses and joint angles: the brain's own map read backwards, and the plant all predictions share.
+//! Two servos between pulses and joint angles: a map read backwards, which need not be the one that the brain believes, and the
+//! plant all predictions share.
 
 use gait_player::servo::ServoMap;
 use gait_player::servo::plant::{PlantParameters, ServoPlant};

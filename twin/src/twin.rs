@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
+use gait_player::storage::MemoryStorage;
 use gait_player::{Brain, Inputs, Output, TICK_US};
 use host_link::port::Device;
 use link_protocol::{MAX_ENCODED, StateName};
@@ -10,7 +11,6 @@ use swimmer_model::{InvalidSwimmer, Pose};
 
 use crate::camera::TrackError;
 use crate::config::TwinConfig;
-use crate::flash::VirtualFlash;
 use crate::virtual_robot::VirtualRobot;
 use crate::world::{CycleStart, Recording, World};
 
@@ -18,7 +18,7 @@ use crate::world::{CycleStart, Recording, World};
 pub struct Twin {
     config: TwinConfig,
     brain: Brain,
-    flash: VirtualFlash,
+    flash: MemoryStorage,
     world: World,
     output: Option<Output>,
     next_tick_us: u64,
@@ -83,7 +83,7 @@ impl Twin {
     }
 
     /// The robot's flash, as it is now: a twin made with it comes up as after a power cut.
-    pub fn flash(&self) -> &VirtualFlash {
+    pub fn flash(&self) -> &MemoryStorage {
         &self.flash
     }
 
@@ -134,6 +134,8 @@ impl Twin {
         let inputs = Inputs {
             battery_mv: Some(self.config.battery_mv),
             link_up: self.link_up,
+            usb_up: self.link_up,
+            present: false,
         };
         let output = self.brain.tick(self.world.now_us(), &inputs);
         let flashed = self.output.is_some_and(|before| before.cycle_flash);
@@ -167,7 +169,8 @@ impl Device for Twin {
     }
 
     fn receive(&mut self, bytes: &[u8]) {
-        self.brain.receive(self.world.now_us(), bytes);
+        self.brain
+            .receive(self.world.now_us(), self.config.transport, bytes);
     }
 
     fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
@@ -175,7 +178,10 @@ impl Device for Twin {
         let mut frame = [0; MAX_ENCODED];
         while left > 0 {
             let space = left.min(frame.len());
-            let count = self.brain.transmit(&mut frame[..space]).min(space);
+            let count = self
+                .brain
+                .transmit(self.config.transport, &mut frame[..space])
+                .min(space);
             if count == 0 {
                 break;
             }

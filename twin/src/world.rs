@@ -72,7 +72,7 @@ impl World {
         let mut draw = |largest: f64| rng.random_range(-largest..largest);
         let pose = Pose::new(draw(0.2), draw(0.2), draw(std::f64::consts::PI));
         Ok(Self {
-            servos: Servos::new(config.servos.map(Into::into), config.plant),
+            servos: Servos::new(config.shafts, config.plant),
             tank: Tank::new(&config.swimmer, pose)?,
             now_us: 0,
             reach: 0.5 * config.swimmer.links.middle,

@@ -2,6 +2,7 @@
 
 use std::process::Command;
 
+use crate::binary_info::Pieces;
 use crate::disk::{make_folder, read_bytes, write};
 use crate::failure::{Failure, Outcome};
 use crate::image::Image;
@@ -79,7 +80,7 @@ impl Variant {
     }
 }
 
-/// Builds one image, weighs it, and leaves `firmware-NAME.elf` and `.uf2` in `target/firmware-images`.
+/// Builds one image, weighs it, and leaves `swimmer-NAME.elf` and `.uf2` in `target/firmware-images`.
 ///
 /// # Errors
 /// When the build fails or the image takes more flash or RAM than promised.
@@ -92,14 +93,16 @@ pub(crate) fn build(toolchain: &ChipToolchain, variant: Variant) -> Outcome {
     let elf = target.join(TARGET).join("firmware/firmware");
     let bytes = read_bytes(&elf)?;
     let image = Image::from_elf(&bytes)?;
+    let info = Pieces(&image.flash).binary_info()?;
     let images = target.join("firmware-images");
     make_folder(&images)?;
-    let name = format!("firmware-{}", variant.name());
+    let name = format!("swimmer-{}", variant.name());
     for (ending, content) in [("elf", &bytes), ("uf2", &uf2::from_segments(image.flash))] {
         let path = images.join(&name).with_extension(ending);
         write(&path, content)?;
         println!("{}", path.display());
     }
+    println!("{}: {info}", variant.name());
     println!("{}: {}", variant.name(), image.footprint);
     image.footprint.check()
 }
@@ -143,6 +146,7 @@ mod tests {
             ("link_rx", "D0", 1),
             ("servo_front", "D4", 16),
             ("servo_back", "D5", 17),
+            ("presence", "D10", 5),
             ("battery", "A0", 26),
         ] {
             let declared = format!("{field}: Peri<'static, PIN_{gpio}>");

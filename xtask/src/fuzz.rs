@@ -88,7 +88,7 @@ fn seeds(root: &Path, target: &str) -> std::io::Result<Vec<PathBuf>> {
         "tracks_wide" => &["motive-1.2", "motive-excel"],
         "tracks_records" => &["motive-1.1.", "trackingtools"],
         "tracks_headerless" => &["motive-without-header"],
-        "tracks_trc" => &["tank.trc"],
+        "tracks_trc" => &["tank.trc", "cortex.trc"],
         _ => &[target.strip_prefix("tracks_").unwrap_or_default()],
     };
     let folder = if target.starts_with("tracks") {

@@ -9,9 +9,9 @@ use object::{Endianness, Object, ObjectSymbol};
 use crate::failure::{Failure, Outcome};
 
 /// Most flash that the firmware may take, in bytes.
-pub(crate) const FLASH_CAP: u32 = 128 * 1024;
+pub(crate) const FLASH_CAP: u32 = 256 * 1024;
 /// Most RAM, stack and variables together, in bytes.
-pub(crate) const RAM_CAP: u32 = 64 * 1024;
+pub(crate) const RAM_CAP: u32 = 96 * 1024;
 /// Where the RP2040 shows its flash.
 const FLASH: std::ops::Range<u32> = 0x1000_0000..0x1100_0000;
 /// Where it has its RAM.
@@ -148,7 +148,7 @@ mod tests {
         .check()
         .unwrap_err()
         .to_string();
-        assert!(flash.contains("flash 131073 of 131072 bytes"), "{flash}");
+        assert!(flash.contains("flash 262145 of 262144 bytes"), "{flash}");
         let ram = Footprint {
             variables: full.variables + 1,
             ..full
@@ -156,7 +156,7 @@ mod tests {
         .check()
         .unwrap_err()
         .to_string();
-        assert!(ram.contains("RAM 65537 of 65536 bytes"), "{ram}");
+        assert!(ram.contains("RAM 98305 of 98304 bytes"), "{ram}");
     }
 
     #[test]

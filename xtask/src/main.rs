@@ -1,6 +1,7 @@
 //! The project's own chores, so that no one has to remember a command line: `cargo xtask --help` lists them.
 
 mod bench;
+mod binary_info;
 mod check;
 mod debian;
 mod deny;

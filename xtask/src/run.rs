@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 use crate::failure::{Failure, Outcome};
 
@@ -47,6 +48,30 @@ pub(crate) fn run(command: &mut Command, next: &str) -> Outcome {
         Ok(())
     } else {
         Err(Failure::new(doing(), status, next))
+    }
+}
+
+/// The same, ended where it takes longer than `patience`.
+///
+/// # Errors
+/// As [`run`], and when it was ended.
+pub(crate) fn run_for(patience: Duration, command: &mut Command, next: &str) -> Outcome {
+    let line = command_line(command);
+    eprintln!("$ {line}");
+    let failed = |why: &dyn std::fmt::Display| Failure::new(format!("running `{line}`"), why, next);
+    let mut child = command.spawn().map_err(|why| failed(&why))?;
+    let begun = Instant::now();
+    loop {
+        match child.try_wait().map_err(|why| failed(&why))? {
+            Some(status) if status.success() => return Ok(()),
+            Some(status) => return Err(failed(&status)),
+            None if begun.elapsed() > patience => {
+                let _ = child.kill();
+                let _ = child.wait();
+                return Err(failed(&format_args!("no end after {patience:?}")));
+            }
+            None => std::thread::sleep(Duration::from_millis(50)),
+        }
     }
 }
 
@@ -148,6 +173,19 @@ mod tests {
         assert!(failure.contains("sh -c 'exit 3'"), "{failure}");
         assert!(failure.contains("exit status: 3"), "{failure}");
         assert!(failure.ends_with("next: try again"), "{failure}");
+    }
+
+    #[test]
+    fn what_never_ends_is_ended() {
+        let patience = Duration::from_millis(100);
+        let failure = run_for(patience, command("sleep").arg("60"), "go on without")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            failure.contains("`sleep 60`: no end after 100ms"),
+            "{failure}"
+        );
+        assert!(run_for(Duration::from_mins(1), &mut command("true"), "").is_ok());
     }
 
     #[test]

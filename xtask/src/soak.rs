@@ -6,25 +6,21 @@ use crate::firmware::{self, Variant};
 use crate::run::{cargo, run};
 use crate::toolchain::ChipToolchain;
 
-/// Provides what the tests of the booted firmware need, as far as it can be had: without it they say that they are skipped.
-fn prepare() {
-    let images = || {
-        let toolchain = ChipToolchain::find_or_make()?;
-        Variant::TESTED
-            .into_iter()
-            .try_for_each(|variant| firmware::build(&toolchain, variant))
-    };
-    if let Err(failure) = emulator::install().and_then(|()| images()) {
-        println!("\n!!!! THE FIRMWARE WILL NOT BE BOOTED IN TESTS !!!!\n{failure}");
-    }
+/// Provides what the tests of the booted firmware need.
+fn prepare() -> Outcome {
+    emulator::install()?;
+    let toolchain = ChipToolchain::find_or_make()?;
+    Variant::TESTED
+        .into_iter()
+        .try_for_each(|variant| firmware::build(&toolchain, variant))
 }
 
 /// Runs every test marked `#[ignore]`, in release, one after the other, with what it prints.
 ///
 /// # Errors
-/// When one fails.
+/// When one fails, or what the tests of the booted firmware need cannot be had.
 pub(crate) fn run_ignored(filter: Option<&str>) -> Outcome {
-    prepare();
+    prepare()?;
     let mut test = cargo(["test", "--workspace", "--release", "--no-fail-fast"]);
     // No doctests: an example marked `ignore` is not meant to run.
     test.args(["--lib", "--bins", "--tests"]).args(filter);

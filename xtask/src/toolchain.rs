@@ -1,4 +1,5 @@
-//! Finds a compiler for the chip: the active toolchain where it has the target, Debian's `rustc-web` where it has not.
+//! Finds a compiler for the chip: the active toolchain where it has the target or rustup can fetch it, Debian's `rustc-web`
+//! where it cannot.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,6 +9,7 @@ use crate::failure::{Failure, Outcome};
 use crate::run::{cargo, command, read};
 
 mod fallback;
+mod rustup;
 
 /// The RP2040's Cortex-M0+.
 pub(crate) const TARGET: &str = "thumbv6m-none-eabi";
@@ -25,22 +27,29 @@ impl ChipToolchain {
     /// Finds or makes it; the second time it only finds it.
     ///
     /// # Errors
-    /// When the active toolchain lacks the target and Debian's packages are out of reach; the message has the command.
+    /// When the active toolchain lacks the target, rustup cannot fetch it and Debian's packages are out of reach; the message
+    /// has the command.
     pub(crate) fn find_or_make() -> Outcome<Self> {
         let compiler = HostCompiler::active()?;
         if has_core(&compiler.sysroot) {
             return Ok(Self::Active);
         }
-        fallback::find_or_make(&compiler).map(Self::Private)
+        if let Some(prefix) = fallback::find()? {
+            return Ok(Self::Private(prefix));
+        }
+        match rustup::add_target() {
+            Ok(()) if has_core(&compiler.sysroot) => return Ok(Self::Active),
+            Ok(()) => {
+                eprintln!("rustup has added {TARGET} to a toolchain that is not the active one");
+            }
+            Err(why) => eprintln!("{why}\nNow Debian's packages are tried in its place."),
+        }
+        fallback::make(&compiler).map(Self::Private)
     }
 
     /// `cargo SUBCOMMAND --target …` for the chip, in the small profile of the firmware.
     pub(crate) fn cargo(&self, subcommand: &str) -> Command {
         let mut cargo = cargo([subcommand, "--target", TARGET, "--profile", "firmware"]);
-        cargo.env(
-            "DEFMT_LOG",
-            std::env::var_os("DEFMT_LOG").unwrap_or_else(|| "info".into()),
-        );
         if let Self::Private(prefix) = self {
             cargo.env("RUSTC", prefix.join("bin/rustc"));
         }

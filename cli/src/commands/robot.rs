@@ -5,15 +5,19 @@ mod answers;
 mod configure;
 mod dashboard;
 mod find;
+mod flash;
 mod hc05;
-mod holder;
 mod info;
 mod key;
 mod log;
 mod motion;
 mod playing;
 mod port;
+mod port_owner;
 mod preflight;
+mod servo;
+mod setup;
+mod stop;
 mod trim;
 mod upload;
 mod watch;
@@ -25,10 +29,10 @@ use swimmer_files::GaitSpec;
 
 use self::access::{Access, Met};
 use self::answers::Doing;
-use self::holder::Ask;
 use self::port::Pace;
+use self::port_owner::Ask;
 pub(crate) use self::upload::table_of;
-use crate::arguments::{gait, period, positive_angle, seconds};
+use crate::arguments::{gait, period, positive_angle, seconds, time};
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 
@@ -66,11 +70,14 @@ enum Action {
     /// Go on from a pause
     Resume,
     /// Ramp to neutral and switch the pulses off; works in every state
-    Stop,
+    Stop(Stop),
     /// Switch the pulses off at once; only `arm --clear-estop` ends it
-    Estop,
+    Estop(Estop),
     /// Set the trim of the servos, or nudge it with keys on a terminal; stored on the robot
     Trim(Trim),
+    Servo(servo::Servo),
+    Setup(setup::Setup),
+    Flash(flash::Flash),
     /// Show what the robot does, on a screen with keys to stop it; a line each second where the output is no terminal
     Watch(Watch),
     /// Write every frame on the wire, both ways, as MCAP, until Ctrl-C
@@ -143,8 +150,11 @@ struct Play {
     /// Return once the robot plays; it plays on to its end without the link
     #[arg(long, requires = "cycles")]
     detach: bool,
+    /// How long the robot may play on detached, as 90min, 2h or seconds; left out: an hour
+    #[arg(long = "for", value_name = "TIME", value_parser = time, requires = "detach")]
+    at_most: Option<f64>,
     /// Start nothing: wait for the end of the play that goes on detached, as if it had not been; Ctrl-C stops it
-    #[arg(long, conflicts_with_all = ["gait", "cycles", "period", "detach", "swimmer", "force"])]
+    #[arg(long, conflicts_with_all = ["gait", "cycles", "period", "detach", "at_most", "swimmer", "force"])]
     attach: bool,
 }
 
@@ -153,6 +163,20 @@ struct Pause {
     /// Return at once; the robot holds the pose for at most 60 s, then stops
     #[arg(long)]
     detach: bool,
+}
+
+#[derive(Debug, clap::Args)]
+struct Stop {
+    /// Where another `swimmer` has the port and hangs: stop the robot past it, without asking
+    #[arg(long)]
+    take_over: bool,
+}
+
+#[derive(Debug, clap::Args)]
+struct Estop {
+    /// Where another `swimmer` has the port and hangs: leave it alone, and fail
+    #[arg(long)]
+    no_take_over: bool,
 }
 
 #[derive(Debug, clap::Args)]
@@ -205,9 +229,12 @@ impl Robot {
             Action::Play(arguments) => motion::play(access, arguments, output),
             Action::Pause(arguments) => motion::pause(access, arguments, output),
             Action::Resume => motion::resume(access, output),
-            Action::Stop => motion::stop(access, false, output),
-            Action::Estop => motion::stop(access, true, output),
+            Action::Stop(arguments) => stop::stop(access, arguments, output),
+            Action::Estop(arguments) => stop::estop(access, arguments, output),
             Action::Trim(arguments) => trim::trim(access, arguments, output),
+            Action::Servo(arguments) => servo::run(access, arguments, output),
+            Action::Setup(arguments) => setup::run(access, arguments, output),
+            Action::Flash(arguments) => flash::run(access, arguments, output),
             Action::Watch(arguments) => watch::watch(access, arguments, output),
             Action::Log(arguments) => log::log(access, arguments, output),
             Action::Hc05(arguments) => hc05::run(access, arguments, output),
@@ -224,7 +251,7 @@ fn status(access: &Access, output: Output) -> Outcome {
             Ok(())
         }
         Met::Line(mut line) => {
-            output.answer(&Doing::new(&line.robot.status()?));
+            output.answer(&Doing::of(&mut line.robot)?);
             line.close()
         }
     }

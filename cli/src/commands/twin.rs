@@ -1,15 +1,20 @@
 //! `swimmer twin`: a robot in a virtual tank, in real time, behind a pseudo-terminal or a TCP port.
 
+mod joints;
+mod odd;
+
 use std::fmt;
 use std::net::{SocketAddr, ToSocketAddrs as _};
 use std::path::{Path, PathBuf};
 
+use gait_player::Transport;
 use host_link::Port;
 use host_link::port::{FaultPlan, Faults, FaultyPort, TcpPort};
 use serde::Serialize;
-use twin::{TrackError, VirtualRobot as _, serve};
+use twin::{TrackError, TwinConfig, VirtualRobot as _, serve};
 
-use crate::arguments::load_swimmer;
+use self::joints::Joints;
+use crate::arguments::{angle, load_swimmer};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::output::Output;
@@ -42,6 +47,19 @@ pub(crate) struct Twin {
     /// Write what the virtual cameras see as a Motive file
     #[arg(long, value_name = "FILE.csv")]
     track: Option<PathBuf>,
+    /// What a servo truly is and the robot does not know, as front:sign=-,centre=1512 (µs) or back:slope=0.0287 (rad a µs): for
+    /// trying `swimmer robot setup`
+    #[arg(long = "servo", value_name = "JOINT:KEY=VALUE,…", value_parser = odd::servo)]
+    servos: Vec<odd::Servo>,
+    /// Half width of the servos' dead band, in place of the swimmer file's
+    #[arg(long, value_name = "ANGLE", value_parser = angle)]
+    dead_band: Option<f64>,
+    /// Take the port for a radio: whoever speaks there need not be at the robot. Else it is its USB cable
+    #[arg(long)]
+    radio: bool,
+    /// Print both joint angles whenever they come to rest: what one would see at the bench
+    #[arg(long)]
+    show_joints: bool,
     /// What carries the robot's brain
     #[arg(long, value_enum, value_name = "ROBOT", default_value = "twin")]
     robot: Carrier,
@@ -77,9 +95,19 @@ impl Twin {
     pub(crate) fn run(self, output: Output) -> Outcome {
         let file = load_swimmer(&self.swimmer)?;
         let places = self.tcp.as_deref().map_or(Ok(Vec::new()), addresses)?;
+        let mut config = TwinConfig::new(&file, self.seed);
+        for servo in &self.servos {
+            servo.fit(&mut config.shafts);
+        }
+        if let Some(dead_band) = self.dead_band {
+            config.plant.dead_band = dead_band.abs();
+        }
+        if self.radio {
+            config.transport = Transport::Uart;
+        }
         let mut robot = self
             .robot
-            .line(&file, self.seed, &self.board)?
+            .line_with(&file, &config, &self.board)?
             .into_device();
         let interrupt = Interrupt::install()?;
         let mut ports: Vec<Box<dyn Port>> = Vec::new();
@@ -113,8 +141,16 @@ impl Twin {
             .iter_mut()
             .map(|port| port.as_mut() as &mut dyn Port)
             .collect();
-        serve(&mut robot, &mut borrowed, |_| !interrupt.requested())
-            .map_err(|error| Failure::Tried(format!("the robot ended: {error}; start it again")))?;
+        let mut joints = self.show_joints.then(Joints::default);
+        serve(&mut robot, &mut borrowed, |robot| {
+            if let Some(joints) = &mut joints
+                && let Some(line) = joints.look(robot.world())
+            {
+                output.line(&line);
+            }
+            !interrupt.requested()
+        })
+        .map_err(|error| Failure::Tried(format!("the robot ended: {error}; start it again")))?;
         let recording = robot.world_mut().finish_recording()?;
         output.answer(&Lived {
             seconds: robot.world().now().as_secs_f64(),

@@ -131,7 +131,7 @@ impl Figure {
                 Series::Line { points, .. }
                 | Series::Dashes { points, .. }
                 | Series::Dots { points, .. } => points,
-                Series::Bars { .. } | Series::Word { .. } => continue,
+                Series::Bars { .. } | Series::Word { .. } | Series::Names(_) => continue,
             };
             for (x, y) in points {
                 let _ = writeln!(text, "{},{x:?},{y:?}", field(name));

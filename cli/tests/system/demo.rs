@@ -70,6 +70,22 @@ fn the_papers_robot_and_what_the_demo_leaves_behind() {
     what_a_calibration_leaves_behind(&out);
 }
 
+/// Whether it can be used, and what the intervals are where what is known by halves may move.
+fn is_assessed(answer: &serde_json::Value) {
+    assert!(
+        answer["verdict"].is_string() && answer["reasons"].is_array(),
+        "{answer:#}"
+    );
+    assert!(number(answer, "reduced_chi2") > 0.0);
+    let wide = answer["intervals_with_systematics"]["chi"]
+        .as_array()
+        .unwrap();
+    let [low, high] = [0, 1].map(|end| wide[end].as_f64().unwrap());
+    assert!(low < 3.598 && 3.598 < high, "{wide:?}");
+    assert!(answer["budget"].as_array().unwrap().len() >= 9);
+    assert_eq!(answer["explanations"].as_array().unwrap().len(), 7);
+}
+
 /// Report, tables and the fitted swimmer with the hashes of its inputs, from the demo's own campaign.
 fn what_a_calibration_leaves_behind(demo: &Path) {
     let run = swimmer_in(
@@ -96,8 +112,10 @@ fn what_a_calibration_leaves_behind(demo: &Path) {
         assert!(report.contains(asked), "no `{asked}` on the page");
     }
     assert!(read("fitted-further.toml").contains("[[provenance.input]]"));
-    // X, ΔY, Δθ, ridge, two profiles, residuals, without a run; three for each of nine runs.
-    assert_eq!(report.matches("<svg").count(), 8 + 27);
+    // r_s, χ, X, ΔY, Δθ, ridge, two profiles, residuals, without a run; three for each of nine runs.
+    assert_eq!(report.matches("<svg").count(), 10 + 27);
+    let first = report.find("Verdict: ").expect("a verdict");
+    assert!(first < report.find("recommended").unwrap() && first < report.find("budget").unwrap());
     for outside in ["src=", "href=", "url(", "@import"] {
         assert!(
             !report.contains(outside),
@@ -135,6 +153,7 @@ fn what_a_calibration_leaves_behind(demo: &Path) {
         (&first["front_rule"], &first["phase"]),
         (&"label".into(), &"heading".into())
     );
+    is_assessed(&answer);
     // The estimate by likelihood, beside the paper's.
     let likelihood = &answer["likelihood"];
     let chi = number(likelihood, "chi");
@@ -181,9 +200,7 @@ fn what_a_calibration_leaves_behind(demo: &Path) {
 #[test]
 #[ignore = "emulates three quarters of an hour of the chip: minutes"]
 fn the_papers_robot_with_its_firmware() {
-    let Some(board) = crate::emulated::board() else {
-        return;
-    };
+    let board = crate::emulated::board();
     let folder = tempfile::tempdir().unwrap();
     let mut words = vec!["--robot", "emulator"];
     words.extend(board.iter().map(String::as_str));

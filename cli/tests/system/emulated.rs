@@ -7,8 +7,8 @@ use emulator::{BoardConfig, BoardKind};
 #[cfg(unix)]
 use crate::binary::{TwinProcess, number, swimmer_in};
 
-/// The words that lead to firmware and emulator from any folder, or none with a loud word about what is missing.
-pub(crate) fn board() -> Option<[String; 4]> {
+/// The words that lead to firmware and emulator from any folder. Where one is missing, the test fails and says what makes it.
+pub(crate) fn board() -> [String; 4] {
     let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     let config = BoardConfig::of_checkout(
         Path::new(env!("CARGO_MANIFEST_DIR")),
@@ -16,22 +16,21 @@ pub(crate) fn board() -> Option<[String; 4]> {
         BoardKind::NanoConnect,
     );
     if let Some(missing) = config.missing() {
-        eprintln!("\n!!!! SKIPPED: {missing} !!!!\n");
-        return None;
+        panic!("{missing}");
     }
     let word = |path: &Path| path.to_str().unwrap().to_owned();
-    Some([
+    [
         "--firmware".to_owned(),
         word(&config.firmware),
         "--emulator".to_owned(),
         word(&config.scripts),
-    ])
+    ]
 }
 
 #[cfg(unix)]
 #[test]
 fn the_firmware_is_driven_like_hardware() {
-    let Some(board) = board() else { return };
+    let board = board();
     let folder = tempfile::tempdir().unwrap();
     let mut words = vec!["--robot", "emulator", "--firmware-log", "firmware.log"];
     words.extend(board.iter().map(String::as_str));

@@ -6,8 +6,11 @@ mod certify;
 mod contract_keys;
 mod demo;
 mod emulated;
+mod flash;
 #[cfg(unix)]
 mod hc05;
+#[cfg(unix)]
+mod hung_holder;
 #[cfg(unix)]
 mod left_behind;
 mod numbers;
@@ -19,4 +22,6 @@ mod port_errors;
 mod port_in_use;
 #[cfg(unix)]
 mod pseudo_terminal;
+#[cfg(unix)]
+mod setup;
 mod tracks;

@@ -73,10 +73,31 @@ fn without_times() -> insta::Settings {
     settings
 }
 
+/// The page for the first day says what the program says.
+#[test]
+fn the_first_day_quotes_what_is_said() {
+    let page = include_str!("../../../docs/first-day.md");
+    let silent = Device::new(|_| Vec::new()).sentence();
+    let garbage = Device::new(|bytes| vec![0x93; bytes.len()].into_iter().chain([0]).collect());
+    let echo = Device::new(<[u8]>::to_vec).sentence();
+    for (sentence, words) in [
+        (&silent, "is the robot on and paired, and is this its port?"),
+        (
+            &silent,
+            "Without its Bluetooth module's STATE wire it hears and never answers",
+        ),
+        (&garbage.sentence(), "bytes come but none make sense: "),
+        (&echo, "what is sent comes back unchanged"),
+    ] {
+        assert!(sentence.contains(words), "{sentence}");
+        assert!(page.contains(words), "the page does not say {words:?}");
+    }
+}
+
 #[test]
 fn a_silent_port() {
     let device = Device::new(|_| Vec::new());
-    without_times().bind(|| insta::assert_snapshot!(device.sentence(), @"error: while connecting: no answer after 5 tries in [TIME] ms (5 frames ([N] bytes) sent, 4 of them again; 0 frames ([N] bytes) received, [N] broken, 0 foreign); is the robot on and paired, and is this its port?"));
+    without_times().bind(|| insta::assert_snapshot!(device.sentence(), @"error: while connecting: no answer after 5 tries in [TIME] ms (5 frames ([N] bytes) sent, 4 of them again; 0 frames ([N] bytes) received, [N] broken, 0 foreign); is the robot on and paired, and is this its port? Without its Bluetooth module's STATE wire it hears and never answers"));
 }
 
 #[test]
@@ -88,7 +109,23 @@ fn a_device_at_another_speed() {
             .chain([0])
             .collect()
     });
-    without_times().bind(|| insta::assert_snapshot!(device.sentence(), @"error: while connecting: no answer after 5 tries in [TIME] ms (5 frames ([N] bytes) sent, 4 of them again; 0 frames ([N] bytes) received, [N] broken, 0 foreign); bytes come but none make sense: is this the robot's port, and is its Bluetooth module set to 115200 baud (AT+UART=115200,0,0)?"));
+    without_times().bind(|| insta::assert_snapshot!(device.sentence(), @"error: while connecting: no answer after 5 tries in [TIME] ms (5 frames ([N] bytes) sent, 4 of them again; 0 frames ([N] bytes) received, [N] broken, 0 foreign); bytes come but none make sense: is this the robot's port, is its Bluetooth module set to 115200 baud (AT+UART=115200,0,0; a robot built for another speed wants --baud), and are all grounds joined?"));
+}
+
+/// The line runs at the speed of the firmware's build, as the other end sees it.
+#[test]
+fn a_line_at_the_speed_that_was_named() {
+    use rustix::fs::{Mode, OFlags, open};
+    let device = Device::new(|_| Vec::new());
+    let folder = device.folder.path();
+    for (words, speed) in [(&[][..], 115_200), (&["--baud", "57600"], 57_600)] {
+        let words = [&["robot", "info", "--port", "port"], words].concat();
+        swimmer_in(folder, &words).with_status(1);
+        let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK;
+        let line = open(folder.join("port"), flags, Mode::empty()).unwrap();
+        let settings = rustix::termios::tcgetattr(&line).unwrap();
+        assert_eq!(settings.output_speed(), speed);
+    }
 }
 
 /// A robot that answers a greeting with these versions and this schema key.
@@ -137,12 +174,12 @@ fn robot_of(versions: [u8; 2], schema_key: [u8; 8]) -> Device {
 
 #[test]
 fn a_robot_of_a_later_version() {
-    insta::assert_snapshot!(robot_of([3, 4], SCHEMA_KEY).sentence(), @"error: the robot's firmware 0.9.2 (0123abcd) speaks versions 3 to 4 of the protocol, this program 1 to 1: update this program");
+    insta::assert_snapshot!(robot_of([3, 4], SCHEMA_KEY).sentence(), @"error: the robot's firmware 0.9.2 (0123abcd) speaks versions 3 to 4 of the protocol, this program 1 to 2: update this program");
 }
 
 #[test]
 fn a_robot_of_an_earlier_version() {
-    insta::assert_snapshot!(robot_of([0, 0], SCHEMA_KEY).sentence(), @"error: the robot's firmware 0.9.2 (0123abcd) speaks versions 0 to 0 of the protocol, this program 1 to 1: update the robot's firmware");
+    insta::assert_snapshot!(robot_of([0, 0], SCHEMA_KEY).sentence(), @"error: the robot's firmware 0.9.2 (0123abcd) speaks versions 0 to 0 of the protocol, this program 1 to 2: update the robot's firmware");
 }
 
 #[test]
@@ -150,7 +187,7 @@ fn a_robot_of_another_build() {
     let mut filters = insta::Settings::clone_current();
     filters.add_filter("[0-9a-f]{16}", "[KEY]");
     filters.bind(|| {
-        insta::assert_snapshot!(robot_of([1, 1], [1; 8]).sentence(), @"error: the robot's firmware 0.9.2 (0123abcd) and this program both speak version 1 of the protocol but disagree on its messages (keys [KEY] and [KEY]): build both from the same commit");
+        insta::assert_snapshot!(robot_of([1, 2], [1; 8]).sentence(), @"error: the robot's firmware 0.9.2 (0123abcd) and this program both speak version 2 of the protocol but disagree on its messages (keys [KEY] and [KEY]): build both from the same commit");
     });
 }
 

@@ -1,12 +1,17 @@
 //! What a request that may act does. Each arm of [`Brain::act`] is one request's whole meaning.
 
+use super::requests::Asked;
+use super::settings::Settings;
 use super::state::State;
 use super::work::Work;
-use super::{Brain, settings};
+use super::{Brain, Transport, settings};
 use crate::route::Route;
 use crate::servo::ServoMap;
 use crate::table::check::Checker;
-use link_protocol::{Arm, Header, Joint, Play, Refusal, Reply, Request, ServoSettings};
+use link_protocol::{
+    Arm, BenchStatus, Configuration, Joint, Play, PulseRange, Refusal, Reply, Request,
+    ServoSettings,
+};
 
 /// What a request comes to.
 type Outcome = Result<Option<Reply>, Refusal>;
@@ -17,41 +22,39 @@ const LATER: Outcome = Ok(None);
 
 impl Brain {
     /// Does what is asked; `None` where the answer comes later.
-    pub(super) fn act(&mut self, now_us: u64, header: Header, request: &Request) -> Outcome {
+    pub(super) fn act(&mut self, now_us: u64, asked: Asked, request: &Request) -> Outcome {
         match request {
             Request::Status => Ok(Some(Reply::Status(self.status(now_us)))),
             Request::Counters => Ok(Some(Reply::Counters(self.counters()))),
             Request::Configuration => Ok(Some(Reply::Configuration(self.settings.configuration))),
-            Request::Configure(configuration) => {
-                self.only_stopped()?;
-                self.model = settings::check_configuration(configuration, &self.firmware_limits)?;
-                self.settings.configuration = *configuration;
-                self.limits = self.firmware_limits.tightened(configuration);
-                self.tables.forget_facts();
-                self.persist.settings_changed();
-                DONE
-            }
+            Request::Configure(configuration) => self.configure(now_us, asked, configuration),
             Request::Servo(joint) => Ok(Some(Reply::Servo(self.settings.servos[joint.index()]))),
             Request::SetServo { joint, settings } => {
                 self.only_stopped()?;
                 settings::check_servo(settings, &self.firmware_limits)?;
-                self.set_servo(*joint, *settings);
+                self.change_servos(|servos| servos.servos[joint.index()] = *settings)?;
                 DONE
+            }
+            Request::PulseRange(joint) => {
+                let range = self.settings.window(joint.index(), &self.firmware_limits);
+                Ok(Some(Reply::PulseRange(range)))
+            }
+            Request::SetPulseRange { joint, range } => {
+                self.only_stopped()?;
+                self.set_pulse_range(*joint, *range)
             }
             Request::Trim { joint, trim } => self.trim(*joint, *trim),
             Request::Begin(begin) => {
                 self.only_idle()?;
-                let offset = self.tables.begin(header.sequence, *begin)?;
-                Ok(Some(Reply::Wanted {
-                    upload: header.sequence,
-                    offset,
-                }))
+                let upload = asked.header.sequence;
+                let offset = self.tables.begin(upload, *begin)?;
+                Ok(Some(Reply::Wanted { upload, offset }))
             }
             // Handled before the order of requests.
             Request::Chunk(_) => Err(Refusal::NoUpload),
-            Request::Commit { upload } => self.commit(header, *upload),
+            Request::Commit { upload } => self.commit(asked, *upload),
             Request::Arm(arm) => self.arm(*arm),
-            Request::Play(play) => self.play(header, *play),
+            Request::Play(play) => self.play(asked, *play),
             Request::Pause { detached } => self.pause(now_us, *detached),
             Request::Resume => match self.state {
                 State::Paused { play, .. } => {
@@ -76,11 +79,60 @@ impl Brain {
             Request::Table => Ok(Some(Reply::Table(self.table_info()))),
             Request::SetKey(key) => {
                 self.only_stopped()?;
+                // A key that holds already signed this: only the first one is anybody's.
+                if self.settings.key.is_none() && key.is_some() {
+                    self.only_present(now_us, asked)?;
+                }
                 self.settings.key = *key;
                 self.persist.settings_changed();
                 DONE
             }
+            Request::Bench => Ok(Some(Reply::Bench(BenchStatus {
+                window_s: self.bench.left_s(now_us),
+                usb: asked.transport == Transport::Usb,
+                short_starts: self.starts.runs,
+                built: self.built,
+            }))),
+            Request::ClearEStop => match self.state {
+                State::EStopped => {
+                    self.resets.estop = false;
+                    self.state = State::Stopped;
+                    DONE
+                }
+                State::Stopped => DONE,
+                state => Err(Refusal::WrongState(state.name())),
+            },
+            Request::EnterBootLoader => {
+                self.only_stopped()?;
+                self.only_present(now_us, asked)?;
+                // This run ends early, but not by a fault.
+                self.clear_starts();
+                self.bench.leave(now_us);
+                DONE
+            }
         }
+    }
+
+    /// Somebody is at the robot: at the other end of its cable, or within the bench window.
+    fn only_present(&self, now_us: u64, asked: Asked) -> Result<(), Refusal> {
+        if asked.transport == Transport::Usb || self.bench.open(now_us) {
+            Ok(())
+        } else {
+            Err(Refusal::NeedsPresence)
+        }
+    }
+
+    fn configure(&mut self, now_us: u64, asked: Asked, wanted: &Configuration) -> Outcome {
+        self.only_stopped()?;
+        let model = settings::check_configuration(wanted, &self.firmware_limits)?;
+        if settings::needs_presence(wanted, &self.settings.configuration, &self.built) {
+            self.only_present(now_us, asked)?;
+        }
+        self.model = model;
+        self.settings.configuration = *wanted;
+        self.settings_changed();
+        self.tables.forget_facts();
+        DONE
     }
 
     fn only_stopped(&self) -> Result<(), Refusal> {
@@ -98,9 +150,30 @@ impl Brain {
         }
     }
 
-    fn set_servo(&mut self, joint: Joint, settings: ServoSettings) {
-        self.settings.servos[joint.index()] = settings;
+    /// Changes maps or ranges of the servos, where they then still meet.
+    fn change_servos(&mut self, change: impl FnOnce(&mut Settings)) -> Result<(), Refusal> {
+        let mut changed = self.settings;
+        change(&mut changed);
+        changed.reach(&self.firmware_limits)?;
+        self.settings = changed;
+        self.settings_changed();
+        Ok(())
+    }
+
+    fn settings_changed(&mut self) {
+        self.limits = self.limits_now();
         self.persist.settings_changed();
+    }
+
+    /// The firmware's whole window is no range: with it the angles are not bounded by pulses.
+    fn set_pulse_range(&mut self, joint: Joint, range: PulseRange) -> Outcome {
+        let whole = PulseRange {
+            shortest_ns: self.firmware_limits.pulse_min_ns,
+            longest_ns: self.firmware_limits.pulse_max_ns,
+        };
+        let range = (range != whole).then_some(range);
+        self.change_servos(|settings| settings.ranges[joint.index()] = range)?;
+        DONE
     }
 
     /// Sets a trim. While the pulses are on they stand for another angle from then on, and the joint moves back from there
@@ -117,6 +190,12 @@ impl Brain {
             trim,
             ..self.settings.servos[joint.index()]
         };
+        let change = |servos: &mut Settings| servos.servos[joint.index()] = settings;
+        let mut trimmed = self.settings;
+        change(&mut trimmed);
+        trimmed
+            .reach(&self.firmware_limits)
+            .or(Err(Refusal::BadValue { field: 1 }))?;
         if let Some(pulses_ns) = self.clamp.last() {
             let angle = ServoMap::from(settings).angle(pulses_ns[joint.index()]);
             if libm::fabsf(angle) > self.limits.max_angle {
@@ -124,11 +203,11 @@ impl Brain {
             }
             self.commanded[joint.index()] = angle;
         }
-        self.set_servo(joint, settings);
+        self.change_servos(change)?;
         DONE
     }
 
-    fn commit(&mut self, header: Header, upload: u16) -> Outcome {
+    fn commit(&mut self, asked: Asked, upload: u16) -> Outcome {
         self.only_idle()?;
         if let Err(refusal) = self.tables.complete(upload) {
             if matches!(refusal, Refusal::CrcMismatch { .. }) {
@@ -137,7 +216,7 @@ impl Brain {
             return Err(refusal);
         }
         self.work = Work::Commit {
-            reply_to: header,
+            reply_to: asked,
             checker: Checker::new(),
         };
         LATER
@@ -172,7 +251,7 @@ impl Brain {
         DONE
     }
 
-    fn play(&mut self, header: Header, play: Play) -> Outcome {
+    fn play(&mut self, asked: Asked, play: Play) -> Outcome {
         match self.state {
             State::Holding { .. } => {}
             State::EStopped => return Err(Refusal::EStopped),
@@ -194,7 +273,7 @@ impl Brain {
             return Err(Refusal::NoTable);
         }
         self.work = Work::Play {
-            reply_to: header,
+            reply_to: asked,
             play,
             route: None::<Route>,
         };

@@ -1,6 +1,6 @@
 //! What the shell tells the brain, and the one thing the brain tells the shell.
 
-use crate::{Limits, servo::ServoMap};
+use crate::{Limits, ShortStarts, servo::ServoMap};
 use heapless::String;
 use link_protocol::{
     Board, Configuration, FirmwareVersion, ResetReason, ServoSettings, StateName, TangentialDrag,
@@ -45,6 +45,27 @@ pub struct Boot {
     pub kept: u32,
     /// What the last crash left to tell; empty for none.
     pub crash_message: String<96>,
+    /// The last [`Output::starts`], from RAM that outlives resets; `None` where it holds none, as after power was off. Then
+    /// [`crate::Brain::load`] asks the storage.
+    pub starts: Option<ShortStarts>,
+}
+
+/// A way to the robot. Each has its decoder and its bytes on their way out; the session belongs to the one that greeted last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Transport {
+    /// The serial line, with the radio on it: anybody in range may speak there.
+    Uart,
+    /// The USB cable: whoever speaks there is at the robot.
+    Usb,
+}
+
+impl Transport {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Uart, Self::Usb];
+
+    pub(crate) fn index(self) -> usize {
+        self as usize
+    }
 }
 
 /// What the shell measured by the time of a tick.
@@ -52,12 +73,18 @@ pub struct Boot {
 pub struct Inputs {
     /// Battery (lowest since the last tick), mV; `None` where no divider is fitted, or no sample came.
     pub battery_mv: Option<u16>,
-    /// The radio says it is connected (STATE pin); true where there is no such pin. Nothing is sent while it is false.
+    /// The radio says it is connected (STATE pin); true where there is no such pin. Nothing is sent over the UART while it is
+    /// false.
     pub link_up: bool,
+    /// A host has opened the USB port. Nothing is sent there while it is false.
+    pub usb_up: bool,
+    /// The bench jumper is closed, or BOOTSEL is pressed. Where it becomes so, the bench window opens for two minutes.
+    pub present: bool,
 }
 
 /// The only door out.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::struct_excessive_bools)] // each is a wire or a task of the shell
 pub struct Output {
     /// Pulses of both servos, ns, for the next period; `None`: off.
     pub pulses_ns: Option<[u32; 2]>,
@@ -73,6 +100,10 @@ pub struct Output {
     pub kept: u32,
     /// [`crate::Brain::serve_storage`] has something to do (pulses are off).
     pub storage_wanted: bool,
+    /// To be kept in RAM that outlives a reset; see [`Boot::starts`].
+    pub starts: ShortStarts,
+    /// Leave for the chip's boot loader now: it was asked for, its answer has left and everything is stored.
+    pub boot_loader: bool,
 }
 
 impl Boot {
@@ -84,6 +115,7 @@ impl Boot {
             session_seed,
             kept: 0,
             crash_message: String::new(),
+            starts: None,
         }
     }
 }

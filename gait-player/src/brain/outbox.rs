@@ -1,19 +1,30 @@
 //! Bytes on their way out, frame by frame: a frame that finds no room is dropped whole and counted.
 
 use heapless::Deque;
-use link_protocol::{EncodeError, Header, Kind, MAX_ENCODED, Message, encode, encode_body};
+use link_protocol::{Header, Kind, MAX_ENCODED, Signature, encode_body};
 
 /// Bytes that wait at most. Replies are few, telemetry yields to them.
 const ROOM: usize = 640;
 /// Everything leaves so much room for answers to stops, four of them: whatever floods the robot, a stop that acted is
 /// acknowledged.
-const STOPS_LEFT: usize = 4 * 14;
+const STOPS_LEFT: usize = 4 * 28;
 /// Telemetry leaves so much room for replies.
 const TELEMETRY_LEAVES: usize = 2 * MAX_ENCODED;
 /// Bytes that may leave in one tick, and so a second: 5 kB/s.
 const BYTES_A_TICK: usize = 100;
 /// Telemetry may save up so much.
 const MAX_SAVED: usize = 3 * MAX_ENCODED;
+
+/// What a frame is, and so how much room it leaves to others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum What {
+    /// Takes the room that all else leaves.
+    StopAnswer,
+    /// Any other answer.
+    Answer,
+    /// Sent where the link has room for it.
+    Telemetry,
+}
 
 /// Bytes on their way out.
 #[derive(Clone)]
@@ -42,37 +53,23 @@ impl Outbox {
         self.saved = (self.saved + BYTES_A_TICK).min(MAX_SAVED);
     }
 
-    /// Sends a message.
-    pub(crate) fn send(&mut self, header: Header, message: &Message) {
+    /// Sends a frame where there is room for what it is.
+    pub(crate) fn send(
+        &mut self,
+        header: Header,
+        kind: Kind,
+        body: &[u8],
+        signature: Option<Signature>,
+        what: What,
+    ) {
         let mut frame = [0; MAX_ENCODED];
-        let encoded = encode(header, message, &mut frame);
-        self.push(encoded, &frame, STOPS_LEFT);
-    }
-
-    /// Sends the answer to a stop, which takes the room that all else leaves.
-    pub(crate) fn send_stop_answer(&mut self, header: Header, message: &Message) {
-        let mut frame = [0; MAX_ENCODED];
-        let encoded = encode(header, message, &mut frame);
-        self.push(encoded, &frame, 0);
-    }
-
-    /// Sends telemetry where the link has room for it.
-    pub(crate) fn send_telemetry(&mut self, header: Header, message: &Message) {
-        let mut frame = [0; MAX_ENCODED];
-        let encoded = encode(header, message, &mut frame);
-        if encoded.is_ok_and(|len| len <= self.saved) {
-            self.push(encoded, &frame, TELEMETRY_LEAVES);
-        }
-    }
-
-    /// Sends a reply whose body is stored.
-    pub(crate) fn send_reply_body(&mut self, header: Header, body: &[u8]) {
-        let mut frame = [0; MAX_ENCODED];
-        let encoded = encode_body(header, Kind::Reply as u8, body, None, &mut frame);
-        self.push(encoded, &frame, STOPS_LEFT);
-    }
-
-    fn push(&mut self, encoded: Result<usize, EncodeError>, frame: &[u8], leave: usize) {
+        let encoded = encode_body(header, kind as u8, body, signature, &mut frame);
+        let leave = match what {
+            What::StopAnswer => 0,
+            What::Answer => STOPS_LEFT,
+            What::Telemetry if encoded.is_ok_and(|len| len > self.saved) => return,
+            What::Telemetry => TELEMETRY_LEAVES,
+        };
         match encoded {
             Ok(len) if self.bytes.len() + len + leave <= ROOM => {
                 self.bytes.extend(frame[..len].iter().copied());
@@ -104,10 +101,33 @@ impl Outbox {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use link_protocol::{MAX_BODY, Reply};
+    use link_protocol::MAX_BODY;
 
     fn header() -> Header {
         Header::new(u16::MAX, u16::MAX)
+    }
+
+    const LONGEST_SIGNATURE: Option<Signature> = Some(Signature {
+        counter: (1 << 48) - 1,
+        tag: [0xA5; 8],
+    });
+
+    fn answer(outbox: &mut Outbox, body: &[u8]) {
+        outbox.send(header(), Kind::Reply, body, None, What::Answer);
+    }
+
+    fn stop_answer(outbox: &mut Outbox) {
+        outbox.send(
+            header(),
+            Kind::Reply,
+            &[0],
+            LONGEST_SIGNATURE,
+            What::StopAnswer,
+        );
+    }
+
+    fn telemetry(outbox: &mut Outbox) {
+        outbox.send(header(), Kind::KeepAlive, &[], None, What::Telemetry);
     }
 
     /// Takes all that waits; how many bytes it was.
@@ -129,10 +149,10 @@ mod tests {
         for len in 1..=MAX_BODY {
             let mut outbox = Outbox::new();
             fill(&mut outbox, |outbox| {
-                outbox.send_reply_body(header(), &[0xA5; MAX_BODY][..len]);
+                answer(outbox, &[0xA5; MAX_BODY][..len]);
             });
             for _ in 0..4 {
-                outbox.send_stop_answer(header(), &Message::Reply(Reply::Done));
+                stop_answer(&mut outbox);
             }
             assert_eq!(outbox.dropped(), 1, "among replies of {len} bytes");
         }
@@ -143,27 +163,26 @@ mod tests {
         let mut outbox = Outbox::new();
         fill(&mut outbox, |outbox| {
             outbox.tick();
-            outbox.send_telemetry(header(), &Message::KeepAlive);
+            telemetry(outbox);
         });
         // Room that telemetry leaves, less what answers to stops need of it.
         let longest = MAX_BODY - STOPS_LEFT / 2;
         for _ in 0..2 {
-            outbox.send_reply_body(header(), &[0xA5; MAX_BODY][..longest]);
+            answer(&mut outbox, &[0xA5; MAX_BODY][..longest]);
         }
         assert_eq!(outbox.dropped(), 1);
     }
 
     #[test]
     fn telemetry_goes_at_the_links_pace_and_saves_up_little() {
-        let message = Message::KeepAlive;
         let mut outbox = Outbox::new();
-        outbox.send_telemetry(header(), &message);
+        telemetry(&mut outbox);
         assert_eq!(waiting(&mut outbox), 0, "nothing is saved yet");
         // Shut up for a minute, then all at once: no more than a few frames come.
         (0..3_000).for_each(|_| outbox.tick());
         let mut burst = 0;
         for _ in 0..200 {
-            outbox.send_telemetry(header(), &message);
+            telemetry(&mut outbox);
             burst += waiting(&mut outbox);
         }
         assert!(
@@ -175,7 +194,7 @@ mod tests {
         for _ in 0..1_000 {
             outbox.tick();
             for _ in 0..200 {
-                outbox.send_telemetry(header(), &message);
+                telemetry(&mut outbox);
                 sent += waiting(&mut outbox);
             }
         }

@@ -1,8 +1,8 @@
 //! Storing what is not stored yet, in bounded steps, while the robot is stopped: erase, pages, header (see
 //! [`crate::storage`] for why a power cut at any byte leaves the old table or the new one).
 
-use crate::GaitTable;
 use crate::storage::{PAGE, SLOTS, Storage};
+use crate::{GaitTable, ShortStarts};
 use link_protocol::{MAX_TABLE, crc32c};
 
 const MAGIC: u32 = u32::from_le_bytes(*b"GAIT");
@@ -18,6 +18,8 @@ pub(crate) struct Persist {
     newest: Option<(usize, u32)>,
     step: Step,
     settings_unsaved: bool,
+    /// The record of short starts to be stored.
+    starts_unsaved: Option<ShortStarts>,
     /// The last try to store them failed: a table goes first.
     settings_failed: bool,
     failed_us: Option<u64>,
@@ -39,6 +41,7 @@ impl Persist {
             newest: None,
             step: Step::Idle,
             settings_unsaved: false,
+            starts_unsaved: None,
             settings_failed: false,
             failed_us: None,
             lost: false,
@@ -54,6 +57,10 @@ impl Persist {
         self.settings_unsaved = true;
     }
 
+    pub(crate) fn starts_changed(&mut self, starts: ShortStarts) {
+        self.starts_unsaved = Some(starts);
+    }
+
     pub(crate) fn table_stored(&self) -> bool {
         self.step == Step::Idle
     }
@@ -62,9 +69,14 @@ impl Persist {
         self.settings_unsaved || !self.table_stored()
     }
 
+    /// Nothing waits to be stored.
+    pub(crate) fn all_stored(&self) -> bool {
+        !self.unsaved() && self.starts_unsaved.is_none()
+    }
+
     /// There is something to store, and no failure just now.
     pub(crate) fn wanted(&self, now_us: u64) -> bool {
-        self.unsaved()
+        !self.all_stored()
             && self
                 .failed_us
                 .is_none_or(|failed| now_us.saturating_sub(failed) >= RETRY_US)
@@ -111,9 +123,11 @@ impl Persist {
         table: Option<&GaitTable>,
         settings: &[u8],
     ) -> Result<(), S::Error> {
+        let was_unsaved = self.unsaved();
         let result = self.try_step(storage, table, settings);
         self.failed_us = if result.is_err() { Some(now_us) } else { None };
-        self.lost &= result.is_err();
+        // The record of starts says nothing of what was lost.
+        self.lost &= result.is_err() || !was_unsaved;
         if result.is_err() && self.step != Step::Idle {
             // Nothing is known of the slot now.
             self.step = Step::Erase;
@@ -131,6 +145,11 @@ impl Persist {
             self.settings_failed = true;
             storage.save_settings(settings)?;
             (self.settings_failed, self.settings_unsaved) = (false, false);
+            return Ok(());
+        }
+        if let Some(starts) = self.starts_unsaved.filter(|_| self.table_stored()) {
+            storage.save_starts(&starts.encode())?;
+            self.starts_unsaved = None;
             return Ok(());
         }
         let Some(table) = table else {

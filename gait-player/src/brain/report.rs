@@ -1,11 +1,13 @@
 //! What the brain tells: status, telemetry, LED.
 
-use super::Brain;
+use super::outbox::What;
 use super::state::State;
+use super::{Brain, Transport};
 use crate::TICK_US;
 use link_protocol::{
-    ANGLE_UNIT_RAD, Counters, Flags, Header, HelloReply, MAX_KNOTS, Message, PROTOCOL_CURRENT,
-    PROTOCOL_MIN, RobotLimits, SCHEMA_KEY, StateName, Status, TableInfo, Telemetry,
+    ANGLE_UNIT_RAD, Counters, DecodeCounters, Flags, Header, HelloReply, MAX_KNOTS, Message,
+    PROTOCOL_CURRENT, PROTOCOL_MIN, RobotLimits, SCHEMA_KEY, StateName, Status, TableInfo,
+    Telemetry,
 };
 
 /// Telemetry goes out every so many ticks: 25 times a second.
@@ -67,9 +69,25 @@ impl Brain {
     /// What was received, refused and dropped since the start.
     pub fn counters(&self) -> Counters {
         Counters {
-            frames: self.decoder.counters(),
-            dropped: self.outbox.dropped(),
+            frames: self.frames(),
+            dropped: self
+                .outboxes
+                .iter()
+                .fold(0, |sum, outbox| sum.wrapping_add(outbox.dropped())),
             ..self.counted
+        }
+    }
+
+    /// What came over both transports.
+    fn frames(&self) -> DecodeCounters {
+        let [uart, usb] = [0, 1].map(|transport: usize| self.decoders[transport].counters());
+        DecodeCounters {
+            ok: uart.ok.wrapping_add(usb.ok),
+            bad_crc: uart.bad_crc.wrapping_add(usb.bad_crc),
+            overflow: uart.overflow.wrapping_add(usb.overflow),
+            bad_cobs: uart.bad_cobs.wrapping_add(usb.bad_cobs),
+            trailing_bytes: uart.trailing_bytes.wrapping_add(usb.trailing_bytes),
+            not_understood: uart.not_understood.wrapping_add(usb.not_understood),
         }
     }
 
@@ -84,6 +102,11 @@ impl Brain {
             .with(Flags::CYCLE_FLASH, self.cycle_flash())
             .with(Flags::STORAGE_FAILED, self.persist.failed())
             .with(Flags::KEY_SET, self.settings.key.is_some())
+            .with(
+                Flags::PRESENT,
+                self.bench.open(now_us) || self.session.transport() == Some(Transport::Usb),
+            )
+            .with(Flags::SHORT_STARTS, self.resets.locked_by_starts())
     }
 
     /// Cycles done, cycles asked for, fraction of the cycle in 2⁻¹⁶.
@@ -101,11 +124,14 @@ impl Brain {
 
     /// Sends telemetry where it is due and somebody listens.
     pub(super) fn send_telemetry(&mut self, now_us: u64) {
-        if self.session.number() == 0 || !self.tick.is_multiple_of(TELEMETRY_TICKS) {
+        let Some(transport) = self.session.transport() else {
+            return;
+        };
+        if !self.tick.is_multiple_of(TELEMETRY_TICKS) {
             return;
         }
         let (cycle, cycles, phase) = self.cycle();
-        let frames = self.decoder.counters();
+        let frames = self.frames();
         let telemetry = Telemetry {
             robot_us: now_us,
             state: self.state.name(),
@@ -121,10 +147,14 @@ impl Brain {
             frames_ok: frames.ok as u16,
             frames_bad: frames.bad() as u16,
         };
-        let header = Header::new(self.session.number(), self.telemetry_sequence);
+        let header = Header {
+            version: self.session.version(),
+            session: self.session.number(),
+            sequence: self.telemetry_sequence,
+        };
         self.telemetry_sequence = self.telemetry_sequence.wrapping_add(1);
-        self.outbox
-            .send_telemetry(header, &Message::Telemetry(telemetry));
+        let telemetry = Message::Telemetry(telemetry);
+        self.send(transport, header, &telemetry, true, What::Telemetry);
     }
 
     pub(super) fn cycle_flash(&self) -> bool {
@@ -134,15 +164,20 @@ impl Brain {
                 .is_some_and(|play| play.in_cycle_us() < FLASH_US)
     }
 
-    /// The LED: cycle flashes while playing; else on while pulses are on, fast in e-stop, two blinks a second with a
-    /// low battery, one blink every two seconds when stopped.
-    pub(super) fn led(&self) -> bool {
+    /// The LED: cycle flashes while playing; else on while pulses are on, dark for a moment each second while the bench window
+    /// is open, fast in e-stop, two blinks a second with a low battery, three blinks every two seconds while arming is locked,
+    /// one blink every two seconds when stopped.
+    pub(super) fn led(&self, now_us: u64) -> bool {
         let ms = self.tick * u64::from(TICK_US) / 1000;
         match self.state.name() {
             StateName::Playing => self.cycle_flash(),
+            StateName::Stopped | StateName::EStopped if self.bench.open(now_us) => ms % 1000 >= 100,
             StateName::EStopped => ms % 200 < 100,
             StateName::Stopped if self.battery.low() => {
                 ms % 1000 < 100 || (200..300).contains(&(ms % 1000))
+            }
+            StateName::Stopped if self.resets.wait_s().is_some() => {
+                ms % 2000 < 500 && ms % 200 < 100
             }
             StateName::Stopped => ms % 2000 < 60,
             _ => true,

@@ -1,33 +1,52 @@
 //! What a frame from the link does: who may ask, in which order, and what is answered. What a request means is in
 //! [`super::actions`].
 
+use super::config::Transport;
+use super::outbox::What;
 use super::session::{Admission, Order};
 use super::{Brain, count};
 use link_protocol::{
-    BodyError, Header, Hello, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Ping, Pong, Received,
-    Refusal, Reply, Request, StopCause,
+    BodyError, Header, Hello, Kind, MAX_BODY, Message, POWER_SINCE, PROTOCOL_CURRENT, PROTOCOL_MIN,
+    Ping, Pong, Received, Refusal, Reply, Request, StopCause,
 };
 
+/// What a frame asks to be answered to: its header, its way, and whether it is of the open session.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Asked {
+    pub(super) header: Header,
+    pub(super) transport: Transport,
+    pub(super) ours: bool,
+}
+
 impl Brain {
-    pub(super) fn handle(&mut self, now_us: u64, received: Received, admission: Admission) {
+    pub(super) fn handle(
+        &mut self,
+        now_us: u64,
+        transport: Transport,
+        received: Received,
+        admission: Admission,
+    ) {
         let header = received.header;
+        let asked = Asked {
+            header,
+            transport,
+            ours: admission == Admission::Ours,
+        };
         match received.message {
-            Ok(Message::Hello(hello)) => self.greet(header, &hello),
-            Ok(Message::Request(request)) => self.request(now_us, header, &request, admission),
+            Ok(Message::Hello(hello)) => self.greet(asked, &hello),
+            Ok(Message::Request(request)) => self.request(now_us, asked, &request, admission),
             Ok(Message::KeepAlive) => {
-                self.hear(now_us, admission);
+                self.count_stale(asked);
             }
             Ok(Message::Ping(Ping { host_us })) => {
-                if self.hear(now_us, admission) {
-                    let pong = Pong {
-                        host_us,
-                        received_us: now_us,
-                        sent_us: now_us,
-                    };
-                    self.outbox.send(
-                        Header::new(header.session, header.sequence),
-                        &Message::Pong(pong),
-                    );
+                if self.count_stale(asked) {
+                    self.pong(now_us, asked, host_us);
+                }
+            }
+            Ok(Message::Heartbeat(heartbeat)) => {
+                if self.count_stale(asked) {
+                    self.session.feed(now_us, heartbeat);
+                    self.pong(now_us, asked, heartbeat.host_us);
                 }
             }
             // What only robots send is another robot, or an echo; an unknown kind asks for nothing known.
@@ -39,8 +58,13 @@ impl Brain {
             )
             | Err(BodyError::UnknownKind(_)) => {}
             Err(BodyError::Version(_)) => {
+                // In ours: it may be one of those that the host understands.
+                let header = Header {
+                    version: PROTOCOL_CURRENT,
+                    ..header
+                };
                 self.refuse(
-                    header,
+                    Asked { header, ..asked },
                     Refusal::Version {
                         min: PROTOCOL_MIN,
                         current: PROTOCOL_CURRENT,
@@ -48,40 +72,52 @@ impl Brain {
                 );
             }
             Err(BodyError::Malformed | BodyError::TrailingBytes(_)) => {
-                self.refuse(header, Refusal::NotUnderstood);
+                self.refuse(asked, Refusal::NotUnderstood);
             }
         }
     }
 
-    fn greet(&mut self, header: Header, hello: &Hello) {
+    fn greet(&mut self, asked: Asked, hello: &Hello) {
         let understood =
             hello.protocol_min <= PROTOCOL_CURRENT && hello.protocol_current >= PROTOCOL_MIN;
         // Session 0: none. The reply says why.
         let session = if understood {
-            self.session
-                .greet(hello.host_nonce, self.settings.key.as_ref())
+            self.session.greet(
+                asked.transport,
+                hello.protocol_current.min(PROTOCOL_CURRENT),
+                hello.host_nonce,
+                self.settings.key.as_ref(),
+            )
         } else {
             0
         };
-        let reply = self.hello_reply(hello.host_nonce, session);
-        self.outbox.send(
-            Header::new(session, header.sequence),
-            &Message::HelloReply(reply),
-        );
+        let reply = Message::HelloReply(self.hello_reply(hello.host_nonce, session));
+        let header = Header {
+            session,
+            ..asked.header
+        };
+        // Never signed: it comes before there is anything to sign with.
+        self.send(asked.transport, header, &reply, false, What::Answer);
     }
 
-    /// True where the frame is ours, and so keeps the link alive.
-    fn hear(&mut self, now_us: u64, admission: Admission) -> bool {
-        let ours = admission == Admission::Ours;
-        if ours {
-            self.session.hear(now_us);
-        } else {
+    /// Counts a frame that is of no session of ours; true where it is of ours.
+    fn count_stale(&mut self, asked: Asked) -> bool {
+        if !asked.ours {
             count(&mut self.counted.stale);
         }
-        ours
+        asked.ours
     }
 
-    fn request(&mut self, now_us: u64, header: Header, request: &Request, admission: Admission) {
+    fn pong(&mut self, now_us: u64, asked: Asked, host_us: u64) {
+        let pong = Message::Pong(Pong {
+            host_us,
+            received_us: now_us,
+            sent_us: now_us,
+        });
+        self.send(asked.transport, asked.header, &pong, true, What::Answer);
+    }
+
+    fn request(&mut self, now_us: u64, asked: Asked, request: &Request, admission: Admission) {
         // These act whatever else holds. Where their number is the next one, it takes its place in the order.
         if request.is_stop() {
             if *request == Request::Stop {
@@ -89,65 +125,90 @@ impl Brain {
             } else {
                 self.estop();
             }
-            let ours = admission == Admission::Ours;
-            if ours {
-                self.session.hear(now_us);
-                self.session.order(header.sequence);
+            if asked.ours {
+                self.session.order(asked.header.sequence);
+                self.session.keep(asked.header.sequence, &Reply::Done);
             }
             count(&mut self.counted.acted);
-            return self.answer_stop(header, ours);
+            // Answered to whoever sent it; only ours has a place in the order, where its answer is kept.
+            return self.answer(asked, Reply::Done, What::StopAnswer);
         }
-        if !self.hear(now_us, admission) {
-            return self.turn_away(header, admission);
+        if !self.count_stale(asked) {
+            return self.turn_away(asked, admission);
         }
         if let Request::Chunk(chunk) = request {
             // Acts by its offset, whatever the order, and keeps no reply.
             return match self.tables.chunk(chunk) {
                 Ok(offset) => self.reply(
-                    header,
+                    asked,
                     Reply::Wanted {
                         upload: chunk.upload,
                         offset,
                     },
                 ),
-                Err(refusal) => self.refuse(header, refusal),
+                Err(refusal) => self.refuse(asked, refusal),
             };
         }
-        match self.session.order(header.sequence) {
+        match self.session.order(asked.header.sequence) {
             Order::Next => {}
             Order::Repeat => {
                 count(&mut self.counted.replayed);
-                return match self.session.kept() {
-                    Some(body) => self.outbox.send_reply_body(answer(header), body),
-                    None => self.reply(header, Reply::Working),
-                };
+                return self.reply_again(asked);
             }
             Order::Superseded { last } => {
                 count(&mut self.counted.superseded);
-                return self.refuse(header, Refusal::Superseded { last });
+                return self.refuse(asked, Refusal::Superseded { last });
             }
         }
-        match self.act(now_us, header, request) {
+        let outcome = self
+            .may_power(now_us, asked, request)
+            .and_then(|()| self.act(now_us, asked, request));
+        match outcome {
             Ok(Some(reply)) => {
                 count(&mut self.counted.acted);
-                self.finish(header, reply);
+                self.finish(asked, reply);
             }
             Ok(None) => count(&mut self.counted.acted),
-            Err(refusal) => self.finish(header, Reply::Refused(refusal)),
+            Err(refusal) => self.finish(asked, Reply::Refused(refusal)),
         }
     }
 
-    /// A stop is answered to whoever sent it; only ours has a place in the order, where its answer is kept.
-    fn answer_stop(&mut self, header: Header, ours: bool) {
-        if ours {
-            self.session.keep(header.sequence, &Reply::Done);
+    /// What sets servos in motion takes a host that is there now: what a buffer kept of one that is gone does nothing.
+    fn may_power(&self, now_us: u64, asked: Asked, request: &Request) -> Result<(), Refusal> {
+        if !request.is_powering() {
+            return Ok(());
         }
-        self.outbox
-            .send_stop_answer(answer(header), &Message::Reply(Reply::Done));
+        if asked.header.version < POWER_SINCE {
+            return Err(Refusal::Version {
+                min: POWER_SINCE,
+                current: PROTOCOL_CURRENT,
+            });
+        }
+        if self.session.silent(now_us) {
+            return Err(Refusal::NotFresh);
+        }
+        Ok(())
+    }
+
+    /// The stored reply to a repeat.
+    fn reply_again(&mut self, asked: Asked) {
+        let mut body = [0; MAX_BODY];
+        let kept = self.session.kept().and_then(|kept| {
+            let place = body.get_mut(..kept.len())?;
+            place.copy_from_slice(kept);
+            Some(&*place)
+        });
+        match kept {
+            Some(body) => {
+                let (to, header) = (asked.transport, asked.header);
+                self.send_body(to, header, Kind::Reply, body, true, What::Answer);
+            }
+            None => self.reply(asked, Reply::Working),
+        }
     }
 
     /// Says why a request may not act.
-    fn turn_away(&mut self, header: Header, admission: Admission) {
+    fn turn_away(&mut self, asked: Asked, admission: Admission) {
         let refusal = match admission {
             // What came twice was answered once: a second answer would only undo it.
             Admission::Ours | Admission::Replayed => return,
@@ -157,31 +218,64 @@ impl Brain {
             Admission::Unsigned => Refusal::KeyNeeded,
             Admission::WrongKey => Refusal::WrongKey,
         };
-        self.refuse(header, refusal);
+        self.refuse(asked, refusal);
     }
 
     /// The answer to a request, kept for its repeats.
-    pub(super) fn finish(&mut self, header: Header, reply: Reply) {
+    pub(super) fn finish(&mut self, asked: Asked, reply: Reply) {
         if matches!(reply, Reply::Refused(_)) {
             count(&mut self.counted.refused);
         }
-        if header.session == self.session.number() {
-            self.session.keep(header.sequence, &reply);
+        if asked.header.session == self.session.number() {
+            self.session.keep(asked.header.sequence, &reply);
         }
-        self.reply(header, reply);
+        self.reply(asked, reply);
     }
 
-    fn refuse(&mut self, header: Header, refusal: Refusal) {
+    fn refuse(&mut self, asked: Asked, refusal: Refusal) {
         count(&mut self.counted.refused);
-        self.reply(header, Reply::Refused(refusal));
+        self.reply(asked, Reply::Refused(refusal));
     }
 
-    fn reply(&mut self, header: Header, reply: Reply) {
-        self.outbox.send(answer(header), &Message::Reply(reply));
+    fn reply(&mut self, asked: Asked, reply: Reply) {
+        self.answer(asked, reply, What::Answer);
     }
-}
 
-/// The header of an answer: session and sequence of what it answers, in the version spoken here.
-fn answer(header: Header) -> Header {
-    Header::new(header.session, header.sequence)
+    /// Under session, number and version of what it answers, for whoever asked reads that version.
+    fn answer(&mut self, asked: Asked, reply: Reply, what: What) {
+        let message = Message::Reply(reply);
+        self.send(asked.transport, asked.header, &message, asked.ours, what);
+    }
+
+    /// Sends a message; signed where it is `ours` and the open session asks for it.
+    pub(super) fn send(
+        &mut self,
+        to: Transport,
+        header: Header,
+        message: &Message,
+        ours: bool,
+        what: What,
+    ) {
+        let mut body = [0; MAX_BODY];
+        if let Ok(body) = message.encode_body(&mut body) {
+            self.send_body(to, header, message.kind(), body, ours, what);
+        }
+    }
+
+    fn send_body(
+        &mut self,
+        to: Transport,
+        header: Header,
+        kind: Kind,
+        body: &[u8],
+        ours: bool,
+        what: What,
+    ) {
+        let signature = if ours {
+            self.session.sign(header, kind, body)
+        } else {
+            None
+        };
+        self.outboxes[to.index()].send(header, kind, body, signature, what);
+    }
 }

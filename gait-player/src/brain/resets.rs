@@ -2,8 +2,8 @@
 //! register which a reset spares and a power cut clears (promises R6 and R8).
 //!
 //! ```text
-//!  31   24 23       17 16           10 9      2    1       0
-//! | 0xA5  | last, s   | before it, s  | free   | locked | e-stop |
+//!  31   24 23       17 16           10 9    3      2        1       0
+//! | 0xA5  | last, s   | before it, s  | free | by starts | locked | e-stop |
 //! ```
 //! Seconds since the last reset that was a fault, and since the one before it; 127: none, or longer ago.
 
@@ -21,6 +21,8 @@ pub(crate) struct Resets {
     pub(crate) estop: bool,
     /// Arming is refused.
     locked: bool,
+    /// For short starts, and not (only) for resets.
+    by_starts: bool,
     /// Ages of the last two faulty resets at the start, s.
     ages: [u32; 2],
     uptime_s: u32,
@@ -35,22 +37,25 @@ impl Resets {
             return Self {
                 estop: false,
                 locked: false,
+                by_starts: false,
                 ages,
                 uptime_s: 0,
             };
         }
-        let (estop, locked) = (kept & 1 != 0, kept & 2 != 0);
+        let (estop, locked, by_starts) = (kept & 1 != 0, kept & 2 != 0, kept & 4 != 0);
         let ages = [kept >> 17 & NONE, kept >> 10 & NONE];
         match reason {
             ResetReason::Watchdog | ResetReason::Crash => Self {
                 estop,
                 locked: locked || ages[1] <= WINDOW_S,
+                by_starts,
                 ages: [0, ages[0]],
                 uptime_s: 0,
             },
             ResetReason::Pin | ResetReason::PowerOn => Self {
                 estop,
                 locked,
+                by_starts,
                 ages,
                 uptime_s: 0,
             },
@@ -68,9 +73,24 @@ impl Resets {
             .then(|| WINDOW_S.saturating_sub(self.uptime_s) as u16)
     }
 
+    /// So many starts in a row came too quickly: that locks as three resets do.
+    pub(crate) fn lock(&mut self) {
+        (self.locked, self.by_starts) = (true, true);
+    }
+
+    /// Locked for that.
+    pub(crate) fn locked_by_starts(&self) -> bool {
+        self.locked && self.by_starts
+    }
+
+    /// Up for long enough that this run was not a short one.
+    pub(crate) fn lasted(&self) -> bool {
+        self.uptime_s >= WINDOW_S
+    }
+
     /// Unlocks.
     pub(crate) fn clear(&mut self) {
-        self.locked = false;
+        (self.locked, self.by_starts) = (false, false);
     }
 
     /// The word to keep.
@@ -85,6 +105,7 @@ impl Resets {
         MAGIC << 24
             | age(self.ages[0]) << 17
             | age(self.ages[1]) << 10
+            | u32::from(self.by_starts) << 2
             | u32::from(self.locked) << 1
             | u32::from(self.estop)
     }
@@ -124,6 +145,7 @@ mod tests {
         let kept = Resets {
             estop: true,
             locked: true,
+            by_starts: false,
             ages: [0, 5],
             uptime_s: 9,
         }

@@ -1,11 +1,17 @@
 //! Who may ask, and in which order: one session at a time, each request at most once.
 
+use super::Transport;
 use heapless::Vec;
-use link_protocol::{Binding, Key, MAX_BODY, Reply, Seal, Signature};
+use link_protocol::{
+    Binding, Header, Heartbeat, Key, Kind, MAX_BODY, PROTOCOL_CURRENT, Reply, Seal, Signature,
+};
 
-/// A link is silent when no valid frame of its session came for this long. With the tick that finds out, the ramp
-/// starts 480 ms after the last frame: 500 ms are promised.
+/// A link is silent when no fresh keep-alive of its session came for this long. With the tick that finds out, the ramp
+/// starts 480 ms after the last one: 500 ms are promised.
 pub(crate) const LEASE_US: u64 = 460_000;
+/// A keep-alive is fresh where its host had heard the robot so short a time ago. Legal lines stay below: 200 ms each way,
+/// 200 ms for a lump of 230 bytes to fill with telemetry, 100 ms until the host's next keep-alive (`docs/security.md`).
+pub(crate) const FRESH_US: u64 = 1_000_000;
 
 /// The open session.
 #[derive(Clone)]
@@ -15,13 +21,20 @@ pub(crate) struct Session {
     /// The numbers have begun anew: the next session is of another boot nonce.
     anew: bool,
     boot_nonce: u32,
-    pub(super) heard_us: Option<u64>,
+    /// When a fresh keep-alive last came.
+    pub(super) fed_us: Option<u64>,
 }
 
 #[derive(Clone)]
 struct Open {
     number: u16,
+    /// Of the greeting: what comes otherwise is not of this session.
+    transport: Transport,
+    /// The protocol's, as both ends speak it.
+    version: u8,
     host_nonce: u32,
+    /// The latest time of the robot's clock that the host has heard, by its keep-alives, µs.
+    echoed_us: u64,
     last: Option<u16>,
     /// Body of the reply to `last`; empty while there is none yet.
     reply: Vec<u8, MAX_BODY>,
@@ -34,6 +47,8 @@ struct Guard {
     seal: Seal,
     /// Counter of the last frame let in.
     last: u64,
+    /// Counter of the last frame that the robot signed.
+    signed: u64,
 }
 
 /// What a frame may do.
@@ -41,7 +56,7 @@ struct Guard {
 pub(crate) enum Admission {
     /// Of the open session and, where there is a key, signed with it.
     Ours,
-    /// Of no open session.
+    /// Of no open session, or by another way than its greeting.
     Foreign,
     /// Of the open session, but not signed although there is a key.
     Unsigned,
@@ -73,7 +88,7 @@ impl Session {
             next: seed.max(1),
             anew: false,
             boot_nonce,
-            heard_us: None,
+            fed_us: None,
         }
     }
 
@@ -88,10 +103,28 @@ impl Session {
         self.boot_nonce
     }
 
+    /// Transport of the open session.
+    pub(crate) fn transport(&self) -> Option<Transport> {
+        self.open.as_ref().map(|open| open.transport)
+    }
+
+    /// The protocol's version in the open session.
+    pub(crate) fn version(&self) -> u8 {
+        self.open
+            .as_ref()
+            .map_or(PROTOCOL_CURRENT, |open| open.version)
+    }
+
     /// Opens a session for a greeting, or finds it open already. The key stands for as long as the session.
-    pub(crate) fn greet(&mut self, host_nonce: u32, key: Option<&Key>) -> u16 {
+    pub(crate) fn greet(
+        &mut self,
+        transport: Transport,
+        version: u8,
+        host_nonce: u32,
+        key: Option<&Key>,
+    ) -> u16 {
         if let Some(open) = &self.open
-            && open.host_nonce == host_nonce
+            && (open.transport, open.host_nonce) == (transport, host_nonce)
         {
             return open.number;
         }
@@ -111,12 +144,16 @@ impl Session {
             .map_or((1, true), |next| (next, false));
         self.open = Some(Open {
             number,
+            transport,
+            version,
             host_nonce,
+            echoed_us: 0,
             last: None,
             reply: Vec::new(),
             guard: key.map(|key| Guard {
                 seal: Seal::new(key, binding),
                 last: 0,
+                signed: 0,
             }),
         });
         number
@@ -125,11 +162,13 @@ impl Session {
     /// What a whole frame of this session number may do. `signed` are the bytes before its tag.
     pub(crate) fn admit(
         &mut self,
+        transport: Transport,
         number: u16,
         signed: &[u8],
         signature: Option<&Signature>,
     ) -> Admission {
-        let Some(open) = self.open.as_mut().filter(|open| open.number == number) else {
+        let ours = |open: &&mut Open| (open.transport, open.number) == (transport, number);
+        let Some(open) = self.open.as_mut().filter(ours) else {
             return Admission::Foreign;
         };
         match (&mut open.guard, signature) {
@@ -148,15 +187,33 @@ impl Session {
         }
     }
 
-    /// A frame of the open session came: the link is alive.
-    pub(crate) fn hear(&mut self, now_us: u64) {
-        self.heard_us = Some(now_us);
+    /// The signature of a frame to the host of the open session; `None` where there is no key, or where the host is of a
+    /// version that does not ask for it.
+    pub(crate) fn sign(&mut self, header: Header, kind: Kind, body: &[u8]) -> Option<Signature> {
+        let open = self.open.as_mut()?;
+        let guard = open.guard.as_mut()?;
+        if header.session != open.number || open.version < 2 {
+            return None;
+        }
+        guard.signed += 1;
+        Some(guard.seal.sign(header, kind, body, guard.signed))
     }
 
-    /// Nothing valid was heard within the lease.
+    /// A keep-alive of the open session: it feeds the lease where it is fresh. The time it echoes must be later than any
+    /// before, so that none counts twice, and may not lie ahead.
+    pub(crate) fn feed(&mut self, now_us: u64, heartbeat: Heartbeat) {
+        let Some(open) = &mut self.open else { return };
+        let age_us = now_us.checked_sub(heartbeat.heard_us);
+        if heartbeat.heard_us > open.echoed_us && age_us.is_some_and(|age| age <= FRESH_US) {
+            open.echoed_us = heartbeat.heard_us;
+            self.fed_us = Some(now_us);
+        }
+    }
+
+    /// Nothing fresh was heard within the lease.
     pub(crate) fn silent(&self, now_us: u64) -> bool {
-        self.heard_us
-            .is_none_or(|heard| now_us.saturating_sub(heard) > LEASE_US)
+        self.fed_us
+            .is_none_or(|fed| now_us.saturating_sub(fed) > LEASE_US)
     }
 
     /// Where this number stands; [`Order::Next`] makes it the last one, without a reply yet.
@@ -205,21 +262,21 @@ mod tests {
         assert_eq!(session.number(), 0);
         assert_eq!(
             [
-                session.greet(1, None),
-                session.greet(1, None),
-                session.greet(2, None),
-                session.greet(3, None)
+                session.greet(Transport::Uart, 2, 1, None),
+                session.greet(Transport::Uart, 2, 1, None),
+                session.greet(Transport::Uart, 2, 2, None),
+                session.greet(Transport::Uart, 2, 3, None)
             ],
             [0xFFFE, 0xFFFE, 0xFFFF, 1]
         );
         assert_eq!(session.number(), 1);
-        assert_eq!(Session::new(0, 7).greet(9, None), 1);
+        assert_eq!(Session::new(0, 7).greet(Transport::Uart, 2, 9, None), 1);
     }
 
     #[test]
     fn numbers_count_modulo_two_to_the_sixteenth() {
         let mut session = Session::new(5, 7);
-        session.greet(1, None);
+        session.greet(Transport::Uart, 2, 1, None);
         assert_eq!(session.order(0xFFFE), Order::Next);
         assert_eq!(session.order(0xFFFE), Order::Repeat);
         assert_eq!(session.order(0x0001), Order::Next);
@@ -232,7 +289,7 @@ mod tests {
     #[test]
     fn replies_are_kept_for_the_last_request_only() {
         let mut session = Session::new(5, 7);
-        session.greet(1, None);
+        session.greet(Transport::Uart, 2, 1, None);
         session.order(1);
         assert_eq!(session.kept(), None);
         session.order(2);
@@ -240,7 +297,7 @@ mod tests {
         assert_eq!(session.kept(), None);
         session.keep(2, &Reply::Done);
         assert_eq!(session.kept(), Some(&[0][..]));
-        session.greet(2, None);
+        session.greet(Transport::Uart, 2, 2, None);
         assert_eq!(session.kept(), None);
     }
 
@@ -248,20 +305,58 @@ mod tests {
     fn only_the_open_session_is_ours() {
         let mut session = Session::new(5, 7);
         assert!(session.silent(0));
-        assert_eq!(session.admit(0, &[], None), Admission::Foreign);
-        session.greet(1, None);
-        assert_eq!(session.admit(0, &[], None), Admission::Foreign);
-        assert_eq!(session.admit(4, &[], None), Admission::Foreign);
-        assert_eq!(session.admit(5, &[], None), Admission::Ours);
-        session.hear(10);
-        assert!(!session.silent(10 + LEASE_US) && session.silent(11 + LEASE_US));
+        assert_eq!(
+            session.admit(Transport::Uart, 0, &[], None),
+            Admission::Foreign
+        );
+        session.greet(Transport::Uart, 2, 1, None);
+        assert_eq!(
+            session.admit(Transport::Uart, 0, &[], None),
+            Admission::Foreign
+        );
+        assert_eq!(
+            session.admit(Transport::Uart, 4, &[], None),
+            Admission::Foreign
+        );
+        assert_eq!(
+            session.admit(Transport::Uart, 5, &[], None),
+            Admission::Ours
+        );
+        assert_eq!(
+            session.admit(Transport::Usb, 5, &[], None),
+            Admission::Foreign
+        );
+    }
+
+    #[test]
+    fn only_what_is_fresh_and_new_feeds_the_lease() {
+        let mut session = Session::new(5, 7);
+        session.greet(Transport::Uart, 2, 1, None);
+        let beat = |heard_us| Heartbeat {
+            host_us: 0,
+            heard_us,
+        };
+        let mut fed = |now_us, heard_us| {
+            session.fed_us = None;
+            session.feed(now_us, beat(heard_us));
+            session.fed_us.is_some()
+        };
+        let now = 10 * FRESH_US;
+        // Nothing heard yet, ahead of the robot's clock, too old.
+        assert!(!fed(now, 0) && !fed(now, now + 1) && !fed(now, now - FRESH_US - 1));
+        assert!(fed(now, now - FRESH_US));
+        // Recorded, or overtaken.
+        assert!(!fed(now, now - FRESH_US) && !fed(now - 1, now - FRESH_US));
+        assert!(fed(now, now) && !fed(now + 1, now));
+        session.fed_us = Some(now);
+        assert!(!session.silent(now + LEASE_US) && session.silent(now + LEASE_US + 1));
     }
 
     #[test]
     fn a_key_lets_in_what_it_signed_for_this_session_once_and_in_order() {
         let key = Key([3; Key::LEN]);
         let mut session = Session::new(5, 7);
-        session.greet(1, Some(&key));
+        session.greet(Transport::Uart, 2, 1, Some(&key));
         let seal = |session, host_nonce| {
             let binding = Binding {
                 boot_nonce: 7,
@@ -274,9 +369,9 @@ mod tests {
         let mut come = |seal: &Seal, counter| {
             let kind = link_protocol::Kind::KeepAlive;
             let signature = seal.sign(header, kind, &[], counter);
-            let mut signed = std::vec![1, 5, 0, 0, 0, 0x86];
+            let mut signed = std::vec![2, 5, 0, 0, 0, 0x86];
             signed.extend(&counter.to_le_bytes()[..6]);
-            session.admit(5, &signed, Some(&signature))
+            session.admit(Transport::Uart, 5, &signed, Some(&signature))
         };
         assert_eq!(come(&seal(5, 1), 4), Admission::Ours);
         assert_eq!(come(&seal(5, 1), 4), Admission::Replayed);
@@ -284,8 +379,14 @@ mod tests {
         assert_eq!(come(&seal(4, 1), 9), Admission::WrongKey);
         assert_eq!(come(&seal(5, 2), 9), Admission::WrongKey);
         assert_eq!(come(&seal(5, 1), 5), Admission::Ours);
-        assert_eq!(session.admit(5, &[], None), Admission::Unsigned);
-        assert_eq!(session.admit(6, &[], None), Admission::Foreign);
+        assert_eq!(
+            session.admit(Transport::Uart, 5, &[], None),
+            Admission::Unsigned
+        );
+        assert_eq!(
+            session.admit(Transport::Uart, 6, &[], None),
+            Admission::Foreign
+        );
     }
 
     /// 65 535 greetings lead back to the same number; with the old boot nonce, recorded frames would count again.
@@ -294,10 +395,10 @@ mod tests {
         let mut session = Session::new(0xFFF0, 7);
         let mut seen = std::collections::HashSet::new();
         for nonce in 0..200_000 {
-            let number = session.greet(nonce, None);
+            let number = session.greet(Transport::Uart, 2, nonce, None);
             assert!(seen.insert((session.boot_nonce(), number)));
             // The same greeting again is told the same.
-            assert_eq!(session.greet(nonce, None), number);
+            assert_eq!(session.greet(Transport::Uart, 2, nonce, None), number);
             assert!(seen.contains(&(session.boot_nonce(), number)));
         }
     }

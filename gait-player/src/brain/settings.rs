@@ -3,7 +3,7 @@
 
 use crate::storage::MAX_SETTINGS;
 use crate::{Limits, servo::ServoMap};
-use link_protocol::{Configuration, Key, Refusal, ServoSettings, TangentialDrag};
+use link_protocol::{Configuration, Key, PulseRange, Refusal, ServoSettings, TangentialDrag};
 use serde::{Deserialize, Serialize};
 use swimmer_model::{Links, Model, Swimmer};
 
@@ -11,51 +11,172 @@ use swimmer_model::{Links, Model, Swimmer};
 const MAX_TRIM: i16 = 5_000;
 /// Longest way to neutral, ms.
 const MAX_TO_NEUTRAL_MS: f32 = 1_000.0;
+/// Share by which a length may differ from that as built without anybody at the robot.
+const LENGTH_ROOM: f32 = 0.1;
+/// Smallest angle that a servo's end stops must leave to both sides, rad.
+const MIN_REACH: f32 = 1e-2;
 
 /// What is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Settings {
     pub(crate) configuration: Configuration,
     pub(crate) servos: [ServoSettings; 2],
-    /// Stands behind the rest of the record, and only where there is one: a record without is what it was before keys.
+    /// Behind the rest of the record, and only where there is one, as the key after it: records without are from before.
+    #[serde(skip)]
+    pub(crate) ranges: [Option<PulseRange>; 2],
     #[serde(skip)]
     pub(crate) key: Option<Key>,
+}
+
+/// What stands behind the record, told apart by its length: nothing, a key, or ranges with or without a key.
+struct Behind {
+    ranges: [Option<PulseRange>; 2],
+    key: Option<Key>,
+}
+
+impl Behind {
+    const RANGE: usize = 8;
+    const RANGES: usize = 2 * Self::RANGE;
+    /// Tells ranges from a key, which has as many bytes.
+    const TAG: u8 = b'R';
+
+    fn read(bytes: &[u8]) -> Option<Self> {
+        let (ranges, key) = match bytes.split_first() {
+            Some((&Self::TAG, rest)) if bytes.len() != Key::LEN => {
+                let (ranges, key) = rest.split_first_chunk::<{ Self::RANGES }>()?;
+                (Some(ranges), key)
+            }
+            _ => (None, bytes),
+        };
+        let key = match key {
+            [] => None,
+            key => Some(Key(key.try_into().ok()?)),
+        };
+        let range = |joint: usize| {
+            let ranges = ranges?;
+            let word = |at: usize| {
+                let at = joint * Self::RANGE + at;
+                u32::from_le_bytes(core::array::from_fn(|i| ranges[at + i]))
+            };
+            let range = PulseRange {
+                shortest_ns: word(0),
+                longest_ns: word(4),
+            };
+            (range.longest_ns > 0).then_some(range)
+        };
+        Some(Self {
+            ranges: [range(0), range(1)],
+            key,
+        })
+    }
 }
 
 impl Settings {
     /// The record for storage.
     pub(crate) fn encode<'a>(&self, bytes: &'a mut [u8; MAX_SETTINGS]) -> Option<&'a mut [u8]> {
-        match &self.key {
-            Some(key) => postcard::to_slice(&(self, key), bytes).ok(),
-            None => postcard::to_slice(self, bytes).ok(),
+        let mut len = postcard::to_slice(self, bytes).ok()?.len();
+        let mut put = |part: &[u8]| {
+            let place = bytes.get_mut(len..len + part.len())?;
+            place.copy_from_slice(part);
+            len += part.len();
+            Some(())
+        };
+        if self.ranges.iter().any(Option::is_some) {
+            put(&[Behind::TAG])?;
+            for range in self.ranges {
+                let (shortest, longest) =
+                    range.map_or((0, 0), |range| (range.shortest_ns, range.longest_ns));
+                put(&shortest.to_le_bytes())?;
+                put(&longest.to_le_bytes())?;
+            }
         }
+        if let Some(key) = &self.key {
+            put(&key.0)?;
+        }
+        bytes.get_mut(..len)
     }
 
     /// The key of a record, whatever else it holds: limits that have changed must not open the robot.
     pub(crate) fn stored_key(bytes: &[u8]) -> Option<Key> {
-        let (_, key) = postcard::take_from_bytes::<Self>(bytes).ok()?;
-        key.try_into().ok().map(Key)
+        let (_, behind) = postcard::take_from_bytes::<Self>(bytes).ok()?;
+        Behind::read(behind)?.key
     }
 
     /// Reads a record; `None` where it is none that these limits allow.
     pub(crate) fn decode(bytes: &[u8], limits: &Limits) -> Option<Self> {
-        let (mut settings, rest) = postcard::take_from_bytes::<Self>(bytes).ok()?;
-        settings.key = Self::stored_key(bytes);
-        if settings.key.is_none() && !rest.is_empty() {
-            return None;
-        }
+        let (mut settings, behind) = postcard::take_from_bytes::<Self>(bytes).ok()?;
+        let Behind { ranges, key } = Behind::read(behind)?;
+        (settings.ranges, settings.key) = (ranges, key);
         check_configuration(&settings.configuration, limits).ok()?;
         settings
             .servos
             .iter()
             .try_for_each(|servo| check_servo(servo, limits))
             .ok()?;
+        settings.reach(limits).ok()?;
         Some(settings)
+    }
+
+    /// The window of a servo's pulses, ns.
+    pub(crate) fn window(&self, joint: usize, limits: &Limits) -> PulseRange {
+        self.ranges[joint].unwrap_or(PulseRange {
+            shortest_ns: limits.pulse_min_ns,
+            longest_ns: limits.pulse_max_ns,
+        })
+    }
+
+    /// The largest angle that the servos' end stops leave to both sides, rad; none where none are set.
+    pub(crate) fn reach(&self, limits: &Limits) -> Result<f32, Refusal> {
+        let (maps, mut reach) = (self.maps(), f32::INFINITY);
+        for (joint, range) in self.ranges.iter().enumerate() {
+            let Some(range) = range else { continue };
+            let inside = |field, inside| {
+                if inside {
+                    Ok(())
+                } else {
+                    Err(Refusal::BadValue { field })
+                }
+            };
+            let neutral_ns = maps[joint].pulse_ns(0.0);
+            inside(
+                0,
+                (limits.pulse_min_ns..=neutral_ns).contains(&range.shortest_ns),
+            )?;
+            inside(
+                1,
+                (neutral_ns..=limits.pulse_max_ns).contains(&range.longest_ns),
+            )?;
+            for (field, pulse_ns) in [(0, range.shortest_ns), (1, range.longest_ns)] {
+                let angle = libm::fabsf(maps[joint].angle(pulse_ns));
+                inside(field, angle >= MIN_REACH)?;
+                reach = reach.min(angle);
+            }
+        }
+        Ok(reach)
     }
 
     pub(crate) fn maps(&self) -> [ServoMap; 2] {
         self.servos.map(ServoMap::from)
     }
+}
+
+/// Whether somebody must be at the robot for this: lengths more than a tenth from those as built, or limits beyond those as
+/// built. What holds already is no change.
+pub(crate) fn needs_presence(
+    wanted: &Configuration,
+    held: &Configuration,
+    built: &Configuration,
+) -> bool {
+    let lengths = |of: &Configuration| [of.middle_m, of.front_m, of.back_m];
+    let same = |one: f32, other: f32| one.to_bits() == other.to_bits();
+    let far = (0..3).any(|link| {
+        let [wanted, held, built] = [wanted, held, built].map(|of| lengths(of)[link]);
+        let near = ((1.0 - LENGTH_ROOM) * built..=(1.0 + LENGTH_ROOM) * built).contains(&wanted);
+        !(near || same(wanted, held))
+    });
+    let beyond = |wanted: f32, held: f32, built: f32| wanted > built && !same(wanted, held);
+    far || beyond(wanted.max_angle, held.max_angle, built.max_angle)
+        || beyond(wanted.max_rate, held.max_rate, built.max_rate)
 }
 
 /// Checks a configuration and prepares its model.

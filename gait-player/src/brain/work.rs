@@ -1,11 +1,12 @@
 //! Work that takes longer than a tick may: checking a table or a way. It is done in pieces, and the request that asked
 //! for it is answered at its end.
 
+use super::requests::Asked;
 use super::{Brain, Swap};
 use crate::ramp::Ramp;
 use crate::route::{Decision, Route};
 use crate::table::check::{CLEARANCE_WORK, Checker, Facts};
-use link_protocol::{CrossingPlace, Header, Play, Refusal, Reply};
+use link_protocol::{CrossingPlace, Play, Refusal, Reply};
 
 use super::state::{Progress, State};
 
@@ -23,16 +24,16 @@ pub(crate) enum Work {
     /// Nothing.
     Idle,
     /// A commit's table.
-    Commit { reply_to: Header, checker: Checker },
+    Commit { reply_to: Asked, checker: Checker },
     /// A commit's way from the first knot of the playing table to that of the new one.
     Swap {
-        reply_to: Header,
+        reply_to: Asked,
         facts: Facts,
         route: Route,
     },
     /// A play's table, then its way from where the servos are.
     Play {
-        reply_to: Header,
+        reply_to: Asked,
         play: Play,
         route: Option<Route>,
     },
@@ -92,7 +93,7 @@ impl Brain {
         }
     }
 
-    fn table_checked(&mut self, reply_to: Header, facts: Facts) {
+    fn table_checked(&mut self, reply_to: Asked, facts: Facts) {
         let allowed = facts
             .allow(&self.limits)
             .and_then(|()| match self.state.play() {
@@ -116,7 +117,7 @@ impl Brain {
         }
     }
 
-    fn swap_decided(&mut self, reply_to: Header, facts: Facts, decision: Decision) {
+    fn swap_decided(&mut self, reply_to: Asked, facts: Facts, decision: Decision) {
         if self.state.play().is_none() {
             return self.activate(reply_to, facts);
         }
@@ -139,7 +140,7 @@ impl Brain {
         }
     }
 
-    fn activate(&mut self, reply_to: Header, facts: Facts) {
+    fn activate(&mut self, reply_to: Asked, facts: Facts) {
         self.tables.activate_staging(facts);
         self.persist.table_changed();
         let info = self.table_info();
@@ -148,7 +149,7 @@ impl Brain {
 
     fn advance_play(
         &mut self,
-        reply_to: Header,
+        reply_to: Asked,
         play: Play,
         route: Option<Route>,
         facts: Facts,

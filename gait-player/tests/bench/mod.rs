@@ -3,7 +3,9 @@
 
 pub(crate) mod stops;
 
-use gait_player::{Boot, Brain, BrainConfig, GaitTable, Identity, Inputs, Output, TICK_US};
+use gait_player::{
+    Boot, Brain, BrainConfig, GaitTable, Identity, Inputs, Output, TICK_US, Transport,
+};
 use heapless::Vec as Bytes;
 use link_protocol::*;
 use std::f64::consts::TAU;
@@ -26,12 +28,14 @@ pub(crate) struct Bench {
     pub(crate) output: Output,
     pub(crate) session: u16,
     pub(crate) sequence: u16,
-    /// Send a keep-alive every 50 ms.
+    /// Send a keep-alive every 40 ms.
     pub(crate) keep_alive: bool,
     pub(crate) telemetry: Vec<Telemetry>,
     pub(crate) replies: Vec<(Header, Reply)>,
     pub(crate) others: Vec<(Header, Message)>,
     pub(crate) bytes_out: usize,
+    /// The way on which this host speaks.
+    pub(crate) via: Transport,
     decoder: Decoder,
 }
 
@@ -73,6 +77,8 @@ impl Bench {
         let inputs = Inputs {
             battery_mv: Some(5_000),
             link_up: true,
+            usb_up: true,
+            ..Inputs::default()
         };
         let now_us = 123_456;
         let output = brain.tick(now_us, &inputs);
@@ -88,14 +94,15 @@ impl Bench {
             replies: Vec::new(),
             others: Vec::new(),
             bytes_out: 0,
+            via: Transport::Uart,
             decoder: Decoder::new(),
         }
     }
 
     pub(crate) fn greet(&mut self, host_nonce: u32) -> HelloReply {
         let hello = Hello {
-            protocol_min: 1,
-            protocol_current: 1,
+            protocol_min: PROTOCOL_MIN,
+            protocol_current: PROTOCOL_CURRENT,
             schema_key: SCHEMA_KEY,
             host_nonce,
         };
@@ -110,20 +117,43 @@ impl Bench {
         let (header, reply) = replies.collect::<Vec<_>>().pop().unwrap();
         assert_eq!((header.session, header.sequence), (reply.session, 7));
         self.session = reply.session;
+        if self.keep_alive {
+            self.beat();
+        }
         reply
+    }
+
+    /// A keep-alive of a host that has heard the robot just now.
+    pub(crate) fn beat(&mut self) {
+        self.beat_that_heard(self.now_us);
+    }
+
+    pub(crate) fn beat_that_heard(&mut self, heard_us: u64) {
+        let heartbeat = Heartbeat {
+            host_us: 0,
+            heard_us,
+        };
+        self.send(Header::new(self.session, 0), &Message::Heartbeat(heartbeat));
+    }
+
+    /// Somebody closes the bench jumper.
+    pub(crate) fn come_near(&mut self) {
+        self.inputs.present = true;
+        self.tick();
+        self.inputs.present = false;
     }
 
     pub(crate) fn send(&mut self, header: Header, message: &Message) {
         let mut frame = [0; MAX_ENCODED];
         let len = encode(header, message, &mut frame).unwrap();
-        self.brain.receive(self.now_us, &frame[..len]);
+        self.brain.receive(self.now_us, self.via, &frame[..len]);
         self.drain();
     }
 
     pub(crate) fn drain(&mut self) {
         let mut bytes = [0; 64];
         loop {
-            let len = self.brain.transmit(&mut bytes);
+            let len = self.brain.transmit(self.via, &mut bytes);
             if len == 0 {
                 break;
             }
@@ -145,7 +175,7 @@ impl Bench {
     pub(crate) fn tick(&mut self) -> Output {
         self.now_us += u64::from(TICK_US);
         if self.keep_alive && (self.now_us / u64::from(TICK_US)).is_multiple_of(2) {
-            self.send(Header::new(self.session, 0), &Message::KeepAlive);
+            self.beat();
         }
         self.output = self.brain.tick(self.now_us, &self.inputs);
         self.drain();
@@ -187,6 +217,9 @@ impl Bench {
     pub(crate) fn ask(&mut self, request: Request) -> Reply {
         self.sequence = self.sequence.wrapping_add(1);
         let sequence = self.sequence;
+        if self.keep_alive && request.is_powering() {
+            self.beat();
+        }
         if let Some(reply) = self.send_request(sequence, request) {
             return reply;
         }

@@ -60,6 +60,10 @@ pub struct Faults {
     pub stale: usize,
     /// The far end speaks and listens at this rate instead of the robot's 115 200 baud.
     pub baud: Option<u32>,
+    /// Bytes a second that pass towards the robot; the rest waits in a buffer. `None`: as many as come.
+    pub rate: Option<u32>,
+    /// Bytes that wait there at most; a frame that finds no room is lost. 0: as many as come.
+    pub buffer: usize,
     /// Times without any connection.
     pub disconnect: Option<Outage>,
 }
@@ -98,7 +102,7 @@ pub enum FaultsProblem {
     NotAPair(String),
     /// A name that is none of ours.
     #[error(
-        "there is no fault `{0}`; there are drop, flip, duplicate, reorder, delay, clump, stale, baud and disconnect"
+        "there is no fault `{0}`; there are drop, flip, duplicate, reorder, delay, clump, stale, baud, rate, buffer and disconnect"
     )]
     UnknownName(String),
     /// A chance that is no number from 0 to 1.
@@ -123,6 +127,9 @@ pub enum FaultsProblem {
         /// The most that is taken.
         most: u64,
     },
+    /// A rate at which nothing passes.
+    #[error("rate={0} is no number of bytes a second above 0, as in rate=200,buffer=8192")]
+    NotARate(String),
     /// A rate that no serial port has.
     #[error("baud={0} is no rate of a serial line; write one from 300 to 4000000, as baud=38400")]
     NotABaudRate(String),
@@ -144,7 +151,7 @@ const MOST_BYTES: u64 = 1 << 20;
 impl FromStr for Faults {
     type Err = FaultsError;
 
-    /// Reads `drop=5%,flip=0.01,duplicate=2%,reorder=1%,delay=100,clump=230,stale=400,baud=38400,disconnect=2000:1500`;
+    /// Reads `drop=5%,flip=0.01,duplicate=2%,reorder=1%,delay=100,clump=230,stale=400,baud=38400,rate=200,buffer=8192,disconnect=2000:1500`;
     /// times are in milliseconds.
     fn from_str(text: &str) -> Result<Self, FaultsError> {
         let mut faults = Self::none();
@@ -200,6 +207,11 @@ impl Faults {
                 self.baud =
                     Some(rate.ok_or_else(|| FaultsProblem::NotABaudRate(value.to_owned()))?);
             }
+            "rate" => {
+                let rate = value.parse().ok().filter(|&rate| rate > 0);
+                self.rate = Some(rate.ok_or_else(|| FaultsProblem::NotARate(value.to_owned()))?);
+            }
+            "buffer" => self.buffer = bytes()?,
             "disconnect" => self.disconnect = Some(outage(value)?),
             _ => return Err(FaultsProblem::UnknownName(name.to_owned())),
         }
@@ -311,6 +323,8 @@ mod tests {
                 "whole number of milliseconds",
             ),
             ("delay=1,baud=12", 9, "from 300 to 4000000"),
+            ("rate=0", 1, "bytes a second above 0"),
+            ("buffer=-1", 1, "whole number of bytes"),
             ("disconnect=5", 1, "START:LENGTH"),
             ("disconnect=5:6:6", 1, "EVERY longer than LENGTH"),
             ("drop=1%,,drop=2%", 10, "twice"),

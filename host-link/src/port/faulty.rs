@@ -20,18 +20,24 @@ pub struct FaultPlan {
 }
 
 impl FaultPlan {
-    /// For a port at the host's end: clumps strike what the host reads.
+    /// For a port at the host's end: clumps strike what the host reads, a slow rate what it writes.
     pub fn at_host(faults: Faults) -> Self {
         Self {
             written: Faults { clump: 0, ..faults },
-            read: faults,
+            read: Faults {
+                rate: None,
+                ..faults
+            },
         }
     }
 
     /// For a port at the robot's end: clumps strike what the robot writes.
     pub fn at_robot(faults: Faults) -> Self {
         Self {
-            written: faults,
+            written: Faults {
+                rate: None,
+                ..faults
+            },
             read: Faults { clump: 0, ..faults },
         }
     }

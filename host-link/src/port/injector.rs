@@ -29,6 +29,8 @@ pub struct FaultCounts {
     pub misread: u64,
     /// Frames lost to a disconnection.
     pub cut_off: u64,
+    /// Frames that found no room in the buffer before a slow line.
+    pub overflowed: u64,
 }
 
 /// Faults on one direction of a link.
@@ -45,6 +47,8 @@ pub struct FaultInjector {
     /// The last bytes carried, for a module that lets them out again.
     carried: VecDeque<u8>,
     last_push: Option<Duration>,
+    /// When a slow line has carried all that waits for it.
+    line_free: Duration,
     counts: FaultCounts,
 }
 
@@ -60,6 +64,7 @@ impl FaultInjector {
             held_since: Duration::ZERO,
             carried: VecDeque::new(),
             last_push: None,
+            line_free: Duration::ZERO,
             counts: FaultCounts::default(),
         }
     }
@@ -91,6 +96,7 @@ impl FaultInjector {
             cutter,
             under_way,
             carried,
+            line_free,
             counts,
             ..
         } = self;
@@ -116,7 +122,11 @@ impl FaultInjector {
                 counts.misread += 1;
                 *frame = misread(frame, Faults::BAUD, baud);
             }
-            let mut arrival = now + faults.delay;
+            let Some(passed) = through_line(faults, line_free, now, frame.len()) else {
+                counts.overflowed += 1;
+                return;
+            };
+            let mut arrival = passed + faults.delay;
             if reorder < faults.reorder {
                 counts.detoured += 1;
                 arrival += Faults::LONGEST_DETOUR.mul_f64(detour);
@@ -192,6 +202,25 @@ impl FaultInjector {
 
 fn cut(faults: &Faults, at: Duration) -> bool {
     faults.disconnect.is_some_and(|outage| outage.covers(at))
+}
+
+/// When a slow line has carried a frame of so many bytes; `None` where they find no room before it.
+fn through_line(
+    faults: &Faults,
+    line_free: &mut Duration,
+    now: Duration,
+    len: usize,
+) -> Option<Duration> {
+    let Some(rate) = faults.rate else {
+        return Some(now);
+    };
+    let rate = f64::from(rate);
+    let waiting = line_free.saturating_sub(now).as_secs_f64() * rate;
+    if faults.buffer > 0 && waiting + len as f64 > faults.buffer as f64 {
+        return None;
+    }
+    *line_free = (*line_free).max(now) + Duration::from_secs_f64(len as f64 / rate);
+    Some(*line_free)
 }
 
 /// Keeps the order of arrival, and that of sending among equals.
@@ -270,6 +299,22 @@ mod tests {
         assert_eq!(injector.next_release(), Some(MS * 105));
         injector.pop(MS * 105, &mut out);
         assert_eq!(out.len(), 5);
+    }
+
+    #[test]
+    fn a_slow_line_carries_its_rate_and_its_buffer_no_more_than_it_holds() {
+        let mut injector = injector("rate=100,buffer=20");
+        injector.push(MS, &frames(6));
+        assert_eq!(injector.counts().overflowed, 2);
+        let mut out = Vec::new();
+        for (at, arrived) in [(50, 0), (51, 5), (101, 10), (200, 15), (201, 20), (900, 20)] {
+            injector.pop(MS * at, &mut out);
+            assert_eq!(out.len(), arrived, "after {at} ms");
+        }
+        // Empty again.
+        injector.push(MS * 1000, &frames(4));
+        assert_eq!(injector.counts().overflowed, 2);
+        assert_eq!(injector.next_release(), Some(MS * 1050));
     }
 
     #[test]

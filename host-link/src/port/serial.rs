@@ -51,6 +51,9 @@ pub enum OpenError {
 
 /// A serial port of the operating system, opened for this program alone, 8 data bits, no parity, 1 stop bit. Its clock
 /// starts when it is opened.
+///
+/// On Unix it is locked for all that look at its lock (`flock`), and for nobody else: what must get past a program that hangs
+/// ([`super::BesidePort`]) can.
 #[derive(Debug)]
 pub struct SerialPort {
     port: Native,
@@ -63,6 +66,8 @@ impl SerialPort {
     /// # Errors
     /// [`OpenError`], one kind for each thing that an operator can mend.
     pub fn open(path: &str, baud: u32) -> Result<Self, OpenError> {
+        #[cfg(unix)]
+        let _door = Door::of(path);
         let port = serialport::new(path, baud)
             .timeout(Duration::from_millis(10))
             .open_native()
@@ -129,11 +134,26 @@ fn owning_group(_path: &str) -> Option<String> {
     None
 }
 
+/// Opens a device again for others once it is dropped. Opening it as a port locks it twice: by `flock`, and by a mark on the
+/// device that turns everybody away, also from an opening that fails on the first lock, and that outlives the open file.
 #[cfg(unix)]
-impl Drop for SerialPort {
+struct Door(Option<std::os::fd::OwnedFd>);
+
+#[cfg(unix)]
+impl Door {
+    fn of(path: &str) -> Self {
+        use rustix::fs::{Mode, OFlags};
+        let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
+        Self(rustix::fs::open(path, flags, Mode::empty()).ok())
+    }
+}
+
+#[cfg(unix)]
+impl Drop for Door {
     fn drop(&mut self) {
-        // The exclusive mark outlives the open file on some terminals and would lock out the next client.
-        let _ = self.port.set_exclusive(false);
+        if let Some(device) = &self.0 {
+            let _ = rustix::termios::ioctl_tiocnxcl(device);
+        }
     }
 }
 

@@ -15,6 +15,9 @@ const WAITING: &str = "waiting for the end of the play";
 const QUIET: Duration = Duration::from_secs(1);
 /// How long a robot that does not answer is looked for; one that plays detached until so long after its end.
 const SEARCH: Duration = Duration::from_secs(30);
+/// How long a robot that has told the end of its play is asked for its status as well. It may hear nothing any more: that is
+/// the most frequent reason to stop.
+const LAST_WORD: Duration = Duration::from_millis(1_500);
 
 /// Time until the last cycle of a play is done; `None` where nothing plays, or without end. A pause and the soft start are
 /// not counted: nobody knows when a pause ends, and a soft start takes two seconds at most.
@@ -41,12 +44,43 @@ struct Watch {
     search_until: Duration,
     asked: Option<Ticket>,
     greeted: Option<Ticket>,
+    /// The status that came last.
+    status: Option<Status>,
+    /// The telemetry that told the end of the play, and when the first such came.
+    ended: Option<(Duration, Telemetry)>,
+}
+
+impl Watch {
+    /// What the robot told of its end, where it says no more than that.
+    fn last_word(&self, now: Duration) -> Option<Status> {
+        let (since, telemetry) = self.ended.as_ref()?;
+        (now.saturating_sub(*since) >= LAST_WORD).then(|| told_by(telemetry, self.status.as_ref()))
+    }
+}
+
+/// The status that telemetry tells; period, table and upload are those of an earlier one.
+fn told_by(telemetry: &Telemetry, before: Option<&Status>) -> Status {
+    Status {
+        robot_us: telemetry.robot_us,
+        state: telemetry.state,
+        cause: telemetry.cause,
+        flags: telemetry.flags,
+        cycle: telemetry.cycle,
+        cycles: telemetry.cycles,
+        period_us: before.map_or(0, |status| status.period_us),
+        phase: telemetry.phase,
+        setpoint: telemetry.setpoint,
+        battery_mv: telemetry.battery_mv,
+        table: before.and_then(|status| status.table),
+        upload: before.and_then(|status| status.upload),
+    }
 }
 
 impl<P: Port> Robot<P> {
     /// Waits until the robot has played its last cycle. `watch` sees each telemetry, at least every 20 ms of the port's
     /// clock, and may break off, which stops the robot. Where the link is lost meanwhile, the robot is looked for for 30 s,
-    /// one that plays detached until 30 s after its end.
+    /// one that plays detached until 30 s after its end. A robot that still tells that its play is over is believed after
+    /// 1.5 s, whether it answers or not.
     ///
     /// Returns the status at the end.
     ///
@@ -81,6 +115,8 @@ impl<P: Port> Robot<P> {
             search_until: now + SEARCH,
             asked: Some(self.session.request(now, Request::Status)),
             greeted: None,
+            status: None,
+            ended: None,
         };
         loop {
             let beat = self.port.now() + BEAT;
@@ -89,6 +125,12 @@ impl<P: Port> Robot<P> {
                 return Ok(None);
             }
             if let Some(status) = self.learn(event, &mut known)? {
+                return finished(status).map(Some);
+            }
+            if let Some(status) = known.last_word(self.port.now()) {
+                if let Some(asked) = known.asked {
+                    self.session.forget(asked);
+                }
                 return finished(status).map(Some);
             }
         }
@@ -106,13 +148,18 @@ impl<P: Port> Robot<P> {
                 known.told = now;
                 known.search_until = known.search_until.max(now + SEARCH);
                 if at_rest(telemetry.state, telemetry.cause) {
+                    let since = known.ended.map_or(now, |(since, _)| since);
+                    known.ended = Some((since, telemetry));
                     self.ask_status(known);
+                } else {
+                    known.ended = None;
                 }
             }
             Some(Event::Answered { ticket, reply }) if known.asked == Some(ticket) => {
                 known.asked = None;
                 known.told = now;
                 if let Reply::Status(status) = reply {
+                    known.status = Some(status);
                     if at_rest(status.state, status.cause) {
                         return Ok(Some(status));
                     }

@@ -4,13 +4,13 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use link_protocol::{
-    ANGLE_UNIT_RAD, Arm, Configuration, Counters, Flags, Joint, Key, Play, Reply, Request,
-    ServoSettings, Status, TableInfo,
+    ANGLE_UNIT_RAD, Arm, BenchStatus, Configuration, Counters, Flags, Joint, Key, Play, PulseRange,
+    Reply, Request, ServoSettings, Status, TableInfo,
 };
 
-use super::Robot;
+use super::{BEAT, Robot, StoppedBy};
 use crate::port::Port;
-use crate::session::LinkError;
+use crate::session::{Event, LinkError};
 
 /// Times that a robot is asked whether it has stored something, and the time between.
 const STORE_LOOKS: u32 = 25;
@@ -152,20 +152,88 @@ impl<P: Port> Robot<P> {
         self.order(Request::Resume, "resuming")
     }
 
-    /// Ramps to neutral and drops the pulses, from every state.
+    /// Ramps to neutral and drops the pulses, from every state. Says what ended the motion.
     ///
     /// # Errors
     /// The link's.
-    pub fn stop(&mut self) -> Result<(), LinkError> {
-        self.order(Request::Stop, "stopping")
+    pub fn stop(&mut self) -> Result<StoppedBy, LinkError> {
+        self.halt(Request::Stop, "stopping")
     }
 
-    /// Drops the pulses at once, latched until armed with `clear_estop`.
+    /// Drops the pulses at once, latched until cleared or armed with `clear_estop`. Says what ended the motion.
     ///
     /// # Errors
     /// The link's.
-    pub fn estop(&mut self) -> Result<(), LinkError> {
-        self.order(Request::EStop, "e-stopping")
+    pub fn estop(&mut self) -> Result<StoppedBy, LinkError> {
+        self.halt(Request::EStop, "e-stopping")
+    }
+
+    fn halt(&mut self, request: Request, doing: &'static str) -> Result<StoppedBy, LinkError> {
+        let wanted = self.session.request(self.port.now(), request);
+        // What the robot told before it obeyed tells nothing of what it does now.
+        self.latest = None;
+        loop {
+            match self.step(self.port.now() + BEAT, doing)? {
+                Some(Event::Answered { ticket, .. }) if ticket == wanted => {
+                    self.latest = None;
+                    return Ok(StoppedBy::Request);
+                }
+                Some(Event::StoppedByItself { ticket, cause }) if ticket == wanted => {
+                    return Ok(StoppedBy::Itself(cause));
+                }
+                Some(Event::Failed { ticket, error }) if ticket == wanted => return Err(error),
+                _ => {}
+            }
+        }
+    }
+
+    /// Clears a latched e-stop to Stopped, without arming.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] while pulses are on, and the link's.
+    pub fn clear_estop(&mut self) -> Result<(), LinkError> {
+        self.order(Request::ClearEStop, "clearing the e-stop")
+    }
+
+    /// Sends the robot into its chip's boot loader. The answer comes before it leaves; then the port is dead.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] unless it is stopped and somebody is at it, and the link's.
+    pub fn enter_boot_loader(&mut self) -> Result<(), LinkError> {
+        self.order(Request::EnterBootLoader, "asking for the boot loader")
+    }
+
+    /// Presence, short starts and the configuration as built.
+    ///
+    /// # Errors
+    /// The link's.
+    pub fn bench(&mut self) -> Result<BenchStatus, LinkError> {
+        let doing = "asking for presence and short starts";
+        match self.ask(Request::Bench, doing)? {
+            Reply::Bench(bench) => Ok(bench),
+            reply => Err(wrong(doing, &reply)),
+        }
+    }
+
+    /// The pulses that a servo's end stops allow.
+    ///
+    /// # Errors
+    /// The link's.
+    pub fn pulse_range(&mut self, joint: Joint) -> Result<PulseRange, LinkError> {
+        let doing = "asking for a servo's pulse range";
+        match self.ask(Request::PulseRange(joint), doing)? {
+            Reply::PulseRange(range) => Ok(range),
+            reply => Err(wrong(doing, &reply)),
+        }
+    }
+
+    /// Sets them; only while the robot is stopped. Angles beyond are refused with the gait that has them.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] for a range that leaves out neutral or the firmware's window, and the link's.
+    pub fn set_pulse_range(&mut self, joint: Joint, range: PulseRange) -> Result<(), LinkError> {
+        let request = Request::SetPulseRange { joint, range };
+        self.order(request, "setting a servo's pulse range")
     }
 
     /// Allows arming again after three resets in 60 s.

@@ -7,8 +7,11 @@ use std::time::Duration;
 
 use link_protocol::Pong;
 
-/// Pings that are remembered; one comes each second, so about four minutes.
+/// Pings that are remembered; one a second, so about four minutes.
 const REMEMBERED: usize = 256;
+/// The first ones are taken as they come, for a first fit.
+const QUICK_PINGS: usize = 8;
+const PING_EVERY: Duration = Duration::from_secs(1);
 
 /// A straight line from the host's clock to the robot's: `robot = robot_at_origin + rate · (host − origin)`, seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -52,14 +55,22 @@ struct Sample {
 #[derive(Debug, Default)]
 pub struct ClockSamples {
     samples: VecDeque<Sample>,
+    /// When the last one that was taken had been sent.
+    last_sent: Duration,
 }
 
 impl ClockSamples {
-    /// Takes a pong that arrived at `now` on the host's clock. Returns its time under way.
+    /// Takes a pong that arrived at `now` on the host's clock; after the first ones, the quickest of each second. Returns its time under way.
     pub fn push(&mut self, pong: &Pong, now: Duration) -> Option<Duration> {
         let sent = Duration::from_micros(pong.host_us);
-        let stay = Duration::from_micros(pong.sent_us.checked_sub(pong.received_us)?);
-        let trip = now.checked_sub(sent)?.checked_sub(stay)?;
+        let trip = Self::time_under_way(pong, now)?;
+        // Of each later second the quickest: keep-alives and telemetry beat, and one in step with the other waits for it.
+        let within = self.samples.len() > QUICK_PINGS && sent < self.last_sent + PING_EVERY;
+        match self.samples.back() {
+            Some(last) if within && trip.as_secs_f64() >= last.trip => return Some(trip),
+            Some(_) if within => drop(self.samples.pop_back()),
+            _ => self.last_sent = sent,
+        }
         if self.samples.len() == REMEMBERED {
             self.samples.pop_front();
         }
@@ -74,6 +85,14 @@ impl ClockSamples {
     /// Forgets everything: the robot has restarted, or the port's clock is another.
     pub fn clear(&mut self) {
         self.samples.clear();
+        self.last_sent = Duration::ZERO;
+    }
+
+    /// Time under way of a pong that arrived at `now` on the host's clock; `None` where its times are none.
+    fn time_under_way(pong: &Pong, now: Duration) -> Option<Duration> {
+        let sent = Duration::from_micros(pong.host_us);
+        let stay = Duration::from_micros(pong.sent_us.checked_sub(pong.received_us)?);
+        now.checked_sub(sent)?.checked_sub(stay)
     }
 
     /// The line through the quickest half of the pings; `None` before the first.

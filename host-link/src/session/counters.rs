@@ -19,8 +19,17 @@ pub struct LinkCounters {
     pub received: DecodeCounters,
     /// Frames sent again because no answer came in time.
     pub retransmissions: u64,
-    /// Keep-alives and pings sent.
+    /// Keep-alives sent.
     pub keep_alives: u64,
+    /// Frames that only hosts send: the line gives back what it is given.
+    #[serde(default)]
+    pub echoed: u64,
+    /// Answers without the signature that the key asks for, from a robot that has not shown yet that it has the key.
+    #[serde(default)]
+    pub unsigned: u64,
+    /// Answers that were not signed, or not with the key, or played back, from one that had; dropped.
+    #[serde(default)]
+    pub forged: u64,
     /// Frames of another session, dropped.
     pub foreign: u64,
     /// Replies to nothing that still waits, dropped.

@@ -3,25 +3,22 @@
 use std::time::Duration;
 
 use link_protocol::{
-    Chunk, Hello, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Ping, Request, SCHEMA_KEY,
+    Chunk, Flags, Heartbeat, Hello, Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Ping, Request,
+    SCHEMA_KEY, StateName,
 };
 use rand::RngExt;
 
 use super::error::LinkError;
 use super::upload::UploadPhase;
 use super::{
-    Event, Greeting, KEEP_ALIVE, LONGEST_SILENCE, Link, Owner, Pending, Session, TRIES, Ticket,
-    UploadProgress, describe,
+    Event, Greeting, LONGEST_SILENCE, Link, Owner, Pending, Session, TRIES, Ticket, UploadProgress,
+    describe,
 };
 
 /// Longest wait between two sendings of a stop.
 const STOP_WAIT: Duration = Duration::from_millis(200);
 /// Shortest time for which a stop is tried.
 const STOP_PATIENCE: Duration = Duration::from_secs(3);
-/// Pings that follow each other at the keep-alive's pace after a connect, for a first clock fit.
-const QUICK_PINGS: u32 = 8;
-/// Time between pings later.
-const PING_EVERY: Duration = Duration::from_secs(1);
 /// Times an upload may begin anew because the robot lost it.
 const RENEWALS: u32 = 8;
 /// Bytes on the wire of the longest chunk's frame.
@@ -41,7 +38,7 @@ impl Session {
     pub fn next_deadline(&self) -> Option<Duration> {
         let (greeting, lease, open) = match &self.link {
             Link::Greeting(greeting) => (Some(greeting.next_try), None, false),
-            Link::Open(_) => (None, Some(self.last_sent + KEEP_ALIVE), true),
+            Link::Open(_) => (None, Some(self.beat_due()), true),
             Link::Closed => (None, None, false),
         };
         let request = match &self.pending {
@@ -97,6 +94,7 @@ impl Session {
             first_sent: now,
             last_sent: now,
             next_try: now,
+            unsigned: false,
         });
         self.drive_pending(now);
         sequence
@@ -139,7 +137,7 @@ impl Session {
             schema_key: SCHEMA_KEY,
             host_nonce: nonce,
         });
-        self.send(sequence, &hello, now);
+        self.send(sequence, &hello);
     }
 
     /// There is no session: whatever waits ends here, but for a stop, which needs none.
@@ -172,31 +170,36 @@ impl Session {
             Owner::Ticket(_) => pending.tries >= TRIES && (!stop || waited >= STOP_PATIENCE),
         };
         if given_up {
-            let tries = pending.tries;
+            let (tries, unsigned) = (pending.tries, pending.unsigned);
             let doing = describe(&pending.request);
             let owner = pending.owner;
             self.pending = None;
             let counters = Box::new(self.counters());
             if let Owner::Ticket(ticket) = owner {
-                self.fail(
-                    ticket,
+                let error = if unsigned {
+                    LinkError::NotSigned { doing }
+                } else {
                     LinkError::NoAnswer {
                         doing,
                         tries,
                         waited,
                         counters,
-                    },
-                );
+                    }
+                };
+                self.fail(ticket, error);
             }
             return;
         }
         pending.tries += 1;
         pending.last_sent = now;
+        if pending.request.is_powering() {
+            self.told = None;
+        }
         let wait = self.trip.wait(pending.tries);
         pending.next_try = now + if stop { wait.min(STOP_WAIT) } else { wait };
         self.counters.retransmissions += u64::from(pending.tries > 1);
         let (sequence, message) = (pending.sequence, Message::Request(pending.request.clone()));
-        self.send(sequence, &message, now);
+        self.send(sequence, &message);
     }
 
     /// Begin or Commit of an upload first, then what waits longest.
@@ -286,7 +289,7 @@ impl Session {
                 data,
             }));
             let sequence = self.next_sequence();
-            let cost = self.send(sequence, &chunk, now);
+            let cost = self.send(sequence, &chunk);
             self.line_free = self.line_free.max(now)
                 + Duration::from_secs_f64(cost as f64 / self.config.bytes_per_second.max(1.0));
             if let Some(upload) = &mut self.upload {
@@ -295,7 +298,8 @@ impl Session {
         }
     }
 
-    /// Another chunk fits what the robot's buffer may hold.
+    /// Another chunk fits what the robot's buffer may hold. While pulses are on, or may be, there is one at a time: whatever
+    /// the line's pace is, a stop waits behind no other.
     fn window_has_room(&self) -> bool {
         let (Link::Open(hello), Some(upload)) = (&self.link, &self.upload) else {
             return false;
@@ -303,24 +307,47 @@ impl Session {
         let room = usize::from(hello.limits.upload_window.min(hello.buffer));
         let in_flight = upload.window.in_flight();
         // One piece at a time always fits, or a robot that advertises nothing could never be fed.
-        in_flight == 0 || in_flight + CHUNK_COST <= room
+        in_flight == 0 || (self.pulses_off() && in_flight + CHUNK_COST <= room)
+    }
+
+    /// The robot said so last.
+    fn pulses_off(&self) -> bool {
+        self.told
+            .is_some_and(|told| matches!(told.state, StateName::Stopped | StateName::EStopped))
+    }
+
+    /// When the next keep-alive may go out.
+    fn beat_due(&self) -> Duration {
+        let uploading = self
+            .upload
+            .as_ref()
+            .is_some_and(|upload| upload.phase == UploadPhase::Chunks);
+        self.beats.due(&self.trip, self.unwatched(), uploading)
+    }
+
+    /// The robot goes on without a link: nothing watches the lease.
+    fn unwatched(&self) -> bool {
+        self.told
+            .is_some_and(|told| told.flags.contains(Flags::DETACHED))
     }
 
     fn feed_lease(&mut self, now: Duration) {
-        if !matches!(self.link, Link::Open(_)) || now < self.last_sent + KEEP_ALIVE {
+        if !matches!(self.link, Link::Open(_)) || now < self.beat_due() {
             return;
         }
         self.counters.keep_alives += 1;
-        // No request, so no number of its own: an hour of them would make the next request look old.
-        let sequence = self.sequence;
-        if now >= self.next_ping || self.pings < QUICK_PINGS {
-            self.pings += 1;
-            self.next_ping = now + PING_EVERY;
-            let host_us = u64::try_from(now.as_micros()).unwrap_or(u64::MAX);
-            self.send(sequence, &Message::Ping(Ping { host_us }), now);
+        let host_us = u64::try_from(now.as_micros()).unwrap_or(u64::MAX);
+        self.beats.sent(&self.trip, self.unwatched(), now, host_us);
+        let beat = if self.version >= 2 {
+            Message::Heartbeat(Heartbeat {
+                host_us,
+                heard_us: self.beats.heard_us(),
+            })
         } else {
-            self.send(sequence, &Message::KeepAlive, now);
-        }
+            Message::Ping(Ping { host_us })
+        };
+        // No request, so no number of its own: an hour of them would make the next request look old.
+        self.send(self.sequence, &beat);
     }
 
     /// The robot has lost the upload: begin anew, from where it says, but not for ever.

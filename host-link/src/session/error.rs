@@ -118,7 +118,7 @@ pub enum LinkError {
     },
     /// The robot no longer knows this session.
     #[error(
-        "while {doing}: the robot has opened another session ({open}): it restarted, or another program took it over; look at its status and connect again"
+        "while {doing}: the robot has opened another session ({open}): it restarted (do the servos pull its supply down?), or another program took it over; look at its status and connect again"
     )]
     SessionLost {
         /// What was being done.
@@ -137,6 +137,14 @@ pub enum LinkError {
     /// Nobody has connected, or the connection failed.
     #[error("while {doing}: no session with the robot; connect first")]
     NotConnected {
+        /// What was being done.
+        doing: &'static str,
+    },
+    /// The robot's answers do not carry the tag of the key that it had before.
+    #[error(
+        "while {doing}: answers came, but not signed with the key: the robot restarted meanwhile (then it is at rest), or something else answers in its place; look at the robot, then connect again"
+    )]
+    NotSigned {
         /// What was being done.
         doing: &'static str,
     },
@@ -166,7 +174,8 @@ pub enum LinkError {
     },
     /// The robot stopped before the end of the play.
     #[error(
-        "the robot stopped after {cycle} of {cycles} cycles: {}{}",
+        "the robot stopped after {}: {}{}",
+        cycles_in_words(*cycle, *cycles),
         cause_in_words(*cause),
         if flags.contains(Flags::BATTERY_LOW) { " (battery low)" } else { "" }
     )]
@@ -201,22 +210,39 @@ pub enum LinkError {
 fn no_answer_advice(counters: &LinkCounters) -> &'static str {
     let received = &counters.received;
     let unknown = received.not_understood > 0 || received.trailing_bytes > 0;
+    if counters.echoed > 0 && u64::from(received.ok) == counters.echoed {
+        return "; what is sent comes back unchanged, and nothing else: the line echoes (its two wires joined, a module that waits for AT commands, or a terminal's echo), so there is no robot at its other end";
+    }
     match (counters.bytes_received, received.ok) {
-        (0, _) => "; is the robot on and paired, and is this its port?",
+        (0, _) => {
+            "; is the robot on and paired, and is this its port? Without its Bluetooth module's STATE wire it hears and never answers"
+        }
         (_, 0) if unknown => {
             "; whole frames come, but none that this program knows: the robot's firmware is newer, update this program"
         }
         (_, 0) => {
-            "; bytes come but none make sense: is this the robot's port, and is its Bluetooth module set to 115200 baud (AT+UART=115200,0,0)?"
+            "; bytes come but none make sense: is this the robot's port, is its Bluetooth module set to 115200 baud (AT+UART=115200,0,0; a robot built for another speed wants --baud), and are all grounds joined?"
         }
-        _ => "; the link is bad: bring the robot nearer and try again",
+        _ => {
+            "; the link is bad: bring the robot nearer, over a cable look at its ground wire, and try again"
+        }
+    }
+}
+
+/// How far a play came.
+pub fn cycles_in_words(cycle: u32, cycles: u32) -> String {
+    match cycles {
+        0 => format!("{cycle} cycles of a play without end"),
+        cycles => format!("{cycle} of {cycles} cycles"),
     }
 }
 
 /// A cause of stopping as a clause.
 pub fn cause_in_words(cause: StopCause) -> &'static str {
     match cause {
-        StopCause::Boot => "it restarted",
+        StopCause::Boot => {
+            "it restarted (where the servos pull its supply down, they need their own)"
+        }
         StopCause::Finished => "the play ended",
         StopCause::Requested => "a stop was requested",
         StopCause::PauseExpired => "the pause reached its limit",

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use link_protocol::{Reply, TableInfo, Telemetry};
+use link_protocol::{Reply, StopCause, TableInfo, Telemetry};
 
 use super::error::LinkError;
 use super::upload::UploadProgress;
@@ -27,6 +27,14 @@ pub enum Event {
         ticket: Ticket,
         /// Its answer; never a refusal.
         reply: Reply,
+    },
+    /// A stop was not answered yet, but the robot says that it has stopped by itself: the stop waits on the line behind other
+    /// bytes, and the lease was quicker.
+    StoppedByItself {
+        /// The ticket of [`super::Session::request`].
+        ticket: Ticket,
+        /// Why it stopped.
+        cause: StopCause,
     },
     /// An upload is the active table, or will be at the next cycle boundary.
     Uploaded {

@@ -7,6 +7,7 @@ use link_protocol::{
     SCHEMA_KEY, Seal,
 };
 
+use super::beats::Beats;
 use super::error::LinkError;
 use super::{Event, Link, Owner, Session, describe};
 
@@ -47,10 +48,11 @@ impl Session {
             self.disown_pending(reply.session);
         }
         self.number = reply.session;
+        self.version = reply.protocol_current.min(PROTOCOL_CURRENT);
         self.seal = self.config.key.map(|key| Seal::new(&key, binding));
-        self.signed = 0;
-        self.last_robot_us = None;
-        self.pings = 0;
+        (self.signed, self.proven) = (0, 0);
+        (self.last_robot_us, self.told) = (None, None);
+        self.beats = Beats::default();
         self.counters.sessions += 1;
         self.link = Link::Open(reply);
         if let Some(ticket) = ticket {

@@ -2,7 +2,10 @@
 
 use std::time::Duration;
 
-use link_protocol::{Header, HelloReplyStart, Kind, Message, Received, Refusal, Reply, Request};
+use link_protocol::{
+    Header, HelloReplyStart, Kind, Message, Received, Refusal, Reply, Request, StateName,
+    StopCause, Telemetry,
+};
 
 use super::error::LinkError;
 use super::upload::UploadPhase;
@@ -12,6 +15,10 @@ use super::{Event, Link, Owner, Pending, Session, describe};
 const BUSY_WAIT: Duration = Duration::from_millis(100);
 /// Times in a row that a robot may be busy: checking a table takes some seconds.
 const BUSY_TRIES: u32 = 50;
+/// For so long a robot may say that it has heard nothing fresh yet.
+const FRESH_PATIENCE: Duration = Duration::from_secs(3);
+/// A stop that is unanswered for so long waits behind something: the lease may have been quicker.
+const STOP_QUEUES: Duration = Duration::from_millis(500);
 
 impl Session {
     /// Takes bytes that arrived at `now`, in any split, and then does what is due.
@@ -27,7 +34,8 @@ impl Session {
 
     fn take(&mut self, received: Received, now: Duration) {
         let header = received.header;
-        let ours = matches!(self.link, Link::Open(_)) && header.session == self.number;
+        let named = matches!(self.link, Link::Open(_)) && header.session == self.number;
+        let ours = named && self.authentic(&received);
         let Ok(message) = received.message else {
             return self.take_unknown(header, ours, now);
         };
@@ -39,7 +47,11 @@ impl Session {
                 });
                 let counts = if stop {
                     // Whatever the session, but nothing else: a reply held back must not end the repeats of a lost stop.
-                    reply == Reply::Done
+                    let forged = named && !ours;
+                    if let Some(pending) = self.pending.as_mut().filter(|_| forged) {
+                        pending.unsigned = true;
+                    }
+                    reply == Reply::Done && !forged
                 } else {
                     // A request of a session that is no more is answered, too.
                     ours || matches!(reply, Reply::Refused(Refusal::StaleSession { .. }))
@@ -53,9 +65,21 @@ impl Session {
                     self.counters.foreign += 1;
                 }
             }
+            // Only hosts send these: an echo.
+            Message::Hello(_)
+            | Message::Request(_)
+            | Message::KeepAlive
+            | Message::Ping(_)
+            | Message::Heartbeat(_) => self.counters.echoed += 1,
+            // Without a session of our own any robot on the line is the one that is to stop.
+            Message::Telemetry(telemetry) if !ours && matches!(self.link, Link::Closed) => {
+                self.counters.foreign += 1;
+                self.stopped_by_itself(&telemetry, now);
+            }
             _ if !ours => self.counters.foreign += 1,
             Message::Telemetry(telemetry) => {
                 self.last_heard = now;
+                self.beats.heard(telemetry.robot_us);
                 if self
                     .last_robot_us
                     .is_some_and(|last| telemetry.robot_us <= last)
@@ -65,19 +89,83 @@ impl Session {
                 }
                 self.last_robot_us = Some(telemetry.robot_us);
                 self.counters.telemetry += 1;
+                self.told = Some(telemetry);
+                self.stopped_by_itself(&telemetry, now);
                 self.events
                     .push_back(Event::Telemetry { telemetry, at: now });
             }
             Message::Pong(pong) => {
                 self.last_heard = now;
+                self.beats.heard(pong.sent_us);
+                self.beats.answered(pong.host_us);
                 if let Some(trip) = self.clock.push(&pong, now) {
                     self.trip.sample(trip);
                 }
             }
-            // Only hosts send these: an echo.
-            Message::Hello(_) | Message::Request(_) | Message::KeepAlive | Message::Ping(_) => {
-                self.counters.foreign += 1;
+        }
+    }
+
+    /// Whether a frame of the open session is from who has the key. A robot that has not shown yet that it has it may have none;
+    /// one that has signs all but the reasons for which it turns a frame away.
+    fn authentic(&mut self, received: &Received) -> bool {
+        let Some(seal) = self.seal.as_ref().filter(|_| self.version >= 2) else {
+            return true;
+        };
+        let turned_away = matches!(
+            received.message,
+            Ok(Message::HelloReply(_)
+                | Message::Reply(Reply::Refused(
+                    Refusal::StaleSession { .. }
+                        | Refusal::KeyNeeded
+                        | Refusal::WrongKey
+                        | Refusal::Version { .. }
+                )))
+        );
+        match &received.signature {
+            Some(signature)
+                if signature.counter > self.proven
+                    && seal.verifies(self.decoder.signed_bytes(), signature) =>
+            {
+                self.proven = signature.counter;
+                true
             }
+            None if turned_away => true,
+            None if self.proven == 0 => {
+                self.counters.unsigned += 1;
+                true
+            }
+            _ => {
+                self.counters.forged += 1;
+                false
+            }
+        }
+    }
+
+    /// A stop that is unanswered for longer than a way takes, while the robot says that it stops or has stopped.
+    fn stopped_by_itself(&mut self, telemetry: &Telemetry, now: Duration) {
+        let at_rest = |request: &Request| match telemetry.state {
+            StateName::EStopped => true,
+            StateName::Stopped | StateName::Stopping | StateName::Settling => {
+                *request == Request::Stop
+            }
+            _ => false,
+        };
+        let meant = |pending: &mut Pending| {
+            pending.request.is_stop()
+                && at_rest(&pending.request)
+                && now >= pending.first_sent + STOP_QUEUES
+        };
+        if let Some(pending) = self.pending.take_if(meant)
+            && let Owner::Ticket(ticket) = pending.owner
+        {
+            self.events.push_back(match telemetry.cause {
+                // The stop itself: only its answer was lost.
+                StopCause::Requested | StopCause::EStop => Event::Answered {
+                    ticket,
+                    reply: Reply::Done,
+                },
+                cause => Event::StoppedByItself { ticket, cause },
+            });
         }
     }
 
@@ -141,6 +229,17 @@ impl Session {
                 }
                 (Reply::Refused(Refusal::StaleSession { open }), owner) => {
                     self.session_lost(owner, &pending.request, open, now);
+                }
+                // The first keep-alives of a session are still on their way: this did not act, and is asked again under a new
+                // number. It was heard, so this try does not count, but those that were lost do.
+                (Reply::Refused(Refusal::NotFresh), _) if since_first < FRESH_PATIENCE => {
+                    let sequence = self.next_sequence();
+                    self.pending = Some(Pending {
+                        sequence,
+                        tries: pending.tries.saturating_sub(1),
+                        next_try: now + BUSY_WAIT,
+                        ..pending
+                    });
                 }
                 (Reply::Refused(Refusal::Busy), owner) if self.busy < BUSY_TRIES => {
                     self.ask_later(owner, pending.request, now);

@@ -13,6 +13,7 @@ const FIRST: Duration = Duration::from_millis(200);
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct RoundTrip {
     smoothed: Option<Duration>,
+    shortest: Option<Duration>,
     /// The least time from a first sending to an answer that could belong to a repeat.
     at_most: Option<Duration>,
 }
@@ -20,6 +21,10 @@ pub(crate) struct RoundTrip {
 impl RoundTrip {
     /// Takes the round trip of a frame that was sent once only: a repeat's answer could belong to either sending.
     pub(crate) fn sample(&mut self, round_trip: Duration) {
+        self.shortest = Some(
+            self.shortest
+                .map_or(round_trip, |least| least.min(round_trip)),
+        );
         self.smoothed = Some(match self.smoothed {
             Some(smoothed) => (smoothed * 7 + round_trip) / 8,
             None => round_trip,
@@ -29,6 +34,11 @@ impl RoundTrip {
     /// The smoothed round trip, once there is one.
     pub(crate) fn smoothed(&self) -> Option<Duration> {
         self.smoothed
+    }
+
+    /// The shortest one so far: how long the way is when nothing waits on it.
+    pub(crate) fn shortest(&self) -> Option<Duration> {
+        self.shortest
     }
 
     /// Takes the time from the first sending of a frame that was sent more than once: the round trip is no longer. On a slow

@@ -44,6 +44,8 @@ pub(super) struct Pending {
     pub(super) first_sent: Duration,
     pub(super) last_sent: Duration,
     pub(super) next_try: Duration,
+    /// It was answered, but not with the signature that the key asks for.
+    pub(super) unsigned: bool,
 }
 
 #[derive(Debug)]
@@ -84,5 +86,10 @@ pub(super) fn describe(request: &Request) -> &'static str {
         Request::CrashMessage => "asking for the crash message",
         Request::Table => "asking for the table",
         Request::SetKey(_) => "setting the key",
+        Request::Bench => "asking for presence and short starts",
+        Request::PulseRange(_) => "asking for a servo's pulse range",
+        Request::SetPulseRange { .. } => "setting a servo's pulse range",
+        Request::ClearEStop => "clearing the e-stop",
+        Request::EnterBootLoader => "asking for the boot loader",
     }
 }

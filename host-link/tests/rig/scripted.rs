@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use host_link::session::{Event, Session, SessionConfig, Ticket};
 use link_protocol::{
-    Board, Decoder, FirmwareVersion, Header, Hello, HelloReply, Kind, MAX_BODY, MAX_ENCODED,
-    Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Reply, Request, ResetReason, RobotLimits, SCHEMA_KEY,
-    encode_body,
+    Board, Decoder, FirmwareVersion, Flags, Header, Hello, HelloReply, Kind, MAX_BODY, MAX_ENCODED,
+    Message, PROTOCOL_CURRENT, PROTOCOL_MIN, Pose, Reply, Request, ResetReason, RobotLimits,
+    SCHEMA_KEY, StateName, StopCause, Telemetry, encode_body,
 };
 
 pub(crate) const MS: Duration = Duration::from_millis(1);
@@ -20,6 +20,7 @@ pub(crate) struct Script {
     pub(crate) session: Session,
     pub(crate) now: Duration,
     decoder: Decoder,
+    robot_us: u64,
     pub(crate) sent: Vec<Sent>,
     pub(crate) events: Vec<Event>,
 }
@@ -30,6 +31,7 @@ impl Script {
             session: Session::new(SessionConfig::new(1)),
             now: Duration::ZERO,
             decoder: Decoder::new(),
+            robot_us: 0,
             sent: Vec::new(),
             events: Vec::new(),
         }
@@ -92,6 +94,27 @@ impl Script {
         let len = encode_body(header, kind as u8, body, None, &mut frame).unwrap();
         self.session.receive(self.now, &frame[..len]);
         self.collect();
+    }
+
+    /// The robot says what it is doing.
+    pub(crate) fn tell(&mut self, state: StateName, cause: StopCause) {
+        self.robot_us += 40_000;
+        let telemetry = Telemetry {
+            robot_us: self.robot_us,
+            state,
+            cause,
+            flags: Flags::default(),
+            cycle: 0,
+            cycles: 0,
+            phase: 0,
+            setpoint: [0; 2],
+            pulse_ns: [0; 2],
+            battery_mv: None,
+            pose: Pose::default(),
+            frames_ok: 0,
+            frames_bad: 0,
+        };
+        self.say(SESSION, 0, &Message::Telemetry(telemetry));
     }
 
     /// Answers the request sent last.

@@ -2,28 +2,34 @@
 #![allow(dead_code)] // each test uses its part
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use gait_player::storage::{MAX_SETTINGS, PAGE, SLOT_PAGES, SLOTS, Storage};
-use gait_player::{Boot, Brain, BrainConfig, GaitTable, Identity, Inputs, Limits, Output, TICK_US};
+use gait_player::storage::MemoryStorage;
+use gait_player::{
+    Boot, Brain, BrainConfig, GaitTable, Identity, Inputs, Limits, Output, TICK_US, Transport,
+};
 use host_link::port::{Device, FaultPlan, Faults, FaultyPort, VirtualPort, WireSpeed};
 use host_link::{LinkError, Robot as HostRobot};
 use link_protocol::{
-    Board, Configuration, FirmwareVersion, MAX_ENCODED, Message, Reply, Request, ResetReason,
-    ServoSettings, StateName, TableInfo, TangentialDrag,
+    Board, Configuration, FirmwareVersion, MAX_ENCODED, Message, Reply, Request, ServoSettings,
+    StateName, TableInfo, TangentialDrag,
 };
 
 /// A brain and its clock.
 pub(crate) struct Robot {
     brain: Brain,
-    flash: Flash,
+    flash: MemoryStorage,
     now_us: u64,
     next_tick_us: u64,
     pub(crate) output: Option<Output>,
     /// When pulses were last on.
     pub(crate) powered: Duration,
+    /// When the robot last began to stop.
+    pub(crate) ramp: Duration,
+    /// When a keep-alive last came that was fresh, and the robot's time that it told.
+    pub(crate) fresh: Duration,
+    heard: Duration,
     /// When the first piece of an upload first came, and the last one last.
     pub(crate) pieces: (Duration, Duration),
     /// Times each request acted, by session and number; stops, which act always, are left out.
@@ -36,11 +42,6 @@ pub(crate) struct Robot {
     said: link_protocol::Decoder,
 }
 
-struct Flash {
-    slots: [[u8; PAGE * SLOT_PAGES]; SLOTS],
-    settings: Option<Vec<u8>>,
-}
-
 impl Robot {
     pub(crate) fn new(nonce: u32) -> Self {
         let servo = ServoSettings {
@@ -49,10 +50,7 @@ impl Robot {
             reversed: false,
             trim: 0,
         };
-        let mut flash = Flash {
-            slots: [[0xFF; PAGE * SLOT_PAGES]; SLOTS],
-            settings: None,
-        };
+        let mut flash = MemoryStorage::erased();
         let mut brain = Brain::new(BrainConfig {
             identity: Identity {
                 firmware: FirmwareVersion {
@@ -67,13 +65,7 @@ impl Robot {
             configuration: configuration(2.8),
             servos: [servo; 2],
             buffer: 2048,
-            boot: Boot {
-                reset_reason: ResetReason::PowerOn,
-                nonce,
-                session_seed: 100,
-                kept: 0,
-                crash_message: heapless::String::new(),
-            },
+            boot: Boot::power_on(nonce, 100),
         });
         let Ok(()) = brain.load(&mut flash);
         Self {
@@ -83,6 +75,9 @@ impl Robot {
             next_tick_us: 0,
             output: None,
             powered: Duration::ZERO,
+            ramp: Duration::ZERO,
+            fresh: Duration::ZERO,
+            heard: Duration::ZERO,
             pieces: (Duration::ZERO, Duration::ZERO),
             acts: BTreeMap::new(),
             committed: Vec::new(),
@@ -94,6 +89,15 @@ impl Robot {
 
     /// Looks at a whole frame before the brain's answer to it.
     fn witness(&mut self, received: &link_protocol::Received, acted: bool) {
+        if let Ok(Message::Heartbeat(heartbeat)) = &received.message {
+            let (now, heard) = (
+                Duration::from_micros(self.now_us),
+                Duration::from_micros(heartbeat.heard_us),
+            );
+            if heard > self.heard && heard <= now && now <= heard + Duration::from_secs(1) {
+                (self.fresh, self.heard) = (now, heard);
+            }
+        }
         let Ok(Message::Request(request)) = &received.message else {
             return;
         };
@@ -168,10 +172,16 @@ impl Device for Robot {
         while self.next_tick_us <= to_us {
             self.now_us = self.next_tick_us;
             let inputs = Inputs {
-                battery_mv: None,
                 link_up: true,
+                // The bench window is open for the first two minutes.
+                present: true,
+                ..Inputs::default()
             };
             let output = self.brain.tick(self.now_us, &inputs);
+            let before = self.output.map(|output| output.state);
+            if output.state == StateName::Stopping && before != Some(StateName::Stopping) {
+                self.ramp = Duration::from_micros(self.now_us);
+            }
             if output.state == StateName::Playing {
                 let [front, back] = output.setpoint.map(f64::from);
                 #[allow(clippy::cast_possible_truncation)] // a few radians
@@ -193,7 +203,7 @@ impl Device for Robot {
     fn receive(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             let before = self.brain.counters().acted;
-            self.brain.receive(self.now_us, &[byte]);
+            self.brain.receive(self.now_us, Transport::Uart, &[byte]);
             if let Some(received) = self.decoder.push(byte) {
                 let acted = self.brain.counters().acted != before;
                 self.witness(&received, acted);
@@ -204,7 +214,7 @@ impl Device for Robot {
     fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
         let mut bytes = [0; MAX_ENCODED];
         let room = room.min(bytes.len());
-        let count = self.brain.transmit(&mut bytes[..room]);
+        let count = self.brain.transmit(Transport::Uart, &mut bytes[..room]);
         out.extend_from_slice(&bytes[..count]);
         for &byte in &bytes[..count] {
             if let Some(received) = self.said.push(byte)
@@ -214,39 +224,5 @@ impl Device for Robot {
                 self.committed.push(table.crc32);
             }
         }
-    }
-}
-
-impl Storage for Flash {
-    type Error = Infallible;
-
-    fn read(&mut self, slot: usize, offset: usize, bytes: &mut [u8]) -> Result<(), Infallible> {
-        bytes.copy_from_slice(&self.slots[slot][offset..offset + bytes.len()]);
-        Ok(())
-    }
-
-    fn erase(&mut self, slot: usize) -> Result<(), Infallible> {
-        self.slots[slot].fill(0xFF);
-        Ok(())
-    }
-
-    fn program(&mut self, slot: usize, page: usize, bytes: &[u8; PAGE]) -> Result<(), Infallible> {
-        self.slots[slot][page * PAGE..][..PAGE].copy_from_slice(bytes);
-        Ok(())
-    }
-
-    fn load_settings(
-        &mut self,
-        bytes: &mut [u8; MAX_SETTINGS],
-    ) -> Result<Option<usize>, Infallible> {
-        Ok(self.settings.as_ref().map(|settings| {
-            bytes[..settings.len()].copy_from_slice(settings);
-            settings.len()
-        }))
-    }
-
-    fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Infallible> {
-        self.settings = Some(bytes.to_vec());
-        Ok(())
     }
 }

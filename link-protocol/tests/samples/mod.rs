@@ -1,4 +1,4 @@
-//! One or more of every message of version 1: for goldens and corruption alike. Only ever appended to.
+//! One or more of every message: for goldens and corruption alike. Only ever appended to.
 use heapless::{String, Vec};
 use link_protocol::*;
 
@@ -326,9 +326,66 @@ fn replies() -> std::vec::Vec<(&'static str, Reply)> {
 
 /// Every message with a name.
 pub(crate) fn messages() -> std::vec::Vec<(&'static str, Message)> {
+    let mut all = version_1();
+    all.extend(version_2());
+    all
+}
+
+/// Those of version 1.
+pub(crate) fn version_1() -> std::vec::Vec<(&'static str, Message)> {
     let mut all = frozen();
     all.extend(appended());
     all
+}
+
+/// What came with version 2.
+fn version_2() -> std::vec::Vec<(&'static str, Message)> {
+    let refused = |refusal| Message::Reply(Reply::Refused(refusal));
+    let range = PulseRange {
+        shortest_ns: 1_392_000,
+        longest_ns: 1_608_000,
+    };
+    vec![
+        (
+            "heartbeat",
+            Message::Heartbeat(Heartbeat {
+                host_us: 1_234_567_890_123,
+                heard_us: 42_000,
+            }),
+        ),
+        ("request/bench", Message::Request(Request::Bench)),
+        (
+            "request/pulse range",
+            Message::Request(Request::PulseRange(Joint::Front)),
+        ),
+        (
+            "request/set pulse range",
+            Message::Request(Request::SetPulseRange {
+                joint: Joint::Back,
+                range,
+            }),
+        ),
+        ("request/clear estop", Message::Request(Request::ClearEStop)),
+        (
+            "request/enter boot loader",
+            Message::Request(Request::EnterBootLoader),
+        ),
+        (
+            "reply/bench",
+            Message::Reply(Reply::Bench(BenchStatus {
+                window_s: 119,
+                usb: true,
+                short_starts: 2,
+                built: CONFIGURATION,
+            })),
+        ),
+        (
+            "reply/pulse range",
+            Message::Reply(Reply::PulseRange(range)),
+        ),
+        ("refused/needs presence", refused(Refusal::NeedsPresence)),
+        ("refused/not fresh", refused(Refusal::NotFresh)),
+    ]
 }
 
 /// What was appended to version 1 since it was frozen.
@@ -388,11 +445,11 @@ pub(crate) fn frozen() -> std::vec::Vec<(&'static str, Message)> {
 }
 
 /// The frame of a message, as the goldens hold it: session 0xBEEF, sequence 300, without the burst start.
-pub(crate) fn frame(message: &Message) -> std::vec::Vec<u8> {
+pub(crate) fn frame(version: u8, message: &Message) -> std::vec::Vec<u8> {
     let mut out = [0; MAX_ENCODED];
     let len = encode(
         Header {
-            version: 1,
+            version,
             session: 0xBEEF,
             sequence: 300,
         },

@@ -148,6 +148,7 @@ fn message_json(message: &Message) -> Value {
         Message::KeepAlive => Ok(Value::Null),
         Message::Ping(body) => serde_json::to_value(body),
         Message::Pong(body) => serde_json::to_value(body),
+        Message::Heartbeat(body) => serde_json::to_value(body),
     };
     // A body that JSON cannot hold is still in the raw bytes.
     json.unwrap_or(Value::Null)

@@ -16,9 +16,7 @@ fn set_pack(robot: &mut Robot<Port>, volts: f64) {
 
 #[test]
 fn a_low_battery_stops_the_robot_and_five_good_seconds_let_it_go_on() {
-    let Some(mut robot) = rig::robot_of(Image::NanoDivider) else {
-        return;
-    };
+    let mut robot = rig::robot_of(Image::NanoDivider);
     let full = robot.status().unwrap();
     let measured = full.battery_mv.unwrap();
     assert!(measured.abs_diff(5000) <= 5, "{measured} mV for 5 V");
@@ -82,9 +80,7 @@ fn a_low_battery_stops_the_robot_and_five_good_seconds_let_it_go_on() {
 /// A sag shorter than a tick is seen by one of its twenty samples.
 #[test]
 fn a_sag_of_three_milliseconds_is_measured() {
-    let Some(mut robot) = rig::robot_of(Image::NanoDivider) else {
-        return;
-    };
+    let mut robot = rig::robot_of(Image::NanoDivider);
     robot.arm(false).unwrap();
     // Telemetry tells of every second tick: of two sags 20 ms apart it tells one.
     let (lows, lowest) = std::sync::mpsc::channel();
@@ -107,9 +103,7 @@ fn a_sag_of_three_milliseconds_is_measured() {
 /// Without a divider the pin says nothing: not measured, never low.
 #[test]
 fn without_a_divider_the_battery_is_not_measured() {
-    let Some(mut robot) = rig::robot() else {
-        return;
-    };
+    let mut robot = rig::robot();
     set_pack(&mut robot, 0.0);
     rig::live(&mut robot, MS * 1500);
     let status = robot.status().unwrap();

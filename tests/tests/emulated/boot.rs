@@ -14,7 +14,7 @@ fn a_board_answers_hello_soon_after_power() {
         (Image::Nano, "Nano", Board::NanoRp2040Connect),
         (Image::Pico, "Pico", Board::Pico),
     ] {
-        let Some(port) = rig::port(image) else { return };
+        let port = rig::port(image);
         let mut robot = host_link::Robot::connect(port, 1).unwrap();
         let took = host_link::Port::now(robot.port());
         assert!(took < Duration::from_millis(200), "{name}: {took:?}");
@@ -32,9 +32,7 @@ fn a_board_answers_hello_soon_after_power() {
 /// The Pico's pins and clock: what differs between the boards is only wiring.
 #[test]
 fn the_pico_pulses_and_keeps_silent_like_the_nano() {
-    let Some(mut robot) = rig::robot_of(Image::Pico) else {
-        return;
-    };
+    let mut robot = rig::robot_of(Image::Pico);
     robot.arm(false).unwrap();
     rig::live(&mut robot, Duration::from_millis(200));
     let events = rig::events(&mut robot);

@@ -15,12 +15,12 @@ const CODE: std::ops::Range<u32> = 0x1000_0100..0x1002_0000;
 const UNDEFINED: u16 = 0xde00;
 
 /// An armed robot, and the address of code that runs whenever anything does: what polls the tasks.
-fn armed() -> Option<(Robot<Port>, u32)> {
-    let mut robot = rig::robot()?;
+fn armed() -> (Robot<Port>, u32) {
+    let mut robot = rig::robot();
     robot.arm(false).unwrap();
     rig::pass(&mut robot, Duration::from_millis(100));
     let poll = symbol(board(&mut robot), "raw8Executor4poll");
-    Some((robot, poll))
+    (robot, poll)
 }
 
 fn board(robot: &mut Robot<Port>) -> &mut Board {
@@ -50,9 +50,7 @@ fn told_after(robot: &mut Robot<Port>) -> (u128, String) {
 
 #[test]
 fn a_panic_tells_its_place_and_words() {
-    let Some((mut robot, poll)) = armed() else {
-        return;
-    };
+    let (mut robot, poll) = armed();
     let board_now = board(&mut robot);
     let target = symbol(board_now, "panic_bounds_check");
     let code = code(board_now);
@@ -93,9 +91,7 @@ fn a_panic_tells_its_place_and_words() {
 
 #[test]
 fn a_hard_fault_tells_its_address() {
-    let Some((mut robot, poll)) = armed() else {
-        return;
-    };
+    let (mut robot, poll) = armed();
     board(&mut robot).patch(poll, UNDEFINED).unwrap();
     let (ms, message) = told_after(&mut robot);
     println!("a hard fault: {message}");
@@ -116,9 +112,7 @@ fn a_hard_fault_tells_its_address() {
 /// R6, for the pin that the chip's own registers do not outlive: pressing reset clears no e-stop, power does.
 #[test]
 fn an_estop_outlives_the_reset_pin() {
-    let Some((mut robot, _)) = armed() else {
-        return;
-    };
+    let (mut robot, _) = armed();
     robot.estop().unwrap();
     rig::pass(&mut robot, Duration::from_millis(100));
     for _ in 0..2 {

@@ -4,8 +4,8 @@
 use gait_player::GaitTable;
 use link_protocol::Header;
 use link_protocol::{
-    Arm, Begin, Chunk, Hello, Joint, Kind, MAX_ENCODED, Message, Ping, Play, Request, SCHEMA_KEY,
-    ServoSettings, crc32c, encode, encode_body,
+    Arm, Begin, Chunk, Heartbeat, Hello, Joint, Kind, MAX_ENCODED, Message, PROTOCOL_CURRENT,
+    PROTOCOL_MIN, Ping, Play, Request, SCHEMA_KEY, ServoSettings, crc32c, encode, encode_body,
 };
 use rand::{Rng, RngExt};
 use rand_chacha::ChaCha8Rng;
@@ -29,6 +29,8 @@ pub(crate) struct Frames {
     table: GaitTable,
     upload: u16,
     offset: usize,
+    /// The robot's clock as it was heard last, µs.
+    heard_us: u64,
     last: Vec<u8>,
 }
 
@@ -52,6 +54,7 @@ impl Frames {
             .unwrap(),
             upload: 0,
             offset: 0,
+            heard_us: 0,
             last: Vec::new(),
         }
     }
@@ -63,6 +66,11 @@ impl Frames {
         }
     }
 
+    /// The robot said what time it is.
+    pub(crate) fn heard(&mut self, robot_us: u64) {
+        self.heard_us = robot_us;
+    }
+
     /// The robot opened, or goes on with, this upload.
     pub(crate) fn upload(&mut self, upload: u16) {
         self.upload = upload;
@@ -71,8 +79,8 @@ impl Frames {
     /// A greeting.
     pub(crate) fn hello(&mut self) -> Vec<u8> {
         let hello = Hello {
-            protocol_min: 1,
-            protocol_current: 1,
+            protocol_min: PROTOCOL_MIN,
+            protocol_current: PROTOCOL_CURRENT,
             schema_key: SCHEMA_KEY,
             host_nonce: self.rng.random(),
         };
@@ -112,7 +120,13 @@ impl Frames {
     /// What a host sends in a session; stops are rare, so that the robot is mostly in motion.
     fn honest(&mut self) -> Vec<u8> {
         let request = match self.rng.random_range(0..100) {
-            0..15 => return encoded(self.session, 0, &Message::KeepAlive),
+            0..15 => {
+                let heartbeat = Heartbeat {
+                    host_us: self.rng.random(),
+                    heard_us: self.heard_us,
+                };
+                return encoded(self.session, 0, &Message::Heartbeat(heartbeat));
+            }
             15..20 => {
                 let ping = Ping {
                     host_us: self.rng.random(),

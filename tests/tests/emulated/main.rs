@@ -1,7 +1,8 @@
 //! The very firmware that is flashed, booted on an emulated RP2040 and driven over its UART by the shipped session.
 //!
-//! Needs the ELF of `cargo xtask firmware` and the emulator of `cargo xtask emulator` (`npm ci` in `emulator/board`); where one
-//! is missing every test here says so and does nothing. `cargo xtask test` provides both.
+//! Needs the images of `cargo xtask firmware` and `cargo xtask firmware --board nano-connect --battery-divider 4700`, and the
+//! emulator of `cargo xtask emulator` (`npm ci` in `emulator/board`). Where one is missing every test here fails and says which
+//! command makes it: a test that is skipped would pass for one that has passed. `cargo xtask test` provides all.
 
 mod ahead;
 mod battery;
@@ -15,6 +16,7 @@ mod frames;
 mod load;
 mod log;
 mod noise;
+mod presence;
 mod promise;
 mod radio;
 mod resets;
@@ -22,3 +24,6 @@ mod rig;
 mod scenario;
 mod session;
 mod settings;
+mod slow_uplink;
+mod supply;
+mod usb;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use emulator::Board;
+use emulator::{Board, Line};
 use gait_player::Limits;
 use link_protocol::{DecodeCounters, Decoder, Message, Reply, Request, StateName, Status};
 use rand::SeedableRng;
@@ -75,9 +75,7 @@ struct Storm {
 
 /// Sends so many frames; tells at each tenth what came of it so far, and at the end.
 fn noise(count: usize, seed: u64, tell: fn(&str, &str)) {
-    let Some(board) = rig::board(Image::Nano) else {
-        return;
-    };
+    let board = rig::board(Image::Nano);
     let mut storm = Storm {
         board,
         decoder: Decoder::new(),
@@ -193,7 +191,8 @@ impl Storm {
         }
         let mut bytes = Vec::new();
         let now = self.board.now();
-        self.board.take_sent(now, usize::MAX, &mut bytes);
+        self.board
+            .take_sent(Line::Uart, now, usize::MAX, &mut bytes);
         for byte in bytes {
             if let Some(received) = self.decoder.push(byte) {
                 let header = received.header;
@@ -206,6 +205,7 @@ impl Storm {
     fn hear(&mut self, message: &Message) {
         match message {
             Message::HelloReply(reply) if reply.session != 0 => self.frames.greeted(reply.session),
+            Message::Telemetry(telemetry) => self.frames.heard(telemetry.robot_us),
             Message::Reply(Reply::Status(status)) => self.status = Some(*status),
             Message::Reply(Reply::Wanted { upload, .. }) => self.frames.upload(*upload),
             Message::Reply(Reply::Counters(counters)) => {

@@ -38,9 +38,7 @@ fn hello() -> Vec<u8> {
 /// While the HC-05 is not connected it takes bytes for AT commands: none must come. What is received still counts.
 #[test]
 fn nothing_is_sent_while_the_radio_is_not_connected() {
-    let Some(mut robot) = rig::robot() else {
-        return;
-    };
+    let mut robot = rig::robot();
     robot.arm(false).unwrap();
     let board = robot.port_mut().device_mut().board_mut();
     board.set_connected(false).unwrap();
@@ -66,9 +64,7 @@ fn nothing_is_sent_while_the_radio_is_not_connected() {
 /// Whatever arrives, nothing acts that was not sent, nothing resets, and the next frame is understood.
 #[test]
 fn a_wrong_baud_rate_and_a_broken_line_do_nothing() {
-    let Some(mut robot) = rig::robot() else {
-        return;
-    };
+    let mut robot = rig::robot();
     robot.arm(false).unwrap();
     rig::pass(&mut robot, Duration::from_millis(100));
     rig::events(&mut robot);
@@ -115,9 +111,7 @@ fn faulty(bytes: &[u8], silent: bool) -> Vec<Character> {
 /// Erasing flash stops the chip for 45 ms, in which 500 bytes can come: most are lost, and no harm is done.
 #[test]
 fn bytes_are_lost_while_flash_is_erased_and_the_link_goes_on() {
-    let Some(mut robot) = rig::robot() else {
-        return;
-    };
+    let mut robot = rig::robot();
     robot.arm(false).unwrap();
     let table = rig::circle(30.0);
     rig::upload(&mut robot, &table);
@@ -148,7 +142,7 @@ fn bytes_are_lost_while_flash_is_erased_and_the_link_goes_on() {
 /// R9 through the real UART: lost and flipped frames.
 #[test]
 fn a_table_arrives_over_a_line_that_drops_and_flips() {
-    let Some(robot) = rig::robot() else { return };
+    let robot = rig::robot();
     let plan = FaultPlan::at_host("drop=10%,flip=5%,duplicate=2%".parse().unwrap());
     let mut robot = robot.map_port(|port| FaultyPort::new(port, plan, 5));
     let table: GaitTable = rig::circle(60.0);

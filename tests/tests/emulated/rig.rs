@@ -27,8 +27,9 @@ pub(crate) enum Image {
     Pico,
 }
 
-/// What is needed, or none with a loud word about what is missing.
-fn config(image: Image) -> Option<BoardConfig> {
+/// What is needed; where something is missing, the test fails with the sentence that says how to make it. A test that does
+/// nothing instead would pass for having seen what nobody saw.
+fn config(image: Image) -> BoardConfig {
     let (kind, divider) = match image {
         Image::Nano => (BoardKind::NanoConnect, None),
         Image::NanoDivider => (BoardKind::NanoConnect, Some("divider-4700")),
@@ -38,53 +39,54 @@ fn config(image: Image) -> Option<BoardConfig> {
     let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
     let mut config = BoardConfig::of_checkout(here, target.as_deref(), kind);
     if let Some(divider) = divider {
-        let name = format!("firmware-{}-{divider}.elf", kind.word());
+        let name = format!("swimmer-{}-{divider}.elf", kind.word());
         config.firmware.set_file_name(name);
     }
-    match config.missing() {
-        None => Some(config),
-        Some(missing) => {
-            eprintln!("\n!!!! SKIPPED: {missing} !!!!\n");
-            None
-        }
+    if let Some(missing) = config.missing() {
+        let advice = divider.map_or(
+            "",
+            |_| " (here with `--board nano-connect --battery-divider 4700`)",
+        );
+        panic!("{missing}{advice}");
     }
+    config
 }
 
 /// A board that was just switched on.
-pub(crate) fn board(image: Image) -> Option<Board> {
-    Some(Board::start(&config(image)?).unwrap())
+pub(crate) fn board(image: Image) -> Board {
+    Board::start(&config(image)).unwrap()
 }
 
 /// The robot of the paper with a board behind a line of 115 200 baud.
-pub(crate) fn port(image: Image) -> Option<Port> {
-    Some(VirtualPort::new(device(image)?, WireSpeed::robot()))
+pub(crate) fn port(image: Image) -> Port {
+    VirtualPort::new(device(image), WireSpeed::robot())
 }
 
 /// The robot of the paper with a board that was just switched on.
-pub(crate) fn device(image: Image) -> Option<EmulatedRobot> {
+pub(crate) fn device(image: Image) -> EmulatedRobot {
     let file = SwimmerFile::preset("robot").unwrap();
     let world = World::new(&TwinConfig::new(&file, 1)).unwrap();
-    let robot = EmulatedRobot::new(board(image)?, world).unwrap();
+    let robot = EmulatedRobot::new(board(image), world).unwrap();
     // What a failing test shows.
-    Some(robot.with_log_reader(|line| eprintln!("firmware: {line}")))
+    robot.with_log_reader(|line| eprintln!("firmware: {line}"))
 }
 
 /// The Nano's, greeted and configured.
-pub(crate) fn robot() -> Option<Robot<Port>> {
+pub(crate) fn robot() -> Robot<Port> {
     robot_of(Image::Nano)
 }
 
 /// Any image's, greeted and configured.
-pub(crate) fn robot_of(image: Image) -> Option<Robot<Port>> {
-    Some(greeted(port(image)?))
+pub(crate) fn robot_of(image: Image) -> Robot<Port> {
+    greeted(port(image))
 }
 
 /// The same with its flash behind the chip's cache.
-pub(crate) fn robot_behind_cache(image: Image) -> Option<Robot<Port>> {
-    let mut port = port(image)?;
+pub(crate) fn robot_behind_cache(image: Image) -> Robot<Port> {
+    let mut port = port(image);
     let board = port.device_mut().board_mut();
     board.put_flash_behind_cache().unwrap();
-    Some(greeted(port))
+    greeted(port)
 }
 
 fn greeted(mut port: Port) -> Robot<Port> {
@@ -140,6 +142,7 @@ pub(crate) fn tasks(robot: &mut Robot<Port>) -> Vec<u32> {
 pub(crate) fn hang(robot: &mut Robot<Port>, task: u32) {
     board_of(robot).patch(task, BRANCH_TO_ITSELF).unwrap();
     robot.port_mut().write(&[0; 4]).unwrap(); // something to do for a task that waits for bytes
+    board_of(robot).feed_usb(&[0; 4]).unwrap();
     pass(robot, Duration::from_millis(600));
 }
 

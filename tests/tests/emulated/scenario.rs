@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Duration;
 
-use gait_player::{Boot, Brain, BrainConfig, Identity, Inputs, TICK_US};
+use gait_player::{Boot, Brain, BrainConfig, Identity, Inputs, TICK_US, Transport};
 use host_link::port::{Device, VirtualPort, WireSpeed};
 use host_link::{Port, Robot};
 use link_protocol::{Board, FirmwareVersion, Joint, StateName};
@@ -113,7 +113,9 @@ impl Scenario {
                 }
                 Step::Pause { .. } => robot.pause(false).unwrap(),
                 Step::Resume { .. } => robot.resume().unwrap(),
-                Step::Stop { .. } => robot.stop().unwrap(),
+                Step::Stop { .. } => {
+                    robot.stop().unwrap();
+                }
                 Step::Finish => live_until(robot, StateName::Stopped),
             }
         }
@@ -191,8 +193,8 @@ impl Device for Alone {
     fn advance(&mut self, to: Duration) {
         let to_us = u64::try_from(to.as_micros()).unwrap();
         let inputs = Inputs {
-            battery_mv: None,
             link_up: true,
+            ..Inputs::default()
         };
         let tick_us = u64::from(TICK_US);
         while (self.now_us / tick_us + 1) * tick_us <= to_us {
@@ -204,12 +206,12 @@ impl Device for Alone {
     }
 
     fn receive(&mut self, bytes: &[u8]) {
-        self.brain.receive(self.now_us, bytes);
+        self.brain.receive(self.now_us, Transport::Uart, bytes);
     }
 
     fn transmit(&mut self, room: usize, out: &mut Vec<u8>) {
         let mut bytes = vec![0; room.min(512)];
-        let count = self.brain.transmit(&mut bytes);
+        let count = self.brain.transmit(Transport::Uart, &mut bytes);
         out.extend_from_slice(&bytes[..count]);
     }
 }
@@ -282,9 +284,7 @@ fn three_robots_command_the_same() {
         let twin = twin.into_port().into_device().pulses;
         same(&path, "the twin", motion(&alone), motion(&twin));
 
-        let Some(port) = rig::port(Image::Nano) else {
-            return;
-        };
+        let port = rig::port(Image::Nano);
         let mut robot = Robot::connect(port, 1).unwrap();
         scenario.play(&mut robot);
         rig::pass(&mut robot, Duration::from_millis(100));

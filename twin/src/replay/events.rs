@@ -40,6 +40,8 @@ pub(super) struct Events {
     pub(super) still: Vec<Still>,
     pub(super) telemetry: BTreeMap<u64, Telemetry>,
     pub(super) last_tick: u64,
+    /// The robot's clock a period before tick 0, µs.
+    pub(super) origin_us: u64,
     pub(super) configuration: Option<Configuration>,
     pub(super) servos: [Option<ServoSettings>; 2],
     pub(super) battery_at_start: Option<u16>,
@@ -91,6 +93,7 @@ impl Events {
             moving,
             still,
             last_tick: telemetry.keys().next_back().copied().unwrap_or_default(),
+            origin_us: clock.origin_us,
             configuration: facts.configuration,
             servos: facts.servos,
             battery_at_start: first.battery_mv,
@@ -245,8 +248,10 @@ fn moves(request: &Request) -> bool {
     match request {
         Request::Configure(_)
         | Request::SetServo { .. }
+        | Request::SetPulseRange { .. }
         | Request::Trim { .. }
         | Request::Commit { .. }
+        | Request::ClearEStop
         | Request::Arm(_)
         | Request::Play(_)
         | Request::Pause { .. }
@@ -262,6 +267,9 @@ fn moves(request: &Request) -> bool {
         | Request::ClearResets
         | Request::CrashMessage
         | Request::SetKey(_)
+        | Request::Bench
+        | Request::PulseRange(_)
+        | Request::EnterBootLoader
         | Request::Table => false,
     }
 }

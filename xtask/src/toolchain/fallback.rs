@@ -18,11 +18,23 @@ const RECIPE: u32 = 2;
 /// The package whose version all others share.
 const COMPILER: &str = "rustc-web";
 
-/// The private prefix, made on the first call.
+/// The private prefix, where it was made before.
+///
+/// # Errors
+/// The cache folder cannot be named.
+pub(super) fn find() -> Outcome<Option<PathBuf>> {
+    if !debian::is_debian() {
+        return Ok(None);
+    }
+    let prefix = newest_made(&cache_folder()?, debian::candidate(COMPILER).as_deref());
+    Ok(prefix.filter(|prefix| usable(prefix)))
+}
+
+/// Makes the private prefix, unless somebody else just has.
 ///
 /// # Errors
 /// Off Debian, without package lists, or when a download or the build of `core` fails.
-pub(super) fn find_or_make(host: &HostCompiler) -> Outcome<PathBuf> {
+pub(super) fn make(host: &HostCompiler) -> Outcome<PathBuf> {
     if !debian::is_debian() {
         return Err(Failure::new(
             format!("looking for a compiler for {TARGET}"),
@@ -36,16 +48,10 @@ pub(super) fn find_or_make(host: &HostCompiler) -> Outcome<PathBuf> {
     let lock = File::create(&lock_path).map_err(|why| failed("making", &lock_path, why))?;
     lock.lock()
         .map_err(|why| failed("locking", &lock_path, why))?; // released when the file is closed
-
-    if debian::candidate(COMPILER).is_none() {
-        debian::update()?;
-    }
-    if let Some(prefix) = newest_made(&folder, debian::candidate(COMPILER).as_deref())
-        && usable(&prefix)
-    {
+    debian::update()?; // a candidate of an old list may be gone from the mirror
+    if let Some(prefix) = find()? {
         return Ok(prefix);
     }
-    debian::update()?; // a candidate of an old list may be gone from the mirror
     let version = debian::candidate(COMPILER).ok_or_else(|| {
         Failure::new(
             format!("looking for a compiler for {TARGET}"),
@@ -54,12 +60,12 @@ pub(super) fn find_or_make(host: &HostCompiler) -> Outcome<PathBuf> {
         )
     })?;
     let prefix = folder.join(prefix_name(&version));
-    make(&folder, &prefix, &version, host)?;
+    unpack_and_build(&folder, &prefix, &version, host)?;
     Ok(prefix)
 }
 
 /// Downloads, unpacks and builds beside the prefix, and moves it into place only when it is whole.
-fn make(folder: &Path, prefix: &Path, version: &str, host: &HostCompiler) -> Outcome {
+fn unpack_and_build(folder: &Path, prefix: &Path, version: &str, host: &HostCompiler) -> Outcome {
     let unfinished = folder.join("unfinished");
     for stale in [&unfinished, prefix] {
         remove_folder(stale)?;

@@ -7,12 +7,12 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use host_link::port::{ListedPort, TracedPort, serial_ports};
 use host_link::session::SessionConfig;
 use host_link::{LinkError, Port as _, Robot};
-use link_protocol::{Joint, Telemetry};
+use link_protocol::{Flags, Joint, Telemetry};
 
 use super::find::{self, Answer};
-use super::holder::{Ask, HeldBy, Holder, Relayed};
 use super::key::KeyFile;
-use super::port::{AnyPort, Means, NotOpen, Opened, Pace, fresh, open};
+use super::port::{AnyPort, BAUD, Means, NotOpen, Opened, Pace, fresh, open};
+use super::port_owner::{Ask, HeldBy, Holder, Relayed};
 use crate::failure::{Failure, Outcome};
 use crate::link_log::Recorder;
 use crate::output::aside;
@@ -28,6 +28,10 @@ pub(super) struct Access {
     /// Also write every frame on the wire, both ways, to this MCAP file; nothing may be there yet
     #[arg(long, value_name = "FILE.mcap", global = true)]
     log: Option<PathBuf>,
+    /// Speed of the serial line: that of the firmware's build (SWIMMER_LINK_BAUD) and of the robot's Bluetooth module
+    #[allow(clippy::doc_markdown)] // shown as it stands
+    #[arg(long, value_name = "BAUD", global = true, default_value_t = BAUD, value_parser = clap::value_parser!(u32).range(1200..=4_000_000))]
+    baud: u32,
     #[command(flatten)]
     key: KeyFile,
     #[command(flatten)]
@@ -68,6 +72,9 @@ pub(super) const LOOK_AGAIN: Duration = Duration::from_millis(50);
 /// How often a waiting command looks up: for Ctrl-C, for what other processes ask, for the end.
 pub(super) const BEAT: Duration = Duration::from_millis(20);
 
+/// Storing takes a second at most, and is tried again after a failure.
+const TO_STORE: Duration = Duration::from_secs(5);
+
 impl Access {
     /// Whether a port was named.
     pub(super) fn names_a_port(&self) -> bool {
@@ -84,6 +91,7 @@ impl Access {
         Self {
             port: self.port.clone(),
             log: Some(log),
+            baud: self.baud,
             key: self.key.clone(),
             board: self.board.clone(),
         }
@@ -94,6 +102,7 @@ impl Access {
         Self {
             port: self.port.clone(),
             log: self.log.clone(),
+            baud: self.baud,
             key: self.key.if_readable(),
             board: self.board.clone(),
         }
@@ -104,12 +113,22 @@ impl Access {
     /// # Errors
     /// [`Failure::BadInput`] where the file that was named holds no key.
     pub(super) fn session(&self) -> Outcome<SessionConfig> {
-        self.key.session()
+        Ok(SessionConfig {
+            // Ten bits a byte.
+            bytes_per_second: f64::from(self.baud) / 10.0,
+            ..self.key.session()?
+        })
+    }
+
+    /// Speed of the serial line.
+    pub(super) fn baud(&self) -> u32 {
+        self.baud
     }
 
     fn means(&self, pace: Pace) -> Outcome<Means> {
         Ok(Means {
             pace,
+            baud: self.baud,
             session: self.session()?,
             board: self.board.clone(),
         })
@@ -142,7 +161,9 @@ impl Access {
             // From here on the port is ours: others are told, also while the robot is being greeted.
             let holder = Holder::announce(&opened.name, command);
             let robot = Robot::connect_with(port, means.session)?;
-            return Line::new(opened.name, robot, holder, recorder);
+            let mut line = Line::new(opened.name, robot, holder, recorder)?;
+            line.say_if_keyless(self.key.is_named())?;
+            return Ok(line);
         }
         let (name, robot) = self.find(pace)?;
         let holder = Holder::announce(&name, command);
@@ -151,7 +172,9 @@ impl Access {
             // The greeting belongs to the log: without it nobody can tell which session follows.
             robot.reconnect()?;
         }
-        Line::new(name, robot, holder, recorder)
+        let mut line = Line::new(name, robot, holder, recorder)?;
+        line.say_if_keyless(self.key.is_named())?;
+        Ok(line)
     }
 
     /// Has the process that holds the robot's port do what is asked, or takes the port.
@@ -167,7 +190,7 @@ impl Access {
             match self.connect(command, pace) {
                 Ok(line) => return Ok(Met::Line(Box::new(line))),
                 // Another process took the port between the two: now it can be asked.
-                Err(_) if self.holder().is_some() && begun.elapsed() < 3 * A_MOMENT => {}
+                Err(_) if self.held_by().is_some() && begun.elapsed() < 3 * A_MOMENT => {}
                 Err(failure) => return Err(failure),
             }
         }
@@ -189,14 +212,14 @@ impl Access {
     /// # Errors
     /// What that process says.
     pub(super) fn ask_holder(&self, ask: Ask) -> Outcome<Option<Relayed>> {
-        match self.holder() {
+        match self.held_by() {
             Some(held_by) => held_by.ask(ask),
             None => Ok(None),
         }
     }
 
     /// The process that holds the robot's port.
-    fn holder(&self) -> Option<HeldBy> {
+    pub(super) fn held_by(&self) -> Option<HeldBy> {
         if let [name] = self.port.as_slice() {
             return HeldBy::of(name);
         }
@@ -297,6 +320,16 @@ impl Line {
         Ok(line)
     }
 
+    /// Says where a key was named and the robot has none: what the operator takes for locked stands open.
+    fn say_if_keyless(&mut self, key_named: bool) -> Outcome {
+        if key_named && !self.robot.status()?.flags.contains(Flags::KEY_SET) {
+            aside(
+                "note: --key names a key, but the robot has none: whoever reaches its port can drive it. `swimmer robot key set FILE` gives it one",
+            );
+        }
+        Ok(())
+    }
+
     /// Has the robot say what it is made of, so that a log alone is enough to live it again.
     fn introduce(&mut self) -> Outcome {
         let robot = &mut self.robot;
@@ -329,6 +362,27 @@ impl Line {
             self.seen_us = Some(telemetry.robot_us);
         }
         Ok(news)
+    }
+
+    /// Waits until the robot has stored its settings. `what`: that which was set, with its verb.
+    ///
+    /// # Errors
+    /// The link's, and [`Failure::Tried`] where the robot could not.
+    pub(super) fn stored(&mut self, what: &str) -> Outcome {
+        let mut waited = Duration::ZERO;
+        loop {
+            let status = self.robot.status()?;
+            if !status.flags.contains(Flags::UNSAVED) {
+                return Ok(());
+            }
+            if status.flags.contains(Flags::STORAGE_FAILED) || waited > TO_STORE {
+                return Err(Failure::Tried(format!(
+                    "{what} in force, but the robot could not store that: it lasts until its power goes; try again"
+                )));
+            }
+            self.beat()?;
+            waited += BEAT;
+        }
     }
 
     /// The robot, and who asks for what, for calls that cannot [`beat`](Self::beat).

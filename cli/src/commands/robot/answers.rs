@@ -2,9 +2,11 @@
 
 use std::fmt;
 
+use host_link::{LinkError, Robot};
 use link_protocol::{Flags, StateName, Status, StopCause, TableInfo, Telemetry};
 use serde::Serialize;
 
+use super::port::AnyPort;
 use crate::failure::{Failure, Outcome};
 use crate::output::{Answer, Output};
 use crate::quantity::{self, Rows};
@@ -134,11 +136,51 @@ pub(super) struct Doing {
     battery_v: Option<f64>,
     gait: Option<Gait>,
     robot_time_s: f64,
+    /// Who may ask for what only somebody at the robot may; `null`: nobody.
+    presence: Option<Presence>,
+}
+
+/// How it is known that somebody is at the robot.
+#[derive(Debug, Serialize)]
+struct Presence {
+    /// This session came over the USB cable.
+    usb: bool,
+    /// For how long the bench window is still open; 0: it is closed.
+    window_s: u16,
+}
+
+impl fmt::Display for Presence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.usb, self.window_s) {
+            (true, _) => write!(f, "over the USB cable"),
+            (false, 0) => write!(f, "a moment ago"),
+            (false, left) => write!(f, "the bench window is open for another {left} s"),
+        }
+    }
 }
 
 impl Doing {
+    /// What the robot says.
+    ///
+    /// # Errors
+    /// The link's.
+    pub(super) fn of(robot: &mut Robot<AnyPort>) -> Result<Self, LinkError> {
+        let status = robot.status()?;
+        let mut doing = Self::new(&status);
+        if status.flags.contains(Flags::PRESENT) {
+            let bench = robot.bench()?;
+            doing.presence = Some(Presence {
+                usb: bench.usb,
+                window_s: bench.window_s,
+            });
+        }
+        Ok(doing)
+    }
+
+    /// What a status tells, wherever it comes from.
     pub(super) fn new(status: &Status) -> Self {
         Self {
+            presence: None,
             state: state(status.state),
             cause: cause(status.cause),
             explained: is_explained(status.state),
@@ -168,8 +210,13 @@ impl fmt::Display for Doing {
             self.state.to_owned()
         };
         rows.row("state", state);
-        if !self.flags.is_empty() {
-            rows.row("flags", self.flags.join(", "));
+        // Presence has a row of its own, and a robot at rest need not hear from anybody.
+        let told = |flag: &&&str| {
+            **flag != "present" && (**flag != "link silent" || self.state != "stopped")
+        };
+        let flags: Vec<&str> = self.flags.iter().filter(told).copied().collect();
+        if !flags.is_empty() {
+            rows.row("flags", flags.join(", "));
         }
         if let Some(period) = self.period_s {
             let of = self
@@ -194,6 +241,9 @@ impl fmt::Display for Doing {
         .row("battery", battery(self.battery_v))
         .row("gait", gait_line(self.gait.as_ref()))
         .row("up for", format!("{:.1} s", self.robot_time_s));
+        if let Some(presence) = &self.presence {
+            rows.row("presence", presence.to_string());
+        }
         write!(f, "{rows}")
     }
 }
@@ -282,6 +332,8 @@ pub(super) fn flags(flags: Flags) -> Vec<&'static str> {
         (Flags::UNSAVED, "unsaved"),
         (Flags::STORAGE_FAILED, "storage failed"),
         (Flags::KEY_SET, "key set"),
+        (Flags::PRESENT, "present"),
+        (Flags::SHORT_STARTS, "short starts"),
     ]
     .into_iter()
     .filter_map(|(flag, name)| flags.contains(flag).then_some(name))

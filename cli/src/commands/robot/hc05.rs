@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::access::Access;
 use super::answers::answer_no;
-use super::port::{BAUD, is_a_path};
+use super::port::is_a_path;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::Rows;
@@ -26,9 +26,6 @@ pub(super) struct Hc05 {
     /// The PIN for pairing, 4 to 16 digits; left out, it stays (1234 from the maker)
     #[arg(long, value_name = "DIGITS")]
     pin: Option<String>,
-    /// Speed towards the robot; another than this needs a firmware built for it
-    #[arg(long, value_name = "BAUD", default_value_t = BAUD)]
-    baud: u32,
     /// Only ask, and exit with 1 where something is not as wanted
     #[arg(long)]
     check: bool,
@@ -39,11 +36,7 @@ pub(super) struct Hc05 {
 
 /// Does it.
 pub(super) fn run(access: &Access, arguments: &Hc05, output: Output) -> Outcome {
-    let wanted = Wanted::new(
-        arguments.baud,
-        arguments.name.clone(),
-        arguments.pin.clone(),
-    )?;
+    let wanted = Wanted::new(access.baud(), arguments.name.clone(), arguments.pin.clone())?;
     let path = match access.bare_port() {
         Some(path) if is_a_path(path) => path,
         _ => {

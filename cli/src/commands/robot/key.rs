@@ -84,6 +84,11 @@ impl KeyFile {
         })
     }
 
+    /// Whether a file was named.
+    pub(super) fn is_named(&self) -> bool {
+        self.key.is_some()
+    }
+
     /// The same, without a key that cannot be read: nothing may stand in the way of a stop.
     pub(super) fn if_readable(&self) -> Self {
         let key = self.key.clone().filter(|file| read(file).is_ok());

@@ -33,7 +33,7 @@ impl fmt::Display for Logged {
 
 /// `swimmer robot log`: listens and writes until Ctrl-C.
 pub(super) fn log(access: &Access, arguments: &Log, output: Output) -> Outcome {
-    let interrupt = Interrupt::install()?;
+    let interrupt = Interrupt::install_with_a_robot()?;
     let access = access.logging_to(arguments.file.clone());
     let mut line = access.connect("swimmer robot log", Pace::RealTime)?;
     let end = arguments.seconds.map(Duration::from_secs_f64);

@@ -3,27 +3,33 @@
 
 use std::fmt;
 use std::ops::ControlFlow;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use host_link::robot::finish::{at_rest, finished};
 use host_link::{LinkError, Robot};
 use link_protocol::{StateName, Status, Telemetry};
 use serde::Serialize;
 
-use super::access::{Access, LOOK_AGAIN, Line, Met, Reached};
-use super::answers::{Done, E_STOPPED, PAUSED_DETACHED, STOPPED, cause, is_under_way, state};
-use super::holder::{Ask, Relayed};
+use super::access::{Access, Line, Met};
+use super::answers::{Done, PAUSED_DETACHED, cause, is_under_way, state};
 use super::playing::{self, Playing};
-use super::port::{AnyPort, Pace, session_seed};
+use super::port::{AnyPort, Pace};
+use super::port_owner::Ask;
 use super::upload::BeforePlay;
 use super::{Arm, Pause, Play};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::output::Output;
+use crate::output::{Output, aside};
 
 /// Longest time from a stop to pulses off: a second of ramp, half a second of rest, and some for the link.
-const TO_REST: Duration = Duration::from_secs(5);
+pub(super) const TO_REST: Duration = Duration::from_secs(5);
+
+/// Longest that a play goes on detached unless `--for` says otherwise, s.
+const ALONE_S: f64 = 3600.0;
+
+/// What the first pulses do, said before they come.
+pub(super) const MAY_JUMP: &str =
+    "The pulses begin: servos that stand elsewhere may jump to neutral.";
 
 /// How a play ended.
 #[derive(Debug, Serialize)]
@@ -72,8 +78,9 @@ impl fmt::Display for Played {
 
 /// `swimmer robot arm`: power on, and hold the link until Ctrl-C.
 pub(super) fn arm(access: &Access, arm: &Arm, output: Output) -> Outcome {
-    let interrupt = Interrupt::install()?;
+    let interrupt = Interrupt::install_with_a_robot()?;
     let mut line = access.connect("swimmer robot arm", Pace::RealTime)?;
+    output.line(MAY_JUMP);
     line.robot.arm(arm.clear_estop)?;
     output.line("Armed: the servos hold their pose. Ctrl-C stops.");
     hold(&mut line, &interrupt)?;
@@ -83,7 +90,7 @@ pub(super) fn arm(access: &Access, arm: &Arm, output: Output) -> Outcome {
 
 /// `swimmer robot play`: arms, starts softly and waits for the end of the last cycle.
 pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
-    let interrupt = Interrupt::install()?;
+    let interrupt = Interrupt::install_with_a_robot()?;
     if play.attach {
         let mut line = access.connect("swimmer robot play --attach", Pace::RealTime)?;
         attach(&mut line, &interrupt, output)?;
@@ -94,6 +101,7 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
     } else {
         Pace::RealTime
     };
+    alone_for_long(play)?;
     let gait = play.gait.as_ref();
     let upload = gait
         .map(|gait| BeforePlay::new(gait, &play.owner))
@@ -127,6 +135,30 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
     });
     wait(&mut line, &interrupt, output)?;
     line.close()
+}
+
+/// A detached play has no link to end it: how long it may go on alone is said beforehand.
+fn alone_for_long(play: &Play) -> Outcome {
+    let Some(cycles) = play.cycles.filter(|_| play.detach) else {
+        return Ok(());
+    };
+    let limit = play.at_most.unwrap_or(ALONE_S);
+    let takes = f64::from(cycles) * play.period;
+    if takes <= limit {
+        return Ok(());
+    }
+    Err(Failure::BadInput(format!(
+        "{cycles} cycles of {} s take {}, and the robot would play them by itself for longer than {}: give fewer cycles, or allow it with --for, as --for {}",
+        play.period,
+        playing::duration(takes),
+        playing::duration(limit),
+        in_minutes(takes)
+    )))
+}
+
+/// As `--for` reads it.
+fn in_minutes(seconds: f64) -> String {
+    format!("{}min", (seconds / 60.0).ceil())
 }
 
 /// A play that goes on detached is left alone: another begins only when it has ended or was stopped.
@@ -169,7 +201,7 @@ fn attach(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
 
 /// `swimmer robot pause`: holds the pose, and the link until Ctrl-C unless detached.
 pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
-    let interrupt = Interrupt::install()?;
+    let interrupt = Interrupt::install_with_a_robot()?;
     let ask = if pause.detach {
         Ask::PauseDetached
     } else {
@@ -198,7 +230,7 @@ pub(super) fn pause(access: &Access, pause: &Pause, output: Output) -> Outcome {
 
 /// `swimmer robot resume`: goes on and waits for the end of the last cycle.
 pub(super) fn resume(access: &Access, output: Output) -> Outcome {
-    let interrupt = Interrupt::install()?;
+    let interrupt = Interrupt::install_with_a_robot()?;
     let mut line = match access.meet(Ask::Resume, "swimmer robot resume", Pace::RealTime)? {
         Met::Line(line) => line,
         Met::Relayed(relayed) => {
@@ -211,79 +243,13 @@ pub(super) fn resume(access: &Access, output: Output) -> Outcome {
     line.close()
 }
 
-/// `swimmer robot stop` and `estop`: act first, ask afterwards. Where another `swimmer` has the port, it passes the stop on.
-pub(super) fn stop(access: &Access, estop: bool, output: Output) -> Outcome {
-    let ask = if estop { Ask::EStop } else { Ask::Stop };
-    let access = &access.for_a_stop();
-    let begun = Instant::now();
-    let mut robot = loop {
-        if let Some(relayed) = access.ask_holder(ask)?
-            && let Some(at_rest) = rest_by_holder(access, relayed)
-        {
-            output.answer(&at_rest.told());
-            return Ok(());
-        }
-        match access.reach_named(Pace::AsFastAsPossible)? {
-            Some(Reached::Free(opened)) => {
-                let port = Robot::stop_at_once(opened.port, session_seed(), estop)?;
-                // The stop is done; how it goes on is only good to know.
-                break Robot::connect_with(port, access.session()?);
-            }
-            // Another process has just taken the port: it can be asked now.
-            Some(Reached::Held(_)) if begun.elapsed() < TO_REST => sleep(LOOK_AGAIN),
-            Some(Reached::Held(held_by)) => return Err(Failure::Tried(held_by.to_string())),
-            None => {
-                let (_, mut robot) = access.find(Pace::AsFastAsPossible)?;
-                if estop {
-                    robot.estop()?;
-                } else {
-                    robot.stop()?;
-                }
-                break Ok(robot);
-            }
-        }
-    };
-    let state_now = match &mut robot {
-        Ok(robot) => wait_for_rest(robot).ok(),
-        Err(_) => None,
-    };
-    let sentence = match (&state_now, estop) {
-        (Some(StateName::EStopped), _) => E_STOPPED,
-        (Some(StateName::Stopped), _) => STOPPED,
-        (_, false) => "The robot acknowledged the stop.",
-        (_, true) => "The robot acknowledged the e-stop.",
-    };
-    let state_now = state_now.map_or(if estop { "e-stopped" } else { "stopping" }, state);
-    output.answer(&Done {
-        state: state_now,
-        sentence: sentence.into(),
-    });
-    Ok(())
-}
-
-/// The stop is passed on; follows the robot to its rest. `None`: the holder ended first, and the port is free to see for
-/// ourselves.
-fn rest_by_holder(access: &Access, stopped: Relayed) -> Option<Relayed> {
-    let begun = Instant::now();
-    let mut last = stopped;
-    while !matches!(last.state(), "stopped" | "e-stopped") && begun.elapsed() < TO_REST {
-        sleep(LOOK_AGAIN);
-        match access.ask_holder(Ask::Status) {
-            Ok(Some(status)) if status.state() == "stopped" => last = Relayed::of(&Done::at_rest()),
-            Ok(Some(_)) => {}
-            Ok(None) => return None,
-            Err(_) => break,
-        }
-    }
-    Some(last)
-}
-
 /// Keeps the link until Ctrl-C, then stops the robot.
 fn hold(line: &mut Line, interrupt: &Interrupt) -> Outcome {
     loop {
         let news = line.beat();
         let news = stopped_on_failure(&mut line.robot, news)?;
-        if let Some(telemetry) = news.filter(is_off) {
+        // It need not be at rest yet: what it says now may be the last that comes through.
+        if let Some(telemetry) = news.filter(|told| at_rest(told.state, told.cause)) {
             return Err(Failure::Tried(format!(
                 "the robot stopped: {}",
                 host_link::session::cause_in_words(telemetry.cause)
@@ -292,6 +258,9 @@ fn hold(line: &mut Line, interrupt: &Interrupt) -> Outcome {
         if interrupt.requested() {
             line.robot.stop()?;
             wait_for_rest(&mut line.robot)?;
+            if interrupt.pressed() != "Ctrl-C" {
+                aside(&format!("{}.", interrupt.pressed()));
+            }
             return Ok(());
         }
     }
@@ -321,7 +290,8 @@ fn wait(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
                 wait_for_rest(robot)?;
                 let status = robot.status()?;
                 return Err(Failure::Tried(format!(
-                    "Ctrl-C: the robot was stopped after {} whole cycles",
+                    "{}: the robot was stopped after {} whole cycles",
+                    interrupt.pressed(),
                     status.cycle
                 )));
             }
@@ -335,7 +305,11 @@ fn wait(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
 
 /// Passes a result on; a failure stops the robot first, as far as the link still allows.
 fn stopped_on_failure<T>(robot: &mut Robot<AnyPort>, result: Result<T, LinkError>) -> Outcome<T> {
-    if result.is_err() {
+    // One that has stopped by itself need not be told; it may be one that hears nothing.
+    if result
+        .as_ref()
+        .is_err_and(|error| !matches!(error, LinkError::StoppedEarly { .. }))
+    {
         let _ = robot.stop();
     }
     Ok(result?)

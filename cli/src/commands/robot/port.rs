@@ -9,7 +9,7 @@ use host_link::Port;
 use host_link::port::{OpenError, SerialPort, TcpPort};
 use host_link::session::SessionConfig;
 
-use super::holder::program_with;
+use super::port_owner::program_with;
 use crate::arguments::load_swimmer;
 use crate::failure::Failure;
 use crate::virtual_robot::{Carrier, EmulatedBoard};
@@ -17,7 +17,7 @@ use crate::virtual_robot::{Carrier, EmulatedBoard};
 /// Any port.
 pub(super) type AnyPort = Box<dyn Port>;
 
-/// The speed of the robot's Bluetooth module.
+/// The speed of the robot's serial line unless its firmware was built for another.
 pub(super) const BAUD: u32 = 115_200;
 
 /// How a fresh virtual robot keeps time.
@@ -47,6 +47,8 @@ pub(super) fn fresh(name: &str) -> Option<Carrier> {
 #[derive(Debug, Clone)]
 pub(super) struct Means {
     pub(super) pace: Pace,
+    /// Speed of a serial line.
+    pub(super) baud: u32,
     /// How the robot is greeted.
     pub(super) session: SessionConfig,
     pub(super) board: EmulatedBoard,
@@ -98,13 +100,18 @@ fn any_port(name: &str, means: &Means) -> Result<AnyPort, NotOpen> {
             .map_err(|error| Failure::Tried(format!("cannot connect to the robot at {address}: {error}; is `swimmer twin --tcp` running?")))?;
         return Ok(Box::new(port));
     }
-    match SerialPort::open(name, BAUD) {
+    match SerialPort::open(name, means.baud) {
         Ok(port) => Ok(Box::new(port)),
         Err(error @ OpenError::Busy { .. }) => {
             let by = program_with(name)
                 .map_or_else(String::new, |program| format!("; {program} has it"));
+            let no_way_past = if cfg!(unix) {
+                ""
+            } else {
+                " On this system no second program can be let past the first."
+            };
             Err(NotOpen::Busy(Failure::Tried(format!(
-                "{error}{by}. To stop the robot now, end that program: half a second later the robot stops by itself, unless \
+                "{error}{by}.{no_way_past} To stop the robot now, end that program: half a second later the robot stops by itself, unless \
                  it plays detached; then, or in doubt, switch its power off"
             ))))
         }

@@ -49,6 +49,8 @@ pub(super) struct Player {
     name: String,
     swimmer: Swimmer<f64>,
     servos: Servos,
+    /// No swimmer file tells of the servos: theirs are the values of a good one.
+    assumed: bool,
 }
 
 impl Player {
@@ -58,6 +60,7 @@ impl Player {
             name: file.name.clone(),
             swimmer: file.swimmer,
             servos: Servos::on_the_robot(file.servo.unwrap_or_default()),
+            assumed: file.servo.is_none(),
         }
     }
 
@@ -67,7 +70,8 @@ impl Player {
         configuration: &Configuration,
         file: Option<&SwimmerFile>,
     ) -> Self {
-        let servo = file.and_then(|file| file.servo).unwrap_or_default();
+        let told = file.and_then(|file| file.servo);
+        let servo = told.unwrap_or_default();
         let (name, swimmer) = match file {
             Some(file) => (file.name.clone(), file.swimmer),
             None => configured(configuration),
@@ -86,6 +90,7 @@ impl Player {
                     Board::NanoRp2040Connect | Board::Pico => Servos::ROBOT_PULSE_STEP_NS,
                 },
             },
+            assumed: told.is_none(),
         }
     }
 }
@@ -142,6 +147,8 @@ pub(super) struct Preflight {
     /// What one step of the pulses' timer turns a servo.
     pulse_step_rad: f64,
     dead_band_rad: f64,
+    /// Nobody has measured it: no swimmer file with a `[servo]` was named.
+    dead_band_assumed: bool,
     /// Half width of the interval of the displacement, from the fit; `null` without one.
     displacement_error_m: Option<f64>,
     /// Level of that interval.
@@ -243,6 +250,7 @@ impl Preflight {
             table_step_rad: double(ANGLE_UNIT_RAD),
             pulse_step_rad: f64::from(servos.pulse_step_ns) * 1e-3 * servos.file.slope_rad_per_us,
             dead_band_rad: servos.file.dead_band,
+            dead_band_assumed: player.assumed,
             displacement_error_m: None,
             level: None,
             tank: None,
@@ -266,10 +274,15 @@ impl fmt::Display for Preflight {
         .row(
             "finest steps",
             format!(
-                "{:.4}° in the table, {:.4}° in the pulses, dead band {:.3}°",
+                "{:.4}° in the table, {:.4}° in the pulses, dead band ±{:.3}°{}",
                 self.table_step_rad.to_degrees(),
                 self.pulse_step_rad.to_degrees(),
-                self.dead_band_rad.to_degrees()
+                self.dead_band_rad.to_degrees(),
+                if self.dead_band_assumed {
+                    " (assumed: name the swimmer file of `swimmer robot setup`)"
+                } else {
+                    ""
+                }
             ),
         );
         self.played.rows(&mut rows);

@@ -10,7 +10,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use crossterm::event::{self, Event};
-use link_protocol::{ANGLE_UNIT_RAD, Flags, Joint, StateName};
+use link_protocol::{ANGLE_UNIT_RAD, Joint, StateName};
 use ratatui::DefaultTerminal;
 
 use self::nudging::{Nudging, Wish};
@@ -21,14 +21,12 @@ use super::motion::wait_for_rest;
 use super::port::Pace;
 use super::watch::no_terminal;
 use crate::arguments::angle;
-use crate::failure::{Failure, Outcome};
+use crate::failure::Outcome;
 use crate::interrupt::Interrupt;
 use crate::output::Output;
 
 /// Beyond this a servo horn sits on the wrong tooth, or degrees were meant and radians written.
 const LARGEST_RAD: f64 = 0.524;
-/// Storing takes a second at most, and is tried again after a failure.
-const TO_STORE: Duration = Duration::from_secs(5);
 
 /// A trim on the command line, in radians.
 pub(super) fn angle_of_trim(text: &str) -> Result<f64, String> {
@@ -80,7 +78,7 @@ fn trims(line: &mut Line) -> Outcome<[i16; 2]> {
 
 /// Nudges with keys.
 fn nudge(access: &Access, output: Output) -> Outcome {
-    let interrupt = Interrupt::install()?;
+    let interrupt = Interrupt::install_with_a_robot()?;
     let mut line = access.connect("swimmer robot trim", Pace::RealTime)?;
     let before = trims(&mut line)?;
     let mut nudging = Nudging::new(before.map(degrees));
@@ -96,7 +94,7 @@ fn nudge(access: &Access, output: Output) -> Outcome {
             line.robot.trim(joint, degrees(trim).to_radians())?;
         }
     }
-    stored(&mut line)?;
+    line.stored("the trims are")?;
     ended?;
     let [front, back] = trims(&mut line)?;
     output.line(if saved {
@@ -110,25 +108,6 @@ fn nudge(access: &Access, output: Output) -> Outcome {
 
 fn degrees(units: i16) -> f64 {
     (f64::from(units) * f64::from(ANGLE_UNIT_RAD)).to_degrees()
-}
-
-/// Waits until the robot has stored its settings.
-fn stored(line: &mut Line) -> Outcome {
-    let mut waited = Duration::ZERO;
-    loop {
-        let status = line.robot.status()?;
-        if !status.flags.contains(Flags::UNSAVED) {
-            return Ok(());
-        }
-        if status.flags.contains(Flags::STORAGE_FAILED) || waited > TO_STORE {
-            return Err(Failure::Tried(
-                "the trims are in force but the robot could not store them: they last until its power goes; try again"
-                    .to_owned(),
-            ));
-        }
-        line.beat()?;
-        waited += super::access::BEAT;
-    }
 }
 
 /// Until the operator saves or leaves.

@@ -65,7 +65,7 @@ impl fmt::Display for Foretold {
 
 /// `swimmer robot upload`.
 pub(super) fn run(access: &Access, arguments: &Upload, output: Output) -> Outcome {
-    let interrupt = Interrupt::install()?;
+    let interrupt = Interrupt::install_with_a_robot()?;
     arguments.preflight.check()?;
     let gait = Prepared::new(&arguments.gait)?;
     let file = arguments

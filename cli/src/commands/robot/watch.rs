@@ -30,7 +30,7 @@ const LET_GO: &str = "The program that had the port has let it go.";
 
 /// `swimmer robot watch`; at the end, for scripts, the status.
 pub(super) fn watch(access: &Access, arguments: &Watch, output: Output) -> Outcome {
-    let interrupt = Interrupt::install()?;
+    let interrupt = Interrupt::install_with_a_robot()?;
     let mut source = Source::find(access)?;
     let end = arguments.seconds.map(Duration::from_secs_f64);
     if output.json || !io::stdout().is_terminal() || !io::stdin().is_terminal() {

@@ -135,7 +135,11 @@ impl PlayedAnswer {
             gap_margin_m: forecast.margin,
             min_period_s: forecast.verdict.min_period,
             refused: forecast.verdict.refused.clone(),
-            warnings: forecast.warnings(),
+            warnings: forecast
+                .warnings()
+                .into_iter()
+                .chain(swallowed(forecast))
+                .collect(),
         }
     }
 
@@ -207,6 +211,24 @@ impl PlayedAnswer {
             rows.row("note", warning.as_str());
         }
     }
+}
+
+/// A dead band takes nearly all of a gait that is hardly larger.
+const SWALLOWED: f64 = 0.25;
+
+fn swallowed(forecast: &Forecast) -> Option<String> {
+    let lost = forecast
+        .stages
+        .iter()
+        .find(|loss| loss.stage == Stage::Played)?;
+    let share = forecast.share(lost.loss)?;
+    (share >= SWALLOWED).then(|| {
+        format!(
+            "the servos' dead band of ±{} takes {:.0} % of this gait: use a larger one",
+            quantity::angle(forecast.played.servos.file.dead_band),
+            share * 100.0
+        )
+    })
 }
 
 /// Rounded to four decimals without a minus before zero.

@@ -1,6 +1,6 @@
 //! What can happen to a brain.
 
-use crate::{BrainConfig, GaitTable};
+use crate::{BrainConfig, GaitTable, Transport};
 use link_protocol::*;
 use std::vec::Vec;
 
@@ -19,11 +19,18 @@ pub(super) enum Event {
     Foreign(usize),
     /// A request in the open session without the signature that it asks for.
     Unsigned(usize),
-    /// Another host greets.
-    Greet,
+    /// A request under number and signature of the open session, by the other way.
+    Elsewhere(usize),
+    /// Another host greets, by this way: where the session was of the other one, it takes over.
+    Greet(Transport),
     /// The same host greets again.
     GreetAgain,
+    /// A keep-alive of a host that has just heard the robot.
     KeepAlive,
+    /// The last keep-alive again, byte by byte, and one whose host heard the robot too long ago.
+    OldKeepAlive,
+    /// Somebody closes the bench jumper for a moment.
+    Jumper,
     /// Time passes: ticks, with or without keep-alives.
     Pass {
         ticks: u32,
@@ -97,6 +104,20 @@ pub(super) fn requests() -> Vec<Request> {
         Request::Table,
         Request::SetKey(Some(Key([7; Key::LEN]))),
         Request::SetKey(None),
+        Request::Bench,
+        Request::Configure(Configuration {
+            middle_m: 2.0 * config.configuration.middle_m,
+            ..config.configuration
+        }),
+        Request::SetPulseRange {
+            joint: Joint::Front,
+            range: PulseRange {
+                shortest_ns: 1_390_000,
+                longest_ns: 1_610_000,
+            },
+        },
+        Request::ClearEStop,
+        Request::EnterBootLoader,
     ]
 }
 
@@ -112,19 +133,26 @@ pub(super) fn events(requests: &[Request]) -> Vec<Event> {
                 | Request::Stop
                 | Request::EStop
                 | Request::SetKey(_)
+                | Request::ClearEStop
+                | Request::EnterBootLoader
         ) {
             events.extend([
                 Event::Late(index),
                 Event::Foreign(index),
                 Event::Unsigned(index),
+                Event::Elsewhere(index),
             ]);
         }
     }
     events.extend([
         Event::Repeat,
-        Event::Greet,
+        // First over the cable: where presence is not told apart, the session that is kept is one that may set a key.
+        Event::Greet(Transport::Usb),
+        Event::Greet(Transport::Uart),
         Event::GreetAgain,
         Event::KeepAlive,
+        Event::OldKeepAlive,
+        Event::Jumper,
         Event::Battery(Some(5_000)),
         Event::Battery(Some(4_000)),
         Event::Battery(None),

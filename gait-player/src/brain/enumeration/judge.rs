@@ -11,11 +11,30 @@ pub(super) fn judge(before: StateName, event: Event, requests: &[Request], seen:
     use StateName::{EStopped, Settling, Stopped, Stopping};
     let (all, after) = (&seen.states, *seen.states.last().unwrap());
     let asked = match event {
-        Event::Ask(index) | Event::Late(index) | Event::Foreign(index) | Event::Unsigned(index) => {
-            Some(&requests[index])
-        }
+        Event::Ask(index)
+        | Event::Late(index)
+        | Event::Foreign(index)
+        | Event::Unsigned(index)
+        | Event::Elsewhere(index) => Some(&requests[index]),
         _ => None,
     };
+    // Nobody talks himself past presence, nor feeds the lease with what is old.
+    assert!(
+        !seen.opened || seen.present,
+        "{event:?} {asked:?}: opened by nobody at the robot"
+    );
+    assert!(
+        !seen.fed
+            || matches!(
+                event,
+                Event::KeepAlive
+                    | Event::Pass {
+                        kept_alive: true,
+                        ..
+                    }
+            ),
+        "{event:?} {asked:?} fed the lease"
+    );
     let told = || std::format!("{before:?}, {event:?} {asked:?}: {all:?}");
     let only = |allowed: &[StateName]| all.iter().all(|state| allowed.contains(state));
     if let Some(Request::EStop) = asked {
@@ -31,12 +50,18 @@ pub(super) fn judge(before: StateName, event: Event, requests: &[Request], seen:
         return;
     }
     if seen.armed {
+        // Whoever arms is there.
+        assert!(seen.fresh, "{}", told());
         // An e-stop needs its flag.
         let cleared = matches!(asked, Some(Request::Arm(arm)) if arm.clear_estop);
         assert!(before != EStopped || cleared, "{}", told());
         return;
     }
     match before {
+        // A host of the open session may clear it without arming.
+        EStopped if matches!((event, asked), (Event::Ask(_), Some(Request::ClearEStop))) => {
+            assert!(only(&OFF), "{}", told());
+        }
         EStopped => assert!(only(&[EStopped]), "{}", told()),
         Stopped => assert!(only(&OFF), "{}", told()),
         Stopping | Settling => {

@@ -2,6 +2,8 @@
 
 use super::world::World;
 use crate::TICK_US;
+use crate::Transport;
+use crate::brain::settings::Settings;
 use crate::brain::state::State;
 use crate::brain::work::Work;
 
@@ -22,10 +24,13 @@ pub(super) enum Finer {
     Saving,
     /// Which pieces of which table have come while there is a key.
     Keys,
+    /// Who is at the robot, and which way the session came; the battery is left out for it.
+    Presence,
 }
 
 impl World {
     /// What makes two worlds the same.
+    #[allow(clippy::too_many_lines)] // one fact after the other
     pub(super) fn shape(&self, finer: Finer) -> Shape {
         let brain = &self.brain;
         let state = &brain.state;
@@ -65,10 +70,15 @@ impl World {
         let aged = |shift: u32| finer == Finer::Resets && (word >> shift & 127) <= 60;
         let key = (
             brain.settings.key.is_some(),
-            self.flash.key().is_some(),
+            self.flash
+                .settings
+                .as_deref()
+                .and_then(Settings::stored_key)
+                .is_some(),
             self.seal.is_some(),
         );
         let without_key = key == (false, false, false);
+        let presence = finer == Finer::Presence;
         Shape {
             state: state.name() as u8,
             cause: (finer == Finer::Causes).then_some(brain.cause as u8),
@@ -79,17 +89,27 @@ impl World {
             session: (
                 brain.session.number() != 0,
                 brain.session.silent(self.now_us),
-                finer == Finer::Ages && age(brain.session.heard_us, 460_000) == Some(0),
+                finer == Finer::Ages && age(brain.session.fed_us, 460_000) == Some(0),
             ),
+            present: presence.then(|| Present {
+                usb: self.via == Transport::Usb,
+                window: brain.bench.open(self.now_us),
+                leaving: brain.bench.leaves(u64::MAX),
+                far: brain.settings.configuration.middle_m > 1.5 * brain.built.middle_m,
+            }),
+            starts: (finer == Finer::Resets)
+                .then_some((brain.starts.runs.min(4), brain.resets.locked_by_starts())),
             key,
             repeat: (self.last_moves, self.asked, brain.session.kept().is_some()),
-            battery: (
-                self.battery_mv,
-                brain.battery.low(),
-                brain.battery_stops,
-                age(brain.battery.below_since, 1_000_000),
-                age(brain.battery.well_since, 5_000_000),
-            ),
+            battery: (!presence).then(|| {
+                (
+                    self.battery_mv,
+                    brain.battery.low(),
+                    brain.battery_stops,
+                    age(brain.battery.below_since, 1_000_000),
+                    age(brain.battery.well_since, 5_000_000),
+                )
+            }),
             resets: (
                 resets.estop,
                 resets.wait_s().map(|left| left > 0),
@@ -124,6 +144,7 @@ impl World {
 
 /// What makes two worlds the same.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[allow(clippy::struct_excessive_bools)] // facts, not states
 pub(super) struct Shape {
     state: u8,
     cause: Option<u8>,
@@ -132,15 +153,31 @@ pub(super) struct Shape {
     cycles: u32,
     at_neutral: bool,
     session: (bool, bool, bool),
+    present: Option<Present>,
+    /// Short runs, and whether they lock arming.
+    starts: Option<(u8, bool)>,
     /// Set in the brain, set in the flash, asked for in the open session.
     key: (bool, bool, bool),
     repeat: (bool, bool, bool),
-    battery: (Option<u16>, bool, bool, Option<u8>, Option<u8>),
+    battery: Option<BatteryShape>,
     resets: (bool, Option<bool>, bool, bool),
     work: u8,
     upload: Option<Upload>,
     tables: (bool, Option<bool>),
     unsaved: (bool, bool),
+}
+
+/// Charge as told, low, stopping for it, and how long low and well.
+type BatteryShape = (Option<u16>, bool, bool, Option<u8>, Option<u8>);
+
+/// The session is over USB, the bench window is open, the boot loader was asked for, the lengths are far from those as built.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[allow(clippy::struct_excessive_bools)] // facts, not states
+struct Present {
+    usb: bool,
+    window: bool,
+    leaving: bool,
+    far: bool,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

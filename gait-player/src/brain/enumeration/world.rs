@@ -1,19 +1,18 @@
 //! A brain with all that surrounds it, and what it shows of each event.
 
 use super::event::Event;
-use crate::TICK_US;
-use crate::brain::settings::Settings;
+use crate::brain::session::FRESH_US;
 use crate::brain::{Boot, Brain, BrainConfig, Inputs};
-use crate::storage::{MAX_SETTINGS, PAGE, SLOT_PAGES, SLOTS, Storage};
+use crate::storage::MemoryStorage;
+use crate::{TICK_US, Transport};
 use link_protocol::*;
-use std::convert::Infallible;
 use std::vec::Vec;
 
 /// A brain with all that surrounds it.
 #[derive(Clone)]
 pub(super) struct World {
     pub(super) brain: Brain,
-    pub(super) flash: Flash,
+    pub(super) flash: MemoryStorage,
     pub(super) now_us: u64,
     pub(super) battery_mv: Option<u16>,
     sequence: u16,
@@ -28,74 +27,35 @@ pub(super) struct World {
     /// Set where the open session began with a key.
     pub(super) seal: Option<Seal>,
     counter: u64,
-}
-
-#[derive(Clone)]
-pub(super) struct Flash {
-    slots: Vec<u8>,
-    settings: Option<Vec<u8>>,
-}
-
-const SLOT: usize = PAGE * SLOT_PAGES;
-
-impl Flash {
-    /// The key that a brain finds there.
-    pub(super) fn key(&self) -> Option<Key> {
-        self.settings.as_deref().and_then(Settings::stored_key)
-    }
-}
-
-impl Storage for Flash {
-    type Error = Infallible;
-
-    fn read(&mut self, slot: usize, offset: usize, bytes: &mut [u8]) -> Result<(), Infallible> {
-        bytes.copy_from_slice(&self.slots[slot * SLOT + offset..][..bytes.len()]);
-        Ok(())
-    }
-
-    fn erase(&mut self, slot: usize) -> Result<(), Infallible> {
-        self.slots[slot * SLOT..][..SLOT].fill(0xFF);
-        Ok(())
-    }
-
-    fn program(&mut self, slot: usize, page: usize, bytes: &[u8; PAGE]) -> Result<(), Infallible> {
-        self.slots[slot * SLOT + page * PAGE..][..PAGE].copy_from_slice(bytes);
-        Ok(())
-    }
-
-    fn load_settings(
-        &mut self,
-        bytes: &mut [u8; MAX_SETTINGS],
-    ) -> Result<Option<usize>, Infallible> {
-        Ok(self.settings.as_ref().map(|settings| {
-            bytes[..settings.len()].copy_from_slice(settings);
-            settings.len()
-        }))
-    }
-
-    fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Infallible> {
-        self.settings = Some(bytes.to_vec());
-        Ok(())
-    }
+    /// The way of the host that greeted last.
+    pub(super) via: Transport,
+    last_beat: Vec<u8>,
+    jumper: bool,
 }
 
 /// What a step showed.
 #[derive(Default)]
+#[allow(clippy::struct_excessive_bools)] // facts, not states
 pub(super) struct Seen {
     /// The state after each tick, in order, without repeats.
     pub(super) states: Vec<StateName>,
     /// An arm was granted.
     pub(super) armed: bool,
+    /// The lease was not empty before.
+    pub(super) fresh: bool,
+    /// Something fed the lease.
+    pub(super) fed: bool,
+    /// A first key was set, lengths far from those as built, or the boot loader was to be entered.
+    pub(super) opened: bool,
+    /// Somebody was at the robot before.
+    pub(super) present: bool,
 }
 
 impl World {
     pub(super) fn new() -> Self {
         let mut world = Self {
             brain: Brain::new(BrainConfig::in_tests()),
-            flash: Flash {
-                slots: std::vec![0xFF; SLOT * SLOTS],
-                settings: None,
-            },
+            flash: MemoryStorage::erased(),
             now_us: 0,
             battery_mv: Some(5_000),
             sequence: 0,
@@ -107,6 +67,9 @@ impl World {
             asked: false,
             seal: None,
             counter: 0,
+            via: Transport::Uart,
+            last_beat: Vec::new(),
+            jumper: false,
         };
         world.tick(&mut Seen::default());
         world
@@ -119,7 +82,12 @@ impl World {
     }
 
     pub(super) fn step(&mut self, event: Event, requests: &[Request]) -> Seen {
-        let mut seen = Seen::default();
+        let mut seen = Seen {
+            fresh: !self.brain.session.silent(self.now_us),
+            present: self.via == Transport::Usb || self.brain.bench.open(self.now_us),
+            ..Seen::default()
+        };
+        let (fed_before, guarded_before) = (self.brain.session.fed_us, self.guarded());
         match event {
             Event::Ask(index) => {
                 self.sequence = self.sequence.wrapping_add(1);
@@ -145,18 +113,36 @@ impl World {
                 let message = Message::Request(requests[index].clone());
                 self.receive(&frame(session, sequence.wrapping_add(1), &message));
             }
+            Event::Elsewhere(index) => {
+                let (session, sequence) = (self.brain.session.number(), self.sequence);
+                let message = Message::Request(requests[index].clone());
+                let frame = self.signed(session, sequence.wrapping_add(1), &message);
+                let other = match self.via {
+                    Transport::Uart => Transport::Usb,
+                    Transport::Usb => Transport::Uart,
+                };
+                self.brain.receive(self.now_us, other, &frame);
+                self.is_done_said();
+            }
             Event::Repeat => {
                 let frame = self.last.clone();
                 // Not a new arm, whatever it is answered.
                 self.receive(&frame);
             }
-            Event::Greet => {
+            Event::Greet(via) => {
                 self.nonce += 1;
                 self.asked = false;
+                self.via = via;
                 self.greet();
             }
             Event::GreetAgain => self.greet(),
             Event::KeepAlive => self.keep_alive(),
+            Event::OldKeepAlive => {
+                let again = self.last_beat.clone();
+                self.receive(&again);
+                self.beat(self.now_us.saturating_sub(2 * FRESH_US));
+            }
+            Event::Jumper => self.jumper = true,
             Event::Pass { ticks, kept_alive } => {
                 for tick in 1..ticks {
                     if kept_alive && tick % 2 == 0 {
@@ -171,6 +157,9 @@ impl World {
                 let boot = Boot {
                     reset_reason,
                     kept: self.brain.output.kept,
+                    // Power takes the RAM's memory, not the flash's.
+                    starts: (reset_reason != ResetReason::PowerOn)
+                        .then_some(self.brain.output.starts),
                     session_seed: self.brain.session.number().wrapping_add(7),
                     ..Boot::power_on(1, 0)
                 };
@@ -184,7 +173,18 @@ impl World {
             }
         }
         self.tick(&mut seen);
+        seen.opened = self.guarded() > guarded_before && !matches!(event, Event::Reset(_));
+        seen.fed = self.brain.session.fed_us != fed_before && self.brain.session.fed_us.is_some();
         seen
+    }
+
+    /// How much of what needs presence has happened.
+    fn guarded(&self) -> u8 {
+        let brain = &self.brain;
+        let far = brain.settings.configuration.middle_m > 1.5 * brain.built.middle_m;
+        u8::from(brain.settings.key.is_some())
+            + u8::from(far)
+            + u8::from(brain.bench.leaves(u64::MAX))
     }
 
     fn tick(&mut self, seen: &mut Seen) {
@@ -192,6 +192,8 @@ impl World {
         let inputs = Inputs {
             battery_mv: self.battery_mv,
             link_up: true,
+            usb_up: true,
+            present: core::mem::take(&mut self.jumper),
         };
         let output = self.brain.tick(self.now_us, &inputs);
         let powered = !matches!(output.state, StateName::Stopped | StateName::EStopped);
@@ -257,24 +259,35 @@ impl World {
     }
 
     fn keep_alive(&mut self) {
+        self.beat(self.now_us);
+    }
+
+    fn beat(&mut self, heard_us: u64) {
         let session = self.brain.session.number();
-        let frame = self.signed(session, 0, &Message::KeepAlive);
+        let beat = Message::Heartbeat(Heartbeat {
+            host_us: 0,
+            heard_us,
+        });
+        let frame = self.signed(session, 0, &beat);
         self.receive(&frame);
+        self.last_beat = frame;
     }
 
     /// Whether the answer is Done.
     fn receive(&mut self, frame: &[u8]) -> bool {
-        self.brain.receive(self.now_us, frame);
+        self.brain.receive(self.now_us, self.via, frame);
         self.is_done_said()
     }
 
     fn is_done_said(&mut self) -> bool {
-        let (mut decoder, mut bytes) = (Decoder::new(), [0; 640]);
-        let len = self.brain.transmit(&mut bytes);
-        let heard = bytes[..len].iter().filter_map(|&byte| decoder.push(byte));
-        heard
-            .map(|received| received.message == Ok(Message::Reply(Reply::Done)))
-            .fold(false, |any, done| any | done)
+        Transport::ALL.into_iter().fold(false, |any, transport| {
+            let (mut decoder, mut bytes) = (Decoder::new(), [0; 640]);
+            let len = self.brain.transmit(transport, &mut bytes);
+            let heard = bytes[..len].iter().filter_map(|&byte| decoder.push(byte));
+            heard
+                .map(|received| received.message == Ok(Message::Reply(Reply::Done)))
+                .fold(any, |any, done| any | done)
+        })
     }
 }
 

@@ -9,8 +9,8 @@ use link_protocol::Telemetry;
 
 use super::super::access::{Access, Line, Met};
 use super::super::answers::Doing;
-use super::super::holder::{Ask, Introduction, News};
 use super::super::port::Pace;
+use super::super::port_owner::{Ask, Introduction, News};
 use super::super::status;
 use crate::failure::Outcome;
 use crate::output::Output;
@@ -133,8 +133,8 @@ impl<'a> Source<'a> {
     /// The link's, or what the process that has the port says.
     pub(super) fn stop(&mut self, estop: bool) -> Outcome {
         match self {
-            Self::Own(line) if estop => Ok(line.robot.estop()?),
-            Self::Own(line) => Ok(line.robot.stop()?),
+            Self::Own(line) if estop => Ok(line.robot.estop().map(drop)?),
+            Self::Own(line) => Ok(line.robot.stop().map(drop)?),
             Self::Holder(beside) => {
                 let ask = if estop { Ask::EStop } else { Ask::Stop };
                 beside
@@ -143,8 +143,8 @@ impl<'a> Source<'a> {
                     .and_then(|met| match met {
                         Met::Relayed(_) => Ok(()),
                         // It let go of the port in this very moment.
-                        Met::Line(mut line) if estop => Ok(line.robot.estop()?),
-                        Met::Line(mut line) => Ok(line.robot.stop()?),
+                        Met::Line(mut line) if estop => Ok(line.robot.estop().map(drop)?),
+                        Met::Line(mut line) => Ok(line.robot.stop().map(drop)?),
                     })
             }
         }
@@ -168,7 +168,7 @@ impl<'a> Source<'a> {
     pub(super) fn leave(self, output: Output) -> Outcome {
         match self {
             Self::Own(mut line) => {
-                output.answer(&Doing::new(&line.robot.status()?));
+                output.answer(&Doing::of(&mut line.robot)?);
                 line.close()
             }
             Self::Holder(beside) => status(beside.access, output),

@@ -1,11 +1,12 @@
-//! Where the system has no local sockets: nobody is told, nobody can be asked.
+//! Where the system has no local sockets: nobody is told, nobody can be asked, and no second program gets past the first.
 
 use std::fmt;
 
 use host_link::Robot;
+use host_link::port::MockPort;
 
 use super::super::port::AnyPort;
-use super::relay::{Ask, Relayed};
+use super::relay::{Ask, Relayed, Unanswered};
 use crate::failure::Outcome;
 
 /// Holds the port without telling.
@@ -37,6 +38,31 @@ impl HeldBy {
 
     /// Cannot be.
     pub(in super::super) fn ask(&self, _ask: Ask) -> Outcome<Option<Relayed>> {
+        match *self {}
+    }
+
+    /// Cannot be.
+    pub(in super::super) fn try_ask(&self, _ask: Ask) -> Result<Option<Relayed>, Unanswered> {
+        match *self {}
+    }
+
+    /// Cannot be.
+    pub(in super::super) fn beside(&self) -> Option<MockPort> {
+        match *self {}
+    }
+
+    /// Cannot be.
+    pub(in super::super) fn end(&self) -> Outcome {
+        match *self {}
+    }
+
+    /// Cannot be.
+    pub(in super::super) fn hangs(&self) -> String {
+        match *self {}
+    }
+
+    /// Cannot be.
+    pub(in super::super) fn process(&self) -> &str {
         match *self {}
     }
 }

@@ -91,8 +91,8 @@ impl Ask {
             }))
         };
         let answered: Result<Relayed, LinkError> = match self {
-            Self::EStop => robot.estop().and_then(|()| done(robot, E_STOPPED)),
-            Self::Stop => robot.stop().and_then(|()| {
+            Self::EStop => robot.estop().and_then(|_| done(robot, E_STOPPED)),
+            Self::Stop => robot.stop().and_then(|_| {
                 done(
                     robot,
                     "Stopping: the robot ramps to neutral, then the pulses go off.",
@@ -108,9 +108,7 @@ impl Ask {
                 .pause(true)
                 .and_then(|()| done(robot, PAUSED_DETACHED)),
             Self::Resume => robot.resume().and_then(|()| done(robot, "Resumed.")),
-            Self::Status => robot
-                .status()
-                .map(|status| Relayed::of(&Doing::new(&status))),
+            Self::Status => Doing::of(robot).map(|doing| Relayed::of(&doing)),
             Self::Introduce => Introduction::of(robot).map(|told| Relayed::data(&told)),
             Self::News => Ok(Relayed::data(&News::of(robot))),
         };
@@ -120,6 +118,15 @@ impl Ask {
             answer: Value::Null,
         })
     }
+}
+
+/// Why the holder of a port gave no answer.
+#[derive(Debug)]
+pub(in super::super) enum Unanswered {
+    /// It did, and it is no.
+    Refused(Failure),
+    /// It lives, has the port, and says nothing.
+    Hangs,
 }
 
 /// An answer that crossed the socket: for people and for scripts, or why there is none.

@@ -1,40 +1,44 @@
-//! The twin's non-volatile memory: it outlives a power cut of the twin when its caller keeps it.
+//! A storage in memory that behaves like the chip's flash: for tests and virtual robots, which share this one.
+
+extern crate std;
 
 use std::convert::Infallible;
+use std::vec::Vec;
 
-use gait_player::storage::{MAX_SETTINGS, PAGE, SLOT_PAGES, SLOTS, Storage};
+use super::{MAX_SETTINGS, PAGE, SLOT_PAGES, SLOTS, Storage};
+use crate::ShortStarts;
 
 const SLOT_BYTES: usize = PAGE * SLOT_PAGES;
 
-/// Two table slots and a settings record, in memory.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct VirtualFlash {
-    slots: [Vec<u8>; SLOTS],
-    settings: Option<Vec<u8>>,
+/// Two table slots, a settings record and the record of short starts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MemoryStorage {
+    /// The table slots, byte by byte.
+    pub slots: [Vec<u8>; SLOTS],
+    /// The settings record.
+    pub settings: Option<Vec<u8>>,
+    /// The record of short starts.
+    pub starts: Option<[u8; ShortStarts::LEN]>,
 }
 
-impl VirtualFlash {
+impl MemoryStorage {
     /// As delivered: nothing stored.
     pub fn erased() -> Self {
         Self {
-            slots: std::array::from_fn(|_| vec![0xFF; SLOT_BYTES]),
+            slots: core::array::from_fn(|_| std::vec![0xFF; SLOT_BYTES]),
             settings: None,
+            starts: None,
         }
-    }
-
-    /// Whether anything was ever stored.
-    pub fn is_erased(&self) -> bool {
-        *self == Self::erased()
     }
 }
 
-impl Default for VirtualFlash {
+impl Default for MemoryStorage {
     fn default() -> Self {
         Self::erased()
     }
 }
 
-impl Storage for VirtualFlash {
+impl Storage for MemoryStorage {
     type Error = Infallible;
 
     /// Reads like the chip's flash: what lies outside is as if erased.
@@ -82,6 +86,18 @@ impl Storage for VirtualFlash {
 
     fn save_settings(&mut self, bytes: &[u8]) -> Result<(), Infallible> {
         self.settings = Some(bytes.to_vec());
+        Ok(())
+    }
+
+    fn load_starts(&mut self, bytes: &mut [u8; ShortStarts::LEN]) -> Result<bool, Infallible> {
+        if let Some(starts) = &self.starts {
+            *bytes = *starts;
+        }
+        Ok(self.starts.is_some())
+    }
+
+    fn save_starts(&mut self, bytes: &[u8; ShortStarts::LEN]) -> Result<(), Infallible> {
+        self.starts = Some(*bytes);
         Ok(())
     }
 }

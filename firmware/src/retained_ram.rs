@@ -8,7 +8,7 @@
 
 use core::mem::MaybeUninit;
 
-use gait_player::CrashNote;
+use gait_player::{CrashNote, ShortStarts};
 
 /// The last crash.
 #[unsafe(link_section = ".uninit.crash")]
@@ -17,6 +17,10 @@ static mut NOTE: MaybeUninit<CrashNote> = MaybeUninit::uninit();
 /// [`gait_player::Output::kept`] and its complement.
 #[unsafe(link_section = ".uninit.kept")]
 static mut KEPT: MaybeUninit<[u32; 2]> = MaybeUninit::uninit();
+
+/// [`gait_player::Output::starts`], as its record.
+#[unsafe(link_section = ".uninit.starts")]
+static mut STARTS: MaybeUninit<[u8; ShortStarts::LEN]> = MaybeUninit::uninit();
 
 /// Leaves a note for the next start. To be called with interrupts off, by what does not come back.
 pub(crate) fn leave(note: CrashNote) {
@@ -51,4 +55,25 @@ pub(crate) fn kept() -> u32 {
     // SAFETY: as in `take_note`; any bits are two words.
     let [word, complement] = unsafe { (&raw const KEPT).cast::<[u32; 2]>().read_volatile() };
     if word == !complement { word } else { 0 }
+}
+
+/// Keeps the count of short starts. To be called by the control task alone.
+pub(crate) fn keep_starts(starts: ShortStarts) {
+    // SAFETY: as in `keep`.
+    unsafe {
+        (&raw mut STARTS)
+            .cast::<[u8; ShortStarts::LEN]>()
+            .write_volatile(starts.encode());
+    }
+}
+
+/// The count that [`keep_starts`] kept; `None` where there is none. To be called before any task runs.
+pub(crate) fn starts() -> Option<ShortStarts> {
+    // SAFETY: as in `take_note`; any bits are bytes.
+    let record = unsafe {
+        (&raw const STARTS)
+            .cast::<[u8; ShortStarts::LEN]>()
+            .read_volatile()
+    };
+    ShortStarts::decode(&record)
 }

@@ -1,0 +1,158 @@
+//! Who has the port: a socket, a thread that says at once that it has heard, and what was asked done at the next beat.
+
+use std::fs;
+use std::io::{self, BufRead, BufReader, Write};
+use std::os::unix::net::{UnixListener, UnixStream};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, mpsc};
+use std::thread;
+use std::time::Duration;
+
+use clap::ValueEnum;
+use host_link::Robot;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+use super::super::port::AnyPort;
+use super::relay::Ask;
+use super::socket::{HEARD, folder, is_held, note, socket_name};
+
+/// A process that asks and says nothing is not waited for.
+const PATIENCE_WITH_ASKER: Duration = Duration::from_millis(50);
+/// How often the listening thread looks whether the holder is still there.
+const LISTEN: Timespec = Timespec {
+    tv_sec: 0,
+    tv_nsec: 100_000_000,
+};
+
+/// Holds the port, and hears what others ask.
+pub(in super::super) struct Holder {
+    open: Option<Open>,
+    asked: Vec<(Ask, UnixStream)>,
+}
+
+/// A socket at which a thread listens.
+struct Open {
+    path: PathBuf,
+    heard: mpsc::Receiver<(Ask, UnixStream)>,
+    ended: Arc<AtomicBool>,
+}
+
+impl Holder {
+    /// Makes known that this process has the port, as `command`. Where no socket can be made (a system without a place for
+    /// it), the port is held all the same and others are only told that it is busy.
+    pub(in super::super) fn announce(port: &str, command: &str) -> Self {
+        Self::announce_in(folder().as_deref(), port, command)
+    }
+
+    pub(super) fn announce_in(folder: Option<&Path>, port: &str, command: &str) -> Self {
+        let open = folder
+            .zip(socket_name(port))
+            .and_then(|(folder, name)| Open::new(folder.join(name), command).ok());
+        Self {
+            open,
+            asked: Vec::new(),
+        }
+    }
+
+    /// Whether somebody waits for something.
+    pub(in super::super) fn asked(&mut self) -> bool {
+        if let Some(open) = &self.open {
+            self.asked.extend(open.heard.try_iter());
+        }
+        !self.asked.is_empty()
+    }
+
+    /// Does all that was asked, the most urgent first.
+    pub(in super::super) fn serve(&mut self, robot: &mut Robot<AnyPort>) {
+        if !self.asked() {
+            return;
+        }
+        self.asked.sort_by_key(|(ask, _)| *ask as u8);
+        for (ask, mut stream) in self.asked.drain(..) {
+            let answer = ask.of(robot);
+            // Whoever asked may have gone; what was asked is done.
+            let _ = serde_json::to_string(&answer)
+                .map_err(io::Error::other)
+                .and_then(|line| writeln!(stream, "{line}"));
+        }
+    }
+}
+
+impl Open {
+    /// Listens at `path` from now on, in a thread: who asks hears at once that this process lives, whatever else it is at.
+    fn new(path: PathBuf, command: &str) -> io::Result<Self> {
+        let listener = listen(&path, command)?;
+        let (hears, heard) = mpsc::channel();
+        let ended = Arc::new(AtomicBool::new(false));
+        let end = Arc::clone(&ended);
+        thread::Builder::new().spawn(move || {
+            while !end.load(Ordering::SeqCst) {
+                let _ = poll(&mut [PollFd::new(&listener, PollFlags::IN)], Some(&LISTEN));
+                while let Ok((stream, _)) = listener.accept() {
+                    if let Some(ask) = hear(&stream) {
+                        // The holder may be leaving; then the stream is closed, and who asked looks again.
+                        let _ = hears.send((ask, stream));
+                    }
+                }
+            }
+        })?;
+        Ok(Self { path, heard, ended })
+    }
+}
+
+impl Drop for Open {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::SeqCst);
+        let _ = fs::remove_file(&self.path);
+        let _ = fs::remove_file(note(&self.path));
+    }
+}
+
+fn hear(mut stream: &UnixStream) -> Option<Ask> {
+    stream.set_nonblocking(false).ok()?;
+    stream.set_read_timeout(Some(PATIENCE_WITH_ASKER)).ok()?;
+    stream.set_write_timeout(Some(PATIENCE_WITH_ASKER)).ok()?;
+    let mut line = String::new();
+    BufReader::new(stream).read_line(&mut line).ok()?;
+    let ask = Ask::from_str(line.trim(), false).ok()?;
+    writeln!(stream, "{HEARD}").ok()?;
+    Some(ask)
+}
+
+/// Listens at `path`, in place of a socket that nobody listens at any more.
+fn listen(path: &Path, command: &str) -> io::Result<UnixListener> {
+    if !is_held(path) {
+        let _ = fs::remove_file(path);
+    }
+    fs::write(note(path), format!("{command}\n{}", std::process::id()))?;
+    let listener = UnixListener::bind(path)?;
+    listener.set_nonblocking(true)?;
+    Ok(listener)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_word_that_is_no_ask_is_passed_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut holder = Holder::announce_in(Some(folder.path()), "/dev/rfcomm7", "x");
+        let socket = folder.path().join(socket_name("/dev/rfcomm7").unwrap());
+        for word in ["dance\n", "", "STOP\n"] {
+            let mut stream = UnixStream::connect(&socket).unwrap();
+            stream.write_all(word.as_bytes()).unwrap();
+        }
+        let mut stream = UnixStream::connect(&socket).unwrap();
+        stream.write_all(b"estop\n").unwrap();
+        let mut said = String::new();
+        BufReader::new(&stream).read_line(&mut said).unwrap();
+        // They were heard in order: what came before is not waiting either.
+        assert_eq!(said.trim(), HEARD);
+        while !holder.asked() {
+            thread::yield_now();
+        }
+        assert_eq!(holder.asked.len(), 1);
+    }
+}

@@ -1,0 +1,290 @@
+//! `swimmer robot setup`: a first morning with two servos, question by question. Horns off, arm, which servo is which, which
+//! way it turns, where it is straight, its dead band and end stops; then everything is saved on the robot and written down.
+//!
+//! The joints are moved by trims, which the robot ramps like anything else, so that nothing but the last, optional, swing
+//! needs a gait. Whoever leaves before the end finds the robot stopped and as it was.
+
+mod answer;
+mod export;
+mod measured;
+mod operator;
+mod readings;
+mod save;
+mod swing;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use host_link::LinkError;
+use link_protocol::{Joint, ServoSettings, StateName};
+use swimmer_files::SwimmerFile;
+
+use self::answer::Done;
+use self::measured::{Measured, end_stops, told};
+use self::operator::{Operator, degrees};
+use self::readings::Readings;
+use super::access::{Access, Line};
+use super::answers::state;
+use super::motion::{MAY_JUMP, wait_for_rest};
+use super::port::Pace;
+use super::servo::name_of;
+use crate::arguments::load_swimmer;
+use crate::failure::{Failure, Outcome};
+use crate::interrupt::Interrupt;
+use crate::output::{Output, aside};
+use crate::quantity;
+
+/// How far a joint is turned to be looked at, rad: 25°, within the largest trim.
+const SWING: f64 = 0.436_332;
+/// From a command to a joint at rest: the way, and a little for the eye.
+const TO_TURN: Duration = Duration::from_millis(1_200);
+/// Both joints, in the order of their questions.
+const JOINTS: [Joint; 2] = [Joint::Front, Joint::Back];
+
+/// Set up new servos at the bench, question by question: which is which, sign, centre, dead band, end stops
+///
+/// Needs a protractor. The answers come from the standard input, so that a script may give them; q or Ctrl-C leaves, with the
+/// robot stopped and everything as it was. At the end the robot has stored its maps, and a swimmer file its `[servo]`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Setup {
+    /// purcell, robot, robot-slender or a swimmer file with the links' lengths; left out, it is asked for
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: Option<String>,
+    /// Write the swimmer file with what was found; left out, it is asked for
+    #[arg(short, long, value_name = "FILE.toml")]
+    output: Option<PathBuf>,
+}
+
+/// `swimmer robot setup`.
+pub(super) fn run(access: &Access, arguments: &Setup, output: Output) -> Outcome {
+    let named = arguments.swimmer.as_deref().map(load_swimmer).transpose()?;
+    if let Some(file) = &arguments.output {
+        export::may_be_written(file, arguments.swimmer.as_deref())?;
+    }
+    let interrupt = Interrupt::install_with_a_robot()?;
+    let operator = Operator::new(interrupt.clone(), output);
+    let mut line = access.connect("swimmer robot setup", Pace::RealTime)?;
+    let status = line.robot.status()?;
+    if status.state != StateName::Stopped {
+        return Err(Failure::Tried(format!(
+            "the robot is {}, and was left alone: stop it first (`swimmer robot stop`)",
+            state(status.state)
+        )));
+    }
+    let before = [
+        line.robot.servo(Joint::Front)?,
+        line.robot.servo(Joint::Back)?,
+    ];
+    let mut bench = Bench {
+        line: &mut line,
+        operator: &operator,
+        interrupt: &interrupt,
+        before,
+    };
+    let done = match bench.everything(arguments, named) {
+        Ok(done) => done,
+        Err(failure) => {
+            bench.leave();
+            return Err(failure);
+        }
+    };
+    output.answer(&done);
+    line.close()
+}
+
+/// The robot, and who stands before it.
+struct Bench<'a> {
+    line: &'a mut Line,
+    operator: &'a Operator,
+    interrupt: &'a Interrupt,
+    /// The maps as they were found: what a setup that is left puts back.
+    before: [ServoSettings; 2],
+}
+
+impl Bench<'_> {
+    fn everything(&mut self, arguments: &Setup, named: Option<SwimmerFile>) -> Outcome<Done> {
+        self.operator.tell(
+            "Setting up both servos. A question ends with Enter; q leaves, and Ctrl-C too: the robot is stopped then and as it was.\n\
+             1. Which servo is which",
+        );
+        self.operator.confirm(
+            self.line,
+            false,
+            "Take the horns off both servos, or the links off their horns. Is nothing left that a turning servo could hit?",
+        )?;
+        self.power()?;
+        for joint in JOINTS {
+            self.which_is(joint)?;
+        }
+        self.operator.tell("2. Horns");
+        self.operator.confirm(
+            self.line,
+            true,
+            "Both servos stand at their centres now. Put the horns on so that the links are as straight as the teeth allow (a few degrees off are found below), and screw them on.",
+        )?;
+        self.operator.tell(
+            "3. Angles\n\
+             Hold a protractor over a joint, seen from above: 0 is straight; where the link's free end lies to the LEFT of the middle link, looking from its back to its front, the angle is positive, to the RIGHT negative. Whole degrees will do.",
+        );
+        let front = self.measure(Joint::Front)?;
+        let back = self.measure(Joint::Back)?;
+        self.rest()?;
+        self.operator.tell("4. The swimmer");
+        let swimmer = self.swimmer(named)?;
+        let file = self.save(&swimmer, [&front, &back])?;
+        self.operator.tell("5. A look at the result");
+        self.verify(&front, &back)?;
+        self.written(arguments, file, [front, back])
+    }
+
+    /// Pulses on, with no trim in the way.
+    fn power(&mut self) -> Outcome {
+        for joint in JOINTS {
+            self.line.robot.trim(joint, 0.0)?;
+        }
+        self.operator.tell(MAY_JUMP);
+        self.line.robot.arm(false)?;
+        self.operator.wait(self.line, true, TO_TURN)
+    }
+
+    /// Pulses off.
+    fn rest(&mut self) -> Outcome {
+        self.line.robot.stop()?;
+        wait_for_rest(&mut self.line.robot)?;
+        Ok(())
+    }
+
+    /// Turns a joint to an angle by its present map.
+    fn turn(&mut self, joint: Joint, angle: f64) -> Outcome {
+        self.line.robot.trim(joint, angle)?;
+        self.operator.wait(self.line, true, TO_TURN)
+    }
+
+    /// The servo that turns is the one that is meant: else the plugs are changed over.
+    fn which_is(&mut self, joint: Joint) -> Outcome {
+        let name = name_of(joint);
+        loop {
+            self.operator.confirm(
+                self.line,
+                true,
+                &format!("The {name} servo turns by 25° and back. Watch both."),
+            )?;
+            self.turn(joint, SWING)?;
+            self.turn(joint, 0.0)?;
+            let turned = self.operator.ask(
+                self.line,
+                true,
+                "Which one turned? [front, back, both, none]",
+                |answer| match answer {
+                    "front" | "back" | "both" | "none" => Ok(answer.to_owned()),
+                    _ => Err("Answer front, back, both or none.".to_owned()),
+                },
+            )?;
+            if turned == name {
+                return Ok(());
+            }
+            self.rest()?;
+            let remedy = match turned.as_str() {
+                "none" => {
+                    "no servo turned: has it power of its own, is its ground joined to the board's, and its signal wire at D4 (front) or D5 (back), on a Pico GP16 or GP17?"
+                }
+                "both" => {
+                    "both turned: their signal wires touch; each has a pin of its own, D4 (front) and D5 (back), on a Pico GP16 and GP17"
+                }
+                _ => {
+                    "the plugs are changed over: exchange the signal wires of D4 (front) and D5 (back), on a Pico GP16 and GP17"
+                }
+            };
+            self.operator.confirm(
+                self.line,
+                false,
+                &format!("The pulses are off: {remedy}. Done?"),
+            )?;
+            self.power()?;
+        }
+    }
+
+    /// Four readings, the dead band and the end stops of one joint.
+    fn measure(&mut self, joint: Joint) -> Outcome<Measured> {
+        let name = name_of(joint);
+        let before = ServoSettings {
+            trim: 0,
+            ..self.before[joint.index()]
+        };
+        let found = loop {
+            let mut read = |number: u8, angle: f64| -> Outcome<f64> {
+                self.turn(joint, angle)?;
+                let question = format!("{name}, {number} of 4: which angle does the joint show?");
+                self.operator.ask(self.line, true, &question, degrees)
+            };
+            let readings = Readings {
+                low: read(1, -SWING)?,
+                after_low: read(2, 0.0)?,
+                high: read(3, SWING)?,
+                after_high: read(4, 0.0)?,
+            };
+            match readings.found(SWING) {
+                Ok(found) => break found,
+                Err(problem) => self
+                    .operator
+                    .tell(&format!("{problem} The four angles are read once more.")),
+            }
+        };
+        let settings = found.settings(&before);
+        self.operator.tell(&told(name, &found, &settings));
+        let measured = quantity::angle(found.dead_band);
+        let dead_band = self.operator.ask(
+            self.line,
+            true,
+            &format!("{name}: dead band ±{measured}. Enter takes it; or type another half width, in degrees"),
+            |answer| match answer {
+                "" => Ok(found.dead_band),
+                text => degrees(text).and_then(|angle| {
+                    (angle >= 0.0)
+                        .then_some(angle)
+                        .ok_or_else(|| "A dead band is zero or more.".to_owned())
+                }),
+            },
+        )?;
+        let most = f64::from(self.line.robot.info().limits.max_angle);
+        let ends = self.operator.ask(
+            self.line,
+            true,
+            &format!(
+                "{name}: how far may the joint turn before anything touches? Degrees to its left and to its right, as 90 75; Enter: {} to both",
+                quantity::angle(most)
+            ),
+            |answer| end_stops(answer, most),
+        )?;
+        Ok(Measured {
+            settings,
+            dead_band,
+            ends,
+        })
+    }
+
+    /// The robot at rest and as it was, as far as the link allows.
+    fn leave(&mut self) {
+        let left = self.put_back();
+        let told = match left {
+            Ok(()) => "The robot is stopped and as it was.",
+            Err(_) => {
+                "The robot could not be put back as it was: look at its trims (`swimmer robot trim`)."
+            }
+        };
+        aside(told);
+    }
+
+    fn put_back(&mut self) -> Result<(), LinkError> {
+        let robot = &mut self.line.robot;
+        robot.stop()?;
+        wait_for_rest(robot)?;
+        for joint in JOINTS {
+            let before = self.before[joint.index()];
+            if robot.servo(joint)? != before {
+                robot.set_servo(joint, before)?;
+            }
+        }
+        Ok(())
+    }
+}

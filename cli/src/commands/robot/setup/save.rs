@@ -1,0 +1,153 @@
+//! The end of a setup: everything onto the robot, a look at it, and the swimmer file.
+
+use std::path::{Path, PathBuf};
+
+use link_protocol::{Configuration, Joint};
+use swimmer_files::{ServoFile, SwimmerFile};
+use twin::configuration;
+
+use super::super::preflight::configured;
+use super::super::servo::{self, Set};
+use super::answer::{Done, Servo};
+use super::measured::{Measured, full_range};
+use super::{Bench, JOINTS, Setup, export};
+use crate::failure::{Failure, Outcome};
+use crate::quantity;
+
+impl Bench<'_> {
+    /// Whose lengths the robot has.
+    pub(super) fn swimmer(&mut self, named: Option<SwimmerFile>) -> Outcome<SwimmerFile> {
+        if let Some(file) = named {
+            return Ok(file);
+        }
+        let present = self.line.robot.configuration()?;
+        let (name, swimmer) = configured(&present);
+        let lengths = [
+            swimmer.links.front,
+            swimmer.links.middle,
+            swimmer.links.back,
+        ];
+        let [front, middle, back] = lengths.map(|metres| (metres * 1e5).round() / 1e2);
+        let question = format!(
+            "Which swimmer is it? A preset (purcell, robot, robot-slender) or the path of a swimmer file with its lengths; Enter: as the robot is configured, {name} ({front} / {middle} / {back} mm)"
+        );
+        let standard = SwimmerFile {
+            name,
+            swimmer,
+            fluid: None,
+            servo: None,
+        };
+        self.operator
+            .ask(self.line, false, &question, |answer| match answer {
+                "" => Ok(standard.clone()),
+                path => SwimmerFile::find(path).map_err(|error| error.to_string()),
+            })
+    }
+
+    /// Everything onto the robot; gives the file that says the same.
+    pub(super) fn save(
+        &mut self,
+        swimmer: &SwimmerFile,
+        joints: [&Measured; 2],
+    ) -> Outcome<SwimmerFile> {
+        let robot = &mut self.line.robot;
+        let present = robot.configuration()?;
+        let limits = robot.info().limits;
+        let reach = joints.map(|measured| measured.ends[1].max(-measured.ends[0]));
+        let max_angle = reach[0].max(reach[1]).min(f64::from(limits.max_angle));
+        #[allow(clippy::cast_possible_truncation)] // the wire's precision
+        let wanted = Configuration {
+            max_angle: limits.max_angle.min(max_angle as f32),
+            max_rate: present.max_rate,
+            ..configuration(&swimmer.swimmer, &ServoFile::default())
+        };
+        robot.configure(wanted)?;
+        for (joint, measured) in JOINTS.into_iter().zip(joints) {
+            let full = full_range(&limits);
+            servo::set_range(robot, joint, full)?;
+            servo::set(robot, joint, measured.settings)?;
+            servo::set_range(robot, joint, measured.range(full))?;
+        }
+        self.line.stored("the servos' maps are")?;
+        // From here on there is nothing to put back.
+        self.before = joints.map(|measured| measured.settings);
+        let base = swimmer.servo.unwrap_or_default();
+        Ok(SwimmerFile {
+            servo: Some(ServoFile {
+                max_angle: (max_angle * 1e4).round() * 1e-4,
+                max_rate: f64::from(wanted.max_rate).min(base.max_rate),
+                dead_band: export::rounded(joints[0].dead_band.max(joints[1].dead_band)),
+                ..base
+            }),
+            ..swimmer.clone()
+        })
+    }
+
+    /// The joints straight by the new maps, and, if wanted, once to their ends.
+    pub(super) fn verify(&mut self, front: &Measured, back: &Measured) -> Outcome {
+        self.power()?;
+        let band = quantity::angle(front.dead_band.max(back.dead_band));
+        let question =
+            format!("Are both links straight, as nearly as a dead band of ±{band} lets them?");
+        if !self.operator.yes(self.line, true, &question, true)? {
+            return Err(Failure::Tried(
+                "the links are not straight by what was saved: did a horn slip, or was an angle read with the wrong sign? Run `swimmer robot setup` again"
+                    .to_owned(),
+            ));
+        }
+        let question = "Swing each joint once, slowly, to its ends, to see that nothing touches? (The gait that the robot holds is replaced by that swing.)";
+        if self.operator.yes(self.line, true, question, false)? {
+            self.swing(Joint::Front, front.ends)?;
+            self.power()?;
+            self.swing(Joint::Back, back.ends)?;
+        }
+        self.rest()
+    }
+
+    /// The swimmer file, where one is wanted, and the answer.
+    pub(super) fn written(
+        &mut self,
+        arguments: &Setup,
+        file: SwimmerFile,
+        joints: [Measured; 2],
+    ) -> Outcome<Done> {
+        let set = [
+            Set::read(&mut self.line.robot, Joint::Front)?,
+            Set::read(&mut self.line.robot, Joint::Back)?,
+        ];
+        let place = match &arguments.output {
+            Some(place) => Some(place.clone()),
+            None => self.operator.ask(
+                self.line,
+                false,
+                "Write a swimmer file with these servos? Its name; Enter: none",
+                |answer| match answer {
+                    "" => Ok(None),
+                    name => export::may_be_written(Path::new(name), None)
+                        .map(|()| Some(PathBuf::from(name)))
+                        .map_err(|failure| failure.to_string()),
+                },
+            )?,
+        };
+        if let Some(place) = &place {
+            export::write(place, &file, &set)?;
+        }
+        let servo = file.servo.unwrap_or_default();
+        let [front, back] = set;
+        let dead_bands = joints.map(|measured| measured.dead_band);
+        Ok(Done {
+            swimmer: file.name,
+            front: Servo {
+                set: front,
+                dead_band_rad: dead_bands[0],
+            },
+            back: Servo {
+                set: back,
+                dead_band_rad: dead_bands[1],
+            },
+            dead_band_rad: servo.dead_band,
+            max_angle_rad: servo.max_angle,
+            file: place.map(|place| place.display().to_string()),
+        })
+    }
+}

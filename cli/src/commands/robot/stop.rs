@@ -1,0 +1,199 @@
+//! `swimmer robot stop` and `estop`: act first, ask afterwards. Where another `swimmer` has the port, it passes the stop on; where
+//! that one hangs, the stop goes past it.
+
+use std::io::{self, BufRead as _, IsTerminal as _};
+use std::thread::sleep;
+use std::time::Instant;
+
+use host_link::robot::StoppedBy;
+use host_link::{LinkError, Robot};
+use link_protocol::StateName;
+
+use super::access::{Access, LOOK_AGAIN, Reached};
+use super::answers::{Done, E_STOPPED, STOPPED, state};
+use super::motion::{TO_REST, wait_for_rest};
+use super::port::{AnyPort, Pace, session_seed};
+use super::port_owner::{Ask, HeldBy, Relayed, Unanswered};
+use super::{Estop, Stop};
+use crate::failure::{Failure, Outcome};
+use crate::output::{Output, aside};
+
+/// Whether a stop may go past a `swimmer` that has the port and hangs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum TakeOver {
+    Yes,
+    Ask,
+    No,
+}
+
+/// `swimmer robot stop`.
+pub(super) fn stop(access: &Access, arguments: &Stop, output: Output) -> Outcome {
+    let take_over = if arguments.take_over {
+        TakeOver::Yes
+    } else {
+        TakeOver::Ask
+    };
+    run(access, Ask::Stop, take_over, output)
+}
+
+/// `swimmer robot estop`.
+pub(super) fn estop(access: &Access, arguments: &Estop, output: Output) -> Outcome {
+    let take_over = if arguments.no_take_over {
+        TakeOver::No
+    } else {
+        TakeOver::Yes
+    };
+    run(access, Ask::EStop, take_over, output)
+}
+
+fn run(access: &Access, ask: Ask, take_over: TakeOver, output: Output) -> Outcome {
+    let access = &access.for_a_stop();
+    let estop = ask == Ask::EStop;
+    let begun = Instant::now();
+    let robot = loop {
+        if let Some(held_by) = access.held_by() {
+            match held_by.try_ask(ask) {
+                Ok(Some(relayed)) => {
+                    if let Some(at_rest) = rest_by_holder(access, relayed) {
+                        output.answer(&at_rest.told());
+                        return Ok(());
+                    }
+                }
+                Ok(None) => {}
+                Err(Unanswered::Refused(failure)) => return Err(failure),
+                Err(Unanswered::Hangs) => {
+                    allow(take_over, &held_by, estop)?;
+                    if let Some(robot) = past(access, &held_by, estop)? {
+                        break robot;
+                    }
+                }
+            }
+        }
+        match access.reach_named(Pace::AsFastAsPossible)? {
+            Some(Reached::Free(opened)) => break stop_at_once(access, opened.port, estop)?,
+            // Another process has just taken the port: it can be asked now.
+            Some(Reached::Held(_)) if begun.elapsed() < TO_REST => sleep(LOOK_AGAIN),
+            Some(Reached::Held(held_by)) => return Err(Failure::Tried(held_by.to_string())),
+            None => {
+                let (_, mut robot) = access.find(Pace::AsFastAsPossible)?;
+                say_if_by_itself(if estop { robot.estop()? } else { robot.stop()? });
+                break Ok(robot);
+            }
+        }
+    };
+    output.answer(&rest(robot, estop));
+    Ok(())
+}
+
+/// The stop alone first; how it goes on is only good to know.
+fn stop_at_once(
+    access: &Access,
+    port: AnyPort,
+    estop: bool,
+) -> Outcome<Result<Robot<AnyPort>, LinkError>> {
+    let (port, by) = Robot::stop_at_once(port, session_seed(), estop)?;
+    say_if_by_itself(by);
+    Ok(Robot::connect_with(port, access.session()?))
+}
+
+/// Where the stop waits behind other bytes, the robot may have been quicker.
+fn say_if_by_itself(by: StoppedBy) {
+    if by != StoppedBy::Request {
+        aside(&format!("{by}."));
+    }
+}
+
+/// Says at once that the holder hangs, and whether to go past it.
+///
+/// # Errors
+/// [`Failure::Tried`] where not, with the command that does.
+fn allow(take_over: TakeOver, held_by: &HeldBy, estop: bool) -> Outcome {
+    let hangs = held_by.hangs();
+    aside(&format!("{hangs}."));
+    let again = if estop {
+        "without --no-take-over this goes past it"
+    } else {
+        "`--take-over` stops the robot past it, and so does `estop`"
+    };
+    let yes = match take_over {
+        TakeOver::Yes => true,
+        TakeOver::No => false,
+        TakeOver::Ask => confirmed("Stop the robot past it? [y/N]"),
+    };
+    if yes {
+        return Ok(());
+    }
+    Err(Failure::Tried(format!(
+        "the robot was not stopped: {hangs}; {again}"
+    )))
+}
+
+/// Asks the operator, where there is one.
+fn confirmed(question: &str) -> bool {
+    if !(io::stdin().is_terminal() && io::stderr().is_terminal()) {
+        return false;
+    }
+    aside(question);
+    let mut answer = String::new();
+    let heard = io::stdin().lock().read_line(&mut answer).is_ok();
+    heard && matches!(answer.trim(), "y" | "Y" | "yes")
+}
+
+/// Stops the robot beside a holder that hangs, or ends that. `None`: it is ended, and the port is free.
+fn past(
+    access: &Access,
+    held_by: &HeldBy,
+    estop: bool,
+) -> Outcome<Option<Result<Robot<AnyPort>, LinkError>>> {
+    if let Some(beside) = held_by.beside() {
+        match stop_at_once(access, Box::new(beside), estop) {
+            Ok(robot) => {
+                let process = held_by.process();
+                aside(&format!(
+                    "The stop went past it. Process {process} still hangs with the port: end it (kill -9 {process}), or continue it (fg, or kill -CONT {process}), and it finds the robot stopped."
+                ));
+                return Ok(Some(robot));
+            }
+            Err(failure) => aside(&format!("Beside it nothing came through ({failure}).")),
+        }
+    }
+    held_by.end()?;
+    let process = held_by.process();
+    aside(&format!("Process {process} was ended; its port is free."));
+    Ok(None)
+}
+
+/// Follows the robot to its rest, and says how it stands.
+fn rest(robot: Result<Robot<AnyPort>, LinkError>, estop: bool) -> Done {
+    let state_now = robot
+        .ok()
+        .and_then(|mut robot| wait_for_rest(&mut robot).ok());
+    let sentence = match (&state_now, estop) {
+        (Some(StateName::EStopped), _) => E_STOPPED,
+        (Some(StateName::Stopped), _) => STOPPED,
+        (_, false) => "The robot acknowledged the stop.",
+        (_, true) => "The robot acknowledged the e-stop.",
+    };
+    let state_now = state_now.map_or(if estop { "e-stopped" } else { "stopping" }, state);
+    Done {
+        state: state_now,
+        sentence: sentence.into(),
+    }
+}
+
+/// The stop is passed on; follows the robot to its rest. `None`: the holder ended first, and the port is free to see for
+/// ourselves.
+fn rest_by_holder(access: &Access, stopped: Relayed) -> Option<Relayed> {
+    let begun = Instant::now();
+    let mut last = stopped;
+    while !matches!(last.state(), "stopped" | "e-stopped") && begun.elapsed() < TO_REST {
+        sleep(LOOK_AGAIN);
+        match access.ask_holder(Ask::Status) {
+            Ok(Some(status)) if status.state() == "stopped" => last = Relayed::of(&Done::at_rest()),
+            Ok(Some(_)) => {}
+            Ok(None) => return None,
+            Err(_) => break,
+        }
+    }
+    Some(last)
+}

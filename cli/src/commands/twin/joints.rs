@@ -1,0 +1,78 @@
+//! The joints as one sees them at the bench: their angles, whenever they have come to rest elsewhere.
+
+use std::time::Duration;
+
+use twin::World;
+
+/// Joints that stand so long are at rest.
+const AT_REST: Duration = Duration::from_millis(200);
+/// A turn that nobody sees, rad.
+const UNSEEN: f64 = 1e-3;
+
+/// Both joints under somebody's eyes.
+#[derive(Debug, Default)]
+pub(super) struct Joints {
+    /// Where they are, and since when.
+    now: [f64; 2],
+    since: Duration,
+    /// Where they were at rest before.
+    told: Option<[f64; 2]>,
+}
+
+impl Joints {
+    /// Looks; a line where they have come to rest.
+    pub(super) fn look(&mut self, world: &World) -> Option<String> {
+        let (at, angles) = (world.now(), world.angles());
+        if apart(angles, self.now) {
+            (self.now, self.since) = (angles, at);
+        }
+        let rests = at.saturating_sub(self.since) >= AT_REST;
+        if !rests || self.told.is_some_and(|told| !apart(told, angles)) {
+            return None;
+        }
+        self.told = Some(angles);
+        let [front, back] = angles.map(|angle| tidy(angle.to_degrees()));
+        Some(format!(
+            "{:9.2} s  joints  front {front:+.1}°  back {back:+.1}°",
+            at.as_secs_f64()
+        ))
+    }
+}
+
+fn apart(one: [f64; 2], other: [f64; 2]) -> bool {
+    one.iter()
+        .zip(other)
+        .any(|(one, other)| (one - other).abs() > UNSEEN)
+}
+
+/// Without a minus before zero.
+fn tidy(degrees: f64) -> f64 {
+    (degrees * 10.0).round() / 10.0 + 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gait_player::servo::ServoMap;
+    use swimmer_files::SwimmerFile;
+    use twin::TwinConfig;
+
+    #[test]
+    fn a_line_for_each_rest() {
+        let file = SwimmerFile::preset("robot").unwrap();
+        let mut world = World::new(&TwinConfig::new(&file, 1).with_ideal_servos()).unwrap();
+        let mut joints = Joints::default();
+        let mut lines = Vec::new();
+        for tick in 1..=100_u64 {
+            if tick == 30 {
+                let map = ServoMap::ROBOT;
+                world.set_pulses(Some([map.pulse_ns(0.5), map.pulse_ns(-0.25)]));
+            }
+            world.advance(Duration::from_millis(20 * tick));
+            lines.extend(joints.look(&world));
+        }
+        assert_eq!(lines.len(), 2, "{lines:?}");
+        assert!(lines[0].ends_with("front +0.0°  back +0.0°"), "{lines:?}");
+        assert!(lines[1].ends_with("front +28.6°  back -14.3°"), "{lines:?}");
+    }
+}

@@ -1,0 +1,70 @@
+//! How many starts in a row came after runs of under a minute. The chip cannot tell a dip of its supply from a switch: a
+//! servo that pulls the supply down restarts the robot again and again, and only counting shows it (promise R8).
+//!
+//! A run counts as short from its start on, until it has lasted; so whatever ends it early finds it counted.
+
+use link_protocol::crc32c;
+
+const MAGIC: [u8; 4] = *b"RUNS";
+
+/// The record that outlives a start: in RAM that resets spare, and in flash for when power was off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ShortStarts {
+    /// Runs in a row that were short, the present one included until it has lasted for a minute.
+    pub runs: u8,
+}
+
+impl ShortStarts {
+    /// Bytes of the record.
+    pub const LEN: usize = 12;
+    /// Short runs in a row after which arming is refused.
+    pub const MOST: u8 = 3;
+
+    /// The record as it is kept: magic, count, CRC-32C of both.
+    pub fn encode(self) -> [u8; Self::LEN] {
+        let [m0, m1, m2, m3] = MAGIC;
+        let covered = [m0, m1, m2, m3, self.runs, 0, 0, 0];
+        let mut bytes = [0; Self::LEN];
+        bytes[..8].copy_from_slice(&covered);
+        bytes[8..].copy_from_slice(&crc32c(&covered).to_le_bytes());
+        bytes
+    }
+
+    /// What was kept; `None` where these bytes are no record, as RAM after power was off.
+    pub fn decode(bytes: &[u8; Self::LEN]) -> Option<Self> {
+        let record = Self { runs: bytes[4] };
+        (record.encode() == *bytes).then_some(record)
+    }
+
+    /// The record from a start on.
+    pub(crate) fn start(self) -> Self {
+        Self {
+            runs: self.runs.saturating_add(1),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_record_comes_back_and_no_other_bytes_are_one(runs: u8, noise: [u8; ShortStarts::LEN], bit in 0..8 * ShortStarts::LEN) {
+            let record = ShortStarts { runs };
+            let mut bytes = record.encode();
+            prop_assert_eq!(ShortStarts::decode(&bytes), Some(record));
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            prop_assert_eq!(ShortStarts::decode(&bytes), None);
+            prop_assert_eq!(ShortStarts::decode(&noise), None);
+        }
+    }
+
+    #[test]
+    fn cleared_and_erased_memory_is_no_record() {
+        for byte in [0, 0xFF] {
+            assert_eq!(ShortStarts::decode(&[byte; ShortStarts::LEN]), None);
+        }
+    }
+}

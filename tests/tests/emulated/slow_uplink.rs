@@ -1,0 +1,129 @@
+//! R5 behind a slow uplink with a deep buffer, on the image: whatever a dead host left there, the robot stops in time.
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use emulator::Period;
+use host_link::port::{FaultPlan, Faults, FaultyPort};
+use host_link::{Port as _, Robot, StoppedBy};
+use link_protocol::{Arm, Heartbeat, Message, Request, StateName};
+
+use crate::frames::encoded;
+use crate::promise::seen;
+use crate::rig::{self, Port};
+
+const MS: Duration = Duration::from_millis(1);
+/// Bytes a second, and bytes that the buffer holds.
+const RATE: u32 = 200;
+const BUFFER: usize = 8192;
+const MOMENTS: u32 = 10;
+/// From the host's end to the ramp, at the pins: what is fresh (1 s), the lease (460 ms), a tick, and the latch.
+const TO_RAMP: Duration = Duration::from_millis(1_000 + 460 + 20 + 12);
+/// From there to no pulses: the longest ramp of this gait, and half a second at neutral.
+const TO_OFF: Duration = Duration::from_millis(800 + 500);
+
+type Slow = FaultyPort<Port>;
+
+/// A robot that plays without end over a line that has become slow.
+fn playing(moment: u32) -> Robot<Slow> {
+    let mut robot = rig::robot();
+    rig::upload(&mut robot, &rig::circle(60.0));
+    robot.arm(false).unwrap();
+    robot.play(0, MS * 8000, false).unwrap();
+    rig::live_until(&mut robot, StateName::Playing);
+    let slow = Faults {
+        rate: Some(RATE),
+        buffer: BUFFER,
+        ..Faults::none()
+    };
+    let mut robot =
+        robot.map_port(|port| FaultyPort::new(port, FaultPlan::at_host(slow), u64::from(moment)));
+    robot
+        .listen(MS * 170 * moment, |_| ControlFlow::Continue(()))
+        .unwrap();
+    robot
+}
+
+/// What a host in haste leaves behind: keep-alives, each later than the one before, and requests that would arm again.
+fn fill(robot: &mut Robot<Slow>) {
+    let session = robot.info().session;
+    let now_us = u64::try_from(robot.port().now().as_micros()).unwrap();
+    let mut sent = 0;
+    for number in 0_u16.. {
+        let heartbeat = Message::Heartbeat(Heartbeat {
+            host_us: now_us,
+            heard_us: now_us - 10_000 + u64::from(number),
+        });
+        let arm = Message::Request(Request::Arm(Arm { clear_estop: true }));
+        for (sequence, message) in [(0, heartbeat), (30_000 + number, arm)] {
+            let frame = encoded(session, sequence, &message);
+            robot.port_mut().write(&frame).unwrap();
+            sent += frame.len();
+        }
+        if sent > BUFFER {
+            return;
+        }
+    }
+}
+
+/// From a moment to the ramp and to the last pulse, with nobody at the host's end for a minute: all that waited has arrived.
+fn left_alone(robot: Robot<Slow>, from: Duration) -> (Duration, Duration) {
+    let mut port = robot.into_port();
+    let mut bytes = [0; 512];
+    let end = port.now() + Duration::from_mins(1);
+    while port.now() < end {
+        port.read(&mut bytes, MS * 20).unwrap();
+    }
+    let events = port.inner_mut().device_mut().take_events();
+    let periods: Vec<Period> = events
+        .periods
+        .into_iter()
+        .filter(|period| period.at() >= from)
+        .collect();
+    let last = periods.iter().rev().find(|period| period.powered());
+    let ramp = rig::ramp_begins(&periods).saturating_sub(from);
+    (ramp, last.unwrap().at().saturating_sub(from))
+}
+
+#[test]
+fn what_a_dead_host_left_in_a_buffer_does_nothing() {
+    let (mut ramps, mut offs) = (Vec::new(), Vec::new());
+    for moment in 0..MOMENTS {
+        let mut robot = playing(moment);
+        fill(&mut robot);
+        let from = robot.port().now();
+        let (ramp, off) = left_alone(robot, from);
+        assert!(
+            ramp <= TO_RAMP && off <= TO_RAMP + TO_OFF,
+            "{moment}: {ramp:?} {off:?}"
+        );
+        ramps.push(ramp);
+        offs.push(off);
+    }
+    seen(
+        "R5, uplink of 200 B/s with 8 kB of buffer, host killed at ten moments behind a full buffer",
+        &format!(
+            "the ramp begins at most {} ms after it, the last pulse at most {} ms after it, and nothing that waited acts",
+            ramps.iter().max().unwrap().as_millis(),
+            offs.iter().max().unwrap().as_millis()
+        ),
+    );
+}
+
+#[test]
+fn a_stop_behind_a_full_buffer_ends_in_time_and_the_host_says_how() {
+    let mut robot = playing(3);
+    fill(&mut robot);
+    let from = robot.port().now();
+    let by = robot.stop().unwrap();
+    assert!(matches!(by, StoppedBy::Itself(_)), "{by:?}");
+    let (ramp, _) = left_alone(robot, from);
+    assert!(ramp <= TO_RAMP, "{ramp:?}");
+    seen(
+        "R5, a Stop behind that buffer",
+        &format!(
+            "the ramp begins {} ms after it, by the lease; the host says: {by}",
+            ramp.as_millis()
+        ),
+    );
+}

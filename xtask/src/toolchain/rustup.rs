@@ -1,0 +1,29 @@
+//! The ordinary way to the chip's target, for whoever has rustup and a network that reaches its server.
+
+use std::time::Duration;
+
+use super::TARGET;
+use crate::failure::{Failure, Outcome};
+use crate::run::{command, run_for, works};
+
+/// A server that cannot be reached must not hold anybody up: there is another way.
+const PATIENCE: Duration = Duration::from_mins(2);
+
+/// `rustup target add`, for the active toolchain.
+///
+/// # Errors
+/// There is no rustup, or it cannot fetch the target.
+pub(super) fn add_target() -> Outcome {
+    if !works(command("rustup").arg("--version")) {
+        return Err(Failure::new(
+            "looking for `rustup`",
+            "it is not there",
+            "install Rust from https://rustup.rs, or go on without",
+        ));
+    }
+    run_for(
+        PATIENCE,
+        command("rustup").args(["target", "add", TARGET]),
+        "check the network, or go on without",
+    )
+}
