@@ -184,7 +184,7 @@ impl Brain {
                 current: PROTOCOL_CURRENT,
             });
         }
-        if self.session.silent(now_us) {
+        if !self.session.attended(now_us) {
             return Err(Refusal::NotFresh);
         }
         Ok(())

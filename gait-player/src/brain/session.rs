@@ -216,6 +216,11 @@ impl Session {
             .is_none_or(|fed| now_us.saturating_sub(fed) > LEASE_US)
     }
 
+    /// The host of the open session is there: what fed the lease within it came from this host, not from one before.
+    pub(crate) fn attended(&self, now_us: u64) -> bool {
+        self.open.as_ref().is_some_and(|open| open.echoed_us > 0) && !self.silent(now_us)
+    }
+
     /// Where this number stands; [`Order::Next`] makes it the last one, without a reply yet.
     pub(crate) fn order(&mut self, sequence: u16) -> Order {
         let Some(open) = &mut self.open else {
@@ -350,6 +355,24 @@ mod tests {
         assert!(fed(now, now) && !fed(now + 1, now));
         session.fed_us = Some(now);
         assert!(!session.silent(now + LEASE_US) && session.silent(now + LEASE_US + 1));
+    }
+
+    #[test]
+    fn a_host_is_there_by_its_own_keep_alives() {
+        let mut session = Session::new(5, 7);
+        session.greet(Transport::Uart, 2, 1, None);
+        let beat = |heard_us| Heartbeat {
+            host_us: 0,
+            heard_us,
+        };
+        assert!(!session.attended(10));
+        session.feed(10, beat(5));
+        assert!(session.attended(10 + LEASE_US) && !session.attended(11 + LEASE_US));
+        // Another host: the motion's lease runs on, and still it says for itself that it is there.
+        session.greet(Transport::Usb, 2, 2, None);
+        assert!(!session.silent(11) && !session.attended(11));
+        session.feed(11, beat(9));
+        assert!(session.attended(11));
     }
 
     #[test]
