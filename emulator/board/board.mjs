@@ -238,15 +238,15 @@ export class Board {
       const end = this.until - this.before;
       if (clock.nanosCounter >= end) break;
       if (clock.nanosCounter < this.stalledUntil) {
-        clock.tick(Math.min(this.stalledUntil, end) - clock.nanosCounter);
+        this.sleep(Math.min(this.stalledUntil, end));
         continue;
       }
       if (core.waiting) {
         this.takeLog();
-        const next = clock.nanosToNextAlarm, left = end - clock.nanosCounter;
-        clock.tick(next > 0 && next < left ? next : Math.max(left, 1));
+        this.sleep(Math.min(clock.nextAlarm?.nanos ?? end, end));
         continue;
       }
+      if (this.asleep) this.wake(cycle);
       if (core.registers[15] < 0x4000) this.trap(core);
       if (core.registers[15] === this.patched) this.reachPatch();
       const inControl = core.IPSR === CONTROL;
@@ -267,6 +267,24 @@ export class Board {
         this.takeLog();
       }
     }
+  }
+
+  /** The core stands still until this time [ns], and whatever is due by then happens. */
+  sleep(until) {
+    const { clock } = this.mcu;
+    this.asleep = true;
+    clock.tick(Math.max(until - clock.nanosCounter, 0));
+    clock.nanosCounter = Math.max(clock.nanosCounter, until);
+  }
+
+  /**
+   * It goes on with an edge of its clock, as a chip does. Times in between are sums of fractions, and their last digits tell how
+   * the way there was cut into runs: a program that reads its clock just then would see it.
+   */
+  wake(cycle) {
+    const { clock } = this.mcu;
+    this.asleep = false;
+    clock.nanosCounter = Math.ceil((clock.nanosCounter - 1e-3) / cycle) * cycle;
   }
 
   /** How long the control task's tick itself takes, from its first instruction to where it returns to. */
@@ -313,6 +331,7 @@ export class Board {
     this.tickReturn = null;
     this.misses = 0;
     this.stalledUntil = 0;
+    this.asleep = false;
     const mcu = new RP2040();
     this.mcu = mcu;
     if (ram) {

@@ -162,7 +162,7 @@ impl Access {
             let holder = Holder::announce(&opened.name, command);
             let robot = Robot::connect_with(port, means.session)?;
             let mut line = Line::new(opened.name, robot, holder, recorder)?;
-            line.say_if_keyless(self.key.is_named())?;
+            line.say_what_the_key_is_worth(self.key.is_named())?;
             return Ok(line);
         }
         let (name, robot) = self.find(pace)?;
@@ -173,7 +173,7 @@ impl Access {
             robot.reconnect()?;
         }
         let mut line = Line::new(name, robot, holder, recorder)?;
-        line.say_if_keyless(self.key.is_named())?;
+        line.say_what_the_key_is_worth(self.key.is_named())?;
         Ok(line)
     }
 
@@ -320,12 +320,12 @@ impl Line {
         Ok(line)
     }
 
-    /// Says where a key was named and the robot has none: what the operator takes for locked stands open.
-    fn say_if_keyless(&mut self, key_named: bool) -> Outcome {
-        if key_named && !self.robot.status()?.flags.contains(Flags::KEY_SET) {
-            aside(
-                "note: --key names a key, but the robot has none: whoever reaches its port can drive it. `swimmer robot key set FILE` gives it one",
-            );
+    /// Says where a key was named and does not protect: what the operator takes for locked stands open, or is not shown to be.
+    fn say_what_the_key_is_worth(&mut self, key_named: bool) -> Outcome {
+        if key_named {
+            let has_key = self.robot.status()?.flags.contains(Flags::KEY_SET);
+            let signs = self.robot.answers_signed() == Some(true);
+            doubt(has_key, signs).into_iter().for_each(aside);
         }
         Ok(())
     }
@@ -411,5 +411,30 @@ impl Line {
             Some(recorder) => recorder.finish().map(Some),
             None => Ok(None),
         }
+    }
+}
+
+/// What there is to say of a key that was named, by what the robot told.
+fn doubt(has_key: bool, signs: bool) -> Option<&'static str> {
+    match (has_key, signs) {
+        (false, _) => Some(
+            "note: --key names a key, but the robot has none: whoever reaches its port can drive it. `swimmer robot key set FILE` gives it one",
+        ),
+        (true, false) => Some(
+            "note: the robot says that it has a key, but does not sign its answers: what it tells is not shown to come from it. Its firmware may be older: `swimmer robot flash` brings today's",
+        ),
+        (true, true) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::doubt;
+
+    #[test]
+    fn a_key_that_does_not_protect_is_doubted() {
+        assert!(doubt(false, false).unwrap().contains("has none"));
+        assert!(doubt(true, false).unwrap().contains("does not sign"));
+        assert_eq!(doubt(true, true), None);
     }
 }
