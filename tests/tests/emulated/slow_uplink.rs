@@ -1,12 +1,13 @@
 //! R5 behind a slow uplink with a deep buffer, on the image: whatever a dead host left there, the robot stops in time.
 
 use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use emulator::Period;
-use host_link::port::{FaultPlan, Faults, FaultyPort};
+use host_link::port::{FaultPlan, Faults, FaultyPort, TracedFrame, TracedPort};
 use host_link::{Port as _, Robot, StoppedBy};
-use link_protocol::{Arm, Heartbeat, Message, Request, StateName};
+use link_protocol::{Arm, Decoder, Direction, Heartbeat, Message, Request, StateName};
 
 use crate::frames::encoded;
 use crate::promise::seen;
@@ -22,10 +23,48 @@ const TO_RAMP: Duration = Duration::from_millis(1_000 + 460 + 20 + 12);
 /// From there to no pulses: the longest ramp of this gait, and half a second at neutral.
 const TO_OFF: Duration = Duration::from_millis(800 + 500);
 
-type Slow = FaultyPort<Port>;
+/// From the last fresh keep-alive to no pulses.
+const FRESH_TO_OFF: Duration = Duration::from_secs(2);
+/// So old may be what a keep-alive tells (docs/security.md).
+const FRESH: Duration = Duration::from_secs(1);
+
+type Witness = Box<dyn FnMut(TracedFrame<'_>) + Send>;
+type Slow = FaultyPort<TracedPort<Port, Witness>>;
+
+/// Keep-alives as they come out of the buffer: when, and the time that they tell.
+#[derive(Clone, Default)]
+struct Delivered(Arc<Mutex<Vec<(Duration, Duration)>>>);
+
+impl Delivered {
+    fn witness(&self) -> Witness {
+        let delivered = self.clone();
+        Box::new(move |frame| {
+            let mut decoder = Decoder::new();
+            let received = frame.bytes.iter().find_map(|&byte| decoder.push(byte));
+            if frame.direction == Direction::ToRobot
+                && let Some(Ok(Message::Heartbeat(told))) =
+                    received.map(|received| received.message)
+            {
+                let heard = Duration::from_micros(told.heard_us);
+                delivered.0.lock().unwrap().push((frame.at, heard));
+            }
+        })
+    }
+
+    /// When the last fresh one came. The robot's clock and the port's both began when its power came on.
+    fn last_fresh(&self) -> Duration {
+        let (mut latest, mut last) = (Duration::ZERO, Duration::ZERO);
+        for &(at, heard) in self.0.lock().unwrap().iter() {
+            if heard > latest && at <= heard + FRESH {
+                (latest, last) = (heard, at);
+            }
+        }
+        last
+    }
+}
 
 /// A robot that plays without end over a line that has become slow.
-fn playing(moment: u32) -> Robot<Slow> {
+fn playing(moment: u32) -> (Robot<Slow>, Delivered) {
     let mut robot = rig::robot();
     rig::upload(&mut robot, &rig::circle(60.0));
     robot.arm(false).unwrap();
@@ -36,12 +75,15 @@ fn playing(moment: u32) -> Robot<Slow> {
         buffer: BUFFER,
         ..Faults::none()
     };
-    let mut robot =
-        robot.map_port(|port| FaultyPort::new(port, FaultPlan::at_host(slow), u64::from(moment)));
+    let delivered = Delivered::default();
+    let mut robot = robot.map_port(|port| {
+        let port = TracedPort::new(port, delivered.witness());
+        FaultyPort::new(port, FaultPlan::at_host(slow), u64::from(moment))
+    });
     robot
         .listen(MS * 170 * moment, |_| ControlFlow::Continue(()))
         .unwrap();
-    robot
+    (robot, delivered)
 }
 
 /// What a host in haste leaves behind: keep-alives, each later than the one before, and requests that would arm again.
@@ -74,7 +116,7 @@ fn left_alone(robot: Robot<Slow>, from: Duration) -> (Duration, Duration) {
     while port.now() < end {
         port.read(&mut bytes, MS * 20).unwrap();
     }
-    let events = port.inner_mut().device_mut().take_events();
+    let events = port.inner_mut().inner_mut().device_mut().take_events();
     let periods: Vec<Period> = events
         .periods
         .into_iter()
@@ -87,9 +129,9 @@ fn left_alone(robot: Robot<Slow>, from: Duration) -> (Duration, Duration) {
 
 #[test]
 fn what_a_dead_host_left_in_a_buffer_does_nothing() {
-    let (mut ramps, mut offs) = (Vec::new(), Vec::new());
+    let (mut ramps, mut offs, mut fresh_to_offs) = (Vec::new(), Vec::new(), Vec::new());
     for moment in 0..MOMENTS {
-        let mut robot = playing(moment);
+        let (mut robot, delivered) = playing(moment);
         fill(&mut robot);
         let from = robot.port().now();
         let (ramp, off) = left_alone(robot, from);
@@ -97,22 +139,29 @@ fn what_a_dead_host_left_in_a_buffer_does_nothing() {
             ramp <= TO_RAMP && off <= TO_RAMP + TO_OFF,
             "{moment}: {ramp:?} {off:?}"
         );
+        // Those behind the kill count too while they are fresh.
+        let last_fresh = delivered.last_fresh();
+        assert!(last_fresh > from, "{last_fresh:?} {from:?}");
+        let fresh_to_off = (from + off).saturating_sub(last_fresh);
+        assert!(fresh_to_off <= FRESH_TO_OFF, "{moment}: {fresh_to_off:?}");
+        fresh_to_offs.push(fresh_to_off);
         ramps.push(ramp);
         offs.push(off);
     }
     seen(
         "R5, uplink of 200 B/s with 8 kB of buffer, host killed at ten moments behind a full buffer",
         &format!(
-            "the ramp begins at most {} ms after it, the last pulse at most {} ms after it, and nothing that waited acts",
+            "the ramp begins at most {} ms after it, the last pulse at most {} ms after it and {} ms after the last fresh keep-alive, and nothing that waited acts",
             ramps.iter().max().unwrap().as_millis(),
-            offs.iter().max().unwrap().as_millis()
+            offs.iter().max().unwrap().as_millis(),
+            fresh_to_offs.iter().max().unwrap().as_millis()
         ),
     );
 }
 
 #[test]
 fn a_stop_behind_a_full_buffer_ends_in_time_and_the_host_says_how() {
-    let mut robot = playing(3);
+    let (mut robot, _) = playing(3);
     fill(&mut robot);
     let from = robot.port().now();
     let by = robot.stop().unwrap();
