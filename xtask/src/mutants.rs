@@ -25,6 +25,7 @@ const GUARDS: [(&str, &[&str]); 2] = [
             "gait-player/src/clamp.rs",
             "gait-player/src/limits.rs",
             "gait-player/src/servo.rs",
+            "gait-player/src/starts.rs",
         ],
     ),
 ];
