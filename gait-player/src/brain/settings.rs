@@ -253,3 +253,75 @@ pub(crate) fn check_trim(trim: i16) -> Result<(), Refusal> {
         Err(Refusal::BadValue { field: 1 })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::brain::BrainConfig;
+    use proptest::prelude::*;
+
+    fn as_built() -> (Settings, Limits) {
+        let config = BrainConfig::in_tests();
+        let settings = Settings {
+            configuration: config.configuration,
+            servos: config.servos,
+            ranges: [None; 2],
+            key: None,
+        };
+        (settings, config.limits)
+    }
+
+    proptest! {
+        /// Ranges and key stand behind the record, told apart by length and tag: a key may begin with that tag.
+        #[test]
+        fn a_record_comes_back_with_its_ranges_and_its_key(
+            room in [proptest::option::of((1_000_u32..50_000, 1_000_u32..50_000)), proptest::option::of((1_000_u32..50_000, 1_000_u32..50_000))],
+            key in proptest::option::of(any::<[u8; Key::LEN]>()),
+            tagged: bool,
+        ) {
+            let (mut settings, limits) = as_built();
+            settings.key = key.map(|mut key| {
+                if tagged {
+                    key[0] = Behind::TAG;
+                }
+                Key(key)
+            });
+            for (joint, room) in room.into_iter().enumerate() {
+                let neutral_ns = settings.maps()[joint].pulse_ns(0.0);
+                settings.ranges[joint] = room.map(|(below, above)| PulseRange {
+                    shortest_ns: neutral_ns - below,
+                    longest_ns: neutral_ns + above,
+                });
+            }
+            let mut bytes = [0; MAX_SETTINGS];
+            let record = settings.encode(&mut bytes).unwrap();
+            prop_assert_eq!(Settings::decode(record, &limits), Some(settings));
+            prop_assert_eq!(Settings::stored_key(record), settings.key);
+            // One byte less or more is another record, or none: never the same with less in it.
+            let len = record.len();
+            prop_assert_ne!(Settings::decode(&bytes[..len - 1], &limits), Some(settings));
+        }
+    }
+
+    #[test]
+    fn a_range_beyond_what_was_built_or_without_neutral_is_no_settings() {
+        let (settings, limits) = as_built();
+        let neutral_ns = settings.maps()[0].pulse_ns(0.0);
+        for (shortest_ns, longest_ns) in [
+            (limits.pulse_min_ns - 1, limits.pulse_max_ns),
+            (limits.pulse_min_ns, limits.pulse_max_ns + 1),
+            (neutral_ns + 1, limits.pulse_max_ns),
+            (limits.pulse_min_ns, neutral_ns - 1),
+            (neutral_ns, limits.pulse_max_ns),
+        ] {
+            let mut wrong = settings;
+            wrong.ranges[0] = Some(PulseRange {
+                shortest_ns,
+                longest_ns,
+            });
+            let mut bytes = [0; MAX_SETTINGS];
+            let record = wrong.encode(&mut bytes).unwrap();
+            assert_eq!(Settings::decode(record, &limits), None, "{wrong:?}");
+        }
+    }
+}
