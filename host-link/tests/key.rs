@@ -4,6 +4,7 @@
 #[path = "rig/tank_less.rs"]
 mod tank_less;
 
+use std::io;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -11,7 +12,10 @@ use std::time::Duration;
 use host_link::port::{FaultPlan, Faults, TracedFrame, TracedPort};
 use host_link::session::SessionConfig;
 use host_link::{LinkError, Port, Robot};
-use link_protocol::{Direction, Flags, Key, StateName};
+use link_protocol::{
+    Binding, Direction, Flags, Header, Key, MAX_ENCODED, Message, Seal, StateName, Telemetry,
+    encode, encode_signed,
+};
 use tank_less::{Line, circle, connect, faulty, upload};
 
 const MS: Duration = Duration::from_millis(1);
@@ -154,4 +158,91 @@ fn a_host_with_a_key_drives_a_robot_without() {
         table.crc32()
     );
     robot.arm(false).unwrap();
+}
+
+/// A line on which somebody else speaks too.
+struct Overheard {
+    line: Line,
+    forged: Vec<u8>,
+}
+
+impl Port for Overheard {
+    fn read(&mut self, buf: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        let count = self.forged.len().min(buf.len());
+        if count == 0 {
+            return self.line.read(buf, timeout);
+        }
+        buf[..count].copy_from_slice(&self.forged[..count]);
+        self.forged.drain(..count);
+        Ok(count)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.line.write(bytes)
+    }
+
+    fn now(&self) -> Duration {
+        self.line.now()
+    }
+}
+
+/// Telemetry of an e-stop that was none, as the robot would say it without a key, and signed with another.
+fn lies(told: &Telemetry, session: u16) -> [Vec<u8>; 2] {
+    let lie = Message::Telemetry(Telemetry {
+        robot_us: told.robot_us + 1,
+        state: StateName::EStopped,
+        ..*told
+    });
+    let header = Header::new(session, 9_999);
+    let seal = Seal::new(
+        &Key([1; 16]),
+        Binding {
+            boot_nonce: 0,
+            session,
+            host_nonce: 0,
+        },
+    );
+    let mut bytes = [0; MAX_ENCODED];
+    let unsigned = encode(header, &lie, &mut bytes).unwrap();
+    let unsigned = bytes[..unsigned].to_vec();
+    let signed = encode_signed(header, &lie, &seal, 1 << 40, &mut bytes).unwrap();
+    [unsigned, bytes[..signed].to_vec()]
+}
+
+#[test]
+fn a_false_robot_is_not_believed_once_the_true_one_has_signed() {
+    let line = Overheard {
+        line: keyed_line(1),
+        forged: Vec::new(),
+    };
+    let mut robot = Robot::connect_with(line, with_key(2, KEY)).unwrap();
+    robot.status().unwrap();
+    robot
+        .listen(MS * 200, |_| ControlFlow::Continue(()))
+        .unwrap();
+    assert_eq!(robot.answers_signed(), Some(true));
+    assert_eq!(robot.link_counters().forged, 0);
+    let told = *robot.telemetry().unwrap();
+    for (number, lie) in (1..).zip(lies(&told, robot.info().session)) {
+        robot.port_mut().forged = lie;
+        robot
+            .listen(MS * 200, |told| {
+                let stopped = told.is_none_or(|told| told.state == StateName::Stopped);
+                assert!(stopped, "the lie was believed");
+                ControlFlow::Continue(())
+            })
+            .unwrap();
+        assert_eq!(robot.link_counters().forged, number);
+    }
+}
+
+#[test]
+fn a_robot_that_signs_nothing_is_told_from_one_that_does() {
+    let mut robot = Robot::connect_with(connect("", 1).into_port(), with_key(2, KEY)).unwrap();
+    robot.status().unwrap();
+    assert_eq!(robot.answers_signed(), Some(false));
+    assert!(robot.link_counters().unsigned > 0);
+    let mut robot = Robot::connect(robot.into_port(), 3).unwrap();
+    robot.status().unwrap();
+    assert_eq!(robot.answers_signed(), None);
 }
