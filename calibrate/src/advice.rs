@@ -69,6 +69,7 @@ pub fn advise(campaign: &Campaign, found: &CampaignFit) -> Result<Advice, FitErr
             gait: shape.clone(),
             period_s,
             cut_by: None,
+            sides: None,
         }]);
         let [sphere_radius, chi] = known.with(&one.jacobian(&estimate.at)?)?;
         Some(Candidate {

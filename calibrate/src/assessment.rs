@@ -7,12 +7,14 @@ mod budget;
 mod explanations;
 mod goodness;
 mod known;
+mod modes;
 mod systematics;
 mod verdict;
 
 pub use budget::BudgetLine;
 pub use explanations::{Explained, Explanation};
 pub use goodness::{Goodness, RunGoodness, SignTest};
+pub(crate) use known::REFLECTOR;
 pub use systematics::{Nuisance, Systematics, Unforeseen};
 pub use verdict::{Headline, Verdict};
 
@@ -105,7 +107,7 @@ impl Plain {
 /// [`FitError`]: the runs do not determine r_s and χ.
 pub fn assess(found: &CampaignFit, evidence: Option<&Evidence>) -> Result<Assessment, FitError> {
     let plain = Plain::of(found)?;
-    let priors = known::priors(found);
+    let priors = known::priors(found, &plain.model);
     let joint = systematics::Joint::of(&plain, &priors);
     let systematics = joint
         .as_ref()

@@ -49,11 +49,12 @@ pub fn calibrate_campaign(
         check_signs(&runs, &before)?;
         let counts = |run: &usize| before[*run].is_none();
         let counting: Vec<usize> = (0..runs.len()).filter(counts).collect();
-        let played: Vec<Played> = counting
+        let played: Vec<Played> = counting.iter().map(|run| runs[*run].played()).collect();
+        let variances: Vec<_> = runs
             .iter()
-            .map(|run| runs[*run].played.clone())
-            .collect();
-        let values = RunValues::of(counting.iter().map(|run| &cycles[*run]))?;
+            .map(|run| run.path_variances(&swimmer.swimmer, &projection))
+            .collect::<Result<_, _>>()?;
+        let values = RunValues::of(counting.iter().map(|run| (&cycles[*run], variances[*run])))?;
         let fit = fit::fit(&swimmer, played, &values, options.level)?;
         swimmer.swimmer = Swimmer {
             sphere_radius: fit.sphere_radius,
@@ -84,10 +85,13 @@ pub fn calibrate_campaign(
                 })
                 .collect();
             let mut finished = Vec::with_capacity(runs.len());
-            for ((run, cycles), (left_out, opposed)) in
-                runs.into_iter().zip(cycles).zip(before.iter().zip(after))
+            for (((run, cycles), variances), (left_out, opposed)) in runs
+                .into_iter()
+                .zip(cycles)
+                .zip(variances)
+                .zip(before.iter().zip(after))
             {
-                let run = run.finish(cycles);
+                let run = run.finish(cycles, variances);
                 match left_out.map(|before| opposed.unwrap_or(before)) {
                     None => finished.push(run),
                     Some(opposed) => excluded.push(ExcludedRun {

@@ -86,7 +86,10 @@ impl CalibrateError {
                         | PoseError::NoScale { .. }
                 )
             }
-            Self::Fit(cause) => matches!(cause, FitError::Level { .. } | FitError::Swimmer(_)),
+            Self::Fit(cause) => matches!(
+                cause,
+                FitError::Level { .. } | FitError::Swimmer(_) | FitError::Measured { .. }
+            ),
             Self::Cycles { .. } => false,
         }
     }
@@ -141,6 +144,15 @@ pub enum FitError {
     Undetermined {
         /// Their names.
         parameters: String,
+    },
+    /// What is asked for was measured.
+    #[error(
+        "{parameter} cannot be fitted: the reflectors on the side links show the joint angles of all runs, so that it is measured \
+         (`joints` in the answer); leave it out of --fit-also"
+    )]
+    Measured {
+        /// What.
+        parameter: &'static str,
     },
     /// No start led anywhere.
     #[error(

@@ -27,7 +27,9 @@ use std::path::PathBuf;
 use swimmer_files::{Known, SwimmerFile};
 use swimmer_model::{Swimmer, TangentialDrag};
 
+use crate::assessment::REFLECTOR;
 use crate::error::FitError;
+use crate::joints::{Measured, MeasuredServo, combined};
 use crate::median::median;
 use crate::prediction::{Played, PredictedCycle};
 use crate::run::RunResult;
@@ -267,9 +269,39 @@ impl CampaignFit {
         [self.fit.sphere_radius / self.length(), self.fit.chi.ln()]
     }
 
+    /// What the servos made of their commands, where reflectors on the side links show it: the mean of the runs, front and back.
+    /// An offset's error holds what half a millimetre (or what the campaign states) of the reflector's place makes of it.
+    pub fn servos(&self) -> Option<[MeasuredServo; 2]> {
+        let measured = |run: &RunResult| run.joints.as_ref()?.servos;
+        let of_runs: Vec<[MeasuredServo; 2]> = self.runs.iter().filter_map(measured).collect();
+        let reach = self.runs.iter().find_map(|run| run.played.sides)?.reach;
+        let place = self.known.reflector.map_or(REFLECTOR, |known| known.width);
+        let servo = |joint: usize| {
+            let mean = |value: fn(&MeasuredServo) -> Option<Measured>| {
+                let values = of_runs.iter().filter_map(|servos| value(&servos[joint]));
+                combined(&values.collect::<Vec<_>>())
+            };
+            let offset = mean(|servo| Some(servo.offset))?;
+            Some(MeasuredServo {
+                gain: mean(|servo| Some(servo.gain))?,
+                dead_band: mean(|servo| Some(servo.dead_band))?,
+                offset: Measured {
+                    error: offset.error.hypot(place / reach[joint]),
+                    ..offset
+                },
+                lag: mean(|servo| servo.lag),
+            })
+        };
+        Some([servo(0)?, servo(1)?])
+    }
+
     /// What its runs measured.
     pub(crate) fn values(&self) -> Result<RunValues, FitError> {
-        RunValues::of(self.runs.iter().map(|run| &run.cycles))
+        RunValues::of(
+            self.runs
+                .iter()
+                .map(|run| (&run.cycles, run.path_variances)),
+        )
     }
 
     /// The model of its runs with these parameters; cycles stay cut as they are.

@@ -4,6 +4,7 @@
 //! bytes ──read_tracks──► TrackFile ──poses──► PoseTrack ──► Cycles ──► Fit: r_s, χ, intervals, residuals
 //!          (tracks)                 (poses)             (cycles)    (fit)
 //! ```
+//! Where reflectors on the side links show the joint angles, the model swims these instead of the command (`joints`).
 //! [`weigh_evidence`] then tells, on demand, what the data say beyond the fit: likelihood, profiles, ridge, bootstrap, outliers;
 //! [`fit_further`] fits what else may be off, [`assess`] says whether the answer can be used, and [`advise`] what to measure next.
 //! Lengths are metres, angles radians, times seconds. Nothing here opens a file, except [`CampaignData::load`] and
@@ -22,6 +23,7 @@ mod error;
 pub mod evidence;
 pub mod fit;
 mod golden;
+pub mod joints;
 mod median;
 pub mod nuisance;
 pub mod poses;
@@ -41,6 +43,7 @@ pub use evidence::{Evidence, EvidenceOptions, weigh_evidence};
 pub use fit::{
     CampaignFit, ExcludedRun, Fit, FitOptions, FitWarning, Intervals, RunResidual, c_t_form,
 };
+pub use joints::{Measured, MeasuredJoints, MeasuredServo};
 pub use nuisance::{Further, FurtherFit, fit_further};
 pub use poses::{
     Drift, FollowReport, FrontRule, Jump, Origin, PoseError, PoseOptions, PoseSample, PoseTrack,

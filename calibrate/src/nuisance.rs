@@ -171,6 +171,11 @@ pub fn fit_further(found: &CampaignFit, further: &[Further]) -> Result<FurtherFi
         data = data.with_all();
     }
     let plain = found.model(&data, plain)?;
+    if let Some(idle) = parameters.iter().find(|p| !plain.has_use_for(**p)) {
+        return Err(FitError::Measured {
+            parameter: idle.name(),
+        });
+    }
     let model = plain.with(parameters);
     let undetermined = || {
         let names: Vec<&str> = model.parameters.iter().map(|p| p.name()).collect();

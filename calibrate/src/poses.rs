@@ -31,6 +31,7 @@ use crate::TrackFile;
 use assembly::Assembly;
 pub use error::PoseError;
 use fill::Seen;
+pub(crate) use follow::is_called;
 pub use follow::{FollowReport, Stretch};
 pub use jumps::Jump;
 pub use plane::Plane;
@@ -232,6 +233,7 @@ pub fn usual_reflectors(track: &TrackFile, swimmer: &Swimmer<f64>) -> Reflectors
     Reflectors {
         front: reflector("Front", [reach, 0.0]),
         back: reflector("Back", [-reach, 0.0]),
+        sides: None,
     }
 }
 

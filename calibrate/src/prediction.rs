@@ -19,6 +19,7 @@ use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 use swimmer_model::{Gait, InvalidSwimmer, Model, Pose, Swimmer, Tolerance, trajectory};
 
 use crate::cycles::{self, Curve, Harmonics, Projection};
+use crate::joints::Sides;
 
 /// Knots of the table that a robot is given.
 const KNOTS: usize = 512;
@@ -104,7 +105,7 @@ pub fn joint_path(
 }
 
 /// The way of the joints through one cycle.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum JointPath {
     /// The gait itself.
     Ideal(AnyGait),
@@ -134,6 +135,40 @@ impl JointPath {
                 .collect(),
             Self::Played(vertices) => vertices.iter().map(|(u, phi)| (*u, place(phi))).collect(),
         })
+    }
+
+    /// The same way where the front joint is later by a fraction of the cycle.
+    pub(crate) fn with_front_later(&self, by: f64) -> Self {
+        let places = (0..=PIECES).map(|i| i as f64 / PIECES as f64);
+        let later = |u: f64| Vector2::new(self.angles(u - by).x, self.angles(u).y);
+        Self::Played(places.map(|u| (u, later(u))).collect())
+    }
+
+    /// Both angles at any fraction of the cycle.
+    fn angles(&self, u: f64) -> Vector2<f64> {
+        let u = u.rem_euclid(1.0);
+        match self {
+            Self::Ideal(gait) => gait.at(u).phi,
+            Self::Played(vertices) => {
+                let next = vertices.partition_point(|(at, _)| *at <= u);
+                let before = next.checked_sub(1).and_then(|i| vertices.get(i));
+                match (before, vertices.get(next)) {
+                    (Some((from, a)), Some((to, b))) => a.lerp(b, (u - from) / (to - from)),
+                    (Some((_, phi)), None) | (None, Some((_, phi))) => *phi,
+                    (None, None) => Vector2::zeros(),
+                }
+            }
+        }
+    }
+
+    /// The same way with other angles at its vertices; a gait has none, and stays.
+    pub(crate) fn with_vertices(&self, other: impl Fn(&Vector2<f64>) -> Vector2<f64>) -> Self {
+        match self {
+            Self::Ideal(gait) => Self::Ideal(gait.clone()),
+            Self::Played(vertices) => {
+                Self::Played(vertices.iter().map(|(u, phi)| (*u, other(phi))).collect())
+            }
+        }
     }
 
     /// The predicted cycle and its heading's harmonics.
@@ -192,6 +227,8 @@ pub(crate) struct Played {
     pub(crate) path: JointPath,
     /// The heading by which its cycles were cut, where that is not each model's own.
     pub(crate) cut_by: Option<Harmonics>,
+    /// Where reflectors showed `path`: it holds for its cycles as they were cut, and servos have no part in it.
+    pub(crate) sides: Option<Sides>,
 }
 
 fn cycle(curve: &Curve, next: &Curve, start: f64) -> PredictedCycle {

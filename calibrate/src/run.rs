@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 
 use swimmer_files::{Reflectors, SwimmerFile};
-use swimmer_model::Swimmer;
+use swimmer_model::{Gait as _, Swimmer};
 
 use crate::cycles::{Clock, Cycles, Projection};
 use crate::data::RunData;
 use crate::error::CalibrateError;
+use crate::fit::run_values::{QUANTITIES, predicted};
+use crate::joints::{self, MeasuredJoints};
 use crate::poses::{self, FrontRule, PoseOptions, PoseTrack, PoseWarning};
 use crate::prediction::{JointPath, Played};
 
@@ -28,8 +30,12 @@ pub struct RunResult {
     pub warnings: Vec<String>,
     /// How far apart the reflectors are by the campaign \[m\].
     pub reflector_distance_m: f64,
-    /// What was played.
+    /// Its joint angles, where reflectors on the side links showed them.
+    pub joints: Option<MeasuredJoints>,
+    /// What was played: as it was seen, or as it was told.
     pub(crate) played: Played,
+    /// Variances of what the model makes of the measured angles: X, ΔY, Δθ, Y, net turn.
+    pub(crate) path_variances: [f64; QUANTITIES],
 }
 
 /// A run that swims against the model.
@@ -61,7 +67,9 @@ pub(crate) struct Run<'a> {
     reflectors: Reflectors,
     poses: PoseTrack,
     pub(crate) clock: Clock,
-    pub(crate) played: Played,
+    /// As the robot was told: by this its cycles are cut.
+    told: Played,
+    joints: Option<MeasuredJoints>,
 }
 
 impl<'a> Run<'a> {
@@ -99,13 +107,45 @@ impl<'a> Run<'a> {
             reflectors,
             poses,
             clock,
-            played: Played {
+            told: Played {
                 gait: data.gait.clone(),
                 period_s: data.period_s,
                 path,
                 cut_by: None,
+                sides: None,
             },
+            joints: None,
         })
+    }
+
+    /// What the model is to swim: the angles that were seen in the cycles as they were last cut, else those that were told.
+    pub(crate) fn played(&self) -> Played {
+        match &self.joints {
+            None => self.told.clone(),
+            Some(joints) => Played {
+                path: joints.path.clone(),
+                sides: Some(joints.sides),
+                ..self.told.clone()
+            },
+        }
+    }
+
+    /// How sure what this model makes of the measured angles is: the jackknife over cycles.
+    pub(crate) fn path_variances(
+        &self,
+        swimmer: &Swimmer<f64>,
+        projection: &Projection,
+    ) -> Result<[f64; QUANTITIES], CalibrateError> {
+        let paths = self.joints.iter().flat_map(|joints| &joints.without);
+        let values: Vec<[f64; QUANTITIES]> = paths
+            .map(|path| Ok(predicted(&path.predict(swimmer, projection)?.0)))
+            .collect::<Result<_, CalibrateError>>()?;
+        let count = values.len() as f64;
+        Ok(std::array::from_fn(|q| {
+            let mean = values.iter().map(|values| values[q]).sum::<f64>() / count.max(1.0);
+            let squares = values.iter().map(|values| (values[q] - mean).powi(2));
+            squares.sum::<f64>() * (count - 1.0).max(0.0) / count.max(1.0)
+        }))
     }
 
     /// A cycle's start by this model's heading, as a fraction of the period.
@@ -114,7 +154,7 @@ impl<'a> Run<'a> {
         swimmer: &Swimmer<f64>,
         projection: &Projection,
     ) -> Result<f64, CalibrateError> {
-        let (_, heading) = self.played.path.predict(swimmer, projection)?;
+        let (_, heading) = self.told.path.predict(swimmer, projection)?;
         self.clock
             .start(&self.poses, &heading)
             .map_err(|cause| CalibrateError::Cycles {
@@ -140,7 +180,7 @@ impl<'a> Run<'a> {
         swimmer: &Swimmer<f64>,
         projection: &Projection,
     ) -> Result<Cycles, CalibrateError> {
-        let (predicted, heading) = self.played.path.predict(swimmer, projection)?;
+        let (predicted, heading) = self.told.path.predict(swimmer, projection)?;
         let mut cycles = self.cycles(start_s)?;
         if self.poses.front == FrontRule::Travel && predicted.x_m * cycles.x.mean < 0.0 {
             self.poses.turn_round(&self.reflectors);
@@ -152,6 +192,15 @@ impl<'a> Run<'a> {
                 file: self.data.file.clone(),
                 cause,
             })?;
+        let command = |u: f64| self.data.gait.at(u).phi;
+        self.joints = joints::measure(
+            &self.data.track,
+            &self.poses,
+            &cycles,
+            &self.reflectors,
+            swimmer,
+            command,
+        );
         Ok(cycles)
     }
 
@@ -162,7 +211,7 @@ impl<'a> Run<'a> {
         swimmer: &Swimmer<f64>,
         projection: &Projection,
     ) -> Result<Option<Opposed>, CalibrateError> {
-        let predicted_m = self.played.path.predict(swimmer, projection)?.0.x_m;
+        let predicted_m = self.told.path.predict(swimmer, projection)?.0.x_m;
         let measured_m = cycles.x.mean;
         let reversed = REVERSED.contains(&(measured_m / predicted_m));
         // A lone cycle has no error, and its word counts.
@@ -173,7 +222,7 @@ impl<'a> Run<'a> {
         }))
     }
 
-    pub(crate) fn finish(self, cycles: Cycles) -> RunResult {
+    pub(crate) fn finish(self, cycles: Cycles, path_variances: [f64; QUANTITIES]) -> RunResult {
         let reader = self.data.track.warnings.iter().map(ToString::to_string);
         let poses = self.poses.warnings.iter().map(ToString::to_string);
         let own = cycles.warnings.iter().map(ToString::to_string);
@@ -184,6 +233,10 @@ impl<'a> Run<'a> {
         if self.poses.front == FrontRule::Travel && !told {
             warnings.push("no label tells the front reflector from the back one; the direction of travel was taken for forwards".to_owned());
         }
+        if self.reflectors.sides.is_some() && self.joints.is_none() {
+            warnings.push("the reflectors on the side links were not seen in all parts of the cycle: the angles are those that the robot was told".to_owned());
+        }
+        let played = self.played();
         let [front, back] = [self.reflectors.front.at, self.reflectors.back.at];
         RunResult {
             index: self.index,
@@ -193,7 +246,9 @@ impl<'a> Run<'a> {
             poses: self.poses,
             warnings,
             reflector_distance_m: (front[0] - back[0]).hypot(front[1] - back[1]),
-            played: self.played,
+            played,
+            joints: self.joints,
+            path_variances,
         }
     }
 }
@@ -211,5 +266,6 @@ pub fn calibrate_run(
     let mut begun = Run::begin(run, 0, reflectors, swimmer)?;
     let start_s = begun.start(&swimmer.swimmer, &projection)?;
     let cycles = begun.settled(start_s, &swimmer.swimmer, &projection)?;
-    Ok(begun.finish(cycles))
+    let variances = begun.path_variances(&swimmer.swimmer, &projection)?;
+    Ok(begun.finish(cycles, variances))
 }

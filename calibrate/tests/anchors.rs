@@ -37,6 +37,7 @@ fn reflectors(front: &str, back: &str, distance: f64) -> Reflectors {
     Reflectors {
         front: reflector(front, distance / 2.0),
         back: reflector(back, -distance / 2.0),
+        sides: None,
     }
 }
 

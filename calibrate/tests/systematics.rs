@@ -44,11 +44,13 @@ fn common_gain(gain: f64, noise: f64, runs: &[f64], seed: u64) -> [bool; 2] {
 
 #[test]
 fn a_common_gain_is_within_the_interval_or_named() {
-    for (seed, (gain, noise)) in [(0.97, 1e-3), (0.995, 3e-4), (1.02, 1e-3)]
-        .into_iter()
-        .enumerate()
-    {
-        let [told, _] = common_gain(gain, noise, RUNS[1], seed as u64 + 1);
+    for (gain, noise, runs) in [
+        (0.97, 1e-3, RUNS[1]),
+        (0.995, 3e-4, RUNS[1]),
+        (1.02, 1e-3, RUNS[1]),
+        (0.95, 1e-3, RUNS[0]),
+    ] {
+        let [told, _] = common_gain(gain, noise, runs, 1);
         assert!(told, "gain {gain}");
     }
 }
@@ -56,27 +58,27 @@ fn a_common_gain_is_within_the_interval_or_named() {
 #[test]
 #[ignore = "ten minutes: 135 campaigns"]
 fn common_gains_at_every_noise() {
-    let (mut count, mut told, mut inside) = (0, 0, 0);
+    let (mut count, mut inside, mut missed) = (0_usize, 0_u32, Vec::new());
     for gain in [0.95, 0.97, 0.99, 0.995, 1.02] {
         for noise in [3e-4, 1e-3, 2e-3] {
             for runs in RUNS {
                 for seed in 1..=3 {
                     let [is_told, is_inside] = common_gain(gain, noise, runs, seed);
                     count += 1;
-                    told += u32::from(is_told);
                     inside += u32::from(is_inside);
-                    assert!(
-                        is_told,
-                        "gain {gain}, noise {noise}, {} runs, seed {seed}",
-                        runs.len()
-                    );
+                    if !is_told {
+                        missed.push((gain, noise, runs.len(), seed));
+                    }
                 }
             }
         }
     }
     println!(
-        "{told} of {count} told or inside; with the gain fitted, both truths inside {inside} times"
+        "{} of {count} told or inside; with the gain fitted, both truths inside {inside} times",
+        count - missed.len()
     );
+    assert!(missed.is_empty(), "neither told nor inside: {missed:?}");
+    assert!(10 * inside >= 9 * u32::try_from(count).unwrap(), "{inside}");
 }
 
 /// Counts over campaigns, in as many threads.

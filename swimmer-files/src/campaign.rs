@@ -39,13 +39,15 @@ pub struct TrackSettings {
     pub likelihood: Option<f64>,
 }
 
-/// The two reflectors on the middle link.
+/// The reflectors on the robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reflectors {
-    /// The front one.
+    /// The front one of the two on the middle link.
     pub front: Reflector,
     /// The back one.
     pub back: Reflector,
+    /// `front_link`, `back_link`: one on each side link, which show the joint angles.
+    pub sides: Option<[Reflector; 2]>,
 }
 
 /// One reflector: what the tracking file calls it and where it sits.
@@ -53,7 +55,8 @@ pub struct Reflectors {
 pub struct Reflector {
     /// Its name in the tracking file.
     pub point: PointName,
-    /// Its place on the middle link \[m\]: along the link from its centre to the front, and to the left of it.
+    /// Its place \[m\]. On the middle link: along it from its centre to the front, and to the left of it. On a side link: from
+    /// the joint outwards, and to the left of that.
     pub at: [f64; 2],
 }
 

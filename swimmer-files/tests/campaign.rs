@@ -251,3 +251,31 @@ cycle_start_s = 4.5
     }
     assert!("0.5,y1".parse::<PointName>().is_err() && "".parse::<PointName>().is_err());
 }
+
+#[test]
+fn reflectors_on_the_side_links() {
+    let text = "swimmer = \"robot\"\n[reflectors]\nfront = { point = \"F\", at = [0.03, 0.0] }\nback = { point = \"B\", at = [-0.03, 0.0] }\n\
+                front_link = { point = \"F1\", at = [0.1, 0.0] }\nback_link = { point = \"auto\", at = [0.08, 0.01] }\n\
+                [[run]]\ntrack = \"a.csv\"\ngait = \"circle:1\"\nperiod_s = 10.0\n";
+    let read = |text: &str| Campaign::parse(text, Path::new("tank/campaign.toml"));
+    let [front, back] = read(text).unwrap().reflectors.sides.unwrap();
+    assert_eq!(front.point, PointName::Named("F1".into()));
+    assert_eq!((back.point, back.at), (PointName::Auto, [0.08, 0.01]));
+    let lone = text.replace("front_link = { point = \"F1\", at = [0.1, 0.0] }\n", "");
+    for (text, place, why) in [
+        (lone, "tank/campaign.toml:5:13", "go together"),
+        (
+            text.replace("[0.1, 0.0]", "[0.0, 0.0]"),
+            "tank/campaign.toml:5:14",
+            "on the joint",
+        ),
+        (
+            text.replace("\"auto\"", "{ near = [0.1, 0.2] }"),
+            "tank/campaign.toml:6:13",
+            "not by a place",
+        ),
+    ] {
+        let error = read(&text).unwrap_err().to_string();
+        assert!(error.contains(place) && error.contains(why), "{error}");
+    }
+}

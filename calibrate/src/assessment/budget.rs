@@ -32,7 +32,7 @@ const MILLIMETRE: f64 = 1e-3;
 const PERCENT: f64 = 0.01;
 
 /// What the budget asks after, and by how much it is off.
-const LINES: [(Parameter, f64); 10] = [
+const LINES: [(Parameter, f64); 12] = [
     (Parameter::Gain, PERCENT),
     (Parameter::Scale, PERCENT),
     (Parameter::MarkerAlong, MILLIMETRE),
@@ -40,6 +40,8 @@ const LINES: [(Parameter, f64); 10] = [
     (Parameter::MarkerAngle, DEGREE),
     (Parameter::FrontOffset, DEGREE),
     (Parameter::BackOffset, DEGREE),
+    (Parameter::FrontLink, DEGREE),
+    (Parameter::BackLink, DEGREE),
     (Parameter::DeadBand, DEGREE),
     (Parameter::TangentialDrag, PERCENT),
     (Parameter::Period, PERCENT),
@@ -72,5 +74,9 @@ pub(super) fn budget(plain: &Plain, known: &[Known]) -> Vec<BudgetLine> {
             stated: known.is_some_and(|known| known.stated),
         })
     };
-    LINES.into_iter().filter_map(line).collect()
+    LINES
+        .into_iter()
+        .filter(|(parameter, _)| plain.model.has_use_for(*parameter))
+        .filter_map(line)
+        .collect()
 }

@@ -9,7 +9,7 @@ use crate::fit::parameter::Parameter;
 use crate::fit::tangent::Tangent;
 
 /// What is tried, and from where beside what the files say.
-const TRIED: [(&str, &[Parameter], &[f64]); 7] = [
+const TRIED: [(&str, &[Parameter], &[f64]); 8] = [
     ("gain", &[Parameter::Gain], &[]),
     (
         "gain of each servo",
@@ -29,6 +29,11 @@ const TRIED: [(&str, &[Parameter], &[f64]); 7] = [
             Parameter::MarkerAcross,
             Parameter::MarkerAngle,
         ],
+        &[],
+    ),
+    (
+        "side reflectors' place",
+        &[Parameter::FrontLink, Parameter::BackLink],
         &[],
     ),
     ("camera scale", &[Parameter::Scale], &[]),
@@ -94,7 +99,11 @@ pub(super) fn explanations(plain: &Plain) -> Vec<Explanation> {
             },
         })
     };
-    let mut out: Vec<Explanation> = TRIED.iter().filter_map(explain).collect();
+    let mut out: Vec<Explanation> = TRIED
+        .iter()
+        .filter(|(_, more, _)| more.iter().all(|p| plain.model.has_use_for(*p)))
+        .filter_map(explain)
+        .collect();
     out.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     out
 }

@@ -1,6 +1,7 @@
 //! How well does the model explain the runs? Against the cycles' own scatter, which what all cycles share does not widen.
 
 use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::Plain;
 use super::systematics::Joint;
@@ -28,8 +29,12 @@ pub struct SignTest {
 pub struct RunGoodness {
     /// Y over X, and its standard error by the run's cycles: a symmetric gait has none.
     pub y_over_x: [f64; 2],
+    /// Chance of so much Y or more in a run that has none (Student's t).
+    pub y_chance: f64,
     /// Net turn of a cycle \[rad\], and its standard error by the run's cycles: a symmetric gait has none.
     pub turn_rad: [f64; 2],
+    /// Chance of so much turn or more in a run that has none.
+    pub turn_chance: f64,
     /// What would explain X, and Y, beyond the model: velocity along and across the heading \[m/s\].
     pub drift_m_per_s: [f64; 2],
     /// Lengths over those that the other runs foretell, and its standard error: what a wall makes of a run.
@@ -129,11 +134,18 @@ fn of_run(found: &CampaignFit, plain: &Plain, joint: Option<&Joint>, run: usize)
     let scale = |q: usize| plain.data.scales[q];
     let value = |q: usize| plain.data.values[row(q)] * scale(q);
     let error = |q: usize| plain.data.within[row(q)].value.sqrt() * scale(q);
+    let chance = |q: usize| {
+        let freedom = plain.data.within[row(q)].freedom.max(1.0);
+        let t = (value(q) / error(q)).abs();
+        StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, |student| 2.0 * student.sf(t))
+    };
     let beyond = |q: usize| -estimate.residuals[row(q)] * scale(q) / result.cycles.period_s;
     let [x, .., turn] = measured(&result.cycles).map(|statistics| statistics.mean);
     RunGoodness {
         y_over_x: [value(3) / x, (error(3) / x).abs()],
+        y_chance: chance(3),
         turn_rad: [turn, error(4)],
+        turn_chance: chance(4),
         drift_m_per_s: [beyond(0), beyond(3)],
         scale: joint.and_then(|joint| length_scale(joint, run)),
     }

@@ -5,11 +5,12 @@ use swimmer_files::KnownValue;
 use crate::fit::CampaignFit;
 use crate::fit::parameter::Parameter;
 use crate::fit::prior::Prior;
+use crate::fit::run_model::RunModel;
 
 /// A servo's gain, joint offsets \[rad\], the reflectors' place \[m\] and the cameras' scale, where the campaign says nothing.
 const GAIN: f64 = 0.005;
 const OFFSET: f64 = 0.3 * std::f64::consts::PI / 180.0;
-const REFLECTOR: f64 = 5e-4;
+pub(crate) const REFLECTOR: f64 = 5e-4;
 const SCALE: f64 = 0.002;
 
 /// What is known of one parameter.
@@ -21,7 +22,7 @@ pub(super) struct Known {
 }
 
 /// All that has a width.
-pub(super) fn priors(found: &CampaignFit) -> Vec<Known> {
+pub(super) fn priors(found: &CampaignFit, model: &RunModel) -> Vec<Known> {
     let (length, known) = (found.length(), &found.known);
     let distance = found
         .runs
@@ -29,6 +30,13 @@ pub(super) fn priors(found: &CampaignFit) -> Vec<Known> {
         .map_or(length, |run| run.poses.report.distance_m);
     let reflector = known.reflector.map_or(REFLECTOR, |known| known.width);
     let usual = |value: f64, width: f64| KnownValue { value, width };
+    // A side link's reflector shows its angle as well as it is placed, seen from the joint.
+    let reaches = found
+        .runs
+        .iter()
+        .find_map(|run| run.played.sides)
+        .map(|sides| sides.reach);
+    let link = |joint: usize| reaches.map(|reaches| usual(0.0, reflector / reaches[joint]));
     // Both reflectors are placed as well as their middle, to a factor that nobody knows.
     let angle = usual(0.0, std::f64::consts::SQRT_2 * reflector / distance);
     let of = |parameter: Parameter, stated: Option<KnownValue>, usual: Option<KnownValue>| {
@@ -76,11 +84,14 @@ pub(super) fn priors(found: &CampaignFit) -> Vec<Known> {
             known.offset,
             Some(usual(0.0, OFFSET)),
         ),
+        of(Parameter::FrontLink, None, link(0)),
+        of(Parameter::BackLink, None, link(1)),
         of(Parameter::DeadBand, known.dead_band, None),
         of(Parameter::TangentialDrag, known.c_t, None),
         of(Parameter::Period, known.period, None),
     ]
     .into_iter()
     .flatten()
+    .filter(|known| model.has_use_for(known.prior.parameter))
     .collect()
 }

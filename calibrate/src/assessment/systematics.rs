@@ -6,30 +6,32 @@ use serde::Serialize;
 
 use super::Plain;
 use super::known::Known;
+use super::modes::{Mode, Sought, evidence};
 use crate::evidence::Pair;
 use crate::fit::Intervals;
 use crate::fit::intervals::half_width;
 use crate::fit::least_squares::{Model as _, minimise};
 use crate::fit::likelihood::Estimate;
-use crate::fit::outliers;
 use crate::fit::parameter::Parameter;
-use crate::fit::prior::{Prior, WithPriors};
+use crate::fit::prior::Prior;
 use crate::fit::run_values::{QUANTITIES, RunValues};
 use crate::fit::tangent::Tangent;
 
-/// Of how many values one may be left out as unlike the others.
-const VALUES_FOR_ONE: usize = 8;
-/// What no file knows, and is tried beside all that is known: growth of the log-likelihood from which on it is told, and in how
-/// many standard deviations of its own.
-const UNFORESEEN: [Parameter; 2] = [Parameter::DeadBand, Parameter::TangentialDrag];
-const TELLING_GROWTH: f64 = 10.0;
-const TELLING_DEVIATIONS: f64 = 4.0;
+/// What no file knows, and how much of it would be no surprise (rad, ln, s): tried beside all that is known. It is reckoned with
+/// where the runs are twenty times likelier with it (ln of odds), as it is one of the things that hardly ever are, and so many
+/// standard deviations of its own; above higher odds it is certain.
+const UNFORESEEN: [(Parameter, f64); 3] = [
+    (Parameter::DeadBand, 5.0 * std::f64::consts::PI / 180.0),
+    (Parameter::TangentialDrag, 0.3),
+    (Parameter::FrontLag, 0.1),
+];
+const LEAST_ODDS: f64 = 3.0;
+pub(super) const CERTAIN_ODDS: f64 = 7.0;
+const TELLING_DEVIATIONS: f64 = 3.0;
+/// How far off the odds may be along the model's tangent.
+const TANGENTS_ERROR: f64 = 7.0;
 /// Least share of what is known that the runs must add before their pull means anything.
 const LEAST_SAID: f64 = 0.02;
-/// From so many standard deviations on, what contradicts the runs is believed as much less as it is further off, in so many rounds.
-const BELIEVED: f64 = 1.5;
-const DOUBTS: usize = 3;
-
 /// What the runs make of something that is known by halves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Nuisance {
@@ -58,6 +60,10 @@ pub struct Unforeseen {
     pub value: f64,
     /// Growth of the log-likelihood.
     pub gain: f64,
+    /// How much likelier the runs are with it than without, ln of odds: with all that surrounds both optima.
+    pub log_odds: f64,
+    /// What to do about it.
+    pub remedy: &'static str,
 }
 
 /// The estimate with systematic errors.
@@ -86,52 +92,73 @@ pub(super) struct Joint {
     pub(super) estimate: Estimate,
     pub(super) tangent: Tangent,
     outliers: Vec<usize>,
+    /// What nobody knew of, last among the parameters.
+    unforeseen: Option<Unforeseen>,
+}
+
+/// What to do about something that nobody knew of.
+fn remedy(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::DeadBand => {
+            "fit it by --fit-also deadband, then say so by [servo] dead_band in the swimmer file"
+        }
+        Parameter::FrontLag => {
+            "let both servos be told at once, or let reflectors on the side links show the angles ([reflectors] front_link)"
+        }
+        _ => "fit it by --fit-also ct, then say so in the swimmer file",
+    }
 }
 
 impl Joint {
-    /// Found from two sides: from the runs alone, and from what is known, where what contradicts it is scatter from run to run.
+    /// The likeliest by all that is known, and by one thing more where the runs ask for that; then without what is unlike all else.
     pub(super) fn of(plain: &Plain, known: &[Known]) -> Option<Self> {
-        let parameters: Vec<Parameter> = known.iter().map(|known| known.prior.parameter).collect();
-        let values: Vec<f64> = known.iter().map(|known| known.prior.value).collect();
-        let (mut estimate, mut tangent, mut data) = fit(plain, known, &parameters, &values)?;
-        let mut left_out = Vec::new();
-        while left_out.len() < plain.data.count() / VALUES_FOR_ONE {
-            let Estimate {
-                jacobian,
-                weights,
-                residuals,
-                ..
-            } = &estimate;
-            let Some(worst) = outliers::worst(jacobian, weights, residuals, &data.within) else {
-                break;
+        let sought = Sought::new(plain, known, None);
+        let foreseen = sought.mode(f64::NEG_INFINITY)?;
+        let least = evidence(&foreseen.estimate) + LEAST_ODDS;
+        let enough = |mode: &Mode| evidence(&mode.estimate) > least;
+        let untold = |parameter: Parameter| {
+            let knows = |known: &Known| known.prior.parameter == parameter;
+            plain.model.has_use_for(parameter) && !known.iter().any(knows)
+        };
+        let more = UNFORESEEN
+            .iter()
+            .filter(|(parameter, _)| untold(*parameter));
+        let more = more.filter_map(|(parameter, width)| {
+            let prior = Prior {
+                parameter: *parameter,
+                value: plain.filed(*parameter),
+                width: *width,
             };
-            let without = data.without(|row| row == worst.row);
-            let weights = without.weights(|row| estimate.components.variance(row));
-            let Some(next) = Estimate::of_weighted(&tangent, &without, &estimate.at, weights)
-            else {
-                break;
+            let sought = Sought::new(plain, known, Some(prior));
+            let mode = sought.mode(least - TANGENTS_ERROR).filter(enough)?;
+            let place = mode.estimate.at.len() - 1;
+            let deviation = mode.estimate.components.covariance()[(place, place)].sqrt();
+            let value = mode.estimate.at[place];
+            let told = (value - prior.value).abs() > TELLING_DEVIATIONS * deviation;
+            let unforeseen = Unforeseen {
+                name: parameter.name(),
+                unit: parameter.unit(),
+                value: plain.model.natural(*parameter, value),
+                gain: mode.estimate.log_likelihood - foreseen.estimate.log_likelihood,
+                log_odds: evidence(&mode.estimate) - evidence(&foreseen.estimate),
+                remedy: remedy(*parameter),
             };
-            left_out.push(worst.row);
-            (estimate, data) = (next, without);
-        }
-        let first = plain.data.values.len();
-        let (model, _) = plain.with(&parameters, &values);
-        let priors: Vec<Prior> = known.iter().map(|known| known.prior).collect();
-        let (model, _) = WithPriors::new(&model, &plain.data, &priors);
-        for _ in 0..DOUBTS {
-            if !doubt(&mut data, &priors, &estimate.at, first) && left_out.is_empty() {
-                break;
-            }
-            let weights = data.weights(|row| estimate.components.variance(row));
-            (estimate, tangent) = Tangent::estimate(&model, &data, &estimate.at, &weights)?;
-        }
+            told.then_some((sought, mode, unforeseen))
+        });
+        let best = more.max_by(|a, b| evidence(&a.1.estimate).total_cmp(&evidence(&b.1.estimate)));
+        let (sought, mode, unforeseen) = match best {
+            Some((sought, mode, unforeseen)) => (sought, mode, Some(unforeseen)),
+            None => (sought, foreseen, None),
+        };
+        let (mode, outliers) = sought.without_outliers(mode)?;
         Some(Self {
             known: known.to_vec(),
-            first,
-            data,
-            estimate,
-            tangent,
-            outliers: left_out,
+            first: sought.first,
+            data: mode.data,
+            estimate: mode.estimate,
+            tangent: mode.tangent,
+            outliers,
+            unforeseen,
         })
     }
 
@@ -169,7 +196,7 @@ impl Joint {
             },
             intervals: Intervals::about(centre, [half(0)?, half(1)?], length, level),
             nuisances: self.known.iter().enumerate().map(nuisance).collect(),
-            unforeseen: self.unforeseen(plain),
+            unforeseen: self.unforeseen.into_iter().collect(),
             outliers: self
                 .outliers
                 .iter()
@@ -182,44 +209,6 @@ impl Joint {
                 .collect(),
             reduced_chi2: self.reduced_chi2(plain.data.values.len()),
         })
-    }
-
-    fn unforeseen(&self, plain: &Plain) -> Vec<Unforeseen> {
-        let try_one = |parameter: &Parameter| -> Option<Unforeseen> {
-            if self
-                .known
-                .iter()
-                .any(|known| known.prior.parameter == *parameter)
-            {
-                return None;
-            }
-            let mut parameters: Vec<Parameter> = self
-                .known
-                .iter()
-                .map(|known| known.prior.parameter)
-                .collect();
-            parameters.push(*parameter);
-            let values = self.estimate.at[2..].to_vec();
-            let values = [values.as_slice(), &[plain.filed(*parameter)]].concat();
-            let (model, _) = plain.with(&parameters, &values);
-            let priors: Vec<Prior> = self.known.iter().map(|known| known.prior).collect();
-            let (model, _) = WithPriors::new(&model, &plain.data, &priors);
-            let start = [&self.estimate.at[..2], &values].concat();
-            let weights = &self.estimate.weights;
-            let (estimate, _) = Tangent::estimate(&model, &self.data, &start, weights)?;
-            let place = estimate.at.len() - 1;
-            let deviation = estimate.components.covariance()[(place, place)].sqrt();
-            let moved = (estimate.at[place] - plain.filed(*parameter)).abs();
-            let gain = estimate.log_likelihood - self.estimate.log_likelihood;
-            let told = gain > TELLING_GROWTH && moved > TELLING_DEVIATIONS * deviation;
-            told.then(|| Unforeseen {
-                name: parameter.name(),
-                unit: parameter.unit(),
-                value: plain.model.natural(*parameter, estimate.at[place]),
-                gain,
-            })
-        };
-        UNFORESEEN.iter().filter_map(try_one).collect()
     }
 
     fn reduced_chi2(&self, measured: usize) -> Option<f64> {
@@ -238,43 +227,4 @@ impl Joint {
         let count = data.used[..measured].iter().filter(|used| **used).count();
         (told && count > 2).then(|| end.cost / (count - 2) as f64)
     }
-}
-
-/// Widens what is known by as much as the runs contradict it, so that it does not draw the answer with it; whether anything is.
-fn doubt(data: &mut RunValues, priors: &[Prior], at: &[f64], first: usize) -> bool {
-    let mut doubted = false;
-    for (index, prior) in priors.iter().enumerate() {
-        let off = (at[2 + index] - prior.value).abs() / prior.width;
-        let wider = (off / BELIEVED).max(1.0);
-        doubted |= wider > 1.0;
-        data.within[first + index].value = (wider * prior.width).powi(2);
-    }
-    doubted
-}
-
-/// From two sides, the likelier one.
-fn fit(
-    plain: &Plain,
-    known: &[Known],
-    parameters: &[Parameter],
-    values: &[f64],
-) -> Option<(Estimate, Tangent, RunValues)> {
-    let (model, start) = plain.with(parameters, values);
-    let priors: Vec<Prior> = known.iter().map(|known| known.prior).collect();
-    let (model, data) = WithPriors::new(&model, &plain.data, &priors);
-    let measured = plain.data.values.len();
-    let scattered = data.weights(|row| {
-        if row < measured {
-            plain.all.components.variance(row)
-        } else {
-            data.within[row].value
-        }
-    });
-    let even = data.weights(|_| 1.0);
-    let sides = [scattered, even];
-    let found = sides
-        .iter()
-        .filter_map(|weights| Tangent::estimate(&model, &data, &start, weights));
-    let best = found.max_by(|a, b| a.0.log_likelihood.total_cmp(&b.0.log_likelihood));
-    best.map(|(estimate, tangent)| (estimate, tangent, data))
 }

@@ -4,8 +4,9 @@ use std::fmt;
 
 use super::explanations::Explanation;
 use super::goodness::Goodness;
-use super::systematics::Systematics;
+use super::systematics::{CERTAIN_ODDS, Systematics};
 use crate::evidence::{Evidence, Pair};
+use crate::fit::parameter::Parameter;
 use crate::fit::{CampaignFit, FitWarning, Intervals};
 use crate::nuisance::scan::ALIKE;
 
@@ -103,6 +104,7 @@ fn readable(unit: &str, value: f64) -> String {
     match unit {
         "m" => format!("{:.2} mm", 1e3 * value),
         "rad" => format!("{:.2}°", value.to_degrees()),
+        "s" => format!("{:.0} ms", 1e3 * value),
         _ => format!("{value:.4}"),
     }
 }
@@ -163,16 +165,20 @@ fn of_systematics(
 ) {
     pulls(systematics, say);
     for unforeseen in &systematics.unforeseen {
-        say(
-            Verdict::DoNotUse,
-            format!(
-                "the runs ask for a {} of {}, which no file names (log-likelihood +{:.0} over all that is known): fit it by --fit-also, \
-                 then name it in the swimmer file",
-                unforeseen.name,
-                readable(unforeseen.unit, unforeseen.value),
-                unforeseen.gain
-            ),
+        let certain = unforeseen.log_odds > CERTAIN_ODDS;
+        let (verdict, asks) = if certain {
+            (Verdict::DoNotUse, "the runs ask for")
+        } else {
+            (Verdict::Caution, "the runs may have")
+        };
+        let reason = format!(
+            "{asks} a {} of {}, which no file names (log-likelihood +{:.0} over all that is known): {}",
+            unforeseen.name,
+            readable(unforeseen.unit, unforeseen.value),
+            unforeseen.gain,
+            unforeseen.remedy
         );
+        say(verdict, reason);
     }
     for (run, quantity) in &systematics.outliers {
         let file = found
@@ -299,9 +305,15 @@ fn pulls(systematics: &Systematics, say: &mut impl FnMut(Verdict, String)) {
         say(
             verdict,
             format!(
-                "the runs ask for {} {} ± {}, {pull:.1} widths from {} ± {} as {}: look at it, state what is known under [known] in the \
+                "the runs ask for {}{} {} ± {}, {pull:.1} widths from {} ± {} as {}: look at it, state what is known under [known] in the \
                  campaign, or fit it by --fit-also",
                 nuisance.name,
+                // Walls that are as near to all runs make their lengths smaller, and nothing else.
+                if nuisance.name == Parameter::Scale.name() {
+                    " (or a wall as near to all runs)"
+                } else {
+                    ""
+                },
                 told(value),
                 told(deviation),
                 told(known),

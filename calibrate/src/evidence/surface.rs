@@ -166,6 +166,7 @@ mod tests {
             period_s: 10.0,
             path: JointPath::Ideal(AnyGait::circle(amplitude)),
             cut_by: None,
+            sides: None,
         });
         let robot = start.swimmer;
         let parameters = vec![Parameter::SphereRadius, Parameter::Chi];

@@ -17,12 +17,18 @@ pub(crate) enum Parameter {
     BackOffset,
     /// The servos' dead band \[rad\].
     DeadBand,
+    /// By how much the front joint is later than the back one \[s\].
+    FrontLag,
     /// Place of the reflectors' middle along the middle link, over L.
     MarkerAlong,
     /// The same across it.
     MarkerAcross,
     /// By how much the reflectors' line is turned against the link \[rad\].
     MarkerAngle,
+    /// What the front joint's angle is over that which its link's reflector shows \[rad\].
+    FrontLink,
+    /// The same of the back joint.
+    BackLink,
     /// What both servos turn over what they are told, less 1.
     Gain,
     /// The same of the front servo alone.
@@ -43,11 +49,16 @@ impl Parameter {
             Self::SphereRadius => (0.0, 1.0),
             Self::Chi => (0.05_f64.ln(), 50_f64.ln()),
             Self::TangentialDrag => (-(20_f64.ln()), 20_f64.ln()),
-            Self::FrontOffset | Self::BackOffset | Self::MarkerAngle => (-0.35, 0.35),
+            Self::FrontOffset
+            | Self::BackOffset
+            | Self::MarkerAngle
+            | Self::FrontLink
+            | Self::BackLink => (-0.35, 0.35),
             Self::Gain | Self::FrontGain | Self::BackGain | Self::Scale | Self::Period => {
                 (-0.3, 0.3)
             }
             Self::DeadBand => (0.0, 0.35),
+            Self::FrontLag => (-1.0, 1.0),
             Self::MarkerAlong | Self::MarkerAcross => (-reach, reach),
         }
     }
@@ -58,6 +69,16 @@ impl Parameter {
             self,
             Self::FrontOffset | Self::BackOffset | Self::Gain | Self::FrontGain | Self::BackGain
         )
+    }
+
+    /// Whether it is about what servos make of a command, and nothing where the angles themselves were measured.
+    pub(crate) fn is_of_command(self) -> bool {
+        self.moves_joints() || matches!(self, Self::DeadBand | Self::Period | Self::FrontLag)
+    }
+
+    /// Whether it is about measured angles, and nothing where there are none.
+    pub(crate) fn is_of_side_links(self) -> bool {
+        matches!(self, Self::FrontLink | Self::BackLink)
     }
 
     /// Half a difference's width. Paths have kinks in the dead band.
@@ -73,9 +94,12 @@ impl Parameter {
             Self::FrontOffset => "front joint offset",
             Self::BackOffset => "back joint offset",
             Self::DeadBand => "dead band",
+            Self::FrontLag => "lag of the front joint behind the back one",
             Self::MarkerAlong => "marker offset along",
             Self::MarkerAcross => "marker offset across",
             Self::MarkerAngle => "marker angle",
+            Self::FrontLink => "front link reflector",
+            Self::BackLink => "back link reflector",
             Self::Gain => "gain",
             Self::FrontGain => "front gain",
             Self::BackGain => "back gain",
@@ -87,7 +111,13 @@ impl Parameter {
     pub(crate) fn unit(self) -> &'static str {
         match self {
             Self::SphereRadius | Self::MarkerAlong | Self::MarkerAcross => "m",
-            Self::FrontOffset | Self::BackOffset | Self::DeadBand | Self::MarkerAngle => "rad",
+            Self::FrontOffset
+            | Self::BackOffset
+            | Self::DeadBand
+            | Self::MarkerAngle
+            | Self::FrontLink
+            | Self::BackLink => "rad",
+            Self::FrontLag => "s",
             _ => "",
         }
     }
@@ -103,7 +133,13 @@ impl Parameter {
             Self::Gain | Self::FrontGain | Self::BackGain | Self::Scale | Self::Period => {
                 1.0 + value
             }
-            Self::FrontOffset | Self::BackOffset | Self::DeadBand | Self::MarkerAngle => value,
+            Self::FrontOffset
+            | Self::BackOffset
+            | Self::DeadBand
+            | Self::MarkerAngle
+            | Self::FrontLink
+            | Self::BackLink
+            | Self::FrontLag => value,
         }
     }
 }

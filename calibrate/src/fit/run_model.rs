@@ -51,6 +51,9 @@ impl RunModel {
     ) -> Result<Self, InvalidSwimmer> {
         let projection = Projection::new();
         let played = |run: &RunResult| {
+            if run.played.sides.is_some() {
+                return Ok(run.played.clone());
+            }
             let heading = run.played.path.predict(&fitted.swimmer, &projection)?.1;
             Ok(Played {
                 cut_by: Some(heading),
@@ -76,11 +79,21 @@ impl RunModel {
         Self::new(self.start.clone(), runs, self.scales, parameters)
     }
 
+    /// Whether a parameter moves anything: what is about servos does where a run has no measured angles.
+    pub(crate) fn has_use_for(&self, parameter: Parameter) -> bool {
+        let measured = |run: &Played| run.sides.is_some();
+        !(parameter.is_of_command() && self.runs.iter().all(measured)
+            || parameter.is_of_side_links() && !self.runs.iter().any(measured))
+    }
+
     /// The same with servos that do as they are told.
     pub(crate) fn with_ideal_servos(&self) -> Self {
-        let ideal = |run: &Played| Played {
-            path: JointPath::Ideal(run.gait.clone()),
-            ..run.clone()
+        let ideal = |run: &Played| match run.sides {
+            Some(_) => run.clone(),
+            None => Played {
+                path: JointPath::Ideal(run.gait.clone()),
+                ..run.clone()
+            },
         };
         self.with_runs(self.runs.iter().map(ideal).collect())
     }
@@ -137,14 +150,23 @@ impl RunModel {
         let scale = 1.0 + or_none(Parameter::Scale);
         let moves = |parameter: &Parameter| parameter.moves_joints();
         let moved = self.parameters.iter().any(moves);
+        let links = [Parameter::FrontLink, Parameter::BackLink].map(or_none);
         let pace = self.value(at, Parameter::Period);
+        let lag_s = self.value(at, Parameter::FrontLag);
         let cycle = |run: &Played| {
             let mut path = Cow::Borrowed(&run.path);
-            if dead_band.is_some() || pace.is_some() {
+            if let Some(sides) = &run.sides {
+                let angle =
+                    |phi: &Vector2<f64>| sides.corrected(phi, marker, scale - 1.0, links.into());
+                path = Cow::Owned(path.with_vertices(angle));
+            } else if dead_band.is_some() || pace.is_some() {
                 let period_s = run.period_s * (1.0 + pace.unwrap_or(0.0));
                 path = Cow::Owned(JointPath::new(&run.gait, file.servo.as_ref(), period_s).ok()?);
             }
-            if moved {
+            if let (Some(lag_s), None) = (lag_s, run.sides) {
+                path = Cow::Owned(path.with_front_later(lag_s / run.period_s));
+            }
+            if moved && run.sides.is_none() {
                 path = Cow::Owned(path.moved(gain, offset.into()));
             }
             let cut_by = run.cut_by.as_ref();

@@ -53,8 +53,12 @@ pub(crate) fn measured(cycles: &Cycles) -> [Statistics; QUANTITIES] {
 }
 
 impl RunValues {
-    pub(crate) fn of<'a>(runs: impl Iterator<Item = &'a Cycles>) -> Result<Self, FitError> {
-        let statistics: Vec<[Statistics; QUANTITIES]> = runs.map(measured).collect();
+    /// Of cycles, with the variances of what the model makes of measured angles.
+    pub(crate) fn of<'a>(
+        runs: impl Iterator<Item = (&'a Cycles, [f64; QUANTITIES])>,
+    ) -> Result<Self, FitError> {
+        let (statistics, more): (Vec<[Statistics; QUANTITIES]>, Vec<[f64; QUANTITIES]>) =
+            runs.map(|(cycles, more)| (measured(cycles), more)).unzip();
         let mut scales = [0.0_f64; QUANTITIES];
         for (q, scale) in scales.iter_mut().enumerate() {
             let sizes = statistics.iter().map(|run| run[SCALED_LIKE[q]].mean.abs());
@@ -63,9 +67,9 @@ impl RunValues {
                 return Err(FitError::NothingMeasured { quantity: NAMES[q] });
             }
         }
-        let scaled = |run: [Variance; QUANTITIES]| {
+        let scaled = |(run, more): ([Variance; QUANTITIES], [f64; QUANTITIES])| {
             std::array::from_fn::<_, QUANTITIES, _>(|q| Variance {
-                value: run[q].value / scales[q].powi(2),
+                value: (run[q].value + more[q]) / scales[q].powi(2),
                 ..run[q]
             })
         };
@@ -81,6 +85,7 @@ impl RunValues {
             values,
             within: within_runs(&statistics)
                 .into_iter()
+                .zip(more)
                 .flat_map(scaled)
                 .collect(),
         })

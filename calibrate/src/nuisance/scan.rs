@@ -65,6 +65,7 @@ pub(crate) fn noticed(found: &CampaignFit) -> Option<FitWarning> {
     let plain = found.model(&values, plain).ok()?;
     let mut finds: Vec<Find> = SCANS
         .iter()
+        .filter(|scan| plain.has_use_for(scan.parameter))
         .filter_map(|scan| scan.find(&plain, &values, found))
         .collect();
     finds.sort_by(|a, b| b.gain.total_cmp(&a.gain));

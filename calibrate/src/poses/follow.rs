@@ -18,7 +18,7 @@ use super::frozen::{Frozen, take_frozen};
 use super::{PoseError, PoseOptions};
 use crate::TrackFile;
 use frame_jump::{FrameJump, MOVED};
-pub(super) use search::is_called;
+pub(crate) use search::is_called;
 use search::{Candidate, REACH, Search, prepare};
 
 /// How following went.
@@ -195,11 +195,13 @@ pub(super) fn follow<'a>(
         && followed.contested.is_none()
         && followed.rows.iter().any(|row| row.labels.is_some());
     followed.contested = followed.contested.filter(|_| named);
+    // What shows the joint angles is no ghost.
+    let own = 2 + reflectors.sides.as_ref().map_or(0, |sides| sides.len());
     let mut candidates = Vec::new();
     let mut crowded = Vec::with_capacity(followed.rows.len());
     for row in &followed.rows {
         followed.search.candidates(row.index, &mut candidates);
-        let ghosts = candidates.len().saturating_sub(2);
+        let ghosts = candidates.len().saturating_sub(own);
         followed.report.ghosts_rejected += ghosts;
         crowded.push((followed.search.time(row), ghosts > 0));
     }

@@ -34,8 +34,13 @@ pub(crate) fn holds(intervals: &Intervals, truth: [f64; 2]) -> [bool; 2] {
 
 impl Judged {
     pub(crate) fn of(lab: &Lab) -> Result<Self, calibrate::CalibrateError> {
+        Self::at(lab, LEVEL)
+    }
+
+    /// With intervals of this level.
+    pub(crate) fn at(lab: &Lab, level: f64) -> Result<Self, calibrate::CalibrateError> {
         let (campaign, data) = lab.campaign();
-        let found = calibrate_campaign(&campaign, &data, FitOptions { level: LEVEL })?;
+        let found = calibrate_campaign(&campaign, &data, FitOptions { level })?;
         let options = EvidenceOptions {
             draws: 200,
             seed: 1,

@@ -59,6 +59,8 @@ pub(crate) struct Lab {
     pub(crate) known_servo: Option<ServoFile>,
     /// Whether the campaign names points (`Front`, `Back`) or leaves them to be found.
     pub(crate) named: bool,
+    /// Whether a flash tells when cycles begin.
+    pub(crate) flash: bool,
     pub(crate) seed: u64,
 }
 
@@ -83,6 +85,7 @@ impl Lab {
             runs: [30.0, 50.0, 70.0, 85.0, 100.0, 110.0].map(Run::of).to_vec(),
             known_servo: None,
             named: true,
+            flash: false,
             seed,
         }
     }
@@ -106,6 +109,12 @@ impl Lab {
         for joint in &mut self.joints {
             joint.gain = gain;
         }
+        self
+    }
+
+    /// With reflectors on the side links, where the campaign says.
+    pub(crate) fn with_side_reflectors(mut self) -> Self {
+        self.places.sides = Some([SIDE_PLACE; 2]);
         self
     }
 
@@ -230,7 +239,12 @@ impl Lab {
             gait_name: format!("circle:{degrees}deg"),
             period_s: self.period_s,
             front: None,
-            timing: Timing::default(),
+            timing: Timing {
+                cycle_start_s: self
+                    .flash
+                    .then(|| self.play(&self.runs[index]).first_cycle_s()),
+                ..Timing::default()
+            },
         }
     }
 

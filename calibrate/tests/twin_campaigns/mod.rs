@@ -147,6 +147,7 @@ impl Laboratory {
             reflectors: Reflectors {
                 front: reflector("Front", reach),
                 back: reflector("Back", -reach),
+                sides: None,
             },
             tracks: TrackSettings::default(),
             known: Known::default(),

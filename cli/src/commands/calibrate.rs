@@ -5,6 +5,7 @@ mod assessment;
 mod diagnoses;
 mod folder;
 mod further;
+mod joints;
 
 use std::path::{Path, PathBuf};
 
@@ -20,6 +21,7 @@ pub(crate) use self::answer::{FitAnswer, RunAnswer};
 pub(crate) use self::assessment::AssessmentAnswer;
 pub(crate) use self::further::Shown;
 use self::further::{BeyondFit, FurtherAnswers};
+pub(crate) use self::joints::JointsAnswer;
 use crate::arguments::{gait, load_swimmer, say_if_stale, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
@@ -120,6 +122,7 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
         correlation: fit.correlation,
         c_t_form: c_t_form(&fit.c_t_form),
         likelihood: None,
+        joints: JointsAnswer::of(&found),
         assessment: None,
         warnings: of_runs
             .chain(fit.warnings.iter().map(ToString::to_string))

@@ -36,6 +36,8 @@ struct RawTracks {
 struct RawReflectors {
     front: RawReflector,
     back: Spanned<RawReflector>,
+    front_link: Option<Spanned<RawReflector>>,
+    back_link: Option<Spanned<RawReflector>>,
 }
 
 #[derive(Deserialize)]
@@ -86,18 +88,7 @@ pub(super) fn campaign(
         })?;
     let is_preset = SwimmerFile::preset(raw.swimmer.get_ref()).is_some();
     let swimmer_path = (!is_preset).then(|| folder.join(raw.swimmer.get_ref()));
-    let back_place = raw.reflectors.back.span().start;
-    let reflectors = Reflectors {
-        front: reflector(raw.reflectors.front, &error)?,
-        back: reflector(raw.reflectors.back.into_inner(), &error)?,
-    };
-    let [front, back] = [reflectors.front.at, reflectors.back.at];
-    if (front[0] - back[0]).hypot(front[1] - back[1]) <= 0.0 {
-        return Err(error(
-            back_place,
-            "both reflectors sit at the same place, so they show no heading".to_owned(),
-        ));
-    }
+    let reflectors = reflectors(raw.reflectors, &error)?;
     if raw.run.is_empty() {
         return Err(error(
             text.len(),
@@ -151,6 +142,52 @@ fn track_settings(
         axes: axes.transpose()?,
         likelihood: positive(raw.likelihood, "likelihood")?,
     })
+}
+
+fn reflectors(
+    raw: RawReflectors,
+    error: &impl Fn(usize, String) -> FileError,
+) -> Result<Reflectors, FileError> {
+    let back_place = raw.back.span().start;
+    let reflectors = Reflectors {
+        front: reflector(raw.front, error)?,
+        back: reflector(raw.back.into_inner(), error)?,
+        sides: match (raw.front_link, raw.back_link) {
+            (Some(front), Some(back)) => Some([side(front, error)?, side(back, error)?]),
+            (None, None) => None,
+            (Some(lone), None) | (None, Some(lone)) => {
+                let problem = "front_link and back_link go together: both joint angles are measured, or neither".to_owned();
+                return Err(error(lone.span().start, problem));
+            }
+        },
+    };
+    let [front, back] = [reflectors.front.at, reflectors.back.at];
+    if (front[0] - back[0]).hypot(front[1] - back[1]) <= 0.0 {
+        return Err(error(
+            back_place,
+            "both reflectors sit at the same place, so they show no heading".to_owned(),
+        ));
+    }
+    Ok(reflectors)
+}
+
+/// A side link's reflector: by name or columns or to be found, somewhere off the joint.
+fn side(
+    raw: Spanned<RawReflector>,
+    error: &impl Fn(usize, String) -> FileError,
+) -> Result<Reflector, FileError> {
+    let place = raw.span().start;
+    let reflector = reflector(raw.into_inner(), error)?;
+    if matches!(reflector.point, PointName::Near(_)) {
+        let problem =
+            "a side link's reflector is found by its name, its columns or \"auto\", not by a place";
+        return Err(error(place, problem.to_owned()));
+    }
+    if reflector.at[0].hypot(reflector.at[1]) <= 0.0 {
+        let problem = "a reflector on the joint shows no angle; `at` is its place from the joint outwards, in metres";
+        return Err(error(place, problem.to_owned()));
+    }
+    Ok(reflector)
 }
 
 fn reflector(

@@ -19,7 +19,7 @@ const TIGHTER: (f64, f64) = (9.0, 8.0);
 const MOST_CANDIDATES: usize = 64;
 
 /// Whether a point goes by this name: its own, or the part behind an asset's name and a colon.
-pub(in crate::poses) fn is_called(point: &TrackPoint, name: &str) -> bool {
+pub(crate) fn is_called(point: &TrackPoint, name: &str) -> bool {
     point.name == name
         || point
             .name

@@ -4,13 +4,14 @@ use std::fmt;
 use std::path::Path;
 
 use calibrate::evidence::Likelihood;
-use calibrate::{Origin, RunResult};
+use calibrate::{Origin, RunResult, Stretch};
 use serde::Serialize;
 use swimmer_files::GaitSpec;
 
 use super::assessment::AssessmentAnswer;
 use super::diagnoses;
 use super::further::{FurtherAnswers, Shown};
+use super::joints::{JointsAnswer, RunJoints};
 use crate::quantity::{self, Rows, Table};
 
 /// The cycles of one run, and what they brought. Deviations of a single cycle are not numbers; JSON has null.
@@ -35,6 +36,13 @@ pub(crate) struct RunAnswer {
     /// How the starts of cycles were found: heading, flash, log or log-and-heading.
     phase: &'static str,
     left_out: Vec<LeftOutAnswer>,
+    /// Its joint angles, where reflectors on the side links showed them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    joints: Option<RunJoints>,
+    /// When the names of both reflectors were exchanged, and set right.
+    swaps: Vec<StretchAnswer>,
+    /// When there were points that are no reflector.
+    ghosts: Vec<StretchAnswer>,
     /// What is noteworthy about its track and its cycles.
     pub(crate) diagnoses: Vec<String>,
     pub(crate) samples: Samples,
@@ -57,6 +65,29 @@ struct Spreads {
     turn_sd_rad: f64,
     turn_se_rad: f64,
     turn_lag1: f64,
+}
+
+/// Rows one after another in which something held.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct StretchAnswer {
+    from_s: f64,
+    until_s: f64,
+    rows: usize,
+}
+
+impl From<&Stretch> for StretchAnswer {
+    fn from(stretch: &Stretch) -> Self {
+        let Stretch {
+            from_s,
+            until_s,
+            rows,
+        } = *stretch;
+        Self {
+            from_s,
+            until_s,
+            rows,
+        }
+    }
 }
 
 /// A whole cycle that does not count.
@@ -93,6 +124,9 @@ pub(crate) struct FitAnswer {
     /// The estimate beside the paper's: each value weighed by its own variance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) likelihood: Option<LikelihoodAnswer>,
+    /// What the servos made of their commands, where the joint angles were measured: the mean of the runs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) joints: Option<JointsAnswer>,
     /// What to know about the runs and the fit.
     pub(crate) warnings: Vec<String>,
     /// Whether it can be used, and why.
@@ -211,8 +245,13 @@ impl fmt::Display for FitAnswer {
         }
         write!(f, "\n\n{rows}")?;
         notes(f, &self.warnings)?;
+        let joints = self.joints.as_ref().map(JointsAnswer::shown);
         let assessed = self.assessment.iter().flat_map(AssessmentAnswer::shown);
-        let all: Vec<Shown> = assessed.chain(self.beyond.shown()).collect();
+        let all: Vec<Shown> = joints
+            .into_iter()
+            .chain(assessed)
+            .chain(self.beyond.shown())
+            .collect();
         all.iter().try_for_each(|shown| write!(f, "\n\n{shown}"))
     }
 }
@@ -328,6 +367,9 @@ impl RunAnswer {
                     reason: why.to_string(),
                 })
                 .collect(),
+            joints: RunJoints::of(run),
+            swaps: run.poses.report.swaps.iter().map(Into::into).collect(),
+            ghosts: run.poses.report.ghosts.iter().map(Into::into).collect(),
             diagnoses: diagnoses::of_run(run),
             samples: Samples {
                 frames: run.poses.frames,

@@ -236,7 +236,24 @@ impl AssessmentAnswer {
     }
 
     fn of_runs(&self) -> Shown {
-        let mut table = Table::new(["run", "Y/X", "net turn", "drift along, across", "lengths"]);
+        let mut table = Table::new([
+            "run",
+            "Y/X",
+            "chance",
+            "net turn",
+            "chance",
+            "drift along, across",
+            "lengths",
+        ]);
+        let chance = |chance: f64| {
+            if chance.is_nan() {
+                "–".to_owned()
+            } else if chance < 1e-3 {
+                "< 0.001".to_owned()
+            } else {
+                format!("{chance:.3}")
+            }
+        };
         for RunGoodnessAnswer { file, goodness } in &self.goodness.runs {
             let [ratio, error] = goodness.y_over_x;
             let [turn, turn_error] = goodness.turn_rad.map(f64::to_degrees);
@@ -248,15 +265,17 @@ impl AssessmentAnswer {
             table.line([
                 file.clone(),
                 format!("{ratio:+.4} ± {error:.4}"),
+                chance(goodness.y_chance),
                 format!("{turn:+.3} ± {turn_error:.3}°"),
+                chance(goodness.turn_chance),
                 format!("{along:+.4}, {across:+.4} mm/s"),
                 lengths,
             ]);
         }
         let chi2 = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), quantity::small);
         let mut notes = vec![format!(
-            "reduced χ² by the cycles' own scatter {} ({} degrees of freedom), with systematics {}; lengths are X and ΔY over what the \
-             other runs foretell",
+            "reduced χ² by the cycles' own scatter {} ({} degrees of freedom), with systematics {}; a symmetric gait has \
+             neither Y nor net turn, and chance is that of so much by scatter alone; lengths are X and ΔY over what the other runs foretell",
             chi2(self.reduced_chi2),
             self.goodness.freedom,
             chi2(self.goodness.reduced_chi2_with_systematics)
@@ -297,6 +316,7 @@ fn change(unit: &str, by: f64) -> String {
     match unit {
         "m" => format!("{:.2} mm", 1e3 * by),
         "rad" => format!("{:.2}°", by.to_degrees()),
+        "s" => format!("{:.0} ms", 1e3 * by),
         _ => format!("{:.2} %", 100.0 * by),
     }
 }

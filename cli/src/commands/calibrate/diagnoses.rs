@@ -1,9 +1,29 @@
 //! What is noteworthy about one run's track, in a few words each.
 
-use calibrate::RunResult;
+use calibrate::{RunResult, Stretch};
 
 /// Reflectors whose distance differs by more from what `at` says are worth a word, as a share.
 const FAR: f64 = 0.01;
+
+/// Stretches whose times are told; JSON has all.
+const TOLD: usize = 4;
+
+/// When stretches were.
+fn times(stretches: &[Stretch]) -> String {
+    let time = |stretch: &Stretch| {
+        if stretch.rows > 1 {
+            format!("{:.2}–{:.2} s", stretch.from_s, stretch.until_s)
+        } else {
+            format!("{:.2} s", stretch.from_s)
+        }
+    };
+    let mut told: Vec<String> = stretches.iter().take(TOLD).map(time).collect();
+    let more = stretches.len().saturating_sub(TOLD);
+    if more > 0 {
+        told.push(format!("and {more} times more"));
+    }
+    told.join(", ")
+}
 
 /// Swaps, ghosts, the reflectors' distance and jumps of the frame.
 pub(super) fn of_run(run: &RunResult) -> Vec<String> {
@@ -11,14 +31,16 @@ pub(super) fn of_run(run: &RunResult) -> Vec<String> {
     let mut out = Vec::new();
     if report.swaps_repaired > 0 {
         out.push(format!(
-            "labels exchanged {} times, set right",
-            report.swaps_repaired
+            "labels exchanged {} times, set right: {}",
+            report.swaps_repaired,
+            times(&report.swaps)
         ));
     }
     if report.ghosts_rejected > 0 {
         out.push(format!(
-            "{} points that are no reflector",
-            report.ghosts_rejected
+            "{} points that are no reflector: {}",
+            report.ghosts_rejected,
+            times(&report.ghosts)
         ));
     }
     let apart = report.distance_m / run.reflector_distance_m - 1.0;

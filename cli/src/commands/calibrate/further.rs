@@ -193,6 +193,7 @@ pub(super) fn readable(unit: &str, value: f64) -> String {
     match unit {
         "m" => quantity::length(value),
         "rad" => quantity::angle(value),
+        "s" => format!("{:.0} ms", 1e3 * value),
         _ => format!("{value:.4}"),
     }
 }

@@ -27,7 +27,11 @@ fn chart(labels: [&str; 2], size: (i32, i32), series: Vec<Series>) -> Chart {
     }
 }
 
-/// The way of the link's centre, what was seen and what was filled.
+/// Where names were exchanged, and where a point was that is no reflector.
+const SWAP: RGBColor = RGBColor(0xc0, 0x39, 0x6b);
+const GHOST: RGBColor = RGBColor(0xe0, 0xb0, 0x30);
+
+/// The way of the link's centre: what was seen, what was filled, and where names were exchanged or ghosts about.
 pub(super) fn track(run: &RunResult) -> Outcome<String> {
     let samples = &run.poses.samples;
     let every = samples.len().div_ceil(MOST_POINTS).max(1);
@@ -41,6 +45,20 @@ pub(super) fn track(run: &RunResult) -> Outcome<String> {
         let after = samples.iter().find(|sample| sample.time_s >= jump.after_s);
         after.map(place)
     });
+    let within = |stretches: &[calibrate::Stretch]| -> Vec<Point> {
+        let during = |time: f64| {
+            let next = stretches.partition_point(|stretch| stretch.until_s < time);
+            stretches.get(next).is_some_and(|s| s.from_s <= time)
+        };
+        let marked: Vec<Point> = samples
+            .iter()
+            .filter(|sample| during(sample.time_s))
+            .map(place)
+            .collect();
+        let every = marked.len().div_ceil(MOST_POINTS).max(1);
+        marked.into_iter().step_by(every).collect()
+    };
+    let report = &run.poses.report;
     let starts = run.cycles.cycles.iter().map(|cycle| {
         let pose = cycle.at(0.0);
         (pose.x * 1e3, pose.y * 1e3)
@@ -55,6 +73,16 @@ pub(super) fn track(run: &RunResult) -> Outcome<String> {
                     points: samples.iter().step_by(every).map(place).collect(),
                     color: MEASURED_BAND,
                     width: 1.2,
+                },
+                Series::Dots {
+                    points: within(&report.ghosts),
+                    color: GHOST,
+                    radius: 1.8,
+                },
+                Series::Dots {
+                    points: within(&report.swaps),
+                    color: SWAP,
+                    radius: 1.8,
                 },
                 Series::Dots {
                     points: filled,

@@ -6,7 +6,7 @@ use calibrate::evidence::Pair;
 
 use super::figures::{self, Coordinate};
 use super::{Calibration, model_circles};
-use crate::commands::calibrate::{AssessmentAnswer, Shown};
+use crate::commands::calibrate::{AssessmentAnswer, JointsAnswer, Shown};
 use crate::failure::Outcome;
 use crate::quantity;
 use crate::report::figures as circles;
@@ -301,8 +301,12 @@ fn evidence(html: &mut String, calibration: &Calibration<'_>) -> Outcome {
 
 /// Budget, explanations and the runs' numbers: the tables that the command prints.
 fn assessed(html: &mut String, calibration: &Calibration<'_>) {
+    let joints = calibration.answer.joints.iter().map(JointsAnswer::shown);
     let assessment = calibration.answer.assessment.iter();
-    tables(html, assessment.flat_map(AssessmentAnswer::shown));
+    tables(
+        html,
+        joints.chain(assessment.flat_map(AssessmentAnswer::shown)),
+    );
 }
 
 /// What was fitted beyond `r_s` and χ.
@@ -457,6 +461,7 @@ fn left_out(html: &mut String, calibration: &Calibration<'_>) {
 fn each_run(html: &mut String, calibration: &Calibration<'_>) -> Outcome {
     html.push_str("<section><h2>Tracks and cycles</h2><p class=note>Left: the centre of the middle link, \
          <i class=dot style='color:#1d242c'></i>where cycles begin, <i class=dot style='color:#d35b1e'></i>filled, \
+         <i class=dot style='color:#c0396b'></i>names exchanged, set right, <i class=dot style='color:#e0b030'></i>a ghost about, \
          <i class=dot style='color:#d8b9e6'></i>where the frame jumped. \
          Middle and right: all cycles over one another, seen from each one’s first pose, and their mean harmonic curve.</p>");
     for (index, (answer, run)) in calibration

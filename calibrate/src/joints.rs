@@ -1,0 +1,196 @@
+//! The joint angles as two reflectors on the side links show them: Φ(t) as it was, whatever the servos were told.
+//!
+//! A side link's reflector lies at a known place from its joint, the joint at an end of the middle link, and the middle link's
+//! pose is measured: the reflector's direction from the joint is the link's (`follow.rs`). All cycles together give each angle's
+//! mean curve over a cycle (`curve.rs`), which the model then swims instead of the command; held against the command it says what
+//! the servos made of it (`servo.rs`).
+
+mod curve;
+mod follow;
+mod servo;
+
+use nalgebra::Vector2;
+use serde::Serialize;
+use swimmer_files::Reflectors;
+use swimmer_model::{Pose, Swimmer};
+
+use crate::cycles::{Cycles, Phase};
+use crate::poses::PoseTrack;
+use crate::prediction::JointPath;
+use crate::tracks::TrackFile;
+use curve::AngleCurve;
+pub use servo::combined;
+
+/// A value with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Measured {
+    /// The value.
+    pub value: f64,
+    /// Its standard error; not a number where nothing tells it.
+    pub error: f64,
+}
+
+/// What a servo made of its command: φ follows gain · command(t − lag) + offset, with a play of the dead band either way.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MeasuredServo {
+    /// What it turned over what it was told.
+    pub gain: Measured,
+    /// Half of its play \[rad\].
+    #[serde(rename = "dead_band_rad")]
+    pub dead_band: Measured,
+    /// The joint's angle at command 0 \[rad\].
+    #[serde(rename = "offset_rad")]
+    pub offset: Measured,
+    /// How late it was \[s\]; `None` where the heading told when cycles began, which takes a lag for a later beginning.
+    #[serde(rename = "lag_s")]
+    pub lag: Option<Measured>,
+}
+
+/// The joint angles of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredJoints {
+    /// Samples of the cycles that count in which the angle was seen, front and back, as a share.
+    pub seen: [f64; 2],
+    /// Root mean square distance of the samples from the mean curves, front and back \[rad\].
+    pub scatter: [f64; 2],
+    /// What the servos made of the command; `None` where the gait does not tell.
+    pub servos: Option<[MeasuredServo; 2]>,
+    /// The mean curves.
+    pub(crate) path: JointPath,
+    /// The same without each cycle.
+    pub(crate) without: Vec<JointPath>,
+    pub(crate) sides: Sides,
+}
+
+/// Where the side links' reflectors sit, as far as errors of other places show in the angles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Sides {
+    /// From the joints \[m\].
+    pub(crate) reach: [f64; 2],
+    /// Half of the middle link \[m\].
+    pub(crate) half: f64,
+}
+
+impl Sides {
+    fn of(reflectors: &Reflectors, swimmer: &Swimmer<f64>) -> Option<Self> {
+        let sides = reflectors.sides.as_ref()?;
+        Some(Self {
+            reach: [&sides[0], &sides[1]].map(|side| side.at[0].hypot(side.at[1])),
+            half: swimmer.links.middle / 2.0,
+        })
+    }
+
+    /// The angle that was, where `measured` came out because the middle link's reflectors sit off by `marker`, lengths come out
+    /// by 1 + `scale`, and the side reflectors' own directions are off by `links`: to first order.
+    pub(crate) fn corrected(
+        &self,
+        measured: &Vector2<f64>,
+        marker: Pose<f64>,
+        scale: f64,
+        links: Vector2<f64>,
+    ) -> Vector2<f64> {
+        // By how much the joints are taken to be off, along and across.
+        let along = scale * self.half;
+        let across = marker.theta * self.half;
+        let [front, back] = [
+            Vector2::new(marker.x - along, marker.y + across),
+            Vector2::new(marker.x + along, marker.y - across),
+        ];
+        let (sin, cos) = measured.x.sin_cos();
+        let front = (cos * front.y - sin * front.x) / self.reach[0];
+        let (sin, cos) = measured.y.sin_cos();
+        let back = (cos * back.y + sin * back.x) / self.reach[1];
+        measured + links + Vector2::new(front + marker.theta, back - marker.theta)
+    }
+}
+
+/// Points of a mean curve that becomes a path: chords cut off 2e-5 of its area.
+const PIECES: usize = 512;
+
+/// The joint angles of a run's cycles, where its reflectors show them in enough of their samples.
+pub(crate) fn measure(
+    track: &TrackFile,
+    poses: &PoseTrack,
+    cycles: &Cycles,
+    reflectors: &Reflectors,
+    swimmer: &Swimmer<f64>,
+    command: impl Fn(f64) -> Vector2<f64>,
+) -> Option<MeasuredJoints> {
+    let sides = Sides::of(reflectors, swimmer)?;
+    let period = cycles.period_s;
+    let expected = cycles.cycles.len() as f64 * period * poses.rate_hz;
+    let of_joint = |angles: Vec<(f64, f64)>| {
+        let in_cycle = |(time, angle): &(f64, f64)| {
+            let after = cycles.cycles.partition_point(|c| c.start_s <= *time);
+            let index = after.checked_sub(1)?;
+            let u = (time - cycles.cycles.get(index)?.start_s) / period;
+            (u < 1.0).then_some((index, u, *angle))
+        };
+        let samples: Vec<(usize, f64, f64)> = angles.iter().filter_map(in_cycle).collect();
+        let seen = samples.len() as f64 / expected;
+        let fitted = curve::fit(&samples, cycles.cycles.len(), period * poses.rate_hz)?;
+        Some((seen, fitted))
+    };
+    let [front, back] = follow::angles(track, poses, reflectors, sides.half).map(of_joint);
+    let ((front_seen, front), (back_seen, back)) = (front?, back?);
+    let path = |front: &AngleCurve, back: &AngleCurve| {
+        let place = |i: usize| i as f64 / PIECES as f64;
+        let vertex = |u: f64| (u, Vector2::new(front.at(u), back.at(u)));
+        JointPath::Played((0..=PIECES).map(place).map(vertex).collect())
+    };
+    let known = !matches!(cycles.phase, Phase::Heading | Phase::LogAndHeading);
+    let servo = |joint: usize, fitted: &curve::Fitted| {
+        servo::of(fitted, |u| command(u)[joint], known.then_some(period))
+    };
+    let pairs = front.without.iter().zip(&back.without);
+    Some(MeasuredJoints {
+        seen: [front_seen, back_seen],
+        scatter: [front.scatter, back.scatter],
+        servos: servo(0, &front)
+            .zip(servo(1, &back))
+            .map(|(front, back)| [front, back]),
+        path: path(&front.curve, &back.curve),
+        without: pairs.map(|(front, back)| path(front, back)).collect(),
+        sides,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_places_show_in_the_angles_as_they_should() {
+        let sides = Sides {
+            reach: [0.1, 0.08],
+            half: 0.035,
+        };
+        let truth = Vector2::new(0.7, -0.4);
+        let marker = Pose::new(4e-4, -3e-4, 2e-3_f64);
+        let (scale, links) = (1e-3, Vector2::new(3e-3, -2e-3));
+        // The link at the origin, heading along x; what is taken for it is `marker`, and lengths are too long by `scale`.
+        let reflector = |joint: f64, direction: f64, reach: f64| {
+            let at = Vector2::new(joint + reach * direction.cos(), reach * direction.sin());
+            at * (1.0 + scale)
+        };
+        let joint = |along: f64| {
+            let (sin, cos) = marker.theta.sin_cos();
+            marker.position() * (1.0 + scale) + Vector2::new(cos, sin) * along
+        };
+        let direction = |reflector: Vector2<f64>, joint: Vector2<f64>| {
+            let d = reflector - joint;
+            d.y.atan2(d.x)
+        };
+        let pi = std::f64::consts::PI;
+        let front = reflector(sides.half, truth.x - links.x, sides.reach[0]);
+        let back = reflector(-sides.half, pi - truth.y + links.y, sides.reach[1]);
+        let measured = Vector2::new(
+            direction(front, joint(sides.half)) - marker.theta,
+            marker.theta + pi - direction(back, joint(-sides.half)),
+        );
+        let measured = measured.map(|angle| (angle + pi).rem_euclid(2.0 * pi) - pi);
+        let corrected = sides.corrected(&measured, marker, scale, links);
+        assert!((measured - truth).norm() > 4e-3, "{measured}");
+        assert!((corrected - truth).norm() < 6e-5, "{corrected} {truth}");
+    }
+}
