@@ -31,7 +31,6 @@
 //! | `continuation` | optima followed in a parameter, with what happens on the way |
 //! | `sideways` | the loop and its start that move most across the heading |
 //! | `turning` | the simple closed gait that turns most: round a region of the curvature |
-//! | `playable` | what a real robot makes of a gait: timing under servo limits, losses foretold |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
 //! | `certificate` | checks, and those that any closed curve can be asked |
 //! | [`collocation`] | efficiency gaits by Radau collocation, with a structured Newton method and mesh refinement |
@@ -56,7 +55,6 @@ mod immobile;
 mod loops;
 mod momentum;
 mod optimal_gait;
-pub mod playable;
 mod region;
 mod robust;
 mod runge_kutta;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use forecast::{Timing, TimingError, timing_of_table};
 use gait_optimizer::OptimalGait;
-use gait_optimizer::playable::{Timing, TimingError, timing_of_table};
 use serde::Serialize;
 use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::{Model, Tolerance, swim};

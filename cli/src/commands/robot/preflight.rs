@@ -4,13 +4,12 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use gait_optimizer::Uncertainty;
-use gait_optimizer::playable::{Forecast, Meeting, Played, Servos, Tank, forecast, until_wall};
+use forecast::{Ends, Forecast, Meeting, Played, Servos, Tank, forecast, until_wall};
 use link_protocol::{ANGLE_UNIT_RAD, Board, Configuration, HelloReply, MAX_KNOTS, TangentialDrag};
 use nalgebra::Vector2;
 use serde::Serialize;
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
-use swimmer_model::{Links, Model, Pose, Swimmer};
+use swimmer_model::{InvalidSwimmer, Links, Model, Pose, Swimmer};
 
 use super::configure::is_configured_as;
 use super::playing::duration;
@@ -217,7 +216,16 @@ impl Arguments {
         let fit = self.fit.as_deref().map(load_fit).transpose()?;
         let error = fit
             .as_ref()
-            .map(|fit: &Uncertainty| told.displacement_error(&model, fit))
+            .map(|fit| {
+                let fitted = Swimmer {
+                    sphere_radius: fit.sphere_radius,
+                    chi: fit.chi,
+                    ..player.swimmer
+                };
+                let intervals = (fit.sphere_radius_interval, fit.chi_interval);
+                let ends = Ends::new(&fitted, intervals.0, intervals.1, fit.correlation)?;
+                Ok::<_, InvalidSwimmer>(told.displacement_error(&ends))
+            })
             .transpose()
             .map_err(|error| Failure::bad_input(&error))?;
         let meeting = |tank: &Tank| {

@@ -1,6 +1,6 @@
 //! `swimmer simulate --played`: what the robot's table, pulses and servos leave of a gait.
 
-use gait_optimizer::playable::{Forecast, ForecastError, Loss, Played, Servos, Stage, forecast};
+use forecast::{Forecast, ForecastError, Loss, Played, Servos, Stage, forecast};
 use serde::Serialize;
 use swimmer_files::{AnyGait, SwimmerFile};
 use swimmer_model::Model;

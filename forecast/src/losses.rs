@@ -18,8 +18,8 @@ use nalgebra::Vector2;
 use swimmer_files::ServoFile;
 use swimmer_model::{Gait, Model, Tolerance, swim};
 
-use super::path::Polyline;
-use super::reach::{Reach, reach};
+use crate::path::Polyline;
+use crate::reach::{Reach, reach};
 pub use gap::Gap;
 
 /// The servos that shall play a gait.
@@ -392,7 +392,7 @@ impl Forecast {
 const TURNING: f64 = 0.001_745;
 
 /// Integration of each stage: closer than the smallest loss that is told.
-pub(super) fn tolerance() -> Tolerance {
+pub(crate) fn tolerance() -> Tolerance {
     Tolerance::new(1e-10)
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use swimmer_model::{Gait, Model, Pose, trajectory};
 
-use super::forecast::tolerance;
+use crate::losses::tolerance;
 
 /// A rectangular tank, inner measures.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -14,8 +14,8 @@ use gait_player::{GaitTable, Limits};
 use nalgebra::Vector2;
 use swimmer_model::{Gait, Links, Model, Panels, Stroke};
 
-use super::super::path::{Polyline, TableCurve};
 use super::{ForecastError, Played, Verdict, gap, stroke, tolerance};
+use crate::path::{Polyline, TableCurve};
 
 /// A map whose nanoseconds are 3e-8 rad: pulses that round nothing that single precision does not round.
 const FINE: ServoMap = ServoMap {

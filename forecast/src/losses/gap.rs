@@ -9,7 +9,7 @@ use gait_player::clearance::{clearance, margin as robot_margin};
 use nalgebra::Vector2;
 use swimmer_model::{Gait, Links};
 
-use super::super::path::Polyline;
+use crate::path::Polyline;
 
 /// Where the side links come closest.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,20 +1,24 @@
 //! What a real robot makes of a gait: how fast its servos can run it, which angles they reach, and what is left of the
 //! displacement once a table, pulses, a rate limit and a dead band have had their share.
 //!
+//! All of it runs `gait-player`'s own table, playback, plant and table check, so that a forecast and the robot cannot disagree
+//! on arithmetic.
+//!
 //! - [`timing()`]: a gait is a curve; its timing is free. The best timing under a rate limit, and the shortest period;
 //!   [`timing_of_table`]: the same for the table that the robot makes of it.
 //! - [`reach()`]: the largest angle of a gait, with its place, against what the servos allow.
 //! - [`until_wall`]: how many cycles a tank has room for; [`Forecast::displacement_error`]: what a calibration leaves open.
 //! - [`forecast()`]: the displacement as designed, as stored, as commanded and as turned, loss by loss, before a gait is sent.
 
-mod certainty;
-pub mod forecast;
+pub mod certainty;
+pub mod losses;
 pub mod path;
 pub mod reach;
 pub mod tank;
 pub mod timing;
 
-pub use forecast::{Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast};
+pub use certainty::Ends;
+pub use losses::{Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast};
 pub use reach::{Reach, reach};
 pub use tank::{Meeting, Part, Tank, until_wall};
 pub use timing::{Timing, TimingError, shortest_period, timing, timing_of_table};

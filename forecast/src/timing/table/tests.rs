@@ -1,7 +1,7 @@
 #![allow(clippy::cast_sign_loss, reason = "periods are above 0")]
 
 use super::*;
-use crate::{DisplacementProblem, displacement};
+use gait_optimizer::{DisplacementProblem, displacement};
 use gait_player::table::check::Checker;
 use swimmer_files::Bounds;
 use swimmer_model::{Links, Swimmer, Tolerance, swim};

@@ -1,0 +1,108 @@
+//! How sure a forecast's displacement is, from what a calibration leaves open of `r_s` and χ.
+
+use swimmer_model::{InvalidSwimmer, Model, Swimmer, swim};
+
+use crate::losses::{Forecast, tolerance};
+
+impl Forecast {
+    /// Half width of the displacement's interval \[m\], along the designed displacement, at the level of the fit's intervals:
+    /// the played way swum by the swimmers at the ends of the intervals of `r_s` and χ, to first order, with their correlation
+    /// where the fit tells it.
+    pub fn displacement_error(&self, ends: &Ends) -> f64 {
+        let along = self
+            .stages
+            .first()
+            .and_then(|designed| designed.displacement.try_normalize(0.0))
+            .unwrap_or_else(nalgebra::Vector2::x);
+        let swum =
+            |model: &Model<f64>| along.dot(&swim(model, &self.way, &tolerance()).displacement);
+        let half = |[low, high]: &[Model<f64>; 2]| 0.5 * (swum(high) - swum(low));
+        let (by_radius, by_chi) = (half(&ends.sphere_radius), half(&ends.chi));
+        let correlation = ends.correlation.unwrap_or(0.0);
+        let variance =
+            by_radius * by_radius + by_chi * by_chi + 2.0 * correlation * by_radius * by_chi;
+        variance.max(0.0).sqrt()
+    }
+}
+
+/// The swimmers at the ends of what a calibration leaves open, the other parameter at its estimate.
+#[derive(Debug, Clone)]
+pub struct Ends {
+    /// At both ends of the interval of `r_s`, the lower one first.
+    pub sphere_radius: [Model<f64>; 2],
+    /// At both ends of the interval of χ.
+    pub chi: [Model<f64>; 2],
+    /// Correlation of both estimates, where it is known.
+    pub correlation: Option<f64>,
+}
+
+impl Ends {
+    /// Of a swimmer with these intervals of `r_s` \[m\] and χ. A sphere below nothing counts as none.
+    ///
+    /// # Errors
+    /// An end at which there is no swimmer.
+    pub fn new(
+        swimmer: &Swimmer<f64>,
+        sphere_radius: [f64; 2],
+        chi: [f64; 2],
+        correlation: Option<f64>,
+    ) -> Result<Self, InvalidSwimmer> {
+        let at = |sphere_radius: f64, chi| {
+            Model::new(&Swimmer {
+                sphere_radius: sphere_radius.max(0.0),
+                chi,
+                ..*swimmer
+            })
+        };
+        let [radius_low, radius_high] = sphere_radius;
+        let [chi_low, chi_high] = chi;
+        Ok(Self {
+            sphere_radius: [at(radius_low, swimmer.chi)?, at(radius_high, swimmer.chi)?],
+            chi: [
+                at(swimmer.sphere_radius, chi_low)?,
+                at(swimmer.sphere_radius, chi_high)?,
+            ],
+            correlation,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Played, Servos, forecast};
+    use swimmer_files::{AnyGait, ServoFile};
+
+    #[test]
+    fn the_error_follows_the_intervals() {
+        let model = Model::new(&Swimmer::robot()).unwrap();
+        let played = Played {
+            servos: Servos::on_the_robot(ServoFile::default()),
+            period: 30.0,
+            knots: 128,
+        };
+        let told = forecast(&model, &AnyGait::circle(1.2), &played).unwrap();
+        let Swimmer {
+            sphere_radius, chi, ..
+        } = *model.swimmer();
+        let error = |by_radius: f64, by_chi: f64, correlation| {
+            let around = |value: f64, by: f64| [value - by, value + by];
+            let ends = Ends::new(
+                model.swimmer(),
+                around(sphere_radius, by_radius),
+                around(chi, by_chi),
+                correlation,
+            );
+            told.displacement_error(&ends.unwrap())
+        };
+        assert!(error(0.0, 0.0, None) < 1e-15);
+        let (radius, chi_alone) = (error(1e-4, 0.0, None), error(0.0, 0.01, None));
+        assert!(radius > 1e-7 && chi_alone > 1e-7, "{radius} {chi_alone}");
+        // Twice the interval, twice the error; two independent sources add as squares; correlated ones more or less.
+        assert!((error(2e-4, 0.0, None) / radius - 2.0).abs() < 1e-3);
+        let both = error(1e-4, 0.01, None);
+        assert!((both - radius.hypot(chi_alone)).abs() < 1e-12);
+        let (with, against) = (error(1e-4, 0.01, Some(0.9)), error(1e-4, 0.01, Some(-0.9)));
+        assert!(with.min(against) < both && both < with.max(against));
+    }
+}
