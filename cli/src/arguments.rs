@@ -4,7 +4,7 @@ use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
 
-use swimmer_files::{AnyGait, GaitSpec, Provenance, SwimmerFile, parse_angle};
+use swimmer_files::{AnyGait, GaitSpec, Provenance, SwimmerFile, parse_angle, parse_joint_angle};
 use swimmer_model::Model;
 
 use crate::failure::{Failure, Outcome};
@@ -15,13 +15,36 @@ pub(crate) fn angle(text: &str) -> Result<f64, String> {
     parse_angle(text).map_err(|error| error.to_string())
 }
 
-/// An angle above zero on the command line, in radians.
+/// The angle of a joint on the command line, in radians.
+pub(crate) fn joint_angle(text: &str) -> Result<f64, String> {
+    parse_joint_angle(text).map_err(|error| error.to_string())
+}
+
+/// An angle of a joint above zero on the command line, in radians.
 pub(crate) fn positive_angle(text: &str) -> Result<f64, String> {
-    let angle = angle(text)?;
+    above_zero_angle(joint_angle(text)?, "the angle")
+}
+
+/// The half width of a dead band on the command line, zero or above, in radians.
+pub(crate) fn dead_band(text: &str) -> Result<f64, String> {
+    let angle = joint_angle(text)?;
+    if angle >= 0.0 {
+        Ok(angle)
+    } else {
+        Err("a dead band is zero or above, as 1deg".to_owned())
+    }
+}
+
+/// An angle a second, above zero, on the command line, in radians a second; any number of turns.
+pub(crate) fn rate(text: &str) -> Result<f64, String> {
+    above_zero_angle(angle(text)?, "the rate")
+}
+
+fn above_zero_angle(angle: f64, what: &str) -> Result<f64, String> {
     if angle > 0.0 {
         Ok(angle)
     } else {
-        Err("the angle must be above zero".to_owned())
+        Err(format!("{what} must be above zero"))
     }
 }
 
@@ -98,6 +121,9 @@ pub(crate) fn load_swimmer(preset_or_path: &str) -> Outcome<SwimmerFile> {
     let swimmer = SwimmerFile::find(preset_or_path)?;
     if SwimmerFile::preset(preset_or_path).is_none() {
         say_if_stale(Path::new(preset_or_path))?;
+    }
+    for doubt in swimmer.doubts() {
+        aside(&format!("warning: {}: {doubt}", swimmer.name));
     }
     Ok(swimmer)
 }

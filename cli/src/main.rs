@@ -1,5 +1,8 @@
 //! The `swimmer` command: parses, calls, prints, draws. No physics and no protocol live here.
 
+// What is printed goes through `output`: a reader that has gone away is no panic there.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 mod arguments;
 mod bounds;
 mod commands;
@@ -26,7 +29,7 @@ use crate::commands::Arguments;
 use crate::output::Output;
 
 fn main() -> ExitCode {
-    let words: Vec<OsString> = std::env::args_os().collect();
+    let words = negative_values_joined(std::env::args_os());
     match parse(&words) {
         Ok(arguments) => {
             let output = Output {
@@ -43,6 +46,30 @@ fn main() -> ExitCode {
         }
         Err(error) => bad_usage(&error, &words),
     }
+}
+
+/// The words typed, with a negative value joined to its option (`--max-angle=-1deg`): no option of ours begins with a digit, so
+/// the command can say itself what is wrong with the value.
+fn negative_values_joined(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let mut joined: Vec<OsString> = Vec::new();
+    for word in words {
+        let negative = word
+            .to_str()
+            .and_then(|word| word.strip_prefix('-'))
+            .is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit() || c == '.'));
+        let option = joined.last_mut().filter(|option| {
+            let option = option.to_string_lossy();
+            option.len() > 2 && option.starts_with("--") && !option.contains('=')
+        });
+        match option {
+            Some(option) if negative => {
+                option.push("=");
+                option.push(word);
+            }
+            _ => joined.push(word),
+        }
+    }
+    joined
 }
 
 /// What was typed. Help is text even for scripts, but the word `help` takes no flags: there `--json` is passed over.
@@ -90,4 +117,31 @@ fn bad_usage(error: &clap::Error, words: &[OsString]) -> ExitCode {
         ));
     }
     ExitCode::from(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn negative_values_belong_to_their_options() {
+        let joined = |words: &[&str]| -> Vec<String> {
+            negative_values_joined(words.iter().map(OsString::from))
+                .into_iter()
+                .map(|word| word.into_string().unwrap())
+                .collect()
+        };
+        assert_eq!(
+            joined(&["a", "--b", "-1deg", "-2"]),
+            ["a", "--b=-1deg", "-2"]
+        );
+        for kept in [
+            ["--b", "--c", "x"],
+            ["--", "-1", "x"],
+            ["--b=1", "-1", "x"],
+            ["--b", "-o", "x"],
+        ] {
+            assert_eq!(joined(&kept), kept);
+        }
+    }
 }

@@ -37,7 +37,7 @@ impl Output {
     /// A line for people while the command runs: standard output, or standard error when that is kept for JSON.
     pub(crate) fn line(self, text: &str) {
         if self.json {
-            eprintln!("{text}");
+            aside(text);
         } else {
             write_all(&format!("{text}\n"));
         }
@@ -45,16 +45,17 @@ impl Output {
 
     /// Says why the command failed: on standard error for people, and as `{"error": …}` for scripts.
     pub(crate) fn failure(self, failure: &Failure) {
-        eprintln!("error: {failure}");
+        aside(&format!("error: {failure}"));
         if self.json && !matches!(failure, Failure::Answered(_)) {
             write_all(&error_document(&failure.to_string()));
         }
     }
 }
 
-/// Something worth knowing that is no part of the answer: standard error.
+/// Something worth knowing that is no part of the answer: standard error. Where nobody reads that any more there is nobody to
+/// tell.
 pub(crate) fn aside(text: &str) {
-    eprintln!("{text}");
+    let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
 /// The JSON document that stands for a failure.

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use swimmer_files::GaitSpec;
+use swimmer_model::CrossingShare;
 
 /// A length in metres, printed in millimetres below one metre.
 pub(crate) fn length(metres: f64) -> String {
@@ -60,6 +61,18 @@ pub(crate) fn crossing(of_cycle: f64) -> String {
         format!("on {:.1} % of the cycle", of_cycle * 100.0)
     } else {
         "never".to_owned()
+    }
+}
+
+/// The same, where a side link may also pass through the middle one in no time.
+pub(crate) fn crossing_or_folding(share: &CrossingShare<f64>) -> String {
+    match (share.of_cycle > 0.0, share.folds) {
+        (false, true) => "at instants (|φ| = 180°: a side link on the middle one)".to_owned(),
+        (true, true) => format!(
+            "{}, a side link passing |φ| = 180°",
+            crossing(share.of_cycle)
+        ),
+        (_, false) => crossing(share.of_cycle),
     }
 }
 

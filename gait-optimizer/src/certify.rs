@@ -21,7 +21,9 @@ mod stencil;
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
-use swimmer_model::{Gait as _, InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, swim};
+use swimmer_model::{
+    Gait as _, InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, crossing_share, swim,
+};
 
 use crate::OptimalGait;
 use crate::certificate::{
@@ -157,7 +159,7 @@ fn certify_turned(
 ) -> Result<Certificate, CertifyError> {
     let subject = Subject::new(model, gait, limits);
     let open = subject.openness();
-    let mut checks = subject.of_the_curve(gait);
+    let mut checks = subject.of_the_curve(gait, curve);
     checks.extend(sampling(objective, open));
     let stroke = swim(model, curve, &Tolerance::default());
     let [x, y, theta] = subject.path.end();
@@ -226,7 +228,7 @@ impl<'a> Subject<'a> {
     }
 
     /// Closure, simplicity and bounds: what does not depend on the objective.
-    fn of_the_curve(&self, gait: &GaitFile) -> Vec<Check> {
+    fn of_the_curve(&self, gait: &GaitFile, curve: &AnyGait) -> Vec<Check> {
         let gap = match (gait.phi.first(), gait.phi.last()) {
             (Some(first), Some(last)) => (last - first).norm(),
             _ => f64::NAN,
@@ -249,6 +251,11 @@ impl<'a> Subject<'a> {
             .map(|(_, limit)| -limit.margin)
             .reduce(f64::max);
         checks.extend(overstepped.map(|by| Check::at_most("bound_overstepped_rad", by, TOUCHING)));
+        if self.limits.may_not_fold() {
+            let crosses = crossing_share(&self.model.swimmer().links, curve);
+            let folds = if crosses.folds { 1.0 } else { 0.0 };
+            checks.push(Check::at_most("side_link_on_middle_link", folds, 0.0));
+        }
         for (curved, name, tolerance) in [
             (false, "arc_off_its_bound_rad", TOUCHING),
             (true, "arc_off_clearance_rad", TOUCHING_CURVED),

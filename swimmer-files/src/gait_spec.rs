@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use crate::{AnyGait, FileError, GaitFile, parse_angle};
+use crate::{AnyGait, FileError, GaitFile, parse_joint_angle};
 
 /// A gait as named by a person.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,7 +92,7 @@ impl FromStr for GaitSpec {
 }
 
 fn size(text: &str, amplitude: &str) -> Result<f64, GaitSpecError> {
-    let amplitude = parse_angle(amplitude).map_err(|source| GaitSpecError::Amplitude {
+    let amplitude = parse_joint_angle(amplitude).map_err(|source| GaitSpecError::Amplitude {
         text: text.to_owned(),
         source,
     })?;

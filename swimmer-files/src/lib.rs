@@ -26,7 +26,7 @@ mod provenance;
 mod swimmer_file;
 mod toml_text;
 
-pub use angle::{AngleError, parse_angle};
+pub use angle::{AngleError, parse_angle, parse_joint_angle};
 pub use any_gait::AnyGait;
 pub use atomic::write_atomically;
 pub use axes::Axes;

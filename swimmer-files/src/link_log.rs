@@ -41,6 +41,17 @@ pub enum LinkLogError {
     /// The file itself.
     #[error(transparent)]
     File(#[from] FileError),
+    /// Nothing that a link log begins with.
+    #[error(
+        "{} is no link log: it {what}; a link log is the MCAP file of `swimmer robot log` or of --log",
+        path.display()
+    )]
+    NoLinkLog {
+        /// The file.
+        path: PathBuf,
+        /// What it is instead.
+        what: &'static str,
+    },
     /// The MCAP container.
     #[error("the link log {}: {problem}", path.display())]
     Container {

@@ -151,6 +151,27 @@ impl SwimmerFile {
         write::swimmer_toml(self)
     }
 
+    /// What is possible but hardly meant, each in a sentence with its physics.
+    pub fn doubts(&self) -> Vec<String> {
+        let swimmer = &self.swimmer;
+        let (chi, sphere_radius) = (swimmer.chi, swimmer.sphere_radius);
+        let length = swimmer.total_length();
+        let mut doubts = Vec::new();
+        if sphere_radius > length {
+            doubts.push(format!(
+                "a sphere of radius {sphere_radius} m holds the middle link of a swimmer {length:.3} m long all but still, and its \
+                 flow would reach the links, which this model leaves out; [sphere] radius is in metres"
+            ));
+        }
+        if chi < 1.0 {
+            doubts.push(format!(
+                "chi = c_n/c_t = {chi} says that a link slides across more easily than along; a slender rod in a viscous fluid \
+                 has chi above 1 (2 far from walls), and below 1 small gaits swim backwards: were the two exchanged?"
+            ));
+        }
+        doubts
+    }
+
     /// The fingerprint of the swimmer (not of its name, fluid or servos).
     pub fn hash(&self) -> SwimmerHash {
         SwimmerHash::of(&self.swimmer)

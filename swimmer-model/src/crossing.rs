@@ -1,7 +1,8 @@
 //! Which shapes a real swimmer cannot take because two of its links would lie across each other.
 //!
 //! The side links meet well inside |φ| < π: along φ₁ = φ₂ from arccos(−l₀/2l₁) on. Adjacent links share a joint and
-//! overlap only where a side link is folded flat onto the middle one, |φ| = π.
+//! overlap only where a side link is folded flat onto the middle one, |φ| = π; that shape counts as crossing (the set is
+//! closed there), and one on which the side links' tips merely touch does not.
 
 use crate::{Links, Model, Scalar};
 use nalgebra::Vector2;
@@ -30,7 +31,9 @@ impl<T: Scalar> Links<T> {
 
     /// Whether two links cross at shape Φ: the side links each other, or one of them folded onto the middle link.
     pub fn cross(&self, phi: &Vector2<T>) -> bool {
-        self.overlap(phi) > T::zero() || folded(phi.x) || folded(phi.y)
+        self.overlap(phi) > T::zero()
+            || flatness(phi.x) >= T::zero()
+            || flatness(phi.y) >= T::zero()
     }
 }
 
@@ -41,8 +44,16 @@ impl<T: Scalar> Model<T> {
     }
 }
 
-/// |φ| = π to rounding, whatever full turns it holds.
-fn folded<T: Scalar>(phi: T) -> bool {
+/// A side link this close to |φ| = π lies on the middle one \[rad\]: solvers and files meet a bound no better.
+const FLAT: f64 = 1e-8;
+
+/// How far inside |φ| = π to rounding the angle lies \[rad\], whatever full turns it holds: not negative where the link is
+/// folded flat, continuous around there.
+pub(crate) fn flatness<T: Scalar>(phi: T) -> T {
     let (sin, cos) = phi.sin_cos();
-    cos < T::zero() && sin.abs() <= T::EPSILON * phi.abs()
+    if cos < T::zero() {
+        T::from_f64(FLAT).max(T::EPSILON * phi.abs()) - sin.abs()
+    } else {
+        -T::one()
+    }
 }

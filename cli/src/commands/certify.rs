@@ -9,7 +9,7 @@ use swimmer_files::{Bounds, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
 use crate::arguments::{gait, load_gait, load_swimmer};
 use crate::bounds::QuarterBounds;
 use crate::failure::{Failure, Outcome};
-use crate::output::Output;
+use crate::output::{Output, aside};
 use crate::quantity;
 
 use super::optimize::answer::Evidence;
@@ -92,13 +92,13 @@ fn warn_of_another_swimmer(swimmer: &SwimmerFile, file: &GaitFile, gait: &GaitSp
         .swimmer_hash
         .is_some_and(|hash| hash != SwimmerHash::of(&swimmer.swimmer));
     if other {
-        eprintln!(
+        aside(&format!(
             "warning: {gait} was made for another swimmer than {}{}",
             swimmer.name,
             file.swimmer_name
                 .as_ref()
                 .map_or_else(String::new, |name| format!(" (it names {name})"))
-        );
+        ));
     }
 }
 

@@ -213,9 +213,9 @@ struct Curve {
 #[derive(Debug, Serialize)]
 struct Rule {
     gait: String,
-    /// x, y over L and θ in rad: ∬ H over what the gait encloses.
+    /// x, y over L and θ in rad: ∬ H over what the gait encloses, seen from the middle link at the gait's start.
     area: [f64; 3],
-    /// The same as swum, seen from the frame of the map at the gait's first shape.
+    /// The same as swum.
     swum: [f64; 3],
     deviation: [f64; 3],
 }

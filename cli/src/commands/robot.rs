@@ -32,7 +32,7 @@ use self::answers::Doing;
 use self::port::Pace;
 use self::port_owner::Ask;
 pub(crate) use self::upload::table_of;
-use crate::arguments::{gait, period, positive_angle, seconds, time};
+use crate::arguments::{gait, period, positive_angle, rate, seconds, time};
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 
@@ -97,7 +97,7 @@ struct Configure {
     #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
     max_angle: Option<f64>,
     /// Largest joint rate per second, as 3.5 or 200deg; may tighten the robot's own limit, never loosen it
-    #[arg(long, value_name = "ANGLE", value_parser = positive_angle)]
+    #[arg(long, value_name = "ANGLE", value_parser = rate)]
     max_rate: Option<f64>,
 }
 

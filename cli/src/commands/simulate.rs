@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use swimmer_files::{AnyGait, GaitSpec, write_atomically};
-use swimmer_model::{Model, Pose, Tolerance, crossing_share, swim, trajectory};
+use swimmer_model::{CrossingShare, Model, Pose, Tolerance, crossing_share, swim, trajectory};
 
 use crate::arguments::{gait, load_gait, load_swimmer, model};
 use crate::failure::Outcome;
@@ -38,6 +38,8 @@ pub(crate) struct Simulate {
 struct Swum {
     #[serde(skip)]
     title: String,
+    #[serde(skip)]
+    crossing: CrossingShare<f64>,
     /// Share of the cycle in which links cross.
     links_cross: f64,
     displacement_over_length: f64,
@@ -82,7 +84,7 @@ impl fmt::Display for Swum {
                 self.efficiency, self.efficiency_constant_power
             ),
         )
-        .row("links cross", quantity::crossing(self.links_cross));
+        .row("links cross", quantity::crossing_or_folding(&self.crossing));
         if let Some(played) = &self.played {
             played.rows(&mut rows);
         }
@@ -99,11 +101,13 @@ impl Simulate {
         let file = load_swimmer(&self.swimmer)?;
         let gait = load_gait(&self.gait)?;
         let model = model(&file)?;
+        let crossing = crossing_share(&file.swimmer.links, &gait);
         let stroke = swim(&model, &gait, &Tolerance::default());
         let over_length = stroke.displacement_over_length();
         let swum = Swum {
             title: format!("{}, {}", file.name, quantity::gait(&self.gait)),
-            links_cross: crossing_share(&file.swimmer.links, &gait).of_cycle,
+            links_cross: crossing.of_cycle,
+            crossing,
             displacement_over_length: over_length.x,
             displacement_m: stroke.displacement.x,
             lateral_over_length: over_length.y,

@@ -14,7 +14,7 @@ use serde::Serialize;
 use twin::{TrackError, TwinConfig, VirtualRobot as _, serve};
 
 use self::joints::Joints;
-use crate::arguments::{angle, load_swimmer};
+use crate::arguments::{dead_band, load_swimmer};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::output::Output;
@@ -52,7 +52,7 @@ pub(crate) struct Twin {
     #[arg(long = "servo", value_name = "JOINT:KEY=VALUE,…", value_parser = odd::servo)]
     servos: Vec<odd::Servo>,
     /// Half width of the servos' dead band, in place of the swimmer file's
-    #[arg(long, value_name = "ANGLE", value_parser = angle)]
+    #[arg(long, value_name = "ANGLE", value_parser = dead_band)]
     dead_band: Option<f64>,
     /// Take the port for a radio: whoever speaks there need not be at the robot. Else it is its USB cable
     #[arg(long)]

@@ -40,6 +40,22 @@ fn a_reader_that_went_away_is_no_failure() {
     drop(reader);
     let ran = told_to(writer, &SIMULATE).with_status(0);
     assert!(ran.stderr.is_empty(), "{ran}");
+    // As `2>&1 | head` leaves both, for what succeeds, fails, and is no command.
+    for (words, status) in [
+        (&SIMULATE[..], 0),
+        (&["robot", "info", "--port", "/dev/no-such-port"], 1),
+        (
+            &["simulate", "--swimmer", "lost.toml", "--gait", "circle:1"],
+            2,
+        ),
+        (&["dance"], 2),
+    ] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut command = command(&std::env::temp_dir(), words);
+        command.stdout(writer.try_clone().unwrap()).stderr(writer);
+        assert_eq!(command.status().unwrap().code(), Some(status), "{words:?}");
+    }
 }
 
 #[cfg(target_os = "linux")]

@@ -14,6 +14,8 @@ use crate::region::Region;
 pub(super) struct Limits {
     region: Region,
     need_quarters: bool,
+    /// Whether links may touch but not cross: then a side link may not lie folded on the middle one, |φ| = π.
+    may_not_fold: bool,
 }
 
 /// One bound at one shape.
@@ -33,12 +35,18 @@ impl Limits {
         Self {
             region: Region::new(bounds, links),
             need_quarters: bounds.min_angle.is_some() || bounds.sector,
+            may_not_fold: bounds.no_overlap,
         }
     }
 
     /// Whether the bounds are told of a quarter, so that they mean something for gaits with the paper's symmetries only.
     pub(super) fn need_quarters(&self) -> bool {
         self.need_quarters
+    }
+
+    /// Whether a side link may not lie folded on the middle one.
+    pub(super) fn may_not_fold(&self) -> bool {
+        self.may_not_fold
     }
 
     /// Whether a quarter may run along the symmetry lines.

@@ -13,14 +13,15 @@ use super::legendre::{gauss, polynomials};
 use super::space::{Field, table};
 use super::{HIGHEST, HeightMap, HeightMapError, Row, turned_back};
 
-/// What the map says of a gait, and what it swims; (x, y, θ) over L and in rad, seen from the minimum-perturbation frame
-/// at the gait's first shape.
+/// What the map says of a gait, and what it swims; (x, y, θ) over L and in rad, along and across the middle link at the
+/// gait's first shape, as every other answer tells a displacement.
 ///
-/// With equal side links that frame is not turned against the middle link where φ₁ = φ₂; so for a gait that starts there
-/// and has no net rotation, x and y are along and across the middle link.
+/// The map's own frame may be turned against the middle link there: what it says is carried over. With equal side links
+/// and a gait that starts at φ₁ = φ₂ and has no net rotation, nothing changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AreaRule {
-    /// ∬ H over the area enclosed, each part counted as often as the gait winds round it, counter-clockwise positive.
+    /// ∬ H over the area enclosed, each part counted as often as the gait winds round it, counter-clockwise positive; carried
+    /// from the map's frame to the middle link.
     pub area: Vector3<f64>,
     /// Net displacement of one cycle.
     pub swum: Vector3<f64>,
@@ -48,14 +49,17 @@ impl HeightMap {
         let first = gait.at(0.0).phi;
         let area = self.enclosed(gait)?;
         let stroke = swim(self.model(), gait, &Tolerance::default());
-        // The frame rides along: h⁻¹ g h for the frame h and the middle link's net motion g.
+        // The frame rides along: h a h⁻¹ for the frame h and its net motion a.
         let b = self.frame(&first).b;
         let place = Vector2::new(b.x, b.y);
-        let carried = stroke.displacement + turned_back(&place, -stroke.rotation) - place;
-        let seen = turned_back(&carried, b.z);
+        let carried = turned_back(&area.xy(), -b.z) + place - turned_back(&place, -area.z);
         Ok(AreaRule {
-            area,
-            swum: Vector3::new(seen.x, seen.y, stroke.rotation),
+            area: Vector3::new(carried.x, carried.y, area.z),
+            swum: Vector3::new(
+                stroke.displacement.x,
+                stroke.displacement.y,
+                stroke.rotation,
+            ),
         })
     }
 

@@ -39,6 +39,14 @@ pub enum OpenError {
         /// The port's path.
         path: String,
     },
+    /// No serial line.
+    #[error(
+        "opening {path}: it is there, but it is no serial port; name one (`swimmer robot info` without --port finds it)"
+    )]
+    NoSerialPort {
+        /// The port's path.
+        path: String,
+    },
     /// Something else.
     #[error("opening {path} as a serial port: {reason}; is this path a serial port?")]
     Other {
@@ -90,11 +98,20 @@ fn explain(path: &str, error: &serialport::Error) -> OpenError {
             path,
         },
         serialport::ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::Missing { path },
+        _ if is_no_terminal(error) => OpenError::NoSerialPort { path },
         _ => OpenError::Other {
             path,
             reason: error.to_string(),
         },
     }
+}
+
+/// Whether the system said that this is no terminal: a file, a folder, `/dev/null`.
+fn is_no_terminal(error: &serialport::Error) -> bool {
+    // The crate keeps no error number, only the C library's words for ENOTTY.
+    ["typewriter", "ioctl"]
+        .iter()
+        .any(|word| error.to_string().contains(word))
 }
 
 fn permission_advice(group: Option<&str>) -> String {

@@ -35,6 +35,18 @@ impl Line<'_> {
         }
     }
 
+    fn joint_angle(&self, part: &str) -> Result<f64, FileError> {
+        let value = self.number(part)?;
+        if !crate::angle::looks_like_degrees(value) {
+            return Ok(value);
+        }
+        let problem = format!(
+            "a joint angle of {value} rad is more than a turn: did you mean {value}°? Write {:.6}, angles in a gait file are radians",
+            value.to_radians()
+        );
+        Err(self.error(part.trim(), problem))
+    }
+
     fn fraction(&self, part: &str) -> Result<f64, FileError> {
         let value = self.number(part)?;
         if (0.0..=1.0).contains(&value) {
@@ -181,7 +193,7 @@ fn bounds(line: Line<'_>, value: &str) -> Result<Bounds, FileError> {
             .ok_or_else(|| line.error(item, format!("`{item}` is not of the form key=value")))?;
         let angle = || match value {
             "none" => Ok(None),
-            _ => line.number(value).map(Some),
+            _ => line.joint_angle(value).map(Some),
         };
         let flag = || {
             value
@@ -258,8 +270,10 @@ fn sample_line(file: &mut GaitFile, line: Line<'_>) -> Result<(), FileError> {
         _ => {}
     }
     file.u.push(fraction);
-    file.phi
-        .push(Vector2::new(line.number(phi1)?, line.number(phi2)?));
+    file.phi.push(Vector2::new(
+        line.joint_angle(phi1)?,
+        line.joint_angle(phi2)?,
+    ));
     Ok(())
 }
 

@@ -22,6 +22,16 @@ pub fn read_link_log(path: &Path) -> Result<Vec<LinkFrame>, LinkLogError> {
         path: path.to_path_buf(),
         source,
     })?;
+    if !bytes.starts_with(mcap::MAGIC) {
+        return Err(LinkLogError::NoLinkLog {
+            path: path.to_path_buf(),
+            what: if bytes.is_empty() {
+                "is empty"
+            } else {
+                "is another kind of file"
+            },
+        });
+    }
     let container = |error| LinkLogError::container(path, &error);
     let options = LinearReaderOptions::default().with_record_length_limit(LARGEST_RECORD);
     let mut reader = LinearReader::new_with_options(options);

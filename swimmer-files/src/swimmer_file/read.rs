@@ -96,6 +96,21 @@ impl Source<'_> {
         }
     }
 
+    /// Refuses a number that can only be degrees where radians are read.
+    fn radians(&self, key: &str, number: Option<&Number>, limit: f64) -> Result<(), FileError> {
+        let Some(number) = number.filter(|number| number.get_ref().abs() > limit) else {
+            return Ok(());
+        };
+        let value = *number.get_ref();
+        Err(self.error(
+            &number.span(),
+            format!(
+                "{key} = {value} is in radians: did you mean {value}°? Write {key} = {:.6}",
+                value.to_radians()
+            ),
+        ))
+    }
+
     fn not_negative(&self, key: &str, number: &Number) -> Result<f64, FileError> {
         let value = *number.get_ref();
         if value.is_finite() && value >= 0.0 {
@@ -207,6 +222,13 @@ fn servo(source: &Source<'_>, raw: &RawServo) -> Result<ServoFile, FileError> {
             .as_ref()
             .map_or(Ok(standard), |number| source.positive(key, number))
     };
+    for (key, number, limit) in [
+        ("max_angle", &raw.max_angle, std::f64::consts::TAU),
+        ("dead_band", &raw.dead_band, LARGEST_DEAD_BAND),
+        ("slope_rad_per_us", &raw.slope_rad_per_us, LARGEST_SLOPE),
+    ] {
+        source.radians(key, number.as_ref(), limit)?;
+    }
     Ok(ServoFile {
         max_angle: positive("max_angle", &raw.max_angle, max_angle)?,
         max_rate: positive("max_rate", &raw.max_rate, max_rate)?,
@@ -218,6 +240,11 @@ fn servo(source: &Source<'_>, raw: &RawServo) -> Result<ServoFile, FileError> {
         centre_us: positive("centre_us", &raw.centre_us, centre_us)?,
     })
 }
+
+/// Half-width of a dead band beyond which no servo is of use, and degrees were meant \[rad\].
+const LARGEST_DEAD_BAND: f64 = 0.5;
+/// Ten times the slope of the steepest sail winch \[rad/µs\]: beyond it, degrees were meant.
+const LARGEST_SLOPE: f64 = 0.27;
 
 fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(

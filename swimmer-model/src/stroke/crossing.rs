@@ -2,7 +2,9 @@
 
 use super::extremes::zero;
 use super::legendre::{N, NODES, Series};
+use crate::crossing::flatness;
 use crate::{Gait, Links, Scalar};
+use nalgebra::Vector2;
 
 /// The part of a gait whose shapes have crossing links, from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +13,8 @@ pub struct CrossingShare<T> {
     pub of_cycle: T,
     /// Share of the curve's length in the plane of joint angles, whatever its timing.
     pub of_length: T,
+    /// Whether a side link lies on the middle one or sweeps through it, be it for an instant.
+    pub folds: bool,
 }
 
 /// Looks are at least this dense over a cycle.
@@ -20,14 +24,19 @@ const LOOKS: usize = 256;
 /// lie to either side of it by rounding.
 const TOUCH: f64 = 1e-8;
 
-/// Share of a gait with crossing links ([`Links::cross`]), where touching is not crossing. Beginnings and ends are located exactly; a crossing that
-/// comes and goes between two of 256 looks may be missed.
+/// Share of a gait with crossing links ([`Links::cross`]), where side links that touch do not cross. Beginnings and ends are
+/// located exactly; a crossing that comes and goes between two of 256 looks may be missed.
 pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
     links: &Links<T>,
     gait: &G,
 ) -> CrossingShare<T> {
     let touch = links.middle * T::from_f64(TOUCH);
-    let overlap = |u: T| links.overlap(&gait.at(u).phi) - touch;
+    let overlap = |u: T| {
+        let phi = gait.at(u).phi;
+        let flat = flatness(phi.x).max(flatness(phi.y));
+        (links.overlap(&phi) - touch).max(links.middle * flat)
+    };
+    let mut folds = false;
     let (mut u, mut crossing, mut length, mut crossing_length) =
         (T::zero(), T::zero(), T::zero(), T::zero());
     let pieces = gait.pieces().max(1);
@@ -48,6 +57,7 @@ pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
                 end
             };
             let (here, there) = (overlap(u) > T::zero(), overlap(next) > T::zero());
+            folds |= fold_between(&gait.at(u).phi, &gait.at(next).phi);
             let border = if here == there {
                 next
             } else {
@@ -72,7 +82,20 @@ pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
     CrossingShare {
         of_cycle: crossing,
         of_length,
+        folds,
     }
+}
+
+/// Whether a side link is folded flat at one of two shapes, or on the short way between them.
+fn fold_between<T: Scalar>(from: &Vector2<T>, to: &Vector2<T>) -> bool {
+    let through = |from: T, to: T| {
+        let ((sin, cos), (next_sin, next_cos)) = (from.sin_cos(), to.sin_cos());
+        let behind = cos < T::zero() && next_cos < T::zero();
+        behind && sin * next_sin < T::zero()
+            || flatness(from) >= T::zero()
+            || flatness(to) >= T::zero()
+    };
+    through(from.x, to.x) || through(from.y, to.y)
 }
 
 /// ∫|Φ′| du.

@@ -101,3 +101,22 @@ fn share_of_a_cycle() {
         }
     }
 }
+
+/// A gait that runs along |φ| = π has links on each other there, one that sweeps through it for an instant.
+#[test]
+fn folded_links_cross() {
+    let links = Swimmer::<f64>::purcell().links;
+    let square = |amplitude| crossing_share(&links, &Square { amplitude });
+    near("on the border", square(PI).of_cycle, 1.0, 1e-12);
+    near("just inside", square(PI - 1e-3).of_cycle, 0.25, 1e-3);
+    assert!(square(PI).folds && !square(PI - 1e-3).folds && square(PI + 1e-3).folds);
+    // Side links too short to meet each other: only the middle one is in their way.
+    let short = Links {
+        middle: 1.0,
+        front: 0.2,
+        back: 0.2,
+    };
+    let circle = |amplitude| crossing_share(&short, &Circle { amplitude });
+    assert!(circle(3.0).of_cycle == 0.0 && !circle(3.0).folds);
+    assert!(circle(PI).folds && circle(3.5).folds);
+}

@@ -6,6 +6,7 @@ use gait_optimizer::{Certificate, Method, Objective, OptimalGait};
 use serde::Serialize;
 
 use super::timing::TimingAnswer;
+use crate::failure::{Failure, Outcome};
 use crate::quantity::{self, Rows};
 
 /// One arc of a gait.
@@ -177,6 +178,22 @@ impl Figures {
             method: Method::Fourier.word(),
         })
     }
+}
+
+/// Refuses a gait that was to keep its links from crossing and lies with a side link folded on the middle one: the bound has
+/// no best gait then, only ones that come ever nearer to it.
+///
+/// # Errors
+/// [`Failure::Tried`].
+pub(super) fn unfolded(gait: &OptimalGait) -> Outcome {
+    if !gait.bounds.no_overlap || gait.links_cross <= 0.0 {
+        return Ok(());
+    }
+    Err(Failure::Tried(format!(
+        "the best gait whose links do not cross does not exist: those that come near to it run ever closer to |φ| = 180°, where a \
+         side link lies on the middle one ({}); bound the joints (--max-angle 160deg) or keep the links apart (--clearance 0.005)",
+        quantity::crossing(gait.links_cross)
+    )))
 }
 
 /// The arcs that an answer names.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::{Model, Tolerance, swim};
 
-use crate::arguments::{positive_angle, seconds};
+use crate::arguments::{rate, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::quantity::{self, Rows};
 
@@ -16,7 +16,7 @@ use crate::quantity::{self, Rows};
 #[derive(Debug, clap::Args)]
 pub(super) struct ServoTiming {
     /// Servos turn no faster than this angle a second: the gait is timed best under that limit instead of at constant power
-    #[arg(long, value_name = "ANGLE_PER_S", value_parser = positive_angle, requires = "period")]
+    #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, requires = "period")]
     pub(super) max_rate: Option<f64>,
     /// Seconds a cycle shall take with servos of that rate
     #[arg(long, value_name = "SECONDS", value_parser = seconds, requires = "max_rate")]

@@ -14,7 +14,7 @@ use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::{self, Rows};
 
-use super::answer::{Arc, Closing, arc_rows, arcs};
+use super::answer::{Arc, Closing, arc_rows, arcs, unfolded};
 
 /// Find the simple closed gait that turns the swimmer most per cycle, with its certificate
 ///
@@ -41,6 +41,7 @@ impl Turning {
             bounds: self.bounds.into(),
         })?;
         let seconds = begun.elapsed().as_secs_f64();
+        unfolded(&found.gait)?;
         if let Some(path) = &self.output {
             found.gait.gait_file(&file.name).save(path)?;
         }

@@ -109,6 +109,11 @@ impl Dashboard {
 
     /// Draws it.
     pub(super) fn draw(&self, frame: &mut Frame<'_>) {
+        if frame.area().height < 8 || frame.area().width < 30 {
+            // Too small for panes: what it does comes first, and as much of the rest as there is room for.
+            frame.render_widget(Paragraph::new(self.state_lines()), frame.area());
+            return;
+        }
         let [head, body, foot] = Layout::vertical([
             Constraint::Length(1),
             Constraint::Min(0),
@@ -133,15 +138,28 @@ impl Dashboard {
             self.body(frame, pose);
             self.trail(frame, trail);
         } else {
-            let [state, pose, link] = Layout::vertical([
-                Constraint::Length(10),
-                Constraint::Min(6),
-                Constraint::Length(9),
-            ])
-            .areas(body);
+            // The state first, then the link, then the body: what has no room is left out from below.
+            let room = body.height;
+            let state = room.min(10);
+            let link = if room >= state + 5 {
+                (room - state).min(9)
+            } else {
+                0
+            };
+            let pose = if room >= state + link + 6 {
+                room - state - link
+            } else {
+                0
+            };
+            let [state, pose, link] =
+                Layout::vertical([state, pose, link].map(Constraint::Length)).areas(body);
             self.state(frame, state);
-            self.body(frame, pose);
-            self.link(frame, link);
+            if pose.height > 0 {
+                self.body(frame, pose);
+            }
+            if link.height > 0 {
+                self.link(frame, link);
+            }
         }
     }
 

@@ -21,14 +21,32 @@ impl Dashboard {
         frame.render_widget(block, area);
         let [lines, bar] =
             Layout::vertical([Constraint::Min(0), Constraint::Length(1)]).areas(inner);
+        frame.render_widget(Paragraph::new(self.state_lines()), lines);
         let Some(telemetry) = &self.telemetry else {
-            frame.render_widget(Paragraph::new("no telemetry yet"), lines);
             return;
+        };
+        let share = self
+            .play
+            .share()
+            .unwrap_or_else(|| f64::from(telemetry.phase) / 65_536.0);
+        frame.render_widget(
+            Gauge::default()
+                .ratio(share.clamp(0.0, 1.0))
+                .label(format!("{:.0} %", 100.0 * share))
+                .gauge_style(Style::new().fg(Color::Cyan)),
+            bar,
+        );
+    }
+
+    /// What the robot does, the most needed first.
+    pub(super) fn state_lines(&self) -> Vec<Line<'_>> {
+        let Some(telemetry) = &self.telemetry else {
+            return vec![Line::from("no telemetry yet")];
         };
         let [front, back] = telemetry_angles(telemetry).map(f64::to_degrees);
         let flags = answers::flags(telemetry.flags);
         let moving = answers::is_under_way(telemetry.state);
-        let text = vec![
+        vec![
             Line::from(vec![
                 Span::styled(
                     answers::state(telemetry.state),
@@ -63,19 +81,7 @@ impl Dashboard {
             } else {
                 format!("flags    {}", flags.join(", "))
             }),
-        ];
-        frame.render_widget(Paragraph::new(text), lines);
-        let share = self
-            .play
-            .share()
-            .unwrap_or_else(|| f64::from(telemetry.phase) / 65_536.0);
-        frame.render_widget(
-            Gauge::default()
-                .ratio(share.clamp(0.0, 1.0))
-                .label(format!("{:.0} %", 100.0 * share))
-                .gauge_style(Style::new().fg(Color::Cyan)),
-            bar,
-        );
+        ]
     }
 
     pub(super) fn link(&self, frame: &mut Frame<'_>, area: Rect) {

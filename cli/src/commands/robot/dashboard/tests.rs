@@ -137,6 +137,25 @@ fn any_size_is_drawn() {
     }
 }
 
+/// On a screen too small for anything else the state stands there, and first.
+#[test]
+fn a_tiny_terminal_shows_the_state_first() {
+    let dashboard = dashboard();
+    for (width, height) in [
+        (20, 1),
+        (12, 3),
+        (29, 40),
+        (200, 7),
+        (30, 8),
+        (44, 12),
+        (75, 15),
+    ] {
+        let drawn = drawn(&dashboard, width, height);
+        assert!(drawn.contains("playing"), "{width}x{height}\n{drawn}");
+    }
+    assert!(drawn(&dashboard, 20, 1).contains("playing"));
+}
+
 #[test]
 fn a_new_play_starts_a_new_trail() {
     let mut dashboard = dashboard();
