@@ -86,7 +86,7 @@ fn timing(told: &RunTiming) -> Result<Timing, CalibrateError> {
             ..Timing::default()
         });
     };
-    let mut plays = plays(&read_link_log(log)?);
+    let mut plays = plays(&read_link_log(log)?.frames);
     let index = match (told.play, plays.len()) {
         (Some(number), count) if number <= count => number - 1,
         (None, 1) => 0,

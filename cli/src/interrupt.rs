@@ -13,6 +13,8 @@ use crate::output::Output;
 
 /// Exit status of a program that a second Ctrl-C ends, as shells have it.
 const AT_ONCE: i32 = 130;
+/// What ends a command as it was meant to end.
+pub(crate) const CTRL_C: &str = "Ctrl-C";
 /// Exit status of a job that was tried and failed.
 const TRIED: i32 = 1;
 
@@ -77,7 +79,7 @@ impl Interrupt {
         if self.suspended.load(Ordering::SeqCst) {
             "Ctrl-Z (a suspended program keeps no link, so it ends instead)"
         } else {
-            "Ctrl-C"
+            CTRL_C
         }
     }
 }

@@ -11,18 +11,19 @@ use swimmer_files::{LinkFrame, LinkLogError, LinkLogWriter};
 
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::locked;
+use crate::new_file::may_be_written;
 use crate::output::aside;
 
 /// What a traced port shows its frames to.
 pub(crate) type Sink = Box<dyn FnMut(TracedFrame<'_>) + Send>;
 
-/// Writes a link log while others talk. Dropped before [`Recorder::finish`], it finishes all the same, unless nothing crossed
-/// the link: what led to a failure is what a log is for.
+/// Writes a link log while others talk, frame by frame under its own name. Dropped before [`Recorder::finish`], it ends all the
+/// same, unless nothing crossed the link: what led to a failure is what a log is for.
 pub(crate) struct Recorder(Arc<Mutex<Recording>>);
 
 struct Recording {
     path: PathBuf,
-    /// Whether its place is told where a failure ends it.
+    /// Whether its place is told at its end.
     told: bool,
     writer: Option<LinkLogWriter>,
     frames: u64,
@@ -37,12 +38,7 @@ impl Recorder {
     /// # Errors
     /// [`Failure::BadInput`] where the file exists, [`Failure::Tried`] where it cannot be made.
     pub(crate) fn create(path: &Path) -> Outcome<Self> {
-        if path.exists() {
-            return Err(Failure::BadInput(format!(
-                "{} exists; name a new file for the link log",
-                path.display()
-            )));
-        }
+        may_be_written(path)?;
         Ok(Self(Arc::new(Mutex::new(Recording {
             path: path.to_path_buf(),
             told: false,
@@ -54,7 +50,7 @@ impl Recorder {
         }))))
     }
 
-    /// The same, which says where it is when a failure ends it: for a log that outlasts the command.
+    /// The same, which says where it is at its end: for a log that outlasts the command.
     pub(crate) fn told(self) -> Self {
         locked(&self.0).told = true;
         self
@@ -67,14 +63,18 @@ impl Recorder {
         Box::new(move |frame| locked(&recording).add(&frame, epoch))
     }
 
-    /// Closes the log and gives it its name; returns the number of frames.
+    /// Ends the log and says where it is; returns the number of frames.
     ///
     /// # Errors
     /// When the disk refused a frame or the end.
     pub(crate) fn finish(self) -> Outcome<u64> {
         let mut recording = locked(&self.0);
         let finished = recording.finish();
-        finished.map(|()| recording.frames).map_err(Failure::from)
+        finished.map_err(Failure::from)?;
+        if recording.told {
+            recording.tell();
+        }
+        Ok(recording.frames)
     }
 }
 
@@ -88,7 +88,7 @@ impl Drop for Recorder {
         if recording.writer.is_some() {
             match recording.finish() {
                 Ok(()) if recording.told => {
-                    aside(&format!("The link log is in {}.", recording.path.display()));
+                    recording.tell();
                 }
                 Ok(()) => {}
                 Err(error) => aside(&Failure::from(error).to_string()),
@@ -123,9 +123,19 @@ impl Recording {
             bytes: frame.bytes.to_vec(),
         };
         if self.failed.is_none() {
-            self.failed = writer.write(&frame).err();
-            self.frames += 1;
+            match writer.write(&frame) {
+                Ok(()) => self.frames += 1,
+                Err(error) => {
+                    aside(&format!("warning: the link log ends here: {error}"));
+                    self.failed = Some(error);
+                }
+            }
         }
+    }
+
+    fn tell(&self) {
+        let (frames, path) = (self.frames, self.path.display());
+        aside(&format!("The link log is in {path}: {frames} frames."));
     }
 
     fn finish(&mut self) -> Result<(), LinkLogError> {

@@ -10,6 +10,7 @@ mod failure;
 mod fit_file;
 mod interrupt;
 mod link_log;
+mod new_file;
 mod new_folder;
 mod output;
 mod paper;
@@ -36,6 +37,9 @@ fn main() -> ExitCode {
                 json: arguments.json,
             };
             interrupt::answers_with(output);
+            if arguments.overwrite {
+                new_file::allow_overwriting();
+            }
             match commands::run(arguments.command, output).and_then(|()| output::delivered()) {
                 Ok(()) => ExitCode::SUCCESS,
                 Err(failure) => {

@@ -3,7 +3,7 @@
 
 use std::env;
 use std::fs::File;
-use std::io::{ErrorKind, Write as _};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use emulator::{
@@ -14,6 +14,7 @@ use swimmer_files::SwimmerFile;
 use twin::{Twin, TwinConfig, VirtualRobot, World};
 
 use crate::failure::{Failure, Outcome};
+use crate::new_file::may_be_written;
 use crate::output::aside;
 
 /// The host's end of a line to a robot that needs no hardware, in virtual time.
@@ -145,14 +146,14 @@ fn log_reader(file: Option<&Path>) -> Outcome<impl FnMut(&LogLine) + Send + 'sta
 
 fn new_log(place: &Path) -> Outcome<File> {
     let shown = place.display();
-    File::create_new(place).map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists => Failure::BadInput(format!(
-            "{shown} exists; name a new file for the firmware's log"
-        )),
-        _ => Failure::Tried(format!(
-            "cannot write the firmware's log to {shown}: {error}; does its folder exist and may you write there?"
-        )),
-    })
+    may_be_written(place)?;
+    let file = File::create(place).map_err(|error| {
+        Failure::Tried(format!(
+            "cannot write the firmware's log to {shown}: {error}; may you write there, and is there room?"
+        ))
+    })?;
+    aside(&format!("The firmware's log grows in {shown}."));
+    Ok(file)
 }
 
 impl From<EmulatorError> for Failure {

@@ -204,7 +204,7 @@ impl core::fmt::Display for Refusal {
             Self::NotArmed => write!(f, "the robot is not armed: arm it first"),
             Self::EStopped => write!(
                 f,
-                "an e-stop is latched: arm with --clear-estop when it is safe"
+                "an e-stop is latched: end it with `estop --clear` when it is safe, or arm with --clear-estop"
             ),
             Self::WrongState(state) => {
                 write!(f, "the robot is {state:?} and does not do this then")

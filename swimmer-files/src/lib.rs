@@ -37,7 +37,7 @@ pub use campaign::{
 pub use gait_file::{ArcKind, Bounds, GaitArc, GaitFile, Objective};
 pub use gait_spec::{GaitSpec, GaitSpecError};
 pub use hash::SwimmerHash;
-pub use link_log::{LinkFrame, LinkLogError, LinkLogWriter, Play, plays, read_link_log};
+pub use link_log::{LinkFrame, LinkLog, LinkLogError, LinkLogWriter, Play, plays, read_link_log};
 pub use place::FileError;
 pub use provenance::{InputHash, Provenance};
 pub use swimmer_file::{Fluid, ServoFile, SwimmerFile};

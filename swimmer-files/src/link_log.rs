@@ -11,29 +11,16 @@
 mod frame;
 mod plays;
 mod read;
+mod write;
 
-use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 pub use frame::LinkFrame;
-use frame::{telemetry_json, topic};
-use link_protocol::{Direction, Message};
-use mcap::records::MessageHeader;
 pub use plays::{Play, plays};
-pub use read::read_link_log;
-use serde_json::Value;
+pub use read::{LinkLog, read_link_log};
+pub use write::LinkLogWriter;
 
 use crate::FileError;
-use crate::atomic::{Destination, beside, destination, make_folder_of};
-
-/// The JSON schema of each message, as the file carries it.
-const SCHEMA: &str = include_str!("link_log/schema.json");
-const SCHEMA_NAME: &str = "swimmer.LinkFrame";
-const TELEMETRY_SCHEMA: &str = include_str!("link_log/telemetry.json");
-const TELEMETRY_SCHEMA_NAME: &str = "swimmer.Telemetry";
-const TELEMETRY_TOPIC: &str = "/robot/telemetry";
 
 /// Why a link log could not be written or read.
 #[derive(Debug, thiserror::Error)]
@@ -108,140 +95,4 @@ fn first_line(text: &str) -> String {
 /// Lines, corners and ends of lines that frames are drawn with.
 fn is_frame(letter: char) -> bool {
     ('\u{2500}'..='\u{257f}').contains(&letter)
-}
-
-/// Writes a link log. The file takes its name only when [`LinkLogWriter::finish`] succeeds; dropped before that, it is
-/// removed.
-pub struct LinkLogWriter {
-    writer: Option<mcap::Writer<BufWriter<File>>>,
-    temporary: PathBuf,
-    path: PathBuf,
-    /// To the robot, from it, and its telemetry.
-    channels: [u16; 3],
-    sequence: u32,
-}
-
-impl LinkLogWriter {
-    /// Starts a log.
-    ///
-    /// # Errors
-    /// When the file cannot be made in its folder.
-    pub fn create(path: &Path) -> Result<Self, LinkLogError> {
-        let write_error = |source| FileError::Write {
-            path: path.to_path_buf(),
-            source,
-        };
-        let place = match destination(path).map_err(write_error)? {
-            Destination::File(place) => place,
-            Destination::Stream => {
-                return Err(write_error(io::Error::other("it is no file; name one")).into());
-            }
-        };
-        make_folder_of(&place).map_err(write_error)?;
-        let temporary = beside(&place, "partial");
-        let file = File::create(&temporary).map_err(write_error)?;
-        let start = || -> mcap::McapResult<_> {
-            let mut writer = mcap::WriteOptions::new()
-                .compression(Some(mcap::Compression::Lz4))
-                .profile("")
-                .library(concat!("swimmer-files ", env!("CARGO_PKG_VERSION")))
-                .create(BufWriter::new(file))?;
-            let schema = writer.add_schema(SCHEMA_NAME, "jsonschema", SCHEMA.as_bytes())?;
-            let telemetry = writer.add_schema(
-                TELEMETRY_SCHEMA_NAME,
-                "jsonschema",
-                TELEMETRY_SCHEMA.as_bytes(),
-            )?;
-            let empty = BTreeMap::new();
-            let channels = [
-                writer.add_channel(schema, topic(Direction::ToRobot), "json", &empty)?,
-                writer.add_channel(schema, topic(Direction::ToHost), "json", &empty)?,
-                writer.add_channel(telemetry, TELEMETRY_TOPIC, "json", &empty)?,
-            ];
-            Ok((writer, channels))
-        };
-        match start() {
-            Ok((writer, channels)) => Ok(Self {
-                writer: Some(writer),
-                temporary,
-                path: place,
-                channels,
-                sequence: 0,
-            }),
-            Err(source) => {
-                let _ = std::fs::remove_file(&temporary);
-                Err(LinkLogError::container(path, &source))
-            }
-        }
-    }
-
-    /// Adds a frame as it crossed the wire, sound or not.
-    ///
-    /// # Errors
-    /// When the disk refuses.
-    pub fn write(&mut self, frame: &LinkFrame) -> Result<(), LinkLogError> {
-        let [to_robot, from_robot, telemetry] = self.channels;
-        let channel = match frame.direction {
-            Direction::ToRobot => to_robot,
-            Direction::ToHost => from_robot,
-        };
-        let received = frame.received();
-        self.add(channel, frame, &frame.to_json(received.as_ref()))?;
-        match received.and_then(|received| received.message.ok()) {
-            Some(Message::Telemetry(told)) => self.add(telemetry, frame, &telemetry_json(&told)),
-            _ => Ok(()),
-        }
-    }
-
-    fn add(&mut self, channel: u16, frame: &LinkFrame, json: &Value) -> Result<(), LinkLogError> {
-        let header = MessageHeader {
-            channel_id: channel,
-            sequence: self.sequence,
-            log_time: frame.host_time_ns,
-            publish_time: frame.host_time_ns,
-        };
-        self.sequence = self.sequence.wrapping_add(1);
-        let Some(writer) = &mut self.writer else {
-            return Ok(());
-        };
-        writer
-            .write_to_known_channel(&header, json.to_string().as_bytes())
-            .map_err(|error| LinkLogError::container(&self.path, &error))
-    }
-
-    /// Closes the log and gives it its name.
-    ///
-    /// # Errors
-    /// When the disk refuses; nothing stays behind then.
-    pub fn finish(mut self) -> Result<(), LinkLogError> {
-        let Some(mut writer) = self.writer.take() else {
-            return Ok(());
-        };
-        let container = |error| LinkLogError::container(&self.path, &error);
-        let finished = writer.finish().map_err(container).and_then(|_| {
-            let write_error = |source| FileError::Write {
-                path: self.path.clone(),
-                source,
-            };
-            let file = writer
-                .into_inner()
-                .into_inner()
-                .map_err(|error| write_error(error.into_error()))?;
-            file.sync_all().map_err(write_error)?;
-            std::fs::rename(&self.temporary, &self.path).map_err(write_error)?;
-            Ok(())
-        });
-        if finished.is_err() {
-            let _ = std::fs::remove_file(&self.temporary);
-        }
-        finished
-    }
-}
-
-impl Drop for LinkLogWriter {
-    fn drop(&mut self) {
-        if self.writer.take().is_some() {
-            let _ = std::fs::remove_file(&self.temporary);
-        }
-    }
 }

@@ -28,9 +28,9 @@ fn every_frame_comes_back() {
     for frame in &frames {
         log.write(frame).unwrap();
     }
-    assert!(!path.exists(), "the log takes its name when it is whole");
+    assert!(path.exists(), "the log grows under its own name");
     log.finish().unwrap();
-    assert_eq!(read_link_log(&path).unwrap(), frames);
+    assert_eq!(read_link_log(&path).unwrap().frames, frames);
     assert_eq!(
         std::fs::read_dir(path.parent().unwrap()).unwrap().count(),
         1
@@ -81,7 +81,9 @@ fn a_symbolic_link_to_a_log_stays() {
     LinkLogWriter::create(&link).unwrap().finish().unwrap();
     assert!(link.is_symlink());
     assert_eq!(
-        read_link_log(&folder.path().join("today.mcap")).unwrap(),
+        read_link_log(&folder.path().join("today.mcap"))
+            .unwrap()
+            .frames,
         []
     );
 }
@@ -213,7 +215,7 @@ fn telemetry_has_a_topic_of_its_own() {
         assert!((told - value).abs() < 1e-9, "{key}: {told}");
     }
     assert!(plotted.get("battery_v").is_none(), "not measured");
-    assert_eq!(read_link_log(&path).unwrap(), [frame]);
+    assert_eq!(read_link_log(&path).unwrap().frames, [frame]);
 }
 
 /// Foxglove takes a field of one plain type, an object with properties or an array of one such type, and refuses the whole
@@ -269,20 +271,11 @@ fn a_null_robot_time_is_read_as_none() {
     let json = br#"{"host_time_ns":5,"robot_time_us":null,"raw_hex":"0102","decoded":null}"#;
     writer.write_to_known_channel(&header, json).unwrap();
     writer.finish().unwrap();
-    let frames = read_link_log(&path).unwrap();
+    let frames = read_link_log(&path).unwrap().frames;
     assert_eq!(
         (frames[0].robot_time_us, frames[0].bytes.as_slice()),
         (None, &[1, 2][..])
     );
-}
-
-#[test]
-fn an_abandoned_log_leaves_nothing() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut log = LinkLogWriter::create(&folder.path().join("link.mcap")).unwrap();
-    log.write(&frame(3)).unwrap();
-    drop(log);
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
 proptest! {
@@ -299,4 +292,59 @@ proptest! {
         std::fs::write(&path, bytes).unwrap();
         let _ = read_link_log(&path);
     }
+}
+
+fn sound_frames(count: u64) -> Vec<LinkFrame> {
+    (0..count)
+        .map(|at| LinkFrame {
+            host_time_ns: at * 50_000_000,
+            ..frame(at)
+        })
+        .collect()
+}
+
+/// As after `kill -9`: nothing closes the log, and all but the last half second is there.
+#[test]
+fn a_log_grows_and_needs_no_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("link.mcap");
+    let frames = sound_frames(61);
+    let mut log = LinkLogWriter::create(&path).unwrap();
+    for frame in &frames {
+        log.write(frame).unwrap();
+    }
+    let copy = folder.path().join("copy.mcap");
+    std::fs::copy(&path, &copy).unwrap();
+    let cut = read_link_log(&copy).unwrap();
+    assert!(!cut.ended && cut.frames.len() > 50, "{}", cut.frames.len());
+    assert_eq!(cut.frames, frames[..cut.frames.len()]);
+    log.finish().unwrap();
+    let whole = read_link_log(&path).unwrap();
+    assert!(whole.ended && whole.frames == frames);
+    // Cut off anywhere, as where the disk was full: what was whole is read.
+    let bytes = std::fs::read(&path).unwrap();
+    let mut most = 0;
+    for end in (8..bytes.len()).step_by(97).chain([bytes.len()]) {
+        std::fs::write(&copy, &bytes[..end]).unwrap();
+        let cut = read_link_log(&copy).unwrap_or_else(|error| panic!("{end}: {error}"));
+        assert_eq!(cut.frames, frames[..cut.frames.len()], "{end}");
+        assert!(cut.frames.len() >= most, "{end}");
+        most = cut.frames.len();
+    }
+    assert_eq!(most, frames.len());
+}
+
+#[test]
+fn without_a_frame_nothing_changes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("link.mcap");
+    drop(LinkLogWriter::create(&path).unwrap());
+    assert!(!path.exists());
+    std::fs::write(&path, "an old log").unwrap();
+    drop(LinkLogWriter::create(&path).unwrap());
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "an old log");
+    let mut log = LinkLogWriter::create(&path).unwrap();
+    log.write(&frame(1)).unwrap();
+    log.finish().unwrap();
+    assert_eq!(read_link_log(&path).unwrap().frames.len(), 1);
 }

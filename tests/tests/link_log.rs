@@ -46,7 +46,7 @@ fn a_log_tells_the_session_again() {
     }
     assert!(!path.exists(), "a log under way has no name yet");
     writer.finish().unwrap();
-    let read = read_link_log(&path).unwrap();
+    let read = read_link_log(&path).unwrap().frames;
     assert_eq!(read.len(), frames.len());
     assert!(
         read.iter()

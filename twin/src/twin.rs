@@ -103,7 +103,7 @@ impl Twin {
     }
 
     /// Starts to record at the next frame (frames come every 10 ms of the twin's clock) into a tracking file at `path`. A
-    /// recording under way is thrown away.
+    /// recording under way ends.
     ///
     /// # Errors
     /// [`TrackError`] when nothing can be written there.
@@ -111,10 +111,10 @@ impl Twin {
         self.world.start_recording(path)
     }
 
-    /// Ends the recording and puts its file in place; `None` when none was under way.
+    /// Ends the recording and its file; `None` when none was under way.
     ///
     /// # Errors
-    /// [`TrackError`]; then no file is left.
+    /// [`TrackError`]; what was written before stays.
     pub fn finish_recording(&mut self) -> Result<Option<Recording>, TrackError> {
         self.world.finish_recording()
     }

@@ -127,7 +127,7 @@ impl World {
     }
 
     /// Starts to record at the next frame (frames come every 10 ms of the world's clock) into a tracking file at `path`. A
-    /// recording under way is thrown away.
+    /// recording under way ends.
     ///
     /// # Errors
     /// [`TrackError`] when nothing can be written there.
@@ -147,10 +147,15 @@ impl World {
         Ok(())
     }
 
-    /// Ends the recording and puts its file in place; `None` when none was under way.
+    /// Why the recording under way takes no more frames, where that is so.
+    pub fn recording_failed(&self) -> Option<&TrackError> {
+        self.cameras.as_ref()?.failed.as_ref()
+    }
+
+    /// Ends the recording and its file; `None` when none was under way.
     ///
     /// # Errors
-    /// [`TrackError`]; then no file is left.
+    /// [`TrackError`]; what was written before stays.
     pub fn finish_recording(&mut self) -> Result<Option<Recording>, TrackError> {
         let Some(cameras) = self.cameras.take() else {
             return Ok(None);

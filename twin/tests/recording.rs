@@ -52,8 +52,8 @@ fn a_recording_has_motive_s_form_and_the_right_totals() {
     assert_eq!(header["Capture Frame Rate"], "100.000000");
     assert_eq!(header["Length Units"], "Meters");
     assert_eq!(
-        header["Total Exported Frames"],
-        recording.frames.to_string()
+        header["Total Exported Frames"].parse(),
+        Ok(recording.frames)
     );
     assert_eq!(head[1], [""]);
     assert_eq!((&*head[6][0], &*head[6][1]), ("Frame", "Time (Seconds)"));

@@ -12,6 +12,7 @@ use swimmer_files::{AnyGait, GaitSpec, write_atomically};
 
 use crate::arguments::{gait, load_gait, load_swimmer, positive_angle};
 use crate::failure::{Failure, Outcome};
+use crate::new_file::may_be_written;
 use crate::output::Output;
 use crate::quantity::{self, Rows};
 
@@ -91,6 +92,7 @@ impl Component {
 impl HeightMap {
     /// Maps, writes and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
+        self.output.as_deref().map_or(Ok(()), may_be_written)?;
         let kind = self.output.as_deref().map(kind).transpose()?;
         let file = load_swimmer(&self.swimmer)?;
         let gaits = self

@@ -34,6 +34,9 @@ pub(crate) struct Arguments {
     /// Print one JSON document on standard output; everything else goes to standard error
     #[arg(long, global = true)]
     pub(crate) json: bool,
+    /// Replace files that exist; without it a command that would write one refuses
+    #[arg(long, global = true)]
+    pub(crate) overwrite: bool,
     /// What to do.
     #[command(subcommand)]
     pub(crate) command: Command,

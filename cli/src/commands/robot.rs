@@ -71,7 +71,7 @@ enum Action {
     Resume,
     /// Ramp to neutral and switch the pulses off; works in every state
     Stop(Stop),
-    /// Switch the pulses off at once; only `arm --clear-estop` ends it
+    /// Switch the pulses off at once, latched; --clear ends it, and leaves the robot stopped
     Estop(Estop),
     /// Set the trim of the servos, or nudge it with keys on a terminal; stored on the robot
     Trim(Trim),
@@ -177,6 +177,12 @@ struct Estop {
     /// Where another `swimmer` has the port and hangs: leave it alone, and fail
     #[arg(long)]
     no_take_over: bool,
+    /// End a latched e-stop instead, and leave the robot stopped; asks first
+    #[arg(long, conflicts_with = "no_take_over")]
+    clear: bool,
+    /// Clear without asking
+    #[arg(long, requires = "clear")]
+    yes: bool,
 }
 
 #[derive(Debug, clap::Args)]

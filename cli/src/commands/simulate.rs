@@ -11,6 +11,7 @@ use swimmer_model::{CrossingShare, Model, Pose, Tolerance, crossing_share, swim,
 
 use crate::arguments::{gait, load_gait, load_swimmer, model};
 use crate::failure::Outcome;
+use crate::new_file::may_be_written;
 use crate::output::Output;
 use crate::quantity::{self, Rows};
 
@@ -54,6 +55,9 @@ struct Swum {
     /// What the robot will make of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     played: Option<played::PlayedAnswer>,
+    /// The table that was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    trajectory: Option<PathBuf>,
 }
 
 impl fmt::Display for Swum {
@@ -88,6 +92,9 @@ impl fmt::Display for Swum {
         if let Some(played) = &self.played {
             played.rows(&mut rows);
         }
+        if let Some(path) = &self.trajectory {
+            rows.row("written to", path.display().to_string());
+        }
         write!(f, "{}\n{rows}", self.title)
     }
 }
@@ -98,6 +105,7 @@ const POINTS_A_CYCLE: usize = 500;
 impl Simulate {
     /// Swims the gait and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
+        self.trajectory.as_deref().map_or(Ok(()), may_be_written)?;
         let file = load_swimmer(&self.swimmer)?;
         let gait = load_gait(&self.gait)?;
         let model = model(&file)?;
@@ -117,6 +125,7 @@ impl Simulate {
             efficiency: stroke.efficiency(),
             efficiency_constant_power: stroke.efficiency_constant_power(),
             played: self.playing.forecast(&file, &model, &gait)?,
+            trajectory: self.trajectory.clone(),
         };
         if let Some(path) = &self.trajectory {
             write_trajectory(path, &model, &gait, self.cycles)?;

@@ -17,7 +17,8 @@ use self::joints::Joints;
 use crate::arguments::{dead_band, load_swimmer};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::output::Output;
+use crate::new_file::may_be_written;
+use crate::output::{Output, aside};
 use crate::virtual_robot::{Carrier, EmulatedBoard};
 
 /// Be a robot in a virtual tank, in real time, until Ctrl-C
@@ -94,6 +95,7 @@ impl Twin {
     /// Lives until Ctrl-C.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let file = load_swimmer(&self.swimmer)?;
+        self.track.as_deref().map_or(Ok(()), may_be_written)?;
         let places = self.tcp.as_deref().map_or(Ok(Vec::new()), addresses)?;
         let mut config = TwinConfig::new(&file, self.seed);
         for servo in &self.servos {
@@ -141,12 +143,19 @@ impl Twin {
             .iter_mut()
             .map(|port| port.as_mut() as &mut dyn Port)
             .collect();
+        let mut told = false;
         let mut joints = self.show_joints.then(Joints::default);
         serve(&mut robot, &mut borrowed, |robot| {
             if let Some(joints) = &mut joints
                 && let Some(line) = joints.look(robot.world())
             {
                 output.line(&line);
+            }
+            if let Some(error) = robot.world().recording_failed().filter(|_| !told) {
+                told = true;
+                aside(&format!(
+                    "warning: {error}; the recording ends here, the robot lives on"
+                ));
             }
             !interrupt.requested()
         })

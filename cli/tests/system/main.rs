@@ -23,5 +23,7 @@ mod port_in_use;
 #[cfg(unix)]
 mod pseudo_terminal;
 #[cfg(unix)]
+mod recordings;
+#[cfg(unix)]
 mod setup;
 mod tracks;

@@ -150,6 +150,7 @@ fn a_written_gait_swims_what_was_promised() {
             swimmer,
             "-o",
             "best.gait",
+            "--overwrite",
             "--json",
         ];
         words.extend(bound.iter().flat_map(|bound| ["--max-angle", bound]));

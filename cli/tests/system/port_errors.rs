@@ -196,7 +196,7 @@ fn a_file_that_is_no_port() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("port"), "no port").unwrap();
     let ran = swimmer_in(folder.path(), &["robot", "info", "--port", "port"]).with_status(1);
-    insta::assert_snapshot!(ran.stderr, @"error: opening port as a serial port: Not a typewriter; is this path a serial port?");
+    insta::assert_snapshot!(ran.stderr, @"error: opening port: it is there, but it is no serial port; name one (`swimmer robot info` without --port finds it)");
 }
 
 #[test]

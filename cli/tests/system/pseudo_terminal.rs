@@ -166,6 +166,15 @@ fn pause_resume_and_estop() {
     let refused = robot(&["play", "--cycles", "1"]).with_status(1);
     assert!(refused.stderr.contains("--clear-estop"), "{refused}");
     assert_eq!(state(), "e-stopped");
+    // Nobody is there to say yes; then somebody has, and nothing else is asked of the robot.
+    let asked = robot(&["estop", "--clear"]).with_status(1);
+    assert!(asked.stderr.contains("--yes"), "{asked}");
+    assert_eq!(state(), "e-stopped");
+    robot(&["estop", "--clear", "--yes"]).with_status(0);
+    assert_eq!(state(), "stopped");
+    robot(&["estop", "--clear"]).with_status(0);
+    robot(&["estop"]).with_status(0);
+
     let mut armed = holding(&["arm", "--clear-estop"]);
     sleep(Duration::from_secs(1));
     interrupt(&armed);
@@ -175,6 +184,36 @@ fn pause_resume_and_estop() {
         "Ctrl-C is how arming ends"
     );
     assert_eq!(state(), "stopped");
+}
+
+/// A play without end has no other end than Ctrl-C, and one with an end leaves a robot that takes the next request.
+#[test]
+fn after_a_play_the_robot_is_ready() {
+    let folder = tempfile::tempdir().unwrap();
+    let _twin = TwinProcess::start(folder.path(), &[]);
+    let words = |asked: &str| {
+        let asked = format!("robot {asked} --port robot --json");
+        asked.split(' ').map(str::to_owned).collect::<Vec<_>>()
+    };
+    let robot = |asked: &str| {
+        let words = words(asked);
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        swimmer_in(folder.path(), &words)
+    };
+    let played = robot("play --gait circle:60deg --cycles 1 --period 3").with_status(0);
+    assert_eq!(played.json()["state"], "stopped", "{played}");
+    robot("configure --swimmer robot").with_status(0);
+
+    let words = words("play --period 3");
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let mut play = command(folder.path(), &words);
+    let play = play.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = play.spawn().unwrap();
+    sleep(Duration::from_secs(3));
+    interrupt(&child);
+    let ran = crate::binary::Ran::from(child.wait_with_output().unwrap()).with_status(0);
+    assert_eq!(ran.json()["state"], "stopped", "{ran}");
+    assert_eq!(ran.json()["cause"], "requested", "{ran}");
 }
 
 /// The whole loop in real time and over TCP: what the cameras of `swimmer twin` write, `swimmer calibrate` reads.
@@ -301,10 +340,12 @@ fn a_log_survives_the_failure_it_records() {
     ];
     let ran = swimmer_in(folder.path(), &words).with_status(1);
     assert!(
-        ran.stderr.contains("The link log is in failed.mcap."),
+        ran.stderr.contains("The link log is in failed.mcap: "),
         "{ran}"
     );
-    let frames = swimmer_files::read_link_log(&folder.path().join("failed.mcap")).unwrap();
+    let frames = swimmer_files::read_link_log(&folder.path().join("failed.mcap"))
+        .unwrap()
+        .frames;
     assert!(frames.len() > 10, "{}", frames.len());
 }
 

@@ -13,11 +13,20 @@ use crate::FileError;
 /// Larger than any chunk that a writer makes by default, small enough to allocate.
 const LARGEST_RECORD: usize = 64 << 20;
 
-/// Reads a link log, frames in the order in which they were written.
+/// What a link log holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinkLog {
+    /// In the order in which they were written.
+    pub frames: Vec<LinkFrame>,
+    /// Whether the log has its end. Without it whoever wrote it was killed, or the disk was full: the frames are those before.
+    pub ended: bool,
+}
+
+/// Reads a link log, also one that was cut off.
 ///
 /// # Errors
 /// When the file cannot be read, is no MCAP file, or holds a message that is not a link frame.
-pub fn read_link_log(path: &Path) -> Result<Vec<LinkFrame>, LinkLogError> {
+pub fn read_link_log(path: &Path) -> Result<LinkLog, LinkLogError> {
     let bytes = std::fs::read(path).map_err(|source| FileError::Read {
         path: path.to_path_buf(),
         source,
@@ -38,9 +47,16 @@ pub fn read_link_log(path: &Path) -> Result<Vec<LinkFrame>, LinkLogError> {
     let mut rest = bytes.as_slice();
     let mut directions = HashMap::new();
     let mut frames = Vec::new();
+    let mut ended = true;
     while let Some(event) = reader.next_event() {
-        let (opcode, data) = match event.map_err(container)? {
+        let event = match event {
+            // Nothing is wrong but that there is no more.
+            Err(_) if !ended => break,
+            event => event.map_err(container)?,
+        };
+        let (opcode, data) = match event {
             LinearReadEvent::ReadRequest(wanted) => {
+                ended &= !rest.is_empty() || wanted == 0;
                 let (piece, after) = rest.split_at(wanted.min(rest.len()));
                 reader.insert(piece.len()).copy_from_slice(piece);
                 reader.notify_read(piece.len());
@@ -70,5 +86,5 @@ pub fn read_link_log(path: &Path) -> Result<Vec<LinkFrame>, LinkLogError> {
             _ => {}
         }
     }
-    Ok(frames)
+    Ok(LinkLog { frames, ended })
 }

@@ -1,11 +1,10 @@
 //! Motive's wide CSV, format 1.23, as an export of two labeled and two unlabeled markers looks.
 //!
-//! The header tells the number of frames, which is known only at the end: rows go to a file of their own, and the whole is
-//! put together beside its place and renamed into it. Nothing half-written is ever found.
+//! The file grows under its own name, whole rows at a time, and its header's number of frames with it: whatever happens to the
+//! program or the disk, what was recorded stays and can be read.
 
-use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Read, Seek, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use rand::{RngExt, SeedableRng};
@@ -23,53 +22,32 @@ pub struct TrackError {
     pub source: io::Error,
 }
 
-/// A tracking file in the making. Dropped before [`finish`](Self::finish), it leaves nothing behind.
+/// A tracking file in the making. Dropped before [`finish`](Self::finish), it ends with the last rows that were written.
 #[derive(Debug)]
 pub struct MotiveFile {
     path: PathBuf,
-    rows_path: PathBuf,
-    rows: BufWriter<File>,
+    file: File,
+    /// Rows to be written next.
+    rows: Vec<u8>,
     frames: u64,
-    take: String,
-    capture_start: String,
-    /// Name and id of each point.
-    points: [(String, String); 4],
+    /// Bytes of whole rows on the disk, and how many rows.
+    length: u64,
+    kept: u64,
+    /// Where the header has the number of frames.
+    counts: [u64; 2],
 }
 
+/// Rows go to the file so many at a time: a quarter of a second.
+const ROWS: u64 = 25;
+/// Digits of the number of frames, which is written over as it grows.
+const DIGITS: usize = 10;
+
 impl MotiveFile {
-    /// Starts a file that will stand at `path`. The ghosts' numbers and all ids come from the seed.
+    /// Starts a file at `path`, in place of what is there. The ghosts' numbers and all ids come from the seed.
     ///
     /// # Errors
     /// [`TrackError`] when nothing can be written there.
     pub fn create(path: &Path, config: &CameraConfig, seed: u64) -> Result<Self, TrackError> {
-        let rows_path = beside(path, "rows");
-        let open = || -> io::Result<File> {
-            if let Some(folder) = path
-                .parent()
-                .filter(|folder| !folder.as_os_str().is_empty())
-            {
-                fs::create_dir_all(folder)?;
-            }
-            if path.is_dir() {
-                return Err(io::Error::new(
-                    io::ErrorKind::IsADirectory,
-                    "a folder of that name exists",
-                ));
-            }
-            File::options()
-                .read(true)
-                .write(true)
-                .create(true)
-                .truncate(true)
-                .open(&rows_path)
-        };
-        let rows = open().map_err(|source| TrackError {
-            path: path.to_path_buf(),
-            source,
-        })?;
-        // An open file needs no name: a twin that is killed leaves none.
-        #[cfg(unix)]
-        let _ = fs::remove_file(&rows_path);
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(2);
         let ghost: u32 = rng.random_range(1000..5000);
@@ -84,23 +62,42 @@ impl MotiveFile {
             .into_iter()
             .zip(ids.map(|id| format!("\"{id:016X}\"")));
         let points = std::array::from_fn(|_| points.next().unwrap_or_default());
+        let none = count(0);
+        let header = header(&none, &config.take, &config.capture_start, &points);
+        let mut places = header.match_indices(&none).map(|(at, _)| at as u64);
+        let counts = [(); 2].map(|()| places.next().unwrap_or_default());
+        let open = || -> io::Result<File> {
+            if let Some(folder) = path
+                .parent()
+                .filter(|folder| !folder.as_os_str().is_empty())
+            {
+                fs::create_dir_all(folder)?;
+            }
+            let mut file = File::create(path)?;
+            file.write_all(header.as_bytes())?;
+            Ok(file)
+        };
+        let file = open().map_err(|source| TrackError {
+            path: path.to_path_buf(),
+            source,
+        })?;
         Ok(Self {
             path: path.to_path_buf(),
-            rows_path,
-            rows: BufWriter::new(rows),
+            file,
+            rows: Vec::new(),
             frames: 0,
-            take: config.take.clone(),
-            capture_start: config.capture_start.clone(),
-            points,
+            length: header.len() as u64,
+            kept: 0,
+            counts,
         })
     }
 
-    /// Where the file will stand.
+    /// Where the file is.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Frames written so far.
+    /// Frames taken so far.
     pub fn frames(&self) -> u64 {
         self.frames
     }
@@ -108,58 +105,60 @@ impl MotiveFile {
     /// Adds a frame.
     ///
     /// # Errors
-    /// [`TrackError`].
+    /// [`TrackError`]; the rows before stay.
     pub fn push(&mut self, frame: &Frame) -> Result<(), TrackError> {
-        let mut write = || -> io::Result<()> {
-            let rate = u64::from(Camera::RATE_HZ);
-            let microseconds = self.frames * 1_000_000 / rate;
-            write!(
-                self.rows,
-                "{},{}.{:06}",
-                self.frames,
-                microseconds / 1_000_000,
-                microseconds % 1_000_000
-            )?;
-            for point in frame {
-                match point {
-                    Some([x, y, z]) => write!(self.rows, ",{x:.6},{y:.6},{z:.6}")?,
-                    None => write!(self.rows, ",,,")?,
-                }
-            }
-            self.rows.write_all(b"\r\n")
-        };
-        write().map_err(|source| self.error(source))?;
+        let rate = u64::from(Camera::RATE_HZ);
+        let microseconds = self.frames * 1_000_000 / rate;
+        // Writing to memory cannot fail.
+        let _ = write!(
+            self.rows,
+            "{},{}.{:06}",
+            self.frames,
+            microseconds / 1_000_000,
+            microseconds % 1_000_000
+        );
+        for point in frame {
+            let _ = match point {
+                Some([x, y, z]) => write!(self.rows, ",{x:.6},{y:.6},{z:.6}"),
+                None => write!(self.rows, ",,,"),
+            };
+        }
+        self.rows.extend_from_slice(b"\r\n");
         self.frames += 1;
+        if self.frames.is_multiple_of(ROWS) {
+            self.write()?;
+        }
         Ok(())
     }
 
-    /// Puts the file in its place. Returns how many frames it holds.
+    /// Ends the file. Returns how many frames it holds.
     ///
     /// # Errors
-    /// [`TrackError`]; what stood at the path before still stands there.
+    /// [`TrackError`]; the rows that were written stay.
     pub fn finish(mut self) -> Result<u64, TrackError> {
-        let whole = beside(&self.path, "partial");
-        let assembled = self
-            .assemble(&whole)
-            .and_then(|()| fs::rename(&whole, &self.path));
-        assembled.map_err(|source| {
-            let _ = fs::remove_file(&whole);
-            self.error(source)
-        })?;
+        self.write()?;
+        let synced = self.file.sync_all();
+        synced.map_err(|source| self.error(source))?;
         Ok(self.frames)
     }
 
-    fn assemble(&mut self, whole: &Path) -> io::Result<()> {
-        self.rows.flush()?;
-        let rows = self.rows.get_mut();
-        rows.rewind()?;
-        let mut file = BufWriter::new(File::create(whole)?);
-        file.write_all(
-            header(self.frames, &self.take, &self.capture_start, &self.points).as_bytes(),
-        )?;
-        io::copy(&mut Read::by_ref(rows), &mut file)?;
-        file.flush()?;
-        file.get_ref().sync_all()
+    /// Writes the rows that are due, then how many there are; a piece of a row that the disk still took is taken back.
+    fn write(&mut self) -> Result<(), TrackError> {
+        let rows = std::mem::take(&mut self.rows);
+        let written = self.file.write_all(&rows).and_then(|()| {
+            self.length += rows.len() as u64;
+            self.kept = self.frames;
+            for place in self.counts {
+                self.file.seek(SeekFrom::Start(place))?;
+                self.file.write_all(count(self.frames).as_bytes())?;
+            }
+            self.file.seek(SeekFrom::Start(self.length)).map(|_| ())
+        });
+        written.map_err(|source| {
+            let _ = self.file.set_len(self.length);
+            self.frames = self.kept;
+            self.error(source)
+        })
     }
 
     fn error(&self, source: io::Error) -> TrackError {
@@ -172,12 +171,17 @@ impl MotiveFile {
 
 impl Drop for MotiveFile {
     fn drop(&mut self) {
-        let _ = fs::remove_file(&self.rows_path);
+        let _ = self.write();
     }
 }
 
+/// A number of frames in its place.
+fn count(frames: u64) -> String {
+    format!("{frames:0DIGITS$}")
+}
+
 /// The seven rows before the data.
-fn header(frames: u64, take: &str, capture_start: &str, points: &[(String, String); 4]) -> String {
+fn header(frames: &str, take: &str, capture_start: &str, points: &[(String, String); 4]) -> String {
     let rate = Camera::RATE_HZ;
     let thrice = |text: &dyn Fn(&(String, String)) -> String| -> String {
         points
@@ -202,20 +206,12 @@ fn header(frames: u64, take: &str, capture_start: &str, points: &[(String, Strin
     .join("\r\n")
 }
 
-/// `name.csv` becomes `.name.csv.SUFFIX.PROCESS` in the same folder, so that the rename stays on one file system.
-fn beside(path: &Path, suffix: &str) -> PathBuf {
-    let mut name = OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(format!(".{suffix}.{}", std::process::id()));
-    path.with_file_name(name)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn the_file_is_whole_or_not_there() {
+    fn the_file_grows_in_whole_rows() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("new/track.csv");
         let config = CameraConfig::default();
@@ -223,14 +219,18 @@ mod tests {
         file.push(&[Some([1.0, 2.0, 3.0]), None, None, Some([-0.5, 0.0, 1e-7])])
             .unwrap();
         file.push(&[None; 4]).unwrap();
-        assert!(!path.exists());
+        assert!(
+            fs::read_to_string(&path)
+                .unwrap()
+                .contains("Frames,0000000000,")
+        );
         assert_eq!(file.finish().unwrap(), 2);
         let text = fs::read_to_string(&path).unwrap();
         let lines: Vec<&str> = text.split("\r\n").collect();
         assert_eq!(lines.len(), 10);
         assert!(
             lines[0].starts_with("Format Version,1.23,")
-                && lines[0].contains("Total Exported Frames,2,")
+                && lines[0].contains("Total Exported Frames,0000000002,")
         );
         assert_eq!(lines[1], "");
         assert_eq!(lines[2], format!(",Type{}", ",Marker".repeat(12)));
@@ -249,18 +249,32 @@ mod tests {
         assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
     }
 
+    /// As after a power cut: what was written a moment before is there, and a reader can make sense of it.
     #[test]
-    fn dropped_or_failed_it_leaves_nothing() {
+    fn what_was_recorded_stays() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("track.csv");
         let mut file = MotiveFile::create(&path, &CameraConfig::default(), 1).unwrap();
-        file.push(&[None; 4]).unwrap();
+        for _ in 0..60 {
+            file.push(&[None; 4]).unwrap();
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.contains("Total Exported Frames,0000000050,") && text.ends_with("\r\n"));
+        assert_eq!(text.lines().count(), 7 + 50);
         drop(file);
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        assert_eq!(fs::read_to_string(&path).unwrap().lines().count(), 7 + 60);
         let error = MotiveFile::create(folder.path(), &CameraConfig::default(), 1).unwrap_err();
         assert!(
             error.to_string().contains("writing the tracking file"),
             "{error}"
         );
+    }
+
+    /// A disk that is full takes no row in pieces.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_ends_it_with_an_error() {
+        let refused = MotiveFile::create(Path::new("/dev/full"), &CameraConfig::default(), 1);
+        assert!(refused.unwrap_err().to_string().contains("No space left"));
     }
 }

@@ -46,7 +46,7 @@ pub(crate) struct Efficiency {
     timing: ServoTiming,
     /// Write the gait, at constant power or as timed for the servos, as a gait file
     #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
+    pub(super) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

@@ -8,7 +8,10 @@ mod sideways;
 mod timing;
 mod turning;
 
+use std::path::Path;
+
 use crate::failure::Outcome;
+use crate::new_file::may_be_written;
 use crate::output::Output;
 
 /// Find an optimal gait
@@ -23,11 +26,23 @@ pub(crate) enum Optimize {
 impl Optimize {
     /// Finds the gait that was asked for.
     pub(crate) fn run(self, output: Output) -> Outcome {
+        self.file().map_or(Ok(()), may_be_written)?;
         match self {
             Self::Displacement(arguments) => arguments.run(output),
             Self::Efficiency(arguments) => arguments.run(output),
             Self::Turning(arguments) => arguments.run(output),
             Self::Sideways(arguments) => arguments.run(output),
         }
+    }
+
+    /// Where the gait shall be written.
+    fn file(&self) -> Option<&Path> {
+        let file = match self {
+            Self::Displacement(arguments) => &arguments.output,
+            Self::Efficiency(arguments) => &arguments.output,
+            Self::Turning(arguments) => &arguments.output,
+            Self::Sideways(arguments) => &arguments.output,
+        };
+        file.as_deref()
     }
 }

@@ -30,7 +30,7 @@ pub(crate) struct Sideways {
     bounds: WholeBounds,
     /// Write the gait, at constant power, as a gait file
     #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
+    pub(super) output: Option<PathBuf>,
 }
 
 impl Sideways {

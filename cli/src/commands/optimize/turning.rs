@@ -29,7 +29,7 @@ pub(crate) struct Turning {
     bounds: WholeBounds,
     /// Write the gait, at constant power, as a gait file
     #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
+    pub(super) output: Option<PathBuf>,
 }
 
 impl Turning {

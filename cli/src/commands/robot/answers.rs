@@ -50,7 +50,7 @@ pub(super) struct Done {
 pub(super) const STOPPED: &str = "Stopped: the pulses are off.";
 /// What an e-stop leaves.
 pub(super) const E_STOPPED: &str =
-    "E-stopped: the pulses are off; only `swimmer robot arm --clear-estop` ends it.";
+    "E-stopped: the pulses are off; `swimmer robot estop --clear` ends that.";
 
 /// What a pause leaves that needs no link.
 pub(super) const PAUSED_DETACHED: &str = "Paused: the robot holds its pose for at most 60 s, then stops; `swimmer robot resume` goes on.";

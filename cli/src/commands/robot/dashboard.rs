@@ -36,9 +36,9 @@ pub(super) struct Dashboard {
     trail: VecDeque<Vector2<f64>>,
     /// What was last asked of the robot from here.
     pub(super) note: &'static str,
-    /// Telemetry so far, and the first of it with the frames that had been sent by then.
-    told: u64,
-    first: Option<(Telemetry, u64)>,
+    /// The first telemetry, with the frames that had been sent and the telemetry that had come by then: both of whoever has
+    /// the link, which need not be this program.
+    first: Option<(Telemetry, [u64; 2])>,
 }
 
 /// Points of the trail that are kept: ten minutes at 25 a second.
@@ -63,14 +63,13 @@ impl Dashboard {
             clock: None,
             trail: VecDeque::new(),
             note: "",
-            told: 0,
             first: None,
         }
     }
 
     /// Shares of frames lost \[%\], to the robot and from it; `None` before there is enough to say.
     fn loss(&self) -> Option<[f64; 2]> {
-        let (first, sent_before) = self.first.as_ref()?;
+        let (first, [sent_before, heard_before]) = self.first.as_ref()?;
         let last = self.telemetry.as_ref()?;
         let heard = f64::from(last.frames_ok.wrapping_sub(first.frames_ok));
         let sent = self.link.frames_sent.saturating_sub(*sent_before);
@@ -80,8 +79,9 @@ impl Dashboard {
         }
         // The robot's count wraps; after so many frames the share is of the last round.
         let sent = (sent % 65_536) as f64;
+        let told = self.link.telemetry.saturating_sub(*heard_before) + 1;
         let percent = |arrived: f64, of: f64| (100.0 * (1.0 - arrived / of)).clamp(0.0, 100.0);
-        Some([percent(heard, sent), percent(self.told as f64, due)])
+        Some([percent(heard, sent), percent(told as f64, due)])
     }
 
     /// The robot has told more.
@@ -100,9 +100,8 @@ impl Dashboard {
             }
             self.trail.push_back(at);
         }
-        self.told += 1;
         self.first
-            .get_or_insert((*telemetry, self.link.frames_sent));
+            .get_or_insert((*telemetry, [self.link.frames_sent, self.link.telemetry]));
         self.play = self.play.at(telemetry);
         self.telemetry = Some(*telemetry);
     }

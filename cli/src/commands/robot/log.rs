@@ -16,7 +16,7 @@ use super::{Log, Replay};
 use crate::arguments::load_gait;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
-use crate::output::Output;
+use crate::output::{Output, aside};
 use crate::quantity;
 
 #[derive(Debug, Serialize)]
@@ -152,7 +152,14 @@ impl fmt::Display for Verdict {
 
 /// `swimmer robot replay`: exit status 1 where the brain does something else.
 pub(super) fn replay_log(arguments: &Replay, output: Output) -> Outcome {
-    let frames = read_link_log(&arguments.file).map_err(|error| Failure::bad_input(&error))?;
+    let log = read_link_log(&arguments.file).map_err(|error| Failure::bad_input(&error))?;
+    if !log.ended {
+        aside(&format!(
+            "note: {} has no end: its writer was killed or its disk was full; what follows is of the {} frames before",
+            arguments.file.display(),
+            log.frames.len()
+        ));
+    }
     let table = arguments
         .gait
         .as_ref()
@@ -165,7 +172,7 @@ pub(super) fn replay_log(arguments: &Replay, output: Output) -> Outcome {
             })
         })
         .transpose()?;
-    let replayed = replay(&frames, table.as_ref())?;
+    let replayed = replay(&log.frames, table.as_ref())?;
     let answer = Verdict::new(arguments.file.display().to_string(), &replayed);
     if answer.same {
         output.answer(&answer);

@@ -7,10 +7,10 @@ use std::time::Duration;
 
 use host_link::robot::finish::{at_rest, finished};
 use host_link::{LinkError, Robot};
-use link_protocol::{StateName, Status, Telemetry};
+use link_protocol::{StateName, Status};
 use serde::Serialize;
 
-use super::access::{Access, Line, Met};
+use super::access::{Access, BEAT, Line, Met};
 use super::answers::{Done, PAUSED_DETACHED, cause, is_under_way, state};
 use super::playing::{self, Playing};
 use super::port::{AnyPort, Pace};
@@ -18,7 +18,7 @@ use super::port_owner::Ask;
 use super::upload::BeforePlay;
 use super::{Arm, Pause, Play};
 use crate::failure::{Failure, Outcome};
-use crate::interrupt::Interrupt;
+use crate::interrupt::{CTRL_C, Interrupt};
 use crate::output::{Output, aside};
 
 /// Longest time from a stop to pulses off: a second of ramp, half a second of rest, and some for the link.
@@ -188,7 +188,7 @@ fn attach(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
             ));
         }
         // It has ended before we came; how it ended is the answer all the same.
-        output.answer(&Played::new(&finished(status)?, false));
+        output.answer(&Played::new(&ready(line, finished(status)?), false));
         return Ok(());
     }
     output.line(&format!(
@@ -258,7 +258,7 @@ fn hold(line: &mut Line, interrupt: &Interrupt) -> Outcome {
         if interrupt.requested() {
             line.robot.stop()?;
             wait_for_rest(&mut line.robot)?;
-            if interrupt.pressed() != "Ctrl-C" {
+            if interrupt.pressed() != CTRL_C {
                 aside(&format!("{}.", interrupt.pressed()));
             }
             return Ok(());
@@ -289,6 +289,11 @@ fn wait(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
                 robot.stop()?;
                 wait_for_rest(robot)?;
                 let status = robot.status()?;
+                if status.cycles == 0 && interrupt.pressed() == CTRL_C {
+                    // Without end this is how it ends, and the robot has confirmed it.
+                    output.answer(&Played::new(&status, false));
+                    return Ok(());
+                }
                 return Err(Failure::Tried(format!(
                     "{}: the robot was stopped after {} whole cycles",
                     interrupt.pressed(),
@@ -299,8 +304,27 @@ fn wait(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
         }
     };
     drop(shown);
-    output.answer(&Played::new(&status, false));
+    output.answer(&Played::new(&ready(line, status), false));
     Ok(())
+}
+
+/// The same play once the robot has ramped to neutral and takes whatever is asked next, or as it was told where the link does
+/// not last that long.
+fn ready(line: &mut Line, over: Status) -> Status {
+    let mut waited = Duration::ZERO;
+    let mut now = over;
+    while !is_off(now.state) && waited < TO_REST {
+        match line.beat() {
+            Ok(Some(telemetry)) => now.state = telemetry.state,
+            Ok(None) => {}
+            Err(_) => {
+                aside("note: the link was lost after the play's end; the robot stops by itself.");
+                break;
+            }
+        }
+        waited += BEAT;
+    }
+    now
 }
 
 /// Passes a result on; a failure stops the robot first, as far as the link still allows.
@@ -318,7 +342,7 @@ fn stopped_on_failure<T>(robot: &mut Robot<AnyPort>, result: Result<T, LinkError
 /// Waits until the pulses are off.
 pub(super) fn wait_for_rest(robot: &mut Robot<AnyPort>) -> Result<StateName, LinkError> {
     robot.listen(TO_REST, |telemetry| {
-        if telemetry.is_some_and(is_off) {
+        if telemetry.is_some_and(|told| is_off(told.state)) {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
@@ -327,6 +351,6 @@ pub(super) fn wait_for_rest(robot: &mut Robot<AnyPort>) -> Result<StateName, Lin
     Ok(robot.status()?.state)
 }
 
-fn is_off(telemetry: &Telemetry) -> bool {
-    matches!(telemetry.state, StateName::Stopped | StateName::EStopped)
+fn is_off(state: StateName) -> bool {
+    matches!(state, StateName::Stopped | StateName::EStopped)
 }

@@ -38,12 +38,38 @@ pub(super) fn stop(access: &Access, arguments: &Stop, output: Output) -> Outcome
 
 /// `swimmer robot estop`.
 pub(super) fn estop(access: &Access, arguments: &Estop, output: Output) -> Outcome {
+    if arguments.clear {
+        return clear(access, arguments.yes, output);
+    }
     let take_over = if arguments.no_take_over {
         TakeOver::No
     } else {
         TakeOver::Yes
     };
     run(access, Ask::EStop, take_over, output)
+}
+
+/// Ends the latch; whatever follows is asked for again.
+fn clear(access: &Access, yes: bool, output: Output) -> Outcome {
+    let mut line = access.connect("swimmer robot estop --clear", Pace::AsFastAsPossible)?;
+    let estopped = line.robot.status()?.state == StateName::EStopped;
+    if estopped && !yes && !confirmed("Is it safe to end the e-stop? [y/N]") {
+        return Err(Failure::Tried(
+            "the e-stop is still latched: nobody said yes; without a terminal say so with --yes"
+                .to_owned(),
+        ));
+    }
+    line.robot.clear_estop()?;
+    let sentence = if estopped {
+        "Cleared: the robot is stopped, and `arm` or `play` powers it again."
+    } else {
+        "No e-stop was latched; the robot is stopped."
+    };
+    output.answer(&Done {
+        state: state(line.robot.status()?.state),
+        sentence: sentence.into(),
+    });
+    line.close()
 }
 
 fn run(access: &Access, ask: Ask, take_over: TakeOver, output: Output) -> Outcome {

@@ -185,8 +185,7 @@ fn show(
                 }
                 Some(Wish::EStop) => {
                     source.stop(true)?;
-                    left =
-                        "The robot was e-stopped; only `swimmer robot arm --clear-estop` ends it.";
+                    left = "The robot was e-stopped; `swimmer robot estop --clear` ends that.";
                     dashboard.note = "e-stopped";
                 }
                 None => {}

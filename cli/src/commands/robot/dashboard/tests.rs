@@ -61,6 +61,7 @@ fn dashboard() -> Dashboard {
         bytes_sent: 9000,
         bytes_received: 30_000,
         retransmissions: 8,
+        telemetry: 100,
         late_telemetry: 2,
         round_trip: Some(Duration::from_millis(42)),
         ..LinkCounters::default()
@@ -135,6 +136,26 @@ fn any_size_is_drawn() {
             drawn(&dashboard, width, height);
         }
     }
+}
+
+/// Through the process that has the port one telemetry in five is seen here, and none of the others is lost.
+#[test]
+fn beside_a_holder_the_loss_is_the_links() {
+    let mut dashboard = dashboard();
+    dashboard.first = None;
+    for step in 0..40 {
+        dashboard.link.telemetry = 100 + 5 * step;
+        dashboard.link.frames_sent = 400 + 4 * step;
+        dashboard.tell(&Telemetry {
+            robot_us: 20_000_000 + step * 200_000,
+            frames_ok: 412 + 4 * u16::try_from(step).unwrap(),
+            ..playing()
+        });
+    }
+    assert_eq!(dashboard.loss(), Some([0.0, 0.0]));
+    dashboard.link.telemetry -= 98;
+    let [_, back] = dashboard.loss().unwrap();
+    assert!((back - 50.0).abs() < 1.0, "{back}");
 }
 
 /// On a screen too small for anything else the state stands there, and first.

@@ -9,7 +9,7 @@ use swimmer_files::{SwimmerFile, write_atomically};
 use super::super::servo::Set;
 use crate::failure::{Failure, Outcome};
 
-/// Whether a file may be written there: nothing is, or the swimmer file that was named itself.
+/// Whether a file may be written there: where any may, and in place of the swimmer file that was named itself.
 ///
 /// # Errors
 /// [`Failure::BadInput`].
@@ -18,13 +18,10 @@ pub(super) fn may_be_written(file: &Path, named: Option<&str>) -> Outcome {
         let one = |path: &Path| path.canonicalize().ok();
         one(Path::new(named)).is_some_and(|named| Some(named) == one(file))
     };
-    if !file.exists() || named.is_some_and(same) {
+    if named.is_some_and(same) {
         return Ok(());
     }
-    Err(Failure::BadInput(format!(
-        "{} exists; name a new file for the swimmer",
-        file.display()
-    )))
+    crate::new_file::may_be_written(file)
 }
 
 /// Writes it.
