@@ -133,16 +133,25 @@ impl Known {
         let rows = jacobian.nrows();
         let mut information = Matrix2::zeros();
         let mut variances = [0.0; QUANTITIES];
+        let mut counts = [0.0; QUANTITIES];
         for row in 0..rows {
-            let variance = if estimate.weights[row] > 0.0 {
-                estimate.components.variance(row)
-            } else {
-                f64::INFINITY
-            };
+            if estimate.weights[row] <= 0.0 {
+                continue;
+            }
+            let variance = estimate.components.variance(row);
             let gradient = jacobian.row(row);
             let gradient = Vector2::new(gradient[0], gradient[1]);
             information += gradient * gradient.transpose() / variance;
-            variances[row % QUANTITIES] += variance / (rows / QUANTITIES) as f64;
+            variances[row % QUANTITIES] += variance;
+            counts[row % QUANTITIES] += 1.0;
+        }
+        // What no run has, one more will not have either.
+        for (variance, count) in variances.iter_mut().zip(counts) {
+            *variance = if count > 0.0 {
+                *variance / count
+            } else {
+                f64::INFINITY
+            };
         }
         Some(Self {
             information,

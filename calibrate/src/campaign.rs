@@ -10,7 +10,7 @@ use crate::fit::run_values::RunValues;
 use crate::fit::{self, CampaignFit, ExcludedRun, FitOptions};
 use crate::nuisance::scan;
 use crate::prediction::Played;
-use crate::run::{Opposed, Run};
+use crate::run::{EitherRun, Opposed, Run, Told};
 
 /// Rounds of fit and phase: the phase of a gait without the paper's symmetries hangs on the drag, a little.
 const ROUNDS: usize = 4;
@@ -28,14 +28,7 @@ pub fn calibrate_campaign(
     options: FitOptions,
 ) -> Result<CampaignFit, CalibrateError> {
     let projection = Projection::new();
-    let reflectors = &campaign.reflectors;
-    let begin = |(data, index)| Run::begin(data, index, reflectors, &campaign.swimmer);
-    let mut runs: Vec<Run<'_>> = data
-        .runs
-        .iter()
-        .zip(campaign.included())
-        .map(begin)
-        .collect::<Result<_, _>>()?;
+    let mut runs = begun(campaign, data)?;
     let mut swimmer = campaign.swimmer.clone();
     let mut starts = starts(&runs, &swimmer.swimmer, &projection)?;
     let mut round = 0;
@@ -62,8 +55,8 @@ pub fn calibrate_campaign(
             ..swimmer.swimmer
         };
         let next = self::starts(&runs, &swimmer.swimmer, &projection)?;
-        let moved = |(run, (a, b)): (&Run<'_>, (&f64, &f64))| {
-            let cycles = (b - a) / run.clock.period_s();
+        let moved = |(run, (a, b)): (&EitherRun<'_>, (&f64, &f64))| {
+            let cycles = (b - a) / run.period_s();
             (cycles - cycles.round()).abs() > SAME_PHASE
         };
         // The search's model was not the robot's yet.
@@ -120,9 +113,29 @@ pub fn calibrate_campaign(
     }
 }
 
+/// The runs that the campaign does not exclude, tracked or told.
+fn begun<'a>(
+    campaign: &Campaign,
+    data: &'a CampaignData,
+) -> Result<Vec<EitherRun<'a>>, CalibrateError> {
+    let (mut tracked, mut gaits) = (data.runs.iter(), data.told.iter());
+    let swimmer = &campaign.swimmer;
+    let begin = |index: usize| {
+        let run = &campaign.runs[index];
+        Some(if let Some(told) = &run.told {
+            Told::begin(index, (run, told), gaits.next()?, swimmer)
+                .map(|run| EitherRun::Told(Box::new(run)))
+        } else {
+            Run::begin(tracked.next()?, index, &campaign.reflectors, swimmer)
+                .map(|run| EitherRun::Tracked(Box::new(run)))
+        })
+    };
+    campaign.included().filter_map(begin).collect()
+}
+
 /// Which runs swim against this model.
 fn opposed(
-    runs: &[Run<'_>],
+    runs: &[EitherRun<'_>],
     cycles: &[Cycles],
     swimmer: &Swimmer<f64>,
     projection: &Projection,
@@ -134,8 +147,8 @@ fn opposed(
 }
 
 /// Runs that swim against the model can be left out while the others are no fewer.
-fn check_signs(runs: &[Run<'_>], opposed: &[Option<Opposed>]) -> Result<(), FitError> {
-    let against: Vec<(&Run<'_>, &Opposed)> = runs
+fn check_signs(runs: &[EitherRun<'_>], opposed: &[Option<Opposed>]) -> Result<(), FitError> {
+    let against: Vec<(&EitherRun<'_>, &Opposed)> = runs
         .iter()
         .zip(opposed)
         .filter_map(|(run, opposed)| Some((run, opposed.as_ref()?)))
@@ -144,7 +157,7 @@ fn check_signs(runs: &[Run<'_>], opposed: &[Option<Opposed>]) -> Result<(), FitE
         Some((_, first)) if 2 * against.len() > runs.len() || runs.len() < against.len() + 2 => {
             let names = against
                 .iter()
-                .map(|(run, _)| run.data.file.display().to_string());
+                .map(|(run, _)| run.file().display().to_string());
             Err(FitError::SignOpposes {
                 opposed: against.len(),
                 runs: runs.len(),
@@ -158,7 +171,7 @@ fn check_signs(runs: &[Run<'_>], opposed: &[Option<Opposed>]) -> Result<(), FitE
 }
 
 fn starts(
-    runs: &[Run<'_>],
+    runs: &[EitherRun<'_>],
     swimmer: &Swimmer<f64>,
     projection: &Projection,
 ) -> Result<Vec<f64>, CalibrateError> {

@@ -20,6 +20,7 @@ mod phase;
 mod statistics;
 mod warning;
 
+use swimmer_files::{ToldRun, ToldValue};
 use swimmer_model::Pose;
 
 use crate::poses::{Jump, Origin, PoseSample, PoseTrack};
@@ -96,6 +97,37 @@ pub struct Cycles {
     pub warnings: Vec<CycleWarning>,
     /// Mean harmonics of the heading, from the cycles' starts.
     pub(crate) heading: Harmonics,
+}
+
+impl Cycles {
+    /// Of a run whose results were told: means and their errors, and no cycle.
+    pub(crate) fn told(told: &ToldRun, period_s: f64) -> Self {
+        let of = |value: &Option<ToldValue>| Statistics::told(value.as_ref(), told.cycles);
+        Self {
+            period_s,
+            cycles: Vec::new(),
+            left_out: Vec::new(),
+            x: of(&told.x),
+            y: of(&told.y),
+            rotation: of(&told.turn),
+            delta_y: of(&told.delta_y),
+            delta_theta: of(&told.delta_theta),
+            phase: Phase::Told,
+            warnings: Vec::new(),
+            heading: Harmonics::default(),
+        }
+    }
+
+    /// How many the means are of; `None` where nobody told.
+    pub fn count(&self) -> Option<usize> {
+        match self.phase {
+            Phase::Told => {
+                let counts = [self.x, self.delta_y, self.delta_theta].map(|s| s.count);
+                counts.into_iter().max().filter(|count| *count > 1)
+            }
+            _ => Some(self.cycles.len()),
+        }
+    }
 }
 
 /// What does not depend on where a cycle starts: found once a run.

@@ -41,10 +41,12 @@ impl RunData {
 }
 
 /// Everything that a campaign names, read.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct CampaignData {
-    /// The runs that the campaign does not exclude, in its order.
+    /// The tracked runs that the campaign does not exclude, in its order.
     pub runs: Vec<RunData>,
+    /// The gaits of those whose results are told, likewise.
+    pub told: Vec<AnyGait>,
 }
 
 impl CampaignData {
@@ -69,10 +71,15 @@ impl CampaignData {
                 timing: timing(&run.timing)?,
             })
         };
+        let included = || campaign.included().map(|index| &campaign.runs[index]);
         Ok(Self {
-            runs: campaign
-                .included()
-                .map(|index| read(&campaign.runs[index]))
+            runs: included()
+                .filter(|run| run.told.is_none())
+                .map(read)
+                .collect::<Result<_, CalibrateError>>()?,
+            told: included()
+                .filter(|run| run.told.is_some())
+                .map(|run| Ok(run.gait.load()?))
                 .collect::<Result<_, CalibrateError>>()?,
         })
     }

@@ -103,6 +103,17 @@ pub struct RunError {
     pub standardised: f64,
 }
 
+impl RunError {
+    /// Of what was neither measured nor told.
+    pub(crate) const NONE: Self = Self {
+        measured: f64::NAN,
+        predicted: f64::NAN,
+        within: f64::NAN,
+        standard_error: f64::NAN,
+        standardised: f64::NAN,
+    };
+}
+
 /// A profile likelihood.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {

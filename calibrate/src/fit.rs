@@ -344,11 +344,7 @@ pub(crate) fn fit(
     }
     let parameters = vec![Parameter::SphereRadius, Parameter::Chi];
     let model = RunModel::new(start.clone(), runs, data.scales, parameters);
-    let weights: Vec<f64> = WEIGHTS
-        .into_iter()
-        .cycle()
-        .take(data.values.len())
-        .collect();
+    let weights = data.papers_weights();
     let optimum = search(&model, data, &weights)?;
     summary(&model, data, &weights, &optimum, level).ok_or(FitError::NoConvergence { starts: 1 })
 }
@@ -370,8 +366,15 @@ fn summary(
     let residuals: Vec<RunResidual> = rows
         .zip(weights.chunks(QUANTITIES))
         .zip(predicted)
-        .map(|((residuals, weights), predicted)| {
-            let left = |q: usize| residuals[q] * data.scales[q];
+        .enumerate()
+        .map(|(run, ((residuals, weights), predicted))| {
+            let left = |q: usize| {
+                if data.is_there(QUANTITIES * run + q) {
+                    residuals[q] * data.scales[q]
+                } else {
+                    f64::NAN
+                }
+            };
             RunResidual {
                 predicted,
                 x_m: left(0),

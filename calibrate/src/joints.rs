@@ -138,7 +138,10 @@ pub(crate) fn measure(
         let vertex = |u: f64| (u, Vector2::new(front.at(u), back.at(u)));
         JointPath::Played((0..=PIECES).map(place).map(vertex).collect())
     };
-    let known = !matches!(cycles.phase, Phase::Heading | Phase::LogAndHeading);
+    let known = !matches!(
+        cycles.phase,
+        Phase::Heading | Phase::LogAndHeading | Phase::Told
+    );
     let servo = |joint: usize, fitted: &curve::Fitted| {
         servo::of(fitted, |u| command(u)[joint], known.then_some(period))
     };

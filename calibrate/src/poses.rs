@@ -171,6 +171,21 @@ pub struct PoseTrack {
 }
 
 impl PoseTrack {
+    /// Of no recording.
+    pub(crate) fn none() -> Self {
+        Self {
+            samples: Vec::new(),
+            frames: 0,
+            rate_hz: 0.0,
+            plane: Plane::fit(&[], None),
+            report: FollowReport::none(),
+            jumps: Vec::new(),
+            drift: None,
+            front: FrontRule::Label,
+            warnings: Vec::new(),
+        }
+    }
+
     /// The samples that were seen, and not beside a gap.
     pub fn seen(&self) -> impl Iterator<Item = &PoseSample> {
         self.with(Origin::Seen)

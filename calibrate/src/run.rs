@@ -1,11 +1,14 @@
 //! One run from its track to its cycles: everything that a fit takes from it.
 
+mod either;
+mod told;
+
 use std::path::PathBuf;
 
 use swimmer_files::{Reflectors, SwimmerFile};
 use swimmer_model::{Gait as _, Swimmer};
 
-use crate::cycles::{Clock, Cycles, Projection};
+use crate::cycles::{Clock, Cycles, Phase, Projection};
 use crate::data::RunData;
 use crate::error::CalibrateError;
 use crate::fit::run_values::{QUANTITIES, predicted};
@@ -13,16 +16,19 @@ use crate::joints::{self, MeasuredJoints};
 use crate::poses::{self, FrontRule, PoseOptions, PoseTrack, PoseWarning};
 use crate::prediction::{JointPath, Played};
 
+pub(crate) use either::EitherRun;
+pub(crate) use told::Told;
+
 /// One run's outcome.
 #[derive(Debug, Clone)]
 pub struct RunResult {
     /// Its place in the campaign.
     pub index: usize,
-    /// The tracking file.
+    /// The tracking file, or where its results were told.
     pub file: PathBuf,
     /// The gait as it was named.
     pub gait: String,
-    /// The poses.
+    /// The poses; none of a run whose results were told.
     pub poses: PoseTrack,
     /// The cycles: X, Y, rotation, ΔY, Δθ with deviations, the refined period.
     pub cycles: Cycles,
@@ -36,6 +42,13 @@ pub struct RunResult {
     pub(crate) played: Played,
     /// Variances of what the model makes of the measured angles: X, ΔY, Δθ, Y, net turn.
     pub(crate) path_variances: [f64; QUANTITIES],
+}
+
+impl RunResult {
+    /// Whether its results were told, and there is no track.
+    pub fn is_told(&self) -> bool {
+        self.cycles.phase == Phase::Told
+    }
 }
 
 /// A run that swims against the model.
@@ -204,24 +217,6 @@ impl<'a> Run<'a> {
         Ok(cycles)
     }
 
-    /// Whether X has the other sign than the model's, and about its size.
-    pub(crate) fn opposes(
-        &self,
-        cycles: &Cycles,
-        swimmer: &Swimmer<f64>,
-        projection: &Projection,
-    ) -> Result<Option<Opposed>, CalibrateError> {
-        let predicted_m = self.told.path.predict(swimmer, projection)?.0.x_m;
-        let measured_m = cycles.x.mean;
-        let reversed = REVERSED.contains(&(measured_m / predicted_m));
-        // A lone cycle has no error, and its word counts.
-        let sure = cycles.x.se.is_nan() || measured_m.abs() > 3.0 * cycles.x.se;
-        Ok((reversed && sure).then_some(Opposed {
-            measured_m,
-            predicted_m,
-        }))
-    }
-
     pub(crate) fn finish(self, cycles: Cycles, path_variances: [f64; QUANTITIES]) -> RunResult {
         let reader = self.data.track.warnings.iter().map(ToString::to_string);
         let poses = self.poses.warnings.iter().map(ToString::to_string);
@@ -251,6 +246,18 @@ impl<'a> Run<'a> {
             path_variances,
         }
     }
+}
+
+/// Whether X has the other sign than the model's, and about its size.
+fn opposed(cycles: &Cycles, predicted_m: f64) -> Option<Opposed> {
+    let measured_m = cycles.x.mean;
+    let reversed = REVERSED.contains(&(measured_m / predicted_m));
+    // A lone cycle has no error, and its word counts.
+    let sure = cycles.x.se.is_nan() || measured_m.abs() > 3.0 * cycles.x.se;
+    (reversed && sure).then_some(Opposed {
+        measured_m,
+        predicted_m,
+    })
 }
 
 /// The cycles of a single run.

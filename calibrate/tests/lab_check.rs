@@ -263,3 +263,21 @@ fn how_long_a_campaign_takes() {
         );
     }
 }
+
+/// Writes a campaign with measured joints, swaps, ghosts and a run that is told into a folder, for eyes.
+#[test]
+#[ignore = "writes where LAB_FOLDER says"]
+fn a_campaign_for_eyes() {
+    let Some(folder) = std::env::var_os("LAB_FOLDER") else {
+        return;
+    };
+    let folder = Path::new(&folder);
+    let mut lab = Lab::sparse(4).with_side_reflectors();
+    lab.cameras.ghosts = 0.002;
+    lab.runs[2].faults.swaps = vec![[15.0, 3.0], [31.0, 1.0]];
+    lab.joints[0].gain = 0.96;
+    let path = lab.write(folder).unwrap();
+    let told = "[[run]]\ngait = \"circle:60deg\"\nperiod_s = 10.0\nx_mm = 6.3\nx_se_mm = 0.3\n";
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(path, text + told).unwrap();
+}

@@ -2,12 +2,14 @@
 
 mod known;
 mod read;
+mod told;
 
 use std::path::{Path, PathBuf};
 
 use crate::place::read_text;
 use crate::{Axes, FileError, GaitSpec, SwimmerFile};
 pub use known::{Known, KnownValue};
+pub use told::{ToldRun, ToldValue};
 
 /// A campaign, with its swimmer read and its paths resolved.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,11 +115,13 @@ pub struct RunTiming {
     pub clock_offset_s: Option<f64>,
 }
 
-/// One run: a track, the gait that was swum, its period.
+/// One run: a track or what is told instead of one, the gait that was swum, its period.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CampaignRun {
-    /// The tracking file.
+    /// The tracking file; of a run that is told, where it is told (`campaign.toml:12`, `figure.csv:3`).
     pub track: PathBuf,
+    /// Its results, where these are told instead of a track.
+    pub told: Option<ToldRun>,
     /// The gait that was played.
     pub gait: GaitSpec,
     /// One cycle \[s\].
@@ -173,12 +177,16 @@ impl Campaign {
 }
 
 impl CampaignRun {
-    /// Its track, and its gait and log where these are files.
+    /// Its track or table of results, and its gait and log where these are files.
     fn files(&self) -> [Option<&PathBuf>; 3] {
         let gait = match &self.gait {
             GaitSpec::File { path, .. } => Some(path),
             _ => None,
         };
-        [Some(&self.track), gait, self.timing.log.as_ref()]
+        let track = match &self.told {
+            None => Some(&self.track),
+            Some(told) => told.table.as_ref(),
+        };
+        [track, gait, self.timing.log.as_ref()]
     }
 }

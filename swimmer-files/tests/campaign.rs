@@ -279,3 +279,139 @@ fn reflectors_on_the_side_links() {
         assert!(error.contains(place) && error.contains(why), "{error}");
     }
 }
+
+/// A campaign of one run without a track.
+fn told(numbers: &str) -> String {
+    format!("swimmer = \"robot\"\n[[run]]\ngait = \"circle:70deg\"\nperiod_s = 26.0\n{numbers}\n")
+}
+
+#[test]
+fn results_instead_of_a_track() {
+    let read = |text: &str| Campaign::parse(text, Path::new("tank/campaign.toml"));
+    let campaign = read(&told(
+        "x_mm = 12.5\nx_sd_mm = 0.5\ncycles = 6\ndelta_theta_deg = 30.0\ndelta_theta_se_deg = 0.4",
+    ))
+    .unwrap();
+    let [run] = &campaign.runs[..] else {
+        panic!("{campaign:?}");
+    };
+    assert_eq!(run.track, Path::new("tank/campaign.toml:3"));
+    let results = run.told.as_ref().unwrap();
+    assert_eq!((results.cycles, results.delta_y), (Some(6), None));
+    let x = results.x.unwrap();
+    assert!((x.mean - 0.0125).abs() < 1e-15 && (x.sd.unwrap() - 5e-4).abs() < 1e-15);
+    let theta = results.delta_theta.unwrap();
+    assert!((theta.mean - 30_f64.to_radians()).abs() < 1e-15 && theta.sd.is_none());
+    for (numbers, place, why) in [
+        ("", "3:8", "tells x_mm"),
+        ("x_mm = nan", "5:8", "finite"),
+        ("x_mm = 1.0\nx_sd_mm = 0.1", "6:11", "say by `cycles`"),
+        (
+            "x_mm = 1.0\nx_sd_mm = 0.1\ncycles = 1",
+            "6:11",
+            "2 at least",
+        ),
+        ("x_mm = 1.0\nx_se_mm = -0.1", "6:11", "positive"),
+        ("x_mm = 1.0\nx_se_mm = 0.1\nx_sd_mm = 0.1", "6:11", "both"),
+        ("x_mm = 1.0\ndelta_y_se_mm = 0.1", "6:17", "not there"),
+        ("delta_y_mm = -1.0", "5:14", "half of a range"),
+        ("x_mm = 1.0\ncycles = 2.5", "6:10", "1, 2, 3"),
+        ("x_mm = 1.0\nlog = \"a.mcap\"", "6:7", "about a track"),
+        ("x_mm = 1.0\ntrack = \"a.csv\"", "5:8", "not both"),
+        ("x_mm = 1.0\nresults = \"a.csv\"", "5:8", "beside a table"),
+        ("x_cm = 1.0", "5:1", "unknown field"),
+    ] {
+        let text = told(numbers).replace("[[run]]", if numbers.contains("track") {
+            "[reflectors]\nfront = { point = \"F\", at = [0.03, 0.0] }\nback = { point = \"B\", at = [-0.03, 0.0] }\n[[run]]"
+        } else {
+            "[[run]]"
+        });
+        let error = read(&text).unwrap_err().to_string();
+        let place = if numbers.contains("track") {
+            "8:8"
+        } else {
+            place
+        };
+        let place = format!("tank/campaign.toml:{place}");
+        assert!(
+            error.contains(&place) && error.contains(why),
+            "{numbers}: {error}"
+        );
+    }
+    let tracked =
+        "swimmer = \"robot\"\n[[run]]\ntrack = \"a.csv\"\ngait = \"circle:1\"\nperiod_s = 10.0\n";
+    let error = read(tracked).unwrap_err().to_string();
+    assert!(
+        error.contains("3:9") && error.contains("[reflectors]"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_table_of_results() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |table: &str| {
+        std::fs::write(folder.path().join("figure.csv"), table).unwrap();
+        let path = folder.path().join("campaign.toml");
+        let text = told("results = \"figure.csv\"").replace("circle:70deg", "circle");
+        std::fs::write(&path, text).unwrap();
+        Campaign::load(&path)
+    };
+    let campaign = write(
+        "# read off the figure\namplitude_deg;x_mm;x_sd_mm;cycles\n40;10.1;0.4;5\n\n60;15.0;;\n",
+    )
+    .unwrap();
+    let gaits: Vec<String> = campaign
+        .runs
+        .iter()
+        .map(|run| run.gait.to_string())
+        .collect();
+    assert!(gaits[0].contains("circle") && gaits.len() == 2, "{gaits:?}");
+    assert!(campaign.runs[1].track.ends_with("figure.csv:5"));
+    assert_eq!(campaign.runs[1].told.as_ref().unwrap().x.unwrap().sd, None);
+    let files = Campaign::files(&folder.path().join("campaign.toml")).unwrap();
+    assert!(files.iter().any(|file| file.ends_with("figure.csv")));
+    for (table, place, why) in [
+        ("", "figure.csv:1:1", "empty"),
+        ("amplitude_deg,x_mm\n", "figure.csv:1:1", "no line"),
+        (
+            "amplitude_deg,x_cm\n40,1\n",
+            "figure.csv:1:2",
+            "no column `x_cm`",
+        ),
+        ("x_mm,x_mm\n1,1\n", "figure.csv:1:2", "second column"),
+        (
+            "amplitude_deg,x_mm\n40\n",
+            "figure.csv:2:1",
+            "1 cells under 2",
+        ),
+        (
+            "amplitude_deg,x_mm\n40,ten\n",
+            "figure.csv:2:2",
+            "no number",
+        ),
+        ("amplitude_deg,x_mm\n-40,1\n", "figure.csv:2:1", "above 0"),
+        ("x_mm\n1\n", "figure.csv:2:1", "no amplitude"),
+        (
+            "amplitude_deg,x_mm,x_sd_mm\n40,1,1\n",
+            "figure.csv:2:3",
+            "cycles",
+        ),
+        (
+            "amplitude_deg,gait,x_mm\n40,circle:1,1\n",
+            "figure.csv:2:1",
+            "one of",
+        ),
+    ] {
+        let error = write(table).unwrap_err().to_string();
+        assert!(
+            error.contains(place) && error.contains(why),
+            "{table}: {error}"
+        );
+    }
+    std::fs::remove_file(folder.path().join("figure.csv")).unwrap();
+    let error = Campaign::load(&folder.path().join("campaign.toml"))
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("campaign.toml:5:11"), "{error}");
+}

@@ -81,8 +81,12 @@ pub(super) fn goodness(found: &CampaignFit, plain: &Plain, joint: Option<&Joint>
         freedom,
         signs: (0..TELLING)
             .map(|q| {
-                let residual = |run: &usize| plain.telling.residuals[QUANTITIES * run + q];
-                signs(NAMES[q], order.iter().map(residual))
+                let row = |run: &usize| QUANTITIES * run + q;
+                let there = order
+                    .iter()
+                    .map(row)
+                    .filter(|row| plain.data.is_there(*row));
+                signs(NAMES[q], there.map(|row| plain.telling.residuals[row]))
             })
             .collect(),
         runs: (0..sizes.len())
@@ -132,14 +136,28 @@ fn of_run(found: &CampaignFit, plain: &Plain, joint: Option<&Joint>, run: usize)
     let result = &found.runs[run];
     let row = |q: usize| QUANTITIES * run + q;
     let scale = |q: usize| plain.data.scales[q];
-    let value = |q: usize| plain.data.values[row(q)] * scale(q);
+    let there = |q: usize, value: f64| {
+        if plain.data.is_there(row(q)) {
+            value
+        } else {
+            f64::NAN
+        }
+    };
+    let value = |q: usize| there(q, plain.data.values[row(q)] * scale(q));
     let error = |q: usize| plain.data.within[row(q)].value.sqrt() * scale(q);
     let chance = |q: usize| {
         let freedom = plain.data.within[row(q)].freedom.max(1.0);
         let t = (value(q) / error(q)).abs();
+        if !t.is_finite() {
+            // Not there, or of one cycle, which tells of no scatter.
+            return f64::NAN;
+        }
         StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, |student| 2.0 * student.sf(t))
     };
-    let beyond = |q: usize| -estimate.residuals[row(q)] * scale(q) / result.cycles.period_s;
+    let beyond = |q: usize| {
+        let left = -estimate.residuals[row(q)] * scale(q);
+        there(q, left / result.cycles.period_s)
+    };
     let [x, .., turn] = measured(&result.cycles).map(|statistics| statistics.mean);
     RunGoodness {
         y_over_x: [value(3) / x, (error(3) / x).abs()],

@@ -26,7 +26,8 @@ pub(super) fn priors(found: &CampaignFit, model: &RunModel) -> Vec<Known> {
     let (length, known) = (found.length(), &found.known);
     let distance = found
         .runs
-        .first()
+        .iter()
+        .find(|run| !run.is_told())
         .map_or(length, |run| run.poses.report.distance_m);
     let reflector = known.reflector.map_or(REFLECTOR, |known| known.width);
     let usual = |value: f64, width: f64| KnownValue { value, width };

@@ -19,7 +19,9 @@ use crate::fit::tangent::Tangent;
 const VALUES_FOR_ONE: usize = 8;
 /// From so many standard deviations on, what contradicts the runs is believed as much less as it is further off, in so many rounds.
 const BELIEVED: f64 = 1.5;
-const DOUBTS: usize = 3;
+const DOUBTS: usize = 4;
+/// Widths that differ by less are the same, as a share.
+const SAME: f64 = 1e-3;
 /// By how much what is known is widened to be forgotten, how many ends of that are followed by the model itself, and how near to
 /// each other they are one.
 const FORGOTTEN: f64 = 30.0;
@@ -149,16 +151,19 @@ impl Sought {
         })
     }
 
-    /// Widens what is known by as much as the runs contradict it, so that it does not draw the answer with it; whether anything is.
+    /// Widens what is known by as much as the runs contradict it, so that it does not draw the answer with it; whether that
+    /// changes anything.
     fn doubt(&self, data: &mut RunValues, at: &[f64]) -> bool {
-        let mut doubted = false;
+        let mut changed = false;
         for (index, prior) in self.priors.iter().enumerate() {
             let off = (at[2 + index] - prior.value).abs() / prior.width;
             let wider = (off / BELIEVED).max(1.0);
-            doubted |= wider > 1.0;
-            data.within[self.first + index].value = (wider * prior.width).powi(2);
+            let believed = &mut data.within[self.first + index].value;
+            let variance = (wider * prior.width).powi(2);
+            changed |= (variance / *believed - 1.0).abs() > SAME;
+            *believed = variance;
         }
-        doubted
+        changed
     }
 
     /// The mode without the values that are unlike all else, and which these are.

@@ -32,6 +32,8 @@ pub enum Phase {
     Log,
     /// By the robot's log, moved to where the heading's harmonics match the model's.
     LogAndHeading,
+    /// Somebody told X, ΔY and Δθ; there is no track.
+    Told,
 }
 
 impl Phase {
@@ -42,6 +44,7 @@ impl Phase {
             Self::Flash => "flash",
             Self::Log => "log",
             Self::LogAndHeading => "log-and-heading",
+            Self::Told => "told",
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Mean, deviation and standard error over cycles.
 
+use swimmer_files::ToldValue;
+
 /// Statistics of one quantity over the cycles of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
@@ -10,13 +12,36 @@ pub struct Statistics {
     /// Standard error of the mean. Neighbouring steps share a cycle, so that noise of the cameras makes them vary against
     /// each other; the lag-1 correlation is taken into account from five values on. NaN for a single one.
     pub se: f64,
-    /// Lag-1 correlation; 0 below five values.
+    /// Lag-1 correlation; 0 below five values, NaN where nobody tells it.
     pub lag1: f64,
     /// How many values.
     pub count: usize,
 }
 
 impl Statistics {
+    /// As somebody told it, of so many cycles; not a number where nobody did.
+    pub(crate) fn told(value: Option<&ToldValue>, cycles: Option<usize>) -> Self {
+        let nothing = f64::NAN;
+        let Some(ToldValue { mean, sd, se }) = value else {
+            return Self {
+                mean: nothing,
+                sd: nothing,
+                se: nothing,
+                lag1: nothing,
+                count: 0,
+            };
+        };
+        let count = cycles.unwrap_or(1);
+        let of_sd = sd.map(|sd| sd / (count as f64).sqrt());
+        Self {
+            mean: *mean,
+            sd: sd.unwrap_or(nothing),
+            se: se.or(of_sd).unwrap_or(nothing),
+            lag1: nothing,
+            count,
+        }
+    }
+
     pub(super) fn of(values: impl Iterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.collect();
         let n = values.len().max(1) as f64;

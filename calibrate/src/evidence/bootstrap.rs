@@ -26,6 +26,8 @@ pub(super) const ENOUGH_RUNS: usize = 5;
 #[derive(Debug, Clone)]
 pub(super) struct Drawn {
     pub(super) means: [f64; QUANTITIES],
+    /// Which of them there are.
+    pub(super) there: [bool; QUANTITIES],
     /// Deviations from the mean, widened.
     pub(super) deviations: [Vec<f64>; QUANTITIES],
 }
@@ -52,6 +54,7 @@ pub(super) fn bootstrap(
         return None;
     }
     let measured: Vec<f64> = runs.iter().flat_map(|run| run.means).collect();
+    let there: Vec<bool> = runs.iter().flat_map(|run| run.there).collect();
     let mut draws: Vec<[f64; 2]> = Vec::with_capacity(options.draws);
     let mut at_border = 0;
     for _ in 0..options.draws {
@@ -69,7 +72,7 @@ pub(super) fn bootstrap(
                 *value += sum / deviations.len().max(1) as f64;
             }
         }
-        let at = papers_fit(surface, &values, &weights, optimum);
+        let at = papers_fit(surface, (&values, &there), &weights, optimum);
         at_border += usize::from(!surface.rectangle.holds(at));
         draws.push(at);
     }
@@ -77,7 +80,7 @@ pub(super) fn bootstrap(
         .map(|run| {
             let mut weights = vec![1.0; runs.len()];
             weights[run] = 0.0;
-            papers_fit(surface, &measured, &weights, optimum)
+            papers_fit(surface, (&measured, &there), &weights, optimum)
         })
         .collect();
     let count = runs.len() as f64;
@@ -103,7 +106,7 @@ pub(super) fn bootstrap(
 /// The paper's criterion over weighted runs, its scales taken from the drawn runs as from any others.
 pub(super) fn papers_fit(
     surface: &Surface,
-    values: &[f64],
+    (values, there): (&[f64], &[bool]),
     runs: &[f64],
     start: [f64; 2],
 ) -> [f64; 2] {
@@ -114,6 +117,9 @@ pub(super) fn papers_fit(
         }
     }
     let weigh = |row: usize| {
+        if !there[row] {
+            return 0.0;
+        }
         runs[row / QUANTITIES] * WEIGHTS[row % QUANTITIES] / scales[row % QUANTITIES].powi(2)
     };
     let weights: Vec<f64> = (0..values.len()).map(weigh).collect();

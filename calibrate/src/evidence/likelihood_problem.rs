@@ -96,6 +96,7 @@ impl LikelihoodProblem {
             of_steps(|step| step.theta),
         ];
         let statistics = measured(cycles);
+        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
         let deviations = |q: usize| {
             let Statistics {
                 mean,
@@ -114,13 +115,17 @@ impl LikelihoodProblem {
                 .collect()
         };
         bootstrap::Drawn {
-            means: std::array::from_fn(|q| statistics[q].mean / self.data.scales[q]),
+            means: std::array::from_fn(|q| finite(statistics[q].mean / self.data.scales[q])),
+            there: statistics.map(|s| s.mean.is_finite()),
             deviations: std::array::from_fn(deviations),
         }
     }
 
     pub(super) fn run_errors(&self, estimate: &Estimate) -> Vec<[RunError; TELLING]> {
         let of = |row: usize| {
+            if !self.data.is_there(row) {
+                return RunError::NONE;
+            }
             let scale = self.data.scales[row % QUANTITIES];
             let standard_error = estimate.components.variance(row).sqrt();
             let residual = estimate.residuals[row];
@@ -146,10 +151,13 @@ impl LikelihoodProblem {
     ) -> Vec<WithoutRun> {
         let likelihood = leave_one_out::leave_one_out(surface, data, at);
         let runs = likelihood.len();
+        let there: Vec<bool> = (0..self.data.values.len())
+            .map(|row| self.data.is_there(row))
+            .collect();
         let paper = |left_out: usize| {
             let mut weights = vec![1.0; runs];
             weights[left_out] = 0.0;
-            bootstrap::papers_fit(surface, &self.data.values, &weights, self.paper)
+            bootstrap::papers_fit(surface, (&self.data.values, &there), &weights, self.paper)
         };
         likelihood
             .into_iter()

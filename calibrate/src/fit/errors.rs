@@ -35,6 +35,7 @@ pub(crate) fn within_runs(measured: &[[Statistics; QUANTITIES]]) -> Vec<[Varianc
     for quantity in 0..QUANTITIES {
         let of_runs: Vec<Statistics> = measured.iter().map(|run| run[quantity]).collect();
         let sizes = of_runs.iter().map(|s| s.mean.abs());
+        // f64::max leaves out what is not there.
         let largest = sizes.fold(0.0, f64::max);
         // Only steps have a reason to be correlated.
         let lag1 = if quantity == 0 || quantity >= TELLING {
@@ -46,6 +47,21 @@ pub(crate) fn within_runs(measured: &[[Statistics; QUANTITIES]]) -> Vec<[Varianc
             out[quantity] = variance;
         }
         for (out, s) in out.iter_mut().zip(&of_runs) {
+            if s.mean.is_nan() {
+                // Not there: it has no weight.
+                out[quantity] = Variance {
+                    value: 0.0,
+                    freedom: 1.0,
+                };
+                continue;
+            }
+            if s.sd.is_nan() && s.se.is_finite() {
+                out[quantity] = Variance {
+                    value: s.se.powi(2),
+                    freedom: MOST_FREEDOM,
+                };
+                continue;
+            }
             let n = s.count.max(1) as f64;
             // Cycles that vary against each other widen the sample's deviation, and the other way round.
             let inflation = (1.0 + 2.0 * lag1 * (1.0 - 1.0 / n)) / (1.0 - 2.0 * lag1 / n);
@@ -58,7 +74,10 @@ pub(crate) fn within_runs(measured: &[[Statistics; QUANTITIES]]) -> Vec<[Varianc
 /// The lag-1 correlation of all runs together, freed of the bias −1/n that a run's own mean brings.
 fn common_lag(runs: &[Statistics]) -> f64 {
     let (mut products, mut squares) = (0.0, 0.0);
-    for s in runs.iter().filter(|s| s.count >= 5 && s.sd > 0.0) {
+    for s in runs
+        .iter()
+        .filter(|s| s.count >= 5 && s.sd > 0.0 && s.lag1.is_finite())
+    {
         let n = s.count as f64;
         products += (s.lag1 + 1.0 / n) * (n - 1.0);
         squares += n - 1.0;
@@ -74,7 +93,7 @@ fn common_lag(runs: &[Statistics]) -> f64 {
 fn moderated(runs: &[Statistics], least_sd: f64) -> Vec<Variance> {
     let samples: Vec<(f64, f64)> = runs
         .iter()
-        .filter(|s| s.count > 1)
+        .filter(|s| s.count > 1 && !s.sd.is_nan())
         .map(|s| (s.sd.max(least_sd).powi(2), s.count as f64 - 1.0))
         .collect();
     let Some(prior) = prior(&samples) else {
@@ -87,7 +106,11 @@ fn moderated(runs: &[Statistics], least_sd: f64) -> Vec<Variance> {
         ];
     };
     let posterior = |s: &Statistics| {
-        let own = (s.count as f64 - 1.0).max(0.0);
+        let own = if s.sd.is_nan() {
+            0.0
+        } else {
+            (s.count as f64 - 1.0).max(0.0)
+        };
         let freedom = own + prior.freedom;
         let sum = own * s.sd.max(least_sd).powi(2) + prior.freedom * prior.value;
         Variance {

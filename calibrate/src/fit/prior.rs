@@ -37,7 +37,7 @@ impl<'a> WithPriors<'a> {
             };
             places.push(place);
             data.values.push(prior.value);
-            data.used.push(true);
+            data.push_known();
             data.within.push(Variance {
                 value: prior.width.powi(2),
                 freedom: f64::INFINITY,

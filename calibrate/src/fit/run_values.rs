@@ -1,5 +1,6 @@
 //! What the runs of a fit measured, in the units in which everything compares.
 
+use super::WEIGHTS;
 use super::errors::{Variance, within_runs};
 use crate::cycles::{Cycles, Statistics};
 use crate::error::FitError;
@@ -37,6 +38,8 @@ pub(crate) struct RunValues {
     pub(crate) within: Vec<Variance>,
     /// Which of them count: Y and turn only where they are asked for.
     pub(crate) used: Vec<bool>,
+    /// Which of them were measured or told.
+    there: Vec<bool>,
 }
 
 /// What a run's cycles measured, in the order of the values.
@@ -63,6 +66,11 @@ impl RunValues {
         for (q, scale) in scales.iter_mut().enumerate() {
             let sizes = statistics.iter().map(|run| run[SCALED_LIKE[q]].mean.abs());
             *scale = sizes.fold(0.0, f64::max);
+            let there = |run: &[Statistics; QUANTITIES]| run[SCALED_LIKE[q]].mean.is_finite();
+            if !statistics.iter().any(there) {
+                // Nobody told it: nothing is in its scale.
+                *scale = 1.0;
+            }
             if !(*scale > 0.0 && scale.is_finite()) {
                 return Err(FitError::NothingMeasured { quantity: NAMES[q] });
             }
@@ -73,15 +81,23 @@ impl RunValues {
                 ..run[q]
             })
         };
+        let there: Vec<bool> = statistics
+            .iter()
+            .flat_map(|run| run.map(|statistics| statistics.mean.is_finite()))
+            .collect();
+        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
         let values: Vec<f64> = statistics
             .iter()
-            .flat_map(|run| std::array::from_fn::<_, QUANTITIES, _>(|q| run[q].mean / scales[q]))
+            .flat_map(|run| {
+                std::array::from_fn::<_, QUANTITIES, _>(|q| finite(run[q].mean / scales[q]))
+            })
             .collect();
         Ok(Self {
             scales,
             used: (0..values.len())
-                .map(|row| row % QUANTITIES < TELLING)
+                .map(|row| row % QUANTITIES < TELLING && there[row])
                 .collect(),
+            there,
             values,
             within: within_runs(&statistics)
                 .into_iter()
@@ -94,9 +110,32 @@ impl RunValues {
     /// The same with Y and net turn.
     pub(crate) fn with_all(&self) -> Self {
         Self {
-            used: vec![true; self.values.len()],
+            used: self.there.clone(),
             ..self.clone()
         }
+    }
+
+    /// Room for one thing more that is known beforehand.
+    pub(crate) fn push_known(&mut self) {
+        self.used.push(true);
+        self.there.push(true);
+    }
+
+    /// Whether a value was measured or told at all.
+    pub(crate) fn is_there(&self, row: usize) -> bool {
+        self.there.get(row).copied().unwrap_or(false)
+    }
+
+    /// The paper's weights of those that count.
+    pub(crate) fn papers_weights(&self) -> Vec<f64> {
+        let weigh = |(row, used): (usize, &bool)| {
+            if *used {
+                WEIGHTS[row % QUANTITIES]
+            } else {
+                0.0
+            }
+        };
+        self.used.iter().enumerate().map(weigh).collect()
     }
 
     /// How many count.

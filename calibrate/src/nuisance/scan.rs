@@ -174,10 +174,13 @@ impl Search<'_> {
 
     /// Minus twice the log-likelihood where each quantity has a variance of its own.
     fn misfit(&self, residuals: &[f64]) -> f64 {
-        let runs = (residuals.len() / QUANTITIES) as f64;
-        let squares = self.squares(residuals);
-        let counted = squares.iter().filter(|sum| **sum > 0.0);
-        counted.map(|sum| runs * sum.ln()).sum()
+        let mut counts = [0.0; QUANTITIES];
+        for row in self.rows() {
+            counts[row % QUANTITIES] += 1.0;
+        }
+        let sums = self.squares(residuals).into_iter().zip(counts);
+        let counted = sums.filter(|(sum, _)| *sum > 0.0);
+        counted.map(|(sum, count)| count * sum.ln()).sum()
     }
 
     /// Chance that one parameter more explains so much, if there is nothing to explain.

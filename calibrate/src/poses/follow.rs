@@ -48,6 +48,25 @@ pub struct FollowReport {
     pub expected_m: f64,
 }
 
+impl FollowReport {
+    /// Of no recording.
+    pub(super) fn none() -> Self {
+        Self {
+            followed: 0,
+            missing: 0,
+            frozen: 0,
+            swaps_repaired: 0,
+            swaps: Vec::new(),
+            ghosts_rejected: 0,
+            ghosts: Vec::new(),
+            segments: 0,
+            distance_m: f64::NAN,
+            distance_sd_m: f64::NAN,
+            expected_m: f64::NAN,
+        }
+    }
+}
+
 /// Rows one after another in which something held.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {

@@ -225,7 +225,8 @@ impl Lab {
             Campaign::parse(&text, Path::new("campaign.toml")).expect("a campaign of ours");
         campaign.swimmer = self.known();
         let runs = (0..self.runs.len()).map(|index| self.run(index)).collect();
-        (campaign, CampaignData { runs })
+        let told = Vec::new();
+        (campaign, CampaignData { runs, told })
     }
 
     /// A run, read from its table.

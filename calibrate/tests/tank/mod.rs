@@ -347,6 +347,7 @@ pub(crate) fn campaign(
         .iter()
         .zip(&runs)
         .map(|(amplitude, run)| CampaignRun {
+            told: None,
             track: run.file.clone(),
             gait: GaitSpec::Circle {
                 amplitude: amplitude.to_radians(),
@@ -365,5 +366,11 @@ pub(crate) fn campaign(
         known: Known::default(),
         runs: listed.collect(),
     };
-    (campaign, calibrate::CampaignData { runs })
+    (
+        campaign,
+        calibrate::CampaignData {
+            runs,
+            told: Vec::new(),
+        },
+    )
 }

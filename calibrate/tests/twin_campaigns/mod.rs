@@ -116,6 +116,7 @@ impl Laboratory {
         let listed = self.amplitudes.iter().zip(&runs).map(|(degrees, run)| {
             let amplitude = degrees.to_radians();
             CampaignRun {
+                told: None,
                 track: run.file.clone(),
                 gait: GaitSpec::Circle {
                     amplitude,
@@ -153,7 +154,13 @@ impl Laboratory {
             known: Known::default(),
             runs: listed.collect(),
         };
-        (campaign, CampaignData { runs })
+        (
+            campaign,
+            CampaignData {
+                runs,
+                told: Vec::new(),
+            },
+        )
     }
 
     fn run(&self, index: usize) -> RunData {

@@ -78,7 +78,11 @@ fn over_amplitude(
             .map(|circle| (circle.amplitude.to_degrees(), model(circle) * unit))
             .collect()
     };
-    let bars = circles.iter().map(|circle| {
+    // A run whose results were told may lack one.
+    let there = circles
+        .iter()
+        .filter(|circle| measured(circle).0.is_finite());
+    let bars = there.map(|circle| {
         let (mean, deviation) = measured(circle);
         (circle.amplitude.to_degrees(), mean * unit, deviation * unit)
     });

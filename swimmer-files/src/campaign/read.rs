@@ -6,6 +6,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::known::{self, RawKnown};
+use super::told;
 use super::{Campaign, CampaignRun, PointName, Reflector, Reflectors, RunTiming, TrackSettings};
 use crate::{FileError, GaitSpec, SwimmerFile};
 
@@ -13,7 +14,7 @@ use crate::{FileError, GaitSpec, SwimmerFile};
 #[serde(deny_unknown_fields)]
 struct RawCampaign {
     swimmer: Spanned<String>,
-    reflectors: RawReflectors,
+    reflectors: Option<RawReflectors>,
     #[serde(default)]
     tracks: RawTracks,
     #[serde(default)]
@@ -61,7 +62,8 @@ enum RawPoint {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawRun {
-    track: Spanned<String>,
+    track: Option<Spanned<String>>,
+    results: Option<Spanned<String>>,
     gait: Spanned<String>,
     period_s: Spanned<f64>,
     front: Option<Spanned<RawPoint>>,
@@ -70,7 +72,88 @@ struct RawRun {
     play: Option<Spanned<usize>>,
     clock_offset_s: Option<Spanned<f64>>,
     exclude: Option<Spanned<String>>,
+    x_mm: Option<Spanned<f64>>,
+    x_sd_mm: Option<Spanned<f64>>,
+    x_se_mm: Option<Spanned<f64>>,
+    y_mm: Option<Spanned<f64>>,
+    y_sd_mm: Option<Spanned<f64>>,
+    y_se_mm: Option<Spanned<f64>>,
+    turn_deg: Option<Spanned<f64>>,
+    turn_sd_deg: Option<Spanned<f64>>,
+    turn_se_deg: Option<Spanned<f64>>,
+    delta_y_mm: Option<Spanned<f64>>,
+    delta_y_sd_mm: Option<Spanned<f64>>,
+    delta_y_se_mm: Option<Spanned<f64>>,
+    delta_theta_deg: Option<Spanned<f64>>,
+    delta_theta_sd_deg: Option<Spanned<f64>>,
+    delta_theta_se_deg: Option<Spanned<f64>>,
+    cycles: Option<Spanned<f64>>,
 }
+
+impl RawRun {
+    /// A number of those that tell a run without a track, by its key.
+    fn number(&self, key: &str) -> Option<&Spanned<f64>> {
+        match key {
+            "x_mm" => self.x_mm.as_ref(),
+            "x_sd_mm" => self.x_sd_mm.as_ref(),
+            "x_se_mm" => self.x_se_mm.as_ref(),
+            "y_mm" => self.y_mm.as_ref(),
+            "y_sd_mm" => self.y_sd_mm.as_ref(),
+            "y_se_mm" => self.y_se_mm.as_ref(),
+            "turn_deg" => self.turn_deg.as_ref(),
+            "turn_sd_deg" => self.turn_sd_deg.as_ref(),
+            "turn_se_deg" => self.turn_se_deg.as_ref(),
+            "delta_y_mm" => self.delta_y_mm.as_ref(),
+            "delta_y_sd_mm" => self.delta_y_sd_mm.as_ref(),
+            "delta_y_se_mm" => self.delta_y_se_mm.as_ref(),
+            "delta_theta_deg" => self.delta_theta_deg.as_ref(),
+            "delta_theta_sd_deg" => self.delta_theta_sd_deg.as_ref(),
+            "delta_theta_se_deg" => self.delta_theta_se_deg.as_ref(),
+            "cycles" => self.cycles.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// The first key that only a track has a use for.
+    fn of_track(&self) -> Option<(&'static str, usize)> {
+        let place = |key, span: Option<std::ops::Range<usize>>| Some((key, span?.start));
+        place("front", self.front.as_ref().map(Spanned::span))
+            .or_else(|| {
+                place(
+                    "cycle_start_s",
+                    self.cycle_start_s.as_ref().map(Spanned::span),
+                )
+            })
+            .or_else(|| place("log", self.log.as_ref().map(Spanned::span)))
+            .or_else(|| place("play", self.play.as_ref().map(Spanned::span)))
+            .or_else(|| {
+                place(
+                    "clock_offset_s",
+                    self.clock_offset_s.as_ref().map(Spanned::span),
+                )
+            })
+    }
+}
+
+/// The numbers that may tell a run.
+const NUMBERS: [&str; 16] = [
+    "x_mm",
+    "x_sd_mm",
+    "x_se_mm",
+    "y_mm",
+    "y_sd_mm",
+    "y_se_mm",
+    "turn_deg",
+    "turn_sd_deg",
+    "turn_se_deg",
+    "delta_y_mm",
+    "delta_y_sd_mm",
+    "delta_y_se_mm",
+    "delta_theta_deg",
+    "delta_theta_sd_deg",
+    "delta_theta_se_deg",
+    "cycles",
+];
 
 /// The campaign of `text`; `is_there` says whether a file that a run names can be found.
 pub(super) fn campaign(
@@ -88,7 +171,16 @@ pub(super) fn campaign(
         })?;
     let is_preset = SwimmerFile::preset(raw.swimmer.get_ref()).is_some();
     let swimmer_path = (!is_preset).then(|| folder.join(raw.swimmer.get_ref()));
-    let reflectors = reflectors(raw.reflectors, &error)?;
+    let reflectors = if let Some(told) = raw.reflectors {
+        reflectors(told, &error)?
+    } else {
+        // Only a track needs them.
+        if let Some(track) = raw.run.iter().find_map(|run| run.track.as_ref()) {
+            let problem = "no [reflectors] say which points of this track are the robot's front and back, and where they sit";
+            return Err(error(track.span().start, problem.to_owned()));
+        }
+        usual_reflectors(swimmer.swimmer.links.middle / 2.0)
+    };
     if raw.run.is_empty() {
         return Err(error(
             text.len(),
@@ -97,12 +189,20 @@ pub(super) fn campaign(
     }
     let tracks = track_settings(raw.tracks, &error)?;
     let known = known::known(raw.known, &error)?;
-    let places: Vec<usize> = raw.run.iter().map(|run| run.track.span().start).collect();
+    let places: Vec<usize> = raw.run.iter().map(|run| run.gait.span().start).collect();
     let runs: Vec<CampaignRun> = raw
         .run
         .into_iter()
-        .map(|raw| run(raw, folder, is_there, &error))
-        .collect::<Result<_, _>>()?;
+        .map(|raw| {
+            let told = raw.track.is_none();
+            if told {
+                told_runs(&raw, (text, path), &error)
+            } else {
+                Ok(vec![run(raw, folder, is_there, &error)?])
+            }
+        })
+        .collect::<Result<Vec<_>, _>>()?
+        .concat();
     if let (Some(place), true) = (places.first(), runs.iter().all(|run| run.exclude.is_some())) {
         return Err(error(
             *place,
@@ -171,6 +271,19 @@ fn reflectors(
     Ok(reflectors)
 }
 
+/// At the ends of the middle link, to be found.
+fn usual_reflectors(half: f64) -> Reflectors {
+    let at = |along: f64| Reflector {
+        point: PointName::Auto,
+        at: [along, 0.0],
+    };
+    Reflectors {
+        front: at(half),
+        back: at(-half),
+        sides: None,
+    }
+}
+
 /// A side link's reflector: by name or columns or to be found, somewhere off the joint.
 fn side(
     raw: Spanned<RawReflector>,
@@ -223,11 +336,21 @@ fn run(
     is_there: &impl Fn(&Path) -> bool,
     error: &impl Fn(usize, String) -> FileError,
 ) -> Result<CampaignRun, FileError> {
+    let nothing = Spanned::new(0..0, String::new());
+    let track = raw.track.clone().unwrap_or(nothing);
+    let also = NUMBERS
+        .iter()
+        .find_map(|key| Some((*key, raw.number(key)?.span().start)))
+        .or_else(|| Some(("results", raw.results.as_ref()?.span().start)));
+    if let Some((key, place)) = also {
+        let problem = format!("{key} beside a track: a run is tracked or told, not both");
+        return Err(error(place, problem));
+    }
     let log_place = raw.log.as_ref().map_or(0, |log| log.span().start);
-    let places = [raw.track.span().start, raw.gait.span().start, log_place];
-    if raw.track.get_ref().is_empty() {
+    let places = [track.span().start, raw.gait.span().start, log_place];
+    if track.get_ref().is_empty() {
         return Err(error(
-            raw.track.span().start,
+            track.span().start,
             "track is the path of a tracking file".to_owned(),
         ));
     }
@@ -236,13 +359,7 @@ fn run(
         .get_ref()
         .parse()
         .map_err(|cause| error(raw.gait.span().start, format!("gait: {cause}")))?;
-    let period_s = *raw.period_s.get_ref();
-    if !(period_s.is_finite() && period_s > 0.0) {
-        return Err(error(
-            raw.period_s.span().start,
-            format!("period_s = {period_s} must be a positive number of seconds"),
-        ));
-    }
+    let (period_s, exclude) = (period(&raw, error)?, excluded(&raw, error)?);
     let front = raw.front.map(|front| {
         let place = front.span().start;
         point(front.into_inner()).map_err(|problem| error(place, problem))
@@ -275,15 +392,9 @@ fn run(
         let problem = "play counts the log's plays from 1".to_owned();
         return Err(error(play.span().start, problem));
     }
-    let exclude = match raw.exclude {
-        Some(reason) if reason.get_ref().trim().is_empty() => {
-            let problem = "exclude says why the run is not to be fitted".to_owned();
-            return Err(error(reason.span().start, problem));
-        }
-        reason => reason.map(Spanned::into_inner),
-    };
     let run = CampaignRun {
-        track: folder.join(raw.track.into_inner()),
+        track: folder.join(track.into_inner()),
+        told: None,
         gait: gait.from_folder(folder),
         period_s,
         front: front.transpose()?,
@@ -305,4 +416,81 @@ fn run(
         }
     }
     Ok(run)
+}
+
+fn period(raw: &RawRun, error: &impl Fn(usize, String) -> FileError) -> Result<f64, FileError> {
+    let period_s = *raw.period_s.get_ref();
+    if period_s.is_finite() && period_s > 0.0 {
+        return Ok(period_s);
+    }
+    let problem = format!("period_s = {period_s} must be a positive number of seconds");
+    Err(error(raw.period_s.span().start, problem))
+}
+
+fn excluded(
+    raw: &RawRun,
+    error: &impl Fn(usize, String) -> FileError,
+) -> Result<Option<String>, FileError> {
+    match &raw.exclude {
+        Some(reason) if reason.get_ref().trim().is_empty() => {
+            let problem = "exclude says why the run is not to be fitted".to_owned();
+            Err(error(reason.span().start, problem))
+        }
+        reason => Ok(reason.as_ref().map(|reason| reason.get_ref().clone())),
+    }
+}
+
+/// The runs of a `[[run]]` without a track: one by its numbers, or those of a table.
+fn told_runs(
+    raw: &RawRun,
+    (text, path): (&str, &Path),
+    error: &impl Fn(usize, String) -> FileError,
+) -> Result<Vec<CampaignRun>, FileError> {
+    let folder = path.parent().unwrap_or_else(|| Path::new(""));
+    let gait_place = raw.gait.span().start;
+    if let Some((key, place)) = raw.of_track() {
+        let problem = format!("{key} is about a track, and this run has none");
+        return Err(error(place, problem));
+    }
+    let (period_s, exclude) = (period(raw, error)?, excluded(raw, error)?);
+    let run = |track, gait: GaitSpec, told| CampaignRun {
+        track,
+        told: Some(told),
+        gait: gait.from_folder(folder),
+        period_s,
+        front: None,
+        timing: RunTiming::default(),
+        exclude: exclude.clone(),
+    };
+    let number = |key: &str| raw.number(key).map(|number| *number.get_ref());
+    let Some(results) = &raw.results else {
+        let told = told::told(number).map_err(|(key, problem)| {
+            let place = raw.number(&key).map_or(gait_place, |n| n.span().start);
+            let problem = if key.is_empty() {
+                format!("{problem}; with one, track is the path of its tracking file")
+            } else {
+                problem
+            };
+            error(place, problem)
+        })?;
+        let gait = raw.gait.get_ref().parse();
+        let gait = gait.map_err(|cause| error(gait_place, format!("gait: {cause}")))?;
+        let (line, _) = crate::place::line_and_column(text, gait_place);
+        let track = format!("{}:{line}", path.display());
+        return Ok(vec![run(track.into(), gait, told)]);
+    };
+    if let Some(number) = NUMBERS.iter().find_map(|key| raw.number(key)) {
+        let problem = "numbers beside a table of results: the table has them all".to_owned();
+        return Err(error(number.span().start, problem));
+    }
+    let table = folder.join(results.get_ref());
+    let rows = told::table(&table, raw.gait.get_ref()).map_err(|cause| match cause {
+        FileError::Read { .. } => error(results.span().start, cause.to_string()),
+        other => other,
+    })?;
+    let named = |(line, gait, told)| {
+        let track = format!("{}:{line}", table.display());
+        run(track.into(), gait, told)
+    };
+    Ok(rows.into_iter().map(named).collect())
 }

@@ -19,7 +19,8 @@ use crate::quantity::{self, Rows, Table};
 pub(crate) struct RunAnswer {
     pub(crate) file: String,
     pub(crate) gait: String,
-    pub(crate) cycles: usize,
+    /// Null where results were told without it.
+    pub(crate) cycles: Option<usize>,
     pub(crate) x_m: f64,
     pub(crate) x_sd_m: f64,
     pub(crate) y_m: f64,
@@ -31,9 +32,9 @@ pub(crate) struct RunAnswer {
     pub(crate) period_s: f64,
     #[serde(flatten)]
     spreads: Spreads,
-    /// How front and back were told apart: label, place or travel.
-    front_rule: &'static str,
-    /// How the starts of cycles were found: heading, flash, log or log-and-heading.
+    /// How front and back were told apart: label, place or travel; null where there is no track.
+    front_rule: Option<&'static str>,
+    /// How the starts of cycles were found: heading, flash, log or log-and-heading; told where there is no track.
     phase: &'static str,
     left_out: Vec<LeftOutAnswer>,
     /// Its joint angles, where reflectors on the side links showed them.
@@ -189,6 +190,10 @@ impl fmt::Display for RunsAnswer {
 /// How each run's front and phase were found, and which of its whole cycles do not count.
 fn left_out(f: &mut fmt::Formatter<'_>, runs: &[RunAnswer]) -> fmt::Result {
     for run in runs {
+        if run.front_rule.is_none() {
+            write!(f, "\n  {}: told, without a track", run.file)?;
+            continue;
+        }
         write!(
             f,
             "\n  {}: front {}, phase by {}",
@@ -291,9 +296,10 @@ fn table(runs: &[RunAnswer]) -> Table {
         table.line([
             run.file.clone(),
             run.gait.clone(),
-            run.cycles.to_string(),
+            run.cycles
+                .map_or_else(|| "–".to_owned(), |cycles| cycles.to_string()),
             with_deviation([run.x_m, run.x_sd_m], millimetres),
-            format!("{:.3}", run.y_m * 1e3),
+            with_deviation([run.y_m, f64::NAN], millimetres),
             with_deviation([run.delta_y_m, run.delta_y_sd_m], millimetres),
             with_deviation(
                 [run.delta_theta_rad, run.delta_theta_sd_rad],
@@ -311,7 +317,9 @@ fn millimetres(metres: f64) -> String {
 
 /// A mean with its deviation, where there is one: a single cycle has none.
 fn with_deviation([mean, deviation]: [f64; 2], written: fn(f64) -> String) -> String {
-    if deviation.is_nan() {
+    if mean.is_nan() {
+        "–".to_owned()
+    } else if deviation.is_nan() {
         written(mean)
     } else {
         format!("{} ± {}", written(mean), written(deviation))
@@ -333,7 +341,7 @@ impl RunAnswer {
         Self {
             file: relative(&run.file).display().to_string(),
             gait: quantity::gait(&gait),
-            cycles: cycles.cycles.len(),
+            cycles: cycles.count(),
             x_m: cycles.x.mean,
             x_sd_m: cycles.x.sd,
             y_m: cycles.y.mean,
@@ -357,7 +365,7 @@ impl RunAnswer {
                 turn_se_rad: cycles.rotation.se,
                 turn_lag1: cycles.rotation.lag1,
             },
-            front_rule: run.poses.front.word(),
+            front_rule: (!run.is_told()).then(|| run.poses.front.word()),
             phase: cycles.phase.word(),
             left_out: cycles
                 .left_out
@@ -378,7 +386,11 @@ impl RunAnswer {
                 smoothed: run.poses.with(Origin::Smoothed).count(),
                 filled: run.poses.samples.iter().filter(|s| s.is_filled()).count(),
             },
-            front_words: run.poses.front.to_string(),
+            front_words: if run.is_told() {
+                String::new()
+            } else {
+                run.poses.front.to_string()
+            },
         }
     }
 }

@@ -245,6 +245,14 @@ impl AssessmentAnswer {
             "drift along, across",
             "lengths",
         ]);
+        // A run that was told may lack one.
+        let there = |value: f64, written: String| {
+            if value.is_nan() {
+                "–".to_owned()
+            } else {
+                written
+            }
+        };
         let chance = |chance: f64| {
             if chance.is_nan() {
                 "–".to_owned()
@@ -264,11 +272,11 @@ impl AssessmentAnswer {
             );
             table.line([
                 file.clone(),
-                format!("{ratio:+.4} ± {error:.4}"),
+                there(ratio, format!("{ratio:+.4} ± {error:.4}")),
                 chance(goodness.y_chance),
-                format!("{turn:+.3} ± {turn_error:.3}°"),
+                there(turn, format!("{turn:+.3} ± {turn_error:.3}°")),
                 chance(goodness.turn_chance),
-                format!("{along:+.4}, {across:+.4} mm/s"),
+                there(along + across, format!("{along:+.4}, {across:+.4} mm/s")),
                 lengths,
             ]);
         }

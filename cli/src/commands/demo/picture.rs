@@ -75,7 +75,7 @@ fn measured(round: &Finished) -> Vec<MeasuredCircle> {
     let circle = |(gait, run): (&GaitSpec, &RunAnswer)| match gait {
         GaitSpec::Circle { amplitude, .. } => Some(MeasuredCircle {
             amplitude: *amplitude,
-            cycles: run.cycles,
+            cycles: run.cycles.unwrap_or(0),
             x: (run.x_m, run.x_sd_m),
             delta_y: (run.delta_y_m, run.delta_y_sd_m),
             delta_theta: (run.delta_theta_rad, run.delta_theta_sd_rad),
@@ -178,7 +178,7 @@ fn predicted(round: &Finished) -> Outcome<Track> {
     }
     let origin = tank.pose().inverse();
     let mut poses = Vec::new();
-    for cycle in 0..round.swum.answer.cycles {
+    for cycle in 0..round.swum.answer.cycles.unwrap_or(0) {
         for (u, angles) in &path {
             tank.move_joints(place(angles));
             let pose = origin * tank.pose();

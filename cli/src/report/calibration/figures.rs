@@ -334,7 +334,8 @@ pub(super) fn residuals(evidence: &Evidence, names: &[String]) -> Outcome<String
             .enumerate()
             .filter_map(|(run, errors)| {
                 let error = errors.get(quantity)?;
-                Some((run as f64 + 1.0 + aside, error.standardised))
+                let point = (run as f64 + 1.0 + aside, error.standardised);
+                point.1.is_finite().then_some(point)
             });
         series.push(Series::Dots {
             points: points.collect(),

@@ -49,7 +49,7 @@ impl Calibration<'_> {
                 let (x, sd) = of(&cycles.x);
                 Some(MeasuredCircle {
                     amplitude: *amplitude,
-                    cycles: cycles.cycles.len(),
+                    cycles: cycles.count().unwrap_or(1),
                     x: (if *clockwise { -x } else { x }, sd),
                     delta_y: of(&cycles.delta_y),
                     delta_theta: of(&cycles.delta_theta),

@@ -38,7 +38,7 @@ pub(crate) fn page(calibration: &Calibration<'_>) -> Outcome<String> {
 
 fn heading(html: &mut String, calibration: &Calibration<'_>) {
     let runs = &calibration.found.runs;
-    let cycles: usize = runs.iter().map(|run| run.cycles.cycles.len()).sum();
+    let cycles: usize = runs.iter().filter_map(|run| run.cycles.count()).sum();
     let _ = write!(
         html,
         "<header><h1>Calibration of {}</h1><p>{} runs, {cycles} cycles that count. Drag fitted with <b>{}</b>; \
@@ -348,6 +348,11 @@ fn tables(html: &mut String, all: impl Iterator<Item = Shown>) {
 /// The runs' names without what their files end in, for axes.
 fn short_names(calibration: &Calibration<'_>) -> Vec<String> {
     let stem = |name: String| {
+        // Of a run that was told, the line tells it from the others.
+        if let Some((file, line)) = name.rsplit_once(':') {
+            let file = file.rsplit('/').next().unwrap_or(file);
+            return format!("{}:{line}", file.split('.').next().unwrap_or(file));
+        }
         let path = std::path::Path::new(&name);
         path.file_stem()
             .map_or(name.clone(), |stem| stem.to_string_lossy().into_owned())
@@ -387,7 +392,9 @@ fn runs(html: &mut String, calibration: &Calibration<'_>) {
             index + 1,
             escaped(&answer.file),
             escaped(&answer.gait),
-            cycles.cycles.len(),
+            cycles
+                .count()
+                .map_or_else(|| "–".to_owned(), |count| count.to_string()),
             millimetres(cycles.x.mean),
             millimetres(cycles.x.sd),
             millimetres(cycles.y.mean),
@@ -397,7 +404,11 @@ fn runs(html: &mut String, calibration: &Calibration<'_>) {
             degrees(cycles.delta_theta.mean),
             degrees(cycles.delta_theta.sd),
             cycles.period_s,
-            run.poses.front.word(),
+            if run.is_told() {
+                "–"
+            } else {
+                run.poses.front.word()
+            },
             cycles.phase.word().replace('-', " "),
         );
     }
@@ -434,7 +445,8 @@ fn left_out(html: &mut String, calibration: &Calibration<'_>) {
         "<section><h2>Cycles and samples that do not count</h2><table class=left><thead><tr><th>track<th>cycle at [s]<th>why\
          <th>frames<th>filled<th>smoothed<th>beside long gaps</tr></thead><tbody>",
     );
-    for (answer, run) in calibration.answer.runs.iter().zip(&calibration.found.runs) {
+    let tracked = calibration.answer.runs.iter().zip(&calibration.found.runs);
+    for (answer, run) in tracked.filter(|(_, run)| !run.is_told()) {
         let listed = &run.cycles.left_out;
         let _ = write!(html, "<tr><th>{}", escaped(&answer.file));
         let times: Vec<String> = listed.iter().map(|(at, _)| format!("{at:.2}")).collect();
@@ -470,6 +482,7 @@ fn each_run(html: &mut String, calibration: &Calibration<'_>) -> Outcome {
         .iter()
         .zip(&calibration.found.runs)
         .enumerate()
+        .filter(|(_, (_, run))| !run.is_told())
     {
         let _ = write!(
             html,

@@ -135,8 +135,14 @@ fn runs(found: &CampaignFit, names: &[String]) -> String {
             "{name},{},{:?},{},{},{}",
             field(&run.gait),
             cycles.period_s,
-            cycles.cycles.len(),
-            run.poses.front.word(),
+            cycles
+                .count()
+                .map_or_else(String::new, |count| count.to_string()),
+            if run.is_told() {
+                ""
+            } else {
+                run.poses.front.word()
+            },
             cycles.phase.word()
         );
         for statistics in [

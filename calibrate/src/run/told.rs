@@ -1,0 +1,66 @@
+//! A run whose results somebody told: nothing to follow, to cut or to measure.
+
+use std::path::PathBuf;
+
+use swimmer_files::{AnyGait, CampaignRun, SwimmerFile, ToldRun};
+
+use super::RunResult;
+use crate::cycles::Cycles;
+use crate::error::CalibrateError;
+use crate::fit::run_values::QUANTITIES;
+use crate::poses::PoseTrack;
+use crate::prediction::{JointPath, Played};
+
+/// What was told of a run, and of what gait.
+pub(crate) struct Told {
+    index: usize,
+    pub(super) file: PathBuf,
+    gait: String,
+    pub(super) cycles: Cycles,
+    pub(super) played: Played,
+}
+
+impl Told {
+    pub(crate) fn begin(
+        index: usize,
+        (run, told): (&CampaignRun, &ToldRun),
+        gait: &AnyGait,
+        swimmer: &SwimmerFile,
+    ) -> Result<Self, CalibrateError> {
+        let period_s = run.period_s;
+        let path = JointPath::new(gait, swimmer.servo.as_ref(), period_s).map_err(|cause| {
+            CalibrateError::Prediction {
+                file: run.track.clone(),
+                cause,
+            }
+        })?;
+        Ok(Self {
+            index,
+            file: run.track.clone(),
+            gait: run.gait.to_string(),
+            cycles: Cycles::told(told, period_s),
+            played: Played {
+                gait: gait.clone(),
+                period_s,
+                path,
+                cut_by: None,
+                sides: None,
+            },
+        })
+    }
+
+    pub(super) fn finish(self) -> RunResult {
+        RunResult {
+            index: self.index,
+            file: self.file,
+            gait: self.gait,
+            cycles: self.cycles,
+            poses: PoseTrack::none(),
+            warnings: Vec::new(),
+            reflector_distance_m: f64::NAN,
+            joints: None,
+            played: self.played,
+            path_variances: [0.0; QUANTITIES],
+        }
+    }
+}
