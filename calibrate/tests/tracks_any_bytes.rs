@@ -1,8 +1,8 @@
-//! The reader answers anything with tracks or an error, never with a panic.
+//! The reader answers anything with tracks or an error, never with a panic; a survey says what reading finds.
 
 use std::path::Path;
 
-use calibrate::read_tracks;
+use calibrate::{TrackFile, TrackOptions, read_tracks_with, survey_tracks};
 use proptest::prelude::*;
 
 const SEEDS: [&str; 4] = [
@@ -12,17 +12,78 @@ const SEEDS: [&str; 4] = [
     "cm_A\nt\tx\ty\n0\t1\t2\n",
 ];
 
+/// What a file holds, by reading and by surveying it.
+fn surveyed(bytes: &[u8]) -> Option<TrackFile> {
+    let options = TrackOptions::default();
+    let survey = survey_tracks(bytes, Path::new("f"), &options);
+    let Ok(file) = read_tracks_with(bytes, Path::new("f"), &options) else {
+        assert!(survey.is_err(), "surveyed, but not read");
+        return None;
+    };
+    let survey = survey.unwrap();
+    assert_eq!(survey.format, file.format);
+    assert_eq!((survey.unit, survey.frames), (file.unit, file.frames()));
+    assert_eq!(survey.rate_hz.to_bits(), file.rate_hz.to_bits());
+    assert_eq!(survey.warnings, file.warnings);
+    assert_eq!(survey.points.len(), file.points.len());
+    for (told, point) in survey.points.iter().zip(&file.points) {
+        assert_eq!(
+            (&told.name, told.present, told.gaps, told.longest_gap),
+            (
+                &point.name,
+                point.present(),
+                point.gaps(),
+                point.longest_gap()
+            )
+        );
+    }
+    Some(file)
+}
+
+#[test]
+fn absurd_times_cost_no_more_than_their_rows() {
+    for times in [
+        ["0", "0.1", "1e300"],
+        ["0", "0.1", "1e308"],
+        ["-1e308", "0", "1e308"],
+        ["0", "1e-300", "1e300"],
+        ["0", "1e-320", "1"],
+        ["0.00", "0.01", "99999999999.02"],
+    ] {
+        let rows: String = times.iter().map(|t| format!("{t},1,2,3,4\n")).collect();
+        let text = format!("t,x1,y1,x2,y2\n{rows}");
+        for rate_hz in [None, Some(50.0)] {
+            let options = TrackOptions {
+                rate_hz,
+                metres_per_unit: Some(1.0),
+                ..TrackOptions::default()
+            };
+            let Ok(file) = read_tracks_with(text.as_bytes(), Path::new("f"), &options) else {
+                continue;
+            };
+            assert_eq!(file.times.len(), 3, "{times:?}");
+            assert!(
+                file.times.iter().all(|time| time.is_finite()),
+                "{times:?}: {:?}",
+                file.times
+            );
+            assert!(file.rate_hz.is_finite(), "{times:?}: {}", file.rate_hz);
+        }
+        surveyed(text.as_bytes());
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
     fn arbitrary_bytes(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
-        let _ = read_tracks(&bytes, Path::new("f"));
+        let _ = surveyed(&bytes);
     }
 
     #[test]
     fn arbitrary_text(text in "(Format Version,|t,x1,y1\n|frame,|,|\"|;|\n|\r\n|[0-9.eE+-]{1,5}|X|Y|Z|Position|Type|é|\\PC){0,60}") {
-        let _ = read_tracks(text.as_bytes(), Path::new("f"));
+        let _ = surveyed(text.as_bytes());
     }
 
     #[test]
@@ -39,7 +100,7 @@ proptest! {
                 _ => bytes.insert(at, byte),
             }
         }
-        if let Ok(file) = read_tracks(&bytes, Path::new("f")) {
+        if let Some(file) = surveyed(&bytes) {
             prop_assert!(file.times.iter().all(|time| time.is_finite()));
             for point in &file.points {
                 prop_assert!((0..file.frames()).filter_map(|row| point.position(row)).all(|p| p.iter().all(|v| v.is_finite())));

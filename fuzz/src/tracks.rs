@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibrate::{TrackFile, TrackOptions};
+use calibrate::{TrackFile, TrackOptions, TrackSurvey};
 
 /// Reads a file that begins with one of `openings`: bytes that do not get the first of them put in front. Which reader a
 /// file goes to is told by its first lines, so these force the format; without openings the bytes are the whole file.
@@ -23,10 +23,30 @@ pub fn read(bytes: &[u8], openings: &[&str]) {
         ..TrackOptions::default()
     };
     for options in [TrackOptions::default(), told] {
+        let survey = calibrate::survey_tracks(&*file, Path::new("f"), &options);
         match calibrate::read_tracks_with(&*file, Path::new("f"), &options) {
-            Ok(file) => sane(&file),
-            Err(error) => assert!(!error.to_string().is_empty()),
+            Ok(file) => {
+                sane(&file);
+                surveyed(&file, &survey.expect("what is read can be surveyed"));
+            }
+            Err(error) => {
+                assert!(!error.to_string().is_empty());
+                assert!(survey.is_err(), "surveyed, but not read: {error}");
+            }
         }
+    }
+}
+
+/// A survey says what reading finds.
+fn surveyed(file: &TrackFile, survey: &TrackSurvey) {
+    assert_eq!(survey.format, file.format);
+    assert_eq!((survey.unit, survey.frames), (file.unit, file.frames()));
+    assert_eq!(survey.rate_hz.to_bits(), file.rate_hz.to_bits());
+    assert_eq!(survey.points.len(), file.points.len());
+    for (told, point) in survey.points.iter().zip(&file.points) {
+        let presence = (point.present(), point.gaps(), point.longest_gap());
+        assert_eq!((told.present, told.gaps, told.longest_gap), presence);
+        assert_eq!((&told.name, told.kind), (&point.name, point.kind));
     }
 }
 
