@@ -4,7 +4,9 @@ use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
 
-use swimmer_files::{AnyGait, GaitSpec, Provenance, SwimmerFile, parse_angle, parse_joint_angle};
+use swimmer_files::{
+    AnyGait, GaitFile, GaitSpec, Provenance, SwimmerFile, parse_angle, parse_joint_angle,
+};
 use swimmer_model::Model;
 
 use crate::failure::{Failure, Outcome};
@@ -144,6 +146,28 @@ pub(crate) fn say_if_stale(path: &Path) -> Outcome {
 /// Loads what `--gait` names.
 pub(crate) fn load_gait(spec: &GaitSpec) -> Outcome<AnyGait> {
     Ok(spec.load()?)
+}
+
+/// The same for this swimmer; says so where the file names another.
+pub(crate) fn load_gait_for(swimmer: &SwimmerFile, spec: &GaitSpec) -> Outcome<AnyGait> {
+    if let GaitSpec::File { path, .. } = spec {
+        say_if_for_another(swimmer, &GaitFile::load(path)?, spec);
+    }
+    load_gait(spec)
+}
+
+/// Says so where a gait file was made for another swimmer.
+pub(crate) fn say_if_for_another(swimmer: &SwimmerFile, file: &GaitFile, gait: &GaitSpec) {
+    if file.swimmer_hash.is_some_and(|hash| hash != swimmer.hash()) {
+        let named = file
+            .swimmer_name
+            .as_ref()
+            .map_or_else(String::new, |name| format!(" (it names {name})"));
+        aside(&format!(
+            "warning: {gait} was made for another swimmer than {}{named}",
+            swimmer.name
+        ));
+    }
 }
 
 /// The model of a swimmer.

@@ -1,6 +1,6 @@
 //! Bounds on shapes, as every command takes them from the command line.
 
-use swimmer_files::Bounds;
+use swimmer_files::{Bounds, SwimmerFile};
 
 use crate::arguments::{length, positive_angle};
 
@@ -38,6 +38,45 @@ struct LinkBounds {
     /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
     #[arg(long, value_name = "LENGTH_M", value_parser = length)]
     clearance: Option<f64>,
+    /// Keep within what the robot plays: the angle of the swimmer file's [servo] and the clearance that the robot keeps; other
+    /// bounds may be tighter
+    #[arg(long)]
+    playable: bool,
+}
+
+/// How far beyond the robot's own clearance a gait is kept, for the rounding of its table.
+const ROOM: f64 = 1.05;
+
+impl LinkBounds {
+    /// The bounds, and the robot's where they shall hold.
+    fn tightened(self, bounds: Bounds, file: &SwimmerFile) -> Bounds {
+        if !self.playable {
+            return bounds;
+        }
+        let largest = file.servo.unwrap_or_default().max_angle;
+        let links = &file.swimmer.links;
+        let margin = f64::from(gait_player::clearance::MARGIN_TURN) * links.front.max(links.back);
+        Bounds {
+            max_angle: Some(bounds.max_angle.map_or(largest, |told| told.min(largest))),
+            no_overlap: true,
+            clearance: bounds.clearance.max(ROOM * margin),
+            ..bounds
+        }
+    }
+}
+
+impl WholeBounds {
+    /// The bounds for a swimmer.
+    pub(crate) fn of(self, file: &SwimmerFile) -> Bounds {
+        self.links.tightened(self.into(), file)
+    }
+}
+
+impl QuarterBounds {
+    /// The bounds for a swimmer.
+    pub(crate) fn of(self, file: &SwimmerFile) -> Bounds {
+        self.links.tightened(self.into(), file)
+    }
 }
 
 impl From<WholeBounds> for Bounds {

@@ -13,6 +13,7 @@ mod link_log;
 mod new_file;
 mod new_folder;
 mod output;
+mod own_robot;
 mod paper;
 mod progress;
 mod quantity;
@@ -23,7 +24,7 @@ mod virtual_robot;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::FromArgMatches as _;
 use clap::error::ErrorKind;
 
 use crate::commands::Arguments;
@@ -78,17 +79,23 @@ fn negative_values_joined(words: impl Iterator<Item = OsString>) -> Vec<OsString
 
 /// What was typed. Help is text even for scripts, but the word `help` takes no flags: there `--json` is passed over.
 fn parse(words: &[OsString]) -> Result<Arguments, clap::Error> {
-    Arguments::try_parse_from(words).map_err(|error| {
+    parsed(words.iter()).map_err(|error| {
         if error.kind() != ErrorKind::InvalidSubcommand || !words.iter().any(|word| word == "help")
         {
             return error;
         }
         let without = words.iter().filter(|word| *word != "--json");
-        match Arguments::try_parse_from(without) {
+        match parsed(without) {
             Err(help) if help.kind() == ErrorKind::DisplayHelp => help,
             _ => error,
         }
     })
+}
+
+fn parsed<'a>(words: impl Iterator<Item = &'a OsString>) -> Result<Arguments, clap::Error> {
+    let mut command = commands::command();
+    let matches = command.try_get_matches_from_mut(words)?;
+    Arguments::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
 }
 
 /// Help and version go to standard output with status 0; anything else is bad usage, status 2.

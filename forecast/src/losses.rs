@@ -295,6 +295,7 @@ impl Played {
             dead_band,
             slope_rad_per_us,
             centre_us,
+            torque: _,
         } = self.servos.file;
         let positive = [
             ("largest angle [rad]", max_angle),

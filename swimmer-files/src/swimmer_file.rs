@@ -52,6 +52,8 @@ pub struct ServoFile {
     pub slope_rad_per_us: f64,
     /// Pulse of the straight joint \[µs\].
     pub centre_us: f64,
+    /// Largest torque at the joint \[N m\], where it is known.
+    pub torque: Option<f64>,
 }
 
 impl Default for ServoFile {
@@ -64,6 +66,7 @@ impl Default for ServoFile {
             dead_band: 0.017,
             slope_rad_per_us: 0.0274,
             centre_us: 1500.0,
+            torque: None,
         }
     }
 }
@@ -112,8 +115,9 @@ impl SwimmerFile {
                     source: std::io::Error::new(
                         source.kind(),
                         format!(
-                            "{source}, and it is none of the presets {}",
-                            Self::PRESETS.join(", ")
+                            "{source}, and it is none of the presets {}{}",
+                            Self::PRESETS.join(", "),
+                            meant(preset_or_path)
                         ),
                     ),
                 }
@@ -188,4 +192,16 @@ impl SwimmerFile {
         }
         fitted
     }
+}
+
+/// The preset that was meant, where one is near.
+fn meant(name: &str) -> String {
+    let near = SwimmerFile::PRESETS
+        .into_iter()
+        .map(|preset| (strsim::jaro_winkler(preset, name), preset))
+        .max_by(|(a, _), (b, _)| a.total_cmp(b))
+        .filter(|(near, _)| *near > 0.8);
+    near.map_or_else(String::new, |(_, preset)| {
+        format!(" (did you mean {preset}?)")
+    })
 }

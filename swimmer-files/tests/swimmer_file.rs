@@ -167,6 +167,7 @@ prop_compose! {
             fluid: fluid.map(|(kinematic_viscosity, density)| Fluid { kinematic_viscosity, density }),
             servo: servo.map(|(max_angle, max_rate, dead_band, slope_rad_per_us, centre_us)| ServoFile {
                 max_angle, max_rate, dead_band, slope_rad_per_us, centre_us,
+                torque: (dead_band > 0.01).then_some(0.6),
             }),
         }
     }

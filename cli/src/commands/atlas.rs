@@ -12,7 +12,6 @@ use std::time::Instant;
 use clap::ValueEnum;
 use gait_optimizer::{Atlas as Found, AtlasError, AtlasProblem, Objective, Optimum, atlas};
 use serde::Serialize;
-use swimmer_files::Bounds;
 
 use crate::arguments::load_swimmer;
 use crate::bounds::WholeBounds;
@@ -79,7 +78,7 @@ impl Atlas {
             Aim::Displacement => Objective::Displacement,
             Aim::Efficiency => Objective::Efficiency,
         };
-        let mut bounds = Bounds::from(self.bounds);
+        let mut bounds = self.bounds.of(&file);
         let order = self.way.map(|way| follow::Order {
             swimmer: file.swimmer,
             objective,

@@ -4,12 +4,12 @@ use std::fmt;
 
 use gait_optimizer::{CertifyError, Objective, certify};
 use serde::Serialize;
-use swimmer_files::{Bounds, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
+use swimmer_files::{Bounds, GaitFile, GaitSpec};
 
-use crate::arguments::{gait, load_gait, load_swimmer};
+use crate::arguments::{gait, load_gait, load_swimmer, say_if_for_another};
 use crate::bounds::QuarterBounds;
 use crate::failure::{Failure, Outcome};
-use crate::output::{Output, aside};
+use crate::output::Output;
 use crate::quantity;
 
 use super::optimize::answer::Evidence;
@@ -41,7 +41,7 @@ impl Certify {
     pub(crate) fn run(self, output: Output) -> Outcome {
         let swimmer = load_swimmer(&self.swimmer)?;
         let file = self.load()?;
-        warn_of_another_swimmer(&swimmer, &file, &self.gait);
+        say_if_for_another(&swimmer, &file, &self.gait);
         let objective = self.objective.unwrap_or(file.objective);
         if objective == Objective::Unspecified {
             return Err(Failure::BadInput(format!(
@@ -49,7 +49,7 @@ impl Certify {
                 quantity::gait(&self.gait)
             )));
         }
-        let told = Bounds::from(self.bounds);
+        let told = self.bounds.of(&swimmer);
         let bounds = if told == Bounds::default() {
             file.bounds
         } else {
@@ -84,21 +84,6 @@ impl Certify {
             }
             closed_form => Ok(GaitFile::sampled(&load_gait(closed_form)?, SAMPLES)),
         }
-    }
-}
-
-fn warn_of_another_swimmer(swimmer: &SwimmerFile, file: &GaitFile, gait: &GaitSpec) {
-    let other = file
-        .swimmer_hash
-        .is_some_and(|hash| hash != SwimmerHash::of(&swimmer.swimmer));
-    if other {
-        aside(&format!(
-            "warning: {gait} was made for another swimmer than {}{}",
-            swimmer.name,
-            file.swimmer_name
-                .as_ref()
-                .map_or_else(String::new, |name| format!(" (it names {name})"))
-        ));
     }
 }
 

@@ -10,7 +10,7 @@ use gait_optimizer::{Convergence, HeightMap as Map, HeightMapError, LevelCurve, 
 use serde::Serialize;
 use swimmer_files::{AnyGait, GaitSpec, write_atomically};
 
-use crate::arguments::{gait, load_gait, load_swimmer, positive_angle};
+use crate::arguments::{gait, load_gait_for, load_swimmer, positive_angle};
 use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
 use crate::output::Output;
@@ -98,7 +98,7 @@ impl HeightMap {
         let gaits = self
             .gaits
             .iter()
-            .map(|spec| Ok((quantity::gait(spec), load_gait(spec)?)))
+            .map(|spec| Ok((quantity::gait(spec), load_gait_for(&file, spec)?)))
             .collect::<Outcome<Vec<_>>>()?;
         let map = Map::new(&file.swimmer, self.max_angle)?;
         let row = self.row.row();

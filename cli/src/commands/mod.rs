@@ -4,15 +4,18 @@ pub(crate) mod atlas;
 pub(crate) mod calibrate;
 pub(crate) mod certify;
 pub(crate) mod demo;
+mod examples;
 pub(crate) mod height_map;
 pub(crate) mod optimize;
 pub(crate) mod paper;
 pub(crate) mod robot;
+pub(crate) mod shell;
 pub(crate) mod simulate;
+pub(crate) mod swimmers;
 pub(crate) mod tracks;
 pub(crate) mod twin;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
 use crate::failure::Outcome;
 use crate::output::Output;
@@ -57,6 +60,15 @@ pub(crate) enum Command {
     Twin(twin::Twin),
     Calibrate(calibrate::Calibrate),
     Tracks(tracks::Tracks),
+    Swimmers(swimmers::Swimmers),
+    Gaits(swimmers::Gaits),
+    Completions(shell::Completions),
+    Man(shell::Man),
+}
+
+/// The command line, with an example in each help.
+pub(crate) fn command() -> clap::Command {
+    examples::with_examples(Arguments::command())
 }
 
 /// Runs what was asked for.
@@ -76,16 +88,25 @@ pub(crate) fn run(command: Command, output: Output) -> Outcome {
         Command::Robot(robot) => robot.run(output),
         Command::Twin(twin) => twin.run(output),
         Command::Tracks(tracks) => tracks.run(output),
+        Command::Swimmers(swimmers) => swimmers.run(output),
+        Command::Gaits(gaits) => {
+            gaits.run(output);
+            Ok(())
+        }
+        Command::Completions(completions) => {
+            completions.run(output);
+            Ok(())
+        }
+        Command::Man(man) => man.run(output),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Arguments;
-    use clap::CommandFactory as _;
+    use super::command;
 
     #[test]
     fn the_command_line_is_consistent() {
-        Arguments::command().debug_assert();
+        command().debug_assert();
     }
 }

@@ -1,5 +1,6 @@
 //! `swimmer simulate`: swims a gait in the model.
 
+mod in_fluid;
 pub(crate) mod played;
 
 use std::fmt::{self, Write};
@@ -9,10 +10,11 @@ use serde::Serialize;
 use swimmer_files::{AnyGait, GaitSpec, write_atomically};
 use swimmer_model::{CrossingShare, Model, Pose, Tolerance, crossing_share, swim, trajectory};
 
-use crate::arguments::{gait, load_gait, load_swimmer, model};
+use crate::arguments::{gait, load_gait_for, load_swimmer, model};
 use crate::failure::Outcome;
 use crate::new_file::may_be_written;
 use crate::output::Output;
+use crate::own_robot;
 use crate::quantity::{self, Rows};
 
 /// Swim a gait in the model and print what one cycle brings
@@ -55,6 +57,9 @@ struct Swum {
     /// What the robot will make of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     played: Option<played::PlayedAnswer>,
+    /// In the fluid of the swimmer file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fluid: Option<in_fluid::InFluid>,
     /// The table that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     trajectory: Option<PathBuf>,
@@ -92,6 +97,9 @@ impl fmt::Display for Swum {
         if let Some(played) = &self.played {
             played.rows(&mut rows);
         }
+        if let Some(fluid) = &self.fluid {
+            fluid.rows(&mut rows);
+        }
         if let Some(path) = &self.trajectory {
             rows.row("written to", path.display().to_string());
         }
@@ -107,7 +115,7 @@ impl Simulate {
     pub(crate) fn run(self, output: Output) -> Outcome {
         self.trajectory.as_deref().map_or(Ok(()), may_be_written)?;
         let file = load_swimmer(&self.swimmer)?;
-        let gait = load_gait(&self.gait)?;
+        let gait = load_gait_for(&file, &self.gait)?;
         let model = model(&file)?;
         let crossing = crossing_share(&file.swimmer.links, &gait);
         let stroke = swim(&model, &gait, &Tolerance::default());
@@ -125,8 +133,13 @@ impl Simulate {
             efficiency: stroke.efficiency(),
             efficiency_constant_power: stroke.efficiency_constant_power(),
             played: self.playing.forecast(&file, &model, &gait)?,
+            fluid: in_fluid::InFluid::new(&file, &model, &gait, self.playing.period),
             trajectory: self.trajectory.clone(),
         };
+        own_robot::say_if_beyond(&file, &gait, self.playing.period);
+        if let Some(fluid) = &swum.fluid {
+            fluid.warn();
+        }
         if let Some(path) = &self.trajectory {
             write_trajectory(path, &model, &gait, self.cycles)?;
         }

@@ -71,6 +71,7 @@ struct RawServo {
     dead_band: Option<Number>,
     slope_rad_per_us: Option<Number>,
     centre_us: Option<Number>,
+    torque_n_m: Option<Number>,
 }
 
 /// A TOML text being read: makes errors with places out of byte ranges.
@@ -216,6 +217,7 @@ fn servo(source: &Source<'_>, raw: &RawServo) -> Result<ServoFile, FileError> {
         dead_band,
         slope_rad_per_us,
         centre_us,
+        torque: _,
     } = ServoFile::default();
     let positive = |key: &str, number: &Option<Number>, standard: f64| {
         number
@@ -238,6 +240,11 @@ fn servo(source: &Source<'_>, raw: &RawServo) -> Result<ServoFile, FileError> {
         },
         slope_rad_per_us: positive("slope_rad_per_us", &raw.slope_rad_per_us, slope_rad_per_us)?,
         centre_us: positive("centre_us", &raw.centre_us, centre_us)?,
+        torque: raw
+            .torque_n_m
+            .as_ref()
+            .map(|torque| source.positive("torque_n_m", torque))
+            .transpose()?,
     })
 }
 

@@ -71,6 +71,9 @@ fn write_tables(text: &mut String, file: &SwimmerFile) -> std::fmt::Result {
         writeln!(text, "dead_band = {:?}         # rad", servo.dead_band)?;
         writeln!(text, "slope_rad_per_us = {:?}", servo.slope_rad_per_us)?;
         writeln!(text, "centre_us = {:?}", servo.centre_us)?;
+        if let Some(torque) = servo.torque {
+            writeln!(text, "torque_n_m = {torque:?}")?;
+        }
     }
     Ok(())
 }

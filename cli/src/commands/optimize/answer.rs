@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use gait_optimizer::{Certificate, Method, Objective, OptimalGait};
 use serde::Serialize;
+use swimmer_files::{AnyGait, SwimmerFile};
 
 use super::timing::TimingAnswer;
 use crate::failure::{Failure, Outcome};
@@ -82,6 +83,11 @@ impl From<&OptimalGait> for Quarter {
 }
 
 impl Quarter {
+    /// X > 0.
+    pub(crate) fn forwards(&self) -> bool {
+        self.displacement_m > 0.0
+    }
+
     /// X with its unit and over L, where the quarter starts and ends, and its arcs.
     pub(crate) fn rows(&self, rows: &mut Rows) {
         rows.row(
@@ -177,6 +183,13 @@ impl Figures {
             power_variation: power_variation(gait),
             method: Method::Fourier.word(),
         })
+    }
+}
+
+/// Says where the gait is beyond the robot of the file, at a period of 30 s.
+pub(super) fn say_if_beyond(file: &SwimmerFile, gait: &OptimalGait) {
+    if let Ok(curve) = AnyGait::from_file(&gait.gait_file(&file.name)) {
+        crate::own_robot::say_if_beyond(file, &curve, 30.0);
     }
 }
 

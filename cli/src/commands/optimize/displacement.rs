@@ -15,7 +15,7 @@ use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::Rows;
 
-use super::answer::{Closing, Quarter};
+use super::answer::{Closing, Quarter, say_if_beyond};
 use super::robust::{RobustAnswer, Robustly};
 use super::timing::ServoTiming;
 
@@ -48,7 +48,7 @@ impl Displacement {
         let uncertain = self.robustly.load()?;
         let begun = Instant::now();
         let problem = DisplacementProblem {
-            bounds: self.bounds.into(),
+            bounds: self.bounds.of(&file),
             heading: self.sign,
             ..DisplacementProblem::new(file.swimmer)
         };
@@ -69,6 +69,7 @@ impl Displacement {
         }
         let gait = displacement(&problem)?;
         let seconds = begun.elapsed().as_secs_f64();
+        say_if_beyond(&file, &gait);
         let timing = self
             .timing
             .write(&gait, &file.name, self.output.as_deref())?;
@@ -108,8 +109,15 @@ impl fmt::Display for Found {
                 ),
             );
         }
+        let sign = if self.quarter.forwards() { ">" } else { "<" };
+        rows.row(
+            "best of",
+            format!(
+                "the gaits with the paper's symmetries, in one neighbourhood, with X {sign} 0; `swimmer atlas --objective displacement` looks beyond"
+            ),
+        );
         self.closing.rows(&mut rows);
-        write!(f, "{}, most displacement\n{rows}", self.name)
+        write!(f, "{}, a local optimum of displacement\n{rows}", self.name)
     }
 }
 

@@ -9,7 +9,6 @@ use gait_optimizer::{
     Branch, EfficiencyError, EfficiencyProblem, Method, OptimalGait, efficiency, robust_efficiency,
 };
 use serde::Serialize;
-use swimmer_files::Bounds;
 
 use crate::arguments::load_swimmer;
 use crate::bounds::WholeBounds;
@@ -17,7 +16,7 @@ use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::{self, Rows};
 
-use super::answer::{Closing, Quarter};
+use super::answer::{Closing, Quarter, say_if_beyond};
 use super::robust::{RobustAnswer, Robustly};
 use super::timing::{ServoTiming, TimingAnswer};
 
@@ -72,7 +71,7 @@ impl Efficiency {
         };
         let uncertain = self.robustly.load()?;
         let begun = Instant::now();
-        let bounds = Bounds::from(self.bounds);
+        let bounds = self.bounds.of(&file);
         if let Some((uncertainty, over)) = uncertain {
             let mut found = robust_efficiency(
                 &file.swimmer,
@@ -108,6 +107,7 @@ impl Efficiency {
             ..EfficiencyProblem::new(file.swimmer, branch)
         })?;
         let seconds = begun.elapsed().as_secs_f64();
+        say_if_beyond(&file, &gait);
         let timing = self
             .timing
             .write(&gait, &file.name, self.output.as_deref())?;
@@ -197,8 +197,12 @@ impl fmt::Display for Found {
                 format!("ξ off by {}", quantity::small(deviation)),
             );
         }
+        rows.row(
+            "best of",
+            "the gaits with the paper's symmetries, in one neighbourhood; `swimmer atlas --objective efficiency` looks beyond",
+        );
         self.closing.rows(&mut rows);
-        write!(f, "{}, most efficiency\n{rows}", self.name)
+        write!(f, "{}, a local optimum of efficiency\n{rows}", self.name)
     }
 }
 
@@ -215,6 +219,8 @@ impl From<EfficiencyError> for Failure {
 
 #[cfg(test)]
 mod tests {
+    use swimmer_files::Bounds;
+
     use swimmer_files::{AnyGait, GaitFile};
     use swimmer_model::{Model, Swimmer, Tolerance, swim};
 

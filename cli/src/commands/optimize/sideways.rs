@@ -14,7 +14,7 @@ use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::{self, Rows};
 
-use super::answer::{Arc, Closing, arcs};
+use super::answer::{Arc, Closing, arcs, say_if_beyond, unfolded};
 
 /// Find the simple closed gait of most displacement across the heading at its first sample, without net rotation
 ///
@@ -38,11 +38,13 @@ impl Sideways {
         let file = load_swimmer(&self.swimmer)?;
         let begun = Instant::now();
         let found = sideways(&SidewaysProblem {
-            bounds: self.bounds.into(),
+            bounds: self.bounds.of(&file),
             threads: std::thread::available_parallelism().map_or(1, NonZero::get),
             ..SidewaysProblem::new(file.swimmer)
         })?;
         let seconds = begun.elapsed().as_secs_f64();
+        unfolded(&found.gait)?;
+        say_if_beyond(&file, &found.gait);
         if let Some(path) = &self.output {
             found.gait.gait_file(&file.name).save(path)?;
         }

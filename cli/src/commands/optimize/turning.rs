@@ -14,7 +14,7 @@ use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::{self, Rows};
 
-use super::answer::{Arc, Closing, arc_rows, arcs, unfolded};
+use super::answer::{Arc, Closing, arc_rows, arcs, say_if_beyond, unfolded};
 
 /// Find the simple closed gait that turns the swimmer most per cycle, with its certificate
 ///
@@ -38,10 +38,11 @@ impl Turning {
         let begun = Instant::now();
         let found = turning(&TurningProblem {
             swimmer: file.swimmer,
-            bounds: self.bounds.into(),
+            bounds: self.bounds.of(&file),
         })?;
         let seconds = begun.elapsed().as_secs_f64();
         unfolded(&found.gait)?;
+        say_if_beyond(&file, &found.gait);
         if let Some(path) = &self.output {
             found.gait.gait_file(&file.name).save(path)?;
         }

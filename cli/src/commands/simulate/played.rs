@@ -16,9 +16,9 @@ pub(super) struct Playing {
     /// twin's, where it names none)
     #[arg(long)]
     played: bool,
-    /// Seconds a cycle takes on the robot
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "30", requires = "played")]
-    period: f64,
+    /// Seconds a cycle takes: for --played, and for torque and power where the swimmer file has a [fluid]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "30")]
+    pub(super) period: f64,
     /// Knots of the robot's table
     #[arg(long, value_name = "N", default_value_t = 512, requires = "played")]
     knots: usize,

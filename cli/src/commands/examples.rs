@@ -1,0 +1,131 @@
+//! An example at the end of each command's help.
+
+use clap::Command;
+
+/// The words of a command, and what is typed after `swimmer`.
+pub(super) const EXAMPLES: [(&str, &str); 40] = [
+    ("demo", "demo --swimmer robot -o demo"),
+    ("simulate", "simulate --swimmer robot --gait circle:70deg"),
+    (
+        "optimize displacement",
+        "optimize displacement --swimmer robot --max-angle 2.8 -o best.gait",
+    ),
+    (
+        "optimize efficiency",
+        "optimize efficiency --swimmer purcell --gait large",
+    ),
+    (
+        "optimize turning",
+        "optimize turning --swimmer robot --max-angle 2.8 --no-overlap -o left.gait",
+    ),
+    (
+        "optimize sideways",
+        "optimize sideways --swimmer robot --max-angle 2.8",
+    ),
+    (
+        "atlas",
+        "atlas --swimmer robot --objective efficiency --max-angle 2.8 --no-overlap",
+    ),
+    ("certify", "certify --swimmer robot --gait best.gait"),
+    (
+        "height-map",
+        "height-map --swimmer robot -o map.svg --gait best.gait",
+    ),
+    ("paper", "paper -o paper"),
+    ("swimmers", "swimmers robot"),
+    ("gaits", "gaits"),
+    ("completions", "completions bash"),
+    ("man", "man -o man1"),
+    ("robot info", "robot info --port /tmp/robot"),
+    ("robot status", "robot status --port /tmp/robot --json"),
+    (
+        "robot configure",
+        "robot configure --swimmer ours.toml --port /tmp/robot",
+    ),
+    (
+        "robot upload",
+        "robot upload best.gait --dry-run --swimmer robot --tank 1.0x0.6",
+    ),
+    ("robot arm", "robot arm --port /tmp/robot"),
+    (
+        "robot play",
+        "robot play --gait circle:70deg --cycles 3 --period 30 --port /tmp/robot",
+    ),
+    ("robot pause", "robot pause --detach --port /tmp/robot"),
+    ("robot resume", "robot resume --port /tmp/robot"),
+    ("robot stop", "robot stop --port /tmp/robot"),
+    ("robot estop", "robot estop --clear --port /tmp/robot"),
+    ("robot trim", "robot trim --front 2deg --port /tmp/robot"),
+    ("robot servo", "robot servo front --port /tmp/robot"),
+    ("robot setup", "robot setup -o ours.toml --port /tmp/robot"),
+    ("robot flash", "robot flash robot.uf2"),
+    ("robot watch", "robot watch --port /tmp/robot"),
+    (
+        "robot log",
+        "robot log run.mcap --seconds 60 --port /tmp/robot",
+    ),
+    ("robot hc05", "robot hc05 --port /dev/ttyUSB0"),
+    ("robot key set", "robot key set robot.key --port /tmp/robot"),
+    (
+        "robot key clear",
+        "robot key clear --key robot.key --port /tmp/robot",
+    ),
+    ("robot key", "robot key set robot.key --port /tmp/robot"),
+    ("robot replay", "robot replay run.mcap"),
+    (
+        "twin",
+        "twin --pty /tmp/robot --faults drop=5% --track run.csv",
+    ),
+    ("calibrate", "calibrate campaign.toml -o fit"),
+    ("tracks", "tracks run.csv"),
+    ("optimize", "optimize displacement --swimmer purcell"),
+    ("robot", "robot stop --port /tmp/robot"),
+];
+
+/// The command with an example at the end of each help that has none.
+pub(super) fn with_examples(command: Command) -> Command {
+    within(command, "")
+}
+
+fn within(command: Command, words: &str) -> Command {
+    let example = EXAMPLES
+        .iter()
+        .find_map(|(of, example)| (*of == words).then_some(example));
+    let command = match example {
+        Some(example) if command.get_after_help().is_none() => {
+            command.after_help(format!("Example: swimmer {example}"))
+        }
+        _ => command,
+    };
+    command.mut_subcommands(|inner| {
+        let name = inner.get_name().to_owned();
+        within(inner, format!("{words} {name}").trim_start())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::commands::command;
+
+    /// Every command that does something has one, and each is understood.
+    #[test]
+    fn every_command_has_an_example_that_can_be_typed() {
+        let mut left = vec![(String::new(), command())];
+        while let Some((words, inner)) = left.pop() {
+            assert!(
+                words.is_empty() || inner.get_after_help().is_some(),
+                "`{words}` has no example"
+            );
+            left.extend(inner.get_subcommands().map(|inner| {
+                let words = format!("{words} {}", inner.get_name());
+                (words.trim_start().to_owned(), inner.clone())
+            }));
+        }
+        for (of, example) in EXAMPLES {
+            let words = format!("swimmer {example}");
+            let parsed = command().try_get_matches_from(words.split(' '));
+            assert!(parsed.is_ok(), "{of}: {words}: {parsed:?}");
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! What a gait asks of the servos in the fluid of the swimmer file: torque, power, and whether inertia is small indeed.
+
+use serde::Serialize;
+use swimmer_files::{AnyGait, SwimmerFile};
+use swimmer_model::{Gait as _, Model};
+
+use crate::output::aside;
+use crate::quantity::{self, Rows};
+
+/// Looks at a cycle.
+const LOOKS: u32 = 2000;
+/// Above this Reynolds number the model's fluid, which has no inertia, is no longer the tank's.
+const LARGEST_REYNOLDS: f64 = 0.1;
+
+/// One cycle of this duration, as parametrised.
+#[derive(Debug, Serialize)]
+pub(super) struct InFluid {
+    period_s: f64,
+    /// Mean over the cycle, and the largest.
+    power_w: f64,
+    peak_power_w: f64,
+    /// The largest of each joint, against the fluid alone.
+    torque_n_m: [f64; 2],
+    /// What the servos have, where the file says so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    servo_torque_n_m: Option<f64>,
+    /// Of the fastest side link: its tip's speed against its joint, its length and the kinematic viscosity.
+    reynolds: f64,
+}
+
+impl InFluid {
+    /// `None` where the file names no fluid.
+    pub(super) fn new(
+        file: &SwimmerFile,
+        model: &Model<f64>,
+        gait: &AnyGait,
+        period: f64,
+    ) -> Option<Self> {
+        let fluid = file.fluid?;
+        let side = [file.swimmer.links.front, file.swimmer.links.back];
+        let mut found = Self {
+            period_s: period,
+            power_w: 0.0,
+            peak_power_w: 0.0,
+            torque_n_m: [0.0; 2],
+            servo_torque_n_m: file.servo.and_then(|servo| servo.torque),
+            reynolds: 0.0,
+        };
+        for look in 0..LOOKS {
+            let point = gait.at((f64::from(look) + 0.5) / f64::from(LOOKS));
+            let rate = point.rate / period;
+            // The power is that of the joints alone, so their torques are W times their rates.
+            let torque = model.power_matrix(&point.phi) * rate * fluid.viscosity();
+            let power = torque.dot(&rate);
+            found.power_w += power / f64::from(LOOKS);
+            found.peak_power_w = found.peak_power_w.max(power);
+            for (most, torque) in found.torque_n_m.iter_mut().zip(torque.iter()) {
+                *most = most.max(torque.abs());
+            }
+            for (length, rate) in side.iter().zip(rate.iter()) {
+                let reynolds = rate.abs() * length * length / fluid.kinematic_viscosity;
+                found.reynolds = found.reynolds.max(reynolds);
+            }
+        }
+        Some(found)
+    }
+
+    /// Says what makes the answer doubtful.
+    pub(super) fn warn(&self) {
+        if self.reynolds > LARGEST_REYNOLDS {
+            aside(&format!(
+                "warning: the Reynolds number is {:.2} at {} s a cycle, and the model has no inertia: it holds below {LARGEST_REYNOLDS}; a period of {:.0} s would do",
+                self.reynolds,
+                self.period_s,
+                (self.period_s * self.reynolds / LARGEST_REYNOLDS).ceil()
+            ));
+        }
+        for (joint, torque) in ["front", "back"].iter().zip(self.torque_n_m) {
+            if let Some(has) = self.servo_torque_n_m.filter(|has| torque > *has) {
+                aside(&format!(
+                    "warning: the {joint} joint needs {} and its servo has {} ([servo] torque_n_m): the robot lags behind this gait at {} s a cycle",
+                    newton_metres(torque),
+                    newton_metres(has),
+                    self.period_s
+                ));
+            }
+        }
+    }
+
+    pub(super) fn rows(&self, rows: &mut Rows) {
+        let [front, back] = self.torque_n_m.map(newton_metres);
+        let has = self
+            .servo_torque_n_m
+            .map_or_else(String::new, |has| format!(" of {}", newton_metres(has)));
+        rows.row(
+            "torque",
+            format!(
+                "{front} front, {back} back{has} at {} s a cycle",
+                self.period_s
+            ),
+        )
+        .row(
+            "power",
+            format!(
+                "{} mW, {} mW at most",
+                quantity::small(self.power_w * 1e3),
+                quantity::small(self.peak_power_w * 1e3)
+            ),
+        )
+        .row("Reynolds number", quantity::small(self.reynolds));
+    }
+}
+
+fn newton_metres(torque: f64) -> String {
+    format!("{} mN m", quantity::small(torque * 1e3))
+}
