@@ -26,4 +26,6 @@ mod pseudo_terminal;
 mod recordings;
 #[cfg(unix)]
 mod setup;
+#[cfg(unix)]
+mod table;
 mod tracks;

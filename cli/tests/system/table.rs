@@ -1,0 +1,325 @@
+//! Every command × what goes wrong around it: what happens, as one table. No cell is a panic, a loss or a lie.
+
+use std::fmt::Write as _;
+use std::fs::File;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::{scope, sleep};
+use std::time::Duration;
+
+use crate::binary::{Ran, command, interrupt};
+
+/// A command as it works, in a folder with `good.gait`, `good.toml`, `run.csv` and `campaign.toml`.
+struct Row {
+    words: &'static str,
+    /// The word that names a file to be read.
+    reads: Option<&'static str>,
+    /// The file or folder that is written.
+    writes: Option<&'static str>,
+    /// Goes on until Ctrl-C.
+    lasts: bool,
+    /// Takes long: only what ends early is tried.
+    long: bool,
+}
+
+const fn row(words: &'static str) -> Row {
+    Row {
+        words,
+        reads: None,
+        writes: None,
+        lasts: false,
+        long: false,
+    }
+}
+
+impl Row {
+    const fn reads(self, word: &'static str) -> Self {
+        Self {
+            reads: Some(word),
+            ..self
+        }
+    }
+    const fn writes(self, word: &'static str) -> Self {
+        Self {
+            writes: Some(word),
+            ..self
+        }
+    }
+    const fn lasts(self) -> Self {
+        Self {
+            lasts: true,
+            ..self
+        }
+    }
+    const fn long(self) -> Self {
+        Self { long: true, ..self }
+    }
+}
+
+const ROWS: [Row; 36] = [
+    row("demo --swimmer good.toml -o out")
+        .reads("good.toml")
+        .writes("out")
+        .long(),
+    row("simulate --swimmer good.toml --gait circle:1 --trajectory t.csv")
+        .reads("good.toml")
+        .writes("t.csv"),
+    row("optimize displacement --swimmer good.toml --max-angle 2.8 -o o.gait")
+        .reads("good.toml")
+        .writes("o.gait"),
+    row("optimize efficiency --swimmer good.toml --max-angle 2.8 -o o.gait")
+        .reads("good.toml")
+        .writes("o.gait"),
+    row("optimize turning --swimmer good.toml --max-angle 2.8 -o o.gait")
+        .reads("good.toml")
+        .writes("o.gait"),
+    row("optimize sideways --swimmer good.toml --max-angle 2.8 -o o.gait")
+        .reads("good.toml")
+        .writes("o.gait")
+        .long(),
+    row("atlas --swimmer good.toml --objective displacement --starts 100000 -o out")
+        .reads("good.toml")
+        .writes("out")
+        .long(),
+    row("certify --swimmer robot --gait good.gait --objective displacement").reads("good.gait"),
+    row("height-map --swimmer good.toml -o m.svg")
+        .reads("good.toml")
+        .writes("m.svg"),
+    row("paper -o out").writes("out").long(),
+    row("swimmers robot"),
+    row("gaits"),
+    row("completions bash"),
+    row("man -o out").writes("out"),
+    row("tracks run.csv").reads("run.csv"),
+    row("calibrate campaign.toml -o out")
+        .reads("campaign.toml")
+        .writes("out"),
+    row("twin --pty link --track k.csv").writes("k.csv").lasts(),
+    row("robot info --port twin"),
+    row("robot status --port twin --log l.mcap").writes("l.mcap"),
+    row("robot configure --swimmer good.toml --port twin").reads("good.toml"),
+    row("robot upload good.gait --port twin").reads("good.gait"),
+    row("robot arm --port twin").lasts(),
+    row("robot play --gait good.gait --cycles 1 --port twin").reads("good.gait"),
+    row("robot play --gait circle:1 --port twin").lasts(),
+    row("robot pause --port twin"),
+    row("robot resume --port twin"),
+    row("robot stop --port twin"),
+    row("robot estop --port twin"),
+    row("robot estop --clear --port twin"),
+    row("robot trim --front 1deg --port twin"),
+    row("robot servo front --port twin"),
+    row("robot setup -o s.toml --port twin").writes("s.toml"),
+    row("robot flash image.uf2").reads("image.uf2"),
+    row("robot watch --port twin").lasts(),
+    row("robot log g.mcap --port twin").writes("g.mcap").lasts(),
+    row("robot replay good.mcap").reads("good.mcap"),
+];
+
+/// A folder with what the rows read.
+fn laboratory() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    for ending in ["toml", "gait", "csv", "uf2", "mcap"] {
+        write(&format!("wrong.{ending}"), "this is\nsomething else\n");
+    }
+    write(
+        "good.toml",
+        "[links]\nmiddle = 0.071\nside = 0.137\n[drag]\nchi = 3.598\nc_t = { log_aspect = 4.543 }\n",
+    );
+    let mut circle = String::new();
+    for at in 0..=64 {
+        let (sin, cos) = (f64::from(at % 64) * std::f64::consts::TAU / 64.0).sin_cos();
+        writeln!(circle, "{:?},{cos:?},{sin:?}", f64::from(at) / 64.0).unwrap();
+    }
+    write(
+        "good.gait",
+        &format!("# swimmer gait file, version 1\nu,phi1,phi2\n{circle}"),
+    );
+    write(
+        "run.csv",
+        "t,Front x,Front y,Back x,Back y\n0.0,0.0,0.0,0.07,0.0\n0.1,0.0,0.0,0.07,0.0\n",
+    );
+    write(
+        "campaign.toml",
+        "swimmer = \"robot\"\n[reflectors]\nfront = { point = \"Front\", at = [0.0355, 0.0] }\nback = { point = \"Back\", at = [-0.0355, 0.0] }\n[[run]]\ntrack = \"run.csv\"\ngait = \"circle:30deg\"\nperiod_s = 30.0\n",
+    );
+    folder
+}
+
+/// Status and reason; fails where it is a panic or a death.
+fn told(words: &str, ran: &Ran) -> String {
+    assert!(
+        (0..=2).contains(&ran.status) && !ran.stderr.contains("panicked"),
+        "{words}: {ran}"
+    );
+    let reason = ran.stderr.lines().rfind(|line| line.starts_with("error: "));
+    let Some(reason) = reason.filter(|_| ran.status != 0) else {
+        assert_eq!(ran.status, 0, "no reason given, {words}: {ran}");
+        return "0".to_owned();
+    };
+    let reason: String = reason.chars().skip(7).take(70).collect();
+    format!("{}: {}", ran.status, reason.replace('|', "/").trim())
+}
+
+fn run(mut command: Command) -> Ran {
+    command.stdin(Stdio::null()).output().unwrap().into()
+}
+
+fn words(row: &Row, with: Option<(&str, &str)>) -> Vec<String> {
+    row.words
+        .split(' ')
+        .map(|word| match with {
+            Some((from, to)) if from == word => to.to_owned(),
+            _ => word.to_owned(),
+        })
+        .collect()
+}
+
+fn made(folder: &Path, words: &[String]) -> Command {
+    command(
+        folder,
+        &words.iter().map(String::as_str).collect::<Vec<_>>(),
+    )
+}
+
+/// The cells of a row.
+#[allow(clippy::too_many_lines)] // one cell after another
+fn cells(row: &Row) -> Vec<String> {
+    let none = || "–".to_owned();
+    let brief = |command: Command| -> Ran {
+        if !row.lasts {
+            return run(command);
+        }
+        ended(command)
+    };
+    let mut cells = Vec::new();
+    for instead in ["lost", "wrong"] {
+        cells.push(row.reads.map_or_else(none, |file| {
+            let folder = laboratory();
+            let ending = file.rsplit('.').next().unwrap_or_default();
+            let instead = format!("{instead}.{ending}");
+            let words = words(row, Some((file, &instead)));
+            let ran = run(made(folder.path(), &words));
+            assert_eq!(ran.status, 2, "{words:?}: {ran}");
+            told(row.words, &ran)
+        }));
+    }
+    cells.push(row.writes.map_or_else(none, |file| {
+        let folder = laboratory();
+        let place = folder.path().join(file);
+        let place = if file == "out" {
+            std::fs::create_dir(&place).unwrap();
+            place.join("mine")
+        } else {
+            place
+        };
+        std::fs::write(&place, "mine").unwrap();
+        let ran = run(made(folder.path(), &words(row, None)));
+        assert_eq!(std::fs::read_to_string(&place).unwrap(), "mine", "{ran}");
+        assert_eq!(ran.status, 2, "{ran}");
+        told(row.words, &ran)
+    }));
+    cells.push(if row.lasts {
+        told(
+            row.words,
+            &ended(made(laboratory().path(), &words(row, None))),
+        )
+    } else if row.long {
+        let folder = laboratory();
+        let ran = ended(made(folder.path(), &words(row, None)));
+        if ran.status != 0 {
+            let left = row
+                .writes
+                .is_some_and(|file| folder.path().join(file).exists());
+            assert!(!left, "half-written: {ran}");
+        }
+        match ran.status {
+            0 => "0".to_owned(),
+            // By the signal itself, as nothing was begun that it could leave behind.
+            -1 => "ends, nothing is left".to_owned(),
+            _ => told(row.words, &ran),
+        }
+    } else {
+        "ends by itself".to_owned()
+    });
+    if row.long {
+        cells.push("not tried: takes long".to_owned());
+    } else {
+        let folder = laboratory();
+        let mut command = made(folder.path(), &words(row, None));
+        command.stdout(File::options().write(true).open("/dev/full").unwrap());
+        command.stderr(Stdio::piped()).stdin(Stdio::null());
+        let child = command.spawn().unwrap();
+        if row.lasts {
+            sleep(Duration::from_millis(1500));
+            interrupt(&child);
+        }
+        cells.push(told(row.words, &child.wait_with_output().unwrap().into()));
+    }
+    let narrow = [words(row, None), vec!["--help".to_owned()]].concat();
+    let folder = laboratory();
+    let mut command = made(folder.path(), &narrow);
+    command.env("COLUMNS", "20");
+    cells.push(told(row.words, &run(command)));
+    if row.long {
+        cells.extend([
+            "not tried: takes long".to_owned(),
+            "not tried: takes long".to_owned(),
+        ]);
+        return cells;
+    }
+    let folder = laboratory();
+    let mut command = made(folder.path(), &words(row, None));
+    command.env("NO_COLOR", "1");
+    let plain = brief(command);
+    let escapes = format!("{}{}", plain.stdout, plain.stderr).contains('\u{1b}');
+    assert!(!escapes, "{plain}");
+    cells.push(told(row.words, &plain));
+    let folder = laboratory();
+    let mut command = made(folder.path(), &words(row, None));
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    command.stdout(writer.try_clone().unwrap()).stderr(writer);
+    let mut child = command.stdin(Stdio::null()).spawn().unwrap();
+    if row.lasts {
+        sleep(Duration::from_millis(1500));
+        interrupt(&child);
+    }
+    let status = child.wait().unwrap().code();
+    assert_eq!(status, Some(plain.status), "closed pipe: {}", row.words);
+    cells.push(plain.status.to_string());
+    cells
+}
+
+/// What a command says that is ended by Ctrl-C after a while.
+fn ended(mut command: Command) -> Ran {
+    command.stdin(Stdio::null());
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = command.spawn().unwrap();
+    sleep(Duration::from_millis(1500));
+    interrupt(&child);
+    child.wait_with_output().unwrap().into()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn every_command_whatever_goes_wrong() {
+    let mut table = String::from(
+        "| command | missing file | wrong type | existing output | Ctrl-C | full disk (stdout) | narrow (--help) | no colour | closed pipe |\n|---|---|---|---|---|---|---|---|---|\n",
+    );
+    let filled: Vec<Vec<String>> = scope(|scope| {
+        let halves: Vec<_> = ROWS
+            .chunks(ROWS.len().div_ceil(2))
+            .map(|rows| scope.spawn(|| rows.iter().map(cells).collect::<Vec<_>>()))
+            .collect();
+        halves
+            .into_iter()
+            .flat_map(|half| half.join().unwrap())
+            .collect()
+    });
+    for (row, cells) in ROWS.iter().zip(filled) {
+        writeln!(table, "| {} | {} |", row.words, cells.join(" | ")).unwrap();
+    }
+    insta::assert_snapshot!("table", table);
+}
