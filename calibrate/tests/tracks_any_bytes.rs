@@ -50,8 +50,8 @@ fn absurd_times_cost_no_more_than_their_rows() {
         ["0", "1e-320", "1"],
         ["0.00", "0.01", "99999999999.02"],
     ] {
-        let rows: String = times.iter().map(|t| format!("{t},1,2,3,4\n")).collect();
-        let text = format!("t,x1,y1,x2,y2\n{rows}");
+        let [a, b, c] = times;
+        let text = format!("t,x1,y1,x2,y2\n{a},1,2,3,4\n{b},1,2,3,4\n{c},1,2,3,4\n");
         for rate_hz in [None, Some(50.0)] {
             let options = TrackOptions {
                 rate_hz,
