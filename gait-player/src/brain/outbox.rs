@@ -174,6 +174,20 @@ mod tests {
     }
 
     #[test]
+    fn telemetry_goes_as_soon_as_all_its_bytes_are_saved() {
+        let mut outbox = Outbox::new();
+        (0..100).for_each(|_| outbox.tick());
+        telemetry(&mut outbox);
+        let len = waiting(&mut outbox);
+        outbox.saved = len - 1;
+        telemetry(&mut outbox);
+        assert_eq!(waiting(&mut outbox), 0);
+        outbox.saved = len;
+        telemetry(&mut outbox);
+        assert_eq!((waiting(&mut outbox), outbox.saved), (len, 0));
+    }
+
+    #[test]
     fn telemetry_goes_at_the_links_pace_and_saves_up_little() {
         let mut outbox = Outbox::new();
         telemetry(&mut outbox);

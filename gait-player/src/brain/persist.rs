@@ -235,3 +235,24 @@ fn read_slot<S: Storage>(
     )?;
     Ok((table.knots() >= crate::table::MIN_KNOTS && table.crc32() == word(4)).then_some(word(2)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::storage::MemoryStorage;
+
+    #[test]
+    fn what_was_lost_is_told_until_it_is_stored_anew() {
+        let mut flash = MemoryStorage::erased();
+        let mut persist = Persist::new();
+        persist.lost();
+        // The record of starts says nothing of settings or table.
+        persist.starts_changed(ShortStarts { runs: 1 });
+        let Ok(()) = persist.step(0, &mut flash, None, &[7]);
+        assert!(persist.all_stored() && persist.failed());
+        persist.settings_changed();
+        let Ok(()) = persist.step(0, &mut flash, None, &[7]);
+        assert!(persist.all_stored() && !persist.failed());
+        assert_eq!(flash.settings.as_deref(), Some(&[7][..]));
+    }
+}
