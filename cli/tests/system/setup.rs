@@ -14,8 +14,8 @@ use crate::binary::{Ran, command, number, swimmer_in};
 
 /// A joint that was seen to turn by less did not turn.
 const SEEN_DEG: f64 = 4.0;
-/// Time without a new line after which the joints are at rest.
-const AT_REST: Duration = Duration::from_millis(500);
+/// Time without a new line after which the joints are at rest; the twin lives in real time and may be kept from it for a while.
+const AT_REST: Duration = Duration::from_millis(1_200);
 
 /// A twin, and what is seen of its joints.
 struct Twin {
