@@ -38,7 +38,7 @@ struct LinkBounds {
     /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
     #[arg(long, value_name = "LENGTH_M", value_parser = length)]
     clearance: Option<f64>,
-    /// Keep within what the robot plays: the angle of the swimmer file's [servo] and the clearance that the robot keeps; other
+    /// Keep within what the robot plays: the angle of the swimmer file's servos and the clearance that the robot keeps; other
     /// bounds may be tighter
     #[arg(long)]
     playable: bool,

@@ -16,7 +16,7 @@ pub(super) struct Playing {
     /// twin's, where it names none)
     #[arg(long)]
     played: bool,
-    /// Seconds a cycle takes: for --played, and for torque and power where the swimmer file has a [fluid]
+    /// Seconds a cycle takes: for --played, and for torque and power where the swimmer file names a fluid
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "30")]
     pub(super) period: f64,
     /// Knots of the robot's table
