@@ -232,7 +232,7 @@ mod tests {
         let path = folder.path().join("plain.txt");
         std::fs::write(&path, "x").unwrap();
         let error = SerialPort::open(path.to_str().unwrap(), 115_200).unwrap_err();
-        assert!(matches!(error, OpenError::Other { .. }), "{error:?}");
+        assert!(matches!(error, OpenError::NoSerialPort { .. }), "{error:?}");
     }
 
     #[cfg(unix)]
