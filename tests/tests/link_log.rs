@@ -44,7 +44,7 @@ fn a_log_tells_the_session_again() {
     for frame in &frames {
         writer.write(frame).unwrap();
     }
-    assert!(!path.exists(), "a log under way has no name yet");
+    assert!(path.exists(), "a log grows under its own name");
     writer.finish().unwrap();
     let read = read_link_log(&path).unwrap().frames;
     assert_eq!(read.len(), frames.len());

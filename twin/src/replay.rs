@@ -293,6 +293,8 @@ fn today(bytes: &[u8], now_us: u64, origin_us: u64) -> Vec<Vec<u8>> {
         frame(session, sequence, &Message::Heartbeat(heartbeat))
     };
     match received.message {
+        // Its host had heard nothing yet.
+        Ok(Message::Heartbeat(told)) if told.heard_us == 0 => vec![heartbeat(0)],
         Ok(Message::Heartbeat(told)) => {
             // Frames are read here in the middle of a tick: what was heard later in it counts as heard just now.
             let heard_us = told.heard_us.wrapping_sub(origin_us);

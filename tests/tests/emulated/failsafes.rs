@@ -226,19 +226,15 @@ fn stop_and_estop_act_within_a_tick() {
         assert!(last <= TICK, "{case:?}: {last:?}");
         offs.push(last);
     }
+    // Where in a tick the bytes of these five moments end is the image's affair, so the rows say what held for all.
+    println!("{ramps:?} {offs:?}");
     seen(
         "R5, Stop, whenever in a tick it arrives",
-        &format!(
-            "the ramp begins at most {} ms after its last byte, at the pins (20 ms of the tick, 12 ms to the next period)",
-            most(&ramps)
-        ),
+        "the ramp begins within 32 ms of its last byte, at the pins (20 ms of the tick, 12 ms to the next period)",
     );
     seen(
         "R5, e-stop, whenever in a tick it arrives, and in the middle of an upload",
-        &format!(
-            "the last pulse begins at most {} ms after its last byte; latched",
-            most(&offs)
-        ),
+        "the last pulse begins within 20 ms of its last byte; latched",
     );
 }
 
@@ -246,8 +242,4 @@ fn stop_and_estop_act_within_a_tick() {
 fn last_pulse_after(periods: &[Period], arrived: Duration) -> Duration {
     assert!(!periods.last().unwrap().powered());
     last_pulse(periods).map_or(Duration::ZERO, |last| last.saturating_sub(arrived))
-}
-
-fn most(times: &[Duration]) -> u128 {
-    times.iter().max().unwrap().as_millis()
 }
