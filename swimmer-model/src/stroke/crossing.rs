@@ -31,10 +31,14 @@ pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
     gait: &G,
 ) -> CrossingShare<T> {
     let touch = links.middle * T::from_f64(TOUCH);
-    let overlap = |u: T| {
+    let overlap = |u: T| links.overlap(&gait.at(u).phi) - touch;
+    let flat = |u: T| {
         let phi = gait.at(u).phi;
-        let flat = flatness(phi.x).max(flatness(phi.y));
-        (links.overlap(&phi) - touch).max(links.middle * flat)
+        flatness(phi.x).max(flatness(phi.y))
+    };
+    // A link that only sweeps through |φ| = π lies there for no time: it must lie there still a little further on.
+    let lies = |from: T, towards: T| {
+        flat(from) >= T::zero() && flat(from + (towards - from) * T::from_f64(0.01)) >= T::zero()
     };
     let mut folds = false;
     let (mut u, mut crossing, mut length, mut crossing_length) =
@@ -56,12 +60,20 @@ pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
             } else {
                 end
             };
-            let (here, there) = (overlap(u) > T::zero(), overlap(next) > T::zero());
+            let folded = lies(u, next) || lies(next, u);
+            let level = |u: T| {
+                if folded {
+                    overlap(u).max(links.middle * flat(u))
+                } else {
+                    overlap(u)
+                }
+            };
+            let (here, there) = (level(u) > T::zero(), level(next) > T::zero());
             folds |= fold_between(&gait.at(u).phi, &gait.at(next).phi);
             let border = if here == there {
                 next
             } else {
-                zero(u, next, overlap)
+                zero(u, next, level)
             };
             for (from, to, crosses) in [(u, border, here), (border, next, there)] {
                 let stretch = arc_length(gait, from, to);
