@@ -1,13 +1,11 @@
 //! Whether the robot of a swimmer file can play a gait, in the words of `robot upload`.
 
 use forecast::{Played, Servos, forecast};
+use link_protocol::MAX_KNOTS;
 use swimmer_files::{AnyGait, SwimmerFile};
 use swimmer_model::Model;
 
 use crate::output::aside;
-
-/// Knots of the robot's table.
-const KNOTS: usize = 512;
 
 /// Says where a gait goes beyond the `[servo]` of the file: angle, clearance of the links, rate at this period.
 pub(crate) fn say_if_beyond(file: &SwimmerFile, gait: &AnyGait, period: f64) {
@@ -17,7 +15,7 @@ pub(crate) fn say_if_beyond(file: &SwimmerFile, gait: &AnyGait, period: f64) {
     let played = Played {
         servos: Servos::on_the_robot(servo),
         period,
-        knots: KNOTS,
+        knots: MAX_KNOTS,
     };
     let reason = match forecast(&model, gait, &played) {
         Err(error) => error.to_string(),

@@ -8,9 +8,11 @@
 //!   [`timing_of_table`]: the same for the table that the robot makes of it.
 //! - [`reach()`]: the largest angle of a gait, with its place, against what the servos allow.
 //! - [`until_wall`]: how many cycles a tank has room for; [`Forecast::displacement_error`]: what a calibration leaves open.
+//! - [`demand`]: torque, power and Reynolds number in a fluid of known viscosity.
 //! - [`forecast()`]: the displacement as designed, as stored, as commanded and as turned, loss by loss, before a gait is sent.
 
 pub mod certainty;
+pub mod fluid;
 pub mod losses;
 pub mod path;
 pub mod reach;
@@ -18,6 +20,7 @@ pub mod tank;
 pub mod timing;
 
 pub use certainty::Ends;
+pub use fluid::{Demand, demand};
 pub use losses::{Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast};
 pub use reach::{Reach, reach};
 pub use tank::{Meeting, Part, Tank, until_wall};

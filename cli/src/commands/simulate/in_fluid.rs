@@ -1,14 +1,13 @@
 //! What a gait asks of the servos in the fluid of the swimmer file: torque, power, and whether inertia is small indeed.
 
+use forecast::{Demand, demand};
 use serde::Serialize;
 use swimmer_files::{AnyGait, SwimmerFile};
-use swimmer_model::{Gait as _, Model};
+use swimmer_model::Model;
 
 use crate::output::aside;
 use crate::quantity::{self, Rows};
 
-/// Looks at a cycle.
-const LOOKS: u32 = 2000;
 /// Above this Reynolds number the model's fluid, which has no inertia, is no longer the tank's.
 const LARGEST_REYNOLDS: f64 = 0.1;
 
@@ -36,33 +35,20 @@ impl InFluid {
         gait: &AnyGait,
         period: f64,
     ) -> Option<Self> {
-        let fluid = file.fluid?;
-        let side = [file.swimmer.links.front, file.swimmer.links.back];
-        let mut found = Self {
+        let Demand {
+            power,
+            peak_power,
+            torque,
+            reynolds,
+        } = demand(model, &file.fluid?, gait, period);
+        Some(Self {
             period_s: period,
-            power_w: 0.0,
-            peak_power_w: 0.0,
-            torque_n_m: [0.0; 2],
+            power_w: power,
+            peak_power_w: peak_power,
+            torque_n_m: torque,
             servo_torque_n_m: file.servo.and_then(|servo| servo.torque),
-            reynolds: 0.0,
-        };
-        for look in 0..LOOKS {
-            let point = gait.at((f64::from(look) + 0.5) / f64::from(LOOKS));
-            let rate = point.rate / period;
-            // The power is that of the joints alone, so their torques are W times their rates.
-            let torque = model.power_matrix(&point.phi) * rate * fluid.viscosity();
-            let power = torque.dot(&rate);
-            found.power_w += power / f64::from(LOOKS);
-            found.peak_power_w = found.peak_power_w.max(power);
-            for (most, torque) in found.torque_n_m.iter_mut().zip(torque.iter()) {
-                *most = most.max(torque.abs());
-            }
-            for (length, rate) in side.iter().zip(rate.iter()) {
-                let reynolds = rate.abs() * length * length / fluid.kinematic_viscosity;
-                found.reynolds = found.reynolds.max(reynolds);
-            }
-        }
-        Some(found)
+            reynolds,
+        })
     }
 
     /// Says what makes the answer doubtful.
