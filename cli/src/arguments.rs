@@ -150,10 +150,7 @@ pub(crate) fn load_gait(spec: &GaitSpec) -> Outcome<AnyGait> {
 
 /// The same for this swimmer; says so where the file names another.
 pub(crate) fn load_gait_for(swimmer: &SwimmerFile, spec: &GaitSpec) -> Outcome<AnyGait> {
-    if let GaitSpec::File { path, .. } = spec {
-        say_if_for_another(swimmer, &GaitFile::load(path)?, spec);
-    }
-    load_gait(spec)
+    Ok(spec.load_showing(|file| say_if_for_another(swimmer, file, spec))?)
 }
 
 /// Says so where a gait file was made for another swimmer.

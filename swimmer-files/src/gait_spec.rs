@@ -151,6 +151,14 @@ impl GaitSpec {
     /// # Errors
     /// [`FileError`] when the gait file cannot be read or is wrong.
     pub fn load(&self) -> Result<AnyGait, FileError> {
+        self.load_showing(|_| {})
+    }
+
+    /// The same; where it is a file, `seen` sees what it says.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_showing(&self, seen: impl FnOnce(&GaitFile)) -> Result<AnyGait, FileError> {
         Ok(match self {
             Self::Circle {
                 amplitude,
@@ -162,6 +170,7 @@ impl GaitSpec {
             } => AnyGait::square(*amplitude).reversed_if(*clockwise),
             Self::File { path, reversed } => {
                 let file = GaitFile::load(path)?;
+                seen(&file);
                 AnyGait::from_file(&file)
                     .map_err(|invalid| FileError::at(path, 1, 1, invalid.to_string()))?
                     .reversed_if(*reversed)
