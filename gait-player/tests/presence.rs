@@ -297,7 +297,7 @@ fn r8_three_short_runs_lock_arming_whether_power_was_off_or_not() {
             message.contains("weak supply") && message.contains("plug-ins"),
             "{message}"
         );
-        // Three blinks every two seconds.
+        // Three blinks of 100 ms every two seconds.
         let led: Vec<bool> = bench
             .run(20 * SECOND)
             .iter()
@@ -305,6 +305,8 @@ fn r8_three_short_runs_lock_arming_whether_power_was_off_or_not() {
             .collect();
         let blinks = led.windows(2).filter(|pair| !pair[0] && pair[1]).count();
         assert!((29..=31).contains(&blinks), "{blinks}");
+        let lit = led.iter().filter(|led| **led).count();
+        assert_eq!(lit, 10 * 3 * 5, "ticks that the LED was on");
         bench.run(41 * SECOND);
         assert_eq!(bench.output.starts, ShortStarts { runs: 0 });
         assert_eq!(bench.refused(ARM), Refusal::ResetLoop { wait_s: 0 });
