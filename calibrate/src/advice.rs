@@ -12,7 +12,7 @@ use crate::fit::least_squares::Model as _;
 use crate::fit::likelihood::Estimate;
 use crate::fit::parameter::Parameter;
 use crate::fit::run_values::QUANTITIES;
-use crate::prediction::{JointPath, Played};
+use crate::prediction::Played;
 
 /// Amplitudes of circles and squares that are weighed \[deg\].
 const AMPLITUDES: std::ops::RangeInclusive<u32> = 4..=22;
@@ -64,13 +64,8 @@ pub fn advise(campaign: &Campaign, found: &CampaignFit) -> Result<Advice, FitErr
         if crosses(&found.swimmer.swimmer, shape) {
             return None;
         }
-        let one = model.with_runs(vec![Played {
-            path: JointPath::new(shape, campaign.swimmer.servo.as_ref(), period_s).ok()?,
-            gait: shape.clone(),
-            period_s,
-            cut_by: None,
-            sides: None,
-        }]);
+        let played = Played::commanded(shape, campaign.swimmer.servo.as_ref(), period_s);
+        let one = model.with_runs(vec![played.ok()?]);
         let [sphere_radius, chi] = known.with(&one.jacobian(&estimate.at)?)?;
         Some(Candidate {
             gait,

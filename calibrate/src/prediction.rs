@@ -231,6 +231,26 @@ pub(crate) struct Played {
     pub(crate) sides: Option<Sides>,
 }
 
+impl Played {
+    /// As commanded: no reflector showed it yet.
+    ///
+    /// # Errors
+    /// As [`JointPath::new`].
+    pub(crate) fn commanded(
+        gait: &AnyGait,
+        servo: Option<&ServoFile>,
+        period_s: f64,
+    ) -> Result<Self, PredictionError> {
+        Ok(Self {
+            gait: gait.clone(),
+            period_s,
+            path: JointPath::new(gait, servo, period_s)?,
+            cut_by: None,
+            sides: None,
+        })
+    }
+}
+
 fn cycle(curve: &Curve, next: &Curve, start: f64) -> PredictedCycle {
     let step = curve.step_to(next, start);
     let (delta_y_m, delta_theta_rad) = curve.amplitudes(start);

@@ -14,7 +14,7 @@ use crate::error::CalibrateError;
 use crate::fit::run_values::{QUANTITIES, predicted};
 use crate::joints::{self, MeasuredJoints};
 use crate::poses::{self, FrontRule, PoseOptions, PoseTrack, PoseWarning};
-use crate::prediction::{JointPath, Played};
+use crate::prediction::Played;
 
 pub(crate) use either::EitherRun;
 pub(crate) use told::Told;
@@ -107,26 +107,17 @@ impl<'a> Run<'a> {
                 cause,
             }
         })?;
-        let path =
-            JointPath::new(&data.gait, swimmer.servo.as_ref(), data.period_s).map_err(|cause| {
-                CalibrateError::Prediction {
-                    file: file(),
-                    cause,
-                }
-            })?;
+        let told = Played::commanded(&data.gait, swimmer.servo.as_ref(), data.period_s);
         Ok(Self {
             data,
             index,
             reflectors,
             poses,
             clock,
-            told: Played {
-                gait: data.gait.clone(),
-                period_s: data.period_s,
-                path,
-                cut_by: None,
-                sides: None,
-            },
+            told: told.map_err(|cause| CalibrateError::Prediction {
+                file: file(),
+                cause,
+            })?,
             joints: None,
         })
     }

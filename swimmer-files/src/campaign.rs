@@ -1,7 +1,9 @@
 //! The campaign file: the runs of one experiment, and where the reflectors sit. Paths in it are relative to it.
 
 mod known;
+mod raw;
 mod read;
+mod table;
 mod told;
 
 use std::path::{Path, PathBuf};

@@ -29,7 +29,7 @@ const FOLLOWED: usize = 2;
 const APART: f64 = 3e-3;
 
 /// A model of the runs, and what is known of its parameters.
-pub(super) struct Sought {
+pub(super) struct JointProblem {
     model: RunModel,
     priors: Vec<Prior>,
     /// Values of the runs, then what is known.
@@ -49,7 +49,7 @@ pub(super) struct Mode {
     pub(super) data: RunValues,
 }
 
-impl Sought {
+impl JointProblem {
     /// With one thing more that may be so.
     pub(super) fn new(plain: &Plain, known: &[Known], more: Option<Prior>) -> Self {
         let priors: Vec<Prior> = known.iter().map(|known| known.prior).chain(more).collect();

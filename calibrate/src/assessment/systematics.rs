@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Plain;
 use super::known::Known;
-use super::modes::{Mode, Sought, evidence};
+use super::modes::{JointProblem, Mode, evidence};
 use crate::evidence::Pair;
 use crate::fit::Intervals;
 use crate::fit::intervals::half_width;
@@ -14,7 +14,7 @@ use crate::fit::least_squares::{Model as _, minimise};
 use crate::fit::likelihood::Estimate;
 use crate::fit::parameter::Parameter;
 use crate::fit::prior::Prior;
-use crate::fit::run_values::{QUANTITIES, RunValues};
+use crate::fit::run_values::{NAMES, QUANTITIES, RunValues};
 use crate::fit::tangent::Tangent;
 
 /// What no file knows, and how much of it would be no surprise (rad, ln, s): tried beside all that is known. It is reckoned with
@@ -32,6 +32,7 @@ const TELLING_DEVIATIONS: f64 = 3.0;
 const TANGENTS_ERROR: f64 = 7.0;
 /// Least share of what is known that the runs must add before their pull means anything.
 const LEAST_SAID: f64 = 0.02;
+
 /// What the runs make of something that is known by halves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Nuisance {
@@ -112,8 +113,8 @@ fn remedy(parameter: Parameter) -> &'static str {
 impl Joint {
     /// The likeliest by all that is known, and by one thing more where the runs ask for that; then without what is unlike all else.
     pub(super) fn of(plain: &Plain, known: &[Known]) -> Option<Self> {
-        let sought = Sought::new(plain, known, None);
-        let foreseen = sought.mode(f64::NEG_INFINITY)?;
+        let problem = JointProblem::new(plain, known, None);
+        let foreseen = problem.mode(f64::NEG_INFINITY)?;
         let least = evidence(&foreseen.estimate) + LEAST_ODDS;
         let enough = |mode: &Mode| evidence(&mode.estimate) > least;
         let untold = |parameter: Parameter| {
@@ -129,8 +130,8 @@ impl Joint {
                 value: plain.filed(*parameter),
                 width: *width,
             };
-            let sought = Sought::new(plain, known, Some(prior));
-            let mode = sought.mode(least - TANGENTS_ERROR).filter(enough)?;
+            let problem = JointProblem::new(plain, known, Some(prior));
+            let mode = problem.mode(least - TANGENTS_ERROR).filter(enough)?;
             let place = mode.estimate.at.len() - 1;
             let deviation = mode.estimate.components.covariance()[(place, place)].sqrt();
             let value = mode.estimate.at[place];
@@ -143,17 +144,17 @@ impl Joint {
                 log_odds: evidence(&mode.estimate) - evidence(&foreseen.estimate),
                 remedy: remedy(*parameter),
             };
-            told.then_some((sought, mode, unforeseen))
+            told.then_some((problem, mode, unforeseen))
         });
         let best = more.max_by(|a, b| evidence(&a.1.estimate).total_cmp(&evidence(&b.1.estimate)));
-        let (sought, mode, unforeseen) = match best {
-            Some((sought, mode, unforeseen)) => (sought, mode, Some(unforeseen)),
-            None => (sought, foreseen, None),
+        let (problem, mode, unforeseen) = match best {
+            Some((problem, mode, unforeseen)) => (problem, mode, Some(unforeseen)),
+            None => (problem, foreseen, None),
         };
-        let (mode, outliers) = sought.without_outliers(mode)?;
+        let (mode, outliers) = problem.without_outliers(mode)?;
         Some(Self {
             known: known.to_vec(),
-            first: sought.first,
+            first: problem.first,
             data: mode.data,
             estimate: mode.estimate,
             tangent: mode.tangent,
@@ -200,12 +201,7 @@ impl Joint {
             outliers: self
                 .outliers
                 .iter()
-                .map(|row| {
-                    (
-                        row / QUANTITIES,
-                        crate::fit::run_values::NAMES[row % QUANTITIES],
-                    )
-                })
+                .map(|row| (row / QUANTITIES, NAMES[row % QUANTITIES]))
                 .collect(),
             reduced_chi2: self.reduced_chi2(plain.data.values.len()),
         })

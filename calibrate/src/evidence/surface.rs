@@ -155,19 +155,14 @@ mod tests {
     use super::*;
     use crate::fit::parameter::Parameter;
     use crate::fit::run_model::RunModel;
-    use crate::prediction::{JointPath, Played};
+    use crate::prediction::Played;
     use swimmer_files::{AnyGait, SwimmerFile};
 
     #[test]
     fn the_surface_is_the_model() {
         let start = SwimmerFile::preset("robot").unwrap();
-        let played = [0.6, 1.8].map(|amplitude| Played {
-            gait: AnyGait::circle(amplitude),
-            period_s: 10.0,
-            path: JointPath::Ideal(AnyGait::circle(amplitude)),
-            cut_by: None,
-            sides: None,
-        });
+        let played = [0.6, 1.8]
+            .map(|amplitude| Played::commanded(&AnyGait::circle(amplitude), None, 10.0).unwrap());
         let robot = start.swimmer;
         let parameters = vec![Parameter::SphereRadius, Parameter::Chi];
         let model = RunModel::new(

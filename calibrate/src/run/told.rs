@@ -9,7 +9,7 @@ use crate::cycles::Cycles;
 use crate::error::CalibrateError;
 use crate::fit::run_values::QUANTITIES;
 use crate::poses::PoseTrack;
-use crate::prediction::{JointPath, Played};
+use crate::prediction::Played;
 
 /// What was told of a run, and of what gait.
 pub(crate) struct Told {
@@ -28,24 +28,16 @@ impl Told {
         swimmer: &SwimmerFile,
     ) -> Result<Self, CalibrateError> {
         let period_s = run.period_s;
-        let path = JointPath::new(gait, swimmer.servo.as_ref(), period_s).map_err(|cause| {
-            CalibrateError::Prediction {
-                file: run.track.clone(),
-                cause,
-            }
-        })?;
+        let played = Played::commanded(gait, swimmer.servo.as_ref(), period_s);
         Ok(Self {
             index,
             file: run.track.clone(),
             gait: run.gait.to_string(),
             cycles: Cycles::told(told, period_s),
-            played: Played {
-                gait: gait.clone(),
-                period_s,
-                path,
-                cut_by: None,
-                sides: None,
-            },
+            played: played.map_err(|cause| CalibrateError::Prediction {
+                file: run.track.clone(),
+                cause,
+            })?,
         })
     }
 

@@ -48,6 +48,29 @@ impl Decimals {
         }
         number(text, true)
     }
+
+    /// A cell that should hold a number or nothing; `what` names it in the error.
+    ///
+    /// # Errors
+    /// [`TrackProblem::NotANumber`] for anything else.
+    pub(super) fn cell(
+        &mut self,
+        cell: &Cell<'_>,
+        (line, file): (&Line<'_>, &Path),
+        what: &str,
+    ) -> Result<Option<f64>, TrackError> {
+        match self.number(cell.raw) {
+            Number::Finite(value) => Ok(Some(value)),
+            Number::Missing => Ok(None),
+            Number::Wrong => {
+                let problem = TrackProblem::NotANumber {
+                    text: cell.text().into_owned(),
+                    cell: what.to_owned(),
+                };
+                Err(line.error(file, cell.at, problem))
+            }
+        }
+    }
 }
 
 /// Powers of ten that are exact in double precision, as far as needed.

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::cells::{Cell, Cells, split};
 use super::grid::{Body, decimals, may_be_cut, row_length};
 use super::lines::{Delimiter, Line, Lines};
-use super::number::{Decimals, Number};
+use super::number::Decimals;
 use super::rows::{TakesRows, read_rows};
 use super::timeline::Timeline;
 use super::{
@@ -217,17 +217,7 @@ impl Instances<'_> {
 
     fn value(&mut self, line: &Line<'_>, column: usize) -> Result<Option<f64>, TrackError> {
         let cell = self.cells.at(line, column);
-        match self.decimals.number(cell.raw) {
-            Number::Finite(value) => Ok(Some(value)),
-            Number::Missing => Ok(None),
-            Number::Wrong => {
-                let problem = TrackProblem::NotANumber {
-                    text: cell.text().into_owned(),
-                    cell: "node".to_owned(),
-                };
-                Err(line.error(self.reading.file, cell.at, problem))
-            }
-        }
+        self.decimals.cell(&cell, (line, self.reading.file), "node")
     }
 
     /// The first point of the row's animal; none where it was in this row before.

@@ -8,7 +8,7 @@ use super::cells::{Cell, Cells, cell_at, split};
 use super::grid::{self, Body, Clock, Columns, Grid, decimals, may_be_cut, row_length};
 use super::lines::{Delimiter, Line, Lines};
 use super::merged::{Seen, merged};
-use super::number::{Decimals, Number};
+use super::number::Decimals;
 use super::rows::{TakesRows, read_rows};
 use super::timeline::Timeline;
 use super::{
@@ -340,16 +340,6 @@ impl<'f> Reader<'f> {
         what: &str,
     ) -> Result<Option<f64>, TrackError> {
         let cell = self.cells.at(line, column);
-        match self.decimals.number(cell.raw) {
-            Number::Finite(value) => Ok(Some(value)),
-            Number::Missing => Ok(None),
-            Number::Wrong => {
-                let problem = TrackProblem::NotANumber {
-                    text: cell.text().into_owned(),
-                    cell: what.to_owned(),
-                };
-                Err(line.error(self.file, cell.at, problem))
-            }
-        }
+        self.decimals.cell(&cell, (line, self.file), what)
     }
 }

@@ -2,158 +2,14 @@
 
 use std::path::Path;
 
-use serde::Deserialize;
 use toml::Spanned;
 
-use super::known::{self, RawKnown};
+use super::known;
+use super::raw::{RawCampaign, RawPoint, RawReflector, RawReflectors, RawRun, RawTracks};
+use super::table::table;
 use super::told;
 use super::{Campaign, CampaignRun, PointName, Reflector, Reflectors, RunTiming, TrackSettings};
 use crate::{FileError, GaitSpec, SwimmerFile};
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawCampaign {
-    swimmer: Spanned<String>,
-    reflectors: Option<RawReflectors>,
-    #[serde(default)]
-    tracks: RawTracks,
-    #[serde(default)]
-    known: RawKnown,
-    #[serde(default)]
-    run: Vec<RawRun>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawTracks {
-    scale: Option<Spanned<f64>>,
-    rate_hz: Option<Spanned<f64>>,
-    axes: Option<Spanned<String>>,
-    likelihood: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawReflectors {
-    front: RawReflector,
-    back: Spanned<RawReflector>,
-    front_link: Option<Spanned<RawReflector>>,
-    back_link: Option<Spanned<RawReflector>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawReflector {
-    point: RawPoint,
-    at: Spanned<[f64; 2]>,
-}
-
-#[derive(Deserialize)]
-#[serde(
-    untagged,
-    expecting = "a point is a name, a pair of column names, { near = [x, y] }, or \"auto\""
-)]
-enum RawPoint {
-    Name(String),
-    Columns([String; 2]),
-    Near { near: [f64; 2] },
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RawRun {
-    track: Option<Spanned<String>>,
-    results: Option<Spanned<String>>,
-    gait: Spanned<String>,
-    period_s: Spanned<f64>,
-    front: Option<Spanned<RawPoint>>,
-    cycle_start_s: Option<Spanned<f64>>,
-    log: Option<Spanned<String>>,
-    play: Option<Spanned<usize>>,
-    clock_offset_s: Option<Spanned<f64>>,
-    exclude: Option<Spanned<String>>,
-    x_mm: Option<Spanned<f64>>,
-    x_sd_mm: Option<Spanned<f64>>,
-    x_se_mm: Option<Spanned<f64>>,
-    y_mm: Option<Spanned<f64>>,
-    y_sd_mm: Option<Spanned<f64>>,
-    y_se_mm: Option<Spanned<f64>>,
-    turn_deg: Option<Spanned<f64>>,
-    turn_sd_deg: Option<Spanned<f64>>,
-    turn_se_deg: Option<Spanned<f64>>,
-    delta_y_mm: Option<Spanned<f64>>,
-    delta_y_sd_mm: Option<Spanned<f64>>,
-    delta_y_se_mm: Option<Spanned<f64>>,
-    delta_theta_deg: Option<Spanned<f64>>,
-    delta_theta_sd_deg: Option<Spanned<f64>>,
-    delta_theta_se_deg: Option<Spanned<f64>>,
-    cycles: Option<Spanned<f64>>,
-}
-
-impl RawRun {
-    /// A number of those that tell a run without a track, by its key.
-    fn number(&self, key: &str) -> Option<&Spanned<f64>> {
-        match key {
-            "x_mm" => self.x_mm.as_ref(),
-            "x_sd_mm" => self.x_sd_mm.as_ref(),
-            "x_se_mm" => self.x_se_mm.as_ref(),
-            "y_mm" => self.y_mm.as_ref(),
-            "y_sd_mm" => self.y_sd_mm.as_ref(),
-            "y_se_mm" => self.y_se_mm.as_ref(),
-            "turn_deg" => self.turn_deg.as_ref(),
-            "turn_sd_deg" => self.turn_sd_deg.as_ref(),
-            "turn_se_deg" => self.turn_se_deg.as_ref(),
-            "delta_y_mm" => self.delta_y_mm.as_ref(),
-            "delta_y_sd_mm" => self.delta_y_sd_mm.as_ref(),
-            "delta_y_se_mm" => self.delta_y_se_mm.as_ref(),
-            "delta_theta_deg" => self.delta_theta_deg.as_ref(),
-            "delta_theta_sd_deg" => self.delta_theta_sd_deg.as_ref(),
-            "delta_theta_se_deg" => self.delta_theta_se_deg.as_ref(),
-            "cycles" => self.cycles.as_ref(),
-            _ => None,
-        }
-    }
-
-    /// The first key that only a track has a use for.
-    fn of_track(&self) -> Option<(&'static str, usize)> {
-        let place = |key, span: Option<std::ops::Range<usize>>| Some((key, span?.start));
-        place("front", self.front.as_ref().map(Spanned::span))
-            .or_else(|| {
-                place(
-                    "cycle_start_s",
-                    self.cycle_start_s.as_ref().map(Spanned::span),
-                )
-            })
-            .or_else(|| place("log", self.log.as_ref().map(Spanned::span)))
-            .or_else(|| place("play", self.play.as_ref().map(Spanned::span)))
-            .or_else(|| {
-                place(
-                    "clock_offset_s",
-                    self.clock_offset_s.as_ref().map(Spanned::span),
-                )
-            })
-    }
-}
-
-/// The numbers that may tell a run.
-const NUMBERS: [&str; 16] = [
-    "x_mm",
-    "x_sd_mm",
-    "x_se_mm",
-    "y_mm",
-    "y_sd_mm",
-    "y_se_mm",
-    "turn_deg",
-    "turn_sd_deg",
-    "turn_se_deg",
-    "delta_y_mm",
-    "delta_y_sd_mm",
-    "delta_y_se_mm",
-    "delta_theta_deg",
-    "delta_theta_sd_deg",
-    "delta_theta_se_deg",
-    "cycles",
-];
 
 /// The campaign of `text`; `is_there` says whether a file that a run names can be found.
 pub(super) fn campaign(
@@ -338,9 +194,8 @@ fn run(
 ) -> Result<CampaignRun, FileError> {
     let nothing = Spanned::new(0..0, String::new());
     let track = raw.track.clone().unwrap_or(nothing);
-    let also = NUMBERS
-        .iter()
-        .find_map(|key| Some((*key, raw.number(key)?.span().start)))
+    let also = raw
+        .first_number()
         .or_else(|| Some(("results", raw.results.as_ref()?.span().start)));
     if let Some((key, place)) = also {
         let problem = format!("{key} beside a track: a run is tracked or told, not both");
@@ -360,6 +215,11 @@ fn run(
         .parse()
         .map_err(|cause| error(raw.gait.span().start, format!("gait: {cause}")))?;
     let (period_s, exclude) = (period(&raw, error)?, excluded(&raw, error)?);
+    // What says something about the log says nothing without it.
+    if let (None, Some((name, place))) = (&raw.log, raw.of_log()) {
+        let problem = format!("{name} is about the robot's log; name it by `log`");
+        return Err(error(place, problem));
+    }
     let front = raw.front.map(|front| {
         let place = front.span().start;
         point(front.into_inner()).map_err(|problem| error(place, problem))
@@ -373,21 +233,6 @@ fn run(
         let problem = format!("{name} = {number} must be a finite number of seconds");
         Err(error(value.span().start, problem))
     };
-    // What says something about the log says nothing without it.
-    let of_log = [
-        ("play", raw.play.as_ref().map(Spanned::span)),
-        (
-            "clock_offset_s",
-            raw.clock_offset_s.as_ref().map(Spanned::span),
-        ),
-    ];
-    let lonely = of_log
-        .into_iter()
-        .find_map(|(name, span)| Some((name, span?)));
-    if let (None, Some((name, span))) = (&raw.log, lonely) {
-        let problem = format!("{name} is about the robot's log; name it by `log`");
-        return Err(error(span.start, problem));
-    }
     if let Some(play) = raw.play.as_ref().filter(|play| *play.get_ref() == 0) {
         let problem = "play counts the log's plays from 1".to_owned();
         return Err(error(play.span().start, problem));
@@ -479,17 +324,17 @@ fn told_runs(
         let track = format!("{}:{line}", path.display());
         return Ok(vec![run(track.into(), gait, told)]);
     };
-    if let Some(number) = NUMBERS.iter().find_map(|key| raw.number(key)) {
+    if let Some((_, place)) = raw.first_number() {
         let problem = "numbers beside a table of results: the table has them all".to_owned();
-        return Err(error(number.span().start, problem));
+        return Err(error(place, problem));
     }
-    let table = folder.join(results.get_ref());
-    let rows = told::table(&table, raw.gait.get_ref()).map_err(|cause| match cause {
+    let file = folder.join(results.get_ref());
+    let rows = table(&file, raw.gait.get_ref()).map_err(|cause| match cause {
         FileError::Read { .. } => error(results.span().start, cause.to_string()),
         other => other,
     })?;
     let named = |(line, gait, told)| {
-        let track = format!("{}:{line}", table.display());
+        let track = format!("{}:{line}", file.display());
         run(track.into(), gait, told)
     };
     Ok(rows.into_iter().map(named).collect())

@@ -1,9 +1,6 @@
-//! Results that somebody wrote down instead of a track: X, ΔY, Δθ of a run in its `[[run]]`, or of many in a table.
+//! Results that somebody wrote down instead of a track: what X, ΔY, Δθ of a run with their errors mean.
 
-use std::path::{Path, PathBuf};
-
-use crate::place::read_text;
-use crate::{FileError, GaitSpec};
+use std::path::PathBuf;
 
 /// A value of a run, and how sure it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,16 +43,6 @@ const VALUES: [(&str, &str, f64); 5] = [
 ];
 /// More cycles than any run has.
 const MOST_CYCLES: f64 = 1e6;
-
-/// Whether a key or a column is one of these numbers.
-pub(super) fn is_number(name: &str) -> bool {
-    let of = |(value, unit, _): &(&str, &str, f64)| {
-        ["", "_sd", "_se"]
-            .iter()
-            .any(|kind| name == format!("{value}{kind}_{unit}"))
-    };
-    name == "cycles" || VALUES.iter().any(of)
-}
 
 /// What these numbers tell of a run: the name of the one that cannot be meant, and why.
 pub(super) fn told(number: impl Fn(&str) -> Option<f64>) -> Result<ToldRun, (String, String)> {
@@ -144,115 +131,4 @@ pub(super) fn told(number: impl Fn(&str) -> Option<f64>) -> Result<ToldRun, (Str
         return Err((String::new(), problem));
     }
     Ok(told)
-}
-
-/// The runs of a table, each with its line and its gait. `gait` is what the `[[run]]` says: `circle` or `square` where the table
-/// has amplitudes, else a gait for all rows or for those without their own.
-pub(super) fn table(path: &Path, gait: &str) -> Result<Vec<(usize, GaitSpec, ToldRun)>, FileError> {
-    let text = read_text(path)?;
-    let lines = text
-        .lines()
-        .enumerate()
-        .map(|(index, line)| (index + 1, line.trim()));
-    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let error = |line: usize, column: usize, problem: String| {
-        FileError::at(path, line, column + 1, problem)
-    };
-    let Some((first, head)) = lines.next() else {
-        return Err(error(
-            1,
-            0,
-            "an empty table: its first line names columns as amplitude_deg, x_mm, x_se_mm"
-                .to_owned(),
-        ));
-    };
-    let separator = [';', '\t', ',']
-        .into_iter()
-        .find(|c| head.contains(*c))
-        .unwrap_or(',');
-    let cells = |line: &str| -> Vec<String> {
-        let trimmed = line
-            .split(separator)
-            .map(|cell| cell.trim().trim_matches('"').to_owned());
-        trimmed.collect()
-    };
-    let names = cells(head);
-    for (column, name) in names.iter().enumerate() {
-        let known =
-            is_number(name) || ["gait", "amplitude_deg", "amplitude_rad"].contains(&name.as_str());
-        if !known {
-            return Err(error(
-                first,
-                column,
-                format!(
-                    "no column `{name}`: there are gait or amplitude_deg or amplitude_rad, cycles, x_mm, y_mm, turn_deg, delta_y_mm, \
-                 delta_theta_deg, and each of these with _sd (x_sd_mm) or _se (x_se_mm)"
-                ),
-            ));
-        }
-        if names.iter().take(column).any(|before| before == name) {
-            return Err(error(first, column, format!("a second column `{name}`")));
-        }
-    }
-    let mut out = Vec::new();
-    for (line, row) in lines {
-        let row = cells(row);
-        if row.len() != names.len() {
-            let problem = format!("{} cells under {} names", row.len(), names.len());
-            return Err(error(line, 0, problem));
-        }
-        let place = |name: &str| names.iter().position(|n| n == name);
-        let cell = |name: &str| {
-            let text = row.get(place(name)?)?.as_str();
-            (!text.is_empty()).then_some(text)
-        };
-        for (column, (name, text)) in names.iter().zip(&row).enumerate() {
-            if name != "gait" && !text.is_empty() && text.parse::<f64>().is_err() {
-                return Err(error(
-                    line,
-                    column,
-                    format!("`{text}` under {name} is no number"),
-                ));
-            }
-        }
-        let number = |name: &str| cell(name)?.parse::<f64>().ok();
-        let of_row = match (cell("gait"), cell("amplitude_deg"), cell("amplitude_rad")) {
-            (Some(own), None, None) => own.to_owned(),
-            (None, Some(degrees), None) => with_amplitude(gait, &format!("{degrees}deg")),
-            (None, None, Some(radians)) => with_amplitude(gait, radians),
-            (None, None, None) => gait.to_owned(),
-            _ => {
-                let problem = "one of gait, amplitude_deg and amplitude_rad says what was swum";
-                return Err(error(line, 0, problem.to_owned()));
-            }
-        };
-        let spec: GaitSpec = of_row
-            .parse()
-            .map_err(|cause| error(line, 0, format!("gait: {cause}")))?;
-        if matches!(&spec, GaitSpec::File { path, .. } if ["circle", "square"].iter().any(|shape| path == Path::new(shape)))
-        {
-            let problem = format!("`{of_row}` has no amplitude: give a column amplitude_deg");
-            return Err(error(line, 0, problem));
-        }
-        let mut told = told(number)
-            .map_err(|(key, problem)| error(line, place(&key).unwrap_or(0), problem))?;
-        told.table = Some(path.to_owned());
-        out.push((line, spec, told));
-    }
-    if out.is_empty() {
-        return Err(error(
-            first,
-            0,
-            "no line under the columns' names".to_owned(),
-        ));
-    }
-    Ok(out)
-}
-
-/// `circle` and an amplitude, with `:cw` kept at the end.
-fn with_amplitude(shape: &str, amplitude: &str) -> String {
-    match shape.strip_suffix(":cw") {
-        Some(shape) => format!("{shape}:{amplitude}:cw"),
-        None => format!("{shape}:{amplitude}"),
-    }
 }
