@@ -2,6 +2,8 @@
 //! `docs/security.md` states, and whoever sends a stop is told what ended the motion.
 #![allow(missing_docs)]
 
+#[path = "rig/haste.rs"]
+mod haste;
 #[path = "rig/tank_less.rs"]
 mod tank_less;
 
@@ -10,11 +12,10 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use gait_player::GaitTable;
+use haste::fill;
 use host_link::port::{FaultPlan, Faults};
 use host_link::{Port, Robot as HostRobot, StoppedBy};
-use link_protocol::{
-    Arm, Header, Heartbeat, MAX_ENCODED, Message, Request, StateName, StopCause, encode,
-};
+use link_protocol::{StateName, StopCause};
 use tank_less::{Line, circle, faulty};
 
 const MS: Duration = Duration::from_millis(1);
@@ -56,32 +57,6 @@ fn worsen(robot: &mut HostRobot<Line>, rate: u32, buffer: usize) {
         ..Faults::none()
     };
     robot.port_mut().set_plan(FaultPlan::at_host(slow));
-}
-
-/// What a host in haste leaves behind: keep-alives of this session, each later than the one before, and requests that would
-/// set the robot in motion again, as many as the buffer holds.
-fn fill(robot: &mut HostRobot<Line>, buffer: usize) {
-    let session = robot.info().session;
-    let now_us = u64::try_from(robot.port().now().as_micros()).unwrap();
-    let mut sent = 0;
-    for number in 0_u16.. {
-        let heartbeat = Message::Heartbeat(Heartbeat {
-            host_us: now_us,
-            // A millisecond of the robot's time lies in 20 of them.
-            heard_us: now_us - 10_000 + u64::from(number),
-        });
-        let arm = Message::Request(Request::Arm(Arm { clear_estop: true }));
-        for (sequence, message) in [(0, heartbeat), (30_000 + number, arm)] {
-            let mut frame = [0; MAX_ENCODED];
-            let header = Header::new(session, sequence);
-            let len = encode(header, &message, &mut frame).unwrap();
-            robot.port_mut().write(&frame[..len]).unwrap();
-            sent += len;
-        }
-        if sent > buffer {
-            return;
-        }
-    }
 }
 
 /// Time from a moment to the ramp and from the last fresh keep-alive to no pulses, with nobody at the host's end.

@@ -13,6 +13,8 @@ mod endurance;
 mod failsafes;
 mod flash;
 mod frames;
+#[path = "../../../host-link/tests/rig/haste.rs"]
+mod haste;
 mod load;
 mod log;
 mod noise;

@@ -7,9 +7,9 @@ use std::time::Duration;
 use emulator::Period;
 use host_link::port::{FaultPlan, Faults, FaultyPort, TracedFrame, TracedPort};
 use host_link::{Port as _, Robot, StoppedBy};
-use link_protocol::{Arm, Decoder, Direction, Heartbeat, Message, Request, StateName};
+use link_protocol::{Decoder, Direction, Message, StateName};
 
-use crate::frames::encoded;
+use crate::haste::fill;
 use crate::promise::seen;
 use crate::rig::{self, Port};
 
@@ -86,28 +86,6 @@ fn playing(moment: u32) -> (Robot<Slow>, Delivered) {
     (robot, delivered)
 }
 
-/// What a host in haste leaves behind: keep-alives, each later than the one before, and requests that would arm again.
-fn fill(robot: &mut Robot<Slow>) {
-    let session = robot.info().session;
-    let now_us = u64::try_from(robot.port().now().as_micros()).unwrap();
-    let mut sent = 0;
-    for number in 0_u16.. {
-        let heartbeat = Message::Heartbeat(Heartbeat {
-            host_us: now_us,
-            heard_us: now_us - 10_000 + u64::from(number),
-        });
-        let arm = Message::Request(Request::Arm(Arm { clear_estop: true }));
-        for (sequence, message) in [(0, heartbeat), (30_000 + number, arm)] {
-            let frame = encoded(session, sequence, &message);
-            robot.port_mut().write(&frame).unwrap();
-            sent += frame.len();
-        }
-        if sent > BUFFER {
-            return;
-        }
-    }
-}
-
 /// From a moment to the ramp and to the last pulse, with nobody at the host's end for a minute: all that waited has arrived.
 fn left_alone(robot: Robot<Slow>, from: Duration) -> (Duration, Duration) {
     let mut port = robot.into_port();
@@ -132,7 +110,7 @@ fn what_a_dead_host_left_in_a_buffer_does_nothing() {
     let (mut ramps, mut offs, mut fresh_to_offs) = (Vec::new(), Vec::new(), Vec::new());
     for moment in 0..MOMENTS {
         let (mut robot, delivered) = playing(moment);
-        fill(&mut robot);
+        fill(&mut robot, BUFFER);
         let from = robot.port().now();
         let (ramp, off) = left_alone(robot, from);
         assert!(
@@ -162,7 +140,7 @@ fn what_a_dead_host_left_in_a_buffer_does_nothing() {
 #[test]
 fn a_stop_behind_a_full_buffer_ends_in_time_and_the_host_says_how() {
     let (mut robot, _) = playing(3);
-    fill(&mut robot);
+    fill(&mut robot, BUFFER);
     let from = robot.port().now();
     let by = robot.stop().unwrap();
     assert!(matches!(by, StoppedBy::Itself(_)), "{by:?}");
