@@ -134,7 +134,8 @@ fn r8_three_resets_in_a_minute_refuse_arming_until_cleared() {
         kept = bench.output.kept;
     }
     let mut bench = restarted(kept, ResetReason::Pin);
-    assert!(bench.status().flags.contains(Flags::RESET_LOOP));
+    let flags = bench.status().flags;
+    assert!(flags.contains(Flags::RESET_LOOP) && !flags.contains(Flags::SHORT_STARTS));
     assert!(matches!(
         bench.refused(ARM),
         Refusal::ResetLoop { wait_s: 60 }

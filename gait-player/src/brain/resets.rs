@@ -160,6 +160,32 @@ mod tests {
     }
 
     #[test]
+    fn what_locked_it_is_told_and_outlives_resets() {
+        let mut by_starts = Resets::at_start(0, PowerOn);
+        assert!(!by_starts.locked_by_starts());
+        by_starts.lock();
+        assert!(by_starts.locked_by_starts());
+        let by_resets = Resets {
+            estop: true,
+            locked: true,
+            by_starts: false,
+            ages: [0, 5],
+            uptime_s: 9,
+        };
+        for reason in [Watchdog, Crash, Pin] {
+            let after = |kept: Resets| Resets::at_start(kept.word(), reason);
+            assert!(after(by_starts).locked_by_starts(), "{reason:?}");
+            let other = after(by_resets);
+            assert!(
+                other.wait_s().is_some() && !other.locked_by_starts(),
+                "{reason:?}"
+            );
+        }
+        by_starts.clear();
+        assert!(!by_starts.locked_by_starts() && by_starts.wait_s().is_none());
+    }
+
+    #[test]
     fn ages_saturate() {
         let long_ago = run(Resets::at_start(0, Watchdog), 1_000_000);
         assert_eq!(Resets::at_start(long_ago, Watchdog).ages, [0, NONE]);
