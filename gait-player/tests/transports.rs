@@ -329,6 +329,7 @@ fn answers_and_telemetry_of_a_robot_with_a_key_verify_and_count_up() {
     assert!(heard.len() > 3);
     let mut last = 0;
     for (received, signed) in heard {
+        assert_eq!(received.header.version, PROTOCOL_CURRENT);
         let signature = received.signature.expect("unsigned");
         assert!(seal.verifies(&signed, &signature), "{received:?}");
         assert!(signature.counter > last);
@@ -342,6 +343,37 @@ fn answers_and_telemetry_of_a_robot_with_a_key_verify_and_count_up() {
         refused.message,
         Ok(Message::Reply(Reply::Refused(Refusal::KeyNeeded)))
     );
+    // And whoever stops it from outside of the session.
+    let outside = Header::new(0xFFFF, 7);
+    let stop = Message::Request(Request::Stop);
+    say(&mut bench, outside, &stop, None, 0);
+    let (stopped, _) = listen(&mut bench.brain).pop().unwrap();
+    assert_eq!(
+        (stopped.header, stopped.message),
+        (outside, Ok(Message::Reply(Reply::Done)))
+    );
+    assert_eq!(stopped.signature, None);
+    // A host of version 1 knows no signed answers.
+    let hello = Message::Hello(Hello {
+        protocol_min: 1,
+        protocol_current: 1,
+        schema_key: SCHEMA_KEY_V1,
+        host_nonce: 3,
+    });
+    let header = Header {
+        version: 1,
+        ..Header::new(0, 1)
+    };
+    say(&mut bench, header, &hello, None, 0);
+    for _ in 0..10 {
+        bench.now_us += 20_000;
+        bench.brain.tick(bench.now_us, &bench.inputs);
+    }
+    let heard = listen(&mut bench.brain);
+    assert!(heard.len() > 3);
+    for (received, _) in heard {
+        assert_eq!((received.header.version, received.signature), (1, None));
+    }
 }
 
 /// Nothing of this is stored: a start without its storage counts from what the RAM says, or from one.
