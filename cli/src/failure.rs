@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use crate::output::verbose;
+
 /// Why a command did not do its job; the text says what was being done, to what, and what to do next.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
@@ -24,6 +26,19 @@ impl Failure {
     /// A job that was tried and failed, with every cause that the error names.
     pub(crate) fn tried(error: &dyn std::error::Error) -> Self {
         Self::Tried(with_causes(error))
+    }
+
+    /// The same with what only an expert asks for: said with `--verbose`, else only that there is more.
+    pub(crate) fn tried_with_details(
+        error: &dyn std::error::Error,
+        details: Option<String>,
+    ) -> Self {
+        let said = with_causes(error);
+        Self::Tried(match details {
+            None => said,
+            Some(details) if verbose() => format!("{said}\n  {details}"),
+            Some(_) => format!("{said} (--verbose says what was seen)"),
+        })
     }
 
     /// Input that cannot be used, with every cause that the error names.

@@ -41,6 +41,9 @@ fn main() -> ExitCode {
             if arguments.overwrite {
                 new_file::allow_overwriting();
             }
+            if arguments.verbose {
+                output::be_verbose();
+            }
             match commands::run(arguments.command, output).and_then(|()| output::delivered()) {
                 Ok(()) => ExitCode::SUCCESS,
                 Err(failure) => {

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::io::{self, Write};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::Serialize;
 
@@ -10,6 +11,19 @@ use crate::failure::{Failure, Outcome};
 
 /// What the system said when standard output first took no more.
 static LOST: OnceLock<String> = OnceLock::new();
+
+/// Whether experts' details are wanted.
+static VERBOSE: AtomicBool = AtomicBool::new(false);
+
+/// From here on answers and failures tell their details, too.
+pub(crate) fn be_verbose() {
+    VERBOSE.store(true, Ordering::Relaxed);
+}
+
+/// Whether they do.
+pub(crate) fn verbose() -> bool {
+    VERBOSE.load(Ordering::Relaxed)
+}
 
 /// Where and how a command answers.
 #[derive(Debug, Clone, Copy)]

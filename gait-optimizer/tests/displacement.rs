@@ -68,7 +68,10 @@ fn the_robot_has_no_optimum_without_bounds() {
         panic!("{error}");
     };
     assert!(fates.came_back > 0 && fates.sent > fates.ended);
-    assert!(error.to_string().contains("give an upper bound"));
+    assert!(error.to_string().contains("--max-angle"));
+    // One sentence for people; the numbers stand in the details.
+    assert!(!error.to_string().contains("lambda4"));
+    assert!(error.details().unwrap().contains("miss lambda4 = 0"));
 }
 
 /// A bound that does not bind changes nothing; a tighter one costs displacement; a tight one makes a square.

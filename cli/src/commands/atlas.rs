@@ -127,7 +127,7 @@ impl Atlas {
                     .save(&folder.draft().join(&name))?;
                 line.gait = Some(folder.place().join(&name));
             }
-            let picture = picture::svg(&answer.title(), &found.optima);
+            let picture = picture::svg(answer.title(), objective, &found.optima)?;
             let path = folder.draft().join("atlas.svg");
             fs::write(&path, picture).map_err(|error| {
                 Failure::Tried(format!("cannot write {}: {error}", path.display()))

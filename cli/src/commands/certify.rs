@@ -68,9 +68,11 @@ impl Certify {
         if certificate.pass() {
             Ok(())
         } else {
+            let checks = certificate.checks();
+            let failed = checks.iter().filter(|check| !check.pass).count();
+            let of = checks.len();
             Err(Failure::Answered(format!(
-                "the gait is no certified optimum: {}",
-                certificate.failures()
+                "the gait is no certified optimum: {failed} of {of} conditions do not hold"
             )))
         }
     }

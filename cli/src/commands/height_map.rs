@@ -13,7 +13,7 @@ use swimmer_files::{AnyGait, GaitSpec, write_atomically};
 use crate::arguments::{gait, load_gait_for, load_swimmer, positive_angle};
 use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
-use crate::output::Output;
+use crate::output::{Output, verbose};
 use crate::quantity::{self, Rows};
 
 /// Map the height function, with its zero-level curves and gaits
@@ -82,9 +82,9 @@ impl Component {
     /// With its unit.
     fn quantity(self) -> &'static str {
         match self {
-            Self::X => "H_x / L  [rad⁻²]",
-            Self::Y => "H_y / L  [rad⁻²]",
-            Self::Theta => "H_θ  [rad/rad²]",
+            Self::X => "H_x/L [rad⁻²]",
+            Self::Y => "H_y/L [rad⁻²]",
+            Self::Theta => "H_θ [rad⁻¹]",
         }
     }
 }
@@ -293,12 +293,14 @@ impl fmt::Display for Mapped {
             inner_change,
             change,
         } = self.convergence;
-        rows.row(
-            "frame",
-            format!(
-                "order {order}; from order {order_before} it moved {inner_change:.0e} inside, {change:.0e} at the corners"
-            ),
-        );
+        if verbose() {
+            rows.row(
+                "frame",
+                format!(
+                    "order {order}; from order {order_before} it moved {inner_change:.0e} inside, {change:.0e} at the corners"
+                ),
+            );
+        }
         let component = self.row.row().index();
         for rule in &self.gaits {
             let value = |values: &[f64; 3]| values.get(component).copied().unwrap_or(f64::NAN);

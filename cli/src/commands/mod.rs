@@ -35,11 +35,14 @@ GAIT is circle:AMPLITUDE, square:AMPLITUDE or the path of a gait file; add :cw t
 Exit status: 0 done, 1 tried and failed, 2 bad usage or bad input.")]
 pub(crate) struct Arguments {
     /// Print one JSON document on standard output; everything else goes to standard error
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = "Options of every command")]
     pub(crate) json: bool,
     /// Replace files that exist; without it a command that would write one refuses
-    #[arg(long, global = true)]
+    #[arg(long, global = true, help_heading = "Options of every command")]
     pub(crate) overwrite: bool,
+    /// Also tell what only an expert asks for: how an answer was found, what a search saw before it failed
+    #[arg(long, global = true, help_heading = "Options of every command")]
+    pub(crate) verbose: bool,
     /// What to do.
     #[command(subcommand)]
     pub(crate) command: Command,

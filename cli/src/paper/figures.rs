@@ -18,6 +18,7 @@ use crate::report::calibration::field;
 use crate::report::chart::{
     BOUND, Chart, INK, MEASURED, PREDICTED, Point, SINGULAR, SLENDER, Series,
 };
+use crate::report::style::ZERO_CURVE;
 
 /// One figure.
 #[derive(Debug)]
@@ -57,6 +58,8 @@ impl Figure {
                 y_label: labels[1].into(),
                 size,
                 equal_axes: size == SQUARE,
+                legend: Vec::new(),
+                title: String::new(),
                 series: Vec::new(),
             },
             names: Vec::new(),
@@ -79,6 +82,15 @@ impl Figure {
                 width: 1.7,
             },
         )
+    }
+
+    /// A closed curve with the way it runs.
+    fn gait(self, name: &'static str, color: RGBColor, points: Vec<Point>) -> Self {
+        let heads = Series::Arrows {
+            points: points.clone(),
+            color,
+        };
+        self.line(name, color, points).with(name, heads)
     }
 
     fn dashes(self, name: &'static str, color: RGBColor, points: Vec<Point>) -> Self {
@@ -131,7 +143,10 @@ impl Figure {
                 Series::Line { points, .. }
                 | Series::Dashes { points, .. }
                 | Series::Dots { points, .. } => points,
-                Series::Bars { .. } | Series::Word { .. } | Series::Names(_) => continue,
+                Series::Bars { .. }
+                | Series::Arrows { .. }
+                | Series::Word { .. }
+                | Series::Names(_) => continue,
             };
             for (x, y) in points {
                 let _ = writeln!(text, "{},{x:?},{y:?}", field(name));
@@ -189,8 +204,8 @@ fn simple_gaits() -> Figure {
         ["φ₁ [rad]", "φ₂ [rad]"],
         SQUARE,
     )
-    .line("circle", SLENDER, of(SimpleShape::Circle))
-    .line("square", INK, of(SimpleShape::Square))
+    .gait("circle", SLENDER, of(SimpleShape::Circle))
+    .gait("square", INK, of(SimpleShape::Square))
     .mark("start", SLENDER, (std::f64::consts::FRAC_1_SQRT_2, std::f64::consts::FRAC_1_SQRT_2))
     .mark("start", INK, (1.0, 1.0))
 }
@@ -278,11 +293,11 @@ fn height_map(map: &HeightMap, simple: &Simple) -> Outcome<Figure> {
     let mut figure = Figure::new(
         "height-map",
         "Height map of the robot",
-        "H_x in minimum-perturbation coordinates on |φᵢ| ≤ 2.8 rad, its zero-level curves, and the best square within",
+        "H<sub>x</sub> in minimum-perturbation coordinates on |φᵢ| ≤ 2.8 rad, its zero-level curves, and the best square within",
         ["φ₁ [rad]", "φ₂ [rad]"],
         SQUARE,
     );
-    figure = with_zero_curves(figure, map, INK);
+    figure = with_zero_curves(figure, map);
     let mut gaits = Vec::new();
     for (name, best) in ["first best square", "second best square"]
         .into_iter()
@@ -290,13 +305,13 @@ fn height_map(map: &HeightMap, simple: &Simple) -> Outcome<Figure> {
     {
         if best.amplitude < map.half_width() {
             let gait = AnyGait::square(best.amplitude);
-            figure = figure.line(name, MEASURED, drawn(&gait));
+            figure = figure.gait(name, MEASURED, drawn(&gait));
             gaits.push((name.to_owned(), gait));
         }
     }
     figure.picture = Some(picture::svg(&picture::Figure {
         title: String::new(),
-        quantity: "H_x, 1/rad²",
+        quantity: "H_x/L [rad⁻²]",
         map,
         row: HeightRow::X,
         curves: &map.zero_curves(HeightRow::X),
@@ -305,17 +320,21 @@ fn height_map(map: &HeightMap, simple: &Simple) -> Outcome<Figure> {
     Ok(figure)
 }
 
-fn with_zero_curves(mut figure: Figure, map: &HeightMap, color: RGBColor) -> Figure {
+fn with_zero_curves(mut figure: Figure, map: &HeightMap) -> Figure {
     for curve in map.zero_curves(HeightRow::X) {
-        let points = curve.points.iter().map(pair).collect();
-        figure = figure.line("zero of the height", color, points);
+        let zero = Series::Line {
+            points: curve.points.iter().map(pair).collect(),
+            color: SINGULAR,
+            width: ZERO_CURVE,
+        };
+        figure = figure.with("zero of the height", zero);
     }
     figure
 }
 
 /// Gaits (b), (c), (d) over the zero-level curves.
 fn displacement_gaits(study: &Study) -> [Figure; 3] {
-    const CAPTION: &str = "<i class=band style='color:#c3cdd6'></i>zero-level curves of H_x <i style='color:#d35b1e'></i>gait \
+    const CAPTION: &str = "<i class=band style='color:#c3cdd6'></i>zero-level curves of H<sub>x</sub> <i style='color:#d35b1e'></i>gait \
                            <i style='color:#d8b9e6'></i>bounds";
     let [b, c, d] = &study.robot_displacement;
     let titles = [
@@ -329,9 +348,9 @@ fn displacement_gaits(study: &Study) -> [Figure; 3] {
     ];
     titles.map(|(name, title, gait)| {
         let figure = Figure::new(name, title, CAPTION, ["φ₁ [rad]", "φ₂ [rad]"], SQUARE);
-        with_zero_curves(figure, &study.robot_map, SINGULAR)
+        with_zero_curves(figure, &study.robot_map)
             .dashes("bound", BOUND, drawn(&AnyGait::square(UPPER)))
-            .line(name, PREDICTED, samples(gait))
+            .gait(name, PREDICTED, samples(gait))
     })
 }
 

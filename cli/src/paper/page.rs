@@ -41,7 +41,7 @@ pub(crate) fn page(rows: &[Row], figures: &[Figure]) -> Outcome<String> {
 
 fn table(html: &mut String, rows: &[Row]) {
     html.push_str(
-        "<section><table class=rows><thead><tr><th>quantity<th>paper<th>ours<th>deviation<th></tr></thead><tbody>",
+        "<section><div class=scroll tabindex=0><table class=rows><thead><tr><th>quantity<th>paper<th>ours<th>deviation<th></tr></thead><tbody>",
     );
     for row in rows {
         let verdict = match row.pass {
@@ -61,7 +61,7 @@ fn table(html: &mut String, rows: &[Row]) {
             minus(&deviation(row)),
         );
     }
-    html.push_str("</tbody></table></section>");
+    html.push_str("</tbody></table></div></section>");
 }
 
 /// The paper's number as a person reads it.

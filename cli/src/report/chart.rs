@@ -2,16 +2,15 @@
 
 use std::ops::Range;
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
 
+use super::style::{
+    AXIS, Area, LEGEND_LINE, NAMES, NUMBERS, SCALE, TITLE, WORDS, arrows, finished, head, legend,
+    letters, pixels, said, stroke,
+};
+pub(crate) use super::style::{INK, Point};
 use crate::failure::{Failure, Outcome};
 
-/// Plotters rounds to whole pixels; drawing this many times larger and shrinking in the page keeps curves smooth.
-const SCALE: i32 = 8;
-
-/// Text, axes and the fitted model.
-pub(crate) const INK: RGBColor = RGBColor(0x1d, 0x24, 0x2c);
 /// What was measured.
 pub(crate) const MEASURED: RGBColor = RGBColor(0x1f, 0x6f, 0xb2);
 /// The slender model without a sphere.
@@ -25,10 +24,6 @@ pub(crate) const SINGULAR: RGBColor = RGBColor(0xc3, 0xcd, 0xd6);
 /// A broad band of what was measured, to draw a prediction upon.
 pub(crate) const MEASURED_BAND: RGBColor = RGBColor(0x9d, 0xc6, 0xe8);
 const FAINT: RGBColor = RGBColor(0xe3, 0xe7, 0xeb);
-const AXIS: RGBColor = RGBColor(0x9a, 0xa5, 0xb1);
-
-/// A point of a series, in the units of the axes.
-pub(crate) type Point = (f64, f64);
 
 /// Something drawn on a chart.
 #[derive(Debug, Clone)]
@@ -56,6 +51,8 @@ pub(crate) enum Series {
         points: Vec<(f64, f64, f64)>,
         color: RGBColor,
     },
+    /// Heads of arrows along a closed curve, the way its points run; on equal axes.
+    Arrows { points: Vec<Point>, color: RGBColor },
     /// Names under 1, 2, 3 … of the horizontal axis instead of numbers.
     Names(Vec<String>),
     /// A short word beside a point.
@@ -69,16 +66,20 @@ pub(crate) enum Series {
 /// What a chart shows and between which axes.
 #[derive(Debug, Clone)]
 pub(crate) struct Chart {
+    /// On top; empty where the page tells it.
+    pub(crate) title: String,
     /// Under the horizontal axis, with its unit.
     pub(crate) x_label: String,
     /// Beside the vertical axis, with its unit.
     pub(crate) y_label: String,
-    /// Width and height in pixels of the page.
+    /// Width and height in pixels of the page, without the legend.
     pub(crate) size: (i32, i32),
     /// One unit is as long up as it is across.
     pub(crate) equal_axes: bool,
     /// Drawn in this order.
     pub(crate) series: Vec<Series>,
+    /// Names of curves, told below; for a figure that stands without a caption.
+    pub(crate) legend: Vec<(String, RGBColor)>,
 }
 
 impl Chart {
@@ -88,11 +89,11 @@ impl Chart {
     /// [`Failure::Tried`] when the drawing library gives up.
     pub(crate) fn svg(&self) -> Outcome<String> {
         let mut text = String::new();
+        let lines = i32::try_from(self.legend.len()).unwrap_or(i32::MAX / 1000);
+        let size = (self.size.0, self.size.1 + LEGEND_LINE * lines);
         {
-            let size = (self.size.0 * SCALE, self.size.1 * SCALE);
-            let area =
-                SVGBackend::with_string(&mut text, (size.0.unsigned_abs(), size.1.unsigned_abs()));
-            let area = area.into_drawing_area();
+            let drawn = [size.0, size.1].map(|side| (side * SCALE).unsigned_abs());
+            let area = SVGBackend::with_string(&mut text, drawn.into()).into_drawing_area();
             self.draw(&area).map_err(|reason| {
                 Failure::Tried(format!(
                     "cannot draw the chart of {} over {}: {reason}",
@@ -100,29 +101,37 @@ impl Chart {
                 ))
             })?;
         }
-        Ok(text)
+        Ok(finished(&text, size))
     }
 
     #[allow(clippy::too_many_lines)] // one chart, part after part
-    fn draw(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<(), String> {
-        let said = |error: &dyn std::fmt::Display| error.to_string();
+    fn draw(&self, whole: &Area<'_>) -> Result<(), String> {
+        whole.fill(&WHITE).map_err(|error| said(&error))?;
+        let named = self
+            .legend
+            .iter()
+            .map(|(name, color)| (name.as_str(), *color));
+        legend(whole, (64, self.size.1), named)?;
+        let (area, _) = whole.split_vertically(self.size.1 * SCALE);
         let label_width = 64 * SCALE;
         let label_height = 42 * SCALE;
-        let (top, right) = (10 * SCALE, 24 * SCALE);
+        let (top, right) = (self.top() * SCALE, 24 * SCALE);
+        area.draw_text(&self.title, &letters(TITLE, INK), (label_width, 10 * SCALE))
+            .map_err(|error| said(&error))?;
         let inside = (
             self.size.0 * SCALE - label_width - right,
             self.size.1 * SCALE - label_height - top,
         );
         let (x_range, y_range) = self.ranges(inside);
         let x_label = label_format(&x_range, 7);
-        let mut chart = ChartBuilder::on(area)
+        let mut chart = ChartBuilder::on(&area)
             .margin_top(top)
+            .margin_left(8 * SCALE)
             .margin_right(right)
             .x_label_area_size(label_height)
-            .y_label_area_size(label_width)
+            .y_label_area_size(label_width - 8 * SCALE)
             .build_cartesian_2d(x_range.clone(), y_range.clone())
             .map_err(|error| said(&error))?;
-        let text = |size: i32| ("sans-serif", size * SCALE).into_font().color(&INK);
         chart
             .configure_mesh()
             .x_labels(self.names().map_or(7, |names| names.len() + 2))
@@ -141,8 +150,8 @@ impl Chart {
                 stroke_width: SCALE.unsigned_abs(),
             })
             .set_all_tick_mark_size(4 * SCALE)
-            .label_style(text(16))
-            .axis_desc_style(text(17))
+            .label_style(letters(NUMBERS, INK))
+            .axis_desc_style(letters(NAMES, INK))
             .x_desc(self.x_label.as_str())
             .y_desc(self.y_label.as_str())
             .draw()
@@ -194,9 +203,15 @@ impl Chart {
                         .map(|&(x, y, _)| Circle::new((x, y), pixels(3.6), color.filled()));
                     chart.draw_series(discs).map_err(|error| said(&error))?;
                 }
+                Series::Arrows { points, color } => {
+                    let heads = arrows(points).into_iter().map(|(at, along)| {
+                        EmptyElement::at(at) + Polygon::new(head(along), color.filled())
+                    });
+                    chart.draw_series(heads).map_err(|error| said(&error))?;
+                }
                 Series::Names(_) => {}
                 Series::Word { at, text, color } => {
-                    let style = ("sans-serif", 15 * SCALE).into_font().color(color);
+                    let style = letters(WORDS, *color);
                     let word = EmptyElement::at(*at)
                         + Text::new(text.clone(), (6 * SCALE, -8 * SCALE), style);
                     chart
@@ -206,6 +221,11 @@ impl Chart {
             }
         }
         Ok(())
+    }
+
+    /// Above the plane of the axes, pixels of the page.
+    fn top(&self) -> i32 {
+        if self.title.is_empty() { 10 } else { 44 }
     }
 
     /// What stands under 1, 2, 3 …, where the horizontal axis is no scale.
@@ -252,18 +272,9 @@ impl Series {
                 .flat_map(|&(x, y, half)| [(x, y - half), (x, y + half)])
                 .collect(),
             Self::Word { at, .. } => vec![*at],
-            Self::Names(_) => Vec::new(),
+            Self::Names(_) | Self::Arrows { .. } => Vec::new(),
         }
     }
-}
-
-fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
-    color.stroke_width(pixels(width).unsigned_abs())
-}
-
-#[allow(clippy::cast_possible_truncation)] // A few hundred at most.
-fn pixels(page_pixels: f64) -> i32 {
-    (page_pixels * f64::from(SCALE)).round() as i32
 }
 
 fn with_air(values: impl Iterator<Item = f64>) -> Range<f64> {
@@ -310,6 +321,7 @@ mod tests {
 
     fn chart(points: Vec<Point>) -> Chart {
         Chart {
+            title: String::new(),
             x_label: "x [mm]".into(),
             y_label: "y [mm]".into(),
             size: (400, 300),
@@ -319,6 +331,7 @@ mod tests {
                 color: INK,
                 width: 1.5,
             }],
+            legend: Vec::new(),
         }
     }
 

@@ -91,6 +91,8 @@ fn over_amplitude(
         y_label: y_label.into(),
         size,
         equal_axes: false,
+        legend: Vec::new(),
+        title: String::new(),
         series: vec![
             Series::Line {
                 points: curve(start),
@@ -118,6 +120,8 @@ pub(super) fn track(track: &Track) -> Outcome<String> {
         y_label: "y [mm]".into(),
         size: WIDE,
         equal_axes: true,
+        legend: Vec::new(),
+        title: String::new(),
         series: vec![Series::Line {
             points: thinned(track, |[_, x, y, _]| (x * 1e3, y * 1e3)),
             color: MEASURED,
@@ -159,6 +163,8 @@ pub(super) fn prediction(report: &Report) -> Outcome<String> {
         y_label: "x [mm]".into(),
         size: (520, 290),
         equal_axes: false,
+        legend: Vec::new(),
+        title: String::new(),
         series: vec![
             Series::Line {
                 points: line(&report.swum),
@@ -181,6 +187,8 @@ fn over_time(y_label: &str, series: Vec<Series>) -> Outcome<String> {
         y_label: y_label.into(),
         size: LOW,
         equal_axes: false,
+        legend: Vec::new(),
+        title: String::new(),
         series,
     }
     .svg()
@@ -218,6 +226,10 @@ pub(super) fn gait(gait: &GaitPicture) -> Outcome<String> {
         color: PREDICTED,
         width: 1.3,
     });
+    series.push(Series::Arrows {
+        points: gait.played.iter().map(degrees).collect(),
+        color: PREDICTED,
+    });
     series.push(Series::Dots {
         points: gait.set_points.iter().map(degrees).collect(),
         color: MEASURED,
@@ -235,6 +247,8 @@ pub(super) fn gait(gait: &GaitPicture) -> Outcome<String> {
         y_label: "φ₂ [°]".into(),
         size: (520, 470),
         equal_axes: true,
+        legend: Vec::new(),
+        title: String::new(),
         series,
     }
     .svg()

@@ -4,6 +4,7 @@ pub(crate) mod calibration;
 pub(crate) mod chart;
 mod figures;
 mod page;
+pub(crate) mod style;
 
 pub(crate) use page::{escaped, minus, page};
 

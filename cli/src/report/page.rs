@@ -98,7 +98,7 @@ fn heading(html: &mut String, report: &Report) {
 
 fn cards(html: &mut String, report: &Report) {
     html.push_str(
-        "<section class=top><table class=fit><thead><tr><th>parameter<th>start<th>fitted",
+        "<section class=top><div class=scroll tabindex=0><table class=fit><thead><tr><th>parameter<th>start<th>fitted",
     );
     let _ = write!(
         html,
@@ -135,7 +135,7 @@ fn cards(html: &mut String, report: &Report) {
     }
     let _ = write!(
         html,
-        "</tbody></table><p class=note>RMSE {} (paper’s weights) with {}.</p>",
+        "</tbody></table></div><p class=note>RMSE {} (paper’s weights) with {}.</p>",
         minus(&quantity::small(report.rmse)),
         escaped(&report.c_t_form)
     );
@@ -185,7 +185,7 @@ fn files(html: &mut String, report: &Report) {
 
 fn runs(html: &mut String, report: &Report) {
     html.push_str(
-        "<section><h2>The circles</h2><table class=circles><thead><tr><th>amplitude<th>cycles\
+        "<section><h2>The circles</h2><div class=scroll tabindex=0><table class=circles><thead><tr><th>amplitude<th>cycles\
          <th>X [mm]<th>sd<th>ΔY [mm]<th>sd<th>Δθ [°]<th>sd</tr></thead><tbody>",
     );
     for circle in &report.circles {
@@ -202,7 +202,7 @@ fn runs(html: &mut String, report: &Report) {
             circle.delta_theta.1.to_degrees(),
         );
     }
-    html.push_str("</tbody></table></section>");
+    html.push_str("</tbody></table></div></section>");
 }
 
 /// A true minus sign instead of a hyphen.

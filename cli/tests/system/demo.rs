@@ -1,5 +1,6 @@
 //! The whole loop through the binary: what it must recover, and what it must leave behind.
 
+use super::figures::fits_a_telephone;
 use std::path::Path;
 
 use crate::binary::{number, swimmer_in};
@@ -41,6 +42,7 @@ fn the_papers_robot_and_what_the_demo_leaves_behind() {
     let out = folder.path().join("out");
     let report = std::fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.starts_with("<!doctype html>") && report.matches("<svg").count() >= 6);
+    fits_a_telephone(&report);
     assert!(
         !report.contains("http://") || !report.contains("src="),
         "the report needs nothing from outside"
@@ -68,6 +70,7 @@ fn the_papers_robot_and_what_the_demo_leaves_behind() {
         );
     }
     what_a_calibration_leaves_behind(&out);
+    fits_a_telephone(&std::fs::read_to_string(out.join("fit/report.html")).unwrap());
 }
 
 /// Whether it can be used, and what the intervals are where what is known by halves may move.

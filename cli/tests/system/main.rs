@@ -6,6 +6,7 @@ mod certify;
 mod contract_keys;
 mod demo;
 mod emulated;
+mod figures;
 mod flash;
 #[cfg(unix)]
 mod hc05;

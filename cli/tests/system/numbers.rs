@@ -186,7 +186,7 @@ fn without_a_bound_the_robot_has_no_optimum_as_the_paper_says() {
         ran.json()["error"]
             .as_str()
             .unwrap()
-            .contains("give an upper bound"),
+            .contains("without a bound on the joint angles"),
         "{ran}"
     );
 }

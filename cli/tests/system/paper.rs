@@ -71,6 +71,7 @@ fn the_figures_and_the_page() {
         );
     }
     let page = fs::read_to_string(out.join("index.html")).unwrap();
+    super::figures::fits_a_telephone(&page);
     // Self-contained: nothing is fetched.
     assert!(page.contains("</html>") && !page.contains("src=") && !page.contains("<link"));
     // A folder with something in it is left alone.

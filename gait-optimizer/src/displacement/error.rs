@@ -89,8 +89,8 @@ pub enum DisplacementError {
     },
     /// Without bounds on the angles there is no optimum.
     #[error(
-        "no optimum without a bound on the joint angles: no zero-level curve of the height function leads from \
-         phi1 = phi2 to phi1 = -phi2 and ends with lambda4 = 0 ({fates}); give an upper bound (a gait can then run along it)"
+        "this swimmer has no gait of most displacement without a bound on the joint angles; give one, as --max-angle 2.8: a \
+         gait can then run along it"
     )]
     NoUnboundedOptimum {
         /// What the search saw.
@@ -98,7 +98,7 @@ pub enum DisplacementError {
     },
     /// Under these bounds there is no optimum with this sign of X.
     #[error(
-        "no {heading} optimum under these bounds ({fates}){}; try other bounds or the other direction",
+        "no {heading} gait is a local optimum of displacement under these bounds{}; try other bounds or the other direction",
         outdone_words(*.outdone)
     )]
     NoOptimum {
@@ -111,7 +111,8 @@ pub enum DisplacementError {
     },
     /// Extremals were found, but the best of them fails its certificate.
     #[error(
-        "the best extremal found (X/L = {displacement_over_length}) is no optimum: it fails {failed}"
+        "the best gait found (X/L = {displacement_over_length:.6}) does not meet all conditions of an optimum, so it is not \
+         returned; try other bounds"
     )]
     NotCertified {
         /// Its net displacement over L.
@@ -119,6 +120,21 @@ pub enum DisplacementError {
         /// The checks that it fails, with their values.
         failed: String,
     },
+}
+
+impl DisplacementError {
+    /// What the search saw, for who knows the maximum principle; none where the error itself says it all.
+    pub fn details(&self) -> Option<String> {
+        match self {
+            Self::NoUnboundedOptimum { fates } => Some(format!(
+                "a gait without bounds follows a zero-level curve of the height function from phi1 = phi2 to phi1 = -phi2 and \
+                 ends with lambda4 = 0: {fates}"
+            )),
+            Self::NoOptimum { fates, .. } => Some(fates.to_string()),
+            Self::NotCertified { failed, .. } => Some(format!("it fails {failed}")),
+            _ => None,
+        }
+    }
 }
 
 /// That there are gaits all the same.

@@ -70,9 +70,7 @@ pub enum EfficiencyError {
     },
     /// No circle or ellipse is a local optimum.
     #[error(
-        "no start for a {branch} gait: |X|/S has no local maximum over circles and ellipses of 0.3 to 4.6 rad with this \
-         sign of X (the largest at the rim is {best:.3e}, in units of L and c_t); this branch does not exist for this \
-         swimmer, or lies at larger angles"
+        "this swimmer has no {branch} gait of most efficiency, or one at larger angles than are searched"
     )]
     NoStart {
         /// Which gait.
@@ -82,8 +80,8 @@ pub enum EfficiencyError {
     },
     /// The Fourier gaits run away.
     #[error(
-        "no {branch} gait: from the circle of {amplitude:.3} rad, Fourier gaits of order {order} get better until a joint \
-         turns further than {farthest:.2} rad (efficiency {efficiency:.6e} at the order before)"
+        "this swimmer has no {branch} gait of most efficiency: gaits get better until a joint turns further than \
+         {farthest:.2} rad; `swimmer atlas --objective efficiency --max-angle 2.8` finds those within a bound"
     )]
     RunsAway {
         /// Which gait.
@@ -99,8 +97,8 @@ pub enum EfficiencyError {
     },
     /// The Fourier gaits of this branch cross themselves, and shooting does not converge from them.
     #[error(
-        "no simple {branch} gait: the Fourier gait of order {order} (efficiency {efficiency:.9e}) crosses itself {crossings} \
-         times"
+        "this swimmer has no simple {branch} gait of most efficiency: the best one crosses itself; `swimmer atlas --objective \
+         efficiency` lists such gaits, too"
     )]
     CrossesItself {
         /// Which gait.
@@ -114,9 +112,9 @@ pub enum EfficiencyError {
     },
     /// Shooting does not converge from the best start that there is.
     #[error(
-        "no {branch} gait: the Fourier gait of order {order} has efficiency {efficiency:.9e}, but shooting does not \
-         converge from it to a residual of 1e-10; such a gait may be met from a swimmer that works: follow its gait with \
-         `swimmer atlas --objective efficiency --continue chi=FROM..TO` or `link-ratio=FROM..TO`"
+        "the {branch} gait was not found: the search does not converge for this swimmer; it may be met from a swimmer that \
+         works, by following its gait with `swimmer atlas --objective efficiency --continue chi=FROM..TO` or \
+         `link-ratio=FROM..TO`"
     )]
     NotConverged {
         /// Which gait.
@@ -136,8 +134,8 @@ pub enum EfficiencyError {
     },
     /// What shooting converged to is another gait than the one that was asked for.
     #[error(
-        "no {branch} gait: the extremal found (efficiency {efficiency:.9e}, X/L = {displacement_over_length:.9}, start angle \
-         {start_angle:.6} rad) is not of this branch, whose definition is {definition}"
+        "there is no {branch} gait here: what was found starts at {start_angle:.3} rad with X/L = {displacement_over_length:.6}, \
+         and a {branch} gait is one with {definition}"
     )]
     OtherBranch {
         /// Which gait.
@@ -153,7 +151,7 @@ pub enum EfficiencyError {
     },
     /// An extremal was found, but it fails its certificate.
     #[error(
-        "the {branch} extremal found (efficiency {efficiency:.9e}) is no optimum: it fails {failed}"
+        "the {branch} gait found does not meet all conditions of an optimum, so it is not returned; try other bounds"
     )]
     NotCertified {
         /// Which gait.
@@ -175,6 +173,44 @@ impl EfficiencyError {
             Self::RunsAway { .. } => 1,
             _ => 0,
         }
+    }
+
+    /// What the search saw, for who knows the method; none where the error itself says it all.
+    pub fn details(&self) -> Option<String> {
+        Some(match self {
+            Self::NoStart { best, .. } => format!(
+                "|X|/S has no local maximum over circles and ellipses of 0.3 to 4.6 rad with this sign of X; the largest at the \
+                 rim is {best:.3e}, in units of L and c_t"
+            ),
+            Self::RunsAway {
+                amplitude,
+                order,
+                efficiency,
+                ..
+            } => format!(
+                "from the circle of {amplitude:.3} rad the Fourier gaits of order {order} run away (efficiency {efficiency:.6e} at \
+                 the order before)"
+            ),
+            Self::CrossesItself {
+                order,
+                efficiency,
+                crossings,
+                ..
+            } => format!(
+                "the Fourier gait of order {order} (efficiency {efficiency:.9e}) crosses itself {crossings} times"
+            ),
+            Self::NotConverged {
+                order, efficiency, ..
+            } => format!(
+                "the Fourier gait of order {order} has efficiency {efficiency:.9e}, but shooting does not converge from it to a \
+                 residual of 1e-10"
+            ),
+            Self::OtherBranch { efficiency, .. } => format!("its efficiency is {efficiency:.9e}"),
+            Self::NotCertified {
+                efficiency, failed, ..
+            } => format!("its efficiency is {efficiency:.9e}; it fails {failed}"),
+            _ => return None,
+        })
     }
 
     /// Whether the problem itself makes no sense, rather than having no solution.

@@ -1,12 +1,15 @@
 //! The height map as a figure: colours for height, lines for the zero-level curves and for gaits.
 
 use gait_optimizer::{HeightMap, LevelCurve, Row};
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use swimmer_files::AnyGait;
 use swimmer_model::Gait as _;
 
 use crate::failure::{Failure, Outcome};
+use crate::report::style::{
+    AXIS, Area, CURVES, INK, LEGEND_LINE, NAMES, NUMBERS, Point, SCALE, TITLE, ZERO_CURVE, arrows,
+    finished, head, legend, letters, number, said, stroke,
+};
 
 /// What the figure shows.
 #[derive(Debug)]
@@ -20,8 +23,6 @@ pub(crate) struct Figure<'a> {
     pub(crate) gaits: &'a [(String, AnyGait)],
 }
 
-/// Plotters rounds to whole pixels; drawing this many times larger and showing it smaller keeps curves smooth.
-const SCALE: i32 = 8;
 /// Side of the map in pixels of the page.
 const MAP: i32 = 520;
 const LEFT: i32 = 76;
@@ -33,8 +34,6 @@ const TOP: i32 = 44;
 const GAP: i32 = 22;
 const BAR: i32 = 20;
 const RIGHT: i32 = 84;
-/// Of one gait in the legend.
-const LEGEND: i32 = 22;
 /// Colour cells in each direction.
 const CELLS: u16 = 260;
 /// Steps of colour on either side of zero.
@@ -42,16 +41,6 @@ const SHADES: i32 = 24;
 /// Points a gait is drawn with.
 const GAIT_POINTS: u32 = 1500;
 
-const INK: RGBColor = RGBColor(0x1d, 0x24, 0x2c);
-const AXIS: RGBColor = RGBColor(0x4a, 0x55, 0x61);
-/// Gaits in turn; they stand out from both arms of the colour map and from each other, also for the colour-blind.
-const GAITS: [RGBColor; 5] = [
-    RGBColor(0x00, 0x8a, 0x5e),
-    RGBColor(0xe0, 0x9b, 0x00),
-    RGBColor(0x7a, 0x2e, 0xa6),
-    RGBColor(0x6b, 0x4a, 0x2b),
-    RGBColor(0xd6, 0x3a, 0x8f),
-];
 /// The `RdBu` map of `ColorBrewer`, blue to red: white is zero, and it reads in grey and to the colour-blind.
 const COLORS: [[f64; 3]; 11] = [
     [5.0, 48.0, 97.0],
@@ -67,14 +56,12 @@ const COLORS: [[f64; 3]; 11] = [
     [103.0, 0.0, 31.0],
 ];
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
 /// The figure as SVG.
 ///
 /// # Errors
 /// [`Failure::Tried`] when the drawing library gives up.
 pub(crate) fn svg(figure: &Figure<'_>) -> Outcome<String> {
-    let legend = i32::try_from(figure.gaits.len()).unwrap_or(i32::MAX / 1000) * LEGEND;
+    let legend = i32::try_from(figure.gaits.len()).unwrap_or(i32::MAX / 1000) * LEGEND_LINE;
     let legend = if legend > 0 { legend + 10 } else { 0 };
     let size = (LEFT + MAP + GAP + BAR + RIGHT, TOP + MAP + BOTTOM + legend);
     let mut text = String::new();
@@ -88,17 +75,17 @@ pub(crate) fn svg(figure: &Figure<'_>) -> Outcome<String> {
             Failure::Tried(format!("cannot draw the map of {}: {reason}", figure.title))
         })?;
     }
-    // The drawing's own units stay; the page shows it at its true size.
-    let drawn = format!("width=\"{}\" height=\"{}\"", size.0 * SCALE, size.1 * SCALE);
-    let shown = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
-    Ok(text.replacen(&drawn, &shown, 1))
+    Ok(finished(&text, size))
 }
 
 fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
     area.fill(&WHITE).map_err(|error| said(&error))?;
-    let text = |size: i32| ("sans-serif", size * SCALE).into_font().color(&INK);
-    area.draw_text(&figure.title, &text(19), (LEFT * SCALE, 14 * SCALE))
-        .map_err(|error| said(&error))?;
+    area.draw_text(
+        &figure.title,
+        &letters(TITLE, INK),
+        (LEFT * SCALE, 14 * SCALE),
+    )
+    .map_err(|error| said(&error))?;
     let (_, upper) = area.split_vertically(0);
     let (map_area, bar_area) = upper.split_horizontally((LEFT + MAP) * SCALE);
     let half_width = figure.map.half_width();
@@ -140,25 +127,28 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
             from = to;
         }
     }
+    // Broad, so that they show on either side of a gait that runs along them.
     for curve in figure.curves {
         let points = curve.points.iter().map(|phi| (phi.x, phi.y));
         chart
-            .draw_series(LineSeries::new(points, stroke(INK, 1.6)))
+            .draw_series(LineSeries::new(points, stroke(INK, ZERO_CURVE)))
             .map_err(|error| said(&error))?;
     }
-    for ((_, gait), color) in figure.gaits.iter().zip(GAITS.iter().cycle()) {
-        let points: Vec<(f64, f64)> = (0..=GAIT_POINTS)
+    for ((_, gait), color) in figure.gaits.iter().zip(CURVES.iter().cycle()) {
+        let points: Vec<Point> = (0..=GAIT_POINTS)
             .map(|k| {
                 gait.at(f64::from(k % GAIT_POINTS) / f64::from(GAIT_POINTS))
                     .phi
             })
             .map(|phi| (phi.x, phi.y))
             .collect();
-        for style in [stroke(WHITE, 4.6), stroke(*color, 2.6)] {
-            chart
-                .draw_series(LineSeries::new(points.iter().copied(), style))
-                .map_err(|error| said(&error))?;
-        }
+        chart
+            .draw_series(LineSeries::new(points.iter().copied(), stroke(*color, 2.6)))
+            .map_err(|error| said(&error))?;
+        let heads = arrows(&points)
+            .into_iter()
+            .map(|(at, along)| EmptyElement::at(at) + Polygon::new(head(along), color.filled()));
+        chart.draw_series(heads).map_err(|error| said(&error))?;
     }
     // Axes last, over the colours.
     chart
@@ -170,10 +160,10 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
         .y_label_formatter(&|value| number(*value, 1))
         .axis_style(stroke(AXIS, 1.0))
         .set_all_tick_mark_size(5 * SCALE)
-        .label_style(text(15))
-        .axis_desc_style(text(17))
-        .x_desc("φ₁  [rad]")
-        .y_desc("φ₂  [rad]")
+        .label_style(letters(NUMBERS, INK))
+        .axis_desc_style(letters(NAMES, INK))
+        .x_desc("φ₁ [rad]")
+        .y_desc("φ₂ [rad]")
         .draw()
         .map_err(|error| said(&error))?;
     chart
@@ -184,7 +174,9 @@ fn draw(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
         .map_err(|error| said(&error))?;
     let (bar_area, _) = bar_area.split_vertically((TOP + MAP) * SCALE);
     bar(figure, &bar_area, largest)?;
-    legend(figure, area)
+    let named = figure.gaits.iter().map(|(name, _)| name.as_str());
+    let named = named.zip(CURVES.iter().copied().cycle());
+    legend(area, (LEFT, TOP + MAP + BOTTOM), named)
 }
 
 /// The colour bar, with the exponent of its numbers on top.
@@ -192,7 +184,6 @@ fn bar(figure: &Figure<'_>, area: &Area<'_>, largest: f64) -> Result<(), String>
     let exponent = largest.log10().floor();
     let unit = 10_f64.powf(exponent);
     let top = largest / unit;
-    let text = |size: i32| ("sans-serif", size * SCALE).into_font().color(&INK);
     let mut chart = ChartBuilder::on(area)
         .margin_top(TOP * SCALE)
         .margin_left(GAP * SCALE)
@@ -226,8 +217,8 @@ fn bar(figure: &Figure<'_>, area: &Area<'_>, largest: f64) -> Result<(), String>
         .y_label_formatter(&|value| number(*value, 1))
         .axis_style(stroke(AXIS, 1.0))
         .set_all_tick_mark_size(5 * SCALE)
-        .label_style(text(15))
-        .axis_desc_style(text(17))
+        .label_style(letters(NUMBERS, INK))
+        .axis_desc_style(letters(NAMES, INK))
         .y_desc(quantity)
         .draw()
         .map_err(|error| said(&error))?;
@@ -238,31 +229,6 @@ fn bar(figure: &Figure<'_>, area: &Area<'_>, largest: f64) -> Result<(), String>
         )))
         .map_err(|error| said(&error))?;
     Ok(())
-}
-
-fn legend(figure: &Figure<'_>, area: &Area<'_>) -> Result<(), String> {
-    let text = ("sans-serif", 15 * SCALE).into_font().color(&INK);
-    let mut y = TOP + MAP + BOTTOM + LEGEND / 2;
-    for ((name, _), color) in figure.gaits.iter().zip(GAITS.iter().cycle()) {
-        let line = PathElement::new(
-            [(LEFT * SCALE, y * SCALE), ((LEFT + 30) * SCALE, y * SCALE)],
-            stroke(*color, 2.6),
-        );
-        area.draw(&line).map_err(|error| said(&error))?;
-        area.draw_text(name, &text, ((LEFT + 40) * SCALE, (y - 8) * SCALE))
-            .map_err(|error| said(&error))?;
-        y += LEGEND;
-    }
-    Ok(())
-}
-
-fn said(error: &dyn std::fmt::Display) -> String {
-    error.to_string()
-}
-
-fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // A few dozen pixels.
-    color.stroke_width((width * f64::from(SCALE)).round() as u32)
 }
 
 /// The step of colour for a height, from −`SHADES` to `SHADES`.
@@ -291,12 +257,6 @@ fn color(shade: i32) -> RGBColor {
         }
     };
     RGBColor(mixed(0), mixed(1), mixed(2))
-}
-
-/// A number with the typographer's minus.
-fn number(value: f64, decimals: usize) -> String {
-    let zero = value.abs() < 0.5 * 10_f64.powi(-i32::try_from(decimals).unwrap_or(6));
-    format!("{:.decimals$}", if zero { 0.0 } else { value }).replace('-', "\u{2212}")
 }
 
 /// A whole number as an exponent.

@@ -137,7 +137,7 @@ impl From<DisplacementError> for Failure {
             | DisplacementError::Asymmetric { .. }
             | DisplacementError::Bound { .. }
             | DisplacementError::Clearance { .. } => Self::bad_input(&error),
-            _ => Self::tried(&error),
+            _ => Self::tried_with_details(&error, error.details()),
         }
     }
 }

@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::arguments::load_swimmer;
 use crate::bounds::WholeBounds;
 use crate::failure::{Failure, Outcome};
-use crate::output::Output;
+use crate::output::{Output, verbose};
 use crate::quantity::{self, Rows};
 
 use super::answer::{Closing, Quarter, say_if_beyond};
@@ -178,7 +178,7 @@ impl fmt::Display for Found {
             rows.row("constant power", format!("ξ = {untimed:.12}"));
         }
         self.quarter.rows(&mut rows);
-        if let Some(residual) = self.residual {
+        if let Some(residual) = self.residual.filter(|_| verbose()) {
             let bound = if residual <= 1e-10 {
                 "at most 1e-10"
             } else {
@@ -186,10 +186,10 @@ impl fmt::Display for Found {
             };
             rows.row("residual", bound);
         }
-        if let Some(method) = self.method {
+        if let Some(method) = self.method.filter(|_| verbose()) {
             rows.row("method", method);
         }
-        if let Some(direct) = self.direct_efficiency {
+        if let Some(direct) = self.direct_efficiency.filter(|_| verbose()) {
             let polished = self.efficiency_constant_power.unwrap_or(self.efficiency);
             let deviation = (direct / polished - 1.0).abs();
             rows.row(
@@ -212,7 +212,7 @@ impl From<EfficiencyError> for Failure {
         if error.is_bad_input() {
             Self::bad_input(&error)
         } else {
-            Self::tried(&error)
+            Self::tried_with_details(&error, error.details())
         }
     }
 }

@@ -63,7 +63,7 @@ pub(super) fn lighthill(
             drawn(&AnyGait::square(amplitude)),
         );
     }
-    figure.line("small", PREDICTED, samples(&gaits.small)).line(
+    figure.gait("small", PREDICTED, samples(&gaits.small)).gait(
         "large",
         MEASURED,
         samples(&gaits.large),

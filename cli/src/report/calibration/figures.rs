@@ -23,6 +23,8 @@ fn chart(labels: [&str; 2], size: (i32, i32), series: Vec<Series>) -> Chart {
         y_label: labels[1].into(),
         size,
         equal_axes: false,
+        legend: Vec::new(),
+        title: String::new(),
         series,
     }
 }

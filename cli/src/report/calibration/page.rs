@@ -11,6 +11,7 @@ use crate::failure::Outcome;
 use crate::quantity;
 use crate::report::figures as circles;
 use crate::report::page::{END, escaped, figure, figure_pair, head, minus};
+use crate::report::style::subscripts;
 
 /// Builds the whole page; the same calibration gives the same bytes.
 ///
@@ -65,7 +66,7 @@ fn verdict(html: &mut String, calibration: &Calibration<'_>) {
     } else {
         html.push_str("<ul>");
         for reason in &assessment.reasons {
-            let _ = write!(html, "<li>{}", escaped(reason));
+            let _ = write!(html, "<li>{}", subscripts(&escaped(reason)));
         }
         html.push_str("</ul>");
     }
@@ -105,7 +106,7 @@ fn parameters(html: &mut String, calibration: &Calibration<'_>) -> Outcome {
         .map_or("paper", |a| a.headline.by);
     let _ = write!(
         html,
-        "<section class=top><table class=fit><thead><tr><th>estimate<th>r<sub>s</sub> [mm]<th>{level:.0} %<th>χ<th>{level:.0} %\
+        "<section class=top><div class=scroll tabindex=0><table class=fit><thead><tr><th>estimate<th>r<sub>s</sub> [mm]<th>{level:.0} %<th>χ<th>{level:.0} %\
          </tr></thead><tbody>"
     );
     let start = calibration.start().swimmer;
@@ -173,7 +174,7 @@ fn parameters(html: &mut String, calibration: &Calibration<'_>) -> Outcome {
     );
     let _ = write!(
         html,
-        "</tbody></table><p class=note>RMSE {} with the paper’s weights; correlation of r<sub>s</sub> and ln χ {}. The likelihood \
+        "</tbody></table></div><p class=note>RMSE {} with the paper’s weights; correlation of r<sub>s</sub> and ln χ {}. The likelihood \
          weighs every X, ΔY and Δθ by its own error: from the run’s cycles, and from run to run {} mm, {} mm and {}°. {bootstrap} \
          All but the last interval hold random scatter only; with systematics, what is known by halves may move as far as it is known.\
          </p></section><section class=grid>",
@@ -222,7 +223,7 @@ fn warnings(html: &mut String, calibration: &Calibration<'_>) {
     }
     html.push_str("<section class=warnings><h2>What to know</h2><ul>");
     for warning in &all {
-        let _ = write!(html, "<li>{}", escaped(warning));
+        let _ = write!(html, "<li>{}", subscripts(&escaped(warning)));
     }
     html.push_str("</ul></section>");
 }
@@ -318,16 +319,16 @@ fn tables(html: &mut String, all: impl Iterator<Item = Shown>) {
     for shown in all {
         let _ = write!(
             html,
-            "<section><h2>{}</h2><table class=beyond>",
+            "<section><h2>{}</h2><div class=scroll tabindex=0><table class=beyond>",
             escaped(shown.title)
         );
         for (index, line) in shown.table.lines().iter().enumerate() {
             // The first line and the first column are headings.
             let cells = line.iter().enumerate().map(|(column, cell)| {
                 if index == 0 || column == 0 {
-                    format!("<th>{}", escaped(cell))
+                    format!("<th>{}", subscripts(&escaped(cell)))
                 } else {
-                    format!("<td>{}", escaped(&minus(cell)))
+                    format!("<td>{}", subscripts(&escaped(&minus(cell))))
                 }
             });
             let cells: String = cells.collect();
@@ -336,10 +337,14 @@ fn tables(html: &mut String, all: impl Iterator<Item = Shown>) {
                 _ => write!(html, "<tr>{cells}</tr>"),
             };
         }
-        let notes: Vec<String> = shown.notes.iter().map(|note| escaped(note)).collect();
+        let notes: Vec<String> = shown
+            .notes
+            .iter()
+            .map(|note| subscripts(&escaped(note)))
+            .collect();
         let _ = write!(
             html,
-            "</tbody></table><p class=note>{}</p></section>",
+            "</tbody></table></div><p class=note>{}</p></section>",
             notes.join("<br>")
         );
     }
@@ -367,7 +372,7 @@ fn names(calibration: &Calibration<'_>) -> Vec<String> {
 
 fn runs(html: &mut String, calibration: &Calibration<'_>) {
     html.push_str(
-        "<section><h2>The runs</h2><table class=runs><thead><tr><th>#<th>track<th>gait<th>cycles<th>X [mm]<th>sd<th>Y [mm]\
+        "<section><h2>The runs</h2><div class=scroll tabindex=0><table class=runs><thead><tr><th>#<th>track<th>gait<th>cycles<th>X [mm]<th>sd<th>Y [mm]\
          <th>turn [°]<th>ΔY [mm]<th>sd<th>Δθ [°]<th>sd<th>period [s]<th>front by<th>phase by</tr></thead><tbody>",
     );
     for (index, (answer, run)) in calibration
@@ -412,7 +417,7 @@ fn runs(html: &mut String, calibration: &Calibration<'_>) {
             cycles.phase.word().replace('-', " "),
         );
     }
-    html.push_str("</tbody></table><p class=note>sd between cycles; standard errors and lag-1 correlations are in runs.csv.</p>");
+    html.push_str("</tbody></table></div><p class=note>sd between cycles; standard errors and lag-1 correlations are in runs.csv.</p>");
     html.push_str("<ul class=diagnoses>");
     for run in &calibration.answer.runs {
         if !run.diagnoses.is_empty() {
@@ -442,7 +447,7 @@ fn runs(html: &mut String, calibration: &Calibration<'_>) {
 
 fn left_out(html: &mut String, calibration: &Calibration<'_>) {
     html.push_str(
-        "<section><h2>Cycles and samples that do not count</h2><table class=left><thead><tr><th>track<th>cycle at [s]<th>why\
+        "<section><h2>Cycles and samples that do not count</h2><div class=scroll tabindex=0><table class=left><thead><tr><th>track<th>cycle at [s]<th>why\
          <th>frames<th>filled<th>smoothed<th>beside long gaps</tr></thead><tbody>",
     );
     let tracked = calibration.answer.runs.iter().zip(&calibration.found.runs);
@@ -466,7 +471,7 @@ fn left_out(html: &mut String, calibration: &Calibration<'_>) {
         );
     }
     html.push_str(
-        "</tbody></table><p class=note>Gaps of 0.1 s at most are filled by a cubic, which also stands for the three samples on either side; beside longer gaps these are drawn, never used.</p></section>",
+        "</tbody></table></div><p class=note>Gaps of 0.1 s at most are filled by a cubic, which also stands for the three samples on either side; beside longer gaps these are drawn, never used.</p></section>",
     );
 }
 
@@ -536,7 +541,7 @@ fn inputs(html: &mut String, calibration: &Calibration<'_>) {
         let _ = write!(
             html,
             "<tr><th><code>{name}</code><td>{}</tr>",
-            escaped(what)
+            subscripts(&escaped(what))
         );
     }
     html.push_str("</table></figure></section>");
