@@ -19,7 +19,6 @@ mod fence;
 mod gates;
 mod newton;
 mod objective;
-mod parallel;
 mod pipeline;
 mod starts;
 

@@ -29,6 +29,8 @@ use crate::OptimalGait;
 use crate::certificate::{
     Certificate, Check, SHARE, SWUM_AGAIN, simple_and_turning_once, turning_number,
 };
+use crate::region::Region;
+use crate::speed::certify_speed;
 pub(crate) use around::{Curve, around};
 use grid::{Along, Degree, Grid};
 use limits::{Limit, Limits, image};
@@ -67,7 +69,7 @@ pub enum CertifyError {
     },
     /// Nothing is known of what the gait shall be optimal for.
     #[error(
-        "cannot certify a gait without knowing what it shall be optimal for: name displacement, efficiency, turning or sideways"
+        "cannot certify a gait without knowing what it shall be optimal for: name displacement, efficiency, turning, sideways or speed"
     )]
     NoObjective,
 }
@@ -113,6 +115,14 @@ pub fn certify(
         return Err(CertifyError::TooFew {
             samples: gait.u.len(),
         });
+    }
+    if objective == Objective::Speed {
+        let bounded = GaitFile {
+            bounds: *bounds,
+            ..gait.clone()
+        };
+        let region = Region::new(bounds, &swimmer.links);
+        return Ok(certify_speed(&model, &bounded, &curve, &region));
     }
     let limits = Limits::new(bounds, &swimmer.links);
     if turning_number(&gait.phi) < 0.0 {
@@ -192,7 +202,7 @@ fn certify_turned(
             checks.extend(subject.of_weak_optimum(objective, open));
         }
         Objective::Efficiency => checks.extend(subject.of_efficiency(open)),
-        Objective::Unspecified => return Err(CertifyError::NoObjective),
+        Objective::Speed | Objective::Unspecified => return Err(CertifyError::NoObjective),
     }
     Ok(Certificate::new(checks))
 }

@@ -30,6 +30,7 @@
 //! | `atlas` | every optimum that a seeded multi-start finds, polished and certified |
 //! | `continuation` | optima followed in a parameter, with what happens on the way |
 //! | `sideways` | the loop and its start that move most across the heading |
+//! | `speed` | the fastest gait of servos with a rate limit |
 //! | `turning` | the simple closed gait that turns most: round a region of the curvature |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
 //! | `certificate` | checks, and those that any closed curve can be asked |
@@ -55,11 +56,13 @@ mod immobile;
 mod loops;
 mod momentum;
 mod optimal_gait;
+mod parallel;
 mod region;
 mod robust;
 mod runge_kutta;
 mod sideways;
 mod simple_shapes;
+mod speed;
 mod turning;
 
 pub use atlas::{Atlas, AtlasError, AtlasProblem, Optimum, atlas};
@@ -84,5 +87,6 @@ pub use robust::{
 };
 pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways};
 pub use simple_shapes::{BestAmplitude, SimpleShape, best_amplitudes};
+pub use speed::{Fastest, HeadingRule, SpeedError, SpeedProblem, fastest};
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};
 pub use turning::{Turning, TurningError, TurningProblem, turning};

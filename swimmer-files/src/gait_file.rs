@@ -29,6 +29,8 @@ pub enum Objective {
     Turning,
     /// Net displacement across the heading, without net rotation.
     Sideways,
+    /// Net displacement per unit of time under servos' rates, without net rotation.
+    Speed,
     /// Nothing that is known: a gait from elsewhere.
     #[default]
     Unspecified,
@@ -49,6 +51,8 @@ pub enum ArcKind {
     Clearance,
     /// Free, with the control from `H_u = 0` (efficiency).
     Regular,
+    /// Both servos at full rate (speed).
+    Extreme,
 }
 
 /// One arc of the cycle.
@@ -125,11 +129,12 @@ impl GaitFile {
 }
 
 impl Objective {
-    const ALL: [Self; 5] = [
+    const ALL: [Self; 6] = [
         Self::Displacement,
         Self::Efficiency,
         Self::Turning,
         Self::Sideways,
+        Self::Speed,
         Self::Unspecified,
     ];
 
@@ -140,19 +145,21 @@ impl Objective {
             Self::Efficiency => "efficiency",
             Self::Turning => "turning",
             Self::Sideways => "sideways",
+            Self::Speed => "speed",
             Self::Unspecified => "unspecified",
         }
     }
 }
 
 impl ArcKind {
-    const ALL: [Self; 6] = [
+    const ALL: [Self; 7] = [
         Self::Singular,
         Self::Upper,
         Self::Lower,
         Self::Diagonal,
         Self::Clearance,
         Self::Regular,
+        Self::Extreme,
     ];
 
     /// The word in files and in JSON.
@@ -164,6 +171,7 @@ impl ArcKind {
             Self::Diagonal => "diagonal",
             Self::Clearance => "clearance",
             Self::Regular => "regular",
+            Self::Extreme => "extreme",
         }
     }
 }
@@ -191,9 +199,9 @@ macro_rules! word_in_text {
 
 word_in_text!(
     Objective,
-    "an objective is one of displacement, efficiency, turning, sideways, unspecified"
+    "an objective is one of displacement, efficiency, turning, sideways, speed, unspecified"
 );
 word_in_text!(
     ArcKind,
-    "an arc is one of singular, upper, lower, diagonal, clearance, regular"
+    "an arc is one of singular, upper, lower, diagonal, clearance, regular, extreme"
 );

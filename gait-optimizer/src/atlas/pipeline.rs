@@ -8,11 +8,11 @@ use super::distinct::{Outline, Symmetries, classes};
 use super::fence::Fence;
 use super::newton::{Newton, Settings, Stationary};
 use super::objective::Aim;
-use super::parallel::in_parallel;
 use super::starts::{fitted, start};
 use super::{Atlas, AtlasProblem, Optimum};
 use crate::OptimalGait;
 use crate::closed_curve::{Basis, Functional};
+use crate::parallel::in_parallel;
 use crate::region::Region;
 
 /// Coarse curves this near to each other \[rad\], with values this near, are one.

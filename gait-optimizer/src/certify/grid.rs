@@ -236,7 +236,7 @@ pub(super) fn told_by_arcs(file: &GaitFile) -> Vec<Along> {
     let along = |u: f64| {
         let arc = file.arcs.iter().find(|arc| arc.from <= u && u <= arc.to);
         match arc.map(|arc| arc.kind) {
-            None | Some(ArcKind::Singular | ArcKind::Regular) => Along::Free,
+            None | Some(ArcKind::Singular | ArcKind::Regular | ArcKind::Extreme) => Along::Free,
             Some(_) => Along::Bound,
         }
     };

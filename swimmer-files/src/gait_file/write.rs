@@ -7,12 +7,12 @@ use super::GaitFile;
 /// Documentation that heads every file; the reader skips lines that start with `##`.
 const ABOUT: &str = "\
 ## One cycle of a three-link swimmer's gait. Lines with `##` are for people. Lines `# key: value` are the header:
-##   objective      displacement | efficiency | turning | sideways | unspecified
+##   objective      displacement | efficiency | turning | sideways | speed | unspecified
 ##   swimmer        name of the swimmer that the gait was made for
 ##   swimmer_hash   SHA-256 of its links, drag and sphere
 ##   bounds         max_angle and min_angle in rad or `none`; sector and no_overlap `true` or `false`;
 ##                  clearance_m the least distance of the side links in metres
-##   arc            kind (singular, upper, lower, diagonal, clearance, regular), then from and to in u; in order
+##   arc            kind (singular, upper, lower, diagonal, clearance, regular, extreme), then from and to in u; in order
 ##   corner         a u where the direction in the (phi1, phi2) plane jumps; the curve is smooth between corners
 ## Then, after the line `u,phi1,phi2`, the samples: u is the fraction of the period, rising from 0 to 1; the joint angles
 ## are in radians; the last sample is the first one again. 17 digits: a number reads back exactly. x runs along the middle

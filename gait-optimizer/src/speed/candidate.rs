@@ -1,0 +1,89 @@
+//! From a start to a polished chain: polygon, arcs, polish, and the arcs mended where the polish shows them wrong.
+
+use nalgebra::Vector2;
+
+use super::interior::best_polygon;
+use super::polish::{Polished, polish};
+use super::problem::Setting;
+use super::structure::{Hold, Link, Motion, arcs, merge};
+
+/// Times that the arcs are mended.
+const MENDS: usize = 8;
+/// A corner may overstep a bound by this \[rad, or over L\].
+const OVERSTEPPED: f64 = 1e-10;
+
+/// The chain that a start leads to.
+pub(crate) fn candidate(setting: &Setting, start: &[Vector2<f64>]) -> Option<Polished> {
+    let polygon = best_polygon(setting, start)?;
+    let links = arcs(setting, &polygon)?;
+    let polished = mended(setting, links)?;
+    // A polish that lost what the polygon had went astray.
+    (polished.speed > polygon.speed * (1.0 - 1e-4)).then_some(polished)
+}
+
+/// Polishes, and mends the arcs until they fit: arcs that run backwards go, bounds that pull let go, bounds that are overstepped
+/// hold.
+fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished> {
+    for _ in 0..MENDS {
+        let polished = polish(setting, &links)?;
+        let backwards = polished
+            .links
+            .iter()
+            .enumerate()
+            .min_by(|a, b| a.1.time.total_cmp(&b.1.time))?;
+        if backwards.1.time <= 0.0 {
+            let gone = backwards.0;
+            links.clone_from(&polished.links);
+            links.remove(gone);
+            merge(&mut links);
+            if links.len() < 3 {
+                return None;
+            }
+            continue;
+        }
+        let mut next = polished.links.clone();
+        let mut changed = false;
+        for (k, link) in next.iter_mut().enumerate() {
+            changed |= overstepped(setting, link);
+            let pushes = &polished.hold_pushes[k];
+            let before = &polished.links[(k + links.len() - 1) % links.len()].motion;
+            let motion = link.motion;
+            let mut at = 0;
+            link.held.retain(|hold| {
+                let push = pushes.get(at).copied().unwrap_or(0.0);
+                at += 1;
+                let needed = [&motion, before].iter().any(|motion| follows(motion, hold));
+                let keep = needed || push > -1e-9;
+                changed |= !keep;
+                keep
+            });
+        }
+        if !changed {
+            return (polished.convexity > 0.0).then_some(polished);
+        }
+        links = next;
+    }
+    None
+}
+
+/// Whether an arc runs along what holds a corner.
+fn follows(motion: &Motion, hold: &Hold) -> bool {
+    let Hold::On(held, _) = hold;
+    matches!(motion, Motion::Straight { bound, .. } | Motion::Curved { bound, .. } if bound == held)
+}
+
+/// Holds a corner at the bounds that it oversteps; whether there are any.
+fn overstepped(setting: &Setting, link: &mut Link) -> bool {
+    let mut any = false;
+    for (index, bound) in setting.region.bounds().enumerate() {
+        let held = link
+            .held
+            .iter()
+            .any(|hold| matches!(hold, Hold::On(at, _) if *at == index));
+        if !held && bound.margin(&link.corner) < -OVERSTEPPED {
+            link.held.push(Hold::On(index, bound.piece(&link.corner)));
+            any = true;
+        }
+    }
+    any
+}

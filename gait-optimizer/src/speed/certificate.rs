@@ -1,0 +1,115 @@
+//! The conditions of a fastest gait, from its curve alone: nothing of the search is asked.
+//!
+//! With p along the net displacement d, V = |d|/T and the height h = μ · F, the costate σ of Φ obeys H = σ·Φ̇ − V ≡ 0,
+//! Φ̇ᵢ = ωᵢ sgn σᵢ and σ̇ = h (−Φ̇₂, Φ̇₁) (and η∇g, η ≥ 0, on a bound g ≤ 0). The rates are read off the curve, whose servos run at
+//! them. What is left open, the multiplier of rotation (and of the heading, where one is prescribed), and how far σ jumps
+//! where a corner rests on a bound, follows from the integrals of h between switches by least squares.
+
+mod affine;
+mod legs;
+mod switching;
+
+use nalgebra::{DMatrix, DVector};
+use swimmer_files::{AnyGait, ArcKind, GaitFile};
+use swimmer_model::{Model, Tolerance, crossing_share, swim};
+
+use super::problem::HeadingRule;
+use crate::certificate::{Certificate, Check, again_within};
+use crate::region::Region;
+use legs::{Leg, Legs};
+use switching::Switching;
+
+/// What the conditions may miss, over V or its share of a switch-to-switch integral.
+const CLOSE: f64 = 1e-6;
+/// A rate may miss its limit by this share.
+const FULL: f64 = 1e-6;
+/// A corner this close to a bound rests on it \[rad, or over L\].
+pub(super) const RESTS: f64 = 1e-8;
+
+/// Holds one cycle, timed as it shall run, against the conditions; `period` says whether the period was prescribed. Of the
+/// swimmer with L = 1.
+pub(crate) fn certificate(
+    model: &Model<f64>,
+    region: &Region,
+    (heading, period): (HeadingRule, bool),
+    file: &GaitFile,
+    gait: &AnyGait,
+) -> Certificate {
+    let mut checks = of_the_curve(model, region, file, gait);
+    let Some(legs) = Legs::new(model, region, file, gait) else {
+        checks.push(Check::at_most("moves_nowhere", 1.0, 0.0));
+        return Certificate::new(checks);
+    };
+    let stroke = swim(model, gait, &Tolerance::default());
+    let [x, y, _] = legs.end;
+    let apart = (stroke.displacement.x - x).hypot(stroke.displacement.y - y);
+    checks.push(Check::at_most(
+        "displacement_stepped_again",
+        apart,
+        again_within(legs.distance),
+    ));
+    checks.push(Check::at_most(
+        "net_rotation_rad",
+        stroke.rotation.abs(),
+        1e-8,
+    ));
+    checks.push(Check::at_most("off_full_rate", legs.off_full_rate(), FULL));
+    if let Some(off) = heading.off(legs.heading()) {
+        checks.push(Check::at_most("off_heading_rad", off.abs(), 1e-8));
+    }
+    let switching = Switching::new(region, &legs, heading, period);
+    checks.extend(switching.checks(CLOSE));
+    Certificate::new(checks)
+}
+
+/// Closure, bounds and links.
+fn of_the_curve(
+    model: &Model<f64>,
+    region: &Region,
+    file: &GaitFile,
+    gait: &AnyGait,
+) -> Vec<Check> {
+    let gap = match (file.phi.first(), file.phi.last()) {
+        (Some(first), Some(last)) => (last - first).norm(),
+        _ => f64::NAN,
+    };
+    let mut checks = vec![Check::at_most("open_rad", gap, GaitFile::CLOSURE)];
+    if region.bounds().next().is_some() {
+        let overstepped = file
+            .phi
+            .iter()
+            .map(|phi| region.overstepped(phi))
+            .fold(f64::NEG_INFINITY, f64::max);
+        checks.push(Check::at_most("bound_overstepped_rad", overstepped, 1e-9));
+    }
+    if file.bounds.no_overlap {
+        let crosses = crossing_share(&model.swimmer().links, gait);
+        let folds = if crosses.folds { 1.0 } else { 0.0 };
+        checks.push(Check::at_most("side_link_on_middle_link", folds, 0.0));
+    }
+    checks
+}
+
+/// Least squares: the unknowns, and the residuals of the equations.
+pub(super) fn least_squares(rows: &[(Vec<f64>, f64)], unknowns: usize) -> (Vec<f64>, Vec<f64>) {
+    let matrix = DMatrix::from_fn(rows.len(), unknowns, |i, j| rows[i].0[j]);
+    let right = DVector::from_fn(rows.len(), |i, _| rows[i].1);
+    let solution = matrix
+        .clone()
+        .svd(true, true)
+        .solve(&right, 1e-12)
+        .unwrap_or_else(|_| DVector::from_element(unknowns, f64::NAN));
+    let rest = matrix * &solution - right;
+    (
+        solution.iter().copied().collect(),
+        rest.iter().copied().collect(),
+    )
+}
+
+/// Whether an arc is one along a bound.
+pub(super) fn on_bound(leg: &Leg) -> bool {
+    matches!(
+        leg.kind,
+        ArcKind::Upper | ArcKind::Clearance | ArcKind::Lower | ArcKind::Diagonal
+    )
+}

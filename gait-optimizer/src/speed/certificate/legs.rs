@@ -1,0 +1,211 @@
+//! A cycle cut into its arcs, with poses and heights along each.
+
+use nalgebra::Vector2;
+use swimmer_files::{AnyGait, ArcKind, GaitArc, GaitFile};
+use swimmer_model::{Gait as _, Model, Panel, Panels, Tolerance};
+
+use crate::height_map::legendre::gauss;
+use crate::momentum::Momentum;
+use crate::region::Region;
+
+/// One place on an arc.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Node {
+    /// Weight of an integral over u.
+    pub(crate) weight: f64,
+    pub(crate) phi: Vector2<f64>,
+    pub(crate) rate: Vector2<f64>,
+    pub(crate) theta: f64,
+    /// The height for p along d, for a unit of the multiplier of rotation, and for one of the heading.
+    pub(crate) height: [f64; 3],
+    /// Gradients of the same.
+    pub(crate) slope: [Vector2<f64>; 3],
+    /// Rotation that each joint's motion brings, and how it changes along that joint.
+    pub(crate) turn: [f64; 2],
+    pub(crate) turn_slope: [f64; 2],
+}
+
+/// One arc.
+#[derive(Debug, Clone)]
+pub(crate) struct Leg {
+    pub(crate) kind: ArcKind,
+    pub(crate) from: Vector2<f64>,
+    pub(crate) to: Vector2<f64>,
+    /// θ at both ends.
+    pub(crate) theta: [f64; 2],
+    /// Direction of each joint halfway: −1 or 1.
+    pub(crate) ways: [f64; 2],
+    /// Panels of nodes, in order.
+    pub(crate) panels: Vec<Vec<Node>>,
+}
+
+/// A cycle.
+#[derive(Debug, Clone)]
+pub(crate) struct Legs {
+    pub(crate) all: Vec<Leg>,
+    /// Pose after the cycle.
+    pub(crate) end: [f64; 3],
+    pub(crate) distance: f64,
+    /// Mean of θ over the period.
+    pub(crate) mean_theta: f64,
+    /// Largest |dφᵢ/du|.
+    pub(crate) rates: [f64; 2],
+}
+
+/// Nodes of a panel, and panels of an arc.
+const NODES: usize = 6;
+const PANELS: usize = 16;
+
+impl Legs {
+    /// None for a cycle that leads nowhere, or whose arcs are none.
+    pub(crate) fn new(
+        model: &Model<f64>,
+        region: &Region,
+        file: &GaitFile,
+        gait: &AnyGait,
+    ) -> Option<Self> {
+        let panels: Vec<Panel<f64>> = Panels::new(model, gait, &Tolerance::default()).collect();
+        let last = panels.last()?.end_pose();
+        let distance = last.x.hypot(last.y);
+        if distance.is_nan() || distance < 1e-12 {
+            return None;
+        }
+        let spans = if file.arcs.is_empty() {
+            between_corners(region, file, gait)
+        } else {
+            file.arcs.clone()
+        };
+        let (points, weights) = gauss(NODES);
+        let unit = Vector2::new(last.x, last.y) / distance;
+        let across = Vector2::new(-unit.y, unit.x);
+        let mut legs = Vec::with_capacity(spans.len());
+        for span in spans.iter().filter(|span| span.to > span.from) {
+            let width = (span.to - span.from) / PANELS as f64;
+            let node = |u: f64, weight: f64| {
+                let point = gait.at(u);
+                let pose = pose_at(&panels, u);
+                let second = model.second_derivatives(&point.phi);
+                let height = |p: Vector2<f64>, c: f64| Momentum { p, c }.height(&second, &pose);
+                let parts = [
+                    height(unit, 0.0),
+                    height(Vector2::zeros(), 1.0),
+                    height(across, -distance * (1.0 - u)),
+                ];
+                Node {
+                    weight,
+                    phi: point.phi,
+                    rate: point.rate,
+                    theta: pose[2],
+                    height: parts.map(|part| part.value),
+                    slope: parts.map(|part| part.gradient),
+                    turn: [0, 1].map(|i| second.first.connection[(2, i)]),
+                    turn_slope: [0, 1].map(|i| second.first.d_connection[i][(2, i)]),
+                }
+            };
+            let nodes: Vec<Vec<Node>> = (0..PANELS)
+                .map(|k| {
+                    let begun = span.from + width * k as f64;
+                    points
+                        .iter()
+                        .zip(&weights)
+                        .map(|(x, w)| node(begun + 0.5 * width * (x + 1.0), 0.5 * width * w))
+                        .collect()
+                })
+                .collect();
+            let middle = gait.at(0.5 * (span.from + span.to)).rate;
+            legs.push(Leg {
+                kind: span.kind,
+                from: gait.at(span.from).phi,
+                to: gait.at(span.to).phi,
+                theta: [pose_at(&panels, span.from)[2], pose_at(&panels, span.to)[2]],
+                ways: [middle.x.signum(), middle.y.signum()],
+                panels: nodes,
+            });
+        }
+        let all = || legs.iter().flat_map(|leg| leg.panels.iter().flatten());
+        let rates = [0, 1].map(|i| all().map(|node| node.rate[i].abs()).fold(0.0, f64::max));
+        let mean_theta = all().map(|node| node.weight * node.theta).sum();
+        (!legs.is_empty()).then_some(Self {
+            end: [last.x, last.y, last.theta],
+            distance,
+            mean_theta,
+            rates,
+            all: legs,
+        })
+    }
+
+    /// Of the displacement, against the mean heading.
+    pub(crate) fn heading(&self) -> f64 {
+        self.end[1].atan2(self.end[0]) - self.mean_theta
+    }
+
+    /// How far, as a share, the servos are from the rates that their arcs ask for.
+    pub(crate) fn off_full_rate(&self) -> f64 {
+        let mut worst: f64 = 0.0;
+        for leg in &self.all {
+            for node in leg.panels.iter().flatten() {
+                let shares = [0, 1].map(|i| node.rate[i].abs() / self.rates[i]);
+                let off = if leg.kind == ArcKind::Extreme {
+                    (1.0 - shares[0]).max(1.0 - shares[1])
+                } else {
+                    1.0 - shares[0].max(shares[1])
+                };
+                worst = worst.max(off);
+            }
+        }
+        worst
+    }
+
+    /// Of an arc that is not extreme: the joint whose servo runs at full rate.
+    pub(crate) fn pace(&self, leg: &Leg) -> usize {
+        let mut sums = [0.0; 2];
+        for node in leg.panels.iter().flatten() {
+            for (i, sum) in sums.iter_mut().enumerate() {
+                *sum += node.weight * node.rate[i].abs() / self.rates[i];
+            }
+        }
+        usize::from(sums[1] > sums[0])
+    }
+}
+
+fn pose_at(panels: &[Panel<f64>], u: f64) -> [f64; 3] {
+    let at = panels
+        .partition_point(|panel| panel.end() < u)
+        .min(panels.len().saturating_sub(1));
+    panels.get(at).map_or([f64::NAN; 3], |panel| {
+        let pose = panel.pose(u);
+        [pose.x, pose.y, pose.theta]
+    })
+}
+
+/// The arcs of a gait that does not tell them: from corner to corner.
+fn between_corners(region: &Region, file: &GaitFile, gait: &AnyGait) -> Vec<GaitArc> {
+    let mut ends = file.corners.clone();
+    if ends.first() != Some(&0.0) {
+        ends.insert(0, 0.0);
+    }
+    ends.push(1.0);
+    let largest = file
+        .u
+        .iter()
+        .map(|&u| gait.at(u).rate.abs())
+        .fold(Vector2::zeros(), |most: Vector2<f64>, rate| most.sup(&rate));
+    ends.windows(2)
+        .map(|pair| {
+            let middle = gait.at(0.5 * (pair[0] + pair[1]));
+            let full = (0..2).all(|i| middle.rate[i].abs() > 0.999 * largest[i]);
+            let kind = if full {
+                ArcKind::Extreme
+            } else if region.overstepped(&middle.phi) > -super::RESTS {
+                ArcKind::Upper
+            } else {
+                ArcKind::Singular
+            };
+            GaitArc {
+                kind,
+                from: pair[0],
+                to: pair[1],
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,59 @@
+//! Why there is no fastest gait.
+
+use swimmer_files::Bounds;
+use swimmer_model::InvalidSwimmer;
+
+use crate::Immobile;
+
+/// Why there is no fastest gait.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SpeedError {
+    /// The swimmer's parameters are out of range.
+    #[error("cannot look for the fastest gait of this swimmer: {0}")]
+    Swimmer(#[from] InvalidSwimmer),
+    /// No gait moves it.
+    #[error("{0}")]
+    Immobile(Immobile),
+    /// A rate is none.
+    #[error("servos cannot turn by at most {rate} rad/s; give a rate above 0")]
+    Rate {
+        /// What was given.
+        rate: f64,
+    },
+    /// A period is none.
+    #[error("a gait cannot take {period} s; give a period above 0")]
+    Period {
+        /// What was given.
+        period: f64,
+    },
+    /// Bounds of quarters.
+    #[error(
+        "the fastest gait is looked for over whole cycles, which min-angle and sector do not bound ({bounds}); leave them out"
+    )]
+    OfQuarters {
+        /// The bounds.
+        bounds: Bounds,
+    },
+    /// Fewer corners than a closed curve has.
+    #[error("a gait has at least 3 corners, not {corners}")]
+    Corners {
+        /// What was given.
+        corners: usize,
+    },
+    /// None was found and certified.
+    #[error(
+        "no fastest gait under these bounds ({bounds}): {starts} starts led to {chains} chains of arcs, none of which can be \
+         certified{}; try more starts, or wider bounds",
+        uncertified.map_or_else(String::new, |speed| format!(" (the fastest swims {speed:.6} L a second)"))
+    )]
+    NoGait {
+        /// The bounds.
+        bounds: Bounds,
+        /// Closed curves that were started from.
+        starts: usize,
+        /// Chains that they led to.
+        chains: usize,
+        /// Speed over L of the fastest of these \[1/s\].
+        uncertified: Option<f64>,
+    },
+}

@@ -1,0 +1,389 @@
+//! From a rough closed curve to the best polygon near it: a primal–dual interior-point method over corners and times.
+//!
+//! Minimises ln T − ln |d| with no net rotation, each side's rates and each corner within the bounds. Sides are free to
+//! point anywhere, so this needs no guess of the arcs; which limits push tells them afterwards.
+
+mod limits;
+
+use limits::Inequality;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Vector2};
+use swimmer_model::Model;
+
+use super::arc::{Jet, Shape};
+use super::chain::{self, Layout, Weights};
+use super::problem::{HeadingRule, Setting};
+use super::quadrature::Rule;
+
+/// A polygon and what pushes against it.
+#[derive(Debug, Clone)]
+pub(crate) struct Polygon {
+    pub(crate) layout: Layout,
+    pub(crate) z: DVector<f64>,
+    /// Per side: multipliers of φ̇₁ ≤ ω₁, φ̇₁ ≥ −ω₁, then of φ̇₂.
+    pub(crate) pushes: Vec<[f64; 4]>,
+    pub(crate) speed: f64,
+}
+
+/// Where the barrier starts and ends.
+const FIRST_BARRIER: f64 = 1e-2;
+const LAST_BARRIER: f64 = 1e-8;
+const MOST_STEPS: usize = 150;
+/// No farther than this share of the way to any limit.
+const SHARE: f64 = 0.995;
+/// Quadrature points on a side.
+const POINTS: usize = 6;
+
+/// The best polygon near a start whose corners lie strictly within the bounds; none where the method stalls or the gait does
+/// not swim.
+pub(crate) fn best_polygon(setting: &Setting, start: &[Vector2<f64>]) -> Option<Polygon> {
+    let n = start.len();
+    let layout = Layout::new(vec![Shape::Straight; n]);
+    let mut z = DVector::zeros(layout.size);
+    for (corner, phi) in start.iter().enumerate() {
+        z[2 * corner] = phi.x;
+        z[2 * corner + 1] = phi.y;
+    }
+    for side in 0..n {
+        let [from, to] = layout.ends(&z, side);
+        z[layout.time_index(side)] = 1.3 * setting.time(&(to - from)) + 1e-3;
+    }
+    Method {
+        setting,
+        model: setting.model,
+        rule: Rule::new(POINTS),
+        layout,
+    }
+    .solve(z)
+}
+
+struct Method<'a> {
+    setting: &'a Setting<'a>,
+    model: &'a Model<f64>,
+    rule: Rule,
+    layout: Layout,
+}
+
+/// Where the iteration stands.
+struct Iterate {
+    z: DVector<f64>,
+    /// Multipliers of the equalities.
+    y: Vec<f64>,
+    /// Multipliers of the inequalities.
+    pushes: Vec<f64>,
+    barrier: f64,
+    /// Added to the second derivatives until they are convex.
+    damping: f64,
+    /// Price of the equalities in the line search.
+    penalty: f64,
+}
+
+/// All that is worked out at one iterate.
+struct Look {
+    jets: Vec<Jet>,
+    net: chain::Net,
+    inequalities: Vec<Inequality>,
+    /// Residuals of the equalities, and their slopes.
+    values: Vec<f64>,
+    slopes: Vec<DVector<f64>>,
+    weights: Weights,
+    /// Of the Lagrangian without the inequalities.
+    gradient: DVector<f64>,
+}
+
+/// A step in all unknowns.
+struct Direction {
+    z: DVector<f64>,
+    y: Vec<f64>,
+    pushes: Vec<f64>,
+    /// Shares of it that stay inside.
+    longest: f64,
+    dual_longest: f64,
+}
+
+impl Method<'_> {
+    /// Residuals of the equalities, and their slopes.
+    fn equalities(
+        &self,
+        jets: &[Jet],
+        z: &DVector<f64>,
+    ) -> (chain::Net, Vec<f64>, Vec<DVector<f64>>) {
+        let unit = |rotation: f64, heading: f64| Weights {
+            log_distance: 0.0,
+            rotation,
+            heading,
+        };
+        let (net, rotation) = chain::gradient(&self.layout, jets, z, unit(1.0, 0.0));
+        let (mut values, mut slopes) = (vec![net.rotation], vec![rotation]);
+        if let Some(off) = self.setting.heading.off(net.heading()) {
+            values.push(off);
+            slopes.push(chain::gradient(&self.layout, jets, z, unit(0.0, 1.0)).1);
+        }
+        if let Some(period) = self.setting.period {
+            values.push(self.layout.period(z) / period - 1.0);
+            let times = 2 * self.layout.arcs()..3 * self.layout.arcs();
+            slopes.push(DVector::from_fn(self.layout.size, |i, _| {
+                if times.contains(&i) {
+                    1.0 / period
+                } else {
+                    0.0
+                }
+            }));
+        }
+        (net, values, slopes)
+    }
+
+    fn merit(&self, z: &DVector<f64>, barrier: f64, penalty: f64) -> f64 {
+        let inequalities = limits::inequalities(self.setting, &self.layout, z);
+        if inequalities
+            .iter()
+            .any(|one| one.value.is_nan() || one.value <= 0.0)
+        {
+            return f64::INFINITY;
+        }
+        let logs: f64 = inequalities.iter().map(|one| one.value.ln()).sum();
+        let jets = self.layout.jets(self.model, &self.rule, z);
+        let times = &z.as_slice()[2 * self.layout.arcs()..];
+        let (_, net) = chain::net(&jets, &times[..self.layout.arcs()]);
+        let off = self.setting.heading.off(net.heading()).unwrap_or(0.0);
+        let late = self
+            .setting
+            .period
+            .map_or(0.0, |period| self.layout.period(z) / period - 1.0);
+        self.layout.period(z).ln() - net.distance().ln() - barrier * logs
+            + penalty * (net.rotation.abs() + off.abs() + late.abs())
+    }
+
+    fn solve(self, z: DVector<f64>) -> Option<Polygon> {
+        let inequalities = limits::inequalities(self.setting, &self.layout, &z);
+        if !inequalities.iter().all(|one| one.value > 0.0) {
+            return None;
+        }
+        let pushes = inequalities.iter().map(|one| FIRST_BARRIER / one.value);
+        let of_heading = usize::from(self.setting.heading != HeadingRule::Any);
+        let mut here = Iterate {
+            pushes: pushes.collect(),
+            y: vec![0.0; 1 + of_heading + usize::from(self.setting.period.is_some())],
+            z,
+            barrier: FIRST_BARRIER,
+            damping: 0.0,
+            penalty: 1.0,
+        };
+        for _ in 0..MOST_STEPS {
+            let look = self.look(&here)?;
+            if look.error(&here) < 10.0 * here.barrier {
+                if here.barrier <= LAST_BARRIER {
+                    return Some(self.finish(&here, look.net));
+                }
+                here.barrier = (0.2 * here.barrier)
+                    .min(here.barrier.powf(1.5))
+                    .max(LAST_BARRIER);
+            }
+            let direction = self.direction(&mut here, &look)?;
+            if !self.move_along(&mut here, &direction) {
+                if here.barrier < 1e-6 {
+                    return Some(self.finish(&here, look.net));
+                }
+                here.damping = (10.0 * here.damping).max(1e-2);
+                if here.damping > 1e6 {
+                    return None;
+                }
+            }
+        }
+        None
+    }
+
+    fn look(&self, here: &Iterate) -> Option<Look> {
+        let Iterate { z, y, .. } = here;
+        let layout = &self.layout;
+        let jets = layout.jets(self.model, &self.rule, z);
+        let (net, values, slopes) = self.equalities(&jets, z);
+        if net.distance().is_nan() || net.distance() < 1e-9 {
+            return None;
+        }
+        let weights = Weights {
+            log_distance: -1.0,
+            rotation: y[0],
+            heading: if self.setting.heading == HeadingRule::Any {
+                0.0
+            } else {
+                y[1]
+            },
+        };
+        let (_, mut gradient) = chain::gradient(layout, &jets, z, weights);
+        let late = match (self.setting.period, y.last()) {
+            (Some(period), Some(y)) => y / period,
+            _ => 0.0,
+        };
+        for side in 0..layout.arcs() {
+            gradient[layout.time_index(side)] += 1.0 / layout.period(z) + late;
+        }
+        Some(Look {
+            inequalities: limits::inequalities(self.setting, &self.layout, z),
+            jets,
+            net,
+            values,
+            slopes,
+            weights,
+            gradient,
+        })
+    }
+
+    /// Second derivatives with the inequalities eliminated, and minus the barrier's gradient.
+    fn system(&self, here: &Iterate, look: &Look) -> (DMatrix<f64>, DVector<f64>) {
+        let arcs = self.layout.arcs();
+        let of = (&self.layout, self.model, &self.rule);
+        let mut matrix = chain::hessian(of, &look.jets, &here.z, look.weights, false);
+        let period = self.layout.period(&here.z);
+        for one in 2 * arcs..3 * arcs {
+            for other in 2 * arcs..3 * arcs {
+                matrix[(one, other)] -= 1.0 / (period * period);
+            }
+        }
+        let mut right = -&look.gradient;
+        for (one, push) in look.inequalities.iter().zip(&here.pushes) {
+            let stiffness = push / one.value;
+            for (i, a) in one.slope {
+                right[i] += here.barrier / one.value * a;
+                for (j, b) in one.slope {
+                    matrix[(i, j)] += stiffness * a * b;
+                }
+            }
+            if let Some(curved) = one.curved {
+                let at = one.slope[0].0;
+                for i in 0..2 {
+                    for j in 0..2 {
+                        matrix[(at + i, at + j)] -= push * curved[(i, j)];
+                    }
+                }
+            }
+        }
+        // A large weight on the equalities shows whether what is left is convex along them.
+        let scale = 10.0 * matrix.diagonal().amax().clamp(1.0, 1e4);
+        for (value, slope) in look.values.iter().zip(&look.slopes) {
+            let weight = scale / slope.norm_squared().max(1e-12);
+            matrix.ger(weight, slope, slope, 1.0);
+            right -= slope * (weight * value);
+        }
+        (matrix, right)
+    }
+
+    fn direction(&self, here: &mut Iterate, look: &Look) -> Option<Direction> {
+        let (matrix, right) = self.system(here, look);
+        let (step, dy) = loop {
+            let mut damped = matrix.clone();
+            for i in 0..self.layout.size {
+                damped[(i, i)] += here.damping;
+            }
+            if let Some(factors) = damped.cholesky() {
+                here.damping = if here.damping < 1e-7 {
+                    0.0
+                } else {
+                    here.damping / 4.0
+                };
+                break newton_step(&factors, &right, &look.values, &look.slopes)?;
+            }
+            here.damping = (4.0 * here.damping).max(1e-4);
+            if here.damping > 1e8 {
+                return None;
+            }
+        };
+        let (mut longest, mut dual_longest) = (1.0_f64, 1.0_f64);
+        let mut pushes = Vec::with_capacity(here.pushes.len());
+        for (one, push) in look.inequalities.iter().zip(&here.pushes) {
+            let along: f64 = one.slope.iter().map(|(at, a)| a * step[*at]).sum();
+            if along < 0.0 && one.curved.is_none() {
+                longest = longest.min(-SHARE * one.value / along);
+            }
+            let d_push = here.barrier / one.value - push - push / one.value * along;
+            if d_push < 0.0 {
+                dual_longest = dual_longest.min(-SHARE * push / d_push);
+            }
+            pushes.push(d_push);
+        }
+        longest = longest.min(0.5 / step.rows(0, 2 * self.layout.arcs()).amax().max(1e-12));
+        let after = dy.iter().zip(&here.y).map(|(d, y)| (d + y).abs());
+        here.penalty = here.penalty.max(2.0 * after.fold(0.0, f64::max));
+        Some(Direction {
+            z: step,
+            y: dy,
+            pushes,
+            longest,
+            dual_longest,
+        })
+    }
+
+    /// Goes as far along a direction as the merit does not rise; whether it moved.
+    fn move_along(&self, here: &mut Iterate, direction: &Direction) -> bool {
+        let merit = self.merit(&here.z, here.barrier, here.penalty);
+        let mut length = direction.longest;
+        for _ in 0..25 {
+            let there = &here.z + &direction.z * length;
+            let after = self.merit(&there, here.barrier, here.penalty);
+            if after <= merit + 1e-10 * merit.abs().max(1.0) {
+                here.z = there;
+                for (y, d) in here.y.iter_mut().zip(&direction.y) {
+                    *y += length * d;
+                }
+                let now = limits::inequalities(self.setting, &self.layout, &here.z);
+                let steps = here.pushes.iter_mut().zip(&direction.pushes);
+                for ((push, d), one) in steps.zip(&now) {
+                    *push += direction.dual_longest * d;
+                    // Keep the product near the barrier.
+                    let central = here.barrier / one.value;
+                    *push = push.clamp(1e-8 * central, 1e8 * central);
+                }
+                return true;
+            }
+            length *= 0.5;
+        }
+        false
+    }
+
+    fn finish(&self, here: &Iterate, net: chain::Net) -> Polygon {
+        let four = |side: usize| std::array::from_fn(|k| here.pushes[4 * side + k]);
+        Polygon {
+            layout: self.layout.clone(),
+            pushes: (0..self.layout.arcs()).map(four).collect(),
+            speed: net.distance() / self.layout.period(&here.z),
+            z: here.z.clone(),
+        }
+    }
+}
+
+impl Look {
+    /// How far from the barrier's own optimum.
+    fn error(&self, here: &Iterate) -> f64 {
+        let mut dual = self.gradient.clone();
+        let mut error: f64 = 0.0;
+        for (one, push) in self.inequalities.iter().zip(&here.pushes) {
+            for (at, slope) in one.slope {
+                dual[at] -= push * slope;
+            }
+            error = error.max((one.value * push - here.barrier).abs());
+        }
+        let infeasible = self.values.iter().map(|value| value.abs());
+        infeasible.fold(error.max(dual.amax()), f64::max)
+    }
+}
+
+/// Solves `K dz + Jᵀ dy = r`, `J dz = −c`.
+fn newton_step(
+    factors: &Cholesky<f64, Dyn>,
+    right: &DVector<f64>,
+    values: &[f64],
+    slopes: &[DVector<f64>],
+) -> Option<(DVector<f64>, Vec<f64>)> {
+    let free = factors.solve(right);
+    let ways: Vec<DVector<f64>> = slopes.iter().map(|slope| factors.solve(slope)).collect();
+    let count = slopes.len();
+    let schur = DMatrix::from_fn(count, count, |i, j| slopes[i].dot(&ways[j]));
+    let rest = DVector::from_fn(count, |i, _| slopes[i].dot(&free) + values[i]);
+    let dy = schur.lu().solve(&rest)?;
+    let mut step = free;
+    for (way, dy) in ways.iter().zip(dy.iter()) {
+        step -= way * *dy;
+    }
+    step.iter()
+        .all(|value| value.is_finite())
+        .then(|| (step, dy.iter().copied().collect()))
+}

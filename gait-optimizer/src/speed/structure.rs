@@ -1,0 +1,296 @@
+//! Which arcs a polygon is made of: what pushes against each of its sides, and which corners rest on bounds.
+
+use nalgebra::{DMatrix, DVector, Vector2};
+use swimmer_files::ArcKind;
+
+use super::arc::{MOST_BENDS, Shape};
+use super::interior::Polygon;
+use super::problem::Setting;
+use super::quadrature::legendre;
+use crate::region::{Bound, Piece};
+
+/// What one arc does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Motion {
+    /// Both servos at full rate, this way.
+    Extreme([f64; 2]),
+    /// Servo `pace` at full rate, this way; the other free within its own.
+    Singular { pace: usize, way: f64 },
+    /// Along a straight bound of the other joint.
+    Straight { bound: usize, pace: usize, way: f64 },
+    /// Along a piece of the clearance.
+    Curved {
+        bound: usize,
+        piece: Piece,
+        pace: usize,
+        way: f64,
+    },
+}
+
+/// A corner and the arc that follows it.
+#[derive(Debug, Clone)]
+pub(crate) struct Link {
+    pub(crate) corner: Vector2<f64>,
+    /// Bounds that hold the corner, by their place in the region.
+    pub(crate) held: Vec<Hold>,
+    pub(crate) motion: Motion,
+    /// Seconds.
+    pub(crate) time: f64,
+    /// Of a singular arc.
+    pub(crate) bends: Vec<f64>,
+    /// Shapes that a polygon passed on the way.
+    pub(crate) between: Vec<Vector2<f64>>,
+}
+
+/// What holds a corner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Hold {
+    /// A bound; of the clearance, this piece of it.
+    On(usize, Option<Piece>),
+}
+
+/// Multipliers above this push.
+const PUSHES: f64 = 1e-4;
+/// Corners closer than this to a bound rest on it.
+const RESTS: f64 = 1e-4;
+/// Arcs that take a smaller share of the period are left out.
+const SHORTEST: f64 = 2e-3;
+
+impl Motion {
+    /// Which servo surely runs at full rate, and which way; both do on an extreme arc.
+    pub(crate) fn pace(&self) -> (usize, f64) {
+        match *self {
+            Self::Extreme(ways) => (0, ways[0]),
+            Self::Singular { pace, way }
+            | Self::Straight { pace, way, .. }
+            | Self::Curved { pace, way, .. } => (pace, way),
+        }
+    }
+
+    /// The word in files.
+    pub(crate) fn kind(&self, bound: impl Fn(usize) -> Option<Bound>) -> ArcKind {
+        match *self {
+            Self::Extreme(_) => ArcKind::Extreme,
+            Self::Singular { .. } => ArcKind::Singular,
+            Self::Straight { bound: index, .. } => {
+                bound(index).map_or(ArcKind::Upper, |bound| bound.kind())
+            }
+            Self::Curved { .. } => ArcKind::Clearance,
+        }
+    }
+
+    pub(crate) fn shape(&self, setting: &Setting, bends: usize) -> Shape {
+        match *self {
+            Self::Extreme(_) | Self::Straight { .. } => Shape::Straight,
+            Self::Singular { pace, .. } => Shape::Bent {
+                joint: 1 - pace,
+                bends: bends.min(MOST_BENDS),
+            },
+            Self::Curved {
+                bound, piece, pace, ..
+            } => match setting.region.bound(bound) {
+                Some(Bound::Clearance(clearance)) => Shape::Along {
+                    clearance,
+                    piece,
+                    pace,
+                },
+                _ => Shape::Straight,
+            },
+        }
+    }
+}
+
+/// The arcs of a polygon; none where they make no chain.
+pub(crate) fn arcs(setting: &Setting, polygon: &Polygon) -> Option<Vec<Link>> {
+    let layout = &polygon.layout;
+    let period = layout.period(&polygon.z);
+    let n = layout.arcs();
+    let held: Vec<Vec<Hold>> = (0..n)
+        .map(|corner| holds(setting, &layout.corner(&polygon.z, corner)))
+        .collect();
+    let sides: Vec<(Motion, f64)> = (0..n)
+        .map(|side| {
+            let motion = motion(setting, polygon, side, &held[side], &held[(side + 1) % n]);
+            (motion, polygon.z[layout.time_index(side)])
+        })
+        .collect();
+    // Begin where the motion changes.
+    let first = (0..n).find(|&k| sides[k].0 != sides[(k + n - 1) % n].0)?;
+    let mut links: Vec<Link> = Vec::new();
+    for k in (0..n).map(|k| (first + k) % n) {
+        let (motion, time) = sides[k];
+        let corner = layout.corner(&polygon.z, k);
+        match links.last_mut() {
+            Some(last) if last.motion == motion => {
+                last.time += time;
+                last.between.push(corner);
+            }
+            _ => links.push(Link {
+                between: Vec::new(),
+                corner,
+                held: held[k].clone(),
+                motion,
+                time,
+                bends: Vec::new(),
+            }),
+        }
+    }
+    links.retain(|link| link.time > SHORTEST * period);
+    merge(&mut links);
+    cut_corners(&mut links);
+    bend(&mut links);
+    Some(links)
+}
+
+/// Where two straight bounds meet, a gait gains by cutting the corner with both servos at full rate: time of first order for area
+/// of second. A polygon whose sides are long may miss it.
+fn cut_corners(links: &mut Vec<Link>) {
+    let mut at = 0;
+    while at < links.len() {
+        let next = (at + 1) % links.len();
+        let (before, after) = (&links[at], &links[next]);
+        if let (
+            Motion::Straight {
+                pace: one,
+                way: first,
+                ..
+            },
+            Motion::Straight {
+                pace: two,
+                way: second,
+                ..
+            },
+        ) = (before.motion, after.motion)
+            && one != two
+        {
+            let cut = 0.2 * before.time.min(after.time);
+            let mut ways = [first; 2];
+            ways[two] = second;
+            let corner = after.corner;
+            let (mut from, mut to) = (corner, corner);
+            from[one] -= first * cut;
+            to[two] += second * cut;
+            // Before the cut only the first bound holds, after it only the second.
+            let bound = |motion: &Motion| match motion {
+                Motion::Straight { bound, .. } => *bound,
+                _ => usize::MAX,
+            };
+            let (first_bound, second_bound) = (bound(&before.motion), bound(&after.motion));
+            links[at].time -= cut;
+            links[next].time -= cut;
+            links[next].corner = to;
+            links[next].held = vec![Hold::On(second_bound, None)];
+            links.insert(
+                at + 1,
+                Link {
+                    corner: from,
+                    held: vec![Hold::On(first_bound, None)],
+                    motion: Motion::Extreme(ways),
+                    time: cut,
+                    bends: Vec::new(),
+                    between: Vec::new(),
+                },
+            );
+        }
+        at += 1;
+    }
+}
+
+/// Bends of singular arcs from the shapes on their way.
+fn bend(links: &mut [Link]) {
+    const FITTED: usize = 3;
+    let corners: Vec<Vector2<f64>> = links.iter().map(|link| link.corner).collect();
+    for (k, link) in links.iter_mut().enumerate() {
+        let Motion::Singular { pace, .. } = link.motion else {
+            continue;
+        };
+        let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
+        let way = to - from;
+        let count = link.between.len().min(FITTED);
+        let rows: Vec<(f64, f64)> = link
+            .between
+            .iter()
+            .map(|phi| {
+                let s = (phi[pace] - from[pace]) / way[pace];
+                (s, phi[1 - pace] - from[1 - pace] - s * way[1 - pace])
+            })
+            .filter(|(s, _)| *s > 0.0 && *s < 1.0)
+            .collect();
+        if count == 0 || rows.len() < count {
+            continue;
+        }
+        let matrix = DMatrix::from_fn(rows.len(), count, |i, j| {
+            let s = rows[i].0;
+            s * (1.0 - s) * legendre(count, 2.0 * s - 1.0)[j]
+        });
+        let right = DVector::from_fn(rows.len(), |i, _| rows[i].1);
+        if let Ok(bends) = matrix.svd(true, true).solve(&right, 1e-9) {
+            link.bends = bends.iter().copied().collect();
+        }
+    }
+}
+
+/// Joins neighbours of one motion.
+pub(crate) fn merge(links: &mut Vec<Link>) {
+    let mut at = 0;
+    while links.len() > 2 && at < links.len() {
+        let next = (at + 1) % links.len();
+        if links[at].motion == links[next].motion {
+            let joined = links.remove(next);
+            let last = if next == 0 { links.len() - 1 } else { at };
+            links[last].time += joined.time;
+            links[last].between.push(joined.corner);
+            links[last].between.extend(joined.between);
+            at = 0;
+        } else {
+            at += 1;
+        }
+    }
+}
+
+/// What a corner rests on.
+pub(crate) fn holds(setting: &Setting, phi: &Vector2<f64>) -> Vec<Hold> {
+    setting
+        .region
+        .bounds()
+        .enumerate()
+        .filter(|(_, bound)| bound.margin(phi) < RESTS)
+        .map(|(index, bound)| Hold::On(index, bound.piece(phi)))
+        .collect()
+}
+
+fn motion(setting: &Setting, polygon: &Polygon, side: usize, from: &[Hold], to: &[Hold]) -> Motion {
+    let layout = &polygon.layout;
+    let [start, end] = layout.ends(&polygon.z, side);
+    let way = end - start;
+    let pushes = &polygon.pushes[side];
+    let full = [0, 1].map(|joint| {
+        let [up, down] = [pushes[2 * joint], pushes[2 * joint + 1]];
+        (up.max(down) > PUSHES).then_some(if up > down { 1.0 } else { -1.0 })
+    });
+    if let [Some(one), Some(two)] = full {
+        return Motion::Extreme([one, two]);
+    }
+    let share = [0, 1].map(|joint| way[joint].abs() / setting.rates[joint]);
+    let pace = match full {
+        [Some(_), None] => 0,
+        [None, Some(_)] => 1,
+        _ => usize::from(share[1] > share[0]),
+    };
+    let way = way[pace].signum();
+    let both = from
+        .iter()
+        .find(|Hold::On(bound, _)| to.iter().any(|Hold::On(other, _)| other == bound));
+    if let Some(&Hold::On(bound, piece)) = both {
+        return match setting.region.bound(bound) {
+            Some(Bound::Clearance(clearance)) => Motion::Curved {
+                bound,
+                piece: piece.unwrap_or_else(|| clearance.piece(&(0.5 * (start + end)))),
+                pace,
+                way,
+            },
+            _ => Motion::Straight { bound, pace, way },
+        };
+    }
+    Motion::Singular { pace, way }
+}

@@ -1,0 +1,131 @@
+//! Known values, what the certificate catches, headings and periods.
+
+use super::*;
+use crate::certify;
+
+fn within(swimmer: Swimmer<f64>, max: f64) -> SpeedProblem {
+    SpeedProblem {
+        bounds: Bounds {
+            max_angle: Some(max),
+            ..Bounds::default()
+        },
+        starts: 12,
+        threads: 2,
+        ..SpeedProblem::new(swimmer, [1.0; 2])
+    }
+}
+
+fn certified(found: &Fastest) {
+    let certificate = &found.gait.certificate;
+    assert!(certificate.pass(), "{}", certificate.failures());
+}
+
+/// Found by the search, and by the direct method of `tests/speed.rs`.
+#[test]
+fn known_speeds() {
+    for (swimmer, max, speed) in [
+        (Swimmer::robot(), 2.0, 0.005_233_960_731_8),
+        (Swimmer::robot(), 2.8, 0.007_533_853_203_8),
+        (Swimmer::purcell(), 2.0, 0.012_915_416_912_7),
+        (Swimmer::purcell(), 2.8, 0.015_272_491_902_1),
+    ] {
+        let found = fastest(&within(swimmer, max)).unwrap();
+        certified(&found);
+        assert!(
+            (found.speed_over_length - speed).abs() < 1e-12,
+            "{max} {}",
+            found.speed_over_length
+        );
+        assert!(found.uncertified.is_none() && found.longer.is_none());
+    }
+}
+
+/// The file alone tells the same, at any rate; a circle, a square and the gait made smaller by a hundredth do not pass.
+#[test]
+fn the_certificate_is_that_of_the_curve() {
+    let problem = within(Swimmer::purcell(), 2.8);
+    let found = fastest(&SpeedProblem {
+        rates: [0.3, 0.6],
+        ..problem
+    })
+    .unwrap();
+    certified(&found);
+    let of = |file: &GaitFile| {
+        certify(&problem.swimmer, file, Objective::Speed, &problem.bounds).unwrap()
+    };
+    let file = found.gait.gait_file("");
+    assert!(of(&file).pass(), "{}", of(&file).failures());
+    for curve in [AnyGait::circle(1.6), AnyGait::square(1.4)] {
+        let certificate = of(&GaitFile::sampled(&curve, 1024));
+        assert!(!certificate.pass());
+    }
+    let mut moved = file.clone();
+    for phi in &mut moved.phi {
+        *phi *= 0.99;
+    }
+    let certificate = of(&moved);
+    assert!(certificate.value("switch_to_switch_integrals").unwrap() > 1e-4);
+    assert!(!certificate.pass());
+}
+
+#[test]
+fn the_heading_is_as_asked() {
+    let problem = within(Swimmer::purcell(), 2.8);
+    let any = fastest(&problem).unwrap();
+    for (rule, heading) in [
+        (HeadingRule::Forward, 0.0),
+        (HeadingRule::Sideways, std::f64::consts::FRAC_PI_2),
+    ] {
+        let found = fastest(&SpeedProblem {
+            heading: rule,
+            starts: 24,
+            ..problem
+        })
+        .unwrap();
+        certified(&found);
+        assert!((found.heading - heading).abs() < 1e-9, "{}", found.heading);
+        println!("{rule:?} {}", found.speed_over_length);
+        assert!(found.speed_over_length < any.speed_over_length * (1.0 + 1e-12));
+    }
+}
+
+/// The farthest in the fastest gait's own period is that gait; in another period it is slower, and H is dD/dT.
+#[test]
+fn the_farthest_in_a_period() {
+    let problem = within(Swimmer::purcell(), 2.4);
+    let free = fastest(&problem).unwrap();
+    let at = |period: f64| {
+        let found = fastest(&SpeedProblem {
+            period: Some(period),
+            ..problem
+        })
+        .unwrap();
+        certified(&found);
+        assert!((found.period - period).abs() < 1e-9);
+        found
+    };
+    let same = at(free.period);
+    assert!((same.speed_over_length - free.speed_over_length).abs() < 1e-12);
+    let (shorter, longer) = (at(free.period - 1e-3), at(free.period + 1e-3));
+    let slope = (longer.distance_over_length - shorter.distance_over_length) / 2e-3;
+    assert!((slope - free.speed_over_length).abs() < 1e-6, "{slope}");
+    assert!(longer.speed_over_length < free.speed_over_length);
+    assert!(shorter.speed_over_length < free.speed_over_length);
+}
+
+#[test]
+fn nonsense_is_refused() {
+    let problem = SpeedProblem::new(Swimmer::purcell(), [1.0, 0.0]);
+    assert!(matches!(fastest(&problem), Err(SpeedError::Rate { .. })));
+    let mut problem = SpeedProblem::new(Swimmer::purcell(), [1.0; 2]);
+    problem.bounds.sector = true;
+    assert!(matches!(
+        fastest(&problem),
+        Err(SpeedError::OfQuarters { .. })
+    ));
+    let problem = SpeedProblem {
+        period: Some(f64::NAN),
+        ..SpeedProblem::new(Swimmer::purcell(), [1.0; 2])
+    };
+    assert!(matches!(fastest(&problem), Err(SpeedError::Period { .. })));
+}
