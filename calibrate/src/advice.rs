@@ -8,11 +8,11 @@ use swimmer_model::{Gait as _, Model, Swimmer};
 
 use crate::error::FitError;
 use crate::fit::CampaignFit;
-use crate::fit::least_squares::Model as _;
 use crate::fit::likelihood::Estimate;
 use crate::fit::parameter::Parameter;
-use crate::fit::run_values::QUANTITIES;
+use crate::least_squares::Model as _;
 use crate::prediction::Played;
+use crate::quantities::QUANTITIES;
 
 /// Amplitudes of circles and squares that are weighed \[deg\].
 const AMPLITUDES: std::ops::RangeInclusive<u32> = 4..=22;

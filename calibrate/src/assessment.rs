@@ -14,7 +14,6 @@ mod verdict;
 pub use budget::BudgetLine;
 pub use explanations::{Explained, Explanation};
 pub use goodness::{Goodness, RunGoodness, SignTest};
-pub(crate) use known::REFLECTOR;
 pub use systematics::{Nuisance, Systematics, Unforeseen};
 pub use verdict::{Headline, Verdict};
 

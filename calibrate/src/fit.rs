@@ -12,7 +12,6 @@
 pub(crate) mod components;
 pub(crate) mod errors;
 pub(crate) mod intervals;
-pub(crate) mod least_squares;
 pub(crate) mod likelihood;
 pub(crate) mod outliers;
 pub(crate) mod parameter;
@@ -27,21 +26,24 @@ use std::path::PathBuf;
 use swimmer_files::{Known, SwimmerFile};
 use swimmer_model::{Swimmer, TangentialDrag};
 
-use crate::assessment::REFLECTOR;
 use crate::error::FitError;
 use crate::joints::{Measured, MeasuredServo, combined};
+use crate::least_squares::{Minimum, cost};
 use crate::median::median;
 use crate::prediction::{Played, PredictedCycle};
+use crate::quantities::{NAMES, QUANTITIES};
 use crate::run::RunResult;
 pub use intervals::Intervals;
-use least_squares::{Minimum, cost};
 use parameter::Parameter;
 use run_model::RunModel;
-use run_values::{NAMES, QUANTITIES, RunValues};
+use run_values::RunValues;
 pub(crate) use search::search;
 
 /// Weights of X, ΔY and Δθ in the paper's criterion, which leaves out Y and net turn.
 pub(crate) const WEIGHTS: [f64; QUANTITIES] = [0.5, 0.25, 0.25, 0.0, 0.0];
+
+/// How far off a reflector's place may be, where the campaign says nothing \[m\].
+pub(crate) const REFLECTOR: f64 = 5e-4;
 
 /// What a fit is made from besides the data.
 #[derive(Debug, Clone, Copy, PartialEq)]

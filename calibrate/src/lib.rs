@@ -24,11 +24,14 @@ pub mod evidence;
 pub mod fit;
 mod golden;
 pub mod joints;
+mod least_squares;
 mod median;
 pub mod nuisance;
 pub mod poses;
 mod prediction;
+mod quantities;
 mod run;
+mod sides;
 pub mod tracks;
 
 pub use advice::{Advice, Candidate, advise};

@@ -8,11 +8,11 @@ use swimmer_files::SwimmerFile;
 
 use crate::error::FitError;
 use crate::fit::intervals::half_width;
-use crate::fit::least_squares::{Model as _, weighted};
 use crate::fit::likelihood::Estimate;
 use crate::fit::parameter::Parameter;
 use crate::fit::run_model::RunModel;
 use crate::fit::{CampaignFit, Intervals};
+use crate::least_squares::{Model as _, weighted};
 
 /// What can be fitted along with r_s and χ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

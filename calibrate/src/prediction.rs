@@ -19,7 +19,7 @@ use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 use swimmer_model::{Gait, InvalidSwimmer, Model, Pose, Swimmer, Tolerance, trajectory};
 
 use crate::cycles::{self, Curve, Harmonics, Projection};
-use crate::joints::Sides;
+use crate::sides::Sides;
 
 /// Knots of the table that a robot is given.
 const KNOTS: usize = 512;

@@ -11,10 +11,10 @@ use swimmer_model::{Gait as _, Swimmer};
 use crate::cycles::{Clock, Cycles, Phase, Projection};
 use crate::data::RunData;
 use crate::error::CalibrateError;
-use crate::fit::run_values::{QUANTITIES, predicted};
 use crate::joints::{self, MeasuredJoints};
 use crate::poses::{self, FrontRule, PoseOptions, PoseTrack, PoseWarning};
 use crate::prediction::Played;
+use crate::quantities::{QUANTITIES, predicted};
 
 pub(crate) use either::EitherRun;
 pub(crate) use told::Told;

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::Plain;
 use super::known::Known;
-use crate::fit::least_squares::Model as _;
 use crate::fit::parameter::Parameter;
+use crate::least_squares::Model as _;
 
 /// One line of the budget.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -6,9 +6,9 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use super::Plain;
 use super::systematics::Joint;
 use crate::fit::CampaignFit;
-use crate::fit::least_squares::{Model as _, minimise};
 use crate::fit::likelihood::Estimate;
-use crate::fit::run_values::{NAMES, QUANTITIES, TELLING, measured};
+use crate::least_squares::{Model as _, minimise};
+use crate::quantities::{NAMES, QUANTITIES, TELLING, measured};
 use swimmer_model::Gait as _;
 
 /// The signs of what is left of one quantity, from the smallest gait to the largest.

@@ -3,14 +3,14 @@
 use swimmer_files::KnownValue;
 
 use crate::fit::CampaignFit;
+use crate::fit::REFLECTOR;
 use crate::fit::parameter::Parameter;
 use crate::fit::prior::Prior;
 use crate::fit::run_model::RunModel;
 
-/// A servo's gain, joint offsets \[rad\], the reflectors' place \[m\] and the cameras' scale, where the campaign says nothing.
+/// A servo's gain, joint offsets \[rad\] and the cameras' scale, where the campaign says nothing.
 const GAIN: f64 = 0.005;
 const OFFSET: f64 = 0.3 * std::f64::consts::PI / 180.0;
-pub(crate) const REFLECTOR: f64 = 5e-4;
 const SCALE: f64 = 0.002;
 
 /// What is known of one parameter.

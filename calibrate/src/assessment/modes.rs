@@ -6,7 +6,6 @@
 
 use super::Plain;
 use super::known::Known;
-use crate::fit::least_squares::weighted;
 use crate::fit::likelihood::Estimate;
 use crate::fit::outliers;
 use crate::fit::parameter::Parameter;
@@ -14,6 +13,7 @@ use crate::fit::prior::{Prior, WithPriors};
 use crate::fit::run_model::RunModel;
 use crate::fit::run_values::RunValues;
 use crate::fit::tangent::Tangent;
+use crate::least_squares::weighted;
 
 /// Of how many values one may be left out as unlike the others.
 const VALUES_FOR_ONE: usize = 8;

@@ -10,12 +10,13 @@ use super::modes::{JointProblem, Mode, evidence};
 use crate::evidence::Pair;
 use crate::fit::Intervals;
 use crate::fit::intervals::half_width;
-use crate::fit::least_squares::{Model as _, minimise};
 use crate::fit::likelihood::Estimate;
 use crate::fit::parameter::Parameter;
 use crate::fit::prior::Prior;
-use crate::fit::run_values::{NAMES, QUANTITIES, RunValues};
+use crate::fit::run_values::RunValues;
 use crate::fit::tangent::Tangent;
+use crate::least_squares::{Model as _, minimise};
+use crate::quantities::{NAMES, QUANTITIES};
 
 /// What no file knows, and how much of it would be no surprise (rad, ln, s): tried beside all that is known. It is reckoned with
 /// where the runs are twenty times likelier with it (ln of odds), as it is one of the things that hardly ever are, and so many

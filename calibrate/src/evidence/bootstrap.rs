@@ -16,8 +16,8 @@ use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use super::EvidenceOptions;
 use super::surface::Surface;
 use crate::fit::WEIGHTS;
-use crate::fit::least_squares::{Model as _, minimise};
-use crate::fit::run_values::QUANTITIES;
+use crate::least_squares::{Model as _, minimise};
+use crate::quantities::QUANTITIES;
 
 /// From fewer runs it says nothing.
 pub(super) const ENOUGH_RUNS: usize = 5;

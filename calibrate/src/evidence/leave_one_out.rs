@@ -7,7 +7,8 @@
 use super::surface::Surface;
 use crate::fit::likelihood::Estimate;
 use crate::fit::outliers::{self, FALSE_ALARM};
-use crate::fit::run_values::{QUANTITIES, RunValues};
+use crate::fit::run_values::RunValues;
+use crate::quantities::QUANTITIES;
 
 /// Of how many values one may be left out.
 const VALUES_FOR_ONE: usize = 6;

@@ -9,8 +9,9 @@ use crate::cycles::{Cycle, Cycles, Statistics};
 use crate::error::FitError;
 use crate::fit::likelihood::Estimate;
 use crate::fit::run_model::RunModel;
-use crate::fit::run_values::{QUANTITIES, RunValues, TELLING, measured};
+use crate::fit::run_values::RunValues;
 use crate::fit::{self, CampaignFit, Intervals};
+use crate::quantities::{QUANTITIES, TELLING, measured};
 
 /// Half widths of the first rectangle, in half widths of the fit's intervals.
 const REACH: f64 = 4.0;

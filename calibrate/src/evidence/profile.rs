@@ -6,9 +6,9 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
 use super::surface::Surface;
 use super::{Contour, Profile, Ridge};
-use crate::fit::least_squares::{Model as _, minimise};
 use crate::fit::likelihood::Estimate;
 use crate::fit::run_values::RunValues;
+use crate::least_squares::{Model as _, minimise};
 
 /// Points of a profile.
 const POINTS: usize = 61;

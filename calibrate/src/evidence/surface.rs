@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use nalgebra::DMatrix;
 
-use crate::fit::least_squares::Model;
+use crate::least_squares::Model;
 
 /// Degree of the polynomials in each parameter.
 const DEGREE: usize = 7;

@@ -5,8 +5,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::errors::{MOST_FREEDOM, Variance};
-use super::least_squares::weighted;
-use super::run_values::QUANTITIES;
+use crate::least_squares::weighted;
+use crate::quantities::QUANTITIES;
 
 /// Variances of all residuals, and what they mean for the parameters.
 #[derive(Debug, Clone)]

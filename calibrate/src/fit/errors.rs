@@ -9,8 +9,8 @@
 
 use statrs::function::gamma::digamma;
 
-use super::run_values::{QUANTITIES, TELLING};
 use crate::cycles::Statistics;
+use crate::quantities::{QUANTITIES, TELLING};
 
 /// A squared standard error and how many degrees of freedom it rests on.
 #[derive(Debug, Clone, Copy, PartialEq)]

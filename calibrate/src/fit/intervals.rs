@@ -4,9 +4,9 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::components::Components;
 use super::errors::Variance;
-use super::least_squares::{Minimum, weighted};
 use super::outliers::{self, Unlike};
 use super::run_values::RunValues;
+use crate::least_squares::{Minimum, weighted};
 
 /// Intervals of both parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,8 +4,8 @@
 use nalgebra::DMatrix;
 
 use super::components::Components;
-use super::least_squares::{Minimum, Model, cost, minimise};
 use super::run_values::RunValues;
+use crate::least_squares::{Minimum, Model, cost, minimise};
 
 /// Rounds of parameters and variances, and the relative change at which they stand still.
 const ROUNDS: usize = 40;

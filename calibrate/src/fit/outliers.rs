@@ -7,7 +7,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::components::Components;
 use super::errors::Variance;
-use super::run_values::QUANTITIES;
+use crate::quantities::QUANTITIES;
 
 /// Chance that some value of a campaign without fault is called an outlier.
 pub(crate) const FALSE_ALARM: f64 = 0.01;

@@ -3,10 +3,10 @@
 use nalgebra::DMatrix;
 
 use super::errors::Variance;
-use super::least_squares::Model;
 use super::parameter::Parameter;
 use super::run_model::RunModel;
 use super::run_values::RunValues;
+use crate::least_squares::Model;
 
 /// A parameter's value and its standard deviation, in the fit's units.
 #[derive(Debug, Clone, Copy, PartialEq)]

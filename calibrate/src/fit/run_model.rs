@@ -9,11 +9,11 @@ use nalgebra::{DMatrix, Vector2};
 use swimmer_files::{ServoFile, SwimmerFile};
 use swimmer_model::{InvalidSwimmer, Pose, TangentialDrag};
 
-use super::least_squares::Model;
 use super::parameter::{Parameter, over_viscosity};
-use super::run_values::{QUANTITIES, predicted};
 use crate::cycles::Projection;
+use crate::least_squares::Model;
 use crate::prediction::{JointPath, Played, PredictedCycle};
+use crate::quantities::{QUANTITIES, predicted};
 use crate::run::RunResult;
 
 /// Runs, and the parameters that may differ.

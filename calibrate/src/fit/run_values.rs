@@ -4,28 +4,10 @@ use super::WEIGHTS;
 use super::errors::{Variance, within_runs};
 use crate::cycles::{Cycles, Statistics};
 use crate::error::FitError;
-use crate::prediction::PredictedCycle;
+use crate::quantities::{NAMES, QUANTITIES, TELLING, measured};
 
-/// Values of one run: X, ΔY, Δθ, and what symmetric gaits have none of: Y and the net turn.
-pub(crate) const QUANTITIES: usize = 5;
-/// How many of them, from the first, tell r_s and χ.
-pub(crate) const TELLING: usize = 3;
-/// Their names.
-pub(crate) const NAMES: [&str; QUANTITIES] = ["X", "ΔY", "Δθ", "Y", "net turn"];
 /// In whose scale each is told.
 const SCALED_LIKE: [usize; QUANTITIES] = [0, 1, 2, 0, 2];
-
-/// The values of a predicted cycle, in this order.
-pub(crate) fn predicted(cycle: &PredictedCycle) -> [f64; QUANTITIES] {
-    let PredictedCycle {
-        x_m,
-        y_m,
-        rotation_rad,
-        delta_y_m,
-        delta_theta_rad,
-    } = *cycle;
-    [x_m, delta_y_m, delta_theta_rad, y_m, rotation_rad]
-}
 
 /// X, ΔY, Δθ, Y and net turn of every run, each in units of its scale.
 #[derive(Debug, Clone)]
@@ -40,19 +22,6 @@ pub(crate) struct RunValues {
     pub(crate) used: Vec<bool>,
     /// Which of them were measured or told.
     there: Vec<bool>,
-}
-
-/// What a run's cycles measured, in the order of the values.
-pub(crate) fn measured(cycles: &Cycles) -> [Statistics; QUANTITIES] {
-    let Cycles {
-        x,
-        y,
-        rotation,
-        delta_y,
-        delta_theta,
-        ..
-    } = cycles;
-    [*x, *delta_y, *delta_theta, *y, *rotation]
 }
 
 impl RunValues {

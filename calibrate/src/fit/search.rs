@@ -1,10 +1,10 @@
 //! From many starts to the best optimum: a grid of starts with ideal servos, whose distinct ends then start the fit with the
 //! path that the servos really played. r_s = 0 is a bound, and a start of its own from each end.
 
-use super::least_squares::{Minimum, Model, cost, minimise};
 use super::run_model::RunModel;
 use super::run_values::RunValues;
 use crate::error::FitError;
+use crate::least_squares::{Minimum, Model, cost, minimise};
 
 /// Starting grid: r_s/L and χ.
 const GRID: ([f64; 4], [f64; 5]) = ([0.02, 0.08, 0.2, 0.4], [1.3, 2.0, 3.5, 6.0, 10.0]);

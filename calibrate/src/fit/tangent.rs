@@ -3,9 +3,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::least_squares::Model;
 use super::likelihood::Estimate;
 use super::run_values::RunValues;
+use crate::least_squares::Model;
 
 /// Tangents until the parameters stand still, and what that is.
 const TANGENTS: usize = 8;

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::curve::{AngleCurve, Fitted};
 use super::{Measured, MeasuredServo};
-use crate::fit::least_squares::{Model, minimise};
+use crate::least_squares::{Model, minimise};
 
 /// Places of a cycle at which both courses are held against each other.
 const PLACES: usize = 256;

@@ -6,12 +6,13 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::begin;
-use crate::fit::least_squares::{Model as _, weighted};
 use crate::fit::parameter::Parameter;
 use crate::fit::run_model::RunModel;
-use crate::fit::run_values::{QUANTITIES, RunValues};
+use crate::fit::run_values::RunValues;
 use crate::fit::{CampaignFit, FitWarning};
 use crate::golden::golden;
+use crate::least_squares::{Model as _, weighted};
+use crate::quantities::QUANTITIES;
 
 /// What is looked for: how far the first look goes, and the values that are tried, before the golden section refines the best
 /// (dead bands to a twentieth of a degree).

@@ -7,8 +7,8 @@ use swimmer_model::Swimmer;
 use super::{Opposed, Run, RunResult, Told, opposed};
 use crate::cycles::{Cycles, Projection};
 use crate::error::CalibrateError;
-use crate::fit::run_values::QUANTITIES;
 use crate::prediction::Played;
+use crate::quantities::QUANTITIES;
 
 /// Tracked or told.
 pub(crate) enum EitherRun<'a> {

@@ -7,9 +7,9 @@ use swimmer_files::{AnyGait, CampaignRun, SwimmerFile, ToldRun};
 use super::RunResult;
 use crate::cycles::Cycles;
 use crate::error::CalibrateError;
-use crate::fit::run_values::QUANTITIES;
 use crate::poses::PoseTrack;
 use crate::prediction::Played;
+use crate::quantities::QUANTITIES;
 
 /// What was told of a run, and of what gait.
 pub(crate) struct Told {
