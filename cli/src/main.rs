@@ -41,6 +41,9 @@ fn main() -> ExitCode {
             if arguments.overwrite {
                 new_file::allow_overwriting();
             }
+            if arguments.json {
+                output::be_for_scripts();
+            }
             if arguments.verbose {
                 output::be_verbose();
             }

@@ -12,6 +12,19 @@ use crate::failure::{Failure, Outcome};
 /// What the system said when standard output first took no more.
 static LOST: OnceLock<String> = OnceLock::new();
 
+/// Whether a script asks, which wants no progress told.
+static FOR_SCRIPTS: AtomicBool = AtomicBool::new(false);
+
+/// From here on a script is asking.
+pub(crate) fn be_for_scripts() {
+    FOR_SCRIPTS.store(true, Ordering::Relaxed);
+}
+
+/// Whether one is.
+pub(crate) fn for_scripts() -> bool {
+    FOR_SCRIPTS.load(Ordering::Relaxed)
+}
+
 /// Whether experts' details are wanted.
 static VERBOSE: AtomicBool = AtomicBool::new(false);
 

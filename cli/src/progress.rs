@@ -1,42 +1,55 @@
-//! What is going on, for people at a terminal; silent everywhere else.
+//! What is going on and how long it will take, for people at a terminal; silent everywhere else.
 
+use std::fmt::Write;
 use std::io::IsTerminal;
-use std::time::Duration;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::style::ProgressTracker;
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
-/// A progress line on standard error; drawn only when that is a terminal.
+use crate::interrupt::locked;
+use crate::output::for_scripts;
+
+/// A progress line on standard error; drawn only when that is a terminal and no script is asking.
 #[derive(Debug)]
 pub(crate) struct Progress(ProgressBar);
+
+/// Narrower terminals show no bar: what is done and how long it takes says more.
+const ROOM_FOR_A_BAR: u16 = 60;
+/// Before this share is done, how long the rest takes is a guess.
+const TELLING: f64 = 0.03;
 
 impl Progress {
     /// A bar of `steps` steps.
     pub(crate) fn of_steps(steps: u64) -> Self {
-        Self::drawn(
-            ProgressBar::new(steps),
-            "{bar:28} {pos:>3}/{len} {wide_msg}",
-        )
+        Self::drawn(ProgressBar::new(steps), "{pos:>3}/{len}", left)
     }
 
     /// A bar of `bytes` bytes.
     pub(crate) fn of_bytes(bytes: u64) -> Self {
-        Self::drawn(
-            ProgressBar::new(bytes),
-            "{bar:28} {pos:>5}/{len} bytes {wide_msg}",
-        )
+        Self::drawn(ProgressBar::new(bytes), "{pos:>5}/{len} bytes", left)
     }
 
     /// A bar of one whole, whose share is set with [`Self::at_share`].
-    pub(crate) fn of_a_whole() -> Self {
-        Self::drawn(ProgressBar::new(1000), "{bar:28} {wide_msg}")
+    pub(crate) fn of_a_whole(what: &str) -> Self {
+        let progress = Self::drawn(ProgressBar::new(1000), "{percent:>3} %", left);
+        progress.doing(what);
+        progress
     }
 
-    fn drawn(bar: ProgressBar, template: &str) -> Self {
-        if !std::io::stderr().is_terminal() {
+    fn drawn(bar: ProgressBar, count: &str, left: impl ProgressTracker + 'static) -> Self {
+        if !std::io::stderr().is_terminal() || for_scripts() {
             return Self(ProgressBar::hidden());
         }
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style.progress_chars("━╸ "));
+        let width = crossterm::terminal::size().map_or(80, |(columns, _)| columns);
+        let template = if width < ROOM_FOR_A_BAR {
+            "{wide_msg} {left}".to_owned()
+        } else {
+            format!("{{bar:28}} {count} {{left}} {{wide_msg}}")
+        };
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            bar.set_style(style.progress_chars("━╸ ").with_key("left", left));
         }
         bar.enable_steady_tick(Duration::from_millis(100));
         Self(bar)
@@ -52,10 +65,17 @@ impl Progress {
         self.0.inc(1);
     }
 
-    /// This share of the whole is done.
+    /// This share of the whole is done; less than before where the work begins again.
     pub(crate) fn at_share(&self, share: f64) {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 1000; saturates
-        self.0.set_position((1000.0 * share) as u64);
+        let position = (1000.0 * share) as u64;
+        // Threads may tell in another order than they counted.
+        if position + 500 < self.0.position() {
+            self.0.reset_elapsed();
+            self.0.set_position(position);
+        } else {
+            self.0.set_position(position.max(self.0.position()));
+        }
     }
 
     /// So much is done.
@@ -67,5 +87,116 @@ impl Progress {
 impl Drop for Progress {
     fn drop(&mut self) {
         self.0.finish_and_clear();
+    }
+}
+
+/// How much longer, if what is left goes as fast as what is done.
+fn left(state: &ProgressState, out: &mut dyn Write) {
+    let share = f64::from(state.fraction());
+    if share < TELLING {
+        return;
+    }
+    say_left(state.elapsed().as_secs_f64() * (1.0 - share) / share, out);
+}
+
+fn say_left(seconds: f64, out: &mut dyn Write) {
+    // A line that cannot be written is no reason to fail.
+    let _ = if seconds < 90.0 {
+        write!(out, "{seconds:.0} s left")
+    } else {
+        write!(out, "{:.0} min left", seconds / 60.0)
+    };
+}
+
+/// Stages of a command, one after the other, each with the time that it takes as a rule.
+#[derive(Debug)]
+pub(crate) struct Stages {
+    progress: Progress,
+    pace: Arc<Mutex<Pace>>,
+    begun: Instant,
+}
+
+/// How far the stages are; usual times in seconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Pace {
+    /// Of all stages.
+    usual: f64,
+    /// Of those that are over, and what they really took.
+    done: f64,
+    took: f64,
+    /// Of the present one.
+    present: f64,
+}
+
+impl Pace {
+    /// Seconds still to come, so many after the beginning of all: the rest takes as much longer than usual as what is done.
+    fn left(&self, elapsed: f64) -> f64 {
+        let slower = if self.done > 0.0 {
+            self.took / self.done
+        } else {
+            1.0
+        };
+        let of_present = ((elapsed - self.took) / slower.max(1e-3)).min(self.present);
+        slower * (self.usual - self.done - of_present).max(0.0)
+    }
+}
+
+impl Stages {
+    /// All that will come, by their usual times in seconds.
+    pub(crate) fn new(usual: &[f64]) -> Self {
+        let pace = Arc::new(Mutex::new(Pace {
+            usual: usual.iter().sum(),
+            done: 0.0,
+            took: 0.0,
+            present: 0.0,
+        }));
+        let (shared, begun) = (Arc::clone(&pace), Instant::now());
+        let left = move |_: &ProgressState, out: &mut dyn Write| {
+            let seconds = locked(&shared).left(begun.elapsed().as_secs_f64());
+            say_left(seconds, out);
+        };
+        Self {
+            progress: Progress::drawn(ProgressBar::new(1000), "{percent:>3} %", left),
+            pace,
+            begun,
+        }
+    }
+
+    /// The next one begins, which usually takes so many seconds.
+    pub(crate) fn next(&mut self, what: &str, usual: f64) {
+        let mut pace = locked(&self.pace);
+        pace.done += pace.present;
+        pace.took = self.begun.elapsed().as_secs_f64();
+        pace.present = usual;
+        let share = pace.done / pace.usual.max(f64::MIN_POSITIVE);
+        drop(pace);
+        self.progress.doing(what);
+        self.progress.at_share(share);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_follows_the_pace_so_far() {
+        let begun = Pace {
+            usual: 10.0,
+            done: 0.0,
+            took: 0.0,
+            present: 4.0,
+        };
+        assert!((begun.left(0.0) - 10.0).abs() < 1e-12 && (begun.left(3.0) - 7.0).abs() < 1e-12);
+        // A stage that takes longer than usual stands still at its end.
+        assert!((begun.left(40.0) - 6.0).abs() < 1e-12);
+        let slow = Pace {
+            done: 4.0,
+            took: 8.0,
+            present: 6.0,
+            ..begun
+        };
+        assert!((slow.left(8.0) - 12.0).abs() < 1e-12 && (slow.left(10.0) - 10.0).abs() < 1e-12);
+        assert!(slow.left(100.0).abs() < 1e-12);
     }
 }

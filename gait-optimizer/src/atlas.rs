@@ -178,11 +178,22 @@ pub enum AtlasError {
     },
 }
 
+/// Is told the share of the work that is done, 0 to 1, from any thread; it may begin again from 0.
+pub type Watch<'a> = &'a (dyn Fn(f64) + Sync);
+
 /// Makes an atlas.
 ///
 /// # Errors
 /// [`AtlasError`]: what is wrong with the problem. An atlas without any optimum is no error.
 pub fn atlas(problem: &AtlasProblem) -> Result<Atlas, AtlasError> {
+    atlas_watched(problem, &|_| ())
+}
+
+/// As [`atlas()`], while somebody watches.
+///
+/// # Errors
+/// As [`atlas()`].
+pub fn atlas_watched(problem: &AtlasProblem, watch: Watch<'_>) -> Result<Atlas, AtlasError> {
     problem.validate()?;
     let model = Model::new(&problem.swimmer.of_unit_length())?;
     refuse_immobile(&model, &problem.bounds)?;
@@ -195,6 +206,7 @@ pub fn atlas(problem: &AtlasProblem) -> Result<Atlas, AtlasError> {
                 model: &model,
                 walls: &Walls::new(&problem.bounds, &problem.swimmer.links),
             },
+            watch,
         ),
         _ => pipeline::run(
             problem,
@@ -204,6 +216,7 @@ pub fn atlas(problem: &AtlasProblem) -> Result<Atlas, AtlasError> {
                 model: &model,
                 region: &Region::new(&problem.bounds, &problem.swimmer.links),
             },
+            watch,
         ),
     })
 }

@@ -26,7 +26,7 @@ use swimmer_files::{ArcKind, Bounds, Objective};
 use swimmer_model::{InvalidSwimmer, Swimmer};
 
 use crate::displacement::Heading;
-use crate::{Branch, OptimalGait};
+use crate::{Branch, OptimalGait, Watch};
 use follow::{Family, Track};
 use kept::Kept;
 pub use parameter::Parameter;
@@ -323,16 +323,28 @@ impl ContinuationProblem {
 /// [`ContinuationError`]: what is wrong with the problem, or that there is no gait to begin with. A branch that ends on the
 /// way is no error but an event.
 pub fn continuation(problem: &ContinuationProblem) -> Result<Continuation, ContinuationError> {
+    continuation_watched(problem, &|_| ())
+}
+
+/// As [`continuation()`], while somebody watches.
+///
+/// # Errors
+/// As [`continuation()`].
+pub fn continuation_watched(
+    problem: &ContinuationProblem,
+    watch: Watch<'_>,
+) -> Result<Continuation, ContinuationError> {
     problem.validate()?;
     match problem.objective {
-        Objective::Efficiency => all(problem, &efficiency::Efficiency { problem }),
-        _ => all(problem, &displacement::Displacement { problem }),
+        Objective::Efficiency => all(problem, &efficiency::Efficiency { problem }, watch),
+        _ => all(problem, &displacement::Displacement { problem }, watch),
     }
 }
 
 fn all<F: Family>(
     problem: &ContinuationProblem,
     family: &F,
+    watch: Watch<'_>,
 ) -> Result<Continuation, ContinuationError> {
     let mut tracks: Vec<Track<F::Held>> = Vec::with_capacity(problem.starts.len());
     for (branch, start) in problem.starts.iter().enumerate() {
@@ -345,7 +357,9 @@ fn all<F: Family>(
                     branch,
                     reason,
                 })?;
-        tracks.push(follow::follow(problem, family, branch, first));
+        let branches = problem.starts.len() as f64;
+        let watch = |share: f64| watch((branch as f64 + share) / branches);
+        tracks.push(follow::follow(problem, family, branch, first, &watch));
     }
     let meetings = meeting::meetings(problem, family, &tracks);
     let mut found = Continuation {

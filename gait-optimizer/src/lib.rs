@@ -65,12 +65,12 @@ mod simple_shapes;
 mod speed;
 mod turning;
 
-pub use atlas::{Atlas, AtlasError, AtlasProblem, Optimum, atlas};
+pub use atlas::{Atlas, AtlasError, AtlasProblem, Optimum, Watch, atlas, atlas_watched};
 pub use certificate::{Certificate, Check};
 pub use certify::{CertifyError, certify};
 pub use continuation::{
     Continuation, ContinuationError, ContinuationProblem, Event, EventKind, Fold, OtherSide,
-    Parameter, Point, Start, continuation,
+    Parameter, Point, Start, continuation, continuation_watched,
 };
 pub use displacement::{DisplacementError, DisplacementProblem, Fates, Heading, displacement};
 pub use efficiency::{
@@ -85,7 +85,7 @@ pub use optimal_gait::{Arc, OptimalGait};
 pub use robust::{
     Over, RobustError, RobustGait, Uncertainty, Values, robust_displacement, robust_efficiency,
 };
-pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways};
+pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways, sideways_watched};
 pub use simple_shapes::{BestAmplitude, SimpleShape, best_amplitudes};
 pub use speed::{Fastest, HeadingRule, SpeedError, SpeedProblem, fastest};
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};

@@ -2,14 +2,18 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Runs `job` for 0 … count − 1; each thread has its own room, made by `room`. The results are in order.
+use super::Watch;
+
+/// Runs `job` for 0 … count − 1; each thread has its own room, made by `room`. The results are in order. `watch` is told what
+/// share of the jobs is done.
 pub(crate) fn in_parallel<R, T: Send>(
     count: usize,
     threads: usize,
+    watch: Watch<'_>,
     room: impl Fn() -> R + Sync,
     job: impl Fn(&mut R, usize) -> T + Sync,
 ) -> Vec<T> {
-    let next = AtomicUsize::new(0);
+    let (next, finished) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let worker = || {
         let mut room = room();
         let mut done = Vec::new();
@@ -19,6 +23,8 @@ pub(crate) fn in_parallel<R, T: Send>(
                 return done;
             }
             done.push((index, job(&mut room, index)));
+            let finished = 1 + finished.fetch_add(1, Ordering::Relaxed);
+            watch(finished as f64 / count as f64);
         }
     };
     let mut all: Vec<(usize, T)> = std::thread::scope(|scope| {

@@ -28,7 +28,7 @@ use crate::cycle::Cycle;
 use crate::loops::LoopTrace;
 use crate::optimal_gait::Solution;
 use crate::region::Region;
-use crate::{Arc, AtlasProblem, OptimalGait, atlas};
+use crate::{Arc, AtlasProblem, OptimalGait, Watch, atlas_watched};
 
 /// What to steer, and how.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,7 +81,18 @@ pub struct Sideways {
 /// # Errors
 /// [`SidewaysError`]: what is wrong with the problem, or that there is no such gait.
 pub fn sideways(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
-    let ours = from_this_end(problem);
+    sideways_watched(problem, &|_| ())
+}
+
+/// As [`sideways()`], while somebody watches.
+///
+/// # Errors
+/// As [`sideways()`].
+pub fn sideways_watched(
+    problem: &SidewaysProblem,
+    watch: Watch<'_>,
+) -> Result<Sideways, SidewaysError> {
+    let ours = from_this_end(problem, watch);
     let links = problem.swimmer.links;
     let alike = (links.front - links.back).abs() <= 1e-12 * links.front.abs();
     if alike || matches!(ours, Err(SidewaysError::Problem(_))) {
@@ -89,7 +100,7 @@ pub fn sideways(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
     }
     let mut other = *problem;
     (other.swimmer.links.front, other.swimmer.links.back) = (links.back, links.front);
-    let theirs = from_this_end(&other)
+    let theirs = from_this_end(&other, watch)
         .ok()
         .and_then(|found| from_the_other_end(problem, &found));
     match (ours, theirs) {
@@ -148,8 +159,8 @@ fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sid
 
 /// As [`sideways`], from one end, with as many samples as the gait's own certificate needs when it is worked out from the
 /// samples alone.
-fn from_this_end(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
-    let found = sampled_as_asked(problem)?;
+fn from_this_end(problem: &SidewaysProblem, watch: Watch<'_>) -> Result<Sideways, SidewaysError> {
+    let found = sampled_as_asked(problem, watch)?;
     let model = Model::new(&problem.swimmer.of_unit_length()).map_err(crate::AtlasError::from)?;
     let mut finer = *problem;
     let mut sampled = found.clone();
@@ -158,7 +169,7 @@ fn from_this_end(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
         if finer.samples > FINEST * problem.samples {
             return Ok(found);
         }
-        sampled = sampled_as_asked(&finer)?;
+        sampled = sampled_as_asked(&finer, watch)?;
     }
     Ok(sampled)
 }
@@ -166,14 +177,18 @@ fn from_this_end(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
 /// Most samples, as a multiple of those asked for.
 const FINEST: usize = 16;
 
-fn sampled_as_asked(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
-    let loops = atlas(&AtlasProblem {
+fn sampled_as_asked(
+    problem: &SidewaysProblem,
+    watch: Watch<'_>,
+) -> Result<Sideways, SidewaysError> {
+    let asked = AtlasProblem {
         bounds: problem.bounds,
         starts: problem.starts,
         threads: problem.threads,
         samples: problem.samples,
         ..AtlasProblem::new(problem.swimmer, Objective::Displacement)
-    })?;
+    };
+    let loops = atlas_watched(&asked, watch)?;
     let model = Model::new(&problem.swimmer.of_unit_length()).map_err(crate::AtlasError::from)?;
     let region = Region::new(&problem.bounds, &problem.swimmer.links);
     let mut found: Vec<Sideways> = Vec::new();

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use gait_optimizer::{Atlas as Found, AtlasError, AtlasProblem, Objective, Optimum, atlas};
+use gait_optimizer::{Atlas as Found, AtlasError, AtlasProblem, Objective, Optimum, atlas_watched};
 use serde::Serialize;
 
 use crate::arguments::load_swimmer;
@@ -18,6 +18,7 @@ use crate::bounds::WholeBounds;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
+use crate::progress::Progress;
 use crate::quantity;
 
 use super::optimize::answer::{Arc, Evidence, Figures, arcs};
@@ -107,13 +108,16 @@ impl Atlas {
         }
         let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
         let starts = usize::try_from(self.starts).unwrap_or(usize::MAX);
-        let found = atlas(&AtlasProblem {
+        let progress = Progress::of_a_whole("looking for optima");
+        let asked = AtlasProblem {
             bounds,
             starts,
             seed: self.seed,
             threads: std::thread::available_parallelism().map_or(1, NonZero::get),
             ..AtlasProblem::new(swimmer, objective)
-        })?;
+        };
+        let found = atlas_watched(&asked, &|share| progress.at_share(share))?;
+        drop(progress);
         let seconds = begun.elapsed().as_secs_f64();
         let mut answer = Answer::new(&file.name, objective, &found, starts, seconds);
         answer.continuation = order.map(|order| order.best(&found)).transpose()?;

@@ -10,6 +10,7 @@ use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
 use crate::paper::{Row, Study, deviation, figures, number, page, printed, rows};
+use crate::progress::Progress;
 use crate::quantity::Table;
 
 /// Compute every number and figure of the paper: the paper's value, ours, the deviation
@@ -37,7 +38,9 @@ impl Paper {
     /// Computes everything and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
-        let study = Study::new()?;
+        let progress = Progress::of_a_whole("computing the paper's gaits");
+        let study = Study::new(&|share| progress.at_share(share))?;
+        progress.doing("drawing");
         let rows = rows(&study);
         let mut written = None;
         if let Some(folder) = folder {
@@ -59,6 +62,7 @@ impl Paper {
             .collect();
         let failure = (!differ.is_empty())
             .then(|| Failure::Answered(format!("differ from the paper: {}", differ.join(", "))));
+        drop(progress);
         output.answer(&Answer {
             rows,
             page: written,

@@ -54,12 +54,15 @@ pub(crate) struct Study {
     pub(crate) purcell_map: HeightMap,
 }
 
+/// Steps that are told while a study is made.
+const STEPS: f64 = 8.0;
+
 impl Study {
-    /// Computes everything.
+    /// Computes everything; `watch` is told the share that is done.
     ///
     /// # Errors
     /// [`Failure::Tried`] names the gait that could not be found.
-    pub(crate) fn new() -> Outcome<Self> {
+    pub(crate) fn new(watch: &dyn Fn(f64)) -> Outcome<Self> {
         let [purcell, robot, slender] = [
             Swimmer::purcell(),
             Swimmer::robot(),
@@ -90,20 +93,44 @@ impl Study {
         let map = |swimmer: &Swimmer<f64>, width| {
             HeightMap::new(swimmer, width).map_err(|why| Failure::tried(&why))
         };
+        let mut done = 0.0;
+        let mut step = || {
+            done += 1.0;
+            watch(done / STEPS);
+        };
+        let mut simple = |model| {
+            step();
+            Simple::of(model)
+        };
+        let (purcell_simple, robot_simple, slender_simple) = (
+            simple(&purcell_model),
+            simple(&robot_model),
+            simple(&slender_model),
+        );
+        let mut lighthill = |swimmer, name| {
+            step();
+            Lighthill::of(swimmer, name)
+        };
+        let purcell_lighthill = lighthill(&purcell, "Purcell's swimmer")?;
+        let robot_lighthill = lighthill(&robot, "the robot")?;
+        step();
+        let robot_map = map(&robot, UPPER)?;
+        step();
+        let purcell_map = map(&purcell, 2.5)?;
         Ok(Self {
-            purcell_simple: Simple::of(&purcell_model),
-            robot_simple: Simple::of(&robot_model),
-            slender_simple: Simple::of(&slender_model),
+            purcell_simple,
+            robot_simple,
+            slender_simple,
             purcell_displacement: found(
                 displacement(&DisplacementProblem::new(purcell)),
                 "the displacement gait of Purcell's swimmer",
             )?,
             robot_displacement,
             robot_unbounded,
-            purcell_lighthill: Lighthill::of(&purcell, "Purcell's swimmer")?,
-            robot_lighthill: Lighthill::of(&robot, "the robot")?,
-            robot_map: map(&robot, UPPER)?,
-            purcell_map: map(&purcell, 2.5)?,
+            purcell_lighthill,
+            robot_lighthill,
+            robot_map,
+            purcell_map,
             purcell: purcell_model,
             robot: robot_model,
             slender: slender_model,

@@ -9,7 +9,7 @@ use super::fence::Fence;
 use super::newton::{Newton, Settings, Stationary};
 use super::objective::Aim;
 use super::starts::{fitted, start};
-use super::{Atlas, AtlasProblem, Optimum};
+use super::{Atlas, AtlasProblem, Optimum, Watch};
 use crate::OptimalGait;
 use crate::closed_curve::{Basis, Functional};
 use crate::parallel::in_parallel;
@@ -21,6 +21,9 @@ const SAME_COARSE: (f64, f64) = (1e-3, 0.05);
 const SAME: (f64, f64) = (1e-7, 0.02);
 /// A curve that comes this near to the horizon has left \[rad\].
 const LEAVING: f64 = 0.3;
+
+/// About what share of the work the starts are; the rest is polish.
+const STARTS: f64 = 0.5;
 
 /// How one objective is sought.
 pub(super) trait Seek: Sync {
@@ -59,7 +62,12 @@ struct Settled {
     points: Vec<Vector2<f64>>,
 }
 
-pub(super) fn run<S: Seek>(problem: &AtlasProblem, model: &Model<f64>, seek: &S) -> Atlas {
+pub(super) fn run<S: Seek>(
+    problem: &AtlasProblem,
+    model: &Model<f64>,
+    seek: &S,
+    watch: Watch<'_>,
+) -> Atlas {
     let basis = Basis::fourier(problem.order, 8 + 2 * problem.order);
     let functional = Functional::new(model, &basis);
     let links = &model.swimmer().links;
@@ -80,6 +88,7 @@ pub(super) fn run<S: Seek>(problem: &AtlasProblem, model: &Model<f64>, seek: &S)
     let ended = in_parallel(
         count,
         problem.threads,
+        &|share| watch(STARTS * share),
         || Newton::new(functional, Aim::Far { thrift: 1.0 }, fence),
         |newton, index| {
             let curve = match known.get(index.wrapping_sub(problem.starts)) {
@@ -116,6 +125,7 @@ pub(super) fn run<S: Seek>(problem: &AtlasProblem, model: &Model<f64>, seek: &S)
     let polished = in_parallel(
         coarse_classes.len(),
         problem.threads,
+        &|share| watch(STARTS + (1.0 - STARTS) * share),
         || (),
         |(), class| {
             let first = coarse_classes.get(class)?.first()?;

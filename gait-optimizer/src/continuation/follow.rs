@@ -3,6 +3,8 @@
 use std::ops::Range;
 
 use super::kept::{FIGURES, Kept, slope};
+use crate::Watch;
+
 use super::{ContinuationProblem, Event, EventKind, Fold, OtherSide, Start};
 
 /// A step, and the place of an event, is not cut smaller than this share of the whole way.
@@ -80,6 +82,7 @@ pub(super) fn follow<F: Family>(
     family: &F,
     branch: usize,
     first: Kept<F::Held>,
+    watch: Watch<'_>,
 ) -> Track<F::Held> {
     Walk {
         problem,
@@ -95,7 +98,7 @@ pub(super) fn follow<F: Family>(
         here: first,
         before: None,
     }
-    .run()
+    .run(watch)
 }
 
 struct Walk<'a, F: Family> {
@@ -113,11 +116,12 @@ struct Walk<'a, F: Family> {
 }
 
 impl<F: Family> Walk<'_, F> {
-    fn run(mut self) -> Track<F::Held> {
+    fn run(mut self, watch: Watch<'_>) -> Track<F::Held> {
         let smallest = smallest(self.problem);
         let whole = (self.problem.to - self.problem.from) / self.problem.steps as f64;
         let mut step = whole;
         for number in 1..=self.problem.steps {
+            watch((number as f64 - 1.0) / self.problem.steps as f64);
             let target = stop(self.problem, number);
             // A landing may lie beyond.
             while (target - self.here.value) * whole > 0.0 {

@@ -5,12 +5,13 @@ mod told;
 use clap::ValueEnum;
 use gait_optimizer::{
     Atlas as Found, Bounds, Branch, ContinuationError, ContinuationProblem, Objective, Parameter,
-    Start, continuation,
+    Start, continuation_watched,
 };
 use swimmer_model::Swimmer;
 
 use crate::arguments::angle;
 use crate::failure::{Failure, Outcome};
+use crate::progress::Progress;
 
 pub(super) use told::{Alone, Followed};
 
@@ -86,7 +87,8 @@ impl Order {
             from,
             to,
         } = self.way;
-        let found = continuation(&ContinuationProblem {
+        let progress = Progress::of_a_whole("following gaits");
+        let asked = ContinuationProblem {
             swimmer: self.swimmer,
             objective: self.objective,
             bounds: self.bounds,
@@ -96,7 +98,8 @@ impl Order {
             starts,
             steps: self.steps,
             samples: 512,
-        })?;
+        };
+        let found = continuation_watched(&asked, &|share| progress.at_share(share))?;
         Ok(Followed::new(parameter, [from, to], &found))
     }
 

@@ -8,6 +8,7 @@ use serde::Serialize;
 use swimmer_files::{Campaign, SwimmerFile};
 
 use crate::failure::Outcome;
+use crate::progress::Stages;
 use crate::quantity::{self, Table};
 
 /// Questions beyond the fit.
@@ -23,6 +24,10 @@ pub(super) struct BeyondFit {
     #[arg(long)]
     advise: bool,
 }
+
+/// What they take, seconds as measured on nine runs.
+const FITTING: f64 = 1.6;
+const ADVISING: f64 = 0.9;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Also {
@@ -59,19 +64,32 @@ impl BeyondFit {
         }
     }
 
+    /// What [`Self::answer`] takes, seconds as measured on nine runs.
+    pub(super) fn weight(&self) -> f64 {
+        let further = if self.fit_also.is_empty() {
+            0.0
+        } else {
+            FITTING
+        };
+        further + if self.advise { ADVISING } else { 0.0 }
+    }
+
     /// Computes what was asked, and the swimmer with all further parameters that its file can hold.
     pub(super) fn answer(
         &self,
         campaign: &Campaign,
         found: &CampaignFit,
+        stages: &mut Stages,
     ) -> Outcome<(FurtherAnswers, Option<SwimmerFile>)> {
         let wanted: Vec<Further> = self.fit_also.iter().map(|also| (*also).into()).collect();
         let further = if wanted.is_empty() {
             None
         } else {
+            stages.next("fitting more parameters", FITTING);
             Some(fit_further(found, &wanted)?)
         };
         let advice = if self.advise {
+            stages.next("weighing what to measure next", ADVISING);
             Some(advise(campaign, found)?)
         } else {
             None

@@ -5,13 +5,14 @@ use std::num::NonZero;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use gait_optimizer::{Sideways as Found, SidewaysError, SidewaysProblem, sideways};
+use gait_optimizer::{Sideways as Found, SidewaysError, SidewaysProblem, sideways_watched};
 use serde::Serialize;
 
 use crate::arguments::load_swimmer;
 use crate::bounds::WholeBounds;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
+use crate::progress::Progress;
 use crate::quantity::{self, Rows};
 
 use super::answer::{Arc, Closing, arcs, say_if_beyond, unfolded};
@@ -37,11 +38,14 @@ impl Sideways {
     pub(super) fn run(self, output: Output) -> Outcome {
         let file = load_swimmer(&self.swimmer)?;
         let begun = Instant::now();
-        let found = sideways(&SidewaysProblem {
+        let progress = Progress::of_a_whole("looking for loops");
+        let asked = SidewaysProblem {
             bounds: self.bounds.of(&file),
             threads: std::thread::available_parallelism().map_or(1, NonZero::get),
             ..SidewaysProblem::new(file.swimmer)
-        })?;
+        };
+        let found = sideways_watched(&asked, &|share| progress.at_share(share))?;
+        drop(progress);
         let seconds = begun.elapsed().as_secs_f64();
         unfolded(&found.gait)?;
         say_if_beyond(&file, &found.gait);

@@ -86,7 +86,7 @@ impl Shown {
     pub(super) fn new(play: Playing) -> Self {
         Self {
             play,
-            progress: Progress::of_a_whole(),
+            progress: Progress::of_a_whole(""),
         }
     }
 
