@@ -38,8 +38,8 @@ struct LinkBounds {
     /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap
     #[arg(long, value_name = "LENGTH_M", value_parser = length)]
     clearance: Option<f64>,
-    /// Keep within what the robot plays: the angle of the swimmer file's servos and the clearance that the robot keeps; other
-    /// bounds may be tighter
+    /// Keep within the angle of the swimmer file's servos and the clearance that the robot keeps; other bounds may be tighter.
+    /// How fast the joints turn depends on the period: it is not bounded here, a warning says where 30 s a cycle are too short
     #[arg(long)]
     playable: bool,
 }

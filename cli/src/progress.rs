@@ -42,8 +42,7 @@ impl Progress {
         if !std::io::stderr().is_terminal() || for_scripts() {
             return Self(ProgressBar::hidden());
         }
-        let width = crossterm::terminal::size().map_or(80, |(columns, _)| columns);
-        let template = if width < ROOM_FOR_A_BAR {
+        let template = if columns() < ROOM_FOR_A_BAR {
             "{wide_msg} {left}".to_owned()
         } else {
             format!("{{bar:28}} {count} {{left}} {{wide_msg}}")
@@ -88,6 +87,17 @@ impl Drop for Progress {
     fn drop(&mut self) {
         self.0.finish_and_clear();
     }
+}
+
+/// How wide the terminal on standard error is; wide enough where nobody tells.
+fn columns() -> u16 {
+    #[cfg(unix)]
+    let told = rustix::termios::tcgetwinsize(std::io::stderr()).map(|size| size.ws_col);
+    #[cfg(not(unix))]
+    let told = crossterm::terminal::size().map(|(columns, _)| columns);
+    told.ok()
+        .filter(|columns| *columns > 0)
+        .unwrap_or(ROOM_FOR_A_BAR)
 }
 
 /// How much longer, if what is left goes as fast as what is done.

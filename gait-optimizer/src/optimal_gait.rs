@@ -55,6 +55,9 @@ pub struct OptimalGait {
     /// X over L of a gait within the same bounds that carries farther, but is no extremal, and so no optimum: none where the
     /// search saw no such gait. Then the largest displacement belongs to a kind of gait that the search does not know.
     pub outdone_over_length: Option<f64>,
+    /// How many extremals the search found in its class, this one included, of which it returned the best that is certified;
+    /// none where a solver follows a single one.
+    pub extremals: Option<usize>,
     pub(crate) cycle: Cycle,
 }
 
@@ -98,6 +101,7 @@ impl OptimalGait {
             certificate: solution.certificate,
             efficiency_figures: None,
             outdone_over_length: None,
+            extremals: None,
             cycle,
         }
     }

@@ -53,6 +53,14 @@ pub enum GaitSpecError {
         /// The largest that is accepted \[rad\].
         largest: f64,
     },
+    /// Nearly the name of a shape.
+    #[error("there is no gait `{text}`: did you mean {meant}? (a file of that name is ./{text})")]
+    Misspelt {
+        /// What was typed.
+        text: String,
+        /// What was meant.
+        meant: String,
+    },
     /// Nothing was typed.
     #[error(
         "a gait is circle:AMPLITUDE, square:AMPLITUDE or the path of a gait file (add :cw to reverse it)"
@@ -82,6 +90,11 @@ impl FromStr for GaitSpec {
             })
         } else if shape.trim().is_empty() {
             Err(GaitSpecError::Empty)
+        } else if let Some(meant) = meant(shape) {
+            Err(GaitSpecError::Misspelt {
+                text: text.to_owned(),
+                meant,
+            })
         } else {
             Ok(Self::File {
                 path: PathBuf::from(shape),
@@ -89,6 +102,18 @@ impl FromStr for GaitSpec {
             })
         }
     }
+}
+
+/// The shape that was meant, where a word nearly names one; paths have more in them than a word and an angle.
+fn meant(shape: &str) -> Option<String> {
+    let (word, amplitude) = shape.split_once(':').unwrap_or((shape, "70deg"));
+    if !word.chars().all(char::is_alphabetic) || parse_joint_angle(amplitude).is_err() {
+        return None;
+    }
+    let word = word.to_lowercase();
+    let near = ["circle", "square"].map(|name| (strsim::jaro_winkler(name, &word), name));
+    let (likeness, name) = near.into_iter().max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    (likeness > 0.8).then(|| format!("{name}:{amplitude}"))
 }
 
 fn size(text: &str, amplitude: &str) -> Result<f64, GaitSpecError> {
@@ -217,6 +242,25 @@ mod tests {
         ] {
             let spec: GaitSpec = text.parse().unwrap();
             assert_eq!(spec.to_string().parse(), Ok(spec));
+        }
+    }
+
+    #[test]
+    fn a_slip_of_the_keyboard_is_told() {
+        for (text, meant) in [
+            ("circel:70deg", "circle:70deg"),
+            ("sqare:1.2:cw", "square:1.2"),
+            ("Circle:1", "circle:1"),
+            ("circle", "circle:70deg"),
+        ] {
+            let refused = text.parse::<GaitSpec>().unwrap_err().to_string();
+            assert!(
+                refused.contains(&format!("did you mean {meant}?")),
+                "{refused}"
+            );
+        }
+        for file in ["./circle", "circles.gait", "C:/circle", "best", "c:1"] {
+            assert!(matches!(file.parse(), Ok(GaitSpec::File { .. })), "{file}");
         }
     }
 

@@ -18,6 +18,7 @@ use crate::bounds::WholeBounds;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
+use crate::own_robot::say_how_many_are_beyond;
 use crate::progress::Progress;
 use crate::quantity;
 
@@ -119,6 +120,7 @@ impl Atlas {
         let found = atlas_watched(&asked, &|share| progress.at_share(share))?;
         drop(progress);
         let seconds = begun.elapsed().as_secs_f64();
+        say_how_many_are_beyond(&file, found.optima.iter().map(|optimum| &optimum.gait));
         let mut answer = Answer::new(&file.name, objective, &found, starts, seconds);
         answer.continuation = order.map(|order| order.best(&found)).transpose()?;
         if let Some(folder) = folder {

@@ -6,6 +6,7 @@ mod diagnoses;
 mod folder;
 mod further;
 mod joints;
+mod wrong_gait;
 
 use std::path::{Path, PathBuf};
 
@@ -132,6 +133,11 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
         joints: JointsAnswer::of(&found),
         assessment: None,
         warnings: of_runs
+            .chain(wrong_gait::of_campaign(
+                &campaign,
+                &found.runs,
+                &found.swimmer,
+            ))
             .chain(fit.warnings.iter().map(ToString::to_string))
             .collect(),
         beyond: FurtherAnswers::default(),
@@ -274,15 +280,19 @@ impl Calibrate {
                 "{flag} goes with a campaign: a single run is not fitted"
             )));
         }
+        let swimmer = load_swimmer(swimmer)?;
         let run = single_run(
             &self.file,
             gait,
             period_s,
-            &load_swimmer(swimmer)?,
+            &swimmer,
             &self.recording.options(),
             [self.front.as_ref(), self.back.as_ref()],
         )?;
-        let warnings = run_warnings(&run.found, Path::new(""));
+        let mut warnings = run_warnings(&run.found, Path::new(""));
+        let file = self.file.display();
+        let doubts = wrong_gait::of_single(&run.found, gait, period_s, &swimmer);
+        warnings.extend(doubts.into_iter().map(|doubt| format!("{file}: {doubt}")));
         output.answer(&RunsAnswer {
             runs: vec![run.answer],
             warnings,

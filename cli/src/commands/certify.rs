@@ -4,12 +4,13 @@ use std::fmt;
 
 use gait_optimizer::{CertifyError, Objective, certify};
 use serde::Serialize;
-use swimmer_files::{Bounds, GaitFile, GaitSpec};
+use swimmer_files::{AnyGait, Bounds, GaitFile, GaitSpec};
 
 use crate::arguments::{gait, load_gait, load_swimmer, say_if_for_another};
 use crate::bounds::QuarterBounds;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
+use crate::own_robot::{PERIOD_S, say_if_beyond};
 use crate::quantity;
 
 use super::optimize::answer::Evidence;
@@ -48,6 +49,9 @@ impl Certify {
                 "{} does not tell what it shall be optimal for; add --objective displacement, efficiency, turning or sideways",
                 quantity::gait(&self.gait)
             )));
+        }
+        if let Ok(curve) = AnyGait::from_file(&file) {
+            say_if_beyond(&swimmer, &curve, PERIOD_S);
         }
         let told = self.bounds.of(&swimmer);
         let bounds = if told == Bounds::default() {

@@ -14,6 +14,7 @@ use crate::arguments::{gait, load_gait_for, load_swimmer, positive_angle};
 use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
 use crate::output::{Output, verbose};
+use crate::own_robot::{PERIOD_S, say_if_beyond};
 use crate::quantity::{self, Rows};
 
 /// Map the height function, with its zero-level curves and gaits
@@ -100,6 +101,9 @@ impl HeightMap {
             .iter()
             .map(|spec| Ok((quantity::gait(spec), load_gait_for(&file, spec)?)))
             .collect::<Outcome<Vec<_>>>()?;
+        for (_, gait) in &gaits {
+            say_if_beyond(&file, gait, PERIOD_S);
+        }
         let map = Map::new(&file.swimmer, self.max_angle)?;
         let row = self.row.row();
         let curves = map.zero_curves(row);

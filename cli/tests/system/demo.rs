@@ -71,6 +71,51 @@ fn the_papers_robot_and_what_the_demo_leaves_behind() {
     }
     what_a_calibration_leaves_behind(&out);
     fits_a_telephone(&std::fs::read_to_string(out.join("fit/report.html")).unwrap());
+    wrong_gaits_are_named(&out);
+}
+
+/// A campaign that names a wrong amplitude, one recording twice, and a play of the link log that was another gait.
+fn wrong_gaits_are_named(demo: &Path) {
+    let named = std::fs::read_to_string(demo.join("campaign.toml")).unwrap();
+    let wrong = named
+        .replace(
+            "gait = \"circle:60deg\"",
+            "gait = \"circle:70deg\"\nlog = \"link.mcap\"\nplay = 4",
+        )
+        .replace("circle-080.csv", "circle-090.csv");
+    std::fs::write(demo.join("wrong.toml"), wrong).unwrap();
+    let ran = swimmer_in(demo, &["calibrate", "wrong.toml"]).with_status(0);
+    for said in [
+        "circle-090.csv and circle-090.csv hold the same recording",
+        "circle-060.csv: it sways like a gait of 59.9",
+        "circle-060.csv: the link log says otherwise: its joints were told up to 60.0",
+        "circle-090.csv: it sways like a gait of 89.9",
+    ] {
+        assert!(ran.stdout.contains(said), "{said}: {ran}");
+    }
+    // A single recording is held against the swimmer that is named.
+    let single = |gait| {
+        let words = [
+            "calibrate",
+            "circle-060.csv",
+            "--gait",
+            gait,
+            "--period",
+            "30",
+        ];
+        swimmer_in(demo, &[&words[..], &["--swimmer", "robot"]].concat()).with_status(0)
+    };
+    let (right, large, reversed) = (
+        single("circle:60deg"),
+        single("circle:70deg"),
+        single("circle:60deg:cw"),
+    );
+    assert!(!right.stdout.contains("note:"), "{right}");
+    assert!(
+        large.stdout.contains("it sways like a gait of 60.1"),
+        "{large}"
+    );
+    assert!(reversed.stdout.contains("add :cw to --gait"), "{reversed}");
 }
 
 /// Whether it can be used, and what the intervals are where what is known by halves may move.

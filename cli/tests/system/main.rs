@@ -22,6 +22,8 @@ mod port_errors;
 #[cfg(unix)]
 mod port_in_use;
 #[cfg(unix)]
+mod progress;
+#[cfg(unix)]
 mod pseudo_terminal;
 #[cfg(unix)]
 mod recordings;

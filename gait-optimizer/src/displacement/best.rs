@@ -104,7 +104,8 @@ pub(super) fn best<'a>(
                 continue;
             };
             if gait.certificate.pass() {
-                let finer = finely_sampled(problem, model, within, (candidate, gait));
+                let mut finer = finely_sampled(problem, model, within, (candidate, gait));
+                finer.extremals = Some(seen.found.len());
                 return (Ok(finer), seen);
             }
             refused.get_or_insert(gait);

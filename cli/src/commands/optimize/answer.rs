@@ -8,6 +8,7 @@ use swimmer_files::{AnyGait, SwimmerFile};
 
 use super::timing::TimingAnswer;
 use crate::failure::{Failure, Outcome};
+use crate::own_robot::PERIOD_S;
 use crate::quantity::{self, Rows};
 
 /// One arc of a gait.
@@ -186,10 +187,10 @@ impl Figures {
     }
 }
 
-/// Says where the gait is beyond the robot of the file, at a period of 30 s.
+/// Says where the gait is beyond the robot of the file, at the period that it runs in unless told otherwise.
 pub(super) fn say_if_beyond(file: &SwimmerFile, gait: &OptimalGait) {
     if let Ok(curve) = AnyGait::from_file(&gait.gait_file(&file.name)) {
-        crate::own_robot::say_if_beyond(file, &curve, 30.0);
+        crate::own_robot::say_if_beyond(file, &curve, PERIOD_S);
     }
 }
 

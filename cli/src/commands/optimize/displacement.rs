@@ -16,6 +16,7 @@ use crate::output::Output;
 use crate::quantity::Rows;
 
 use super::answer::{Closing, Quarter, say_if_beyond};
+use super::better::{Better, than_displacement};
 use super::robust::{RobustAnswer, Robustly};
 use super::timing::ServoTiming;
 
@@ -69,6 +70,7 @@ impl Displacement {
         }
         let gait = displacement(&problem)?;
         let seconds = begun.elapsed().as_secs_f64();
+        let better = than_displacement(&problem, &self.swimmer, &gait);
         say_if_beyond(&file, &gait);
         let timing = self
             .timing
@@ -77,6 +79,8 @@ impl Displacement {
             name: file.name,
             quarter: (&gait).into(),
             outdone_over_length: gait.outdone_over_length,
+            extremals: gait.extremals,
+            better,
             closing: Closing::new(&gait, timing, seconds, self.output),
         });
         Ok(())
@@ -92,6 +96,12 @@ struct Found {
     /// X/L of a gait within the bounds that carries farther but is no extremal; left out where none was seen.
     #[serde(skip_serializing_if = "Option::is_none")]
     outdone_over_length: Option<f64>,
+    /// Local optima and other extremals found, of which this is the best certified one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    extremals: Option<usize>,
+    /// Of a wider class.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    better: Option<Better>,
     #[serde(flatten)]
     closing: Closing,
 }
@@ -110,12 +120,21 @@ impl fmt::Display for Found {
             );
         }
         let sign = if self.quarter.forwards() { ">" } else { "<" };
+        let of = self
+            .extremals
+            .map_or_else(String::new, |count| match count {
+                1 => "the only extremal found ".to_owned(),
+                count => format!("the {count} extremals found "),
+            });
         rows.row(
             "best of",
             format!(
-                "the gaits with the paper's symmetries, in one neighbourhood, with X {sign} 0; `swimmer atlas --objective displacement` looks beyond"
+                "{of}with the paper's symmetries and X {sign} 0; `swimmer atlas --objective displacement` looks beyond"
             ),
         );
+        if let Some(better) = &self.better {
+            better.row(&mut rows);
+        }
         self.closing.rows(&mut rows);
         write!(f, "{}, a local optimum of displacement\n{rows}", self.name)
     }

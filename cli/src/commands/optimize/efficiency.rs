@@ -17,6 +17,7 @@ use crate::output::{Output, verbose};
 use crate::quantity::{self, Rows};
 
 use super::answer::{Closing, Quarter, say_if_beyond};
+use super::better::{Better, than_efficiency};
 use super::robust::{RobustAnswer, Robustly};
 use super::timing::{ServoTiming, TimingAnswer};
 
@@ -96,7 +97,7 @@ impl Efficiency {
             ));
             return Ok(());
         }
-        let gait = efficiency(&EfficiencyProblem {
+        let problem = EfficiencyProblem {
             method: match self.method {
                 How::Auto => Method::Auto,
                 How::Fourier => Method::Fourier,
@@ -105,8 +106,10 @@ impl Efficiency {
             },
             bounds,
             ..EfficiencyProblem::new(file.swimmer, branch)
-        })?;
+        };
+        let gait = efficiency(&problem)?;
         let seconds = begun.elapsed().as_secs_f64();
+        let better = than_efficiency(&problem, &self.swimmer, &gait);
         say_if_beyond(&file, &gait);
         let timing = self
             .timing
@@ -115,6 +118,7 @@ impl Efficiency {
             file.name,
             &gait,
             timing,
+            better,
             (seconds, self.output),
         ));
         Ok(())
@@ -143,6 +147,9 @@ struct Found {
     /// The direct method's own value, before the polish.
     #[serde(skip_serializing_if = "Option::is_none")]
     direct_efficiency: Option<f64>,
+    /// Of another class.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    better: Option<Better>,
     #[serde(flatten)]
     closing: Closing,
 }
@@ -152,6 +159,7 @@ impl Found {
         name: String,
         gait: &OptimalGait,
         timing: Option<TimingAnswer>,
+        better: Option<Better>,
         (seconds, file): (f64, Option<PathBuf>),
     ) -> Self {
         let figures = gait.efficiency_figures;
@@ -165,6 +173,7 @@ impl Found {
             power_variation: figures.map(|figures| figures.power_variation),
             method: figures.map(|figures| figures.method.word()),
             direct_efficiency: figures.and_then(|figures| figures.direct_efficiency),
+            better,
             closing: Closing::new(gait, timing, seconds, file),
         }
     }
@@ -201,6 +210,9 @@ impl fmt::Display for Found {
             "best of",
             "the gaits with the paper's symmetries, in one neighbourhood; `swimmer atlas --objective efficiency` looks beyond",
         );
+        if let Some(better) = &self.better {
+            better.row(&mut rows);
+        }
         self.closing.rows(&mut rows);
         write!(f, "{}, a local optimum of efficiency\n{rows}", self.name)
     }
@@ -241,7 +253,7 @@ mod tests {
         let path = folder.path().join("timed.gait");
         let told = |servos: ServoTiming| {
             let timing = servos.write(&gait, "purcell", Some(&path)).unwrap();
-            let found = Found::new("purcell".to_owned(), &gait, timing, (0.0, None));
+            let found = Found::new("purcell".to_owned(), &gait, timing, None, (0.0, None));
             let file = AnyGait::from_file(&GaitFile::load(&path).unwrap()).unwrap();
             let model = Model::new(&Swimmer::purcell()).unwrap();
             let swum = swim(&model, &file, &Tolerance::default()).efficiency();

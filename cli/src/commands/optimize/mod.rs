@@ -1,6 +1,7 @@
 //! `swimmer optimize`: finds an optimal gait and, with `-o`, writes it. One file for each objective.
 
 pub(crate) mod answer;
+mod better;
 mod displacement;
 mod efficiency;
 mod robust;

@@ -13,6 +13,7 @@ use serde::Serialize;
 use super::access::Access;
 use super::port::{Pace, session_seed};
 use crate::failure::{Failure, Outcome};
+use crate::new_file::may_be_written;
 use crate::output::Output;
 
 /// What stands over the key in a file of ours.
@@ -54,6 +55,8 @@ enum Action {
 struct Changed {
     key_set: bool,
     file: Option<String>,
+    /// Whether the file was written just now.
+    made: bool,
 }
 
 impl fmt::Display for Changed {
@@ -61,8 +64,13 @@ impl fmt::Display for Changed {
         match &self.file {
             Some(file) => write!(
                 f,
-                "The robot has the key in {file}: give --key {file} from now on, and keep a copy. Without it only erasing \
-                 the robot's flash helps."
+                "The robot has the key in {file}{}: give --key {file} from now on, and keep a copy. Without it only erasing \
+                 the robot's flash helps.",
+                if self.made {
+                    ", a new one that was written there"
+                } else {
+                    ", as it was there"
+                }
             ),
             None => write!(
                 f,
@@ -105,6 +113,7 @@ pub(super) fn run(access: &Access, change: &KeyChange, output: Output) -> Outcom
             Changed {
                 key_set: false,
                 file: None,
+                made: false,
             }
         }
         Action::Set { file } => {
@@ -119,6 +128,7 @@ pub(super) fn run(access: &Access, change: &KeyChange, output: Output) -> Outcom
             Changed {
                 key_set: true,
                 file: Some(file.display().to_string()),
+                made,
             }
         }
     };
@@ -169,6 +179,7 @@ fn read_or_make(file: &Path) -> Outcome<(Key, bool)> {
     if file.exists() {
         return Ok((read(file)?, false));
     }
+    may_be_written(file)?;
     let mut bytes = [0; Key::LEN];
     getrandom::fill(&mut bytes).map_err(|error| {
         Failure::Tried(format!(

@@ -1,0 +1,148 @@
+//! A gait of a wider class that is known to be better, and the command that gives it.
+
+use std::fmt::Write as _;
+
+use gait_optimizer::{
+    Branch, DisplacementProblem, EfficiencyProblem, Heading, OptimalGait, displacement, efficiency,
+};
+use serde::Serialize;
+use swimmer_files::Bounds;
+
+use crate::quantity::{self, Rows};
+
+/// The lower bound of the paper's gait (c) \[rad\].
+const PAPERS_LOWER: f64 = 1.5;
+/// What is less better is the same gait.
+const BETTER: f64 = 1e-6;
+
+/// The better gait.
+#[derive(Debug, Serialize)]
+pub(super) struct Better {
+    command: String,
+    displacement_over_length: f64,
+    displacement_m: f64,
+    efficiency: f64,
+    links_cross: f64,
+    #[serde(skip)]
+    by_efficiency: bool,
+}
+
+impl Better {
+    fn new(command: String, gait: &OptimalGait, by_efficiency: bool) -> Self {
+        Self {
+            command,
+            displacement_over_length: gait.displacement_over_length,
+            displacement_m: gait.displacement,
+            efficiency: gait.efficiency,
+            links_cross: gait.links_cross,
+            by_efficiency,
+        }
+    }
+
+    /// A line for people.
+    pub(super) fn row(&self, rows: &mut Rows) {
+        let value = if self.by_efficiency {
+            format!("ξ = {:.6}", self.efficiency)
+        } else {
+            format!("X = {}", quantity::length(self.displacement_m))
+        };
+        rows.row(
+            "known to be better",
+            format!(
+                "`{}`: {value}, links cross {}",
+                self.command,
+                quantity::crossing(self.links_cross)
+            ),
+        );
+    }
+}
+
+/// The gait that carries farthest, either way, of those that other commands find within the same bounds on shapes: the other
+/// direction, each quarter in its sector, and with the paper's lower bound.
+pub(super) fn than_displacement(
+    problem: &DisplacementProblem,
+    name: &str,
+    found: &OptimalGait,
+) -> Option<Better> {
+    let wide = Bounds {
+        min_angle: None,
+        sector: false,
+        ..problem.bounds
+    };
+    let with = |sector, min_angle, heading| DisplacementProblem {
+        bounds: Bounds {
+            sector,
+            min_angle,
+            ..wide
+        },
+        heading: Some(heading),
+        ..*problem
+    };
+    let lower = wide.max_angle.is_none_or(|max| max > PAPERS_LOWER);
+    let mut others = Vec::new();
+    for heading in [Heading::Forwards, Heading::Backwards] {
+        others.push(with(false, None, heading));
+        others.push(with(true, None, heading));
+        others.extend(lower.then(|| with(false, Some(PAPERS_LOWER), heading)));
+    }
+    let best = others
+        .into_iter()
+        .filter_map(|other| Some((displacement(&other).ok()?, other)))
+        .max_by(|(a, _), (b, _)| a.displacement.abs().total_cmp(&b.displacement.abs()))?;
+    let (gait, other) = best;
+    (gait.displacement.abs() > found.displacement.abs() * (1.0 + BETTER)).then(|| {
+        let heading = other.heading.map(|heading| match heading {
+            Heading::Forwards => "+",
+            Heading::Backwards => "-",
+        });
+        let command = command(
+            "displacement",
+            name,
+            &other.bounds,
+            heading.map(|sign| ("--sign", sign)),
+        );
+        Better::new(command, &gait, false)
+    })
+}
+
+/// The gait of the other name, where that is more efficient within the same bounds.
+pub(super) fn than_efficiency(
+    problem: &EfficiencyProblem,
+    name: &str,
+    found: &OptimalGait,
+) -> Option<Better> {
+    let (branch, word) = match problem.branch {
+        Branch::Small => (Branch::Large, "large"),
+        Branch::Large => (Branch::Small, "small"),
+    };
+    let gait = efficiency(&EfficiencyProblem { branch, ..*problem }).ok()?;
+    (gait.efficiency > found.efficiency * (1.0 + BETTER)).then(|| {
+        let command = command("efficiency", name, &problem.bounds, Some(("--gait", word)));
+        Better::new(command, &gait, true)
+    })
+}
+
+fn command(objective: &str, name: &str, bounds: &Bounds, more: Option<(&str, &str)>) -> String {
+    let mut words = format!("swimmer optimize {objective} --swimmer {name}");
+    // Writing to a String cannot fail.
+    for (flag, value) in [
+        ("--max-angle", bounds.max_angle),
+        ("--min-angle", bounds.min_angle),
+    ] {
+        if let Some(value) = value {
+            let _ = write!(words, " {flag} {value}");
+        }
+    }
+    if bounds.sector {
+        words.push_str(" --sector");
+    }
+    if bounds.clearance > 0.0 {
+        let _ = write!(words, " --clearance {}", bounds.clearance);
+    } else if bounds.no_overlap {
+        words.push_str(" --no-overlap");
+    }
+    if let Some((flag, value)) = more {
+        let _ = write!(words, " {flag} {value}");
+    }
+    words
+}
