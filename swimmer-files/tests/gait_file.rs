@@ -86,7 +86,7 @@ fn mistakes_have_a_place() {
         ("# swimmer gait file", "# gait", (1, 1), "not a gait file"),
         (
             "objective: displacement",
-            "objective: speed",
+            "objective: haste",
             (line_of("# objective"), 14),
             "one of displacement",
         ),
