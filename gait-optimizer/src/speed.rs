@@ -123,6 +123,7 @@ pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {
     let mut chains: Vec<Polished> = in_parallel(
         problem.starts.max(1),
         problem.threads,
+        &|_| (),
         || (),
         |(), index| {
             let start = starts::start(&region, problem.seed, index);
