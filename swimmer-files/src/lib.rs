@@ -39,5 +39,5 @@ pub use gait_spec::{GaitSpec, GaitSpecError};
 pub use hash::SwimmerHash;
 pub use link_log::{LinkFrame, LinkLog, LinkLogError, LinkLogWriter, Play, plays, read_link_log};
 pub use place::FileError;
-pub use provenance::{InputHash, Provenance};
+pub use provenance::{InputHash, Provenance, hash_of};
 pub use swimmer_file::{Fluid, ServoFile, SwimmerFile};

@@ -98,7 +98,11 @@ impl Provenance {
     }
 }
 
-fn hash_of(path: &Path) -> Result<String, FileError> {
+/// The SHA-256 of a file's bytes, as 64 hexadecimal digits; never more than a piece of it is in memory.
+///
+/// # Errors
+/// [`FileError::Read`].
+pub fn hash_of(path: &Path) -> Result<String, FileError> {
     let read_error = |source| FileError::Read {
         path: path.to_path_buf(),
         source,

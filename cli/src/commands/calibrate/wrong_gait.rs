@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use calibrate::{RunResult, predict};
 use link_protocol::{Direction, Message, StateName};
-use swimmer_files::{AnyGait, Campaign, GaitSpec, LinkFrame, SwimmerFile, plays, read_link_log};
+use swimmer_files::{
+    AnyGait, Campaign, GaitSpec, LinkFrame, SwimmerFile, hash_of, plays, read_link_log,
+};
 use swimmer_model::Gait as _;
 
 use crate::quantity;
@@ -148,29 +150,35 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Runs whose files hold the same bytes.
+/// Runs whose files hold the same bytes. Recordings may be gigabytes: only those of one length are read, a piece at a time.
 fn twice(campaign: &Campaign) -> Vec<String> {
-    let mut seen: HashMap<Vec<u8>, &Path> = HashMap::new();
+    let mut of_length: HashMap<u64, Vec<&Path>> = HashMap::new();
+    for run in &campaign.runs {
+        if run.told.is_none()
+            && run.exclude.is_none()
+            && let Ok(file) = std::fs::metadata(&run.track)
+        {
+            of_length.entry(file.len()).or_default().push(&run.track);
+        }
+    }
     let mut said = Vec::new();
-    for run in campaign
-        .runs
-        .iter()
-        .filter(|run| run.told.is_none() && run.exclude.is_none())
-    {
-        let Ok(bytes) = std::fs::read(&run.track) else {
-            continue;
-        };
-        match seen.get(&bytes) {
-            Some(other) => said.push(format!(
-                "{} and {} hold the same recording: one of two runs names the wrong file",
-                other.display(),
-                run.track.display()
-            )),
-            None => {
-                seen.insert(bytes, &run.track);
+    for files in of_length.into_values().filter(|files| files.len() > 1) {
+        let mut seen: HashMap<String, &Path> = HashMap::new();
+        for file in files {
+            let Ok(hash) = hash_of(file) else { continue };
+            match seen.get(&hash) {
+                Some(other) => said.push(format!(
+                    "{} and {} hold the same recording: one of two runs names the wrong file",
+                    other.display(),
+                    file.display()
+                )),
+                None => {
+                    seen.insert(hash, file);
+                }
             }
         }
     }
+    said.sort();
     said
 }
 
