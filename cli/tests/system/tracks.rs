@@ -1,141 +1,58 @@
-//! `swimmer tracks` on the real files of the shared collection, and on broken ones.
+//! `swimmer tracks` on a recording in every format, and on broken ones.
 
-use std::path::PathBuf;
+use std::collections::BTreeSet;
+use std::path::Path;
 
 use serde_json::Value;
 
 use crate::binary::{swimmer, swimmer_in};
 
-/// What must be said of each file.
-struct Expected {
-    file: &'static str,
-    format: &'static str,
-    rate_hz: f64,
-    unit: &'static str,
-    frames: u64,
-}
-
-/// The figures of the collection's manifest.
-const COLLECTION: [Expected; 12] = [
-    Expected {
-        file: "motive_v1.23_ernesto_rb_markers.csv",
-        format: "motive-1.23",
-        rate_hz: 120.0,
-        unit: "m",
-        frames: 499,
-    },
-    Expected {
-        file: "motive_v1.23_pathviewr_feb20_trunc.csv",
-        format: "motive-1.23",
-        rate_hz: 100.0,
-        unit: "m",
-        frames: 100,
-    },
-    Expected {
-        file: "motive_v1.23_pathviewr_rb100.csv",
-        format: "motive-1.23",
-        rate_hz: 100.0,
-        unit: "m",
-        frames: 934,
-    },
-    Expected {
-        file: "motive_v1.24_slow5_EXCERPT.csv",
-        format: "motive-1.24",
-        rate_hz: 120.0,
-        unit: "cm",
-        frames: 8,
-    },
-    Expected {
-        file: "tt_v1.0_olin.csv",
-        format: "trackingtools-1.0",
-        rate_hz: 250.0,
-        unit: "m",
-        frames: 1668,
-    },
-    Expected {
-        file: "motive_v1.1_olin.csv",
-        format: "motive-1.1",
-        rate_hz: 120.0,
-        unit: "m",
-        frames: 548,
-    },
-    Expected {
-        file: "motive_v1.1_tensegrity_unlabeled13.csv",
-        format: "motive-1.1",
-        rate_hz: 120.0,
-        unit: "m",
-        frames: 1694,
-    },
-    Expected {
-        file: "tracker6_multi_brocku.txt",
-        format: "tracker",
-        rate_hz: 0.0,
-        unit: "unknown",
-        frames: 1,
-    },
-    Expected {
-        file: "tracker_single_brocku.txt",
-        format: "tracker",
-        rate_hz: 31.25,
-        unit: "unknown",
-        frames: 2,
-    },
-    Expected {
-        file: "tracker_wide_arnoldjames_EXCERPT.csv",
-        format: "tracker",
-        rate_hz: 30.0,
-        unit: "unknown",
-        frames: 6,
-    },
-    Expected {
-        file: "qtm_Measurement1_TRIMMED.tsv",
-        format: "qtm",
-        rate_hz: 100.0,
-        unit: "mm",
-        frames: 2,
-    },
-    Expected {
-        file: "trc_README_example.trc",
-        format: "trc",
-        rate_hz: 60.0,
-        unit: "mm",
-        frames: 2,
-    },
-];
-
+/// The project's own recordings, one in every format; `calibrate` holds what they must say.
 #[test]
-fn every_real_file_is_read() {
-    let collection = PathBuf::from(concat!(
+fn every_format_is_told_by_name() {
+    let folder = Path::new(concat!(
         env!("CARGO_MANIFEST_DIR"),
-        "/../../shared/optitrack"
+        "/../calibrate/tests/formats"
     ));
-    if !collection.is_dir() {
-        eprintln!(
-            "\n*** SKIPPED: no collection of real tracking files at {} ***\n",
-            collection.display()
-        );
-        return;
-    }
-    for expected in COLLECTION {
-        let path = collection.join(expected.file);
-        if !path.is_file() {
-            eprintln!("\n*** SKIPPED: {} is missing ***\n", path.display());
-            continue;
-        }
-        let ran = swimmer(&["tracks", path.to_str().unwrap(), "--json"]);
-        let held = ran.with_status(0).json();
-        assert_eq!(held["format"], expected.format, "{held:#}");
-        // Stamps are rounded, or jitter.
-        let rate = &held["rate_hz"];
-        if expected.frames == 1 {
-            assert!(rate.is_null(), "a single frame tells no rate: {held:#}");
+    let mut formats = BTreeSet::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let frames_alone = ["deeplabcut", "sleap"]
+            .iter()
+            .any(|of| name.starts_with(of));
+        let rate: &[&str] = if frames_alone {
+            &["--rate", "100"]
         } else {
-            let off = rate.as_f64().unwrap() - expected.rate_hz;
-            assert!(off.abs() <= 5e-3 * expected.rate_hz, "{held:#}");
+            &[]
+        };
+        let words = [&["tracks", path.to_str().unwrap(), "--json"], rate].concat();
+        let held = swimmer(&words).with_status(0).json();
+        let format = held["format"].as_str().unwrap().to_owned();
+        // Exporters with a version of their own are told with it.
+        if let Some((_, version)) = name.trim_end_matches(".csv").split_once("-1.") {
+            assert!(
+                format.ends_with(&format!("-1.{version}")),
+                "{name}: {format}"
+            );
         }
-        assert_eq!(held["unit"], expected.unit, "{held:#}");
-        assert_eq!(held["frames"], expected.frames, "{held:#}");
-        assert!(!held["points"].as_array().unwrap().is_empty(), "{held:#}");
+        assert!(held["frames"].as_u64().unwrap() > 1, "{name}: {held:#}");
+        assert!(
+            !held["points"].as_array().unwrap().is_empty(),
+            "{name}: {held:#}"
+        );
+        formats.insert(format);
+    }
+    for format in [
+        "motive-1.23",
+        "trackingtools-1.0",
+        "tracker",
+        "deeplabcut",
+        "table",
+        "trc",
+        "qtm",
+    ] {
+        assert!(formats.contains(format), "{format} of {formats:?}");
     }
 }
 

@@ -1,30 +1,24 @@
-//! Real recordings from other laboratories. They are read in place and never committed; where the folder is missing, each
-//! test says so and passes. Counts were made independently (Python's csv module).
+//! Real recordings from other laboratories. They are read in place and never committed; where the folder is missing, the
+//! tests are ignored (`build.rs`), and the project's own recordings (calibrate/tests/formats) take their place. Counts were made independently (Python's csv module).
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use calibrate::{PointKind, TrackFile, TrackPoint, TrackWarning, Unit, read_tracks};
 
-fn sample(name: &str) -> Option<(PathBuf, Vec<u8>)> {
+fn sample(name: &str) -> (PathBuf, Vec<u8>) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../shared/optitrack")
         .join(name);
     match fs::read(&path) {
-        Ok(bytes) => Some((path, bytes)),
-        Err(error) => {
-            eprintln!(
-                "SKIPPED: {} cannot be read ({error}); this test needs the real recording",
-                path.display()
-            );
-            None
-        }
+        Ok(bytes) => (path, bytes),
+        Err(error) => panic!("{} cannot be read: {error}", path.display()),
     }
 }
 
-fn tracks(name: &str) -> Option<TrackFile> {
-    let (path, bytes) = sample(name)?;
-    Some(read_tracks(&bytes, &path).unwrap())
+fn tracks(name: &str) -> TrackFile {
+    let (path, bytes) = sample(name);
+    read_tracks(&bytes, &path).unwrap()
 }
 
 /// Kind, name, present, gaps, longest gap.
@@ -47,10 +41,12 @@ fn table(file: &TrackFile) -> Vec<(PointKind, &str, usize, usize, usize)> {
 }
 
 #[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
 fn ernesto_has_solved_and_measured_markers_of_the_same_name() {
-    let Some(file) = tracks("motive_v1.23_ernesto_rb_markers.csv") else {
-        return;
-    };
+    let file = tracks("motive_v1.23_ernesto_rb_markers.csv");
     assert_eq!(
         (file.format.to_string(), file.rate_hz, file.unit),
         ("motive-1.23".into(), 120.0, Unit::Metre)
@@ -85,10 +81,12 @@ fn ernesto_has_solved_and_measured_markers_of_the_same_name() {
 }
 
 #[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
 fn pathviewr_jumps_and_its_header_lies() {
-    let Some(file) = tracks("motive_v1.23_pathviewr_rb100.csv") else {
-        return;
-    };
+    let file = tracks("motive_v1.23_pathviewr_rb100.csv");
     assert_eq!(
         (file.format.to_string(), file.rate_hz, file.unit),
         ("motive-1.23".into(), 100.0, Unit::Metre)
@@ -122,10 +120,12 @@ fn pathviewr_jumps_and_its_header_lies() {
 }
 
 #[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
 fn feb20_is_an_excel_re_save_with_bodies_that_were_never_seen() {
-    let Some(file) = tracks("motive_v1.23_pathviewr_feb20_trunc.csv") else {
-        return;
-    };
+    let file = tracks("motive_v1.23_pathviewr_feb20_trunc.csv");
     assert_eq!(
         (file.format.to_string(), file.rate_hz, file.unit),
         ("motive-1.23".into(), 100.0, Unit::Metre)
@@ -161,10 +161,12 @@ fn feb20_is_an_excel_re_save_with_bodies_that_were_never_seen() {
 }
 
 #[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
 fn slow5_has_a_time_code_column_and_centimetres() {
-    let Some(file) = tracks("motive_v1.24_slow5_EXCERPT.csv") else {
-        return;
-    };
+    let file = tracks("motive_v1.24_slow5_EXCERPT.csv");
     assert_eq!(
         (file.format.to_string(), file.rate_hz, file.unit),
         ("motive-1.24".into(), 120.0, Unit::Centimetre)
@@ -210,10 +212,12 @@ fn census(file: &TrackFile, kind: PointKind) -> Vec<(usize, usize)> {
 }
 
 #[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
 fn tracking_tools_has_four_bodies_and_a_list_without_identity() {
-    let Some(file) = tracks("tt_v1.0_olin.csv") else {
-        return;
-    };
+    let file = tracks("tt_v1.0_olin.csv");
     assert_eq!(
         (file.format.to_string(), file.unit, file.frames()),
         ("trackingtools-1.0".into(), Unit::Metre, 1668)
@@ -260,10 +264,12 @@ fn tracking_tools_has_four_bodies_and_a_list_without_identity() {
 }
 
 #[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
 fn motive_1_1_names_its_markers() {
-    let Some(file) = tracks("motive_v1.1_olin.csv") else {
-        return;
-    };
+    let file = tracks("motive_v1.1_olin.csv");
     assert_eq!(
         (file.format.to_string(), file.unit, file.frames()),
         ("motive-1.1".into(), Unit::Metre, 548)
@@ -304,10 +310,12 @@ fn motive_1_1_names_its_markers() {
 }
 
 #[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
 fn tensegrity_has_313_numbers_for_13_reflectors() {
-    let Some(file) = tracks("motive_v1.1_tensegrity_unlabeled13.csv") else {
-        return;
-    };
+    let file = tracks("motive_v1.1_tensegrity_unlabeled13.csv");
     assert_eq!(
         (file.format.to_string(), file.unit, file.frames()),
         ("motive-1.1".into(), Unit::Metre, 1694)
@@ -336,10 +344,12 @@ fn tensegrity_has_313_numbers_for_13_reflectors() {
 }
 
 #[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
 fn tracker_blocks_share_their_times() {
-    let Some(file) = tracks("tracker_wide_arnoldjames_EXCERPT.csv") else {
-        return;
-    };
+    let file = tracks("tracker_wide_arnoldjames_EXCERPT.csv");
     assert_eq!(
         (file.format.to_string(), file.unit, file.frames()),
         ("tracker".into(), Unit::Unknown, 6)
@@ -361,8 +371,13 @@ fn tracker_blocks_share_their_times() {
 }
 
 #[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
 fn tracker_text_of_two_versions() {
-    if let Some(file) = tracks("tracker_single_brocku.txt") {
+    {
+        let file = tracks("tracker_single_brocku.txt");
         assert_eq!(
             (file.format.to_string(), file.frames(), file.rate_hz),
             ("tracker".into(), 2, 1.0 / 0.032)
@@ -371,7 +386,8 @@ fn tracker_text_of_two_versions() {
         let place = file.points[0].position(1).unwrap();
         assert_eq!(place.as_slice(), [11.642_890_57, -12.620_511_06, 0.0]);
     }
-    if let Some(file) = tracks("tracker6_multi_brocku.txt") {
+    {
+        let file = tracks("tracker6_multi_brocku.txt");
         // Velocities are no places.
         assert_eq!(
             present(&file, PointKind::Marker),
@@ -393,8 +409,13 @@ fn tracker_text_of_two_versions() {
 }
 
 #[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
 fn trc_and_qtm() {
-    if let Some(file) = tracks("trc_README_example.trc") {
+    {
+        let file = tracks("trc_README_example.trc");
         assert_eq!(
             (file.format.to_string(), file.rate_hz, file.unit),
             ("trc".into(), 60.0, Unit::Millimetre)
@@ -404,7 +425,8 @@ fn trc_and_qtm() {
         assert!((place - nalgebra::Vector3::new(1.1e-3, 2.1e-3, 3.1e-3)).norm() < 1e-15);
         assert_eq!(file.times, [0.0, 1.0 / 60.0]);
     }
-    if let Some(file) = tracks("qtm_Measurement1_TRIMMED.tsv") {
+    {
+        let file = tracks("qtm_Measurement1_TRIMMED.tsv");
         assert_eq!(
             (file.format.to_string(), file.rate_hz, file.unit),
             ("qtm".into(), 100.0, Unit::Millimetre)
@@ -427,15 +449,13 @@ fn trc_and_qtm() {
 }
 
 #[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
 fn no_sample_is_left_out() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/optitrack");
-    let Ok(entries) = fs::read_dir(&folder) else {
-        eprintln!(
-            "SKIPPED: {} is missing; this test needs the real recordings",
-            folder.display()
-        );
-        return;
-    };
+    let entries = fs::read_dir(&folder).unwrap();
     for entry in entries
         .flatten()
         .filter(|entry| entry.file_name() != "MANIFEST.md")
@@ -449,4 +469,128 @@ fn no_sample_is_left_out() {
             answer.err()
         );
     }
+}
+
+/// What must be said of each file.
+struct Expected {
+    file: &'static str,
+    format: &'static str,
+    rate_hz: f64,
+    unit: &'static str,
+    frames: u64,
+}
+
+/// The figures of the collection's manifest.
+const COLLECTION: [Expected; 12] = [
+    Expected {
+        file: "motive_v1.23_ernesto_rb_markers.csv",
+        format: "motive-1.23",
+        rate_hz: 120.0,
+        unit: "m",
+        frames: 499,
+    },
+    Expected {
+        file: "motive_v1.23_pathviewr_feb20_trunc.csv",
+        format: "motive-1.23",
+        rate_hz: 100.0,
+        unit: "m",
+        frames: 100,
+    },
+    Expected {
+        file: "motive_v1.23_pathviewr_rb100.csv",
+        format: "motive-1.23",
+        rate_hz: 100.0,
+        unit: "m",
+        frames: 934,
+    },
+    Expected {
+        file: "motive_v1.24_slow5_EXCERPT.csv",
+        format: "motive-1.24",
+        rate_hz: 120.0,
+        unit: "cm",
+        frames: 8,
+    },
+    Expected {
+        file: "tt_v1.0_olin.csv",
+        format: "trackingtools-1.0",
+        rate_hz: 250.0,
+        unit: "m",
+        frames: 1668,
+    },
+    Expected {
+        file: "motive_v1.1_olin.csv",
+        format: "motive-1.1",
+        rate_hz: 120.0,
+        unit: "m",
+        frames: 548,
+    },
+    Expected {
+        file: "motive_v1.1_tensegrity_unlabeled13.csv",
+        format: "motive-1.1",
+        rate_hz: 120.0,
+        unit: "m",
+        frames: 1694,
+    },
+    Expected {
+        file: "tracker6_multi_brocku.txt",
+        format: "tracker",
+        rate_hz: 0.0,
+        unit: "unknown",
+        frames: 1,
+    },
+    Expected {
+        file: "tracker_single_brocku.txt",
+        format: "tracker",
+        rate_hz: 31.25,
+        unit: "unknown",
+        frames: 2,
+    },
+    Expected {
+        file: "tracker_wide_arnoldjames_EXCERPT.csv",
+        format: "tracker",
+        rate_hz: 30.0,
+        unit: "unknown",
+        frames: 6,
+    },
+    Expected {
+        file: "qtm_Measurement1_TRIMMED.tsv",
+        format: "qtm",
+        rate_hz: 100.0,
+        unit: "mm",
+        frames: 2,
+    },
+    Expected {
+        file: "trc_README_example.trc",
+        format: "trc",
+        rate_hz: 60.0,
+        unit: "mm",
+        frames: 2,
+    },
+];
+
+#[test]
+#[cfg_attr(
+    not(shared),
+    ignore = "needs the real recordings in ../shared/optitrack"
+)]
+fn the_figures_of_the_manifest() {
+    for expected in COLLECTION {
+        let held = tracks(expected.file);
+        assert_eq!(held.format.to_string(), expected.format);
+        // Stamps are rounded, or jitter; a single frame tells no rate.
+        if expected.frames > 1 {
+            let off = held.rate_hz - expected.rate_hz;
+            assert!(off.abs() <= 5e-3 * expected.rate_hz, "{}", held.rate_hz);
+        }
+        assert_eq!(held.unit.to_string(), expected.unit);
+        assert_eq!(held.frames() as u64, expected.frames);
+        assert!(!held.points.is_empty());
+    }
+}
+
+/// Where the recordings are, no test of this file is ignored: a build from before they came is built again.
+#[test]
+fn the_real_recordings_are_tested_where_they_are() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/optitrack");
+    assert_eq!(cfg!(shared), folder.is_dir(), "{}", folder.display());
 }
