@@ -66,6 +66,11 @@ impl LinkBounds {
 }
 
 impl WholeBounds {
+    /// Whether the gait shall be one that the robot plays.
+    pub(crate) fn playable(&self) -> bool {
+        self.links.playable
+    }
+
     /// The bounds for a swimmer.
     pub(crate) fn of(self, file: &SwimmerFile) -> Bounds {
         self.links.tightened(self.into(), file)

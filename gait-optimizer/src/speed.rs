@@ -140,15 +140,15 @@ pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {
         let better = |speed: &mut Option<f64>| {
             speed.get_or_insert(best.speed * fast);
         };
-        let Some(mut answer) = told(problem, &setting, best, fast) else {
+        // Where the polygon had no corner left for a short singular arc the certificate shows it.
+        let passes = |answer: &Fastest| answer.gait.certificate.pass();
+        let first = told(problem, &setting, best, fast).filter(passes);
+        let bent = || told(problem, &setting, &candidate::bent(&setting, best)?, fast);
+        let Some(mut answer) = first.or_else(|| bent().filter(passes)) else {
             better(&mut uncertified);
             continue;
         };
-        if !answer.gait.certificate.pass() {
-            better(&mut uncertified);
-            continue;
-        }
-        if best.links.len() > problem.max_corners {
+        if answer.gait.arcs.len() > problem.max_corners {
             better(&mut longer);
             continue;
         }
@@ -168,14 +168,24 @@ pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {
     })
 }
 
-/// The conditions of a gait from anywhere, timed as its samples are.
+/// The conditions of a gait from anywhere, timed as its samples are. One that leads exactly along its mean heading, or across, may
+/// have been asked to, and then passes as such.
 pub(crate) fn certify_speed(
     model: &Model<f64>,
     file: &GaitFile,
     gait: &AnyGait,
     region: &Region,
 ) -> Certificate {
-    certificate::certificate(model, region, (HeadingRule::Any, false), file, gait)
+    let of = |rule| certificate::certificate(model, region, (rule, false), file, gait);
+    let free = of(HeadingRule::Any);
+    if free.pass() {
+        return free;
+    }
+    [HeadingRule::Forward, HeadingRule::Sideways]
+        .into_iter()
+        .map(of)
+        .find(Certificate::pass)
+        .unwrap_or(free)
 }
 
 fn validate(problem: &SpeedProblem) -> Result<(), SpeedError> {
@@ -226,12 +236,16 @@ fn shortest_of_alike(chains: &[Polished]) -> Vec<&Polished> {
 
 /// A chain as an answer; none where its samples make no gait.
 fn told(problem: &SpeedProblem, setting: &Setting, chain: &Polished, fast: f64) -> Option<Fastest> {
-    let (mut cycle, mut arcs) = samples::cycle(setting, chain);
-    let mut heading = remainder(chain.net.heading());
-    // Run the way that leads forward, or to the left.
-    if heading.cos() < -1e-9 || (heading.cos() < 1e-9 && heading < 0.0) {
+    // Run the way that leads forward, and of two mirror images the one that leads to the left.
+    let ahead = remainder(chain.net.heading());
+    let backward = ahead.cos() < -1e-9 || (ahead.cos() < 1e-9 && ahead < 0.0);
+    let half_turn = if backward { std::f64::consts::PI } else { 0.0 };
+    let forward = remainder(ahead + half_turn);
+    let sign = if forward < -1e-9 { -1.0 } else { 1.0 };
+    let heading = sign * forward;
+    let (mut cycle, mut arcs) = samples::cycle(setting, chain, sign);
+    if backward {
         (cycle, arcs) = samples::reversed(&cycle, &arcs);
-        heading = remainder(heading + std::f64::consts::PI);
     }
     let gait = cycle.gait().ok()?;
     let stroke = swim(setting.model, &gait, &Tolerance::default());

@@ -27,7 +27,7 @@ pub(crate) struct Certify {
     /// circle:AMPLITUDE, square:AMPLITUDE or a gait file; add :cw to reverse it
     #[arg(long, value_name = "GAIT", value_parser = gait)]
     gait: GaitSpec,
-    /// displacement, efficiency, turning or sideways
+    /// displacement, efficiency, turning, sideways or speed
     #[arg(long, value_name = "OBJECTIVE", value_parser = objective)]
     objective: Option<Objective>,
     #[command(flatten)]
@@ -46,7 +46,7 @@ impl Certify {
         let objective = self.objective.unwrap_or(file.objective);
         if objective == Objective::Unspecified {
             return Err(Failure::BadInput(format!(
-                "{} does not tell what it shall be optimal for; add --objective displacement, efficiency, turning or sideways",
+                "{} does not tell what it shall be optimal for; add --objective displacement, efficiency, turning, sideways or speed",
                 quantity::gait(&self.gait)
             )));
         }
@@ -95,9 +95,9 @@ impl Certify {
 
 fn objective(text: &str) -> Result<Objective, String> {
     match text.parse() {
-        Ok(Objective::Unspecified) | Err(_) => {
-            Err("an objective is one of displacement, efficiency, turning, sideways".to_owned())
-        }
+        Ok(Objective::Unspecified) | Err(_) => Err(
+            "an objective is one of displacement, efficiency, turning, sideways, speed".to_owned(),
+        ),
         Ok(objective) => Ok(objective),
     }
 }

@@ -3,7 +3,7 @@
 use clap::Command;
 
 /// The words of a command, and what is typed after `swimmer`.
-pub(super) const EXAMPLES: [(&str, &str); 40] = [
+pub(super) const EXAMPLES: [(&str, &str); 41] = [
     ("demo", "demo --swimmer robot -o demo"),
     ("simulate", "simulate --swimmer robot --gait circle:70deg"),
     (
@@ -21,6 +21,10 @@ pub(super) const EXAMPLES: [(&str, &str); 40] = [
     (
         "optimize sideways",
         "optimize sideways --swimmer robot --max-angle 2.8",
+    ),
+    (
+        "optimize speed",
+        "optimize speed --swimmer robot --max-rate 60deg --max-angle 2.8 -o fast.gait",
     ),
     (
         "atlas",

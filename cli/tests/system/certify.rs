@@ -66,7 +66,7 @@ fn optima_pass_and_circles_fail() {
 
 #[test]
 fn a_circle_fails_with_its_whole_certificate() {
-    for objective in ["displacement", "efficiency", "turning", "sideways"] {
+    for objective in ["displacement", "efficiency", "turning", "sideways", "speed"] {
         let words = [
             "certify",
             "--json",

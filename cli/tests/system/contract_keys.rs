@@ -84,3 +84,34 @@ fn a_sideways_gait_has_no_angle_to_gain_by_bridges() {
     assert_eq!(found.get("bridged_supremum_rad"), Some(&Value::Null));
     number(&found, "bridged_supremum_over_length");
 }
+
+#[test]
+fn the_fastest_gait_has_the_keys_of_the_contract() {
+    let words = [
+        "optimize",
+        "speed",
+        "--swimmer",
+        "purcell",
+        "--max-rate",
+        "1",
+        "--max-angle",
+        "2",
+        "--json",
+    ];
+    let found = swimmer(&words).with_status(0).json();
+    let (speed, far) = (
+        number(&found, "speed_over_length_per_s"),
+        number(&found, "displacement_over_length"),
+    );
+    assert!((speed - 0.012_915_416_912_7).abs() < 1e-12, "{found:#}");
+    assert!((far / number(&found, "period_s") - speed).abs() < 1e-14);
+    assert!(number(&found, "heading_rad").abs() < 1e-9);
+    assert_eq!(number(&found, "links_cross").to_bits(), 0.0_f64.to_bits());
+    let (arcs, corners) = (&found["arcs"], &found["corners"]);
+    assert_eq!(arcs.as_array().unwrap().len(), 4);
+    assert_eq!(corners.as_array().unwrap().len(), 4);
+    assert_eq!(arcs[0]["kind"], "extreme");
+    assert_eq!(found["certificate"]["pass"], true);
+    assert_eq!(found["max_corners"], 16);
+    assert!(found["seconds"].is_number());
+}

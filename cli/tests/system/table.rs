@@ -56,7 +56,7 @@ impl Row {
     }
 }
 
-const ROWS: [Row; 36] = [
+const ROWS: [Row; 37] = [
     row("demo --swimmer good.toml -o out")
         .reads("good.toml")
         .writes("out")
@@ -77,6 +77,9 @@ const ROWS: [Row; 36] = [
         .reads("good.toml")
         .writes("o.gait")
         .long(),
+    row("optimize speed --swimmer good.toml --max-rate 1 --max-angle 2.8 -o o.gait")
+        .reads("good.toml")
+        .writes("o.gait"),
     row("atlas --swimmer good.toml --objective displacement --starts 100000 -o out")
         .reads("good.toml")
         .writes("out")

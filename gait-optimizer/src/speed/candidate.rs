@@ -66,6 +66,70 @@ fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished> {
     None
 }
 
+/// The chain with short singular arcs in place of the corners between extreme arcs where that is faster; none where it is nowhere.
+pub(crate) fn bent(setting: &Setting, chain: &Polished) -> Option<Polished> {
+    /// Length of the first guess, over the period.
+    const SHORT: f64 = 3e-3;
+    let mut best: Option<Polished> = None;
+    let mut corner = 0;
+    loop {
+        let here = best.as_ref().unwrap_or(chain);
+        if corner >= here.links.len() {
+            return best;
+        }
+        let short = SHORT * here.layout.period(&here.z);
+        let faster = with_singular(&here.links, corner, short)
+            .and_then(|links| mended(setting, links))
+            .filter(|bent| {
+                bent.speed > here.speed * (1.0 + 1e-14) && bent.links.len() > here.links.len()
+            });
+        if faster.is_some() {
+            best = faster;
+            corner += 1;
+        }
+        corner += 1;
+    }
+}
+
+/// The arcs with a singular one in place of the corner between two extreme ones; none where it is another corner.
+fn with_singular(links: &[Link], corner: usize, short: f64) -> Option<Vec<Link>> {
+    let before = (corner + links.len() - 1) % links.len();
+    let (Motion::Extreme(old), Motion::Extreme(new)) = (links[before].motion, links[corner].motion)
+    else {
+        return None;
+    };
+    let pace = (0..2).find(|&joint| (old[joint] - new[joint]).abs() < 0.5)?;
+    if !links[corner].held.is_empty() {
+        return None;
+    }
+    let rate = |before: usize, joint: usize| {
+        // Radians a second of the arcs that are there.
+        let next = (before + 1) % links.len();
+        (links[next].corner[joint] - links[before].corner[joint]) / links[before].time
+    };
+    let mut longer = links.to_vec();
+    let at = links[corner].corner;
+    let off = |arc: usize, time: f64| Vector2::new(rate(arc, 0), rate(arc, 1)) * time;
+    longer[before].time -= short;
+    longer[corner].time -= short;
+    longer[corner].corner = at + off(corner, short);
+    longer.insert(
+        corner,
+        Link {
+            corner: at - off(before, short),
+            held: Vec::new(),
+            motion: Motion::Singular {
+                pace,
+                way: new[pace],
+            },
+            time: 2.0 * short,
+            bends: Vec::new(),
+            between: Vec::new(),
+        },
+    );
+    Some(longer)
+}
+
 /// Whether an arc runs along what holds a corner.
 fn follows(motion: &Motion, hold: &Hold) -> bool {
     let Hold::On(held, _) = hold;

@@ -15,15 +15,21 @@ const CURVED: usize = 160;
 /// Samples of a whole cycle, about.
 const SAMPLES: usize = 512;
 
-/// The cycle timed at the servos' rates, from the corner farthest along φ₁ = φ₂.
-pub(crate) fn cycle(setting: &Setting, polished: &Polished) -> (Cycle, Vec<Arc>) {
+/// Sums of angles that are closer than this are as far along φ₁ = φ₂ as each other.
+const TIED: f64 = 1e-6;
+
+/// The cycle timed at the servos' rates, from the corner farthest along φ₁ = φ₂ (of equals the one of the largest φ₁). With `sign`
+/// −1 the mirrored swimmer's.
+pub(crate) fn cycle(setting: &Setting, polished: &Polished, sign: f64) -> (Cycle, Vec<Arc>) {
     let Polished {
         links, layout, z, ..
     } = polished;
     let n = links.len();
-    let sum = |k: usize| links[k].corner.sum();
+    let corner = |k: usize| links[k].corner * sign;
+    let farthest = (0..n).map(|k| corner(k).sum()).fold(f64::MIN, f64::max);
     let first = (0..n)
-        .max_by(|&a, &b| sum(a).total_cmp(&sum(b)))
+        .filter(|&k| corner(k).sum() > farthest - TIED)
+        .max_by(|&a, &b| corner(a).x.total_cmp(&corner(b).x))
         .unwrap_or(0);
     let period = layout.period(z);
     let mut cycle = Cycle {
@@ -51,7 +57,8 @@ pub(crate) fn cycle(setting: &Setting, polished: &Polished) -> (Cycle, Vec<Arc>)
         for step in 0..count {
             let s = step as f64 / count as f64;
             cycle.u.push(from + share * s);
-            cycle.phi.push(shape.at(&ends, layout.bends(z, k), s));
+            let phi = shape.at(&ends, layout.bends(z, k), s);
+            cycle.phi.push(phi * sign);
         }
         begun += links[k].time;
         let kind = links[k].motion.kind(|index| setting.region.bound(index));
@@ -63,8 +70,8 @@ pub(crate) fn cycle(setting: &Setting, polished: &Polished) -> (Cycle, Vec<Arc>)
         });
         arcs.push(Arc {
             kind,
-            from: ends[0].into(),
-            to: ends[1].into(),
+            from: (ends[0] * sign).into(),
+            to: (ends[1] * sign).into(),
         });
     }
     cycle.u.push(1.0);

@@ -20,7 +20,6 @@ fn certified(found: &Fastest) {
     assert!(certificate.pass(), "{}", certificate.failures());
 }
 
-/// Found by the search, and by the direct method of `tests/speed.rs`.
 #[test]
 fn known_speeds() {
     for (swimmer, max, speed) in [

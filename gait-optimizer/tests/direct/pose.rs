@@ -8,8 +8,8 @@ use swimmer_model::Model;
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Pose {
     pub(super) x: f64,
-    y: f64,
-    theta: f64,
+    pub(super) y: f64,
+    pub(super) theta: f64,
 }
 
 impl Mul for Pose {
@@ -26,6 +26,7 @@ impl Mul for Pose {
 }
 
 impl Pose {
+    #[allow(dead_code)] // not every method that shares this file goes backwards
     pub(super) fn inverse(self) -> Self {
         let (sin, cos) = self.theta.sin_cos();
         Self {

@@ -6,6 +6,7 @@ mod displacement;
 mod efficiency;
 mod robust;
 mod sideways;
+mod speed;
 mod timing;
 mod turning;
 
@@ -22,6 +23,7 @@ pub(crate) enum Optimize {
     Efficiency(efficiency::Efficiency),
     Turning(turning::Turning),
     Sideways(sideways::Sideways),
+    Speed(speed::Speed),
 }
 
 impl Optimize {
@@ -33,6 +35,7 @@ impl Optimize {
             Self::Efficiency(arguments) => arguments.run(output),
             Self::Turning(arguments) => arguments.run(output),
             Self::Sideways(arguments) => arguments.run(output),
+            Self::Speed(arguments) => arguments.run(output),
         }
     }
 
@@ -43,6 +46,7 @@ impl Optimize {
             Self::Efficiency(arguments) => &arguments.output,
             Self::Turning(arguments) => &arguments.output,
             Self::Sideways(arguments) => &arguments.output,
+            Self::Speed(arguments) => &arguments.output,
         };
         file.as_deref()
     }

@@ -1,0 +1,235 @@
+//! `swimmer optimize speed`: the fastest gait that servos can play.
+
+use std::fmt;
+use std::num::NonZero;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use gait_optimizer::{Fastest, HeadingRule, SpeedError, SpeedProblem, fastest};
+use serde::Serialize;
+use swimmer_files::{AnyGait, SwimmerFile};
+
+use crate::arguments::{load_swimmer, rate, seconds};
+use crate::bounds::WholeBounds;
+use crate::failure::{Failure, Outcome};
+use crate::output::Output;
+use crate::quantity::{self, Rows};
+
+use super::answer::{Arc, Closing, arc_rows, arcs, unfolded};
+
+/// Find the fastest gait: most net displacement per unit of time, without net rotation, with servos that turn no faster than a
+/// given rate
+///
+/// Fastest means the best of all cycles of at most 16 corners: a chain of unlike cycles may always beat each of them, and a
+/// longer cycle that was met and is better by more than 1e-6 is told. The gait is timed as it shall run, with its corners where
+/// a servo turns round.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Speed {
+    /// purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
+    /// No servo turns faster than this angle a second; a second one is that of joint 2
+    #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2, required_unless_present = "playable")]
+    max_rate: Vec<f64>,
+    /// Which way the gait shall lead, against the mean heading of its cycle
+    #[arg(long, value_name = "HEADING", value_enum, default_value = "any")]
+    heading: Heading,
+    /// The farthest gait in this many seconds, instead of the fastest
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    period: Option<f64>,
+    #[command(flatten)]
+    bounds: WholeBounds,
+    /// Write the gait, timed as it shall run, as a gait file
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+}
+
+/// Which way a gait leads.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum Heading {
+    /// Wherever it is fastest
+    Any,
+    /// Along the mean heading
+    Forward,
+    /// Across it
+    Sideways,
+}
+
+impl Speed {
+    pub(super) fn run(self, output: Output) -> Outcome {
+        let file = load_swimmer(&self.swimmer)?;
+        let begun = Instant::now();
+        let found = fastest(&SpeedProblem {
+            bounds: self.bounds.of(&file),
+            heading: match self.heading {
+                Heading::Any => HeadingRule::Any,
+                Heading::Forward => HeadingRule::Forward,
+                Heading::Sideways => HeadingRule::Sideways,
+            },
+            period: self.period,
+            threads: std::thread::available_parallelism().map_or(1, NonZero::get),
+            ..SpeedProblem::new(file.swimmer, self.rates(&file))
+        })?;
+        let seconds = begun.elapsed().as_secs_f64();
+        unfolded(&found.gait)?;
+        let gait_file = found.gait.gait_file(&file.name);
+        if let Ok(curve) = AnyGait::from_file(&gait_file) {
+            crate::own_robot::say_if_beyond(&file, &curve, found.period);
+        }
+        if let Some(path) = &self.output {
+            gait_file.save(path)?;
+        }
+        output.answer(&Answer::new(&file, &found, seconds, self.output));
+        Ok(())
+    }
+
+    /// The limit of each servo: what was told, and the robot's own where the gait shall be playable.
+    fn rates(&self, file: &SwimmerFile) -> [f64; 2] {
+        let own = if self.bounds.playable() {
+            file.servo.unwrap_or_default().max_rate
+        } else {
+            f64::INFINITY
+        };
+        let first = self.max_rate.first().copied().unwrap_or(f64::INFINITY);
+        let second = self.max_rate.get(1).copied().unwrap_or(first);
+        [first.min(own), second.min(own)]
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Answer {
+    #[serde(skip)]
+    name: String,
+    speed_over_length_per_s: f64,
+    speed_m_per_s: f64,
+    /// |d| of a cycle.
+    displacement_over_length: f64,
+    displacement_m: f64,
+    period_s: f64,
+    /// Of the displacement against the cycle's mean heading.
+    heading_rad: f64,
+    rotation_rad: f64,
+    arcs: Vec<Arc>,
+    /// Fractions of the period where a servo turns round or stops.
+    corners: Vec<f64>,
+    /// Most corners of the cycles that were looked at.
+    max_corners: usize,
+    /// Closed curves that were started from, and how many led to this gait.
+    starts: usize,
+    found: usize,
+    /// The speed of a certified cycle with more corners, where one is better by more than 1e-6 of it.
+    longer_speed_over_length_per_s: Option<f64>,
+    /// The speed of a faster chain of arcs that failed its certificate.
+    uncertified_speed_over_length_per_s: Option<f64>,
+    #[serde(flatten)]
+    closing: Closing,
+}
+
+impl Answer {
+    fn new(file: &SwimmerFile, found: &Fastest, seconds: f64, output: Option<PathBuf>) -> Self {
+        let gait = &found.gait;
+        let length = file.swimmer.total_length();
+        Self {
+            name: file.name.clone(),
+            speed_over_length_per_s: found.speed_over_length,
+            speed_m_per_s: found.speed_over_length * length,
+            displacement_over_length: found.distance_over_length,
+            displacement_m: found.distance_over_length * length,
+            period_s: found.period,
+            heading_rad: found.heading,
+            rotation_rad: gait.rotation,
+            arcs: arcs(gait),
+            corners: gait.corners().to_vec(),
+            max_corners: SpeedProblem::MAX_CORNERS,
+            starts: SpeedProblem::STARTS,
+            found: found.found,
+            longer_speed_over_length_per_s: found.longer,
+            uncertified_speed_over_length_per_s: found.uncertified,
+            closing: Closing::new(gait, None, seconds, output),
+        }
+    }
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows = Rows::default();
+        rows.row(
+            "speed",
+            format!(
+                "{} a second   |d|/(L T) = {:.10} 1/s",
+                quantity::length(self.speed_m_per_s),
+                self.speed_over_length_per_s
+            ),
+        )
+        .row(
+            "displacement",
+            format!(
+                "{} per cycle   |d|/L = {:.10}",
+                quantity::length(self.displacement_m),
+                self.displacement_over_length
+            ),
+        )
+        .row("period", format!("{:.6} s", self.period_s))
+        .row(
+            "leads",
+            format!(
+                "{} off the mean heading",
+                quantity::angle(tidy(self.heading_rad))
+            ),
+        )
+        .row(
+            "found",
+            format!("from {} of {} starts", self.found, self.starts),
+        );
+        arc_rows(&mut rows, &self.arcs);
+        let better = |speed: f64| {
+            format!(
+                "{:.4} % faster",
+                (speed / self.speed_over_length_per_s - 1.0) * 100.0
+            )
+        };
+        if let Some(speed) = self.longer_speed_over_length_per_s {
+            rows.row(
+                "longer cycle",
+                format!(
+                    "one of more than {} corners is {}",
+                    self.max_corners,
+                    better(speed)
+                ),
+            );
+        }
+        if let Some(speed) = self.uncertified_speed_over_length_per_s {
+            rows.row(
+                "not certified",
+                format!(
+                    "another chain of arcs is {}, but meets not all conditions",
+                    better(speed)
+                ),
+            );
+        }
+        self.closing.rows(&mut rows);
+        write!(
+            f,
+            "{}: the fastest gait swims {} in {:.2} s, {} a second\n{rows}",
+            self.name,
+            quantity::length(self.displacement_m),
+            self.period_s,
+            quantity::length(self.speed_m_per_s),
+        )
+    }
+}
+
+/// Without the sign of a zero.
+fn tidy(angle: f64) -> f64 {
+    (angle * 1e9).round() / 1e9 + 0.0
+}
+
+impl From<SpeedError> for Failure {
+    /// A problem that makes no sense is bad input; one without a certified gait was tried.
+    fn from(error: SpeedError) -> Self {
+        match error {
+            SpeedError::NoGait { .. } | SpeedError::Immobile(_) => Self::tried(&error),
+            _ => Self::bad_input(&error),
+        }
+    }
+}
