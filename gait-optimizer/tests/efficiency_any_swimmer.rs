@@ -43,7 +43,8 @@ fn every_swimmer_gets_a_certified_gait_or_a_reason() {
                 Err(error) => {
                     // An unusual swimmer is no bad input, and the reason has numbers.
                     assert!(!error.is_bad_input(), "{i}: {error}");
-                    assert!(error.to_string().contains(|c: char| c.is_ascii_digit()));
+                    let told = format!("{error} {}", error.details().unwrap_or_default());
+                    assert!(told.contains(|c: char| c.is_ascii_digit()), "{i}: {told}");
                     refused.push(format!("{i}: {error}"));
                     continue;
                 }

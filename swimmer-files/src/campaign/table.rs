@@ -61,14 +61,14 @@ pub(super) fn table(path: &Path, gait: &str) -> Result<Vec<(usize, GaitSpec, Tol
                 return Err(error(line, 0, problem.to_owned()));
             }
         };
-        let spec: GaitSpec = of_row
-            .parse()
-            .map_err(|cause| error(line, 0, format!("gait: {cause}")))?;
-        if matches!(&spec, GaitSpec::File { path, .. } if ["circle", "square"].iter().any(|shape| path == Path::new(shape)))
-        {
+        let shape = of_row.strip_suffix(":cw").unwrap_or(&of_row);
+        if ["circle", "square"].contains(&shape) {
             let problem = format!("`{of_row}` has no amplitude: give a column amplitude_deg");
             return Err(error(line, 0, problem));
         }
+        let spec: GaitSpec = of_row
+            .parse()
+            .map_err(|cause| error(line, 0, format!("gait: {cause}")))?;
         let mut told = told(number)
             .map_err(|(key, problem)| error(line, place(&key).unwrap_or(0), problem))?;
         told.table = Some(path.to_owned());
