@@ -53,6 +53,7 @@ fn the_direct_method_agrees() {
     by_two_methods(Swimmer::purcell(), 2.0);
 }
 
+// Fails so far: for the robot within 2 rad the direct method ends at no gait at all.
 #[test]
 #[ignore = "soak: minutes"]
 fn the_direct_method_agrees_everywhere() {
