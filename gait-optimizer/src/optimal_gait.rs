@@ -126,33 +126,7 @@ impl OptimalGait {
     /// The cycle as a swimmer turned end for end runs it, backwards so that it stays as far across to the same side:
     /// (φ₁, φ₂) → (−φ₂, −φ₁).
     pub(crate) fn turned_end_for_end(&self) -> Cycle {
-        let Cycle {
-            u,
-            phi,
-            corners,
-            arcs,
-        } = &self.cycle;
-        let back = |u: f64| if u > 0.0 { 1.0 - u } else { 0.0 };
-        let mut turned = Cycle {
-            u: u.iter().rev().map(|u| 1.0 - u).collect(),
-            phi: phi
-                .iter()
-                .rev()
-                .map(|phi| Vector2::new(-phi.y, -phi.x))
-                .collect(),
-            corners: corners.iter().map(|&corner| back(corner)).collect(),
-            arcs: arcs
-                .iter()
-                .rev()
-                .map(|arc| GaitArc {
-                    kind: arc.kind,
-                    from: 1.0 - arc.to,
-                    to: 1.0 - arc.from,
-                })
-                .collect(),
-        };
-        turned.corners.sort_by(f64::total_cmp);
-        turned
+        self.cycle.reversed(|phi| Vector2::new(-phi.y, -phi.x))
     }
 
     /// Fractions of the period of the samples, 0 to 1, at constant power.

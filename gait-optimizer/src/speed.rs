@@ -245,7 +245,7 @@ fn told(problem: &SpeedProblem, setting: &Setting, chain: &Polished, fast: f64) 
     let heading = sign * forward;
     let (mut cycle, mut arcs) = samples::cycle(setting, chain, sign);
     if backward {
-        (cycle, arcs) = samples::reversed(&cycle, &arcs);
+        (cycle, arcs) = (cycle.reversed(|phi| *phi), samples::reversed(&arcs));
     }
     let gait = cycle.gait().ok()?;
     let stroke = swim(setting.model, &gait, &Tolerance::default());

@@ -26,6 +26,7 @@ use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::new_folder::NewFolder;
 use crate::output::Output;
+use crate::own_robot::PERIOD_S;
 use crate::progress::Progress;
 use crate::report;
 use crate::virtual_robot::{Carrier, EmulatedBoard, VirtualLine};
@@ -58,8 +59,6 @@ const CIRCLES: std::ops::RangeInclusive<u32> = 30..=110;
 const CIRCLE_STEP: usize = 10;
 /// Cycles of each play; the first is start-up and does not count.
 const CYCLES: u32 = 8;
-/// The paper's period, s. Slower where a gait needs it.
-const PERIOD_S: f64 = 30.0;
 /// The bound on the joints is tightened by this until the robot accepts the gait, rad …
 const BOUND_STEP: f64 = 0.02;
 /// … at most down to this, rad.

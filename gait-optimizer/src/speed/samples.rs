@@ -1,6 +1,5 @@
 //! A polished chain as one cycle of samples, each arc with its own.
 
-use nalgebra::Vector2;
 use swimmer_files::GaitArc;
 
 use super::arc::Shape;
@@ -82,36 +81,12 @@ pub(crate) fn cycle(setting: &Setting, polished: &Polished, sign: f64) -> (Cycle
     (cycle, arcs)
 }
 
-/// The same cycle run backwards, from the same shape.
-pub(crate) fn reversed(cycle: &Cycle, arcs: &[Arc]) -> (Cycle, Vec<Arc>) {
-    let back = |u: f64| if u > 0.0 { 1.0 - u } else { 0.0 };
-    let mut corners: Vec<f64> = cycle.corners.iter().map(|&u| back(u)).collect();
-    corners.sort_by(f64::total_cmp);
-    let u: Vec<f64> = cycle.u.iter().rev().map(|&u| 1.0 - u).collect();
-    let phi: Vec<Vector2<f64>> = cycle.phi.iter().rev().copied().collect();
-    let reversed = Cycle {
-        u,
-        phi,
-        corners,
-        arcs: cycle
-            .arcs
-            .iter()
-            .rev()
-            .map(|arc| GaitArc {
-                kind: arc.kind,
-                from: 1.0 - arc.to,
-                to: 1.0 - arc.from,
-            })
-            .collect(),
+/// The same arcs run backwards.
+pub(crate) fn reversed(arcs: &[Arc]) -> Vec<Arc> {
+    let back = |arc: &Arc| Arc {
+        kind: arc.kind,
+        from: arc.to,
+        to: arc.from,
     };
-    let arcs = arcs
-        .iter()
-        .rev()
-        .map(|arc| Arc {
-            kind: arc.kind,
-            from: arc.to,
-            to: arc.from,
-        })
-        .collect();
-    (reversed, arcs)
+    arcs.iter().rev().map(back).collect()
 }
