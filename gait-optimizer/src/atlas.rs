@@ -30,6 +30,15 @@ use crate::immobile::refuse_immobile;
 use crate::region::Region;
 use crate::{Immobile, OptimalGait};
 
+/// Which curves an atlas starts from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StartCurves {
+    /// Fourier curves of several sizes, centres and aspects.
+    Random,
+    /// Circles off the straight swimmer, their centres on φ₁ = −φ₂: a look beyond the paper's symmetries by four starts.
+    OffCentre,
+}
+
 /// What to make an atlas of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AtlasProblem {
@@ -40,8 +49,10 @@ pub struct AtlasProblem {
     pub objective: Objective,
     /// Bounds on the shapes: the largest angle and crossing links.
     pub bounds: Bounds,
-    /// How many random starts.
+    /// How many starts.
     pub starts: usize,
+    /// Which curves those are.
+    pub from: StartCurves,
     /// Seed of the starts: the same seed gives the same atlas on any number of threads.
     pub seed: u64,
     /// Order of the Fourier series that the starts are optimised in before the polish.
@@ -60,6 +71,7 @@ impl AtlasProblem {
             objective,
             bounds: Bounds::default(),
             starts: 200,
+            from: StartCurves::Random,
             seed: 1,
             order: 6,
             threads: 1,

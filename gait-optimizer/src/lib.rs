@@ -65,7 +65,9 @@ mod simple_shapes;
 mod speed;
 mod turning;
 
-pub use atlas::{Atlas, AtlasError, AtlasProblem, Optimum, Watch, atlas, atlas_watched};
+pub use atlas::{
+    Atlas, AtlasError, AtlasProblem, Optimum, StartCurves, Watch, atlas, atlas_watched,
+};
 pub use certificate::{Certificate, Check};
 pub use certify::{CertifyError, certify};
 pub use continuation::{

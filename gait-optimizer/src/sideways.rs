@@ -67,6 +67,8 @@ pub struct Sideways {
     pub lateral_over_length: f64,
     /// The largest |d| over L of the loops found: what a bridge to a start with its heading square to d would come near to.
     pub bridged_supremum_over_length: f64,
+    /// Loops that were found, of which this is the best.
+    pub loops: usize,
 }
 
 /// The simple closed loop of most displacement across the heading at its first sample, without net rotation: the best of
@@ -108,6 +110,7 @@ pub fn sideways_watched(
             let bridged = ours
                 .bridged_supremum_over_length
                 .max(theirs.bridged_supremum_over_length);
+            let loops = ours.loops + theirs.loops;
             let best = if theirs.lateral_over_length > ours.lateral_over_length {
                 theirs
             } else {
@@ -115,6 +118,7 @@ pub fn sideways_watched(
             };
             Ok(Sideways {
                 bridged_supremum_over_length: bridged,
+                loops,
                 ..best
             })
         }
@@ -143,6 +147,7 @@ fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sid
     Some(Sideways {
         lateral_over_length: lateral,
         bridged_supremum_over_length: found.bridged_supremum_over_length,
+        loops: found.loops,
         gait: OptimalGait::new(Solution {
             objective: Objective::Sideways,
             swimmer: problem.swimmer,
@@ -199,6 +204,7 @@ fn sampled_as_asked(
         found.extend(finished(problem, &model, &region, candidate));
     }
     let bridged = loops.optima.first().map(|best| best.distance_over_length);
+    let count = found.len();
     found
         .into_iter()
         .max_by(|a, b| a.lateral_over_length.total_cmp(&b.lateral_over_length))
@@ -210,6 +216,7 @@ fn sampled_as_asked(
                 best.gait
             },
             lateral_over_length: best.lateral_over_length,
+            loops: count,
         })
         .ok_or(SidewaysError::NoOptimum {
             bounds: problem.bounds,
@@ -265,6 +272,7 @@ fn settled(
     Some(Sideways {
         lateral_over_length: lateral,
         bridged_supremum_over_length: lateral,
+        loops: 1,
         gait: OptimalGait::new(Solution {
             objective: Objective::Sideways,
             swimmer: problem.swimmer,

@@ -8,8 +8,8 @@ use super::distinct::{Outline, Symmetries, classes};
 use super::fence::Fence;
 use super::newton::{Newton, Settings, Stationary};
 use super::objective::Aim;
-use super::starts::{fitted, start};
-use super::{Atlas, AtlasProblem, Optimum, Watch};
+use super::starts::{fitted, off_centre, start};
+use super::{Atlas, AtlasProblem, Optimum, StartCurves, Watch};
 use crate::OptimalGait;
 use crate::closed_curve::{Basis, Functional};
 use crate::parallel::in_parallel;
@@ -93,7 +93,10 @@ pub(super) fn run<S: Seek>(
         |newton, index| {
             let curve = match known.get(index.wrapping_sub(problem.starts)) {
                 Some(known) => fitted(known, &basis, &fence),
-                None => start(&basis, &fence, problem.seed, index),
+                None => match problem.from {
+                    StartCurves::Random => start(&basis, &fence, problem.seed, index),
+                    StartCurves::OffCentre => off_centre(&basis, &fence, index),
+                },
             };
             coarse::<S>(newton, &basis, curve, symmetries.turns)
         },

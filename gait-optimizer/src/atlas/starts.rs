@@ -63,6 +63,20 @@ pub(crate) fn start(basis: &Basis, fence: &Fence, seed: u64, index: usize) -> DM
     curve
 }
 
+/// A circle round a shape with φ₁ = −φ₂, half way out, on either side and of two sizes.
+pub(crate) fn off_centre(basis: &Basis, fence: &Fence, index: usize) -> DMatrix<f64> {
+    let reach = fence.max_angle().min(std::f64::consts::PI);
+    let side = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let radius = if index < 2 { 0.35 } else { 0.2 } * reach;
+    let mut curve = DMatrix::zeros(2, basis.functions());
+    curve[(0, 0)] = -0.6 * side * reach;
+    curve[(1, 0)] = 0.6 * side * reach;
+    curve[(0, 1)] = radius;
+    curve[(1, 2)] = radius;
+    shrink_into(&mut curve, basis, fence);
+    curve
+}
+
 /// A gait's cycle as a series of the basis's order, shrunk into the fence.
 pub(crate) fn fitted(gait: &OptimalGait, basis: &Basis, fence: &Fence) -> DMatrix<f64> {
     const SAMPLES: usize = 512;

@@ -70,6 +70,8 @@ struct Answer {
     /// Null: these gaits do not rotate, and what bridges would bring is the length above.
     bridged_supremum_rad: Option<f64>,
     rotation_rad: f64,
+    /// Loops found, of which this is the best certified one.
+    loops: usize,
     arcs: Vec<Arc>,
     #[serde(flatten)]
     closing: Closing,
@@ -85,6 +87,7 @@ impl Answer {
             bridged_supremum_over_length: found.bridged_supremum_over_length,
             bridged_supremum_rad: None,
             rotation_rad: gait.rotation,
+            loops: found.loops,
             arcs: arcs(gait),
             closing: Closing::new(gait, None, seconds, file),
         }
@@ -108,9 +111,21 @@ impl fmt::Display for Answer {
             format!("up to |Y|/L = {:.9}", self.bridged_supremum_over_length),
         )
         .row("net rotation", quantity::angle(self.rotation_rad))
-        .row("arcs", self.arcs.len().to_string());
+        .row("arcs", self.arcs.len().to_string())
+        .row(
+            "best of",
+            format!(
+                "the {} simple loops found, each with its best first sample; `swimmer optimize displacement` finds gaits of \
+                 other kinds",
+                self.loops
+            ),
+        );
         self.closing.rows(&mut rows);
-        write!(f, "{}, most displacement sideways\n{rows}", self.name)
+        write!(
+            f,
+            "{}, a local optimum of displacement sideways\n{rows}",
+            self.name
+        )
     }
 }
 

@@ -114,6 +114,16 @@ impl fmt::Display for Answer {
             ),
         );
         arc_rows(&mut rows, &self.arcs);
+        let regions = match self.regions {
+            1 => "the one region of positive θ curvature".to_owned(),
+            count => format!("each of the {count} regions of positive θ curvature"),
+        };
+        rows.row(
+            "best of",
+            format!(
+                "simple loops, round {regions}: no other simple loop within one region turns more"
+            ),
+        );
         self.closing.rows(&mut rows);
         write!(f, "{}, most rotation, {}\n{rows}", self.name, self.bounds)
     }
