@@ -13,7 +13,7 @@ const LARGEST_REYNOLDS: f64 = 0.1;
 
 /// One cycle of this duration, as parametrised.
 #[derive(Debug, Serialize)]
-pub(super) struct InFluid {
+pub(crate) struct InFluid {
     period_s: f64,
     /// Mean over the cycle, and the largest.
     power_w: f64,
@@ -29,7 +29,7 @@ pub(super) struct InFluid {
 
 impl InFluid {
     /// `None` where the file names no fluid.
-    pub(super) fn new(
+    pub(crate) fn new(
         file: &SwimmerFile,
         model: &Model<f64>,
         gait: &AnyGait,
@@ -52,7 +52,7 @@ impl InFluid {
     }
 
     /// Says what makes the answer doubtful.
-    pub(super) fn warn(&self) {
+    pub(crate) fn warn(&self) {
         if self.reynolds > LARGEST_REYNOLDS {
             aside(&format!(
                 "warning: the Reynolds number is {:.2} at {} s a cycle, and the model has no inertia: it holds below {LARGEST_REYNOLDS}; a period of {:.0} s would do",
@@ -73,7 +73,7 @@ impl InFluid {
         }
     }
 
-    pub(super) fn rows(&self, rows: &mut Rows) {
+    pub(crate) fn rows(&self, rows: &mut Rows) {
         let [front, back] = self.torque_n_m.map(newton_metres);
         let has = self
             .servo_torque_n_m

@@ -8,6 +8,7 @@ mod bounds;
 mod commands;
 mod failure;
 mod fit_file;
+mod in_fluid;
 mod interrupt;
 mod link_log;
 mod new_file;

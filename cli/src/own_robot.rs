@@ -6,6 +6,7 @@ use link_protocol::MAX_KNOTS;
 use swimmer_files::{AnyGait, SwimmerFile};
 use swimmer_model::Model;
 
+use crate::in_fluid::InFluid;
 use crate::output::aside;
 
 /// A cycle's duration where none is named, s: the paper's.
@@ -38,13 +39,17 @@ fn beyond(file: &SwimmerFile, gait: &AnyGait, period: f64) -> Option<String> {
 /// What helps.
 const ADVICE: &str = "`swimmer optimize … --playable` keeps a gait within angle and clearance; a longer period keeps it within the rate";
 
-/// Says so where the gait goes beyond the robot of the file.
+/// Says so where the gait goes beyond the robot of the file, or beyond its servos' torque or the model in its fluid.
 pub(crate) fn say_if_beyond(file: &SwimmerFile, gait: &AnyGait, period: f64) {
     if let Some(reason) = beyond(file, gait, period) {
         aside(&format!(
             "warning: {}, at {period} s a cycle: {reason} ({ADVICE})",
             file.name
         ));
+    }
+    let model = Model::new(&file.swimmer).ok();
+    if let Some(fluid) = model.and_then(|model| InFluid::new(file, &model, gait, period)) {
+        fluid.warn();
     }
 }
 

@@ -1,6 +1,5 @@
 //! `swimmer simulate`: swims a gait in the model.
 
-mod in_fluid;
 pub(crate) mod played;
 
 use std::fmt::{self, Write};
@@ -12,6 +11,7 @@ use swimmer_model::{CrossingShare, Model, Pose, Tolerance, crossing_share, swim,
 
 use crate::arguments::{gait, load_gait_for, load_swimmer, model};
 use crate::failure::Outcome;
+use crate::in_fluid::InFluid;
 use crate::new_file::may_be_written;
 use crate::output::Output;
 use crate::own_robot;
@@ -59,7 +59,7 @@ struct Swum {
     played: Option<played::PlayedAnswer>,
     /// In the fluid of the swimmer file.
     #[serde(skip_serializing_if = "Option::is_none")]
-    fluid: Option<in_fluid::InFluid>,
+    fluid: Option<InFluid>,
     /// The table that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     trajectory: Option<PathBuf>,
@@ -133,13 +133,10 @@ impl Simulate {
             efficiency: stroke.efficiency(),
             efficiency_constant_power: stroke.efficiency_constant_power(),
             played: self.playing.forecast(&file, &model, &gait)?,
-            fluid: in_fluid::InFluid::new(&file, &model, &gait, self.playing.period),
+            fluid: InFluid::new(&file, &model, &gait, self.playing.period),
             trajectory: self.trajectory.clone(),
         };
         own_robot::say_if_beyond(&file, &gait, self.playing.period);
-        if let Some(fluid) = &swum.fluid {
-            fluid.warn();
-        }
         if let Some(path) = &self.trajectory {
             write_trajectory(path, &model, &gait, self.cycles)?;
         }
