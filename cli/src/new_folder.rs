@@ -11,6 +11,17 @@ use crate::interrupt::{listen, locked};
 /// Every folder being filled: what Ctrl-C removes.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
+/// Each draft of this run with the place that it stood for: whoever reads an error knows only the place.
+static PLACES: Mutex<Vec<[String; 2]>> = Mutex::new(Vec::new());
+
+/// The text, with the places that were asked for instead of their drafts.
+pub(crate) fn with_places(text: &str) -> String {
+    let places = locked(&PLACES);
+    places.iter().fold(text.to_owned(), |text, [draft, place]| {
+        text.replace(draft.as_str(), place)
+    })
+}
+
 /// A folder being filled beside the place where it will stand, or inside that place where an empty folder stands there
 /// already; dropped before [`Self::publish`], or interrupted, it vanishes.
 #[derive(Debug)]
@@ -68,6 +79,7 @@ impl NewFolder {
             Failure::BadInput(format!("cannot make a folder for {shown}: {error}"))
         })?;
         drafts.push(draft.clone());
+        locked(&PLACES).push([draft.display().to_string(), place.display().to_string()]);
         Ok(Self {
             place: place.to_owned(),
             draft,

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::Serialize;
 
 use crate::failure::{Failure, Outcome};
+use crate::new_folder::with_places;
 
 /// What the system said when standard output first took no more.
 static LOST: OnceLock<String> = OnceLock::new();
@@ -72,9 +73,10 @@ impl Output {
 
     /// Says why the command failed: on standard error for people, and as `{"error": …}` for scripts.
     pub(crate) fn failure(self, failure: &Failure) {
-        aside(&format!("error: {failure}"));
+        let reason = with_places(&failure.to_string());
+        aside(&format!("error: {reason}"));
         if self.json && !matches!(failure, Failure::Answered(_)) {
-            write_all(&error_document(&failure.to_string()));
+            write_all(&error_document(&reason));
         }
     }
 }

@@ -39,18 +39,19 @@ pub(crate) struct EmulatedBoard {
         value_enum,
         value_name = "BOARD",
         default_value = "nano-connect",
-        global = true
+        global = true,
+        hide_short_help = true
     )]
     board: BoardName,
     /// Firmware of the emulated robot; left out: what `cargo xtask firmware` built in this checkout
-    #[arg(long, value_name = "FILE.elf", global = true)]
+    #[arg(long, value_name = "FILE.elf", global = true, hide_short_help = true)]
     firmware: Option<PathBuf>,
     /// Folder with the emulator that `cargo xtask emulator` set up; left out: emulator/board of this checkout
-    #[arg(long, value_name = "DIR", global = true)]
+    #[arg(long, value_name = "DIR", global = true, hide_short_help = true)]
     emulator: Option<PathBuf>,
     /// Write the log of the emulated robot's firmware here, with emulated times; nothing may be there yet. Warnings and
     /// errors in it are shown anyway
-    #[arg(long, value_name = "FILE", global = true)]
+    #[arg(long, value_name = "FILE", global = true, hide_short_help = true)]
     firmware_log: Option<PathBuf>,
 }
 

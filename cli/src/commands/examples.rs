@@ -3,7 +3,7 @@
 use clap::Command;
 
 /// The words of a command, and what is typed after `swimmer`.
-pub(super) const EXAMPLES: [(&str, &str); 41] = [
+pub(super) const EXAMPLES: [(&str, &str); 42] = [
     ("demo", "demo --swimmer robot -o demo"),
     ("simulate", "simulate --swimmer robot --gait circle:70deg"),
     (
@@ -69,12 +69,16 @@ pub(super) const EXAMPLES: [(&str, &str); 41] = [
         "robot log run.mcap --seconds 60 --port /tmp/robot",
     ),
     ("robot hc05", "robot hc05 --port /dev/ttyUSB0"),
+    (
+        "robot key make",
+        "robot key make robot.key --port /tmp/robot",
+    ),
     ("robot key set", "robot key set robot.key --port /tmp/robot"),
     (
         "robot key clear",
         "robot key clear --key robot.key --port /tmp/robot",
     ),
-    ("robot key", "robot key set robot.key --port /tmp/robot"),
+    ("robot key", "robot key make robot.key --port /tmp/robot"),
     ("robot replay", "robot replay run.mcap"),
     (
         "twin",

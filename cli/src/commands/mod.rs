@@ -69,9 +69,31 @@ pub(crate) enum Command {
     Man(shell::Man),
 }
 
-/// The command line, with an example in each help.
+/// The command line, with an example in each help, and no option there that changes nothing.
 pub(crate) fn command() -> clap::Command {
-    examples::with_examples(Arguments::command())
+    examples::with_examples(Arguments::command()).mut_subcommand("robot", |robot| {
+        let virtual_robot = ["board", "firmware", "emulator", "firmware_log"];
+        let all = |others: &[&'static str]| [&virtual_robot, others].concat();
+        [
+            ("hc05", all(&["log", "key"])),
+            ("flash", all(&[])),
+            ("replay", all(&["port", "log", "baud", "key"])),
+        ]
+        .into_iter()
+        .fold(robot, |robot, (action, names)| {
+            without(robot, action, &names)
+        })
+    })
+}
+
+/// The command, where one of its subcommands shows none of these options, which all of them take.
+fn without(command: clap::Command, action: &str, names: &[&str]) -> clap::Command {
+    let hidden: Vec<_> = command
+        .get_arguments()
+        .filter(|option| names.contains(&option.get_id().as_str()))
+        .map(|option| option.clone().hide(true))
+        .collect();
+    command.mut_subcommand(action, |action| action.args(hidden))
 }
 
 /// Runs what was asked for.

@@ -55,6 +55,15 @@ pub(crate) fn command(folder: &Path, words: &[&str]) -> Command {
     command
 }
 
+/// The binary where no file can grow beyond so many blocks of 512 bytes: what a full disk is to a program.
+pub(crate) fn on_a_small_disk(folder: &Path, blocks: u32, words: &[&str]) -> Command {
+    let mut shell = Command::new("sh");
+    let limited = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
+    shell.current_dir(folder).args(["-c", &limited, "sh"]);
+    shell.arg(env!("CARGO_BIN_EXE_swimmer")).args(words);
+    shell
+}
+
 /// Runs the binary to its end.
 pub(crate) fn swimmer_in(folder: &Path, words: &[&str]) -> Ran {
     command(folder, words)

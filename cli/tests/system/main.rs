@@ -13,6 +13,7 @@ mod hc05;
 #[cfg(unix)]
 mod hung_holder;
 #[cfg(unix)]
+mod laboratory;
 mod left_behind;
 mod numbers;
 mod output_discipline;

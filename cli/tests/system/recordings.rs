@@ -1,22 +1,14 @@
 //! What was recorded is there, whatever became of the program or the disk; and no file is written over unasked.
 
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::thread::sleep;
 use std::time::Duration;
 
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::binary::{Ran, command, swimmer_in};
-
-/// The binary where no file can grow beyond so many blocks of 512 bytes: what a full disk is to a program.
-fn on_a_small_disk(folder: &Path, blocks: u32, words: &[&str]) -> Command {
-    let mut shell = Command::new("sh");
-    let limited = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
-    shell.current_dir(folder).args(["-c", &limited, "sh"]);
-    shell.arg(env!("CARGO_BIN_EXE_swimmer")).args(words);
-    shell
-}
+use crate::binary::{Ran, command, on_a_small_disk, swimmer_in};
+use crate::laboratory::laboratory;
 
 fn killed(mut child: std::process::Child, after: Duration) {
     sleep(after);
@@ -119,4 +111,25 @@ fn a_file_that_exists_stays_unless_told_otherwise() {
         }
     }
     assert!(!folder.path().join("no").exists());
+}
+
+#[test]
+fn a_campaign_tells_of_a_log_without_its_end() {
+    let folder = laboratory();
+    let place = |name: &str| folder.path().join(name);
+    let words = "robot play --gait circle:50deg --cycles 3 --period 30 --port twin --log l.mcap";
+    let words: Vec<&str> = words.split(' ').collect();
+    swimmer_in(folder.path(), &words).with_status(0);
+    let campaign = std::fs::read_to_string(place("campaign.toml")).unwrap();
+    std::fs::write(place("campaign.toml"), campaign + "log = \"l.mcap\"\n").unwrap();
+    let told = |folder: &Path| {
+        let ran = swimmer_in(folder, &["calibrate", "campaign.toml", "--json"]).with_status(0);
+        ran.json()["warnings"]
+            .to_string()
+            .contains("run.csv: its link log has no end")
+    };
+    assert!(!told(folder.path()));
+    let log = std::fs::read(place("l.mcap")).unwrap();
+    std::fs::write(place("l.mcap"), &log[..log.len() - 60]).unwrap();
+    assert!(told(folder.path()));
 }

@@ -7,9 +7,10 @@ use std::process::{Command, Stdio};
 use std::thread::{scope, sleep};
 use std::time::Duration;
 
-use crate::binary::{Ran, command, interrupt};
+use crate::binary::{Ran, command, interrupt, on_a_small_disk};
+use crate::laboratory::laboratory;
 
-/// A command as it works, in a folder with `good.gait`, `good.toml`, `run.csv` and `campaign.toml`.
+/// A command as it works, in the folder of [`laboratory()`].
 struct Row {
     words: &'static str,
     /// The word that names a file to be read.
@@ -18,6 +19,8 @@ struct Row {
     writes: Option<&'static str>,
     /// Goes on until Ctrl-C.
     lasts: bool,
+    /// Takes a while, so that Ctrl-C may come in between.
+    while_working: bool,
     /// Takes long: only what ends early is tried.
     long: bool,
 }
@@ -28,6 +31,7 @@ const fn row(words: &'static str) -> Row {
         reads: None,
         writes: None,
         lasts: false,
+        while_working: false,
         long: false,
     }
 }
@@ -51,16 +55,26 @@ impl Row {
             ..self
         }
     }
+    const fn works_a_while(self) -> Self {
+        Self {
+            while_working: true,
+            ..self
+        }
+    }
     const fn long(self) -> Self {
-        Self { long: true, ..self }
+        Self {
+            while_working: true,
+            long: true,
+            ..self
+        }
     }
 }
 
-const ROWS: [Row; 37] = [
+const ROWS: [Row; 42] = [
     row("demo --swimmer good.toml -o out")
         .reads("good.toml")
         .writes("out")
-        .long(),
+        .works_a_while(),
     row("simulate --swimmer good.toml --gait circle:1 --trajectory t.csv")
         .reads("good.toml")
         .writes("t.csv"),
@@ -75,8 +89,7 @@ const ROWS: [Row; 37] = [
         .writes("o.gait"),
     row("optimize sideways --swimmer good.toml --max-angle 2.8 -o o.gait")
         .reads("good.toml")
-        .writes("o.gait")
-        .long(),
+        .writes("o.gait"),
     row("optimize speed --swimmer good.toml --max-rate 1 --max-angle 2.8 -o o.gait")
         .reads("good.toml")
         .writes("o.gait"),
@@ -84,11 +97,14 @@ const ROWS: [Row; 37] = [
         .reads("good.toml")
         .writes("out")
         .long(),
+    row("atlas --swimmer good.toml --objective displacement --starts 4 -o out")
+        .reads("good.toml")
+        .writes("out"),
     row("certify --swimmer robot --gait good.gait --objective displacement").reads("good.gait"),
     row("height-map --swimmer good.toml -o m.svg")
         .reads("good.toml")
         .writes("m.svg"),
-    row("paper -o out").writes("out").long(),
+    row("paper -o out").writes("out").works_a_while(),
     row("swimmers robot"),
     row("gaits"),
     row("completions bash"),
@@ -113,42 +129,15 @@ const ROWS: [Row; 37] = [
     row("robot trim --front 1deg --port twin"),
     row("robot servo front --port twin"),
     row("robot setup -o s.toml --port twin").writes("s.toml"),
-    row("robot flash image.uf2").reads("image.uf2"),
+    row("robot flash image.uf2 --by-hand --drive drive").reads("image.uf2"),
     row("robot watch --port twin").lasts(),
     row("robot log g.mcap --port twin").writes("g.mcap").lasts(),
+    row("robot key make lab.key --port twin").writes("lab.key"),
+    row("robot key set good.key --port twin").reads("good.key"),
+    row("robot hc05 --port /dev/null"),
+    row("robot upload good.gait --dry-run --swimmer good.toml").reads("good.toml"),
     row("robot replay good.mcap").reads("good.mcap"),
 ];
-
-/// A folder with what the rows read.
-fn laboratory() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-    for ending in ["toml", "gait", "csv", "uf2", "mcap"] {
-        write(&format!("wrong.{ending}"), "this is\nsomething else\n");
-    }
-    write(
-        "good.toml",
-        "[links]\nmiddle = 0.071\nside = 0.137\n[drag]\nchi = 3.598\nc_t = { log_aspect = 4.543 }\n",
-    );
-    let mut circle = String::new();
-    for at in 0..=64 {
-        let (sin, cos) = (f64::from(at % 64) * std::f64::consts::TAU / 64.0).sin_cos();
-        writeln!(circle, "{:?},{cos:?},{sin:?}", f64::from(at) / 64.0).unwrap();
-    }
-    write(
-        "good.gait",
-        &format!("# swimmer gait file, version 1\nu,phi1,phi2\n{circle}"),
-    );
-    write(
-        "run.csv",
-        "t,Front x,Front y,Back x,Back y\n0.0,0.0,0.0,0.07,0.0\n0.1,0.0,0.0,0.07,0.0\n",
-    );
-    write(
-        "campaign.toml",
-        "swimmer = \"robot\"\n[reflectors]\nfront = { point = \"Front\", at = [0.0355, 0.0] }\nback = { point = \"Back\", at = [-0.0355, 0.0] }\n[[run]]\ntrack = \"run.csv\"\ngait = \"circle:30deg\"\nperiod_s = 30.0\n",
-    );
-    folder
-}
 
 /// Status and reason; fails where it is a panic or a death.
 fn told(words: &str, ran: &Ran) -> String {
@@ -187,28 +176,57 @@ fn made(folder: &Path, words: &[String]) -> Command {
 }
 
 /// The cells of a row.
-#[allow(clippy::too_many_lines)] // one cell after another
 fn cells(row: &Row) -> Vec<String> {
-    let none = || "–".to_owned();
-    let brief = |command: Command| -> Ran {
-        if !row.lasts {
-            return run(command);
-        }
-        ended(command)
-    };
-    let mut cells = Vec::new();
-    for instead in ["lost", "wrong"] {
-        cells.push(row.reads.map_or_else(none, |file| {
-            let folder = laboratory();
-            let ending = file.rsplit('.').next().unwrap_or_default();
-            let instead = format!("{instead}.{ending}");
-            let words = words(row, Some((file, &instead)));
-            let ran = run(made(folder.path(), &words));
-            assert_eq!(ran.status, 2, "{words:?}: {ran}");
-            told(row.words, &ran)
-        }));
+    let mut cells = vec![
+        reads_instead(row, "lost"),
+        reads_instead(row, "wrong"),
+        finds_it_there(row),
+        interrupted(row),
+    ];
+    if row.long {
+        cells.extend([
+            "not tried: takes long".to_owned(),
+            "not tried: takes long".to_owned(),
+        ]);
+    } else {
+        cells.extend([prints_onto_a_full_disk(row), writes_onto_a_full_disk(row)]);
     }
-    cells.push(row.writes.map_or_else(none, |file| {
+    let narrow = [words(row, None), vec!["--help".to_owned()]].concat();
+    let folder = laboratory();
+    let mut command = made(folder.path(), &narrow);
+    command.env("COLUMNS", "20");
+    cells.push(told(row.words, &run(command)));
+    if row.long {
+        cells.extend([
+            "not tried: takes long".to_owned(),
+            "not tried: takes long".to_owned(),
+        ]);
+    } else {
+        cells.extend(without_colour_or_reader(row));
+    }
+    cells
+}
+
+fn none() -> String {
+    "–".to_owned()
+}
+
+/// Another file than the one that is to be read.
+fn reads_instead(row: &Row, instead: &str) -> String {
+    row.reads.map_or_else(none, |file| {
+        let folder = laboratory();
+        let ending = file.rsplit('.').next().unwrap_or_default();
+        let instead = format!("{instead}.{ending}");
+        let words = words(row, Some((file, &instead)));
+        let ran = run(made(folder.path(), &words));
+        assert_eq!(ran.status, 2, "{words:?}: {ran}");
+        told(row.words, &ran)
+    })
+}
+
+/// What shall be written is there already.
+fn finds_it_there(row: &Row) -> String {
+    row.writes.map_or_else(none, |file| {
         let folder = laboratory();
         let place = folder.path().join(file);
         let place = if file == "out" {
@@ -222,61 +240,81 @@ fn cells(row: &Row) -> Vec<String> {
         assert_eq!(std::fs::read_to_string(&place).unwrap(), "mine", "{ran}");
         assert_eq!(ran.status, 2, "{ran}");
         told(row.words, &ran)
-    }));
-    cells.push(if row.lasts {
-        told(
-            row.words,
-            &ended(made(laboratory().path(), &words(row, None))),
-        )
-    } else if row.long {
-        let folder = laboratory();
-        let ran = ended(made(folder.path(), &words(row, None)));
-        if ran.status != 0 {
-            let left = row
-                .writes
-                .is_some_and(|file| folder.path().join(file).exists());
-            assert!(!left, "half-written: {ran}");
-        }
-        // How far it came is the machine's affair: it was done, had begun nothing, or says that it was interrupted.
-        let interrupted = ran.status == 1 && ran.stderr.contains("nothing was kept");
-        assert!(matches!(ran.status, 0 | -1) || interrupted, "{ran}");
-        "done before, or ends and nothing is left".to_owned()
-    } else {
-        "ends by itself".to_owned()
-    });
-    if row.long {
-        cells.push("not tried: takes long".to_owned());
-    } else {
-        let folder = laboratory();
-        let mut command = made(folder.path(), &words(row, None));
-        command.stdout(File::options().write(true).open("/dev/full").unwrap());
-        command.stderr(Stdio::piped()).stdin(Stdio::null());
-        let child = command.spawn().unwrap();
-        if row.lasts {
-            sleep(Duration::from_millis(1500));
-            interrupt(&child);
-        }
-        cells.push(told(row.words, &child.wait_with_output().unwrap().into()));
-    }
-    let narrow = [words(row, None), vec!["--help".to_owned()]].concat();
+    })
+}
+
+fn interrupted(row: &Row) -> String {
     let folder = laboratory();
-    let mut command = made(folder.path(), &narrow);
-    command.env("COLUMNS", "20");
-    cells.push(told(row.words, &run(command)));
-    if row.long {
-        cells.extend([
-            "not tried: takes long".to_owned(),
-            "not tried: takes long".to_owned(),
-        ]);
-        return cells;
+    if row.lasts {
+        return told(row.words, &ended(made(folder.path(), &words(row, None))));
     }
+    if !row.while_working {
+        return "ends by itself".to_owned();
+    }
+    let ran = ended(made(folder.path(), &words(row, None)));
+    if ran.status != 0 {
+        let left = row
+            .writes
+            .is_some_and(|file| folder.path().join(file).exists());
+        assert!(!left, "half-written: {ran}");
+    }
+    // How far it came is the machine's affair: it was done, had begun nothing, or says that it was interrupted.
+    let interrupted = ran.status == 1 && ran.stderr.contains("nothing was kept");
+    assert!(matches!(ran.status, 0 | -1) || interrupted, "{ran}");
+    "done before, or ends and nothing is left".to_owned()
+}
+
+/// Standard output takes nothing.
+fn prints_onto_a_full_disk(row: &Row) -> String {
+    let folder = laboratory();
+    let mut command = made(folder.path(), &words(row, None));
+    command.stdout(File::options().write(true).open("/dev/full").unwrap());
+    command.stderr(Stdio::piped()).stdin(Stdio::null());
+    let child = command.spawn().unwrap();
+    if row.lasts {
+        sleep(Duration::from_millis(1500));
+        interrupt(&child);
+    }
+    told(row.words, &child.wait_with_output().unwrap().into())
+}
+
+/// Files take nothing: the command says so, and leaves nothing but what a recording held by then.
+fn writes_onto_a_full_disk(row: &Row) -> String {
+    row.writes.map_or_else(none, |file| {
+        let folder = laboratory();
+        let words = words(row, None);
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let mut command = on_a_small_disk(folder.path(), 0, &words);
+        command.stdin(Stdio::null());
+        let ran = if row.lasts {
+            ended(command)
+        } else {
+            run(command)
+        };
+        assert_eq!(ran.status, 1, "{words:?}: {ran}");
+        let place = folder.path().join(file);
+        let kept = match std::fs::metadata(&place) {
+            Ok(found) if found.is_dir() => std::fs::read_dir(&place).unwrap().count() as u64,
+            Ok(found) => found.len(),
+            Err(_) => 0,
+        };
+        assert_eq!(kept, 0, "half-written: {ran}");
+        told(row.words, &ran)
+    })
+}
+
+/// As it works, with nothing to draw in colour; and the same into a pipe that nobody reads.
+fn without_colour_or_reader(row: &Row) -> [String; 2] {
     let folder = laboratory();
     let mut command = made(folder.path(), &words(row, None));
     command.env("NO_COLOR", "1");
-    let plain = brief(command);
+    let plain = if row.lasts {
+        ended(command)
+    } else {
+        run(command)
+    };
     let escapes = format!("{}{}", plain.stdout, plain.stderr).contains('\u{1b}');
     assert!(!escapes, "{plain}");
-    cells.push(told(row.words, &plain));
     let folder = laboratory();
     let mut command = made(folder.path(), &words(row, None));
     let (reader, writer) = std::io::pipe().unwrap();
@@ -289,8 +327,7 @@ fn cells(row: &Row) -> Vec<String> {
     }
     let status = child.wait().unwrap().code();
     assert_eq!(status, Some(plain.status), "closed pipe: {}", row.words);
-    cells.push(plain.status.to_string());
-    cells
+    [told(row.words, &plain), plain.status.to_string()]
 }
 
 /// What a command says that is ended by Ctrl-C after a while.
@@ -307,7 +344,7 @@ fn ended(mut command: Command) -> Ran {
 #[test]
 fn every_command_whatever_goes_wrong() {
     let mut table = String::from(
-        "| command | missing file | wrong type | existing output | Ctrl-C | full disk (stdout) | narrow (--help) | no colour | closed pipe |\n|---|---|---|---|---|---|---|---|---|\n",
+        "| command | missing file | wrong type | existing output | Ctrl-C | full disk (stdout) | full disk (files) | narrow (--help) | no colour | closed pipe |\n|---|---|---|---|---|---|---|---|---|---|\n",
     );
     let filled: Vec<Vec<String>> = scope(|scope| {
         let halves: Vec<_> = ROWS

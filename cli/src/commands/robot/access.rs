@@ -418,7 +418,7 @@ impl Line {
 fn doubt(has_key: bool, signs: bool) -> Option<&'static str> {
     match (has_key, signs) {
         (false, _) => Some(
-            "note: --key names a key, but the robot has none: whoever reaches its port can drive it. `swimmer robot key set FILE` gives it one",
+            "note: --key names a key, but the robot has none: whoever reaches its port can drive it. `swimmer robot key make FILE` gives it one",
         ),
         (true, false) => Some(
             "note: the robot says that it has a key, but does not sign its answers: what it tells is not shown to come from it. Its firmware may be older: `swimmer robot flash` brings today's",

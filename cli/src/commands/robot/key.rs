@@ -41,7 +41,13 @@ pub(super) struct KeyChange {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// Give the robot the key in FILE; where there is no FILE, one with a random key is made
+    /// Write a random key into a new FILE, and give it to the robot
+    Make {
+        /// Keep a copy of it
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+    },
+    /// Give the robot the key in FILE
     Set {
         /// 32 hexadecimal digits
         #[arg(value_name = "FILE")]
@@ -104,7 +110,7 @@ impl KeyFile {
     }
 }
 
-/// `swimmer robot key set|clear`.
+/// `swimmer robot key make|set|clear`.
 pub(super) fn run(access: &Access, change: &KeyChange, output: Output) -> Outcome {
     let mut line = access.connect("swimmer robot key", Pace::AsFastAsPossible)?;
     let answer = match &change.action {
@@ -116,8 +122,9 @@ pub(super) fn run(access: &Access, change: &KeyChange, output: Output) -> Outcom
                 made: false,
             }
         }
-        Action::Set { file } => {
-            let (key, made) = read_or_make(file)?;
+        Action::Set { file } | Action::Make { file } => {
+            let made = matches!(change.action, Action::Make { .. });
+            let key = if made { make(file)? } else { read(file)? };
             if let Err(error) = line.robot.set_key(Some(key)) {
                 // Refused, the robot certainly does not have it. Otherwise it may, and then the file is all there is.
                 if made && matches!(error, LinkError::Refused { .. }) {
@@ -138,7 +145,10 @@ pub(super) fn run(access: &Access, change: &KeyChange, output: Output) -> Outcom
 
 fn read(file: &Path) -> Outcome<Key> {
     let text = fs::read_to_string(file).map_err(|error| {
-        Failure::BadInput(format!("reading the key in {}: {error}", file.display()))
+        Failure::BadInput(format!(
+            "reading the key in {}: {error}; `swimmer robot key make FILE` writes a new one",
+            file.display()
+        ))
     })?;
     parse(&text)
         .map_err(|problem| Failure::BadInput(format!("the key in {}{problem}", file.display())))
@@ -146,7 +156,7 @@ fn read(file: &Path) -> Outcome<Key> {
 
 /// 32 hexadecimal digits in one line; lines that begin with # are remarks.
 fn parse(text: &str) -> Result<Key, String> {
-    let advice = "write 32 hexadecimal digits in one line, or let `swimmer robot key set FILE` make a new file";
+    let advice = "write 32 hexadecimal digits in one line, or let `swimmer robot key make FILE` write a new file";
     let mut lines = text
         .lines()
         .enumerate()
@@ -174,10 +184,14 @@ fn parse(text: &str) -> Result<Key, String> {
         .ok_or_else(|| format!(", line {number}: {count} digits; {advice}"))
 }
 
-/// The key of a file, and whether the file was made for it just now.
-fn read_or_make(file: &Path) -> Outcome<(Key, bool)> {
+/// A random key, in a new file that nobody else may read.
+fn make(file: &Path) -> Outcome<Key> {
     if file.exists() {
-        return Ok((read(file)?, false));
+        return Err(Failure::BadInput(format!(
+            "{0} exists, and a key that is written over is lost, with --overwrite too; name a new file, or give the robot the key \
+             that is there: `swimmer robot key set {0}`",
+            file.display()
+        )));
     }
     may_be_written(file)?;
     let mut bytes = [0; Key::LEN];
@@ -188,9 +202,14 @@ fn read_or_make(file: &Path) -> Outcome<(Key, bool)> {
         ))
     })?;
     let text = format!("{HEAD}{:032x}\n", u128::from_be_bytes(bytes));
-    write_secret(file, &text)
-        .map_err(|error| Failure::BadInput(format!("making {}: {error}", file.display())))?;
-    Ok((Key(bytes), true))
+    write_secret(file, &text).map_err(|error| {
+        let _ = fs::remove_file(file);
+        Failure::Tried(format!(
+            "writing a new key into {}: {error}",
+            file.display()
+        ))
+    })?;
+    Ok(Key(bytes))
 }
 
 /// Makes a file that nobody else may read, where the system knows such.
@@ -228,10 +247,11 @@ mod tests {
     fn a_new_file_holds_a_new_key_and_is_read_back() {
         let folder = tempfile::tempdir().unwrap();
         let (one, two) = (folder.path().join("one"), folder.path().join("two"));
-        let (key, made) = read_or_make(&one).unwrap();
-        assert!(made);
-        assert_eq!(read_or_make(&one).unwrap(), (key, false));
-        assert_ne!(read_or_make(&two).unwrap().0, key);
+        let key = make(&one).unwrap();
+        assert_eq!(read(&one).unwrap(), key);
+        assert!(make(&one).is_err(), "written over");
+        assert_eq!(read(&one).unwrap(), key);
+        assert_ne!(make(&two).unwrap(), key);
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
