@@ -2,7 +2,6 @@
 //!
 //! A gait with the paper's two symmetries is mapped onto itself, run backwards, by reflection in φ₁ = φ₂ and in φ₁ = −φ₂.
 
-mod smooth;
 mod trace;
 
 use nalgebra::Vector2;

@@ -1,38 +1,29 @@
 //! Gaits of most Lighthill efficiency (paper, section V), in the class of closed curves with the paper's two symmetries.
 //!
 //! The chain needs no guess: circles whose X/S has a local maximum over the amplitude start Fourier series of rising order
-//! ([`fourier`]); multiple shooting ([`multiple`]) takes a series of low order to an extremal of the maximum principle, and the
-//! paper's single shooting ([`shooting`]) polishes it. The certificate ([`proof`]) is worked out from the finished gait.
+//! ([`fourier`]), and shooting takes a series of low order to an extremal of the maximum principle (`extremal`, which also
+//! makes the gait with its certificate).
 
 mod bounded;
 mod by_collocation;
 mod chain;
 mod error;
-pub(crate) mod flow;
-pub(crate) mod fourier;
-pub(crate) mod multiple;
-mod proof;
-pub(crate) mod second_order;
-pub(crate) mod shooting;
-pub(crate) mod start;
-pub(crate) mod trace;
+mod fourier;
 
 use std::fmt;
 
-use swimmer_files::{ArcKind, Bounds, Objective};
+use swimmer_files::Bounds;
 use swimmer_model::{Links, Model, Swimmer};
 
-use crate::cycle::Cycle;
-use crate::extremal::wall::Walls;
+use crate::OptimalGait;
+use crate::certificate::{crossings, simple_and_turning_once};
+use crate::extremal::gait::{Order, gait};
+use crate::extremal::{Extremal, Unpolished, Walls};
 use crate::immobile::refuse_immobile;
-use crate::optimal_gait::Solution;
-use crate::{Arc, OptimalGait};
 pub use bounded::Reached;
 use by_collocation::by_collocation;
 use chain::Found;
 pub use error::EfficiencyError;
-use proof::Evidence;
-use trace::Trace;
 
 /// Which of the two optima.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -80,16 +71,16 @@ impl fmt::Display for Branch {
     }
 }
 
-/// What leads to the start of the polish. Every method ends with the paper's single shooting and its certificate.
+/// What leads to the guess that is shot from. Every method ends with the same shooting and certificate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Method {
     /// The fastest that converges.
     Auto,
-    /// Fourier series alone, up to the order from which the single shooting converges.
+    /// Fourier series alone, up to the order at which they have settled.
     Fourier,
     /// Fourier series of order 3, then direct collocation.
     Collocation,
-    /// Fourier series of low order, then multiple shooting.
+    /// Fourier series of low order.
     Shooting,
 }
 
@@ -168,13 +159,13 @@ impl EfficiencyProblem {
 /// Numbers that only an efficiency gait has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EfficiencyFigures {
-    /// Max-norm of the shooting conditions φ₁ − φ₂, x, θ, λ₁ + λ₂ at `t₀`, in units L = `c_t` = `t_f` = 1 (quarter).
+    /// Max-norm of the shooting conditions: gaps between pieces and at both ends, angles in rad, momenta over |p|.
     pub residual: f64,
-    /// (max − min)/mean of the power along the samples.
+    /// (max − min)/mean of the power along the extremal.
     pub power_variation: f64,
-    /// What led to the start of the polish.
+    /// What led to the guess that was shot from.
     pub method: Method,
-    /// ξ of the curve that the polish started from, where it is the result of a direct method of its own.
+    /// ξ of the curve that was shot from, where it is the result of a direct method of its own.
     pub direct_efficiency: Option<f64>,
 }
 
@@ -186,13 +177,16 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Efficiency
     problem.validate()?;
     let model = Model::new(&problem.swimmer.of_unit_length())?;
     refuse_immobile(&model, &problem.bounds)?;
-    let mut best: Option<OptimalGait> = None;
+    let mut best: Option<(OptimalGait, Extremal)> = None;
     let mut refused: Option<EfficiencyError> = None;
     for start in chain::starts(&model, problem.branch)? {
         match optimum(problem, &model, start) {
-            Ok(gait) => {
-                if best.as_ref().is_none_or(|b| gait.efficiency > b.efficiency) {
-                    best = Some(gait);
+            Ok(found) => {
+                if best
+                    .as_ref()
+                    .is_none_or(|(b, _)| found.0.efficiency > b.efficiency)
+                {
+                    best = Some(found);
                 }
             }
             Err(error) => {
@@ -206,8 +200,11 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Efficiency
         }
     }
     match (best, refused) {
-        (Some(gait), _) if keeps_bounds(problem, &gait) => Ok(gait),
-        (Some(gait), _) => bounded::bounded(problem, &model, &gait),
+        (Some((free, _)), _) if keeps_bounds(problem, &free) => Ok(OptimalGait {
+            bounds: problem.bounds,
+            ..free
+        }),
+        (Some((free, extremal)), _) => bounded::bounded(problem, &model, &free, extremal),
         (None, Some(error)) => Err(error),
         (None, None) => Err(EfficiencyError::NoStart {
             branch: problem.branch,
@@ -216,29 +213,43 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Efficiency
     }
 }
 
-/// The optimum that one start leads to, certified.
+/// The free optimum that one start leads to, certified.
 fn optimum(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
     start: [f64; 2],
-) -> Result<OptimalGait, EfficiencyError> {
+) -> Result<(OptimalGait, Extremal), EfficiencyError> {
     let branch = problem.branch;
     let found = match problem.method {
         Method::Fourier => chain::by_fourier(model, branch, start)?,
         Method::Collocation => by_collocation(model, branch, start)?,
-        Method::Shooting => chain::by_multiple_shooting(model, branch, start)?,
-        Method::Auto => match chain::by_multiple_shooting(model, branch, start) {
+        Method::Shooting => chain::by_shooting(model, branch, start)?,
+        Method::Auto => match chain::by_shooting(model, branch, start) {
             Err(error @ EfficiencyError::NotConverged { .. }) => {
                 by_collocation(model, branch, start).map_err(|_| error)?
             }
             other => other?,
         },
     };
-    let gait = certified(problem, model, &found).ok_or(EfficiencyError::NotConverged {
-        branch,
-        order: 0,
-        efficiency: found.polished.efficiency(),
+    let mut gait = finished(problem, model, &found, &Bounds::default()).map_err(|_| {
+        EfficiencyError::NotConverged {
+            branch,
+            order: 0,
+            efficiency: found.extremal.efficiency(model),
+        }
     })?;
+    // Continuation asks this of every gait on the way; a free one is asked here.
+    let simple = simple_and_turning_once(gait.phi(), gait.phi());
+    gait.certificate = gait.certificate.with(simple.to_vec());
+    let crossings = crossings(gait.phi());
+    if crossings > 0 {
+        return Err(EfficiencyError::CrossesItself {
+            branch,
+            order: found.order,
+            efficiency: gait.efficiency,
+            crossings,
+        });
+    }
     if !branch.contains(&gait) {
         return Err(EfficiencyError::OtherBranch {
             branch,
@@ -248,69 +259,42 @@ fn optimum(
             definition: branch.definition(),
         });
     }
-    if !gait.certificate.pass() {
-        return Err(EfficiencyError::NotCertified {
-            branch,
-            efficiency: gait.efficiency,
-            failed: gait.certificate.failures(),
-        });
-    }
-    Ok(gait)
+    Ok((certified(branch, gait)?, found.extremal))
 }
 
-/// A polished extremal as a full cycle with its certificate; none where it cannot be followed again.
-fn certified(
+fn certified(branch: Branch, gait: OptimalGait) -> Result<OptimalGait, EfficiencyError> {
+    if gait.certificate.pass() {
+        return Ok(gait);
+    }
+    Err(EfficiencyError::NotCertified {
+        branch,
+        efficiency: gait.efficiency,
+        failed: gait.certificate.failures(),
+    })
+}
+
+/// An extremal as a gait with its certificate, not yet looked at.
+fn finished(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
     found: &Found,
-) -> Option<OptimalGait> {
-    let polished = &found.polished;
-    let trace = Trace::new(model, &polished.at_end, problem.quarter_samples.max(16))?;
-    let deviations = trace.deviations(polished.efficiency());
-    let shapes = trace.shapes();
-    let cycle = Cycle::of_smooth_quarter(&shapes);
-    let stroke = cycle.swum(model)?;
-    let second_order = trace
-        .states
-        .last()
-        .and_then(|last| second_order::test(trace.flow, last));
-    let certificate = Evidence {
-        polished,
-        trace: &trace,
-        deviations: &deviations,
-        second_order,
-        cycle: &cycle,
-        stroke: &stroke,
-    }
-    .certificate();
-    let links_cross = cycle.links_cross(model);
-    let at = |shape: Option<&nalgebra::Vector2<f64>>| shape.map_or([f64::NAN; 2], |s| [s.x, s.y]);
-    let mut gait = OptimalGait::new(Solution {
-        objective: Objective::Efficiency,
-        swimmer: problem.swimmer,
-        bounds: problem.bounds,
-        symmetric: true,
-        arcs: vec![Arc {
-            kind: ArcKind::Regular,
-            from: at(shapes.first()),
-            to: at(shapes.last()),
-        }],
-        cycle,
-        stroke,
-        links_cross,
-        certificate,
-    });
-    // The extremal knows these closer than the samples do.
-    gait.efficiency = polished.efficiency();
-    gait.displacement_over_length = 4.0 * polished.at_end[1];
-    gait.displacement = gait.displacement_over_length * problem.swimmer.total_length();
+    bounds: &Bounds,
+) -> Result<OptimalGait, Unpolished> {
+    let order = Order {
+        swimmer: &problem.swimmer,
+        model,
+        bounds,
+        samples: 4 * problem.quarter_samples.max(16),
+    };
+    let mut gait = gait(&order, &found.extremal)?;
+    let power_variation = gait.certificate.value("hamiltonian_variation");
     gait.efficiency_figures = Some(EfficiencyFigures {
-        residual: polished.residual,
-        power_variation: deviations.power_variation,
+        residual: found.extremal.solved.residual,
+        power_variation: power_variation.unwrap_or(f64::NAN),
         method: found.method,
         direct_efficiency: found.direct_efficiency,
     });
-    Some(gait)
+    Ok(gait)
 }
 
 /// Whether a free gait keeps the bounds: then it is the optimum under them too.

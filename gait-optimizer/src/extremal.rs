@@ -23,12 +23,14 @@ mod equations;
 mod evidence;
 mod flow;
 pub(crate) mod gait;
-mod guess;
+pub(crate) mod guess;
 mod sampled;
 mod second_variation;
-mod shooting;
+pub(crate) mod shooting;
 mod structure;
 pub(crate) mod wall;
+
+use std::sync::OnceLock;
 
 use swimmer_files::Bounds;
 use swimmer_model::{Gait, InvalidSwimmer, Model, Swimmer};
@@ -50,6 +52,8 @@ const MOST_STRUCTURES: usize = 12;
 pub(crate) struct Extremal {
     pub(crate) solved: Solved,
     pub(crate) class: Class,
+    /// Looked at more than once, and dear.
+    ascents: OnceLock<Option<usize>>,
 }
 
 /// Why a curve could not be polished.
@@ -169,7 +173,7 @@ pub(crate) fn polish_chain(
         };
         match next_structure(model, walls, class, &solved.chain) {
             None => {
-                return Ok(Extremal { solved, class });
+                return Ok(Extremal::new(solved, class));
             }
             Some(next) => (chain, class) = next,
         }
@@ -179,12 +183,28 @@ pub(crate) fn polish_chain(
     })
 }
 
-/// Along how many directions the efficiency grows to second order; none where that cannot be told.
-pub(crate) fn ascents(model: &Model<f64>, extremal: &Extremal) -> Option<usize> {
-    second_variation::ascent_directions(model, extremal.class, &extremal.solved.chain)
+/// The free quarter near a guess, without a look at bounds; none where Newton's method finds none.
+pub(crate) fn free_quarter(model: &Model<f64>, guess: shooting::Chain) -> Option<Extremal> {
+    let class = Class::Quarter;
+    let solved = solve(model, class, guess).ok()?;
+    Some(Extremal::new(solved, class))
 }
 
 impl Extremal {
+    fn new(solved: Solved, class: Class) -> Self {
+        Self {
+            solved,
+            class,
+            ascents: OnceLock::new(),
+        }
+    }
+
+    /// Along how many directions the efficiency grows to second order; none where that cannot be told.
+    pub(crate) fn ascents(&self, model: &Model<f64>) -> Option<usize> {
+        let count = || second_variation::ascent_directions(model, self.class, &self.solved.chain);
+        *self.ascents.get_or_init(count)
+    }
+
     /// Lighthill's efficiency ξ = `c_t/|p|²` of a swimmer with L = 1.
     pub(crate) fn efficiency(&self, model: &Model<f64>) -> f64 {
         let first = self.solved.chain.states.first();

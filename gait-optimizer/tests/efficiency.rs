@@ -1,10 +1,13 @@
 //! Efficiency gaits against the known numbers, each by two methods.
 
+mod paper_shooting;
+
 use gait_optimizer::{
     Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method, OptimalGait, efficiency,
 };
+use nalgebra::Vector4;
 use swimmer_files::{AnyGait, ArcKind, GaitFile};
-use swimmer_model::{Model, Swimmer, Tolerance, swim};
+use swimmer_model::{Model, Swimmer, Tolerance, swim, trajectory};
 
 fn optimum(swimmer: Swimmer<f64>, branch: Branch) -> OptimalGait {
     efficiency(&EfficiencyProblem::new(swimmer, branch)).unwrap()
@@ -25,6 +28,34 @@ fn purcells_gaits_are_the_known_ones() {
     assert!((large.start_angle - 2.635_472_13).abs() < 1e-8);
     assert!((large.efficiency / small.efficiency - 1.4641).abs() < 1e-4);
     assert!(small.displacement_over_length > 0.0 && large.displacement_over_length < 0.0);
+}
+
+/// The paper's backward shooting stays where the gaits are, and Jacobi's test proves them maxima among symmetric gaits.
+#[test]
+fn the_papers_own_method_agrees() {
+    for swimmer in [Swimmer::purcell(), Swimmer::robot()] {
+        let model = Model::new(&swimmer.of_unit_length()).unwrap();
+        for branch in [Branch::Small, Branch::Large] {
+            let gait = optimum(swimmer, branch);
+            let mut theta = f64::NAN;
+            let samples = gait.gait().unwrap();
+            trajectory(&model, &samples, &Tolerance::new(1e-12), 4, |point| {
+                if point.u < 0.3 {
+                    theta = point.pose.theta;
+                }
+            });
+            let x = 0.25 * gait.displacement_over_length;
+            let energy = x * x / gait.efficiency;
+            let start = Vector4::new(-gait.end_angle, x, theta, energy);
+            let shot = paper_shooting::shoot(&model, start).unwrap();
+            assert!(shot.residual < 1e-10, "{branch}: {shot:?}");
+            assert!((shot.at_end - start).amax() < 1e-7, "{branch}: {shot:?}");
+            let efficiency = shot.at_end[1] * shot.at_end[1] / shot.at_end[3];
+            assert!((efficiency / gait.efficiency - 1.0).abs() < 1e-8);
+            assert!(shot.least_determinant > 0.5, "{branch}: {shot:?}");
+            assert!(shot.bend < -1.0, "{branch}: {shot:?}");
+        }
+    }
 }
 
 /// The paper's 1.46, 1.20, 1.45 and 1.90. Squares are compared at constant power.

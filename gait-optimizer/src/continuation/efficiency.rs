@@ -7,7 +7,7 @@ use super::kept::Kept;
 use super::{ContinuationProblem, OtherSide, Start};
 use crate::extremal::continuation::{alike, mirrored, other_side, within_walls};
 use crate::extremal::gait::{Order, gait};
-use crate::extremal::{Extremal, Walls, ascents, polish, polish_chain};
+use crate::extremal::{Extremal, Walls, polish, polish_chain};
 use crate::{EfficiencyProblem, efficiency};
 
 pub(super) struct Efficiency<'a> {
@@ -139,7 +139,7 @@ impl Family for Efficiency<'_> {
             value: before.value,
             efficiency: other.efficiency(&model),
             start_angle: other.start().x,
-            ascent_directions: ascents(&model, &other),
+            ascent_directions: other.ascents(&model),
         })
     }
 }

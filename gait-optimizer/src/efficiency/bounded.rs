@@ -8,12 +8,12 @@ use std::fmt;
 
 use swimmer_model::{Links, Model};
 
-use super::{Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method};
+use super::chain::Found;
+use super::{Branch, EfficiencyError, EfficiencyProblem, Method, certified, finished};
 use crate::OptimalGait;
 use crate::certificate::{crossings, turning_number};
+use crate::extremal::Extremal;
 use crate::extremal::continuation::{Ended, Path, Tightness};
-use crate::extremal::gait::{Order, gait};
-use crate::extremal::{Extremal, polish, wall::Walls};
 use crate::region::Clearance;
 
 /// Below this share of the free gait's efficiency a gait has faded.
@@ -47,14 +47,9 @@ pub(super) fn bounded(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
     free: &OptimalGait,
+    start: Extremal,
 ) -> Result<OptimalGait, EfficiencyError> {
     let (branch, bounds) = (problem.branch, &problem.bounds);
-    let not_followed = |reason: String| EfficiencyError::NotFollowed { branch, reason };
-    let curve = free
-        .gait()
-        .map_err(|error| not_followed(error.to_string()))?;
-    let start = polish(model, &Walls::default(), &curve, true)
-        .map_err(|error| not_followed(error.to_string()))?;
     let floor = start.efficiency(model) * FADED;
     let keeps = |extremal: &Extremal| keeps_its_name(branch, model, extremal, floor);
     let path = Path {
@@ -96,7 +91,18 @@ pub(super) fn bounded(
             .map_err(|ended| branch_ends(branch, &links, &ended))?;
         reached = stage;
     }
-    finished(problem, model, &extremal)
+    let found = Found {
+        extremal,
+        order: 0,
+        method: Method::Shooting,
+        direct_efficiency: None,
+    };
+    let gait =
+        finished(problem, model, &found, bounds).map_err(|error| EfficiencyError::NotFollowed {
+            branch,
+            reason: error.to_string(),
+        })?;
+    certified(branch, gait)
 }
 
 /// What a gait must keep being on its way; what it lost otherwise.
@@ -155,40 +161,4 @@ fn branch_ends(branch: Branch, links: &Links<f64>, ended: &Ended) -> EfficiencyE
 /// Links too short to meet.
 fn or_folded(angle: f64) -> f64 {
     if angle.is_finite() { angle } else { PI }
-}
-
-fn finished(
-    problem: &EfficiencyProblem,
-    model: &Model<f64>,
-    extremal: &Extremal,
-) -> Result<OptimalGait, EfficiencyError> {
-    let branch = problem.branch;
-    let order = Order {
-        swimmer: &problem.swimmer,
-        model,
-        bounds: &problem.bounds,
-        samples: 4 * problem.quarter_samples.max(16),
-    };
-    let mut gait = gait(&order, extremal).map_err(|error| EfficiencyError::NotFollowed {
-        branch,
-        reason: error.to_string(),
-    })?;
-    if !gait.certificate.pass() {
-        return Err(EfficiencyError::NotCertified {
-            branch,
-            efficiency: gait.efficiency,
-            failed: gait.certificate.failures(),
-        });
-    }
-    let power_variation = gait
-        .certificate
-        .value("power_variation")
-        .unwrap_or(f64::NAN);
-    gait.efficiency_figures = Some(EfficiencyFigures {
-        residual: extremal.solved.residual,
-        power_variation,
-        method: Method::Shooting,
-        direct_efficiency: None,
-    });
-    Ok(gait)
 }

@@ -1,18 +1,17 @@
-//! Direct collocation as the bridge: its nodes carry costates, and so are a start for shooting.
+//! Direct collocation as the bridge: its nodes carry poses, and so are a guess for shooting.
 
+use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use super::chain::{Found, Ladder, final_values, not_converged, same_gait};
-use super::shooting::{Final, polish};
-use super::start::Start;
-use super::{Branch, EfficiencyError, Method, multiple};
+use super::chain::{Found, Ladder, SETTLED_PIECES, not_converged, same_gait};
+use super::{Branch, EfficiencyError, Method};
 use crate::collocation::{CollocationProblem, CollocationSolution, QuarterGuess, solve};
+use crate::extremal::guess::{Posed, quarter};
+use crate::extremal::{free_quarter, shooting::Chain};
 
 /// Orders up to that of the Fourier gait that collocation starts from, the nodes of their grids, and the gain that a climb
 /// stops at.
 const GUESS: [(usize, usize, f64); 3] = [(1, 32, 1e-4), (2, 32, 1e-4), (3, 48, 1e-6)];
-/// Segments of the multiple shooting where the single shooting does not converge from the collocated end.
-const SEGMENTS: usize = 16;
 
 /// Fourier to order 3, collocation, shooting.
 pub(crate) fn by_collocation(
@@ -26,7 +25,7 @@ pub(crate) fn by_collocation(
         last = Some((order, ladder.climb_to(order, nodes, gain)?));
     }
     let failed = || not_converged(branch, last.as_ref());
-    let (_, maximum) = last.as_ref().ok_or_else(failed)?;
+    let (order, maximum) = last.as_ref().ok_or_else(failed)?;
     let (a, b) = maximum
         .coefficients
         .split_at(maximum.coefficients.len() / 2);
@@ -40,49 +39,38 @@ pub(crate) fn by_collocation(
             }
         })?;
     let collocated = solution.efficiency;
-    let straight = last_node(model, &solution).and_then(|at_end| polish(model, &at_end));
-    let polished = straight
-        .or_else(|| {
-            let solved = multiple::solve(model, &of_nodes(model, &solution)?)?;
-            polish(model, &final_values(model, &solved)?)
-        })
-        .and_then(|polished| same_gait(polished, collocated, solution.final_x))
+    let extremal = chain(&solution)
+        .and_then(|guess| free_quarter(model, guess))
+        .and_then(|extremal| same_gait(model, extremal, collocated, solution.final_x))
         .ok_or_else(failed)?;
     Ok(Found {
-        polished,
+        extremal,
+        order: *order,
         method: Method::Collocation,
         direct_efficiency: Some(collocated),
     })
 }
 
-/// Final values of the single shooting.
-fn last_node(model: &Model<f64>, solution: &CollocationSolution) -> Option<Final> {
-    let [phi, _, x, theta, energy] = solution.nodes.last()?.state;
-    Some(Final::new(phi, x, theta, energy / model.side_drag()))
-}
-
-/// Some of the nodes as starts of segments.
-fn of_nodes(model: &Model<f64>, solution: &CollocationSolution) -> Option<Start> {
-    let last = solution.nodes.last()?;
-    let kappa = solution.final_energy / (model.side_drag() * solution.final_x);
-    let apart = solution.nodes.len().div_ceil(SEGMENTS).max(1);
-    // The first node's costates are extrapolated only: good enough for Newton's method.
-    let mut nodes: Vec<_> = solution.nodes.iter().step_by(apart).collect();
-    if nodes.last().is_some_and(|node| node.t < last.t) {
-        nodes.push(last);
-    }
-    let states = nodes
-        .iter()
-        .map(|node| {
-            let [phi1, phi2, x, theta, _] = node.state;
-            let [lambda1, lambda2, lambda3, ..] = node.costate;
-            let (one, two) = (lambda1 / lambda3, lambda2 / lambda3);
-            [phi1, phi2, theta, node.y - last.y, one, two, x]
+/// The nodes' shapes and poses at equal times, which are equal power lengths, as the start of a chain.
+fn chain(solution: &CollocationSolution) -> Option<Chain> {
+    let points: Option<Vec<Posed>> = (0..=SETTLED_PIECES)
+        .map(|i| {
+            let t = i as f64 / SETTLED_PIECES as f64;
+            let last = solution.nodes.len().checked_sub(1)?;
+            let after = solution.nodes.partition_point(|node| node.t < t);
+            let after = after.clamp(1, last.max(1));
+            let (low, high) = (solution.nodes.get(after - 1)?, solution.nodes.get(after)?);
+            let share = (t - low.t) / (high.t - low.t);
+            let between = |low: f64, high: f64| low + share * (high - low);
+            let rate = |i: usize| between(low.control[i], high.control[i]);
+            Some(Posed {
+                phi: solution.phi(t),
+                rate: Vector2::new(rate(0), rate(1)),
+                theta: between(low.state[3], high.state[3]),
+                y: between(low.y, high.y),
+            })
         })
         .collect();
-    Some(Start {
-        times: nodes.iter().map(|node| node.t).collect(),
-        states,
-        kappa,
-    })
+    // At constant power the length of a quarter that lasts 1 is √E.
+    quarter(&points?, solution.final_energy.sqrt(), solution.final_x)
 }

@@ -1,4 +1,4 @@
-//! From no guess to a polished extremal: circles, Fourier series of rising order, multiple shooting, single shooting.
+//! From no guess to an extremal: circles, Fourier series of rising order, shooting.
 
 use nalgebra::Vector2;
 use swimmer_model::Model;
@@ -6,16 +6,18 @@ use swimmer_model::Model;
 use super::fourier::{
     Ends, Grid, Maximum, Objective, best_circles, best_ellipses, climb, raised, series,
 };
-use super::shooting::{Final, Polished, RESIDUAL, last_state, polish};
-use super::start::Start;
-use super::{Branch, EfficiencyError, Method, multiple, second_order};
+use super::{Branch, EfficiencyError, Method};
 use crate::certificate::crossings;
+use crate::extremal::guess::quarter_of_curve;
+use crate::extremal::{Extremal, free_quarter};
 
-/// A polished extremal and where it came from.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// An extremal and where it came from.
+#[derive(Debug, Clone)]
 pub(crate) struct Found {
-    pub(crate) polished: Polished,
-    /// What led to the start of the polish.
+    pub(crate) extremal: Extremal,
+    /// Order of the Fourier series that it grew from.
+    pub(crate) order: usize,
+    /// What led to the guess that was shot from.
     pub(crate) method: Method,
     /// ξ of the curve that a direct method found by itself.
     pub(crate) direct_efficiency: Option<f64>,
@@ -25,8 +27,8 @@ pub(crate) struct Found {
 pub(crate) const FARTHEST: f64 = 9.0;
 /// Weight of constant speed in the Fourier objective: enough to make the Hessian regular.
 const GAUGE: f64 = 0.01;
-/// Orders that lead to multiple shooting, the nodes of the quarter's grid, the gain that a climb stops at, and the numbers
-/// of segments tried from there.
+/// Orders that lead to shooting, the nodes of the quarter's grid, the gain that a climb stops at, and the numbers of pieces
+/// that are shot from there.
 const BRIDGES: [(usize, usize, f64, &[usize]); 8] = [
     (1, 24, 1e-6, &[]),
     (2, 24, 1e-6, &[]),
@@ -50,6 +52,8 @@ const ORDERS: [(usize, usize, f64); 10] = [
     (24, 128, 1e-15),
     (32, 128, 1e-15),
 ];
+/// Pieces that a settled series is shot in.
+pub(crate) const SETTLED_PIECES: usize = 8;
 /// The extremal may be better than the gait of the direct method by this factor. It cannot be worse, but for the error of the
 /// direct method's quadrature: else it is another extremal.
 const SAME_GAIT: std::ops::Range<f64> = 1.0 - 1e-5..1.05;
@@ -68,8 +72,8 @@ pub(crate) fn starts(model: &Model<f64>, branch: Branch) -> Result<Vec<[f64; 2]>
     Ok(ellipses)
 }
 
-/// Fourier to a low order, then multiple shooting; higher orders where that does not converge.
-pub(crate) fn by_multiple_shooting(
+/// Fourier to a low order, then shooting; higher orders where that does not converge.
+pub(crate) fn by_shooting(
     model: &Model<f64>,
     branch: Branch,
     start: [f64; 2],
@@ -78,14 +82,17 @@ pub(crate) fn by_multiple_shooting(
     let (mut last, mut saddle) = (None, None);
     for (order, nodes, gain, bridges) in BRIDGES {
         let maximum = ladder.climb_to(order, nodes, gain)?;
-        for &segments in bridges {
-            if let Some(polished) = bridged(model, &maximum, segments) {
+        for &pieces in bridges {
+            if let Some(extremal) = shot(model, &maximum, pieces) {
+                // Newton's method takes saddles as well.
+                let is_maximum = extremal.ascents(model) == Some(0);
                 let found = Found {
-                    polished,
+                    extremal,
+                    order,
                     method: Method::Shooting,
                     direct_efficiency: None,
                 };
-                if is_maximum(model, &polished) {
+                if is_maximum {
                     return Ok(found);
                 }
                 saddle.get_or_insert(found);
@@ -98,13 +105,6 @@ pub(crate) fn by_multiple_shooting(
     }
     // A saddle is told with its certificate, which says so.
     saddle.ok_or_else(|| not_converged(branch, last.as_ref()))
-}
-
-/// Whether an extremal passes the second-order test: Newton's method takes saddles as well.
-fn is_maximum(model: &Model<f64>, polished: &Polished) -> bool {
-    last_state(model, &polished.at_end)
-        .and_then(|(flow, last)| second_order::test(flow, &last))
-        .is_some_and(|test| test.least_determinant > 0.0 && test.bend_at_start < 0.0)
 }
 
 /// A gait that crosses itself is out of the class: no need to look for an extremal near it.
@@ -125,7 +125,7 @@ fn simple(branch: Branch, order: usize, maximum: &Maximum) -> Result<(), Efficie
     }
 }
 
-/// Fourier alone up to orders where the single shooting converges from it.
+/// Fourier alone up to orders where it has settled.
 pub(crate) fn by_fourier(
     model: &Model<f64>,
     branch: Branch,
@@ -138,9 +138,10 @@ pub(crate) fn by_fourier(
         let settled = last.as_ref().is_some_and(|(_, before)| {
             (maximum.value.efficiency() / before.value.efficiency() - 1.0).abs() < 1e-8
         });
-        if settled && let Some(polished) = polished(model, &maximum) {
+        if settled && let Some(extremal) = shot(model, &maximum, SETTLED_PIECES) {
             return Ok(Found {
-                polished,
+                extremal,
+                order,
                 method: Method::Fourier,
                 direct_efficiency: Some(maximum.value.efficiency()),
             });
@@ -208,38 +209,20 @@ impl<'a> Ladder<'a> {
     }
 }
 
-fn curve(maximum: &Maximum) -> impl Fn(f64) -> (Vector2<f64>, Vector2<f64>) {
-    |s| series(&maximum.coefficients, s)
-}
-
-fn polished(model: &Model<f64>, maximum: &Maximum) -> Option<Polished> {
-    let start = Start::of_curve(model, &curve(maximum), 1)?;
-    let polished = polish(model, &final_values(model, &start)?)?;
-    same_gait(polished, maximum.value.efficiency(), maximum.value.x)
-}
-
-fn bridged(model: &Model<f64>, maximum: &Maximum, segments: usize) -> Option<Polished> {
-    let start = Start::of_curve(model, &curve(maximum), segments)?;
-    let solved = multiple::solve(model, &start)?;
-    let polished = polish(model, &final_values(model, &solved)?)?;
-    same_gait(polished, maximum.value.efficiency(), maximum.value.x)
+/// The extremal that shooting in so many pieces finds near a series.
+fn shot(model: &Model<f64>, maximum: &Maximum, pieces: usize) -> Option<Extremal> {
+    let curve = |s| series(&maximum.coefficients, s);
+    let extremal = free_quarter(model, quarter_of_curve(model, &curve, pieces)?)?;
+    same_gait(model, extremal, maximum.value.efficiency(), maximum.value.x)
 }
 
 /// Newton's method may end at another extremal than the one it was started near: none then.
-pub(crate) fn same_gait(polished: Polished, efficiency: f64, x: f64) -> Option<Polished> {
-    let ratio = polished.efficiency() / efficiency;
-    let same_way = polished.at_end[1] * x > 0.0;
-    (same_way && SAME_GAIT.contains(&ratio) && polished.residual <= RESIDUAL).then_some(polished)
-}
-
-/// φ₁, x, θ and E at the end: E is the power there, and `x_f = E_f/κ`.
-pub(crate) fn final_values(model: &Model<f64>, start: &Start) -> Option<Final> {
-    let last = start.states.last()?;
-    let flow = super::flow::Flow {
-        model,
-        kappa: start.kappa,
-        sense: 1.0,
-    };
-    let energy = flow.moment(last).power;
-    Some(Final::new(last[0], energy / start.kappa, last[2], energy))
+pub(crate) fn same_gait(
+    model: &Model<f64>,
+    extremal: Extremal,
+    efficiency: f64,
+    x: f64,
+) -> Option<Extremal> {
+    let ratio = extremal.efficiency(model) / efficiency;
+    (extremal.heading() * x > 0.0 && SAME_GAIT.contains(&ratio)).then_some(extremal)
 }

@@ -18,8 +18,8 @@ use crate::runge_kutta::{Point, StepControl, System, advance};
 pub(crate) struct Evidence {
     /// Gap \[rad\] between the end of a piece and the start of the next, in shape and direction.
     pub(crate) off_extremal: f64,
-    /// |2H − 1|: H is constant, and the power is.
-    pub(crate) hamiltonian: f64,
+    /// The least and the most of 2H, which is the power: 1 where a piece begins.
+    pub(crate) power: [f64; 2],
     /// Body momentum against what the pose makes of p, over |p|.
     pub(crate) momentum: f64,
     /// The least push of a bound; none without arcs along bounds.
@@ -110,7 +110,7 @@ pub(crate) fn follow(model: &Model<f64>, walls: &Walls, chain: &Chain) -> Option
     let (p, c) = (Vector2::new(first.x, first.y), first.z);
     let mut evidence = Evidence {
         off_extremal: 0.0,
-        hamiltonian: 0.0,
+        power: [1.0; 2],
         momentum: 0.0,
         multiplier: None,
         overstepped: f64::NEG_INFINITY,
@@ -178,7 +178,10 @@ impl Evidence {
         let phi = Vector2::new(s[0], s[1]);
         let u = equations.control(s);
         let power = u.dot(&(equations.model.power_matrix(&phi) * u));
-        self.hamiltonian = self.hamiltonian.max((power - 1.0).abs());
+        // A power that is no number makes the range infinite.
+        let [least, most] = [f64::NEG_INFINITY, f64::INFINITY]
+            .map(|wide| if power.is_nan() { wide } else { power });
+        self.power = [self.power[0].min(least), self.power[1].max(most)];
         if let Some((_, depth)) = walls.nearest(&phi) {
             self.overstepped = self.overstepped.max(depth);
         }

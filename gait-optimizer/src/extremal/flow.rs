@@ -21,8 +21,11 @@ pub(crate) struct Mapped {
     pub(crate) by_start: [[f64; STATE]; RATES],
 }
 
+/// Local tolerance of whatever is kept.
+pub(crate) const FINE: f64 = 1e-13;
+
 const CONTROL: StepControl = StepControl {
-    tolerance: 1e-13,
+    tolerance: FINE,
     longest: f64::INFINITY,
 };
 
@@ -64,12 +67,14 @@ fn state(z: &[f64]) -> State {
     std::array::from_fn(|i| z.get(i).copied().unwrap_or(f64::NAN))
 }
 
-/// Flows over a length, with the Jacobian; none where the steps become too short. A length below zero runs backwards.
+/// Flows over a length, with the Jacobian, to a local `tolerance`; none where the steps become too short. A length below zero
+/// runs backwards.
 pub(crate) fn mapped(
     model: &Model<f64>,
     motion: &Motion,
     start: &State,
     length: f64,
+    tolerance: f64,
 ) -> Option<Mapped> {
     let mut z = [0.0; WIDE];
     for (i, value) in start.iter().enumerate() {
@@ -77,11 +82,15 @@ pub(crate) fn mapped(
         z[RATES + i * STATE + i] = 1.0;
     }
     let system = Variational { model, motion };
+    let control = StepControl {
+        tolerance,
+        ..CONTROL
+    };
     let end = if length >= 0.0 {
-        advance(&system, Point::new(&system, z), length, CONTROL)?
+        advance(&system, Point::new(&system, z), length, control)?
     } else {
         let back = |z: &[f64; WIDE]| system.rate(z).map(|value| -value);
-        advance(&back, Point::new(&back, z), -length, CONTROL)?
+        advance(&back, Point::new(&back, z), -length, control)?
     };
     let sign = if length < 0.0 { -1.0 } else { 1.0 };
     let mut by_start = [[0.0; STATE]; RATES];
@@ -122,11 +131,11 @@ mod tests {
         let model = Model::new(&Swimmer::<f64>::purcell()).unwrap();
         let z = [1.1, 0.9, 2.2, 30.0, -4.0, 1.0];
         for length in [0.3, -0.2] {
-            let exact = mapped(&model, &Motion::Free, &z, length).unwrap();
+            let exact = mapped(&model, &Motion::Free, &z, length, FINE).unwrap();
             let at = |column: usize, by: f64| {
                 let mut moved = z;
                 moved[column] += by;
-                mapped(&model, &Motion::Free, &moved, length).unwrap()
+                mapped(&model, &Motion::Free, &moved, length, FINE).unwrap()
             };
             for column in 0..STATE {
                 let h = 1e-5;
@@ -141,14 +150,14 @@ mod tests {
                 assert!((numeric - found).abs() < 1e-6 * (1.0 + found.abs()));
             }
             let h = 1e-5;
-            let longer = mapped(&model, &Motion::Free, &z, length + h).unwrap();
-            let shorter = mapped(&model, &Motion::Free, &z, length - h).unwrap();
+            let longer = mapped(&model, &Motion::Free, &z, length + h, FINE).unwrap();
+            let shorter = mapped(&model, &Motion::Free, &z, length - h, FINE).unwrap();
             for row in 0..STATE {
                 let numeric = (longer.end[row] - shorter.end[row]) / (2.0 * h);
                 assert!((numeric - exact.rate[row]).abs() < 1e-6 * (1.0 + numeric.abs()));
             }
         }
-        let there = mapped(&model, &Motion::Free, &z, 0.3).unwrap();
+        let there = mapped(&model, &Motion::Free, &z, 0.3, FINE).unwrap();
         let (plain, gain) = flowed(&model, &Motion::Free, &z, 0.3).unwrap();
         assert!((gain - there.gain).abs() < 1e-11);
         for (a, b) in plain.iter().zip(&there.end) {

@@ -1,16 +1,14 @@
 //! From an extremal to a gait with its certificate.
 
-use swimmer_files::{Bounds, Objective};
-use swimmer_model::{Gait, Model, Stroke, Swimmer};
+use swimmer_files::{AnyGait, Bounds, Objective};
+use swimmer_model::{Gait, Model, Stroke, Swimmer, Tolerance, crossing_share, swim};
 
 use super::evidence::{Evidence, follow};
 use super::sampled::Sampled;
-use super::second_variation::ascent_directions;
 use super::shooting::Class;
 use super::wall::Walls;
 use super::{Extremal, Unpolished};
 use crate::certificate::{Certificate, Check};
-use crate::cycle::Cycle;
 use crate::optimal_gait::{OptimalGait, Solution};
 
 /// The residual of the shooting that an extremal may have.
@@ -42,17 +40,17 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
     let lost = || Unpolished::Trace;
     let evidence = follow(model, &walls, chain).ok_or_else(lost)?;
     let mut samples = order.samples / parts;
-    let (sampled, cycle, variation) = loop {
+    let (sampled, cycle, curve, variation) = loop {
         let sampled = Sampled::new(model, chain, samples).ok_or_else(lost)?;
         let cycle = sampled.cycle(class);
-        let variation = power_variation(model, &cycle);
+        let curve = cycle.gait().map_err(|_| lost())?;
+        let variation = power_variation(model, &cycle.u, &curve);
         if variation <= POWER_VARIATION || samples * parts > MOST_SAMPLES {
-            break (sampled, cycle, variation);
+            break (sampled, cycle, curve, variation);
         }
         samples *= 2;
     };
-    let stroke = cycle.swum(model).ok_or_else(lost)?;
-    let ascents = ascent_directions(model, class, chain);
+    let stroke = swim(model, &curve, &Tolerance::new(1e-12));
     let certificate = Finished {
         extremal,
         walls: &walls,
@@ -60,10 +58,10 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
         stroke: &stroke,
         power_variation: variation,
         efficiency: extremal.efficiency(model),
-        ascents,
+        ascents: extremal.ascents(model),
     }
     .certificate();
-    let links_cross = cycle.links_cross(model);
+    let links_cross = crossing_share(&model.swimmer().links, &curve).of_cycle;
     let mut gait = OptimalGait::new(Solution {
         objective: Objective::Efficiency,
         swimmer: *order.swimmer,
@@ -110,7 +108,11 @@ impl Finished<'_> {
         let mut checks = vec![
             Check::at_most("shooting_residual", self.extremal.solved.residual, RESIDUAL),
             Check::at_most("off_extremal_rad", evidence.off_extremal, 1e-8),
-            Check::at_most("hamiltonian_variation", evidence.hamiltonian, 1e-8),
+            Check::at_most(
+                "hamiltonian_variation",
+                evidence.power[1] - evidence.power[0],
+                1e-8,
+            ),
             Check::at_most("momentum_off_pose", evidence.momentum, 1e-8),
             Check::at_most(
                 "displacement_off_momentum",
@@ -148,13 +150,10 @@ impl Finished<'_> {
     }
 }
 
-/// (max − min)/mean of the power in the middle of the samples' intervals; NaN where the samples make no gait.
-pub(crate) fn power_variation(model: &Model<f64>, cycle: &Cycle) -> f64 {
-    let Ok(gait) = cycle.gait() else {
-        return f64::NAN;
-    };
+/// (max − min)/mean of the power in the middle of the samples' intervals.
+fn power_variation(model: &Model<f64>, u: &[f64], gait: &AnyGait) -> f64 {
     let (mut least, mut most, mut sum) = (f64::INFINITY, 0.0_f64, 0.0);
-    for pair in cycle.u.windows(2) {
+    for pair in u.windows(2) {
         let middle = gait.at(0.5 * pair.iter().sum::<f64>());
         let power = middle
             .rate
@@ -163,5 +162,5 @@ pub(crate) fn power_variation(model: &Model<f64>, cycle: &Cycle) -> f64 {
         most = most.max(power);
         sum += power;
     }
-    (most - least) * (cycle.u.len() - 1) as f64 / sum
+    (most - least) * (u.len() - 1) as f64 / sum
 }

@@ -3,7 +3,9 @@
 use nalgebra::{Vector2, Vector3};
 use swimmer_model::{Gait, Model, Tolerance, TrajectoryPoint, trajectory};
 
-use super::equations::{State, Turning};
+use super::equations::{Motion, State, Turning};
+use super::shooting::{Chain, Entry, Stretch};
+use crate::runge_kutta::{Point, StepControl, advance};
 
 /// A closed curve swum once, densely.
 pub(crate) struct Swum {
@@ -138,6 +140,95 @@ impl Swum {
         state[2] += laps * self.turn;
         state
     }
+}
+
+/// A shape of a doubly symmetric quarter with its pose, the first one at the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Posed {
+    pub(crate) phi: Vector2<f64>,
+    /// Of any length: only its direction counts.
+    pub(crate) rate: Vector2<f64>,
+    pub(crate) theta: f64,
+    pub(crate) y: f64,
+}
+
+/// A free quarter from φ₁ = φ₂ to φ₁ = −φ₂ as a chain: `points` at equal steps of its power length, both ends included, and
+/// the `x` that it gains. None where that is nothing.
+pub(crate) fn quarter(points: &[Posed], power_length: f64, x: f64) -> Option<Chain> {
+    let p = power_length / x;
+    let (end, starts) = points.split_last()?;
+    if !(p.is_finite() && power_length > 0.0) {
+        return None;
+    }
+    let mut psi = 0.75 * std::f64::consts::PI;
+    let states = starts.iter().map(|point| {
+        let raw: f64 = point.rate.y.atan2(point.rate.x) - psi;
+        psi += raw - (raw / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+        let (sin, cos) = point.theta.sin_cos();
+        // No momentum of rotation at the end: the gait is a mirror image of itself there.
+        let turning = p * (point.y - end.y);
+        [point.phi.x, point.phi.y, psi, p * cos, -p * sin, turning]
+    });
+    Some(Chain {
+        states: states.collect(),
+        arcs: vec![Stretch {
+            motion: Motion::Free,
+            entry: Entry::Smooth,
+            pieces: starts.len(),
+            length: power_length,
+        }],
+    })
+}
+
+/// The chain of so many pieces along a `curve` over s ∈ (0, π/2); none where that cannot be integrated.
+pub(crate) fn quarter_of_curve(
+    model: &Model<f64>,
+    curve: &impl Fn(f64) -> (Vector2<f64>, Vector2<f64>),
+    pieces: usize,
+) -> Option<Chain> {
+    const CONTROL: StepControl = StepControl {
+        tolerance: 1e-9,
+        longest: f64::INFINITY,
+    };
+    let speed = |rate: &Vector2<f64>, phi: &Vector2<f64>| {
+        rate.dot(&(model.power_matrix(phi) * rate)).sqrt()
+    };
+    let length = |z: &[f64; 2]| {
+        let (phi, rate) = curve(z[0]);
+        [1.0, speed(&rate, &phi)]
+    };
+    let whole = Point::new(&length, [0.0; 2]);
+    let total = advance(&length, whole, std::f64::consts::FRAC_PI_2, CONTROL)?.z[1];
+    // Over the power length: s, x, y, θ.
+    let rates = |z: &[f64; 4]| {
+        let (phi, rate) = curve(z[0]);
+        let (a, w) = model.connection_and_power(&phi);
+        let slower = rate.dot(&(w * rate)).sqrt().recip();
+        let body = a * rate * slower;
+        let (sin, cos) = z[3].sin_cos();
+        [
+            slower,
+            cos * body.x - sin * body.y,
+            sin * body.x + cos * body.y,
+            body.z,
+        ]
+    };
+    let posed = |z: &[f64; 4]| {
+        let (phi, rate) = curve(z[0]);
+        Posed {
+            phi,
+            rate,
+            theta: z[3],
+            y: z[2],
+        }
+    };
+    let mut here = Point::new(&rates, [0.0; 4]);
+    let mut points = vec![posed(&here.z)];
+    for _ in 0..pieces {
+        here = advance(&rates, here, total / pieces as f64, CONTROL)?;
+        points.push(posed(&here.z));
+    }
+    quarter(&points, total, here.z[1])
 }
 
 /// Directions of motion, each within half a turn of the one before. A rate of zero keeps the direction.

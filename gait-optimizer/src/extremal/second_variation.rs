@@ -7,7 +7,7 @@
 //! closed curve δθ must vanish at the end. On quarters both drop out. ν is piecewise linear, so the count is a bound from
 //! below that settles as the mesh gets finer.
 
-use nalgebra::{DMatrix, DVector, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, DVectorView, Vector2, Vector3};
 use swimmer_model::Model;
 
 use super::equations::{Motion, State, momentum, rate, shape};
@@ -63,10 +63,11 @@ fn mesh(model: &Model<f64>, class: Class, chain: &Chain) -> Option<(Vec<Element>
                 count - 1
             });
         }
-        let mut here = *state;
+        let mut middle = flowed(model, &arc.motion, state, 0.5 * length)?.0;
         for part in 0..parts {
-            let middle = flowed(model, &arc.motion, &here, 0.5 * length)?.0;
-            here = flowed(model, &arc.motion, &middle, 0.5 * length)?.0;
+            if part > 0 {
+                middle = flowed(model, &arc.motion, &middle, length)?.0;
+            }
             let ends = part + 1 == parts && piece_of_arc + 1 == *of_arc.get(index)?;
             let next = if !free {
                 None
@@ -129,7 +130,12 @@ pub(crate) fn ascent_directions(model: &Model<f64>, class: Class, chain: &Chain)
             }
         }
         let gain = local.momentum.x * local.body.x + local.momentum.y * local.body.y;
-        form.ger(-0.5 * length * gain, &middle, &middle, 1.0);
+        // What comes later turns nothing yet.
+        let active = middle.iter().rposition(|&turn| turn != 0.0);
+        let active = active.map_or(0, |last| last + 1);
+        let so_far = middle.rows(0, active);
+        form.view_mut((0, 0), (active, active))
+            .ger(-0.5 * length * gain, &so_far, &so_far, 1.0);
         // The lateral displacement that follows: along p turned by a quarter.
         let body = Vector2::new(local.body.x, local.body.y);
         let heading = theta + 0.5 * length * local.body.z;
@@ -161,13 +167,37 @@ pub(crate) fn ascent_directions(model: &Model<f64>, class: Class, chain: &Chain)
     Some(positive(&form))
 }
 
+/// How many eigenvalues are positive, to rounding.
 fn positive(form: &DMatrix<f64>) -> usize {
+    // None at a maximum, which a factorisation shows sooner than the eigenvalues do.
+    if is_negative(form) {
+        return 0;
+    }
     let eigenvalues = form.clone().symmetric_eigenvalues();
     let scale = eigenvalues.amax();
     eigenvalues
         .iter()
         .filter(|&&value| value > 1e-12 * scale)
         .count()
+}
+
+/// Cholesky's factorisation of minus a form, row by row, so that its inner loop runs along memory.
+fn is_negative(form: &DMatrix<f64>) -> bool {
+    let mut rows: Vec<Vec<f64>> = Vec::with_capacity(form.nrows());
+    for i in 0..form.nrows() {
+        let mut row: Vec<f64> = Vec::with_capacity(i + 1);
+        for (j, other) in rows.iter().enumerate() {
+            let done = DVectorView::from_slice(&row, j).dot(&DVectorView::from_slice(other, j));
+            row.push((-form[(i, j)] - done) / other.last().copied().unwrap_or(f64::NAN));
+        }
+        let left = -form[(i, i)] - DVectorView::from_slice(&row, i).norm_squared();
+        if left.is_nan() || left <= 0.0 {
+            return false;
+        }
+        row.push(left.sqrt());
+        rows.push(row);
+    }
+    true
 }
 
 /// A form where a linear function vanishes: reflected so that the function is the last coordinate, which is dropped.

@@ -13,6 +13,7 @@ mod conditions;
 use swimmer_model::Model;
 
 use super::equations::STATE;
+use super::flow::FINE;
 pub(crate) use chain::{Chain, Class, Entry, Stretch};
 use conditions::assemble;
 
@@ -60,6 +61,9 @@ const TOLERANCE: f64 = 2e-12;
 /// What is still accepted when rounding keeps it from getting better.
 const ACCEPTED: f64 = 1e-10;
 const MOST_ITERATIONS: usize = 40;
+/// Local tolerance of the flow far from a solution, and the residual at which it gives way to the fine one.
+const COARSE: f64 = 1e-9;
+const NEAR: f64 = 1e-5;
 /// Largest change of an angle in one step \[rad\].
 const LONGEST_TURN: f64 = 0.4;
 
@@ -74,9 +78,14 @@ pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<So
         .map_or(1.0, |z| z[3].hypot(z[4]))
         .max(f64::MIN_POSITIVE);
     let mut chain = guess;
-    let mut here = assemble(model, class, &chain, scale).ok_or(Unsolved::Lost)?;
+    let mut tolerance = COARSE;
+    let mut here = assemble(model, class, &chain, scale, tolerance).ok_or(Unsolved::Lost)?;
     let mut orientation = 0.0;
     for _ in 0..MOST_ITERATIONS {
+        if here.largest() < NEAR && tolerance > FINE {
+            tolerance = FINE;
+            here = assemble(model, class, &chain, scale, tolerance).ok_or(Unsolved::Lost)?;
+        }
         let residual = here.largest();
         if residual.is_nan() {
             return Err(Unsolved::Lost);
@@ -98,7 +107,7 @@ pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<So
         let mut factor = longest_factor(&chain, &step);
         let next = loop {
             let moved = chain.moved(&step, factor);
-            let trial = assemble(model, class, &moved, scale)
+            let trial = assemble(model, class, &moved, scale, tolerance)
                 .filter(|trial| trial.norm() < (1.0 - 1e-4 * factor) * norm);
             if let Some(trial) = trial {
                 break Some((moved, trial));

@@ -107,6 +107,26 @@ fn a_bound_is_followed_where_it_pushes_and_a_loose_one_changes_nothing() {
     }
 }
 
+/// An extremal of Purcell's swimmer that meets all first-order conditions and is no maximum.
+#[test]
+fn a_saddle_has_ways_up() {
+    let model = Model::new(&Swimmer::purcell().of_unit_length()).unwrap();
+    let from_ellipse = |[along, across]: [f64; 2]| {
+        let gait = SymmetricFourier {
+            coefficients: [[along, across]],
+        };
+        let curve = |s: f64| {
+            let point = gait.at(s / std::f64::consts::TAU);
+            (point.phi, point.rate / std::f64::consts::TAU)
+        };
+        free_quarter(&model, guess::quarter_of_curve(&model, &curve, 8).unwrap()).unwrap()
+    };
+    let saddle = from_ellipse([1.6, 3.6]);
+    assert!((saddle.efficiency(&model) - 0.005_709_875_641).abs() < 1e-11);
+    assert!(saddle.ascents(&model).unwrap() > 0);
+    assert_eq!(from_ellipse([1.2, 1.2]).ascents(&model), Some(0));
+}
+
 /// Continuation in the bound to just before the fold of the robot's large gait, and the other extremal that it meets there:
 /// the gait is a local optimum, the other one is not.
 #[test]
@@ -124,9 +144,7 @@ fn an_optimum_has_no_ascent_and_the_saddle_beyond_a_fold_has_one() {
         share: 0.0,
     };
     let wide = path.follow(free, at(5.0), at(2.7302)).unwrap();
-    let ascents = |extremal: &Extremal| {
-        second_variation::ascent_directions(&model, extremal.class, &extremal.solved.chain).unwrap()
-    };
+    let ascents = |extremal: &Extremal| extremal.ascents(&model).unwrap();
     assert_eq!(ascents(&wide), 0);
     let end = path.follow(wide.clone(), at(2.7302), at(2.7)).unwrap_err();
     let continuation::Ended::Fold { at: fold, other } = end else {

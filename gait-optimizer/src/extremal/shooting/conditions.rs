@@ -76,12 +76,13 @@ impl Ending<'_> {
     }
 }
 
-/// All equations of a chain with their Jacobian; none where a piece cannot be integrated.
+/// All equations of a chain with their Jacobian, its pieces integrated to a local `tolerance`; none where a piece cannot be integrated.
 pub(super) fn assemble(
     model: &Model<f64>,
     class: Class,
     chain: &Chain,
     scale: f64,
+    tolerance: f64,
 ) -> Option<Equations> {
     let count = chain.states.len();
     let lengths_from = STATE * count;
@@ -89,7 +90,7 @@ pub(super) fn assemble(
     let mut maps = Vec::with_capacity(count);
     for (_, arc, state) in chain.pieces() {
         let share = arc.length / arc.pieces as f64;
-        maps.push(mapped(model, &arc.motion, state, share)?);
+        maps.push(mapped(model, &arc.motion, state, share, tolerance)?);
     }
     let endings: Vec<Ending<'_>> = chain
         .pieces()
