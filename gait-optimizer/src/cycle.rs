@@ -21,6 +21,18 @@ pub(crate) struct Cycle {
     pub(crate) arcs: Vec<GaitArc>,
 }
 
+/// A quarter from φ₁ = φ₂ to φ₁ = −φ₂, sampled; places are fractions of it, 0 to 1, proportional to ∫√P.
+#[derive(Debug, Clone)]
+pub(crate) struct Quarter<'a> {
+    pub(crate) at: Vec<f64>,
+    pub(crate) phi: &'a [Vector2<f64>],
+    /// Corners inside it.
+    pub(crate) corners: Vec<f64>,
+    pub(crate) arcs: Vec<GaitArc>,
+    /// Whether it begins and ends at a right angle to the symmetry lines, so that it meets its images smoothly.
+    pub(crate) square: [bool; 2],
+}
+
 /// Directions this close in angle \[rad\] make no corner.
 const SMOOTH: f64 = 1e-7;
 
@@ -43,34 +55,55 @@ impl Cycle {
         }
     }
 
-    pub(crate) fn of_quarter(trace: &QuarterTrace) -> Self {
-        let count = trace.phi.len();
-        let total = trace.power_length.last().copied().unwrap_or(1.0);
-        let fraction = |i: usize| {
-            trace
-                .power_length
-                .get(i)
-                .map_or(0.25, |length| 0.25 * length / total)
-        };
-        let (mut u, mut phi) = (Vec::with_capacity(4 * count), Vec::with_capacity(4 * count));
-        for half in 0..2u32 {
-            let (before, sign) = (0.5 * f64::from(half), if half == 0 { 1.0 } else { -1.0 });
-            for (i, shape) in trace.phi.iter().enumerate().take(count - 1) {
-                u.push(before + fraction(i));
+    /// The quarter with its images: run backwards and reflected in φ₁ = −φ₂, then both turned by half a turn.
+    pub(crate) fn of_quarter(quarter: &Quarter<'_>) -> Self {
+        let samples = quarter.at.iter().map(|at| 0.25 * at).zip(quarter.phi);
+        let last = quarter.phi.len().saturating_sub(1);
+        let inner = quarter.corners.iter().map(|at| 0.25 * at);
+        let [starts_square, ends_square] = quarter.square;
+        let images = quarter.arcs.iter().rev().map(|arc| GaitArc {
+            kind: arc.kind,
+            from: 2.0 - arc.to,
+            to: 2.0 - arc.from,
+        });
+        let half_arcs: Vec<GaitArc> = quarter.arcs.iter().copied().chain(images).collect();
+        let (mut u, mut phi) = (Vec::new(), Vec::new());
+        let (mut corners, mut arcs) = (Vec::new(), Vec::<GaitArc>::new());
+        for (before, sign) in [(0.0, 1.0), (0.5, -1.0)] {
+            for (at, shape) in samples.clone().take(last) {
+                u.push(before + at);
                 phi.push(shape * sign);
             }
-            for (i, shape) in trace.phi.iter().enumerate().skip(1).rev() {
-                u.push(before + 0.5 - fraction(i));
+            for (at, shape) in samples.clone().skip(1).rev() {
+                u.push(before + 0.5 - at);
                 phi.push(Vector2::new(-shape.y, -shape.x) * sign);
+            }
+            corners.extend((!starts_square).then_some(before));
+            corners.extend(inner.clone().map(|at| before + at));
+            corners.extend((!ends_square).then_some(before + 0.25));
+            corners.extend(inner.clone().rev().map(|at| before + 0.5 - at));
+            for (number, arc) in half_arcs.iter().enumerate() {
+                let arc = GaitArc {
+                    kind: arc.kind,
+                    from: before + 0.25 * arc.from,
+                    to: before + 0.25 * arc.to,
+                };
+                // An arc that crosses a symmetry line smoothly is one with its image.
+                let joins =
+                    (number == 0 && starts_square) || (number == quarter.arcs.len() && ends_square);
+                match arcs.last_mut() {
+                    Some(last) if joins && last.kind == arc.kind => last.to = arc.to,
+                    _ => arcs.push(arc),
+                }
             }
         }
         u.push(1.0);
         phi.extend(phi.first().copied());
         Self {
-            corners: corners(trace, &fraction),
-            arcs: arcs(trace, &fraction),
             u,
             phi,
+            corners,
+            arcs,
         }
     }
 
@@ -95,71 +128,4 @@ impl Cycle {
             crossing_share(&model.swimmer().links, &gait).of_cycle
         })
     }
-}
-
-/// Corners of the whole cycle, in order: those of the quarter and their images, and the two symmetry lines where the curve
-/// does not cross them at a right angle.
-fn corners(trace: &QuarterTrace, fraction: &impl Fn(usize) -> f64) -> Vec<f64> {
-    let inner: Vec<f64> = trace.corners.iter().map(|&i| fraction(i)).collect();
-    // Square to φ₁ = φ₂ (φ₁ = −φ₂) is a direction without a part along it.
-    let starts_square = (trace.first_direction.x + trace.first_direction.y).abs() < SMOOTH;
-    let ends_square = (trace.last_direction.x - trace.last_direction.y).abs() < SMOOTH;
-    let mut corners = Vec::new();
-    for half in [0.0, 0.5] {
-        corners.extend((!starts_square).then_some(half));
-        corners.extend(inner.iter().map(|u| half + u));
-        corners.extend((!ends_square).then_some(half + 0.25));
-        corners.extend(inner.iter().rev().map(|u| half + 0.5 - u));
-    }
-    corners
-}
-
-/// Arcs of the whole cycle; an arc that crosses a symmetry line smoothly is one with its image.
-fn arcs(trace: &QuarterTrace, fraction: &impl Fn(usize) -> f64) -> Vec<GaitArc> {
-    let quarter = trace.kinds.iter().map(|&(kind, from, to)| GaitArc {
-        kind,
-        from: fraction(from),
-        to: fraction(to),
-    });
-    let ends_square = (trace.last_direction.x - trace.last_direction.y).abs() < SMOOTH;
-    let mut half: Vec<GaitArc> = quarter.clone().collect();
-    for arc in quarter.rev() {
-        let image = GaitArc {
-            kind: arc.kind,
-            from: 0.5 - arc.to,
-            to: 0.5 - arc.from,
-        };
-        match half.last_mut() {
-            Some(last)
-                if last.kind == image.kind
-                    && ends_square
-                    && last.to >= 0.25
-                    && image.from <= 0.25 =>
-            {
-                last.to = image.to;
-            }
-            _ => half.push(image),
-        }
-    }
-    let starts_square = (trace.first_direction.x + trace.first_direction.y).abs() < SMOOTH;
-    let mut cycle = half.clone();
-    for arc in half {
-        let image = GaitArc {
-            kind: arc.kind,
-            from: arc.from + 0.5,
-            to: arc.to + 0.5,
-        };
-        match cycle.last_mut() {
-            Some(last)
-                if last.kind == image.kind
-                    && starts_square
-                    && last.to >= 0.5
-                    && image.from <= 0.5 =>
-            {
-                last.to = image.to;
-            }
-            _ => cycle.push(image),
-        }
-    }
-    cycle
 }

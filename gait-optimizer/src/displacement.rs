@@ -17,7 +17,7 @@ use search::{Candidate, LOOKS};
 use swimmer_files::{ArcKind, Bounds, Objective};
 use swimmer_model::{Links, Model, Swimmer};
 
-use crate::cycle::{Cycle, QuarterTrace};
+use crate::cycle::QuarterTrace;
 use crate::immobile::refuse_immobile;
 use crate::optimal_gait::Solution;
 use crate::{Certificate, OptimalGait};
@@ -269,7 +269,7 @@ fn certified(
     };
     let legs: Vec<_> = search::lasting(candidate.quarter.legs()).copied().collect();
     let trace = QuarterTrace::new(extremal, region, &legs, problem.quarter_samples)?;
-    let cycle = Cycle::of_quarter(&trace);
+    let cycle = trace.cycle();
     let displacement_over_length = 4.0 * candidate.quarter.end[2];
     let stroke = cycle.swum(model)?;
     let certificate =

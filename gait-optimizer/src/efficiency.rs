@@ -23,6 +23,7 @@ use crate::immobile::refuse_immobile;
 pub use bounded::Reached;
 use by_collocation::by_collocation;
 use chain::Found;
+pub(crate) use chain::starts;
 pub use error::EfficiencyError;
 
 /// Which of the two optima.
@@ -179,7 +180,7 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Efficiency
     refuse_immobile(&model, &problem.bounds)?;
     let mut best: Option<(OptimalGait, Extremal)> = None;
     let mut refused: Option<EfficiencyError> = None;
-    for start in chain::starts(&model, problem.branch)? {
+    for start in starts(&model, problem.branch)? {
         match optimum(problem, &model, start) {
             Ok(found) => {
                 if best

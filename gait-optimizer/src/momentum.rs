@@ -6,8 +6,14 @@
 //! p = (λ₃, 0) and `c = −λ₃ y_f`). A small push of the curve to the right of its motion gains the height h = μ · F(Φ) a unit of
 //! area, F = dA + \[A₁, A₂\]; h is minus the paper's `F = F₁ λ₃ + F₂ λ₄`.
 
+mod arc;
+mod motion;
+
 use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
 use swimmer_model::{Model, SecondDerivatives};
+
+pub(crate) use arc::{Flow, State, pose, pose_rates, shape};
+pub(crate) use motion::{Motion, Track};
 
 /// One choice of the multipliers, in the frame of the curve's first point.
 #[derive(Debug, Clone, Copy, PartialEq)]

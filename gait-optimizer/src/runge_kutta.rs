@@ -136,6 +136,40 @@ pub(crate) fn advance<const N: usize>(
     Some(here)
 }
 
+/// Where a value that is above zero at the start falls through zero: the point there and the length up to it. Newton's method
+/// from a `guess`, kept between the start and the `longest` length.
+///
+/// `at` follows the system over a length; `value` is the value with its slope over the length. None where `at` fails.
+pub(crate) fn locate<const N: usize>(
+    [guess, longest]: [f64; 2],
+    at: impl Fn(f64) -> Option<Point<N>>,
+    value: impl Fn(&Point<N>) -> (f64, f64),
+) -> Option<(Point<N>, f64)> {
+    let (mut low, mut high) = (0.0, longest);
+    let mut length = guess;
+    let mut there = at(length)?;
+    for _ in 0..60 {
+        let (here, slope) = value(&there);
+        if here > 0.0 {
+            low = length;
+        } else {
+            high = length;
+        }
+        let newton = length - here / slope;
+        let next = if newton > low && newton < high {
+            newton
+        } else {
+            0.5 * (low + high)
+        };
+        if here == 0.0 || (next - length).abs() < 1e-15 {
+            break;
+        }
+        length = next;
+        there = at(length)?;
+    }
+    Some((there, length))
+}
+
 /// The end of a step and its error over the tolerance.
 fn trial<const N: usize>(
     system: &impl System<N>,

@@ -3,11 +3,13 @@
 mod second_variation;
 
 use nalgebra::Vector2;
-use swimmer_files::ArcKind;
+use swimmer_files::{ArcKind, GaitArc};
 
+use super::{Cycle, Quarter, SMOOTH};
 use crate::Arc;
-use crate::displacement::flow::{Leg, Motion};
-use crate::displacement::height::{Extremal, pose_rates, shape};
+use crate::displacement::flow::Leg;
+use crate::displacement::height::Extremal;
+use crate::momentum::{Motion, pose_rates, shape};
 use crate::region::Region;
 use crate::runge_kutta::{Point, StepControl, System, advance};
 use second_variation::{Push, SecondVariation};
@@ -173,7 +175,7 @@ impl QuarterTrace {
     fn meet(&mut self, direction: Vector2<f64>) {
         if self.kinds.is_empty() {
             self.first_direction = direction;
-        } else if (direction - self.last_direction).norm() > super::SMOOTH {
+        } else if (direction - self.last_direction).norm() > SMOOTH {
             self.corners.push(self.phi.len() - 1);
         }
     }
@@ -184,6 +186,30 @@ impl QuarterTrace {
 
     pub(crate) fn end(&self) -> Vector2<f64> {
         self.phi.last().copied().unwrap_or_default()
+    }
+
+    /// The full cycle.
+    pub(crate) fn cycle(&self) -> Cycle {
+        let total = self.power_length.last().copied().unwrap_or(1.0);
+        let place = |i: usize| {
+            self.power_length
+                .get(i)
+                .map_or(1.0, |length| length / total)
+        };
+        let (first, last) = (self.first_direction, self.last_direction);
+        let arcs = self.kinds.iter().map(|&(kind, from, to)| GaitArc {
+            kind,
+            from: place(from),
+            to: place(to),
+        });
+        Cycle::of_quarter(&Quarter {
+            at: (0..self.phi.len()).map(place).collect(),
+            phi: &self.phi,
+            corners: self.corners.iter().map(|&i| place(i)).collect(),
+            arcs: arcs.collect(),
+            // Square to φ₁ = φ₂ (φ₁ = −φ₂) is a direction without a part along it.
+            square: [first.x + first.y, last.x - last.y].map(|along| along.abs() < SMOOTH),
+        })
     }
 
     /// The arcs with their joint angles.

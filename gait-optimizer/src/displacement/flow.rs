@@ -15,45 +15,20 @@
 //! both ends of a step, so that two crossings in one step are seen, and located by cutting the step.
 
 mod event;
-mod motion;
 mod quarter;
 
 use event::{Event, MOST_EVENTS, Watched, first_event};
 
 use swimmer_files::ArcKind;
 
-use super::height::{Extremal, State, pose_rates, shape};
+use super::height::Extremal;
+use crate::momentum::{Flow, Motion, State, Track, shape};
 use crate::region::{Bound, Region};
-use crate::runge_kutta::{Point, StepControl, System, controlled_step, exact_step};
-pub(crate) use motion::{Motion, Track};
+use crate::runge_kutta::{Point, StepControl, System, controlled_step, exact_step, locate};
 pub(crate) use quarter::{Fate, Leg, MOST_ARCS, Quarter};
 
 /// Longest curve of a quarter \[rad\].
 const LONGEST_CURVE: f64 = 40.0;
-
-/// The dynamics of an arc with |u| = 1 (paper, the constraint on the shape's rate of change).
-pub(crate) struct Drive<'a> {
-    pub(crate) extremal: Extremal<'a>,
-    pub(crate) motion: Motion,
-}
-
-impl System<6> for Drive<'_> {
-    fn rate(&self, z: &State) -> State {
-        let (phi, pose) = (shape(z), [z[2], z[3], z[4]]);
-        let (direction, connection, power) = match self.motion {
-            Motion::Singular => {
-                let (height, connection, power) = self.extremal.height_and_gradient(&phi, &pose);
-                (height.singular_direction(), connection, power)
-            }
-            Motion::Along(track) => {
-                let (connection, power) = self.extremal.model.connection_and_power(&phi);
-                (track.direction(&phi), connection, power)
-            }
-        };
-        let [x, y, theta, speed] = pose_rates(&connection, &power, z[4], &direction);
-        [direction.x, direction.y, x, y, theta, speed]
-    }
-}
 
 /// How to follow arcs.
 #[derive(Debug, Clone, Copy)]
@@ -119,7 +94,11 @@ fn arcs(
     let mut motion = first;
     while let Some(leg) = quarter.legs.get_mut(quarter.count) {
         let tracer = Tracer {
-            drive: Drive { extremal, motion },
+            drive: Flow {
+                model: extremal.model,
+                momentum: extremal.momentum(),
+                motion,
+            },
             region,
             control: course.control,
             leaves,
@@ -157,7 +136,7 @@ fn arcs(
 
 /// One arc being traced.
 struct Tracer<'a> {
-    drive: Drive<'a>,
+    drive: Flow<'a>,
     region: &'a Region,
     control: StepControl,
     /// Whether bounds are left where the multiplier falls to zero.
@@ -267,32 +246,21 @@ impl Tracer<'_> {
         let Motion::Along(track) = self.drive.motion else {
             return (1.0, 0.0);
         };
-        let (phi, pose) = (shape(&at.z), [at.z[2], at.z[3], at.z[4]]);
-        let (height, ..) = self.drive.extremal.height_and_gradient(&phi, &pose);
-        let direction = track.direction(&phi);
+        let height = self.drive.height(&at.z);
+        let direction = track.direction(&shape(&at.z));
         (
             track.way * height.value,
             track.way * height.gradient.dot(&direction),
         )
     }
 
-    /// Cuts the step to end where the event's value is zero, by Newton's method on the step's length.
+    /// Cuts the step to end where the event's value is zero.
     fn locate(&self, here: &Point<6>, event: Event, guess: f64, longest: f64) -> (State, f64) {
-        let mut length = guess;
-        let mut there = exact_step(&self.drive, here, length);
-        for _ in 0..12 {
-            let (value, slope) = self.value(event, &there);
-            let better = (length - value / slope).clamp(0.0, longest);
-            if !better.is_finite() || (better - length).abs() <= 1e-16 * (1.0 + length) {
-                break;
-            }
-            let done = (better - length).abs() < 1e-13;
-            length = better;
-            there = exact_step(&self.drive, here, length);
-            if done {
-                break;
-            }
-        }
+        let at = |length| Some(exact_step(&self.drive, here, length));
+        let value = |at: &Point<6>| self.value(event, at);
+        let Some((there, length)) = locate([guess, longest], at, value) else {
+            return (here.z, 0.0);
+        };
         let mut z = there.z;
         if let Event::Edge(index) = event
             && let Some(bound) = self.region.bound(index)

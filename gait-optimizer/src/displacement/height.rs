@@ -11,25 +11,6 @@ use swimmer_model::{FirstDerivatives, Model};
 
 use crate::momentum::{Height, Momentum};
 
-/// State along a quarter gait: φ₁, φ₂, x, y, θ (lengths over L) and the power length ∫√P over the arc.
-pub(crate) type State = [f64; 6];
-
-/// Joint angles of a state.
-pub(crate) fn shape(z: &[f64]) -> Vector2<f64> {
-    match z {
-        [phi1, phi2, ..] => Vector2::new(*phi1, *phi2),
-        _ => Vector2::zeros(),
-    }
-}
-
-/// x, y, θ of a state.
-pub(crate) fn pose(z: &[f64]) -> [f64; 3] {
-    match z {
-        [_, _, x, y, theta, ..] => [*x, *y, *theta],
-        _ => [0.0; 3],
-    }
-}
-
 /// One choice of the problem's multipliers: all extremals with this λ₃ and this final y.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Extremal<'a> {
@@ -57,7 +38,8 @@ pub(crate) struct Slopes {
 }
 
 impl Extremal<'_> {
-    fn momentum(&self) -> Momentum {
+    /// The multipliers as a momentum.
+    pub(crate) fn momentum(&self) -> Momentum {
         Momentum {
             p: Vector2::new(self.sign, 0.0),
             c: -self.sign * self.final_y,
@@ -128,27 +110,10 @@ impl Extremal<'_> {
     }
 }
 
-/// Rates of x, y, θ and of the power length for a direction in the plane of joint angles.
-pub(crate) fn pose_rates(
-    connection: &Matrix3x2<f64>,
-    power: &Matrix2<f64>,
-    theta: f64,
-    direction: &Vector2<f64>,
-) -> [f64; 4] {
-    let body = connection * direction;
-    let (sin, cos) = theta.sin_cos();
-    let speed = direction.dot(&(power * direction)).max(0.0).sqrt();
-    [
-        cos * body.x - sin * body.y,
-        sin * body.x + cos * body.y,
-        body.z,
-        speed,
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::momentum::pose_rates;
     use swimmer_model::Swimmer;
 
     /// The gradient is the height's change along a short stretch of the dynamics.

@@ -8,9 +8,10 @@
 use swimmer_model::Model;
 
 use super::Fates;
-use super::flow::{Course, Fate, Leg, Motion, Quarter, follow};
-use super::height::{Extremal, State, shape};
+use super::flow::{Course, Fate, Leg, Quarter, follow};
+use super::height::Extremal;
 use super::trunk::{Place, Trunk};
+use crate::momentum::{Motion, State, shape};
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
 

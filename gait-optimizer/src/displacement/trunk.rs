@@ -4,9 +4,10 @@ use std::f64::consts::PI;
 
 use swimmer_files::{ArcKind, Bounds};
 
-use super::flow::{Drive, Fate, Leg, Motion, Track, along_bounds, is_end_line};
-use super::height::{Extremal, State};
+use super::flow::{Fate, Leg, along_bounds, is_end_line};
+use super::height::Extremal;
 use super::search::{FINE, lasting};
+use crate::momentum::{Flow, Motion, State, Track};
 use crate::region::{Bound, Piece, Region};
 use crate::runge_kutta::{Point, advance};
 
@@ -196,7 +197,11 @@ impl Trunk {
                     .iter()
                     .find(|stretch| p >= stretch.span[0] && p <= stretch.span[1])?;
                 let motion = Motion::Along(stretch.track);
-                let drive = Drive { extremal, motion };
+                let drive = Flow {
+                    model: extremal.model,
+                    momentum: extremal.momentum(),
+                    motion,
+                };
                 let start = Point::new(&drive, stretch.from);
                 let state = advance(&drive, start, p - stretch.span[0], FINE)?.z;
                 Some(Place { state, motion })

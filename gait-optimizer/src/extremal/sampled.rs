@@ -8,7 +8,7 @@ use super::equations::{Motion, shape};
 use super::flow::flowed;
 use super::shooting::{Chain, Class, Entry};
 use crate::Arc;
-use crate::cycle::Cycle;
+use crate::cycle::{Cycle, Quarter};
 
 /// A chain at equal steps of power length, arc by arc.
 #[derive(Debug, Clone)]
@@ -106,7 +106,18 @@ impl Sampled {
     /// The full cycle.
     pub(crate) fn cycle(&self, class: Class) -> Cycle {
         match class {
-            Class::Quarter => self.mirrored(),
+            Class::Quarter => Cycle::of_quarter(&Quarter {
+                at: self.at.clone(),
+                phi: &self.phi,
+                corners: self
+                    .joints
+                    .iter()
+                    .filter(|&&i| i > 0)
+                    .map(|&i| self.place(i))
+                    .collect(),
+                arcs: self.gait_arcs(),
+                square: [!self.starts_bent, true],
+            }),
             Class::Closed { .. } => {
                 let mut cycle = Cycle {
                     u: self.at.clone(),
@@ -123,64 +134,6 @@ impl Sampled {
                 }
                 cycle
             }
-        }
-    }
-
-    /// The quarter with its images: reversed and reflected in φ₁ = −φ₂, then both turned by half a turn.
-    fn mirrored(&self) -> Cycle {
-        let starts_smooth = !self.starts_bent;
-        let intervals = self.phi.len() - 1;
-        let (mut u, mut phi) = (Vec::new(), Vec::new());
-        let mut corners = Vec::new();
-        let mut arcs: Vec<GaitArc> = Vec::new();
-        let quarter = self.gait_arcs();
-        for half in 0..2_u32 {
-            let (base, sign) = (0.5 * f64::from(half), 1.0 - 2.0 * f64::from(half));
-            for (at, shape) in self.at.iter().zip(&self.phi).take(intervals) {
-                u.push(base + 0.25 * at);
-                phi.push(shape * sign);
-            }
-            for (at, shape) in self.at.iter().zip(&self.phi).skip(1).rev() {
-                u.push(base + 0.5 - 0.25 * at);
-                phi.push(Vector2::new(-shape.y, -shape.x) * sign);
-            }
-            let joints = || {
-                let inner = self.joints.iter().filter(|&&i| i > 0 || self.starts_bent);
-                inner.map(|&i| 0.25 * self.place(i))
-            };
-            corners.extend(joints().map(|at| base + at));
-            corners.extend(
-                joints()
-                    .rev()
-                    .filter(|&at| at > 0.0)
-                    .map(|at| base + 0.5 - at),
-            );
-            let images = quarter.iter().rev().map(|arc| GaitArc {
-                kind: arc.kind,
-                from: 2.0 - arc.to,
-                to: 2.0 - arc.from,
-            });
-            for (number, arc) in quarter.iter().copied().chain(images).enumerate() {
-                let arc = GaitArc {
-                    kind: arc.kind,
-                    from: base + 0.25 * arc.from,
-                    to: base + 0.25 * arc.to,
-                };
-                // An arc that crosses a symmetry line smoothly is one with its image.
-                let joins = number == quarter.len() || (number == 0 && starts_smooth);
-                match arcs.last_mut() {
-                    Some(last) if joins && last.kind == arc.kind => last.to = arc.to,
-                    _ => arcs.push(arc),
-                }
-            }
-        }
-        u.push(1.0);
-        phi.extend(phi.first().copied());
-        Cycle {
-            u,
-            phi,
-            corners,
-            arcs,
         }
     }
 }

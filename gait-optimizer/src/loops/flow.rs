@@ -3,28 +3,9 @@
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use crate::displacement::height::{State, pose, pose_rates, shape};
-use crate::momentum::Momentum;
-use crate::region::{Bound, Clearance, Piece, Region};
-use crate::runge_kutta::{Point, StepControl, System, controlled_step, exact_step};
-
-/// What an arc runs along.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Motion {
-    /// The zero of the height.
-    Singular,
-    /// A straight bound, with this direction.
-    Edge {
-        bound: usize,
-        direction: Vector2<f64>,
-    },
-    /// A piece of the bound that keeps links apart, this way along its tangent.
-    Clearance {
-        bound: usize,
-        piece: Piece,
-        clearance: Clearance,
-    },
-}
+use crate::momentum::{Flow, Momentum, Motion, State, Track, shape};
+use crate::region::{Bound, Region};
+use crate::runge_kutta::{Point, StepControl, controlled_step, exact_step, locate};
 
 /// One arc of a lap.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,68 +63,6 @@ pub(crate) struct Course<'a> {
     pub(crate) control: StepControl,
 }
 
-struct Drive<'a> {
-    model: &'a Model<f64>,
-    momentum: Momentum,
-    motion: Motion,
-}
-
-impl System<6> for Drive<'_> {
-    fn rate(&self, z: &State) -> State {
-        let (direction, connection, power) = match &self.motion {
-            Motion::Singular => {
-                let (height, connection, power) =
-                    self.momentum.look(self.model, &shape(z), &pose(z));
-                (height.singular_direction(), connection, power)
-            }
-            along => {
-                let phi = shape(z);
-                let (connection, power) = self.model.connection_and_power(&phi);
-                (along.tangent(&phi), connection, power)
-            }
-        };
-        let [x, y, theta, speed] = pose_rates(&connection, &power, z[4], &direction);
-        [direction.x, direction.y, x, y, theta, speed]
-    }
-}
-
-impl Drive<'_> {
-    /// What is left of the piece of a clearance that the arc runs along.
-    fn piece_left(&self, at: &Point<6>) -> f64 {
-        match self.motion {
-            Motion::Clearance {
-                piece, clearance, ..
-            } => clearance
-                .piece_end(piece, &shape(&at.z))
-                .map_or(1.0, |(value, _)| value),
-            _ => 1.0,
-        }
-    }
-}
-
-impl Motion {
-    /// Along a bound: its tangent with the region on the left.
-    pub(crate) fn tangent(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        match self {
-            Self::Singular => Vector2::zeros(),
-            Self::Edge { direction, .. } => *direction,
-            Self::Clearance {
-                piece, clearance, ..
-            } => {
-                let inwards = clearance.level(*piece, phi).gradient;
-                Vector2::new(inwards.y, -inwards.x) / inwards.norm()
-            }
-        }
-    }
-
-    fn bound(&self) -> Option<usize> {
-        match self {
-            Self::Singular => None,
-            Self::Edge { bound, .. } | Self::Clearance { bound, .. } => Some(*bound),
-        }
-    }
-}
-
 /// What ended an arc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Event {
@@ -163,7 +82,7 @@ impl Course<'_> {
         let mut motion = self.first;
         let mut travelled = 0.0;
         for _ in 0..MOST_ARCS {
-            let drive = Drive {
+            let drive = Flow {
                 model: self.model,
                 momentum: self.momentum,
                 motion,
@@ -180,7 +99,7 @@ impl Course<'_> {
             match event {
                 Event::Home => return Some(lap),
                 Event::HeightGone => {
-                    let at_home = motion.bound().map(Home::Exit) == Some(self.home)
+                    let at_home = bound_of(&motion).map(Home::Exit) == Some(self.home)
                         && travelled > self.shortest
                         && (phi - self.start).norm() < self.near;
                     if at_home {
@@ -196,25 +115,13 @@ impl Course<'_> {
                     return Some(lap);
                 }
                 Event::Reached(index) => {
-                    motion = along(self.region.bound(index)?, index, &phi, &motion)?;
+                    motion = along(self.region, index, &phi, &motion)?;
                 }
                 Event::PieceEnd => {
-                    let index = motion.bound()?;
-                    let ahead = phi + motion.tangent(&phi) * 1e-7;
-                    let before = motion;
-                    motion = match (self.region.bound(index)?, motion) {
-                        (Bound::Clearance(clearance), Motion::Clearance { piece, .. }) => {
-                            Motion::Clearance {
-                                bound: index,
-                                piece: next_piece(&clearance, piece, &ahead),
-                                clearance,
-                            }
-                        }
-                        _ => return None,
-                    };
-                    if motion == before {
+                    let Motion::Along(track) = motion else {
                         return None;
-                    }
+                    };
+                    motion = Motion::Along(track.next_piece()?);
                 }
             }
         }
@@ -222,17 +129,15 @@ impl Course<'_> {
     }
 
     /// Integrates to the first event.
-    fn arc(&self, drive: &Drive<'_>, start: State, before: f64) -> Option<(State, Event, f64)> {
+    fn arc(&self, drive: &Flow<'_>, start: State, before: f64) -> Option<(State, Event, f64)> {
         let mut here = Point::new(drive, start);
         let mut length = 0.0;
         let mut try_length: f64 = 0.05;
-        let own = drive.motion.bound();
+        let own = bound_of(&drive.motion);
         if own.is_some() {
             // The height must rise where a bound is met, or be positive already.
             let ahead = exact_step(drive, &here, 1e-5);
-            let (height, ..) = self
-                .momentum
-                .look(self.model, &shape(&ahead.z), &pose(&ahead.z));
+            let height = drive.height(&ahead.z);
             if height.value < -SLACK {
                 return None;
             }
@@ -263,32 +168,36 @@ impl Course<'_> {
                 let event = Event::Home;
                 consider(
                     event,
-                    self.value(event, &here),
-                    self.value(event, &step.end),
+                    self.value(drive, event, &here).0,
+                    self.value(drive, event, &step.end).0,
                 );
             }
             if own.is_some() {
                 let event = Event::HeightGone;
                 consider(
                     event,
-                    self.value(event, &here),
-                    self.value(event, &step.end),
+                    self.value(drive, event, &here).0,
+                    self.value(drive, event, &step.end).0,
                 );
-                if let Motion::Clearance { .. } = drive.motion {
-                    let event = Event::PieceEnd;
-                    let value = |at: &Point<6>| drive.piece_left(at);
-                    consider(event, value(&here), value(&step.end));
-                }
+                let event = Event::PieceEnd;
+                consider(
+                    event,
+                    self.value(drive, event, &here).0,
+                    self.value(drive, event, &step.end).0,
+                );
             } else if self.home == Home::Line && far_enough {
                 let event = Event::Home;
                 let near = (shape(&step.end.z) - self.start).norm() < self.near;
-                let (from, to) = (self.value(event, &here), self.value(event, &step.end));
+                let (from, to) = (
+                    self.value(drive, event, &here).0,
+                    self.value(drive, event, &step.end).0,
+                );
                 if near {
                     consider(event, from, to);
                 }
             }
             if let Some((guess, event)) = first {
-                let (end, at) = self.locate(drive, &here, event, guess, step.length);
+                let (end, at) = self.locate(drive, &here, event, guess, step.length)?;
                 return Some((end, event, length + at));
             }
             here = step.end;
@@ -298,69 +207,38 @@ impl Course<'_> {
         None
     }
 
-    /// A value that falls through zero where the event is.
-    fn value(&self, event: Event, at: &Point<6>) -> f64 {
+    /// A value that falls through zero where the event is, with its slope.
+    fn value(&self, drive: &Flow<'_>, event: Event, at: &Point<6>) -> (f64, f64) {
+        let (phi, rate) = (shape(&at.z), shape(&at.rate));
         match event {
-            Event::Reached(index) => self
-                .region
-                .bound(index)
-                .map_or(1.0, |bound| bound.margin(&shape(&at.z))),
+            Event::Reached(index) => self.region.bound(index).map_or((1.0, 0.0), |bound| {
+                (bound.margin(&phi), bound.gradient(&phi).dot(&rate))
+            }),
             Event::HeightGone => {
-                self.momentum
-                    .look(self.model, &shape(&at.z), &pose(&at.z))
-                    .0
-                    .value
+                let height = drive.height(&at.z);
+                (height.value, height.gradient.dot(&rate))
             }
-            Event::PieceEnd => 1.0,
-            Event::Home => -(shape(&at.z) - self.start).dot(&self.ahead),
+            Event::PieceEnd => match drive.motion {
+                Motion::Along(track) => track.piece_end(&phi),
+                Motion::Singular => None,
+            }
+            .map_or((1.0, 0.0), |(left, slope)| (left, slope.dot(&rate))),
+            Event::Home => (-(phi - self.start).dot(&self.ahead), -rate.dot(&self.ahead)),
         }
     }
 
-    /// Cuts the step where the event is: regula falsi with bisection, then exact.
+    /// Cuts the step where the event is.
     fn locate(
         &self,
-        drive: &Drive<'_>,
+        drive: &Flow<'_>,
         here: &Point<6>,
         event: Event,
         guess: f64,
         longest: f64,
-    ) -> (State, f64) {
-        let value = |at: &Point<6>| match event {
-            Event::PieceEnd => drive.piece_left(at),
-            other => self.value(other, at),
-        };
-        let (mut low, mut high) = ((0.0, value(here)), (longest, f64::NAN));
-        high.1 = value(&exact_step(drive, here, longest));
-        let mut length = guess;
-        let mut there = exact_step(drive, here, length);
-        for round in 0..60 {
-            let now = value(&there);
-            if now > 0.0 {
-                low = (length, now);
-                if round % 2 == 1 {
-                    high.1 *= 0.5;
-                }
-            } else {
-                high = (length, now);
-                if round % 2 == 1 {
-                    low.1 *= 0.5;
-                }
-            }
-            if now == 0.0 || high.0 - low.0 < 1e-15 {
-                break;
-            }
-            let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-            let next = if secant > low.0 && secant < high.0 && round < 40 {
-                secant
-            } else {
-                0.5 * (low.0 + high.0)
-            };
-            if (next - length).abs() < 1e-16 {
-                break;
-            }
-            length = next;
-            there = exact_step(drive, here, length);
-        }
+    ) -> Option<(State, f64)> {
+        let at = |length| Some(exact_step(drive, here, length));
+        let value = |at: &Point<6>| self.value(drive, event, at);
+        let (there, length) = locate([guess, longest], at, value)?;
         let mut z = there.z;
         if let Event::Reached(index) = event
             && let Some(bound) = self.region.bound(index)
@@ -368,42 +246,26 @@ impl Course<'_> {
             let on = bound.onto(&shape(&z));
             (z[0], z[1]) = (on.x, on.y);
         }
-        (z, length)
+        Some((z, length))
+    }
+}
+
+fn bound_of(motion: &Motion) -> Option<usize> {
+    match motion {
+        Motion::Singular => None,
+        Motion::Along(track) => Some(track.index),
     }
 }
 
 /// What follows when a bound is met.
-fn along(bound: Bound, index: usize, phi: &Vector2<f64>, before: &Motion) -> Option<Motion> {
-    let motion = match bound {
-        Bound::Straight(edge) => Motion::Edge {
-            bound: index,
-            direction: edge.counter_clockwise(),
-        },
-        Bound::Clearance(clearance) => Motion::Clearance {
-            bound: index,
-            piece: clearance.piece(phi),
-            clearance,
-        },
-    };
-    // From bound to bound the way must lead on inside both.
-    if let Motion::Edge { direction, .. } = before
-        && direction.perp(&motion.tangent(phi)) <= 0.0
+fn along(region: &Region, index: usize, phi: &Vector2<f64>, before: &Motion) -> Option<Motion> {
+    let track = Track::new(region, index, phi, 1.0)?;
+    // From one straight bound to the next the way must lead on inside both.
+    if let Motion::Along(before) = before
+        && matches!(before.bound, Bound::Straight(_))
+        && before.direction(phi).perp(&track.direction(phi)) <= 0.0
     {
         return None;
     }
-    Some(motion)
-}
-
-/// The piece that a clearance goes on with where one ends.
-fn next_piece(clearance: &Clearance, ended: Piece, ahead: &Vector2<f64>) -> Piece {
-    let next = clearance.piece(ahead);
-    if next != ended {
-        return next;
-    }
-    // At a corner the place ahead lies beyond the bound; the other tip's piece goes on.
-    match ended {
-        Piece::FrontTip => Piece::BackTip,
-        Piece::BackTip => Piece::FrontTip,
-        other => other,
-    }
+    Some(Motion::Along(track))
 }

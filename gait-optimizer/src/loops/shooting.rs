@@ -3,9 +3,8 @@
 use nalgebra::{Matrix2, Vector2, Vector3};
 use swimmer_model::Model;
 
-use super::flow::{Course, Home, Lap, Motion};
-use crate::displacement::height::{pose, shape};
-use crate::momentum::Momentum;
+use super::flow::{Course, Home, Lap};
+use crate::momentum::{Momentum, Motion, pose, shape};
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
 

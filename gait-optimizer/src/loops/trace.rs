@@ -4,14 +4,13 @@ use nalgebra::Vector2;
 use swimmer_files::{ArcKind, GaitArc};
 use swimmer_model::{Model, Stroke};
 
-use super::flow::{Lap, Leg, Motion};
+use super::flow::{Lap, Leg};
 use super::shooting::Closed;
 use crate::certificate::{again_within, simple_and_turning_once};
 use crate::cycle::Cycle;
-use crate::displacement::height::{State, pose, pose_rates, shape};
-use crate::momentum::Momentum;
-use crate::region::Region;
-use crate::runge_kutta::{Point, StepControl, System, advance};
+use crate::momentum::{Flow, Momentum, Motion, State, pose, shape};
+use crate::region::{Bound, Region};
+use crate::runge_kutta::{Point, StepControl, System, advance, locate};
 use crate::{Arc, Check};
 
 /// Numbers gathered along the loop. Heights are over the largest slope of the height times one radian.
@@ -55,32 +54,13 @@ const FEWEST_CURVED: usize = 24;
 /// Arcs below this share of the cycle are crossings of a corner, not arcs.
 const LASTING: f64 = 1e-9;
 
-/// The dynamics over the power length.
-struct ByPower<'a> {
-    model: &'a Model<f64>,
-    momentum: Momentum,
-    motion: Motion,
-}
-
-impl ByPower<'_> {
-    fn direction(&self, z: &State) -> Vector2<f64> {
-        match self.motion {
-            Motion::Singular => self
-                .momentum
-                .look(self.model, &shape(z), &pose(z))
-                .0
-                .singular_direction(),
-            along => along.tangent(&shape(z)),
-        }
-    }
-}
+/// The same dynamics over the power length.
+struct ByPower<'a>(Flow<'a>);
 
 impl System<6> for ByPower<'_> {
     fn rate(&self, z: &State) -> State {
-        let direction = self.direction(z);
-        let (connection, power) = self.model.connection_and_power(&shape(z));
-        let [x, y, theta, speed] = pose_rates(&connection, &power, z[4], &direction);
-        [direction.x, direction.y, x, y, theta, speed].map(|rate| rate / speed)
+        let rate = self.0.rate(z);
+        rate.map(|part| part / rate[5])
     }
 }
 
@@ -132,11 +112,11 @@ impl LoopTrace {
         const LOOKS: usize = 48;
         let mut best: Option<(usize, State)> = None;
         for (index, leg) in legs.iter().enumerate() {
-            let system = ByPower {
+            let system = ByPower(Flow {
                 model,
                 momentum: closed.momentum,
                 motion: leg.motion,
-            };
+            });
             let step = (leg.to[5] - leg.from[5]) / LOOKS as f64;
             let mut here = Point::new(&system, leg.from);
             for _ in 0..LOOKS {
@@ -155,32 +135,10 @@ impl LoopTrace {
     }
 
     fn crossing(system: &ByPower<'_>, from: &Point<6>, step: f64) -> Option<State> {
-        let off = |z: &State| z[0] - z[1];
-        let (mut low, mut high) = (0.0, step);
-        let mut length = 0.5 * step;
-        for _ in 0..60 {
-            let there = advance(system, *from, length, CONTROL)?;
-            let value = off(&there.z);
-            if value == 0.0 {
-                return Some(there.z);
-            }
-            if value * off(&from.z) > 0.0 {
-                low = length;
-            } else {
-                high = length;
-            }
-            let newton = length - value / off(&there.rate);
-            let next = if newton > low && newton < high {
-                newton
-            } else {
-                0.5 * (low + high)
-            };
-            if (next - length).abs() < 1e-15 {
-                return Some(there.z);
-            }
-            length = next;
-        }
-        advance(system, *from, length, CONTROL).map(|there| there.z)
+        let side = if from.z[0] < from.z[1] { -1.0 } else { 1.0 };
+        let off = |at: &Point<6>| (side * (at.z[0] - at.z[1]), side * (at.rate[0] - at.rate[1]));
+        let at = |length| advance(system, *from, length, CONTROL);
+        locate([0.5 * step, step], at, off).map(|(there, _)| there.z)
     }
 
     /// The arcs of the first quarter: all there is to say of a loop with the paper's two symmetries.
@@ -276,18 +234,18 @@ impl LoopTrace {
         let mut done = 0.0;
         let mut directions: Vec<(Vector2<f64>, Vector2<f64>)> = Vec::new();
         for &(motion, length) in route {
-            let system = ByPower {
+            let system = ByPower(Flow {
                 model,
                 momentum,
                 motion,
-            };
+            });
             let from = (done / total, shape(&here));
-            let set_out = system.direction(&here);
+            let set_out = system.0.direction(&here);
             // Samples fall on the quarters of the cycle, where a symmetric loop has its images meet.
             for (from, to) in between_quarters(done / total, (done + length) / total) {
                 let fewest = match motion {
-                    Motion::Edge { .. } => FEWEST,
-                    Motion::Singular | Motion::Clearance { .. } => FEWEST_CURVED,
+                    Motion::Along(track) if matches!(track.bound, Bound::Straight(_)) => FEWEST,
+                    _ => FEWEST_CURVED,
                 };
                 let intervals = (fewest..samples)
                     .find(|&count| count as f64 >= samples as f64 * (to - from))
@@ -307,9 +265,9 @@ impl LoopTrace {
                 }
             }
             evidence.look(&system, region, &here);
-            directions.push((set_out, system.direction(&here)));
+            directions.push((set_out, system.0.direction(&here)));
             done += length;
-            let kind = kind(region, motion);
+            let kind = kind(motion);
             cycle.arcs.push(GaitArc {
                 kind,
                 from: from.0,
@@ -352,12 +310,12 @@ impl LoopTrace {
 
 impl LoopEvidence {
     fn look(&mut self, system: &ByPower<'_>, region: &Region, z: &State) {
-        let (height, ..) = system.momentum.look(system.model, &shape(z), &pose(z));
+        let height = system.0.height(z);
         let slope = height.gradient.norm();
         self.overstepped = self.overstepped.max(region.overstepped(&shape(z)));
-        if system.motion == Motion::Singular {
+        if system.0.motion == Motion::Singular {
             self.off_zero = self.off_zero.max(height.value.abs() / slope);
-            let direction = system.direction(z);
+            let direction = system.0.direction(z);
             let left = height
                 .gradient
                 .dot(&Vector2::new(-direction.y, direction.x));
@@ -389,12 +347,9 @@ fn between_quarters(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
     starts.zip(inner.chain(std::iter::once(to)))
 }
 
-fn kind(region: &Region, motion: Motion) -> ArcKind {
+fn kind(motion: Motion) -> ArcKind {
     match motion {
         Motion::Singular => ArcKind::Singular,
-        Motion::Edge { bound, .. } => region
-            .bound(bound)
-            .map_or(ArcKind::Upper, |bound| bound.kind()),
-        Motion::Clearance { .. } => ArcKind::Clearance,
+        Motion::Along(track) => track.bound.kind(),
     }
 }

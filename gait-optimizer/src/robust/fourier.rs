@@ -14,6 +14,7 @@ use super::newton::Design;
 use super::nodes::Nodes;
 use super::quarter::{ArcCurve, Swum};
 use crate::Branch;
+use crate::efficiency::starts;
 
 /// Relative gradient norm, |∇ξ̄|/ξ̄ per radian, that counts as zero.
 pub(super) const FLAT: f64 = 1e-9;
@@ -38,7 +39,6 @@ pub(super) struct FourierFamily {
 struct Valued {
     xi: f64,
     gradient: DVector<f64>,
-    displacement: f64,
 }
 
 impl FourierFamily {
@@ -48,7 +48,11 @@ impl FourierFamily {
         order: usize,
         branch: Branch,
     ) -> Result<Self, RobustError> {
-        let mut x = best_circle(nominal, branch)?;
+        let starts = starts(nominal, branch).unwrap_or_default();
+        let ellipse = starts.first().ok_or(RobustError::Structure {
+            problem: "no circle leads to a gait of this branch",
+        })?;
+        let mut x = DVector::from_column_slice(ellipse);
         let mut family = Self::new(1);
         for order in 1..=order {
             if order > 1 {
@@ -160,11 +164,7 @@ impl FourierFamily {
                 xi * (2.0 * dx / x_net - de / energy)
             }),
         );
-        Valued {
-            xi,
-            gradient,
-            displacement: x_net,
-        }
+        Valued { xi, gradient }
     }
 
     /// Weighted ξ̄ and ∇ξ̄/ξ̄.
@@ -272,36 +272,4 @@ impl Design for FourierFamily {
             residual: gradient.norm(),
         })
     }
-}
-
-/// Radii of circles that are tried \[rad\].
-const RADII: std::ops::Range<u32> = 4..100;
-const RADIUS_STEP: f64 = 0.05;
-
-/// The circle to start a branch from: the first peak of ξ with X > 0, or the best circle with X < 0.
-fn best_circle(model: &Model<f64>, branch: Branch) -> Result<DVector<f64>, RobustError> {
-    let family = FourierFamily::new(1);
-    let circle = |i: u32| {
-        let radius = f64::from(i) * RADIUS_STEP;
-        DVector::from_vec(vec![radius, radius])
-    };
-    let swum: Vec<(u32, Valued)> = RADII
-        .map(|i| (i, family.valued(&circle(i), model)))
-        .collect();
-    let found = match branch {
-        Branch::Small => swum.windows(3).find_map(|three| match three {
-            [(_, a), (i, b), (_, c)] if b.displacement > 0.0 && b.xi > a.xi && b.xi >= c.xi => {
-                Some(*i)
-            }
-            _ => None,
-        }),
-        Branch::Large => swum
-            .iter()
-            .filter(|(_, one)| one.displacement < 0.0)
-            .max_by(|a, b| a.1.xi.total_cmp(&b.1.xi))
-            .map(|(i, _)| *i),
-    };
-    found.map(circle).ok_or(RobustError::Structure {
-        problem: "no circle leads to a gait of this branch",
-    })
 }

@@ -6,8 +6,8 @@
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use crate::loops::{Course, Lap, LoopTrace, Motion};
-use crate::momentum::Momentum;
+use crate::loops::{Course, Lap, LoopTrace};
+use crate::momentum::{Momentum, Motion, Track};
 use crate::region::{Bound, Edge, Region};
 use crate::runge_kutta::StepControl;
 
@@ -129,10 +129,12 @@ impl Family<'_> {
             region: self.region,
             momentum: self.momentum(rotation),
             start: self.start.at,
-            first: Motion::Edge {
-                bound: self.start.bound,
-                direction: self.start.along,
-            },
+            first: Motion::Along(Track::new(
+                self.region,
+                self.start.bound,
+                &self.start.at,
+                1.0,
+            )?),
             home: crate::loops::Home::Along(self.start.bound),
             ahead: self.start.along,
             shortest: 0.5,

@@ -1,7 +1,7 @@
 //! What following arcs comes to: the arcs of a quarter gait, and how it ended.
 
-use super::{Motion, is_end_line};
-use crate::displacement::height::State;
+use super::is_end_line;
+use crate::momentum::{Motion, State};
 
 /// One arc of a quarter.
 #[derive(Debug, Clone, Copy, PartialEq)]
