@@ -8,7 +8,7 @@ mod clearance;
 #[cfg(test)]
 mod tests;
 
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Links;
 
@@ -81,12 +81,21 @@ impl Bound {
         }
     }
 
+    /// The margin with its first and second derivatives.
+    pub(crate) fn level(&self, phi: &Vector2<f64>) -> Level {
+        match self {
+            Self::Straight(edge) => Level {
+                value: edge.margin(phi),
+                gradient: -edge.normal,
+                hessian: Matrix2::zeros(),
+            },
+            Self::Clearance(clearance) => clearance.deciding_level(phi),
+        }
+    }
+
     /// ∂margin/∂Φ; points inwards.
     pub(crate) fn gradient(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        match self {
-            Self::Straight(edge) => -edge.normal,
-            Self::Clearance(clearance) => clearance.deciding_level(phi).gradient,
-        }
+        self.level(phi).gradient
     }
 
     /// Unit vector along the bound with the region on its left. Off the bound: along the curve of equal margin.

@@ -7,16 +7,10 @@ use nalgebra::{Matrix2, Vector2};
 use swimmer_files::Bounds;
 use swimmer_model::Links;
 
+use crate::region::Level;
+
 /// Sides of the box, and two for the links.
 pub(crate) const MOST: usize = 6;
-
-/// Value, gradient and second derivatives of a bound's margin.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Margin {
-    pub(crate) value: f64,
-    pub(crate) gradient: Vector2<f64>,
-    pub(crate) hessian: Matrix2<f64>,
-}
 
 /// The region that a curve is kept in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,8 +42,8 @@ impl Fence {
     }
 
     /// All margins at a shape; entries beyond [`Fence::count`] are not meant.
-    pub(crate) fn margins(&self, phi: &Vector2<f64>) -> [Margin; MOST] {
-        let straight = |x: f64, y: f64| Margin {
+    pub(crate) fn margins(&self, phi: &Vector2<f64>) -> [Level; MOST] {
+        let straight = |x: f64, y: f64| Level {
             value: self.max_angle - x * phi.x - y * phi.y,
             gradient: Vector2::new(-x, -y),
             hessian: Matrix2::zeros(),
@@ -80,7 +74,7 @@ impl Fence {
 }
 
 /// Minus the soft minimum of the four lengths that are all positive where the links cross on this side.
-fn apart(links: &Links<f64>, clearance: f64, side: f64, phi: &Vector2<f64>) -> Margin {
+fn apart(links: &Links<f64>, clearance: f64, side: f64, phi: &Vector2<f64>) -> Level {
     let (sin1, cos1) = phi.x.sin_cos();
     let (sin2, cos2) = phi.y.sin_cos();
     let (sum_sin, sum_cos) = (phi.x + phi.y).sin_cos();
@@ -127,7 +121,7 @@ fn apart(links: &Links<f64>, clearance: f64, side: f64, phi: &Vector2<f64>) -> M
     }
     hessian += gradient * gradient.transpose() * SHARPNESS;
     let rounding = (parts.len() as f64).ln() / SHARPNESS;
-    Margin {
+    Level {
         value: -(soft + rounding) - clearance,
         gradient: -gradient,
         hessian: -hessian,

@@ -6,9 +6,10 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector4};
 
-use super::fence::{Fence, MOST, Margin};
+use super::fence::{Fence, MOST};
 use super::objective::{Aim, Expansion};
 use crate::closed_curve::{Functional, Values, Weights, Workspace};
+use crate::region::Level;
 
 /// When to stop, and how close to the bounds.
 #[derive(Debug, Clone, Copy)]
@@ -37,7 +38,7 @@ pub(crate) struct Newton<'a> {
     matrix: DMatrix<f64>,
     gradient: DVector<f64>,
     spin: DVector<f64>,
-    margins: Vec<[Margin; MOST]>,
+    margins: Vec<[Level; MOST]>,
     pressure: Vec<[f64; MOST]>,
     local: Vec<Matrix2<f64>>,
 }

@@ -10,14 +10,6 @@ use crate::region::{Bound, Clearance, Level, Piece, Region};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Wall(Bound);
 
-/// c, its gradient and its second derivatives at a shape.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Margin {
-    pub(crate) value: f64,
-    pub(crate) gradient: Vector2<f64>,
-    pub(crate) curvature: Matrix2<f64>,
-}
-
 /// What the walls of a point add to gradient and Hessian of the barrier problem.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WallTerm {
@@ -42,25 +34,11 @@ impl Wall {
         }
     }
 
-    pub(crate) fn margin(&self, phi: &Vector2<f64>) -> Margin {
+    /// c, its gradient and its second derivatives at a shape.
+    pub(crate) fn margin(&self, phi: &Vector2<f64>) -> Level {
         match &self.0 {
-            Bound::Straight(edge) => Margin {
-                value: edge.margin(phi),
-                gradient: -edge.normal,
-                curvature: Matrix2::zeros(),
-            },
-            Bound::Clearance(clearance) => {
-                let level = if clearance.has_corner() {
-                    touching(clearance, phi)
-                } else {
-                    clearance.deciding_level(phi)
-                };
-                Margin {
-                    value: level.value,
-                    gradient: level.gradient,
-                    curvature: level.hessian,
-                }
-            }
+            Bound::Clearance(clearance) if clearance.has_corner() => touching(clearance, phi),
+            bound => bound.level(phi),
         }
     }
 
@@ -98,10 +76,10 @@ pub(crate) fn wall_term(
 ) -> WallTerm {
     let (mut gradient, mut hessian) = (Vector2::zeros(), Matrix2::zeros());
     for (wall, multiplier) in walls.iter().zip(multipliers) {
-        let Margin {
+        let Level {
             value,
             gradient: slope,
-            curvature,
+            hessian: curvature,
         } = wall.margin(phi);
         gradient -= slope * (weight * barrier / value);
         hessian += slope * slope.transpose() * (weight * multiplier / value)

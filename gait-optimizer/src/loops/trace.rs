@@ -13,7 +13,7 @@ use crate::region::{Bound, Region};
 use crate::runge_kutta::{Point, StepControl, System, advance, locate};
 use crate::{Arc, Check};
 
-/// Numbers gathered along the loop. Heights are over the largest slope of the height times one radian.
+/// Numbers gathered along the loop. Heights are over L, with p of length 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LoopEvidence {
     /// Largest distance of a singular arc from the zero of the height \[rad\].
