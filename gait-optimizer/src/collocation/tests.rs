@@ -220,13 +220,16 @@ fn links_are_kept_apart() {
 #[test]
 fn spurious_optima_are_not_returned() {
     let model = robot();
+    let mut solved = 0;
     for max in [2.4, 2.6, 2.8, 3.0] {
         let mut problem = CollocationProblem::new(&model, -1.0).with_max_angle(max);
         problem.tolerance = 0.0;
         if let Ok(solution) = solve(&problem, &QuarterGuess::circle(3.3).unwrap()) {
             assert!((solution.efficiency_again / solution.efficiency - 1.0).abs() < 0.02);
+            solved += 1;
         }
     }
+    assert!(solved > 0, "nothing was solved");
 }
 
 #[test]
