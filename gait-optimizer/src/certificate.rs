@@ -19,6 +19,30 @@ pub struct Check {
     pub tolerance: f64,
     /// Whether it holds.
     pub pass: bool,
+    /// How much of a failed condition's value the samples leave open; 0 where it holds or was found by a solver.
+    pub uncertainty: f64,
+}
+
+/// What a certificate says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Every condition holds.
+    Pass,
+    /// Some condition does not hold, whatever the samples leave open.
+    Fail,
+    /// Some conditions do not hold, and these samples, too few or rounded, may be the reason.
+    Undecided,
+}
+
+impl Verdict {
+    /// `pass`, `fail` or `undecided`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Fail => "fail",
+            Self::Undecided => "undecided",
+        }
+    }
 }
 
 impl Check {
@@ -29,6 +53,20 @@ impl Check {
             value,
             tolerance,
             pass: value <= tolerance,
+            uncertainty: 0.0,
+        }
+    }
+
+    /// Whether it asks for the samples, not for the gait.
+    pub(crate) fn is_of_sampling(&self) -> bool {
+        self.name.starts_with("sampling_")
+    }
+
+    /// Whether it fails whatever the samples leave open.
+    fn fails_for_certain(&self) -> bool {
+        !self.pass && {
+            let by = (self.value - self.tolerance).abs();
+            by.is_nan() || by > self.uncertainty
         }
     }
 
@@ -39,6 +77,7 @@ impl Check {
             value,
             tolerance,
             pass: value >= tolerance,
+            uncertainty: 0.0,
         }
     }
 }
@@ -74,6 +113,31 @@ impl Certificate {
     /// Whether all hold.
     pub fn pass(&self) -> bool {
         self.checks.iter().all(|check| check.pass)
+    }
+
+    /// What it says: where all hold, pass; else fail, unless the samples may be the reason of all that fails.
+    pub fn verdict(&self) -> Verdict {
+        if self.pass() {
+            Verdict::Pass
+        } else if self.checks.iter().any(Check::fails_for_certain) {
+            Verdict::Fail
+        } else {
+            Verdict::Undecided
+        }
+    }
+
+    /// Whether the samples are further apart than the conditions ask for.
+    pub(crate) fn failed_of_sampling(&self) -> bool {
+        let mut checks = self.checks.iter();
+        checks.any(|check| check.is_of_sampling() && !check.pass)
+    }
+
+    /// The same with what the samples leave open in each condition that fails.
+    pub(crate) fn with_uncertainty(mut self, of: impl Fn(&Check) -> f64) -> Self {
+        for check in self.checks.iter_mut().filter(|check| !check.pass) {
+            check.uncertainty = check.uncertainty.max(of(check));
+        }
+        self
     }
 
     /// The failed conditions with their values, for an error message.

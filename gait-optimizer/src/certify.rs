@@ -16,6 +16,7 @@ mod limits;
 mod neighbours;
 mod path;
 mod regular;
+mod resolution;
 mod singular;
 mod stencil;
 
@@ -35,6 +36,7 @@ pub(crate) use around::{Curve, around};
 use grid::{Along, Degree, Grid};
 use limits::{Limit, Limits, image};
 use path::Path;
+use resolution::{Rounding, begun_on_the_diagonal, missed_between, with_uncertainty};
 
 /// Directions closer than this make no corner \[rad\].
 const SMOOTH: f64 = 1e-6;
@@ -84,6 +86,8 @@ struct Subject<'a> {
     /// The same by the coarser polynomials.
     coarse: Path,
     symmetric: bool,
+    /// How far from a bound a sample on it may be written \[rad\].
+    written: f64,
 }
 
 /// What the sampling leaves open.
@@ -110,6 +114,28 @@ pub fn certify(
     bounds: &Bounds,
 ) -> Result<Certificate, CertifyError> {
     let model = Model::new(&swimmer.of_unit_length())?;
+    let asked = |gait: &GaitFile| of_samples(&model, swimmer, gait, objective, bounds);
+    AnyGait::from_file(gait)?;
+    // Across whose heading a gait moves is asked of the first sample; of all else it says nothing.
+    let begun = (objective != Objective::Sideways)
+        .then(|| begun_on_the_diagonal(gait, is_symmetric))
+        .flatten();
+    let gait = begun.as_ref().unwrap_or(gait);
+    let efficiency = objective == Objective::Efficiency;
+    let certificate = asked(gait)?;
+    Ok(with_uncertainty(certificate, gait, efficiency, |other| {
+        asked(other).ok()
+    }))
+}
+
+/// As [`certify`], whatever the samples leave open.
+fn of_samples(
+    model: &Model<f64>,
+    swimmer: &Swimmer<f64>,
+    gait: &GaitFile,
+    objective: Objective,
+    bounds: &Bounds,
+) -> Result<Certificate, CertifyError> {
     let curve = AnyGait::from_file(gait)?;
     if gait.u.len() < GaitFile::FEWEST_SAMPLES || gait.u.last() != Some(&1.0) {
         return Err(CertifyError::TooFew {
@@ -122,19 +148,19 @@ pub fn certify(
             ..gait.clone()
         };
         let region = Region::new(bounds, &swimmer.links);
-        return Ok(certify_speed(&model, &bounded, &curve, &region));
+        return Ok(certify_speed(model, &bounded, &curve, &region));
     }
     let limits = Limits::new(bounds, &swimmer.links);
     if turning_number(&gait.phi) < 0.0 {
         return certify_turned(
-            &model,
+            model,
             &gait.reversed(),
             objective,
             limits,
             &curve.reversed_if(true),
         );
     }
-    certify_turned(&model, gait, objective, limits, &curve)
+    certify_turned(model, gait, objective, limits, &curve)
 }
 
 /// Whether the samples of a gait that an optimiser made are as close as [`certify`] asks for.
@@ -219,6 +245,7 @@ impl<'a> Subject<'a> {
             path: Path::new(model, &grid, &shapes, Degree::Fine),
             coarse: Path::new(model, &grid, &shapes, Degree::Coarse),
             symmetric: is_symmetric(gait),
+            written: 2.0 * Rounding::of(gait).phi,
             model,
             limits,
             grid,
@@ -306,10 +333,11 @@ fn worse(a: f64, b: f64) -> f64 {
 
 /// Which intervals between knots lie on a bound, for a gait that does not tell.
 fn touching(limits: &Limits, gait: &GaitFile) -> Vec<Along> {
+    let written = 2.0 * Rounding::of(gait).phi;
     let on_bound = |pair: (&Vector2<f64>, &Vector2<f64>), u: f64| {
         let quarter = (0..3).find(|&q| u < 0.25 * (q + 1) as f64).unwrap_or(3);
         let (from, to) = (limits.at(pair.0, quarter), limits.at(pair.1, quarter));
-        let touches = |limit: &Limit| limit.margin.abs() <= TOUCHING;
+        let touches = |limit: &Limit| limit.margin.abs() <= TOUCHING + written;
         from.iter()
             .zip(&to)
             .any(|(from, to)| touches(from) && touches(to))
@@ -330,12 +358,12 @@ fn touching(limits: &Limits, gait: &GaitFile) -> Vec<Along> {
 
 /// Whether the cycle has the paper's two symmetries, in time too.
 fn is_symmetric(gait: &GaitFile) -> bool {
-    const CLOSE: f64 = 1e-7;
+    let close = 1e-7 + 4.0 * Rounding::of(gait).phi + missed_between(gait);
     let Ok(curve) = AnyGait::from_file(gait) else {
         return false;
     };
     gait.u.iter().zip(&gait.phi).all(|(&u, shape)| {
-        (curve.at(0.5 - u).phi - image(*shape, 1)).norm() < CLOSE
-            && (curve.at(u + 0.5).phi + shape).norm() < CLOSE
+        (curve.at(0.5 - u).phi - image(*shape, 1)).norm() < close
+            && (curve.at(u + 0.5).phi + shape).norm() < close
     })
 }

@@ -68,7 +68,7 @@ mod turning;
 pub use atlas::{
     Atlas, AtlasError, AtlasProblem, Optimum, StartCurves, Watch, atlas, atlas_watched,
 };
-pub use certificate::{Certificate, Check};
+pub use certificate::{Certificate, Check, Verdict};
 pub use certify::{CertifyError, certify};
 pub use continuation::{
     Continuation, ContinuationError, ContinuationProblem, Event, EventKind, Fold, OtherSide,

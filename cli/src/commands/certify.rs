@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use gait_optimizer::{CertifyError, Objective, certify};
+use gait_optimizer::{CertifyError, Objective, Verdict, certify};
 use serde::Serialize;
 use swimmer_files::{AnyGait, Bounds, GaitFile, GaitSpec};
 
@@ -18,7 +18,7 @@ use super::optimize::answer::Evidence;
 /// Hold a gait against the necessary conditions of an optimum, each with its number and tolerance
 ///
 /// Objective and bounds are those of the gait file unless told otherwise: naming one bound replaces all of the file's.
-/// A gait that fails ends with status 1, its whole certificate printed.
+/// A gait that fails, or that its samples leave undecided, ends with status 1, its whole certificate printed.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Certify {
     /// purcell, robot, robot-slender or a swimmer file
@@ -69,15 +69,18 @@ impl Certify {
             title,
             evidence: (&certificate).into(),
         });
-        if certificate.pass() {
-            Ok(())
-        } else {
-            let checks = certificate.checks();
-            let failed = checks.iter().filter(|check| !check.pass).count();
-            let of = checks.len();
-            Err(Failure::Answered(format!(
+        let checks = certificate.checks();
+        let failed = checks.iter().filter(|check| !check.pass).count();
+        let of = checks.len();
+        match certificate.verdict() {
+            Verdict::Pass => Ok(()),
+            Verdict::Fail => Err(Failure::Answered(format!(
                 "the gait is no certified optimum: {failed} of {of} conditions do not hold"
-            )))
+            ))),
+            Verdict::Undecided => Err(Failure::Answered(format!(
+                "undecided from these samples: {failed} of {of} conditions do not hold, and so few or so rounded samples may be \
+                 the reason; write more of them, with all digits"
+            ))),
         }
     }
 
@@ -140,10 +143,13 @@ impl fmt::Display for Answer {
             .iter()
             .filter(|check| !check.pass)
             .count();
-        let verdict = if failed == 0 {
-            format!("all {} conditions hold", self.evidence.checks.len())
-        } else {
-            format!("{failed} of {} conditions fail", self.evidence.checks.len())
+        let of = self.evidence.checks.len();
+        let verdict = match (failed, self.evidence.verdict) {
+            (0, _) => format!("all {of} conditions hold"),
+            (_, "undecided") => {
+                format!("undecided from these samples: {failed} of {of} conditions do not hold")
+            }
+            _ => format!("{failed} of {of} conditions fail"),
         };
         write!(f, "{}\n{table}\n  {verdict}", self.title)
     }

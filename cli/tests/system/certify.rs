@@ -94,3 +94,36 @@ fn a_circle_fails_with_its_whole_certificate() {
     }
     swimmer(&["certify", "--swimmer", "purcell", "--gait", "circle:1.2"]).with_status(2);
 }
+
+/// Six digits of an optimum decide nothing, and a command that was asked for a certificate says so.
+#[test]
+fn rounded_samples_leave_a_gait_undecided() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &str| {
+        let words: Vec<&str> = words.split(' ').collect();
+        swimmer_in(folder.path(), &words)
+    };
+    run("optimize efficiency --swimmer purcell -o best.gait").with_status(0);
+    let text = std::fs::read_to_string(folder.path().join("best.gait")).unwrap();
+    let round = |line: &str| {
+        let numbers: Result<Vec<f64>, _> = line.split(',').map(str::parse).collect();
+        numbers.map_or(line.to_owned(), |numbers| {
+            let words: Vec<String> = numbers
+                .iter()
+                .map(|number| format!("{number:.6}"))
+                .collect();
+            words.join(",")
+        })
+    };
+    let rounded: Vec<String> = text.lines().map(round).collect();
+    std::fs::write(folder.path().join("six.gait"), rounded.join("\n")).unwrap();
+    let passed = run("certify --swimmer purcell --gait best.gait --json").with_status(0);
+    assert_eq!(passed.json()["verdict"], "pass");
+    let asked = run("certify --swimmer purcell --gait six.gait --json").with_status(1);
+    assert_eq!(asked.json()["verdict"], "undecided");
+    assert_eq!(asked.json()["pass"], false);
+    assert!(
+        asked.stderr.contains("undecided from these samples"),
+        "{asked}"
+    );
+}

@@ -8,6 +8,7 @@ use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use super::Subject;
+use super::grid::Degree;
 use super::limits::Limits;
 use super::neighbours::{Ascents, Gain, Neighbours};
 use crate::OptimalGait;
@@ -43,6 +44,7 @@ pub(crate) fn around(model: &Model<f64>, gait: &OptimalGait) -> Option<Around> {
         gain: Gain::Displacement,
         rotation: subject.weak_momentum(Gain::Displacement)?.c,
         symmetric: false,
+        degree: Degree::Fine,
     }
     .ascents()?;
     let check = ascents.check();

@@ -47,7 +47,7 @@ impl Subject<'_> {
         let rate = self.path.places.get(node)?.rate;
         // At a corner between two bounds the normal may be the other's; a bound farther away is still not followed.
         let askew = |limit: &Limit| {
-            let far = if limit.margin.abs() > TOUCHING_CURVED {
+            let far = if limit.margin.abs() > TOUCHING_CURVED + self.written {
                 1.0 + limit.margin.abs()
             } else {
                 0.0
@@ -105,7 +105,7 @@ impl Subject<'_> {
         let corner = first.normal.perp(&second.normal).abs() > 1e-3;
         let towards = (out - into) * BESIDE;
         let inside = curved(before.phi + towards, end);
-        here.margin.abs() <= TOUCHING_CURVED
+        here.margin.abs() <= TOUCHING_CURVED + self.written
             && corner
             && inside.is_some_and(|limit| limit.margin < 0.0)
     }

@@ -36,6 +36,8 @@ pub(super) struct Neighbours<'a> {
     pub(super) rotation: f64,
     /// Only waves that keep the paper's symmetries.
     pub(super) symmetric: bool,
+    /// Slopes and integrals by these polynomials.
+    pub(super) degree: Degree,
 }
 
 /// Waves of a gait with the paper's symmetries, and of any other gait.
@@ -51,6 +53,8 @@ const ROUNDING: f64 = 1e-9;
 pub(super) struct Ascents {
     /// How many are independent.
     pub(super) count: usize,
+    /// How many of these the samples leave open.
+    unsure: usize,
     /// The steepest, as a push at every node; the farthest push is 1 rad. Empty where it is
     /// not known.
     pub(super) steepest: Vec<Vector2<f64>>,
@@ -58,22 +62,38 @@ pub(super) struct Ascents {
 
 impl Ascents {
     pub(super) fn check(&self) -> Check {
-        Check::at_most("ascent_directions", self.count as f64, 0.0)
+        Check {
+            uncertainty: self.unsure as f64,
+            ..Check::at_most("ascent_directions", self.count as f64, 0.0)
+        }
     }
 }
 
 impl Subject<'_> {
-    /// How many pushes of the curve would gain, with this multiplier of the rotation; none where no push is free.
-    pub(super) fn ascents(&self, gain: Gain, rotation: f64) -> Option<Check> {
-        let neighbours = Neighbours {
-            model: self.model,
-            grid: &self.grid,
-            shapes: &self.shapes,
-            gain,
-            rotation,
-            symmetric: self.symmetric,
+    /// How many pushes of the curve would gain, with this multiplier of the rotation: those that keep the paper's symmetries,
+    /// where the curve has them, and those of any kind. None where no push is free.
+    pub(super) fn ascents(&self, gain: Gain, rotation: f64) -> Vec<Check> {
+        let of = |symmetric: bool| {
+            let neighbours = Neighbours {
+                model: self.model,
+                grid: &self.grid,
+                shapes: &self.shapes,
+                gain,
+                rotation,
+                symmetric,
+                degree: Degree::Fine,
+            };
+            Some(neighbours.ascents()?.check())
         };
-        Some(neighbours.ascents()?.check())
+        let mut checks = Vec::new();
+        if self.symmetric && !self.limits.need_quarters() {
+            checks.extend(of(false).map(|check| Check {
+                name: "ascent_directions_without_symmetry",
+                ..check
+            }));
+        }
+        checks.extend(of(self.symmetric));
+        checks
     }
 }
 
@@ -86,7 +106,54 @@ impl Neighbours<'_> {
         if size == 0 {
             return None;
         }
-        let path = Path::new(self.model, self.grid, self.shapes, Degree::Fine);
+        let Some((reduced, before)) = self.second_variation(&waves) else {
+            // Nothing is known of any.
+            return Some(Ascents {
+                count: size,
+                unsure: size,
+                steepest: Vec::new(),
+            });
+        };
+        let eigen = reduced.clone().symmetric_eigen();
+        let values = &eigen.eigenvalues;
+        // Where next to nothing is free all waves are alike, and but for rounding none is left that turns nothing.
+        let level = (FLAT * values.amax()).max(ROUNDING * before);
+        let up = |level: f64| values.iter().filter(|&&value| value > level).count();
+        let count = up(level);
+        // Another matrix moves no eigenvalue by more than its distance.
+        let unsure = if count == 0 {
+            0
+        } else {
+            let coarse = Self {
+                degree: Degree::Coarse,
+                ..*self
+            };
+            let other = coarse.second_variation(&waves);
+            let apart = other.map_or(f64::INFINITY, |(other, _)| (&reduced - other).norm());
+            count - up(level + apart)
+        };
+        let weights = eigen.eigenvectors.column(values.imax());
+        let mut steepest = vec![Vector2::zeros(); self.shapes.len()];
+        for (wave, weight) in waves.iter().zip(&weights) {
+            for (sum, push) in steepest.iter_mut().zip(wave) {
+                *sum += push * *weight;
+            }
+        }
+        let farthest = steepest.iter().map(Vector2::norm).fold(0.0, f64::max);
+        for push in &mut steepest {
+            *push /= farthest;
+        }
+        Some(Ascents {
+            count,
+            unsure,
+            steepest,
+        })
+    }
+
+    /// The Hessian on the pushes that turn nothing, and the largest entry of the whole one; none where it is not finite.
+    fn second_variation(&self, waves: &[Vec<Vector2<f64>>]) -> Option<(DMatrix<f64>, f64)> {
+        let size = waves.len();
+        let path = Path::new(self.model, self.grid, self.shapes, self.degree);
         let turned = waves.iter().map(|wave| self.turned(&path, wave, |by| by));
         let turned = DVector::from_iterator(size, turned);
         let reach = waves.iter().map(|wave| self.turned(&path, wave, f64::abs));
@@ -100,17 +167,13 @@ impl Neighbours<'_> {
                     .zip(wave)
                     .map(|(shape, wave)| shape + wave * by)
                     .collect();
-                self.gradient(&shapes, &waves)
+                self.gradient(&shapes, waves)
             };
             hessian.set_column(k, &((pushed(PUSH) - pushed(-PUSH)) / (2.0 * PUSH)));
         }
         let hessian = 0.5 * (&hessian + hessian.transpose());
         if !hessian.iter().all(|entry| entry.is_finite()) {
-            // Nothing is known of any.
-            return Some(Ascents {
-                count: size,
-                steepest: Vec::new(),
-            });
+            return None;
         }
         let before = hessian.amax();
         let reduced = if self.gain == Gain::Turning || turned.norm() <= 1e-9 * reach {
@@ -118,25 +181,7 @@ impl Neighbours<'_> {
         } else {
             without(&hessian, &turned)
         };
-        let eigen = reduced.symmetric_eigen();
-        let values = &eigen.eigenvalues;
-        // Where next to nothing is free all waves are alike, and but for rounding none is left that turns nothing.
-        let level = (FLAT * values.amax()).max(ROUNDING * before);
-        let weights = eigen.eigenvectors.column(values.imax());
-        let mut steepest = vec![Vector2::zeros(); self.shapes.len()];
-        for (wave, weight) in waves.iter().zip(&weights) {
-            for (sum, push) in steepest.iter_mut().zip(wave) {
-                *sum += push * *weight;
-            }
-        }
-        let farthest = steepest.iter().map(Vector2::norm).fold(0.0, f64::max);
-        for push in &mut steepest {
-            *push /= farthest;
-        }
-        Some(Ascents {
-            count: values.iter().filter(|&&value| value > level).count(),
-            steepest,
-        })
+        Some((reduced, before))
     }
 
     /// The pushes at every node.
@@ -223,7 +268,7 @@ impl Neighbours<'_> {
 
     /// Gradient of the gain (with the multiplier of rotation) in the waves, at the curve through these shapes.
     fn gradient(&self, shapes: &[Vector2<f64>], waves: &[Vec<Vector2<f64>>]) -> DVector<f64> {
-        let path = Path::new(self.model, self.grid, shapes, Degree::Fine);
+        let path = Path::new(self.model, self.grid, shapes, self.degree);
         let d = path.displacement();
         let p = match self.gain {
             Gain::Displacement => d / d.norm(),
@@ -278,13 +323,13 @@ impl Neighbours<'_> {
             .zip(wave)
             .map(|(place, push)| gained(place, push.perp(&place.rate)))
             .collect();
-        let integrals = self.grid.integrals(&gained, 0.0, Degree::Fine);
+        let integrals = self.grid.integrals(&gained, 0.0, self.degree);
         integrals.last().copied().unwrap_or_default()
     }
 
     /// First variation of ∮√P under a push of the curve.
     fn lengthened(&self, path: &Path, wave: &[Vector2<f64>]) -> f64 {
-        let slopes = self.grid.slopes(wave, Degree::Fine);
+        let slopes = self.grid.slopes(wave, self.degree);
         let longer: Vec<f64> = path
             .places
             .iter()
@@ -297,7 +342,7 @@ impl Neighbours<'_> {
                 (rate.dot(&(place.first.power * slope)) + dearer) / place.root_power
             })
             .collect();
-        let integrals = self.grid.integrals(&longer, 0.0, Degree::Fine);
+        let integrals = self.grid.integrals(&longer, 0.0, self.degree);
         integrals.last().copied().unwrap_or_default()
     }
 }

@@ -33,6 +33,8 @@ impl From<&gait_optimizer::Arc> for Arc {
 #[derive(Debug, Serialize)]
 pub(crate) struct Evidence {
     pass: bool,
+    /// `pass`, `fail`, or `undecided` where the samples may be the reason of all that fails.
+    pub(crate) verdict: &'static str,
     pub(crate) checks: Vec<Check>,
 }
 
@@ -55,6 +57,7 @@ impl From<&Certificate> for Evidence {
         };
         Self {
             pass: certificate.pass(),
+            verdict: certificate.verdict().word(),
             checks: certificate.checks().iter().map(check).collect(),
         }
     }
