@@ -2,9 +2,10 @@
 //!
 //! With a price on time the problem is well-posed over all closed curves. Extremals are chains of three kinds of arcs: *extreme*
 //! (both servos at full rate: straight in the plane of joint angles), *singular* (h = 0, one servo at full rate), and along a
-//! bound. The search is global and needs no guess: from many starts an interior-point method finds the best polygon near each
-//! ([`interior`]), what pushes against its sides tells the arcs ([`structure`]), and Newton's method brings them to rounding
-//! ([`polish`]). The certificate is worked out from the finished curve alone ([`certificate`]).
+//! bound. The search is global and needs no guess: from many starts an interior-point method finds a rough polygon near each;
+//! those that may be the fastest it finishes ([`interior`], [`selection`]). What pushes against their sides tells the arcs
+//! ([`structure`]), and Newton's method brings them to rounding ([`polish`]). The certificate is worked out from the finished
+//! curve alone ([`certificate`]).
 
 mod arc;
 mod candidate;
@@ -16,25 +17,26 @@ mod polish;
 mod problem;
 mod quadrature;
 mod samples;
+mod search;
+mod selection;
 mod starts;
 mod structure;
 #[cfg(test)]
 mod tests;
 
-use nalgebra::Vector2;
-use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
-use swimmer_model::{Model, Swimmer, Tolerance, swim};
+use swimmer_files::{AnyGait, Bounds, GaitFile};
+use swimmer_model::{Model, Swimmer};
 
 use crate::immobile::refuse_immobile;
-use crate::optimal_gait::{OptimalGait, Solution};
+use crate::optimal_gait::OptimalGait;
 use crate::parallel::in_parallel;
 use crate::region::Region;
-use crate::{Certificate, Immobile};
+use crate::{Certificate, Immobile, Watch};
 
 pub use error::SpeedError;
-use polish::Polished;
 pub use problem::HeadingRule;
 use problem::Setting;
+use search::Search;
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,6 +66,8 @@ impl SpeedProblem {
     pub const MAX_CORNERS: usize = 16;
     /// Starts unless told otherwise.
     pub const STARTS: usize = 64;
+    /// The first starts, each a good guess where angles are bounded: for an answer at once, as a rule the fastest.
+    pub const GUESSES: usize = 3;
 
     /// Without bounds, any way.
     pub fn new(swimmer: Swimmer<f64>, rates: [f64; 2]) -> Self {
@@ -107,6 +111,14 @@ pub struct Fastest {
 /// # Errors
 /// [`SpeedError`] where the problem makes no sense or no chain can be certified.
 pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {
+    fastest_watched(problem, &|_| ())
+}
+
+/// As [`fastest`], while somebody watches.
+///
+/// # Errors
+/// As [`fastest`].
+pub fn fastest_watched(problem: &SpeedProblem, watch: Watch<'_>) -> Result<Fastest, SpeedError> {
     validate(problem)?;
     let model = Model::new(&problem.swimmer.of_unit_length())?;
     refuse_immobile(&model, &problem.bounds)?;
@@ -120,72 +132,45 @@ pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {
         heading: problem.heading,
         period: problem.period.map(|period| period * fast),
     };
-    let mut chains: Vec<Polished> = in_parallel(
+    let roughly = |(): &mut (), index: usize| {
+        interior::rough_polygon(&setting, &starts::start(&region, problem.seed, index))
+    };
+    let share = |share: f64| watch(search::ROUGH_SHARE * share);
+    let rough = in_parallel(
         problem.starts.max(1),
         problem.threads,
-        &|_| (),
+        &share,
         || (),
-        |(), index| {
-            let start = starts::start(&region, problem.seed, index);
-            candidate::candidate(&setting, &start)
-        },
-    )
-    .into_iter()
-    .flatten()
-    .collect();
-    chains.sort_by(|a, b| b.speed.total_cmp(&a.speed));
-    let searched = chains.len();
-    let (mut longer, mut uncertified) = (None, None);
-    for best in shortest_of_alike(&chains) {
-        let better = |speed: &mut Option<f64>| {
-            speed.get_or_insert(best.speed * fast);
-        };
-        // Where the polygon had no corner left for a short singular arc the certificate shows it.
-        let passes = |answer: &Fastest| answer.gait.certificate.pass();
-        let first = told(problem, &setting, best, fast).filter(passes);
-        let bent = || told(problem, &setting, &candidate::bent(&setting, best)?, fast);
-        let Some(mut answer) = first.or_else(|| bent().filter(passes)) else {
-            better(&mut uncertified);
-            continue;
-        };
-        if answer.gait.arcs.len() > problem.max_corners {
-            better(&mut longer);
-            continue;
-        }
-        answer.found = chains.iter().filter(|one| alike(one, best)).count();
-        let clearly = |speed: Option<f64>| {
-            speed.filter(|speed| *speed > answer.speed_over_length * (1.0 + 1e-6))
-        };
-        answer.longer = clearly(longer);
-        answer.uncertified = clearly(uncertified);
-        return Ok(answer);
-    }
-    Err(SpeedError::NoGait {
-        bounds: problem.bounds,
-        starts: problem.starts,
-        chains: searched,
-        uncertified,
-    })
+        roughly,
+    );
+    let groups = selection::groups(rough.into_iter().flatten().collect());
+    Search::new(problem, &setting, fast, &groups).run(watch)
 }
 
 /// The conditions of a gait from anywhere, timed as its samples are. One that leads exactly along its mean heading, or across, may
-/// have been asked to, and then passes as such.
+/// have been asked to, and one that is slower than a longer or shorter one may have been given its period; it then passes as such.
 pub(crate) fn certify_speed(
     model: &Model<f64>,
     file: &GaitFile,
     gait: &AnyGait,
     region: &Region,
 ) -> Certificate {
-    let of = |rule| certificate::certificate(model, region, (rule, false), file, gait);
-    let free = of(HeadingRule::Any);
+    let of = |rule| certificate::certificate(model, region, rule, file, gait);
+    let free = of((HeadingRule::Any, false));
     if free.pass() {
         return free;
     }
-    [HeadingRule::Forward, HeadingRule::Sideways]
-        .into_iter()
-        .map(of)
-        .find(Certificate::pass)
-        .unwrap_or(free)
+    [
+        (HeadingRule::Forward, false),
+        (HeadingRule::Sideways, false),
+        (HeadingRule::Any, true),
+        (HeadingRule::Forward, true),
+        (HeadingRule::Sideways, true),
+    ]
+    .into_iter()
+    .map(of)
+    .find(Certificate::pass)
+    .unwrap_or(free)
 }
 
 fn validate(problem: &SpeedProblem) -> Result<(), SpeedError> {
@@ -210,96 +195,6 @@ fn validate(problem: &SpeedProblem) -> Result<(), SpeedError> {
         });
     }
     Ok(())
-}
-
-/// Whether two chains are as fast as each other.
-fn alike(a: &Polished, b: &Polished) -> bool {
-    (a.speed - b.speed).abs() <= 1e-9 * b.speed
-}
-
-/// One chain of each speed, fastest first: the one of the shortest period, as a gait run several times over is as fast as the
-/// gait.
-fn shortest_of_alike(chains: &[Polished]) -> Vec<&Polished> {
-    let mut best: Vec<&Polished> = Vec::new();
-    for chain in chains {
-        match best.last_mut() {
-            Some(last) if alike(chain, last) => {
-                if chain.layout.period(&chain.z) < last.layout.period(&last.z) * (1.0 - 1e-9) {
-                    *last = chain;
-                }
-            }
-            _ => best.push(chain),
-        }
-    }
-    best
-}
-
-/// A chain as an answer; none where its samples make no gait.
-fn told(problem: &SpeedProblem, setting: &Setting, chain: &Polished, fast: f64) -> Option<Fastest> {
-    // Run the way that leads forward, and of two mirror images the one that leads to the left.
-    let ahead = remainder(chain.net.heading());
-    let backward = ahead.cos() < -1e-9 || (ahead.cos() < 1e-9 && ahead < 0.0);
-    let half_turn = if backward { std::f64::consts::PI } else { 0.0 };
-    let forward = remainder(ahead + half_turn);
-    let sign = if forward < -1e-9 { -1.0 } else { 1.0 };
-    let heading = sign * forward;
-    let (mut cycle, mut arcs) = samples::cycle(setting, chain, sign);
-    if backward {
-        (cycle, arcs) = (cycle.reversed(|phi| *phi), samples::reversed(&arcs));
-    }
-    let gait = cycle.gait().ok()?;
-    let stroke = swim(setting.model, &gait, &Tolerance::default());
-    let file = GaitFile {
-        bounds: problem.bounds,
-        arcs: cycle.arcs.clone(),
-        corners: cycle.corners.clone(),
-        u: cycle.u.clone(),
-        phi: cycle.phi.clone(),
-        ..GaitFile::default()
-    };
-    let certificate = certificate::certificate(
-        setting.model,
-        setting.region,
-        (problem.heading, problem.period.is_some()),
-        &file,
-        &gait,
-    );
-    let distance = chain.net.distance();
-    let period = chain.layout.period(&chain.z);
-    Some(Fastest {
-        speed_over_length: chain.speed * fast,
-        distance_over_length: distance,
-        period: period / fast,
-        heading,
-        found: 0,
-        longer: None,
-        uncertified: None,
-        gait: OptimalGait::new(Solution {
-            objective: Objective::Speed,
-            swimmer: problem.swimmer,
-            bounds: problem.bounds,
-            symmetric: false,
-            links_cross: cycle.links_cross(setting.model),
-            arcs,
-            cycle,
-            stroke,
-            certificate: certificate.with(second_order(chain)),
-        }),
-    })
-}
-
-/// What the polish knows beyond the curve.
-fn second_order(chain: &Polished) -> Vec<crate::Check> {
-    vec![
-        crate::Check::at_most("polish_residual", chain.residual, 1e-9),
-        crate::Check::at_least("second_variation_least", chain.convexity, 0.0),
-    ]
-}
-
-/// An angle in (−π, π].
-fn remainder(angle: f64) -> f64 {
-    let direction = Vector2::new(angle.cos(), angle.sin());
-    direction.y.atan2(direction.x)
 }
 
 impl From<Immobile> for SpeedError {

@@ -172,22 +172,24 @@ fn a_wider_bound_is_never_slower_over_many() {
     monotone(20, 60, SpeedProblem::STARTS);
 }
 
-/// Cold from the project's own first guess, and from many starts; printed, not asserted.
+/// Cold from the project's own first guesses, and from many starts; printed, not asserted.
 #[test]
 #[ignore = "soak: timing"]
 fn how_long_it_takes() {
     for (name, swimmer) in [("robot", Swimmer::robot()), ("purcell", Swimmer::purcell())] {
-        for starts in [1, 200] {
-            let begun = std::time::Instant::now();
-            let found = fastest(&SpeedProblem {
-                threads: 1,
-                ..problem(swimmer, 2.8, starts)
-            });
-            println!(
-                "{name}, {starts} starts: {:.3} s, {:?}",
-                begun.elapsed().as_secs_f64(),
-                found.map(|found| found.speed_over_length)
-            );
+        for max_angle in [2.0, 2.4, 2.6, 2.8, 3.0] {
+            for starts in [SpeedProblem::GUESSES, SpeedProblem::STARTS, 200] {
+                let begun = std::time::Instant::now();
+                let found = fastest(&SpeedProblem {
+                    threads: 1,
+                    ..problem(swimmer, max_angle, starts)
+                });
+                println!(
+                    "{name}, {max_angle} rad, {starts} starts: {:.3} s, {:?}",
+                    begun.elapsed().as_secs_f64(),
+                    found.map(|found| (found.speed_over_length, found.found))
+                );
+            }
         }
     }
 }

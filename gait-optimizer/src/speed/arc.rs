@@ -128,6 +128,39 @@ impl Shape {
         }
     }
 
+    /// What the arc brings, without slopes.
+    pub(crate) fn value(
+        &self,
+        model: &Model<f64>,
+        rule: &Rule,
+        ends: &[Vector2<f64>; 2],
+        bends: &[f64],
+    ) -> [f64; 4] {
+        let rate = |&s: &f64| {
+            let (phi, rate) = if *self == Self::Straight {
+                (ends[0] + (ends[1] - ends[0]) * s, ends[1] - ends[0])
+            } else {
+                let place = self.place::<MOST_PARAMETERS>(ends, bends, s);
+                (place.phi, place.rate)
+            };
+            model.connection_and_power(&phi).0 * rate
+        };
+        let rates: Vec<Vector3<f64>> = rule.nodes.iter().map(rate).collect();
+        let mut value = [0.0; 4];
+        for (rate, (weight, up_to)) in rates.iter().zip(rule.weights.iter().zip(&rule.cumulative)) {
+            let theta: f64 = up_to.iter().zip(&rates).map(|(w, rate)| w * rate.z).sum();
+            let (sin, cos) = theta.sin_cos();
+            let terms = [
+                cos * rate.x - sin * rate.y,
+                sin * rate.x + cos * rate.y,
+                rate.z,
+                theta,
+            ];
+            add(&mut value, *weight, terms);
+        }
+        value
+    }
+
     fn sized<const P: usize>(
         &self,
         model: &Model<f64>,

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::interior::best_polygon;
+use super::interior::{Polygon, best_polygon};
 use super::polish::{Polished, polish};
 use super::problem::Setting;
 use super::structure::{Hold, Link, Motion, arcs, merge};
@@ -12,9 +12,9 @@ const MENDS: usize = 8;
 /// A corner may overstep a bound by this \[rad, or over L\].
 const OVERSTEPPED: f64 = 1e-10;
 
-/// The chain that a start leads to.
-pub(crate) fn candidate(setting: &Setting, start: &[Vector2<f64>]) -> Option<Polished> {
-    let polygon = best_polygon(setting, start)?;
+/// The chain that a rough polygon leads to.
+pub(crate) fn candidate(setting: &Setting, rough: &Polygon) -> Option<Polished> {
+    let polygon = best_polygon(setting, rough)?;
     let links = arcs(setting, &polygon)?;
     let polished = mended(setting, links)?;
     // A polish that lost what the polygon had went astray.

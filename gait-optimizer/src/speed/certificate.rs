@@ -7,13 +7,14 @@
 
 mod affine;
 mod legs;
+mod second_order;
 mod switching;
 
 use nalgebra::{DMatrix, DVector};
 use swimmer_files::{AnyGait, ArcKind, GaitFile};
 use swimmer_model::{Model, Tolerance, crossing_share, swim};
 
-use super::problem::HeadingRule;
+use super::problem::{HeadingRule, Setting};
 use crate::certificate::{Certificate, Check, again_within};
 use crate::region::Region;
 use legs::{Leg, Legs};
@@ -59,6 +60,21 @@ pub(crate) fn certificate(
     }
     let switching = Switching::new(region, &legs, heading, period);
     checks.extend(switching.checks(CLOSE));
+    let setting = Setting {
+        model,
+        region,
+        rates: legs.rates,
+        heading,
+        period: period.then_some(1.0),
+    };
+    match second_order::least(&setting, &legs) {
+        // No shift is left that keeps all equations.
+        Some(f64::INFINITY) => {}
+        Some(least) if least.is_finite() => {
+            checks.push(Check::at_least("second_variation_least", least, 0.0));
+        }
+        _ => checks.push(Check::at_least("arcs_of_a_chain", 0.0, 3.0)),
+    }
     Certificate::new(checks)
 }
 

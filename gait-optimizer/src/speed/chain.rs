@@ -77,6 +77,20 @@ impl Layout {
             .collect()
     }
 
+    /// Poses before each arc, and what the chain brings.
+    pub(crate) fn net(
+        &self,
+        model: &Model<f64>,
+        rule: &Rule,
+        z: &DVector<f64>,
+    ) -> (Vec<[f64; 3]>, Net) {
+        let value = |arc: usize| {
+            self.shapes[arc].value(model, rule, &self.ends(z, arc), self.bends(z, arc))
+        };
+        let arcs = self.arcs();
+        net((0..arcs).map(value), &z.as_slice()[2 * arcs..3 * arcs])
+    }
+
     /// Index of an arc's parameter.
     fn parameter_index(&self, arc: usize, parameter: usize) -> usize {
         match parameter {
@@ -132,16 +146,15 @@ pub(crate) struct Weights {
 }
 
 /// Poses before each arc, and what the chain brings; `times` per arc.
-pub(crate) fn net(jets: &[Jet], times: &[f64]) -> (Vec<[f64; 3]>, Net) {
+fn net(values: impl Iterator<Item = [f64; 4]>, times: &[f64]) -> (Vec<[f64; 3]>, Net) {
     let mut pose = [0.0; 3];
-    let mut before = Vec::with_capacity(jets.len());
+    let mut before = Vec::with_capacity(times.len());
     let (mut heading, mut period) = (0.0, 0.0);
-    for (jet, time) in jets.iter().zip(times) {
+    for ([x, y, theta, mean], time) in values.zip(times) {
         before.push(pose);
-        heading += time * (pose[2] + jet.value[3]);
+        heading += time * (pose[2] + mean);
         period += time;
         let (sin, cos) = pose[2].sin_cos();
-        let [x, y, theta, _] = jet.value;
         pose[0] += cos * x - sin * y;
         pose[1] += sin * x + cos * y;
         pose[2] += theta;
@@ -163,7 +176,7 @@ pub(crate) fn gradient(
 ) -> (Net, DVector<f64>) {
     let arcs = layout.arcs();
     let times = &z.as_slice()[2 * arcs..3 * arcs];
-    let (before, net) = net(jets, times);
+    let (before, net) = net(jets.iter().map(|jet| jet.value), times);
     let d = net.displacement;
     let distance = d.norm();
     let period: f64 = times.iter().sum();
@@ -174,14 +187,13 @@ pub(crate) fn gradient(
     let mut gradient = DVector::zeros(layout.size);
     let mut time_after = period;
     for (arc, jet) in jets.iter().enumerate() {
-        let [x, y, theta] = before[arc];
+        let theta = before[arc][2];
         let (sin, cos) = theta.sin_cos();
         time_after -= times[arc];
         let after = match before.get(arc + 1) {
             Some(next) => d - Vector2::new(next[0], next[1]),
             None => Vector2::zeros(),
         };
-        let _ = (x, y);
         let of_turn = pull.dot(&Vector2::new(-after.y, after.x)) + weights.rotation
             - weights.heading * time_after / period;
         let of_value = [

@@ -7,7 +7,6 @@ mod limits;
 
 use limits::Inequality;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Vector2};
-use swimmer_model::Model;
 
 use super::arc::{Jet, Shape};
 use super::chain::{self, Layout, Weights};
@@ -24,8 +23,15 @@ pub(crate) struct Polygon {
     pub(crate) speed: f64,
 }
 
-/// Where the barrier starts and ends.
+impl Polygon {
+    pub(crate) fn period(&self) -> f64 {
+        self.layout.period(&self.z)
+    }
+}
+
+/// Where the barrier starts, where a rough polygon ends, and where the best does.
 const FIRST_BARRIER: f64 = 1e-2;
+const ROUGH_BARRIER: f64 = 1e-4;
 const LAST_BARRIER: f64 = 1e-8;
 const MOST_STEPS: usize = 150;
 /// No farther than this share of the way to any limit.
@@ -33,9 +39,9 @@ const SHARE: f64 = 0.995;
 /// Quadrature points on a side.
 const POINTS: usize = 6;
 
-/// The best polygon near a start whose corners lie strictly within the bounds; none where the method stalls or the gait does
-/// not swim.
-pub(crate) fn best_polygon(setting: &Setting, start: &[Vector2<f64>]) -> Option<Polygon> {
+/// About the best polygon near a start whose corners lie strictly within the bounds; none where the method stalls or the gait
+/// does not swim.
+pub(crate) fn rough_polygon(setting: &Setting, start: &[Vector2<f64>]) -> Option<Polygon> {
     let n = start.len();
     let layout = Layout::new(vec![Shape::Straight; n]);
     let mut z = DVector::zeros(layout.size);
@@ -47,18 +53,27 @@ pub(crate) fn best_polygon(setting: &Setting, start: &[Vector2<f64>]) -> Option<
         let [from, to] = layout.ends(&z, side);
         z[layout.time_index(side)] = 1.3 * setting.time(&(to - from)) + 1e-3;
     }
-    Method {
-        setting,
-        model: setting.model,
-        rule: Rule::new(POINTS),
-        layout,
+    Method::new(setting, layout).solve(z, [FIRST_BARRIER, ROUGH_BARRIER])
+}
+
+/// The best polygon of twice as many sides near a rough one.
+pub(crate) fn best_polygon(setting: &Setting, rough: &Polygon) -> Option<Polygon> {
+    let n = rough.layout.arcs();
+    let layout = Layout::new(vec![Shape::Straight; 2 * n]);
+    let mut z = DVector::zeros(layout.size);
+    for side in 0..n {
+        let [from, to] = rough.layout.ends(&rough.z, side);
+        for (corner, phi) in [(2 * side, from), (2 * side + 1, 0.5 * (from + to))] {
+            z[2 * corner] = phi.x;
+            z[2 * corner + 1] = phi.y;
+            z[layout.time_index(corner)] = 0.5 * rough.z[rough.layout.time_index(side)];
+        }
     }
-    .solve(z)
+    Method::new(setting, layout).solve(z, [ROUGH_BARRIER, LAST_BARRIER])
 }
 
 struct Method<'a> {
     setting: &'a Setting<'a>,
-    model: &'a Model<f64>,
     rule: Rule,
     layout: Layout,
 }
@@ -100,7 +115,15 @@ struct Direction {
     dual_longest: f64,
 }
 
-impl Method<'_> {
+impl<'a> Method<'a> {
+    fn new(setting: &'a Setting<'a>, layout: Layout) -> Self {
+        Self {
+            setting,
+            rule: Rule::new(POINTS),
+            layout,
+        }
+    }
+
     /// Residuals of the equalities, and their slopes.
     fn equalities(
         &self,
@@ -141,9 +164,7 @@ impl Method<'_> {
             return f64::INFINITY;
         }
         let logs: f64 = inequalities.iter().map(|one| one.value.ln()).sum();
-        let jets = self.layout.jets(self.model, &self.rule, z);
-        let times = &z.as_slice()[2 * self.layout.arcs()..];
-        let (_, net) = chain::net(&jets, &times[..self.layout.arcs()]);
+        let (_, net) = self.layout.net(self.setting.model, &self.rule, z);
         let off = self.setting.heading.off(net.heading()).unwrap_or(0.0);
         let late = self
             .setting
@@ -153,30 +174,28 @@ impl Method<'_> {
             + penalty * (net.rotation.abs() + off.abs() + late.abs())
     }
 
-    fn solve(self, z: DVector<f64>) -> Option<Polygon> {
+    fn solve(self, z: DVector<f64>, [first, last]: [f64; 2]) -> Option<Polygon> {
         let inequalities = limits::inequalities(self.setting, &self.layout, &z);
         if !inequalities.iter().all(|one| one.value > 0.0) {
             return None;
         }
-        let pushes = inequalities.iter().map(|one| FIRST_BARRIER / one.value);
+        let pushes = inequalities.iter().map(|one| first / one.value);
         let of_heading = usize::from(self.setting.heading != HeadingRule::Any);
         let mut here = Iterate {
             pushes: pushes.collect(),
             y: vec![0.0; 1 + of_heading + usize::from(self.setting.period.is_some())],
             z,
-            barrier: FIRST_BARRIER,
+            barrier: first,
             damping: 0.0,
             penalty: 1.0,
         };
         for _ in 0..MOST_STEPS {
             let look = self.look(&here)?;
             if look.error(&here) < 10.0 * here.barrier {
-                if here.barrier <= LAST_BARRIER {
+                if here.barrier <= last {
                     return Some(self.finish(&here, look.net));
                 }
-                here.barrier = (0.2 * here.barrier)
-                    .min(here.barrier.powf(1.5))
-                    .max(LAST_BARRIER);
+                here.barrier = (0.2 * here.barrier).min(here.barrier.powf(1.5)).max(last);
             }
             let direction = self.direction(&mut here, &look)?;
             if !self.move_along(&mut here, &direction) {
@@ -195,7 +214,7 @@ impl Method<'_> {
     fn look(&self, here: &Iterate) -> Option<Look> {
         let Iterate { z, y, .. } = here;
         let layout = &self.layout;
-        let jets = layout.jets(self.model, &self.rule, z);
+        let jets = layout.jets(self.setting.model, &self.rule, z);
         let (net, values, slopes) = self.equalities(&jets, z);
         if net.distance().is_nan() || net.distance() < 1e-9 {
             return None;
@@ -231,7 +250,7 @@ impl Method<'_> {
     /// Second derivatives with the inequalities eliminated, and minus the barrier's gradient.
     fn system(&self, here: &Iterate, look: &Look) -> (DMatrix<f64>, DVector<f64>) {
         let arcs = self.layout.arcs();
-        let of = (&self.layout, self.model, &self.rule);
+        let of = (&self.layout, self.setting.model, &self.rule);
         let mut matrix = chain::hessian(of, &look.jets, &here.z, look.weights, false);
         let period = self.layout.period(&here.z);
         for one in 2 * arcs..3 * arcs {

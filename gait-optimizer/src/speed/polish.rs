@@ -16,8 +16,6 @@ pub(crate) struct Polished {
     pub(crate) z: DVector<f64>,
     pub(crate) net: Net,
     pub(crate) speed: f64,
-    /// Largest residual of the equations.
-    pub(crate) residual: f64,
     /// Multipliers of the holds, corner by corner: what the bound pushes with, positive where it is needed.
     pub(crate) hold_pushes: Vec<Vec<f64>>,
     /// Least eigenvalue of the second variation on shifts that keep all equations; positive at a maximum of the speed.
@@ -30,7 +28,7 @@ const MOST_STEPS: usize = 40;
 /// Residuals below this are rounding.
 const ROUNDING: f64 = 2e-12;
 /// Bends of a singular arc.
-const BENDS: usize = 8;
+pub(crate) const BENDS: usize = 8;
 
 /// One equation that is linear in the unknowns, or holds a corner.
 enum Equation {
@@ -49,20 +47,7 @@ enum Equation {
 /// Polishes a chain; none where Newton's method does not converge.
 pub(crate) fn polish(setting: &Setting, links: &[Link]) -> Option<Polished> {
     let rule = Rule::new(POINTS);
-    let shapes = links
-        .iter()
-        .map(|link| link.motion.shape(setting, BENDS))
-        .collect();
-    let layout = Layout::new(shapes);
-    let mut z = DVector::zeros(layout.size);
-    for (k, link) in links.iter().enumerate() {
-        z[2 * k] = link.corner.x;
-        z[2 * k + 1] = link.corner.y;
-        z[layout.time_index(k)] = link.time;
-        for (bend, value) in link.bends.iter().enumerate().take(layout.shapes[k].bends()) {
-            z[layout.bends_index(k) + bend] = *value;
-        }
-    }
+    let (layout, mut z) = written(setting, links);
     let equations = equations(links);
     let conditions = Conditions {
         setting,
@@ -121,10 +106,42 @@ pub(crate) fn polish(setting: &Setting, links: &[Link]) -> Option<Polished> {
         layout,
         z,
         net,
-        residual,
         hold_pushes,
         convexity,
     })
+}
+
+/// The least eigenvalue of the second variation of a chain that is known to meet all equations, whoever made it.
+pub(crate) fn second_variation(setting: &Setting, links: &[Link]) -> Option<f64> {
+    let rule = Rule::new(POINTS);
+    let (layout, z) = written(setting, links);
+    let conditions = Conditions {
+        setting,
+        layout: &layout,
+        rule: &rule,
+        equations: &equations(links),
+    };
+    let (_, y) = conditions.look(&z, None)?.newton()?;
+    Some(conditions.look(&z, Some(&y))?.convexity())
+}
+
+/// A chain as unknowns.
+fn written(setting: &Setting, links: &[Link]) -> (Layout, DVector<f64>) {
+    let shapes = links
+        .iter()
+        .map(|link| link.motion.shape(setting, BENDS))
+        .collect();
+    let layout = Layout::new(shapes);
+    let mut z = DVector::zeros(layout.size);
+    for (k, link) in links.iter().enumerate() {
+        z[2 * k] = link.corner.x;
+        z[2 * k + 1] = link.corner.y;
+        z[layout.time_index(k)] = link.time;
+        for (bend, value) in link.bends.iter().enumerate().take(layout.shapes[k].bends()) {
+            z[layout.bends_index(k) + bend] = *value;
+        }
+    }
+    (layout, z)
 }
 
 fn equations(links: &[Link]) -> Vec<Equation> {

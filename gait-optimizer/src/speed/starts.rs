@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::region::Region;
 
 /// Corners of a start.
-const CORNERS: usize = 24;
+const CORNERS: usize = 12;
 /// Centres and radii of the first circles, over the largest angle. A swimmer's mirror image swims as far, so one of two opposite
 /// centres is enough.
 const CIRCLES: [([f64; 2], f64); 12] = [

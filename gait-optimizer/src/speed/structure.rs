@@ -55,6 +55,8 @@ const PUSHES: f64 = 1e-4;
 const RESTS: f64 = 1e-4;
 /// Arcs that take a smaller share of the period are left out.
 const SHORTEST: f64 = 2e-3;
+/// Bends that are read off a polygon.
+const FITTED: usize = 3;
 
 impl Motion {
     /// Which servo surely runs at full rate, and which way; both do on an extreme arc.
@@ -106,7 +108,7 @@ pub(crate) fn arcs(setting: &Setting, polygon: &Polygon) -> Option<Vec<Link>> {
     let period = layout.period(&polygon.z);
     let n = layout.arcs();
     let held: Vec<Vec<Hold>> = (0..n)
-        .map(|corner| holds(setting, &layout.corner(&polygon.z, corner)))
+        .map(|corner| holds(setting, &layout.corner(&polygon.z, corner), RESTS))
         .collect();
     let sides: Vec<(Motion, f64)> = (0..n)
         .map(|side| {
@@ -138,7 +140,7 @@ pub(crate) fn arcs(setting: &Setting, polygon: &Polygon) -> Option<Vec<Link>> {
     links.retain(|link| link.time > SHORTEST * period);
     merge(&mut links);
     cut_corners(&mut links);
-    bend(&mut links);
+    bend(&mut links, FITTED);
     Some(links)
 }
 
@@ -196,9 +198,8 @@ fn cut_corners(links: &mut Vec<Link>) {
     }
 }
 
-/// Bends of singular arcs from the shapes on their way.
-fn bend(links: &mut [Link]) {
-    const FITTED: usize = 3;
+/// Bends of singular arcs from the shapes on their way, at most so many.
+pub(crate) fn bend(links: &mut [Link], most: usize) {
     let corners: Vec<Vector2<f64>> = links.iter().map(|link| link.corner).collect();
     for (k, link) in links.iter_mut().enumerate() {
         let Motion::Singular { pace, .. } = link.motion else {
@@ -206,7 +207,7 @@ fn bend(links: &mut [Link]) {
         };
         let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
         let way = to - from;
-        let count = link.between.len().min(FITTED);
+        let count = link.between.len().min(most);
         let rows: Vec<(f64, f64)> = link
             .between
             .iter()
@@ -248,13 +249,13 @@ pub(crate) fn merge(links: &mut Vec<Link>) {
     }
 }
 
-/// What a corner rests on.
-pub(crate) fn holds(setting: &Setting, phi: &Vector2<f64>) -> Vec<Hold> {
+/// What a corner rests on, to within so much.
+pub(crate) fn holds(setting: &Setting, phi: &Vector2<f64>, within: f64) -> Vec<Hold> {
     setting
         .region
         .bounds()
         .enumerate()
-        .filter(|(_, bound)| bound.margin(phi) < RESTS)
+        .filter(|(_, bound)| bound.margin(phi) < within)
         .map(|(index, bound)| Hold::On(index, bound.piece(phi)))
         .collect()
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::certify;
+use swimmer_files::Objective;
 
 fn within(swimmer: Swimmer<f64>, max: f64) -> SpeedProblem {
     SpeedProblem {
@@ -37,6 +38,56 @@ fn known_speeds() {
         );
         assert!(found.uncertified.is_none() && found.longer.is_none());
     }
+}
+
+/// The first guesses alone lead to the fastest gaits that are known.
+#[test]
+fn a_few_guesses_suffice() {
+    let robot = [
+        0.005_233_960_731_8,
+        0.006_423_207_410_6,
+        0.007_042_068_534_6,
+        0.007_533_853_203_8,
+        0.007_904_302_045_4,
+    ];
+    let purcell = [
+        0.012_915_416_912_7,
+        0.012_935_969_365_7,
+        0.014_342_411_332_8,
+        0.015_272_491_902_1,
+        0.015_734_241_522_8,
+    ];
+    for (swimmer, speeds) in [(Swimmer::robot(), robot), (Swimmer::purcell(), purcell)] {
+        for (max, speed) in [2.0, 2.4, 2.6, 2.8, 3.0].into_iter().zip(speeds) {
+            let found = fastest(&SpeedProblem {
+                starts: SpeedProblem::GUESSES,
+                ..within(swimmer, max)
+            })
+            .unwrap();
+            certified(&found);
+            assert!(
+                (found.speed_over_length - speed).abs() < 1e-12,
+                "{max} {found:?}"
+            );
+        }
+    }
+}
+
+/// Along the curve that keeps the side links apart.
+#[test]
+fn a_curved_bound_is_followed() {
+    let mut problem = within(Swimmer::robot(), 3.0);
+    problem.bounds.no_overlap = true;
+    problem.bounds.clearance = 0.02;
+    problem.starts = 32;
+    let found = fastest(&problem).unwrap();
+    certified(&found);
+    println!("{:?} {}", found.gait.arcs, found.speed_over_length);
+    let along = |arc: &crate::Arc| arc.kind == swimmer_files::ArcKind::Clearance;
+    assert!(found.gait.arcs.iter().any(along));
+    let file = found.gait.gait_file("");
+    let again = certify(&problem.swimmer, &file, Objective::Speed, &problem.bounds).unwrap();
+    assert!(again.pass(), "{}", again.failures());
 }
 
 /// The file alone tells the same, at any rate; a circle, a square and the gait made smaller by a hundredth do not pass.
@@ -88,6 +139,27 @@ fn the_heading_is_as_asked() {
     }
 }
 
+#[test]
+fn sideways_the_fastest_is_certified() {
+    let problem = SpeedProblem {
+        heading: HeadingRule::Sideways,
+        starts: 64,
+        ..within(Swimmer::robot(), 2.8)
+    };
+    let found = fastest(&problem).unwrap();
+    certified(&found);
+    assert!((found.speed_over_length - 0.007_373_297_394_7).abs() < 1e-12);
+    assert!(
+        found.uncertified.is_none(),
+        "{} {:?}",
+        found.speed_over_length,
+        found.uncertified
+    );
+    let file = found.gait.gait_file("");
+    let again = certify(&problem.swimmer, &file, Objective::Speed, &problem.bounds).unwrap();
+    assert!(again.pass(), "{}", again.failures());
+}
+
 /// The farthest in the fastest gait's own period is that gait; in another period it is slower, and H is dD/dT.
 #[test]
 fn the_farthest_in_a_period() {
@@ -101,6 +173,9 @@ fn the_farthest_in_a_period() {
         .unwrap();
         certified(&found);
         assert!((found.period - period).abs() < 1e-9);
+        let file = found.gait.gait_file("");
+        let again = certify(&problem.swimmer, &file, Objective::Speed, &problem.bounds).unwrap();
+        assert!(again.pass(), "{}", again.failures());
         found
     };
     let same = at(free.period);

@@ -5,7 +5,7 @@ use std::num::NonZero;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use gait_optimizer::{Fastest, HeadingRule, SpeedError, SpeedProblem, fastest};
+use gait_optimizer::{Fastest, HeadingRule, SpeedError, SpeedProblem, fastest_watched};
 use serde::Serialize;
 use swimmer_files::{AnyGait, SwimmerFile};
 
@@ -13,6 +13,7 @@ use crate::arguments::{load_swimmer, rate, seconds};
 use crate::bounds::WholeBounds;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
+use crate::progress::Progress;
 use crate::quantity::{self, Rows};
 
 use super::answer::{Arc, Closing, arc_rows, arcs, unfolded};
@@ -59,7 +60,8 @@ impl Speed {
     pub(super) fn run(self, output: Output) -> Outcome {
         let file = load_swimmer(&self.swimmer)?;
         let begun = Instant::now();
-        let found = fastest(&SpeedProblem {
+        let progress = Progress::of_a_whole("looking for the fastest gait");
+        let problem = SpeedProblem {
             bounds: self.bounds.of(&file),
             heading: match self.heading {
                 Heading::Any => HeadingRule::Any,
@@ -69,7 +71,9 @@ impl Speed {
             period: self.period,
             threads: std::thread::available_parallelism().map_or(1, NonZero::get),
             ..SpeedProblem::new(file.swimmer, self.rates(&file))
-        })?;
+        };
+        let found = fastest_watched(&problem, &|share| progress.at_share(share))?;
+        drop(progress);
         let seconds = begun.elapsed().as_secs_f64();
         unfolded(&found.gait)?;
         let gait_file = found.gait.gait_file(&file.name);

@@ -29,14 +29,24 @@ pub(crate) struct Node {
 #[derive(Debug, Clone)]
 pub(crate) struct Leg {
     pub(crate) kind: ArcKind,
+    /// Share of the period.
+    pub(crate) share: f64,
     pub(crate) from: Vector2<f64>,
     pub(crate) to: Vector2<f64>,
-    /// θ at both ends.
-    pub(crate) theta: [f64; 2],
+    /// θ at the start and after each panel.
+    pub(crate) theta: Vec<f64>,
     /// Direction of each joint halfway: −1 or 1.
     pub(crate) ways: [f64; 2],
     /// Panels of nodes, in order.
     pub(crate) panels: Vec<Vec<Node>>,
+}
+
+impl Leg {
+    /// θ at its start (0) or its end (1).
+    pub(crate) fn theta_at(&self, end: usize) -> f64 {
+        let at = if end == 0 { 0 } else { PANELS };
+        self.theta.get(at).copied().unwrap_or(f64::NAN)
+    }
 }
 
 /// A cycle.
@@ -115,9 +125,12 @@ impl Legs {
             let middle = gait.at(0.5 * (span.from + span.to)).rate;
             legs.push(Leg {
                 kind: span.kind,
+                share: span.to - span.from,
                 from: gait.at(span.from).phi,
                 to: gait.at(span.to).phi,
-                theta: [pose_at(&panels, span.from)[2], pose_at(&panels, span.to)[2]],
+                theta: (0..=PANELS)
+                    .map(|k| pose_at(&panels, span.from + width * k as f64)[2])
+                    .collect(),
                 ways: [middle.x.signum(), middle.y.signum()],
                 panels: nodes,
             });

@@ -19,11 +19,22 @@ const ROTATION: usize = 0;
 const HEADING: usize = 1;
 const SPEED: usize = 2;
 
+/// The bound that a place of an arc along one lies on, with its place in the region.
+pub(super) fn along(region: &Region, node: &Node) -> Option<(usize, Bound)> {
+    let across = |bound: &Bound| bound.gradient(&node.phi).normalize().dot(&node.rate).abs();
+    region
+        .bounds()
+        .enumerate()
+        .filter(|(_, bound)| bound.margin(&node.phi).abs() < 1e-6)
+        .min_by(|(_, a), (_, b)| across(a).total_cmp(&across(b)))
+}
+
 /// What the least squares left.
 pub(crate) struct Switching<'a> {
     region: &'a Region,
     legs: &'a Legs,
     heading: bool,
+    period: bool,
     /// σ₁ at both ends of each extreme leg.
     ends: Vec<Option<[Affine; 2]>>,
     solution: Vec<f64>,
@@ -37,6 +48,7 @@ impl<'a> Switching<'a> {
             region,
             legs,
             heading: rule != HeadingRule::Any,
+            period,
             ends: vec![None; legs.all.len()],
             solution: Vec::new(),
             residual: 0.0,
@@ -144,7 +156,7 @@ impl<'a> Switching<'a> {
     fn sigma_at(&mut self, leg: &Leg, end: usize, other: &Leg, unknowns: &mut usize) -> Affine {
         let phi = if end == 0 { leg.from } else { leg.to };
         let full = self
-            .speed(leg.theta[end])
+            .speed(leg.theta_at(end))
             .times(leg.ways[0] / self.legs.rates[0]);
         let none = full.times(0.0);
         let mut free = self.normals(&phi);
@@ -186,7 +198,7 @@ impl<'a> Switching<'a> {
     /// σ at one end of any leg.
     fn sigma(&self, k: usize, end: usize) -> [Affine; 2] {
         let leg = &self.legs.all[k];
-        let speed = self.speed(leg.theta[end]);
+        let speed = self.speed(leg.theta_at(end));
         let [rate1, rate2] = self.legs.rates;
         if let Some(ends) = &self.ends[k] {
             let one = ends[end].clone();
@@ -246,12 +258,8 @@ impl<'a> Switching<'a> {
     }
 
     fn normal_at(&self, node: &Node) -> Option<Vector2<f64>> {
-        let across = |bound: &Bound| bound.gradient(&node.phi).normalize().dot(&node.rate).abs();
-        self.region
-            .bounds()
-            .filter(|bound| bound.margin(&node.phi).abs() < 1e-6)
-            .min_by(|a, b| across(a).total_cmp(&across(b)))
-            .map(|bound| -bound.gradient(&node.phi).normalize())
+        let (_, bound) = along(self.region, node)?;
+        Some(-bound.gradient(&node.phi).normalize())
     }
 
     fn value(&self, affine: &Affine) -> f64 {
@@ -289,16 +297,21 @@ impl<'a> Switching<'a> {
         }
         let scale = self.legs.rates[0].max(self.legs.rates[1]);
         let (mut off, mut clebsch, mut pushes) = (Vec::new(), Vec::new(), Vec::new());
-        for leg in &self.legs.all {
+        for leg in self
+            .legs
+            .all
+            .iter()
+            .filter(|leg| leg.kind != ArcKind::Extreme)
+        {
+            let pace = self.legs.pace(leg);
             for node in leg.panels.iter().flatten() {
-                let h = self.value(&self.height(node)) * scale;
+                // The other servo is free within its rate, so its σ stays 0: by itself, or as the bound makes it.
+                let slope = self.value(&self.slope(node, 1 - pace)) * scale;
                 if on_bound(leg) {
-                    let across = self
-                        .normal_at(node)
-                        .map_or(f64::NAN, |n| n.x * node.rate.y - n.y * node.rate.x);
-                    pushes.push(h * across / node.rate.norm());
-                } else if leg.kind != ArcKind::Extreme {
-                    off.push(-h.abs());
+                    let normal = self.normal_at(node).map_or(f64::NAN, |n| n[1 - pace]);
+                    pushes.push(-slope / (normal * node.rate.norm()));
+                } else {
+                    off.push(-(slope / node.rate[pace]).abs());
                     clebsch.push(self.legendre_clebsch(leg, node));
                 }
             }
@@ -332,6 +345,15 @@ impl<'a> Switching<'a> {
                 -close,
             ));
         }
+        if self.period {
+            // A longer period never leads less far.
+            let further = self.solution.get(SPEED).copied().unwrap_or(f64::NAN);
+            checks.push(Check::at_least(
+                "distance_of_further_time_over_speed",
+                further,
+                -close,
+            ));
+        }
         checks
     }
 
@@ -347,12 +369,12 @@ impl<'a> Switching<'a> {
             signs.push(share);
             signs.push(self.value(&self.speed(theta)) - share);
         };
-        say(sigma, leg.theta[0]);
-        for panel in &leg.panels {
+        say(sigma, leg.theta_at(0));
+        for (panel, theta) in leg.panels.iter().zip(&leg.theta[1..]) {
             for node in panel {
                 sigma += node.weight * self.value(&self.slope(node, 0));
             }
-            say(sigma, panel.last().map_or(f64::NAN, |node| node.theta));
+            say(sigma, *theta);
         }
         signs
     }

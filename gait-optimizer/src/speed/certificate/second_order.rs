@@ -1,0 +1,52 @@
+//! The second-order condition over shifts of corners, times and bends of singular arcs, from the curve alone.
+
+use swimmer_files::ArcKind;
+
+use super::super::polish::{BENDS, second_variation};
+use super::super::problem::Setting;
+use super::super::structure::{Link, Motion, bend, holds};
+use super::legs::Legs;
+use super::switching::along;
+use super::{RESTS, on_bound};
+use crate::region::Bound;
+
+/// The least eigenvalue of the second variation of ln T − ln |d| where all equations of the arcs hold to first order; none where
+/// the arcs are none.
+pub(super) fn least(setting: &Setting, legs: &Legs) -> Option<f64> {
+    let links: Option<Vec<Link>> = legs
+        .all
+        .iter()
+        .map(|leg| {
+            let pace = legs.pace(leg);
+            let way = leg.ways[pace];
+            let motion = if leg.kind == ArcKind::Extreme {
+                Motion::Extreme(leg.ways)
+            } else if on_bound(leg) {
+                let middle = leg.panels.get(leg.panels.len() / 2)?.first()?;
+                let (bound, kind) = along(setting.region, middle)?;
+                match kind {
+                    Bound::Clearance(clearance) => Motion::Curved {
+                        bound,
+                        piece: clearance.piece(&middle.phi),
+                        pace,
+                        way,
+                    },
+                    Bound::Straight(_) => Motion::Straight { bound, pace, way },
+                }
+            } else {
+                Motion::Singular { pace, way }
+            };
+            Some(Link {
+                corner: leg.from,
+                held: holds(setting, &leg.from, RESTS),
+                motion,
+                time: leg.share,
+                bends: Vec::new(),
+                between: leg.panels.iter().flatten().map(|node| node.phi).collect(),
+            })
+        })
+        .collect();
+    let mut links = links?;
+    bend(&mut links, BENDS);
+    second_variation(setting, &links)
+}

@@ -1,0 +1,50 @@
+//! Which of the rough polygons are worth finishing.
+
+use super::interior::Polygon;
+
+/// Polygons as fast and as long as each other, but for this share, lie near one gait.
+const ALIKE: f64 = 3e-3;
+/// Of one group so many are finished: alike is not the same.
+const OF_A_GROUP: usize = 2;
+
+/// Polygons that lie near one gait.
+#[derive(Debug)]
+pub(crate) struct Group {
+    /// Those to finish, fastest first.
+    pub(crate) chosen: Vec<Polygon>,
+    /// How many there are.
+    pub(crate) count: usize,
+}
+
+impl Group {
+    pub(crate) fn speed(&self) -> f64 {
+        self.chosen.first().map_or(0.0, |first| first.speed)
+    }
+}
+
+/// The groups of some polygons, fastest first.
+pub(crate) fn groups(mut polygons: Vec<Polygon>) -> Vec<Group> {
+    polygons.sort_by(|a, b| b.speed.total_cmp(&a.speed));
+    let mut groups: Vec<Group> = Vec::new();
+    for polygon in polygons {
+        let alike = |group: &&mut Group| {
+            group.chosen.first().is_some_and(|first| {
+                let near = |a: f64, b: f64| (a - b).abs() < ALIKE * b;
+                near(polygon.speed, first.speed) && near(polygon.period(), first.period())
+            })
+        };
+        match groups.iter_mut().find(alike) {
+            Some(group) => {
+                group.count += 1;
+                if group.chosen.len() < OF_A_GROUP {
+                    group.chosen.push(polygon);
+                }
+            }
+            None => groups.push(Group {
+                chosen: vec![polygon],
+                count: 1,
+            }),
+        }
+    }
+    groups
+}
