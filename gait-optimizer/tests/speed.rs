@@ -153,6 +153,10 @@ fn monotone(swimmers: usize, bounds: usize, starts: usize) {
             }
             best = best.max(speed);
         }
+        println!(
+            "swimmer {number}: {} lower, {none} without an answer so far, up to {best:.10}",
+            lower.len()
+        );
     }
     println!(
         "{swimmers} swimmers x {bounds} bounds: {} lower, {none} without an answer, {uncertified} with a faster uncertified chain",
