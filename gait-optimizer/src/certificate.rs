@@ -93,6 +93,12 @@ impl Certificate {
         Self { checks }
     }
 
+    /// The same with further conditions.
+    pub(crate) fn with(mut self, checks: Vec<Check>) -> Self {
+        self.checks.extend(checks);
+        self
+    }
+
     /// The conditions, one by one.
     pub fn checks(&self) -> &[Check] {
         &self.checks
