@@ -83,6 +83,40 @@ impl SpeedProblem {
             threads: 1,
         }
     }
+
+    /// As [`fastest`], while somebody watches.
+    ///
+    /// # Errors
+    /// As [`fastest`].
+    pub fn watched(&self, watch: Watch<'_>) -> Result<Fastest, SpeedError> {
+        let problem = self;
+        validate(problem)?;
+        let model = Model::new(&problem.swimmer.of_unit_length())?;
+        refuse_immobile(&model, &problem.bounds)?;
+        let region = Region::new(&problem.bounds, &problem.swimmer.links);
+        // Time in units in which the faster servo turns by 1 rad.
+        let fast = problem.rates[0].max(problem.rates[1]);
+        let setting = Setting {
+            model: &model,
+            region: &region,
+            rates: problem.rates.map(|rate| rate / fast),
+            heading: problem.heading,
+            period: problem.period.map(|period| period * fast),
+        };
+        let roughly = |(): &mut (), index: usize| {
+            interior::rough_polygon(&setting, &starts::start(&region, problem.seed, index))
+        };
+        let share = |share: f64| watch(search::ROUGH_SHARE * share);
+        let rough = in_parallel(
+            problem.starts.max(1),
+            problem.threads,
+            &share,
+            || (),
+            roughly,
+        );
+        let groups = selection::groups(rough.into_iter().flatten().collect());
+        Search::new(problem, &setting, fast, &groups).run(watch)
+    }
 }
 
 /// The fastest gait.
@@ -111,40 +145,7 @@ pub struct Fastest {
 /// # Errors
 /// [`SpeedError`] where the problem makes no sense or no chain can be certified.
 pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {
-    fastest_watched(problem, &|_| ())
-}
-
-/// As [`fastest`], while somebody watches.
-///
-/// # Errors
-/// As [`fastest`].
-pub fn fastest_watched(problem: &SpeedProblem, watch: Watch<'_>) -> Result<Fastest, SpeedError> {
-    validate(problem)?;
-    let model = Model::new(&problem.swimmer.of_unit_length())?;
-    refuse_immobile(&model, &problem.bounds)?;
-    let region = Region::new(&problem.bounds, &problem.swimmer.links);
-    // Time in units in which the faster servo turns by 1 rad.
-    let fast = problem.rates[0].max(problem.rates[1]);
-    let setting = Setting {
-        model: &model,
-        region: &region,
-        rates: problem.rates.map(|rate| rate / fast),
-        heading: problem.heading,
-        period: problem.period.map(|period| period * fast),
-    };
-    let roughly = |(): &mut (), index: usize| {
-        interior::rough_polygon(&setting, &starts::start(&region, problem.seed, index))
-    };
-    let share = |share: f64| watch(search::ROUGH_SHARE * share);
-    let rough = in_parallel(
-        problem.starts.max(1),
-        problem.threads,
-        &share,
-        || (),
-        roughly,
-    );
-    let groups = selection::groups(rough.into_iter().flatten().collect());
-    Search::new(problem, &setting, fast, &groups).run(watch)
+    problem.watched(&|_| ())
 }
 
 /// The conditions of a gait from anywhere, timed as its samples are. One that leads exactly along its mean heading, or across, may

@@ -73,7 +73,7 @@ pub(crate) fn certificate(
         Some(least) if least.is_finite() => {
             checks.push(Check::at_least("second_variation_least", least, 0.0));
         }
-        _ => checks.push(Check::at_least("arcs_of_a_chain", 0.0, 3.0)),
+        _ => checks.push(Check::at_least("arcs_least", 0.0, 3.0)),
     }
     Certificate::new(checks)
 }

@@ -5,7 +5,7 @@ use std::num::NonZero;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use gait_optimizer::{Fastest, HeadingRule, SpeedError, SpeedProblem, fastest_watched};
+use gait_optimizer::{Fastest, HeadingRule, SpeedError, SpeedProblem};
 use serde::Serialize;
 use swimmer_files::{AnyGait, SwimmerFile};
 
@@ -72,7 +72,7 @@ impl Speed {
             threads: std::thread::available_parallelism().map_or(1, NonZero::get),
             ..SpeedProblem::new(file.swimmer, self.rates(&file))
         };
-        let found = fastest_watched(&problem, &|share| progress.at_share(share))?;
+        let found = problem.watched(&|share| progress.at_share(share))?;
         drop(progress);
         let seconds = begun.elapsed().as_secs_f64();
         unfolded(&found.gait)?;

@@ -349,7 +349,7 @@ impl<'a> Switching<'a> {
             // A longer period never leads less far.
             let further = self.solution.get(SPEED).copied().unwrap_or(f64::NAN);
             checks.push(Check::at_least(
-                "distance_of_further_time_over_speed",
+                "speed_of_further_time_least",
                 further,
                 -close,
             ));
