@@ -10,8 +10,8 @@
 //! | module | what lives there |
 //! |---|---|
 //! | `displacement` | the problem, the search for the quarter gait, the result |
-//! | `momentum` | the multipliers as a momentum that the body carries, and the height: what a push of the curve gains |
-//! | `displacement::height` | the same for a quarter: the paper's switching function F, what the costate equations need |
+//! | `momentum` | the multipliers as a momentum that the body carries, and the height: what a push of the curve gains; the flow of an arc |
+//! | `displacement::height` | the paper's switching function F of a quarter, what the costate equations need |
 //! | `height_map` | height functions in minimum-perturbation coordinates, their zero-level curves, the area rule |
 //! | `atlas` | multi-start over closed curves of any symmetry, and which of them are one gait |
 //! | `continuation` | an optimum followed in a parameter: folds, meetings, changes of its arcs |
@@ -21,15 +21,9 @@
 //! | `region` | the bounds: straight ones of the joint angles, and the curved one that keeps the side links apart |
 //! | `displacement::flow` | one quarter gait: arc after arc, event after event |
 //! | `displacement::trunk` | where singular arcs may begin: φ₁ = φ₂, and chains of bounds from there |
-//! | `efficiency` | free Lighthill gaits: Fourier series, shooting, second-order test |
-//! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs |
+//! | `efficiency` | the small and the large Lighthill gait: Fourier series, then `extremal`, bounds followed |
+//! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs, second-order test |
 //! | `cycle` | from a quarter to the full cycle, at constant power |
-//! | `height_map` | height functions in minimum-perturbation coordinates, zero-level curves, the area rule |
-//! | `loops` | closed curves of most displacement without symmetry: singular arcs and bounds, back to their start |
-//! | `closed_curve` | net displacement, rotation and effort of any closed curve, with exact derivatives |
-//! | `atlas` | every optimum that a seeded multi-start finds, polished and certified |
-//! | `continuation` | optima followed in a parameter, with what happens on the way |
-//! | `sideways` | the loop and its start that move most across the heading |
 //! | `speed` | the fastest gait of servos with a rate limit |
 //! | `turning` | the simple closed gait that turns most: round a region of the curvature |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
