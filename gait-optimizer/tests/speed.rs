@@ -149,6 +149,10 @@ fn monotone(swimmers: usize, bounds: usize, starts: usize) {
             uncertified += usize::from(found.uncertified.is_some());
             let speed = found.speed_over_length;
             if speed < best * (1.0 - 1e-9) {
+                println!(
+                    "swimmer {number}, {max_angle:.4} rad: {:.2e} lower",
+                    1.0 - speed / best
+                );
                 lower.push((number, max_angle, speed / best - 1.0));
             }
             best = best.max(speed);
