@@ -139,6 +139,8 @@ pub struct Atlas {
     pub left: usize,
     /// Starts that ended on a curve whose polish failed, or whose certificate does.
     pub uncertified: usize,
+    /// The best of these, as its curve of low order has it: |d| over L, or ξ. It is no gait that anybody proved.
+    pub best_uncertified: Option<f64>,
 }
 
 /// Why there is no atlas.

@@ -164,6 +164,9 @@ struct Answer {
     left: usize,
     /// Starts whose end could not be polished to a certified gait.
     uncertified: usize,
+    /// |d| over L or ξ of the best of these, by its curve of low order.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    best_uncertified: Option<f64>,
     seconds: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     continuation: Option<follow::Followed>,
@@ -213,6 +216,7 @@ impl Answer {
             unsettled: found.unsettled,
             left: found.left,
             uncertified: found.uncertified,
+            best_uncertified: found.best_uncertified,
             seconds,
             continuation: None,
             picture: None,
@@ -285,6 +289,13 @@ impl fmt::Display for Answer {
             "  not listed: {} starts settled nowhere, {} left the shapes searched, {} ended where no gait could be certified",
             self.unsettled, self.left, self.uncertified
         )?;
+        if let Some(best) = self.best_uncertified {
+            let of = match self.objective {
+                Objective::Efficiency => format!("ξ = {best:.7}"),
+                _ => format!("|d|/L = {best:.7}"),
+            };
+            write!(f, " (the best of these {of}, uncertified)")?;
+        }
         if let Some(continuation) = &self.continuation {
             write!(f, "\n{continuation}")?;
         }

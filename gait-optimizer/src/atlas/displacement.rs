@@ -6,7 +6,7 @@
 
 use nalgebra::DMatrix;
 use swimmer_files::Objective;
-use swimmer_model::Model;
+use swimmer_model::{Model, Stroke};
 
 use super::AtlasProblem;
 use super::distinct::Outline;
@@ -44,6 +44,10 @@ impl Seek for Displacement<'_> {
 
     fn value(gait: &OptimalGait) -> f64 {
         distance(gait)
+    }
+
+    fn value_of(stroke: &Stroke<f64>) -> f64 {
+        stroke.displacement.norm()
     }
 
     fn known(&self, problem: &AtlasProblem) -> Vec<OptimalGait> {

@@ -1,7 +1,7 @@
 //! The atlas of efficiency: closed extremals, free or along bounds, polished by multiple shooting.
 
 use nalgebra::{DMatrix, Vector2};
-use swimmer_model::{Fourier, Gait, GaitPoint, Harmonic, Model};
+use swimmer_model::{Fourier, Gait, GaitPoint, Harmonic, Model, Stroke};
 
 use super::AtlasProblem;
 use super::distinct::Outline;
@@ -34,6 +34,10 @@ impl Seek for Efficiency<'_> {
 
     fn value(gait: &OptimalGait) -> f64 {
         gait.efficiency
+    }
+
+    fn value_of(stroke: &Stroke<f64>) -> f64 {
+        stroke.efficiency_constant_power()
     }
 
     fn known(&self, problem: &AtlasProblem) -> Vec<OptimalGait> {

@@ -1,7 +1,8 @@
 //! From random starts to the certified optima of one objective: coarse curves, classes of them, polish, classes again.
 
 use nalgebra::{DMatrix, Vector2};
-use swimmer_model::Model;
+use swimmer_files::AnyGait;
+use swimmer_model::{Model, Stroke, Tolerance, swim};
 
 use super::curve::{double_area, is_simple, polygon};
 use super::distinct::{Outline, Symmetries, classes};
@@ -36,6 +37,9 @@ pub(super) trait Seek: Sync {
 
     /// What is to be large.
     fn value(gait: &OptimalGait) -> f64;
+
+    /// The same of a stroke of a swimmer of unit length.
+    fn value_of(stroke: &Stroke<f64>) -> f64;
 
     /// Gaits known from elsewhere, to start from beside the random ones, with all that their certificates need
     /// to be listed.
@@ -107,6 +111,7 @@ pub(super) fn run<S: Seek>(
         unsettled: 0,
         left: 0,
         uncertified: 0,
+        best_uncertified: None,
     };
     let mut settled = Vec::new();
     for (index, one) in ended.into_iter().enumerate() {
@@ -141,7 +146,15 @@ pub(super) fn run<S: Seek>(
         let starts = starts.map(|(_, counts)| counts).sum();
         match gait {
             Some(gait) => gaits.push((gait, starts)),
-            None => atlas.uncertified += starts,
+            None => {
+                atlas.uncertified += starts;
+                let first = class.first().and_then(|&index| settled.get(index));
+                let value = first.and_then(|(one, _)| value_of::<S>(model, &one.points));
+                atlas.best_uncertified = [atlas.best_uncertified, value]
+                    .into_iter()
+                    .flatten()
+                    .reduce(f64::max);
+            }
         }
     }
     gaits.extend(known.into_iter().filter(kept).map(|known| (known, 1)));
@@ -149,6 +162,14 @@ pub(super) fn run<S: Seek>(
     let found: usize = atlas.optima.iter().map(|optimum| optimum.found).sum();
     atlas.starts = found + atlas.unsettled + atlas.left + atlas.uncertified;
     atlas
+}
+
+/// What a coarse curve brings, if it can be swum.
+fn value_of<S: Seek>(model: &Model<f64>, points: &[Vector2<f64>]) -> Option<f64> {
+    let sides = points.len().saturating_sub(1) as f64;
+    let u: Vec<f64> = (0..points.len()).map(|k| k as f64 / sides).collect();
+    let curve = AnyGait::from_samples(&u, points, &[]).ok()?;
+    Some(S::value_of(&swim(model, &curve, &Tolerance::default())))
 }
 
 /// One entry for each gait, best first.
