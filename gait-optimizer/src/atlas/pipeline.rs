@@ -144,18 +144,15 @@ pub(super) fn run<S: Seek>(
     for (class, gait) in coarse_classes.iter().zip(polished) {
         let starts = class.iter().filter_map(|&index| settled.get(index));
         let starts = starts.map(|(_, counts)| counts).sum();
-        match gait {
-            Some(gait) => gaits.push((gait, starts)),
-            None => {
-                atlas.uncertified += starts;
-                let first = class.first().and_then(|&index| settled.get(index));
-                let value = first.and_then(|(one, _)| value_of::<S>(model, &one.points));
-                atlas.best_uncertified = [atlas.best_uncertified, value]
-                    .into_iter()
-                    .flatten()
-                    .reduce(f64::max);
-            }
+        if let Some(gait) = gait {
+            gaits.push((gait, starts));
+            continue;
         }
+        atlas.uncertified += starts;
+        let first = class.first().and_then(|&index| settled.get(index));
+        let value = first.and_then(|(one, _)| value_of::<S>(model, &one.points));
+        let values = [atlas.best_uncertified, value];
+        atlas.best_uncertified = values.into_iter().flatten().reduce(f64::max);
     }
     gaits.extend(known.into_iter().filter(kept).map(|known| (known, 1)));
     atlas.optima = distinct::<S>(&gaits, symmetries);
