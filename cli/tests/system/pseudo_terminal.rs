@@ -361,7 +361,7 @@ fn a_first_key_needs_somebody_at_the_robot() {
         };
         let told = robot(&["status"]).with_status(0).json();
         assert_eq!(told["presence"].is_null(), status == 1, "{told:#}");
-        let set = robot(&["key", "set", "robot.key"]).with_status(status);
+        let set = robot(&["key", "make", "robot.key"]).with_status(status);
         let advice =
             set.stderr.contains("for somebody at the robot") && set.stderr.contains("USB cable");
         assert_eq!(advice, status == 1, "{set}");

@@ -16,7 +16,7 @@ const RESIDUAL: f64 = 1e-10;
 
 /// How much the power of the interpolated samples may vary, over its mean.
 const POWER_VARIATION: f64 = 1e-6;
-/// Samples of a cycle are not doubled beyond this.
+/// Samples of a cycle are not made more beyond this.
 const MOST_SAMPLES: usize = 8192;
 
 /// What a gait is made for.
@@ -48,7 +48,7 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
         if variation <= POWER_VARIATION || samples * parts > MOST_SAMPLES {
             break (sampled, cycle, curve, variation);
         }
-        samples *= 2;
+        samples = more(samples, variation);
     };
     let stroke = swim(model, &curve, &Tolerance::new(1e-12));
     let certificate = Finished {
@@ -87,6 +87,14 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
     }
     gait.displacement = gait.displacement_over_length * order.swimmer.total_length();
     Ok(gait)
+}
+
+/// So many samples that the power should vary little enough: it does so by the third power of their distance.
+fn more(samples: usize, variation: f64) -> usize {
+    let factor = (1.1 * (variation / POWER_VARIATION).cbrt()).clamp(1.1, 2.0);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousands
+    let more = (samples as f64 * factor).ceil() as usize;
+    more
 }
 
 struct Finished<'a> {
