@@ -1,6 +1,7 @@
 //! Displacement gaits against the paper, against an independent direct method, and over swimmers and bounds of all kinds.
 
 mod direct;
+mod plane;
 mod swimmers;
 
 use direct::Direct;

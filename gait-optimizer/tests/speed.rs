@@ -1,5 +1,6 @@
 //! The fastest gait by two methods, and never slower for wider bounds.
 
+mod plane;
 mod speed_direct;
 
 use gait_optimizer::{Bounds, SpeedProblem, fastest};

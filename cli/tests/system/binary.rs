@@ -72,6 +72,11 @@ pub(crate) fn swimmer_in(folder: &Path, words: &[&str]) -> Ran {
         .into()
 }
 
+/// The same, its words as they are typed.
+pub(crate) fn typed(folder: &Path, line: &str) -> Ran {
+    swimmer_in(folder, &line.split(' ').collect::<Vec<_>>())
+}
+
 /// Runs the binary to its end where it needs no folder.
 pub(crate) fn swimmer(words: &[&str]) -> Ran {
     swimmer_in(&std::env::temp_dir(), words)

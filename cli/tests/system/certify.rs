@@ -1,6 +1,6 @@
 //! `swimmer certify`: every optimum that was written passes, a circle fails, and the whole document is printed either way.
 
-use crate::binary::{swimmer, swimmer_in};
+use crate::binary::{swimmer, swimmer_in, typed};
 
 #[test]
 fn optima_pass_and_circles_fail() {
@@ -99,10 +99,7 @@ fn a_circle_fails_with_its_whole_certificate() {
 #[test]
 fn rounded_samples_leave_a_gait_undecided() {
     let folder = tempfile::tempdir().unwrap();
-    let run = |words: &str| {
-        let words: Vec<&str> = words.split(' ').collect();
-        swimmer_in(folder.path(), &words)
-    };
+    let run = |line: &str| typed(folder.path(), line);
     run("optimize efficiency --swimmer purcell -o best.gait").with_status(0);
     let text = std::fs::read_to_string(folder.path().join("best.gait")).unwrap();
     let round = |line: &str| {

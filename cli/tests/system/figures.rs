@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::binary::swimmer_in;
+use crate::binary::typed;
 
 /// Every table of a page scrolls by itself or breaks its lines, and every figure shrinks: nothing is wider than a telephone.
 #[track_caller]
@@ -51,9 +51,8 @@ fn widths(svg: &str, color: &str) -> Vec<u32> {
 #[test]
 fn gaits_have_a_direction_and_leave_the_zero_curve_visible() {
     let folder = tempfile::tempdir().unwrap();
-    let words = "height-map --swimmer robot --gait circle:70deg --gait square:1:cw -o map.svg";
-    let words: Vec<&str> = words.split(' ').collect();
-    swimmer_in(folder.path(), &words).with_status(0);
+    let line = "height-map --swimmer robot --gait circle:70deg --gait square:1:cw -o map.svg";
+    typed(folder.path(), line).with_status(0);
     let map = fs::read_to_string(folder.path().join("map.svg")).unwrap();
     assert_eq!(map.matches("<polygon").count(), 8, "four arrows a gait");
     let (zero, gait) = (widths(&map, "#1D242C"), widths(&map, "#008A5E"));
@@ -66,10 +65,9 @@ fn gaits_have_a_direction_and_leave_the_zero_curve_visible() {
     assert!(map.contains("H<tspan"), "the axis of the colours");
     subscripts_are_real(&map);
 
-    let words =
+    let line =
         "atlas --swimmer purcell --objective displacement --max-angle 2.8 --starts 12 -o atlas";
-    let words: Vec<&str> = words.split(' ').collect();
-    swimmer_in(folder.path(), &words).with_status(0);
+    typed(folder.path(), line).with_status(0);
     let atlas = fs::read_to_string(folder.path().join("atlas/atlas.svg")).unwrap();
     let gaits = atlas.matches("|d|/L").count();
     assert!(gaits >= 2 && atlas.matches("<polygon").count() == 4 * gaits);

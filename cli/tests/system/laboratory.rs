@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use crate::binary::swimmer_in;
+use crate::binary::typed;
 
 /// A folder with `good.gait`, `good.toml`, `good.key`, `good.mcap`, `image.uf2`, `run.csv`, `wide.csv`, `campaign.toml` and a boot loader's `drive`, and a `wrong.*`
 /// for each kind.
@@ -53,10 +53,9 @@ fn tracks() -> &'static [String; 2] {
 
 fn track(amplitude: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
-    let words =
+    let line =
         format!("simulate --swimmer robot --gait circle:{amplitude} --cycles 3 --trajectory t.csv");
-    let words: Vec<&str> = words.split(' ').collect();
-    swimmer_in(folder.path(), &words).with_status(0);
+    typed(folder.path(), &line).with_status(0);
     let text = std::fs::read_to_string(folder.path().join("t.csv")).unwrap();
     let mut track = "t,Front x,Front y,Back x,Back y\n".to_owned();
     for line in text.lines().skip(1) {
@@ -84,9 +83,8 @@ fn recorded() -> &'static Path {
     static LOG: OnceLock<(tempfile::TempDir, PathBuf)> = OnceLock::new();
     &LOG.get_or_init(|| {
         let folder = tempfile::tempdir().unwrap();
-        let words = "robot play --gait circle:1 --cycles 1 --port twin --log l.mcap";
-        let words: Vec<&str> = words.split(' ').collect();
-        swimmer_in(folder.path(), &words).with_status(0);
+        let line = "robot play --gait circle:1 --cycles 1 --port twin --log l.mcap";
+        typed(folder.path(), line).with_status(0);
         let log = folder.path().join("l.mcap");
         (folder, log)
     })

@@ -1,6 +1,6 @@
 //! What scripts rely on: one JSON document, the exit status, nothing half-written.
 
-use crate::binary::{swimmer, swimmer_in};
+use crate::binary::{swimmer, swimmer_in, typed};
 
 #[test]
 fn bad_usage_and_bad_input_exit_with_two() {
@@ -95,9 +95,8 @@ fn what_fails_leaves_nothing_behind() {
         swimmer_in(folder.path(), &words).with_status(1);
     }
     // Input is read before the robot is met.
-    let words = "robot play --gait x.gait --cycles 1 --port twin --log z.mcap";
-    let words: Vec<&str> = words.split(' ').collect();
-    swimmer_in(folder.path(), &words).with_status(2);
+    let line = "robot play --gait x.gait --cycles 1 --port twin --log z.mcap";
+    typed(folder.path(), line).with_status(2);
     swimmer_in(
         folder.path(),
         &[

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::binary::{Ran, command, on_a_small_disk, swimmer_in};
+use crate::binary::{Ran, command, on_a_small_disk, swimmer_in, typed};
 use crate::laboratory::laboratory;
 
 fn killed(mut child: std::process::Child, after: Duration) {
@@ -19,10 +19,7 @@ fn killed(mut child: std::process::Child, after: Duration) {
 #[test]
 fn recordings_survive_a_kill() {
     let folder = tempfile::tempdir().unwrap();
-    let run = |words: &str| {
-        let words: Vec<&str> = words.split(' ').collect();
-        swimmer_in(folder.path(), &words)
-    };
+    let run = |line: &str| typed(folder.path(), line);
     let words = ["twin", "--pty", "robot", "--track", "run.csv"];
     let mut twin = command(folder.path(), &words);
     let twin = twin.stdout(Stdio::null()).spawn().unwrap();
@@ -71,10 +68,7 @@ fn recordings_survive_a_full_disk() {
 #[test]
 fn a_file_that_exists_stays_unless_told_otherwise() {
     let folder = tempfile::tempdir().unwrap();
-    let run = |words: &str| {
-        let words: Vec<&str> = words.split(' ').collect();
-        swimmer_in(folder.path(), &words)
-    };
+    let run = |line: &str| typed(folder.path(), line);
     for (writes, file) in [
         (
             "simulate --swimmer robot --gait circle:1 --trajectory",
@@ -117,9 +111,8 @@ fn a_file_that_exists_stays_unless_told_otherwise() {
 fn a_campaign_tells_of_a_log_without_its_end() {
     let folder = laboratory();
     let place = |name: &str| folder.path().join(name);
-    let words = "robot play --gait circle:50deg --cycles 3 --period 30 --port twin --log l.mcap";
-    let words: Vec<&str> = words.split(' ').collect();
-    swimmer_in(folder.path(), &words).with_status(0);
+    let line = "robot play --gait circle:50deg --cycles 3 --period 30 --port twin --log l.mcap";
+    typed(folder.path(), line).with_status(0);
     let campaign = std::fs::read_to_string(place("campaign.toml")).unwrap();
     std::fs::write(place("campaign.toml"), campaign + "log = \"l.mcap\"\n").unwrap();
     let told = |folder: &Path| {

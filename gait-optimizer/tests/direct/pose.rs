@@ -1,29 +1,9 @@
-//! Poses in the plane, and the pose that a straight side in the plane of joint angles brings.
-
-use std::ops::Mul;
+//! The pose that a straight side in the plane of joint angles brings.
 
 use nalgebra::{Vector2, Vector3};
 use swimmer_model::Model;
 
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Pose {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) theta: f64,
-}
-
-impl Mul for Pose {
-    type Output = Self;
-
-    fn mul(self, next: Self) -> Self {
-        let (sin, cos) = self.theta.sin_cos();
-        Self {
-            x: self.x + cos * next.x - sin * next.y,
-            y: self.y + sin * next.x + cos * next.y,
-            theta: self.theta + next.theta,
-        }
-    }
-}
+pub(super) use crate::plane::Pose;
 
 impl Pose {
     #[allow(dead_code)] // not every method that shares this file goes backwards

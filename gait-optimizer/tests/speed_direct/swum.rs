@@ -1,32 +1,12 @@
-//! Poses in the plane, and the pose that a straight side in the plane of joint angles brings.
-
-use std::ops::Mul;
+//! The pose that a straight side in the plane of joint angles brings.
 
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
+pub(super) use crate::plane::Pose;
+
 /// Longest step \[rad\].
 const STEP: f64 = 0.15;
-
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Pose {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) theta: f64,
-}
-
-impl Mul for Pose {
-    type Output = Self;
-
-    fn mul(self, next: Self) -> Self {
-        let (sin, cos) = self.theta.sin_cos();
-        Self {
-            x: self.x + cos * next.x - sin * next.y,
-            y: self.y + sin * next.x + cos * next.y,
-            theta: self.theta + next.theta,
-        }
-    }
-}
 
 impl Pose {
     /// Steps of the Gauss method of order six, explicit here as the rates depend on the shape and θ alone.
