@@ -39,14 +39,19 @@ fn beyond(file: &SwimmerFile, gait: &AnyGait, period: f64) -> Option<String> {
 /// What helps.
 const ADVICE: &str = "`swimmer optimize … --playable` keeps a gait within angle and clearance; a longer period keeps it within the rate";
 
-/// Says so where the gait goes beyond the robot of the file, or beyond its servos' torque or the model in its fluid.
-pub(crate) fn say_if_beyond(file: &SwimmerFile, gait: &AnyGait, period: f64) {
+/// Says so where the gait goes beyond the robot of the file.
+pub(crate) fn say_if_beyond_servos(file: &SwimmerFile, gait: &AnyGait, period: f64) {
     if let Some(reason) = beyond(file, gait, period) {
         aside(&format!(
             "warning: {}, at {period} s a cycle: {reason} ({ADVICE})",
             file.name
         ));
     }
+}
+
+/// The same, and where it goes beyond its servos' torque or the model in its fluid.
+pub(crate) fn say_if_beyond(file: &SwimmerFile, gait: &AnyGait, period: f64) {
+    say_if_beyond_servos(file, gait, period);
     let model = Model::new(&file.swimmer).ok();
     if let Some(fluid) = model.and_then(|model| InFluid::new(file, &model, gait, period)) {
         fluid.warn();

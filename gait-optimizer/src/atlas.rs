@@ -35,7 +35,8 @@ use crate::{Immobile, OptimalGait};
 pub enum StartCurves {
     /// Fourier curves of several sizes, centres and aspects.
     Random,
-    /// Circles off the straight swimmer, their centres on φ₁ = −φ₂: a look beyond the paper's symmetries by four starts.
+    /// Circles off the straight swimmer, their centres on φ₁ = −φ₂: a look beyond the paper's symmetries by four starts, and by
+    /// these alone.
     OffCentre,
 }
 

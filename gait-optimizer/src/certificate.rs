@@ -21,6 +21,18 @@ pub struct Check {
     pub pass: bool,
     /// How much of a failed condition's value the samples leave open; 0 where it holds or was found by a solver.
     pub uncertainty: f64,
+    pub(crate) seen_by: SeenBy,
+}
+
+/// What a condition is seen by, which tells what samples may leave open in it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum SeenBy {
+    /// The curve through the samples: their spacing matters, and their rounding.
+    Curve,
+    /// Each sample, however far it is from the next: only rounding matters.
+    Samples,
+    /// How close the samples are: it says nothing against the gait.
+    Spacing,
 }
 
 /// What a certificate says.
@@ -54,12 +66,13 @@ impl Check {
             tolerance,
             pass: value <= tolerance,
             uncertainty: 0.0,
+            seen_by: SeenBy::Curve,
         }
     }
 
-    /// Whether it asks for the samples, not for the gait.
-    pub(crate) fn is_of_sampling(&self) -> bool {
-        self.name.starts_with("sampling_")
+    /// The same, seen by something else than the curve.
+    pub(crate) fn seen_by(self, seen_by: SeenBy) -> Self {
+        Self { seen_by, ..self }
     }
 
     /// Whether it fails whatever the samples leave open.
@@ -78,6 +91,7 @@ impl Check {
             tolerance,
             pass: value >= tolerance,
             uncertainty: 0.0,
+            seen_by: SeenBy::Curve,
         }
     }
 }
@@ -127,9 +141,9 @@ impl Certificate {
     }
 
     /// Whether the samples are further apart than the conditions ask for.
-    pub(crate) fn failed_of_sampling(&self) -> bool {
+    pub(crate) fn is_too_coarse(&self) -> bool {
         let mut checks = self.checks.iter();
-        checks.any(|check| check.is_of_sampling() && !check.pass)
+        checks.any(|check| check.seen_by == SeenBy::Spacing && !check.pass)
     }
 
     /// The same with what the samples leave open in each condition that fails.

@@ -19,24 +19,26 @@ mod regular;
 mod resolution;
 mod singular;
 mod stencil;
+mod symmetry;
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{
-    Gait as _, InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, crossing_share, swim,
+    InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, crossing_share, swim,
 };
 
 use crate::OptimalGait;
 use crate::certificate::{
-    Certificate, Check, SHARE, SWUM_AGAIN, simple_and_turning_once, turning_number,
+    Certificate, Check, SHARE, SWUM_AGAIN, SeenBy, simple_and_turning_once, turning_number,
 };
 use crate::region::Region;
 use crate::speed::certify_speed;
 pub(crate) use around::{Curve, around};
 use grid::{Along, Degree, Grid};
-use limits::{Limit, Limits, image};
+use limits::{Limit, Limits};
 use path::Path;
-use resolution::{Rounding, begun_on_the_diagonal, missed_between, with_uncertainty};
+use resolution::{Rounding, with_uncertainty};
+use symmetry::{begun_on_the_diagonal, is_symmetric};
 
 /// Directions closer than this make no corner \[rad\].
 const SMOOTH: f64 = 1e-6;
@@ -118,7 +120,7 @@ pub fn certify(
     AnyGait::from_file(gait)?;
     // Across whose heading a gait moves is asked of the first sample; of all else it says nothing.
     let begun = (objective != Objective::Sideways)
-        .then(|| begun_on_the_diagonal(gait, is_symmetric))
+        .then(|| begun_on_the_diagonal(gait))
         .flatten();
     let gait = begun.as_ref().unwrap_or(gait);
     let efficiency = objective == Objective::Efficiency;
@@ -183,6 +185,7 @@ fn sampling(objective: Objective, open: Openness) -> [Check; 2] {
         Check::at_most("sampling_slope_error", open.slope, coarsest),
         Check::at_most("sampling_pose_error", open.pose, COARSEST),
     ]
+    .map(|check| check.seen_by(SeenBy::Spacing))
 }
 
 /// As [`certify`] of a counter-clockwise gait.
@@ -195,8 +198,10 @@ fn certify_turned(
 ) -> Result<Certificate, CertifyError> {
     let subject = Subject::new(model, gait, limits);
     let open = subject.openness();
-    let mut checks = subject.of_the_curve(gait, curve);
-    checks.extend(sampling(objective, open));
+    let sampling = sampling(objective, open);
+    let coarse = sampling.iter().any(|check| !check.pass);
+    let mut checks = subject.of_the_curve(gait, curve, coarse);
+    checks.extend(sampling);
     let stroke = swim(model, curve, &Tolerance::default());
     let [x, y, theta] = subject.path.end();
     let apart = |[a, b]: [f64; 2]| (a - x).hypot(b - y);
@@ -264,13 +269,18 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// Closure, simplicity and bounds: what does not depend on the objective.
-    fn of_the_curve(&self, gait: &GaitFile, curve: &AnyGait) -> Vec<Check> {
+    /// Closure, simplicity and bounds: what does not depend on the objective. Samples that are too coarse show no symmetry.
+    fn of_the_curve(&self, gait: &GaitFile, curve: &AnyGait, coarse: bool) -> Vec<Check> {
+        let at_samples = |check: Check| check.seen_by(SeenBy::Samples);
         let gap = match (gait.phi.first(), gait.phi.last()) {
             (Some(first), Some(last)) => (last - first).norm(),
             _ => f64::NAN,
         };
-        let mut checks = vec![Check::at_most("open_rad", gap, GaitFile::CLOSURE)];
+        let mut checks = vec![at_samples(Check::at_most(
+            "open_rad",
+            gap,
+            GaitFile::CLOSURE,
+        ))];
         // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
         let quarter = gait.u.partition_point(|&u| u <= 0.25 + 1e-12);
         let simple = if self.limits.has_diagonals() {
@@ -278,20 +288,32 @@ impl<'a> Subject<'a> {
         } else {
             &gait.phi
         };
-        checks.extend(simple_and_turning_once(&gait.phi, simple));
+        checks.extend(simple_and_turning_once(&gait.phi, simple).map(at_samples));
         if self.limits.need_quarters() {
             let off = if self.symmetric { 0.0 } else { 1.0 };
-            checks.push(Check::at_most("without_the_papers_symmetries", off, 0.0));
+            let seen_by = if coarse {
+                SeenBy::Spacing
+            } else {
+                SeenBy::Curve
+            };
+            let check = Check::at_most("without_the_papers_symmetries", off, 0.0);
+            checks.push(check.seen_by(seen_by));
         }
         let overstepped = self
             .all_limits()
             .map(|(_, limit)| -limit.margin)
             .reduce(f64::max);
-        checks.extend(overstepped.map(|by| Check::at_most("bound_overstepped_rad", by, TOUCHING)));
+        let overstepped =
+            overstepped.map(|by| Check::at_most("bound_overstepped_rad", by, TOUCHING));
+        checks.extend(overstepped.map(at_samples));
         if self.limits.may_not_fold() {
             let crosses = crossing_share(&self.model.swimmer().links, curve);
             let folds = if crosses.folds { 1.0 } else { 0.0 };
-            checks.push(Check::at_most("side_link_on_middle_link", folds, 0.0));
+            checks.push(at_samples(Check::at_most(
+                "side_link_on_middle_link",
+                folds,
+                0.0,
+            )));
         }
         for (curved, name, tolerance) in [
             (false, "arc_off_its_bound_rad", TOUCHING),
@@ -303,7 +325,7 @@ impl<'a> Subject<'a> {
                 .filter(|limit| limit.is_some_and(|limit| limit.curved) == curved)
                 .map(|limit| limit.map_or(f64::NAN, |limit| limit.margin.abs()))
                 .reduce(worse);
-            checks.extend(off.map(|off| Check::at_most(name, off, tolerance)));
+            checks.extend(off.map(|off| at_samples(Check::at_most(name, off, tolerance))));
         }
         checks
     }
@@ -354,16 +376,4 @@ fn touching(limits: &Limits, gait: &GaitFile) -> Vec<Along> {
             }
         })
         .collect()
-}
-
-/// Whether the cycle has the paper's two symmetries, in time too.
-fn is_symmetric(gait: &GaitFile) -> bool {
-    let close = 1e-7 + 4.0 * Rounding::of(gait).phi + missed_between(gait);
-    let Ok(curve) = AnyGait::from_file(gait) else {
-        return false;
-    };
-    gait.u.iter().zip(&gait.phi).all(|(&u, shape)| {
-        (curve.at(0.5 - u).phi - image(*shape, 1)).norm() < close
-            && (curve.at(u + 0.5).phi + shape).norm() < close
-    })
 }

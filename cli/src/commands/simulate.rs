@@ -136,7 +136,10 @@ impl Simulate {
             fluid: InFluid::new(&file, &model, &gait, self.playing.period),
             trajectory: self.trajectory.clone(),
         };
-        own_robot::say_if_beyond(&file, &gait, self.playing.period);
+        own_robot::say_if_beyond_servos(&file, &gait, self.playing.period);
+        if let Some(fluid) = &swum.fluid {
+            fluid.warn();
+        }
         if let Some(path) = &self.trajectory {
             write_trajectory(path, &model, &gait, self.cycles)?;
         }

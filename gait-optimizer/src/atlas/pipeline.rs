@@ -81,7 +81,10 @@ pub(super) fn run<S: Seek>(
         swap: (links.front - links.back).abs() < 1e-12,
         turns: problem.bounds.max_angle.is_none() && !problem.bounds.no_overlap,
     };
-    let known = seek.known(problem);
+    let known = match problem.from {
+        StartCurves::Random => seek.known(problem),
+        StartCurves::OffCentre => Vec::new(),
+    };
     // What is certified for these very bounds is in the atlas, wherever its coarse curve leads.
     let kept = |known: &OptimalGait| known.bounds == problem.bounds && known.certificate.pass();
     let is_kept = |index: usize| {

@@ -7,10 +7,10 @@
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use swimmer_files::{AnyGait, GaitArc, GaitFile};
+use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::Gait as _;
 
-use crate::certificate::{Certificate, Check};
+use crate::certificate::{Certificate, Check, SeenBy};
 
 /// Numbers with more digits than these were not rounded by a writer.
 const MOST_DIGITS: i32 = 13;
@@ -19,23 +19,12 @@ const TRIALS: u64 = 4;
 /// What is rounded already is about as far off as what is moved once more, so that differences tell only part of it.
 const MARGIN: f64 = 4.0;
 
-/// So many places on the diagonal are tried as the beginning.
-const MOST_STARTS: usize = 16;
+/// A curve that may be further off between its samples is not told to be so \[rad\].
+pub(super) const MOST_MISSED: f64 = 1e-3;
 /// Slopes that are known no better than this, as a share, decide nothing.
 const UNKNOWN: f64 = 0.05;
 /// Fewer samples may zigzag by where they stand.
 const ENOUGH: usize = 400;
-/// Conditions that samples meet or do not, however far apart they are.
-const AT_THE_SAMPLES: [&str; 7] = [
-    "open_rad",
-    "turning_number",
-    "self_crossings",
-    "bound_overstepped_rad",
-    "arc_off_its_bound_rad",
-    "arc_off_clearance_rad",
-    "side_link_on_middle_link",
-];
-
 /// How far the written numbers may be from those that were meant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rounding {
@@ -113,9 +102,13 @@ fn half_a_digit(numbers: impl Iterator<Item = f64>) -> f64 {
         let mantissa = shortest.split('e').next().unwrap_or_default();
         let count = mantissa.chars().filter(char::is_ascii_digit).count();
         digits = digits.max(i32::try_from(count).unwrap_or(i32::MAX));
+        // Of a gait in full this is one of the first samples.
+        if digits > MOST_DIGITS {
+            return 0.0;
+        }
         largest = largest.max(number.abs());
     }
-    if digits > MOST_DIGITS || largest == 0.0 {
+    if largest == 0.0 {
         return 0.0;
     }
     #[allow(clippy::cast_possible_truncation)] // the exponent of a number
@@ -132,92 +125,7 @@ pub(super) fn missed_between(gait: &GaitFile) -> f64 {
     };
     let missed = gait.u.iter().zip(&gait.phi);
     let missed = missed.map(|(&u, phi)| (curve.at(u).phi - phi).norm());
-    (0.125 * missed.fold(0.0, f64::max)).min(1e-3)
-}
-
-/// The same cycle begun where its links are first alike, if it has the paper's symmetries from there: what it is does not depend
-/// on the first sample.
-pub(super) fn begun_on_the_diagonal(
-    gait: &GaitFile,
-    is_symmetric: impl Fn(&GaitFile) -> bool,
-) -> Option<GaitFile> {
-    let near = 1e-9 + 4.0 * Rounding::of(gait).phi;
-    let alike = |phi: &Vector2<f64>| (phi.x - phi.y).abs() < near && phi.x > 0.0;
-    // Of a stretch along the diagonal only where it begins or ends, or an arc does.
-    let is_end = |u: f64| gait.arcs.iter().any(|arc| (arc.from - u).abs() <= 1e-12);
-    let last = gait.u.len().saturating_sub(1);
-    let on = |at: usize| gait.phi.get(at).is_some_and(alike);
-    (0..last)
-        .filter(|&at| on(at))
-        .filter(|&at| {
-            !on(at + 1) || at == 0 || !on(at - 1) || gait.u.get(at).is_some_and(|&u| is_end(u))
-        })
-        .take(MOST_STARTS)
-        .map(|at| begun_at(gait, at))
-        .find(|begun| is_symmetric(begun))
-}
-
-/// The cycle begun at another of its samples.
-fn begun_at(gait: &GaitFile, first: usize) -> GaitFile {
-    let last = gait.u.len().saturating_sub(1);
-    let by = gait.u.get(first).copied().unwrap_or(0.0);
-    if first == 0 || first == last {
-        return gait.clone();
-    }
-    let place = |u: f64| if u < by { u - by + 1.0 } else { u - by };
-    let end = |u: f64| if u <= by { u - by + 1.0 } else { u - by };
-    let mut begun = gait.clone();
-    begun.u = (first..last)
-        .chain(0..first)
-        .map(|at| place(gait.u[at]))
-        .collect();
-    begun.phi = (first..last)
-        .chain(0..first)
-        .map(|at| gait.phi[at])
-        .collect();
-    begun.u.push(1.0);
-    begun.phi.push(gait.phi[first]);
-    begun.corners = gait.corners.iter().map(|&u| place(u)).collect();
-    begun.corners.sort_by(f64::total_cmp);
-    begun.corners.dedup();
-    begun.arcs.clear();
-    for arc in &gait.arcs {
-        if arc.from < by && by < arc.to {
-            begun.arcs.push(GaitArc {
-                to: end(arc.to),
-                from: 0.0,
-                ..*arc
-            });
-            begun.arcs.push(GaitArc {
-                from: place(arc.from),
-                to: 1.0,
-                ..*arc
-            });
-        } else {
-            begun.arcs.push(GaitArc {
-                from: place(arc.from),
-                to: end(arc.to),
-                ..*arc
-            });
-        }
-    }
-    begun.arcs.sort_by(|a, b| a.from.total_cmp(&b.from));
-    // Where the file began, an arc may have been cut in two.
-    let seam = 1.0 - by;
-    let at_seam = |u: f64| (u - seam).abs() <= 1e-12;
-    if !begun.corners.iter().any(|&u| at_seam(u)) {
-        let mut whole: Vec<GaitArc> = Vec::new();
-        for arc in begun.arcs {
-            match whole.last_mut() {
-                Some(last) if last.kind == arc.kind && at_seam(last.to) && at_seam(arc.from) => {
-                    last.to = arc.to;
-                }
-                _ => whole.push(arc),
-            }
-        }
-        begun.arcs = whole;
-    }
-    begun
+    (0.125 * missed.fold(0.0, f64::max)).min(MOST_MISSED)
 }
 
 /// Every second sample between the ends of arcs and corners, counted from the first or from the second.
@@ -283,20 +191,17 @@ pub(super) fn with_uncertainty(
     };
     let value = |name: &str| certificate.value(name).unwrap_or(0.0);
     let (slope, pose) = (value("sampling_slope_error"), value("sampling_pose_error"));
-    let coarse = certificate.failed_of_sampling();
+    let coarse = certificate.is_too_coarse();
     certificate.with_uncertainty(|check| {
-        if check.is_of_sampling() {
+        if check.seen_by == SeenBy::Spacing {
             return f64::INFINITY;
         }
         let rounded = moved.iter().map(|other| changed(check, other));
         let rounded = MARGIN * rounded.fold(0.0, f64::max);
-        let spaced = fewer.iter().map(|other| changed(check, other));
-        if AT_THE_SAMPLES.contains(&check.name) {
+        if check.seen_by == SeenBy::Samples {
             return rounded;
         }
-        if coarse && check.name == "without_the_papers_symmetries" {
-            return f64::INFINITY;
-        }
+        let spaced = fewer.iter().map(|other| changed(check, other));
         if !coarse {
             return rounded.max(spaced.fold(f64::INFINITY, f64::min));
         }

@@ -15,7 +15,7 @@ use swimmer_files::{AnyGait, ArcKind, GaitFile};
 use swimmer_model::{Model, Tolerance, crossing_share, swim};
 
 use super::problem::{HeadingRule, Setting};
-use crate::certificate::{Certificate, Check, again_within};
+use crate::certificate::{Certificate, Check, SeenBy, again_within};
 use crate::region::Region;
 use legs::{Leg, Legs};
 use switching::Switching;
@@ -103,7 +103,8 @@ fn of_the_curve(
         let folds = if crosses.folds { 1.0 } else { 0.0 };
         checks.push(Check::at_most("side_link_on_middle_link", folds, 0.0));
     }
-    checks
+    let checks = checks.into_iter();
+    checks.map(|check| check.seen_by(SeenBy::Samples)).collect()
 }
 
 /// Least squares: the unknowns, and the residuals of the equations.

@@ -55,6 +55,55 @@ impl GaitFile {
             ..self.clone()
         }
     }
+
+    /// The same cycle begun at another of its samples. An arc that goes past the new beginning is cut there; one that was cut
+    /// at the old one, smoothly, is whole again.
+    #[must_use]
+    pub fn begun_at(&self, sample: usize) -> Self {
+        let last = self.u.len().min(self.phi.len()).saturating_sub(1);
+        let Some(&by) = self.u.get(sample).filter(|_| 0 < sample && sample < last) else {
+            return self.clone();
+        };
+        let from = |u: f64| if u < by { u - by + 1.0 } else { u - by };
+        let to = |u: f64| if u <= by { u - by + 1.0 } else { u - by };
+        let mut begun = self.clone();
+        begun.u.truncate(last);
+        begun.u.rotate_left(sample);
+        begun.u.iter_mut().for_each(|u| *u = from(*u));
+        begun.u.push(1.0);
+        begun.phi.truncate(last);
+        begun.phi.rotate_left(sample);
+        begun.phi.extend(begun.phi.first().copied());
+        begun.corners.iter_mut().for_each(|u| *u = from(*u));
+        begun.corners.sort_by(f64::total_cmp);
+        begun.corners.dedup();
+        let mut arcs: Vec<GaitArc> = Vec::new();
+        for arc in &self.arcs {
+            let moved = GaitArc {
+                from: from(arc.from),
+                to: to(arc.to),
+                ..*arc
+            };
+            if moved.from < moved.to {
+                arcs.push(moved);
+            } else {
+                arcs.push(GaitArc { from: 0.0, ..moved });
+                arcs.push(GaitArc { to: 1.0, ..moved });
+            }
+        }
+        arcs.sort_by(|a, b| a.from.total_cmp(&b.from));
+        let at_seam = |u: f64| (u - (1.0 - by)).abs() <= 1e-12;
+        let smooth = !begun.corners.iter().any(|&u| at_seam(u));
+        arcs.dedup_by(|next, arc| {
+            let whole = smooth && arc.kind == next.kind && at_seam(arc.to) && at_seam(next.from);
+            if whole {
+                arc.to = next.to;
+            }
+            whole
+        });
+        begun.arcs = arcs;
+        begun
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,49 @@
+//! Whether a sampled cycle has the paper's two symmetries, wherever its samples begin.
+
+use nalgebra::Vector2;
+use swimmer_files::{AnyGait, GaitFile};
+use swimmer_model::Gait as _;
+
+use super::limits::image;
+use super::resolution::{MOST_MISSED, Rounding, missed_between};
+
+/// Images of exact samples are this near to the curve \[rad\].
+const CLOSE: f64 = 1e-7;
+/// So many places on the diagonal are tried as the beginning.
+const MOST_STARTS: usize = 16;
+
+/// Whether the cycle has the paper's two symmetries, in time too, as far as its samples tell.
+pub(super) fn is_symmetric(gait: &GaitFile) -> bool {
+    let Ok(curve) = AnyGait::from_file(gait) else {
+        return false;
+    };
+    let within = |close: f64| {
+        gait.u.iter().zip(&gait.phi).all(|(&u, shape)| {
+            (curve.at(0.5 - u).phi - image(*shape, 1)).norm() < close
+                && (curve.at(u + 0.5).phi + shape).norm() < close
+        })
+    };
+    // What the samples leave open is looked at only where it matters.
+    let written = || CLOSE + 4.0 * Rounding::of(gait).phi;
+    within(CLOSE) || within(written() + MOST_MISSED) && within(written() + missed_between(gait))
+}
+
+/// The same cycle begun where its links are first alike, if it has the paper's symmetries from there and not from its first
+/// sample: what it is does not depend on that.
+pub(super) fn begun_on_the_diagonal(gait: &GaitFile) -> Option<GaitFile> {
+    if is_symmetric(gait) {
+        return None;
+    }
+    let near = 1e-9 + 4.0 * Rounding::of(gait).phi;
+    let alike = |phi: &Vector2<f64>| (phi.x - phi.y).abs() < near && phi.x > 0.0;
+    // Of a stretch along the diagonal only where it begins or ends, or an arc does.
+    let is_end = |u: f64| gait.arcs.iter().any(|arc| (arc.from - u).abs() <= 1e-12);
+    let last = gait.u.len().saturating_sub(1);
+    let on = |at: usize| gait.phi.get(at).is_some_and(alike);
+    (1..last)
+        .filter(|&at| on(at))
+        .filter(|&at| !on(at + 1) || !on(at - 1) || gait.u.get(at).is_some_and(|&u| is_end(u)))
+        .take(MOST_STARTS)
+        .map(|at| gait.begun_at(at))
+        .find(is_symmetric)
+}
