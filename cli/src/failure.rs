@@ -1,7 +1,5 @@
 //! The ways a command can go wrong, and the exit status each of them has.
 
-use std::process::ExitCode;
-
 use crate::output::verbose;
 
 /// Why a command did not do its job; the text says what was being done, to what, and what to do next.
@@ -18,6 +16,9 @@ pub(crate) enum Failure {
     #[error("{0}")]
     BadInput(String),
 }
+
+/// Exit status of bad usage and of bad input.
+pub(crate) const BAD_INPUT: u8 = 2;
 
 /// The result of every command.
 pub(crate) type Outcome<T = ()> = Result<T, Failure>;
@@ -47,10 +48,10 @@ impl Failure {
     }
 
     /// The exit status that scripts see.
-    pub(crate) fn exit_code(&self) -> ExitCode {
+    pub(crate) fn status(&self) -> u8 {
         match self {
-            Self::Tried(_) | Self::Answered(_) => ExitCode::from(1),
-            Self::BadInput(_) => ExitCode::from(2),
+            Self::Tried(_) | Self::Answered(_) => 1,
+            Self::BadInput(_) => BAD_INPUT,
         }
     }
 }

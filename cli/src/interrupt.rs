@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::Drafts;
-use crate::output::Output;
+use crate::output::{Output, handed_over};
 
 /// Exit status of a program that a second Ctrl-C ends, as shells have it.
 const AT_ONCE: i32 = 130;
@@ -89,11 +89,15 @@ pub(crate) fn answers_with(output: Output) {
     OUTPUT.get_or_init(|| output);
 }
 
-/// From here on Ctrl-C removes what is half-written before it ends the program.
+/// From here on Ctrl-C removes what is half-written before it ends the program; Ctrl-C of a program that only calls a command
+/// stays its own.
 ///
 /// # Errors
 /// When the operating system refuses the handler.
 pub(crate) fn listen() -> Result<(), ctrlc::Error> {
+    if handed_over() {
+        return Ok(());
+    }
     let mut listening = locked(&LISTENING);
     if !*listening {
         ctrlc::set_handler(heard)?;

@@ -1,5 +1,6 @@
 //! The one place that writes to standard output: plain lines for people, one JSON document for scripts.
 
+use std::cell::RefCell;
 use std::fmt;
 use std::io::{self, Write};
 use std::sync::OnceLock;
@@ -23,7 +24,7 @@ pub(crate) fn be_for_scripts() {
 
 /// Whether one is.
 pub(crate) fn for_scripts() -> bool {
-    FOR_SCRIPTS.load(Ordering::Relaxed)
+    FOR_SCRIPTS.load(Ordering::Relaxed) || handed_over()
 }
 
 /// Whether experts' details are wanted.
@@ -37,6 +38,31 @@ pub(crate) fn be_verbose() {
 /// Whether they do.
 pub(crate) fn verbose() -> bool {
     VERBOSE.load(Ordering::Relaxed)
+}
+
+thread_local! {
+    /// What this thread's command says, where its caller in the same process takes it.
+    static HANDED_OVER: RefCell<Option<HandedOver>> = const { RefCell::new(None) };
+}
+
+/// What would have gone to standard output and to standard error.
+#[derive(Debug, Default)]
+pub(crate) struct HandedOver {
+    pub(crate) document: String,
+    pub(crate) asides: Vec<String>,
+}
+
+/// Runs `command` with all that this thread says kept for the caller.
+pub(crate) fn hand_over<T>(command: impl FnOnce() -> T) -> (T, HandedOver) {
+    let before = HANDED_OVER.replace(Some(HandedOver::default()));
+    let done = command();
+    let said = HANDED_OVER.replace(before);
+    (done, said.unwrap_or_default())
+}
+
+/// Whether a caller in the same process takes what this thread says.
+pub(crate) fn handed_over() -> bool {
+    HANDED_OVER.with_borrow(Option::is_some)
 }
 
 /// Where and how a command answers.
@@ -84,6 +110,11 @@ impl Output {
 /// Something worth knowing that is no part of the answer: standard error. Where nobody reads that any more there is nobody to
 /// tell.
 pub(crate) fn aside(text: &str) {
+    let taken = HANDED_OVER
+        .with_borrow_mut(|said| said.as_mut().map(|said| said.asides.push(text.to_owned())));
+    if taken.is_some() {
+        return;
+    }
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
@@ -102,6 +133,11 @@ pub(crate) fn document(value: &impl Serialize) -> String {
 
 /// Writes to standard output. What it does not take is told at the end, by [`delivered`].
 pub(crate) fn write_all(text: &str) {
+    let taken =
+        HANDED_OVER.with_borrow_mut(|said| said.as_mut().map(|said| said.document.push_str(text)));
+    if taken.is_some() {
+        return;
+    }
     let mut stdout = io::stdout().lock();
     let written = stdout
         .write_all(text.as_bytes())
