@@ -23,6 +23,7 @@ mod starts;
 mod structure;
 #[cfg(test)]
 mod tests;
+mod widened;
 
 use swimmer_files::{AnyGait, Bounds, GaitFile};
 use swimmer_model::{Model, Swimmer};

@@ -143,9 +143,13 @@ fn monotone(swimmers: usize, bounds: usize, starts: usize) {
         let mut best = 0.0_f64;
         for k in 0..bounds {
             let max_angle = 1.0 + 2.1 * k as f64 / (bounds - 1) as f64;
-            let Ok(found) = fastest(&problem(swimmer, max_angle, starts)) else {
-                none += 1;
-                continue;
+            let found = match fastest(&problem(swimmer, max_angle, starts)) {
+                Ok(found) => found,
+                Err(error) => {
+                    println!("swimmer {number}, {max_angle:.4} rad: {error}");
+                    none += 1;
+                    continue;
+                }
             };
             uncertified += usize::from(found.uncertified.is_some());
             let speed = found.speed_over_length;

@@ -1,12 +1,14 @@
 //! A chain of known arcs brought to rounding: Newton's method on its corners, times and bends, with all multipliers.
 
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+mod conditions;
 
-use super::chain::{self, Layout, Net, Weights};
-use super::problem::{HeadingRule, Setting};
+use nalgebra::DVector;
+
+use self::conditions::{Conditions, Equation, Look, equations};
+use super::chain::{Layout, Net};
+use super::problem::Setting;
 use super::quadrature::Rule;
-use super::structure::{Hold, Link, Motion};
-use crate::region::{Bound, Level};
+use super::structure::Link;
 
 /// A chain that meets all equations of its arcs.
 #[derive(Debug, Clone)]
@@ -25,29 +27,17 @@ pub(crate) struct Polished {
 /// Quadrature points on an arc.
 const POINTS: usize = 32;
 const MOST_STEPS: usize = 40;
+/// Most times that a solution gives way to the other of its fold.
+const FOLDS: usize = 4;
 /// Residuals below this are rounding.
 const ROUNDING: f64 = 2e-12;
 /// Bends of a singular arc.
 pub(crate) const BENDS: usize = 8;
 
-/// One equation that is linear in the unknowns, or holds a corner.
-enum Equation {
-    /// `way · (to − from) − rate · time`.
-    Pace {
-        arc: usize,
-        joint: usize,
-        way: f64,
-    },
-    Held {
-        corner: usize,
-        hold: Hold,
-    },
-}
-
 /// Polishes a chain; none where Newton's method does not converge.
 pub(crate) fn polish(setting: &Setting, links: &[Link]) -> Option<Polished> {
     let rule = Rule::new(POINTS);
-    let (layout, mut z) = written(setting, links);
+    let (layout, z) = written(setting, links);
     let equations = equations(links);
     let conditions = Conditions {
         setting,
@@ -55,37 +45,23 @@ pub(crate) fn polish(setting: &Setting, links: &[Link]) -> Option<Polished> {
         rule: &rule,
         equations: &equations,
     };
-    let mut y: Option<DVector<f64>> = None;
-    let mut best = f64::INFINITY;
-    let mut stalls = 0;
-    for _ in 0..MOST_STEPS {
-        let look = conditions.look(&z, y.as_ref())?;
-        let residual = look.residual();
-        if y.is_some() {
-            if residual < ROUNDING {
-                break;
-            }
-            stalls = if residual < 0.5 * best { 0 } else { stalls + 1 };
-            best = best.min(residual);
-            if stalls > 3 && best < 1e-9 {
-                break;
-            }
-            if stalls > 12 {
-                return None;
-            }
+    let mut solution = solve(&conditions, z)?;
+    for _ in 0..FOLDS {
+        if solution.convexity > 0.0 {
+            break;
         }
-        let (step, next) = look.newton()?;
-        let scale = (0.3 / step.amax()).min(1.0);
-        z += step * scale;
-        y = Some(next);
+        let Some(other) = beyond_the_fold(&conditions, &solution) else {
+            break;
+        };
+        solution = other;
     }
-    let y = y?;
-    let look = conditions.look(&z, Some(&y))?;
-    let residual = look.residual();
-    if residual > 1e-9 {
-        return None;
-    }
-    let convexity = look.convexity();
+    let Solution {
+        z,
+        y,
+        look,
+        convexity,
+        ..
+    } = solution;
     let net = look.net;
     let mut hold_pushes = vec![Vec::new(); links.len()];
     for (equation, push) in equations.iter().zip(y.iter().skip(conditions.global())) {
@@ -122,7 +98,7 @@ pub(crate) fn second_variation(setting: &Setting, links: &[Link]) -> Option<f64>
         equations: &equations(links),
     };
     let (_, y) = conditions.look(&z, None)?.newton()?;
-    Some(conditions.look(&z, Some(&y))?.convexity())
+    Some(conditions.look(&z, Some(&y))?.convexity().0)
 }
 
 /// A chain as unknowns.
@@ -144,220 +120,89 @@ fn written(setting: &Setting, links: &[Link]) -> (Layout, DVector<f64>) {
     (layout, z)
 }
 
-fn equations(links: &[Link]) -> Vec<Equation> {
-    let mut equations = Vec::new();
-    for (arc, link) in links.iter().enumerate() {
-        match link.motion {
-            Motion::Extreme(ways) => {
-                for (joint, way) in ways.into_iter().enumerate() {
-                    equations.push(Equation::Pace { arc, joint, way });
-                }
+/// Where all conditions hold.
+struct Solution {
+    z: DVector<f64>,
+    y: DVector<f64>,
+    look: Look,
+    /// Least eigenvalue of the second variation, and its shift.
+    convexity: f64,
+    weakest: DVector<f64>,
+}
+
+/// Newton's method from `z`; none where it does not converge.
+fn solve(conditions: &Conditions, mut z: DVector<f64>) -> Option<Solution> {
+    let mut y: Option<DVector<f64>> = None;
+    let mut best = f64::INFINITY;
+    let mut stalls = 0;
+    for _ in 0..MOST_STEPS {
+        let look = conditions.look(&z, y.as_ref())?;
+        let residual = look.residual();
+        if y.is_some() {
+            if residual < ROUNDING {
+                break;
             }
-            motion => {
-                let (joint, way) = motion.pace();
-                equations.push(Equation::Pace { arc, joint, way });
+            stalls = if residual < 0.5 * best { 0 } else { stalls + 1 };
+            best = best.min(residual);
+            if stalls > 3 && best < 1e-9 {
+                break;
+            }
+            if stalls > 12 {
+                return None;
             }
         }
-        for &hold in &link.held {
-            equations.push(Equation::Held { corner: arc, hold });
-        }
+        let (step, next) = look.newton()?;
+        let scale = (0.3 / step.amax()).min(1.0);
+        z += step * scale;
+        y = Some(next);
     }
-    equations
-}
-
-struct Conditions<'a> {
-    setting: &'a Setting<'a>,
-    layout: &'a Layout,
-    rule: &'a Rule,
-    equations: &'a [Equation],
-}
-
-struct Look {
-    gradient: DVector<f64>,
-    values: DVector<f64>,
-    slopes: DMatrix<f64>,
-    hessian: DMatrix<f64>,
-    /// Gradient of the objective alone.
-    objective: DVector<f64>,
-    multipliers_known: bool,
-    net: Net,
-}
-
-impl Conditions<'_> {
-    /// Equations of the whole chain: rotation, and heading and period where they are asked for.
-    fn global(&self) -> usize {
-        1 + usize::from(self.setting.heading.off(0.0).is_some())
-            + usize::from(self.setting.period.is_some())
+    let y = y?;
+    let look = conditions.look(&z, Some(&y))?;
+    if look.residual() > 1e-9 {
+        return None;
     }
+    let (convexity, weakest) = look.convexity();
+    Some(Solution {
+        z,
+        y,
+        look,
+        convexity,
+        weakest,
+    })
+}
 
-    fn look(&self, z: &DVector<f64>, y: Option<&DVector<f64>>) -> Option<Look> {
-        let Self {
-            setting,
-            layout,
-            rule,
-            equations,
-        } = self;
-        let size = layout.size;
-        let jets = layout.jets(setting.model, rule, z);
-        let weights = |log_distance, rotation, heading| Weights {
-            log_distance,
-            rotation,
-            heading,
-        };
-        let period = layout.period(z);
-        let times = 2 * layout.arcs()..3 * layout.arcs();
-        let (net, mut objective) = chain::gradient(layout, &jets, z, weights(-1.0, 0.0, 0.0));
-        if !net.distance().is_finite() || net.distance() < 1e-9 {
-            return None;
-        }
-        for index in times.clone() {
-            objective[index] += 1.0 / period;
-        }
-        let global = self.global();
-        let count = global + equations.len();
-        let mut values = DVector::zeros(count);
-        let mut slopes = DMatrix::zeros(count, size);
-        values[0] = net.rotation;
-        let (_, slope) = chain::gradient(layout, &jets, z, weights(0.0, 1.0, 0.0));
-        slopes.set_row(0, &slope.transpose());
-        if let Some(off) = setting.heading.off(net.heading()) {
-            values[1] = off;
-            let (_, slope) = chain::gradient(layout, &jets, z, weights(0.0, 0.0, 1.0));
-            slopes.set_row(1, &slope.transpose());
-        }
-        let multiplier = |row: usize| y.map_or(0.0, |y| y[row]);
-        if let Some(asked) = setting.period {
-            values[global - 1] = period / asked - 1.0;
-            for index in times.clone() {
-                slopes[(global - 1, index)] = 1.0 / asked;
-            }
-        }
-        let heading = if setting.heading == HeadingRule::Any {
-            0.0
-        } else {
-            multiplier(1)
-        };
-        let mut hessian = chain::hessian(
-            (layout, setting.model, rule),
-            &jets,
-            z,
-            weights(-1.0, multiplier(0), heading),
-            true,
-        );
-        for one in times.clone() {
-            for other in times.clone() {
-                hessian[(one, other)] -= 1.0 / (period * period);
-            }
-        }
-        for (k, equation) in equations.iter().enumerate() {
-            let row = global + k;
-            match *equation {
-                Equation::Pace { arc, joint, way } => {
-                    let (from, to) = (
-                        layout.corner_index(arc) + joint,
-                        layout.corner_index(arc + 1) + joint,
-                    );
-                    let time = layout.time_index(arc);
-                    let rate = setting.rates[joint];
-                    values[row] = way * (z[to] - z[from]) - rate * z[time];
-                    slopes[(row, to)] += way;
-                    slopes[(row, from)] -= way;
-                    slopes[(row, time)] -= rate;
-                }
-                Equation::Held { corner, hold } => {
-                    let phi = layout.corner(z, corner);
-                    let at = layout.corner_index(corner);
-                    let held = held(setting, &hold, &phi)?;
-                    values[row] = held.value;
-                    for i in 0..2 {
-                        slopes[(row, at + i)] = held.gradient[i];
-                        for j in 0..2 {
-                            hessian[(at + i, at + j)] += multiplier(row) * held.hessian[(i, j)];
-                        }
-                    }
-                }
-            }
-        }
-        let gradient = match y {
-            Some(y) => &objective + slopes.tr_mul(y),
-            None => objective.clone(),
-        };
-        Some(Look {
-            gradient,
-            values,
-            slopes,
-            hessian,
-            objective,
-            multipliers_known: y.is_some(),
-            net,
+/// The other solution of the fold to which one belongs that is no maximum.
+///
+/// Where a singular arc meets a bound, the few shapes that its bends describe make the meeting point weakly determined: to
+/// second order hardly anything depends on it, and to third order a saddle lies close to the maximum. Along the weakest shift
+/// the slope is λt + λ't²/2, so the other solution is near t = −2λ/λ'.
+fn beyond_the_fold(conditions: &Conditions, saddle: &Solution) -> Option<Solution> {
+    /// Of the difference quotient.
+    const STEP: f64 = 1e-4;
+    /// Shifts of corners \[rad\] and times that still are near.
+    const NEAR: f64 = 0.1;
+    /// The next orders may put it further away.
+    const FURTHER: [f64; 4] = [1.0, 1.5, 2.0, 3.0];
+    let Solution {
+        z,
+        y,
+        convexity,
+        weakest,
+        ..
+    } = saddle;
+    let bend = |t: f64| {
+        let look = conditions.look(&(z + weakest * t), Some(y))?;
+        Some(weakest.dot(&(&look.hessian * weakest)))
+    };
+    let third = (bend(STEP)? - bend(-STEP)?) / (2.0 * STEP);
+    let shift = -2.0 * convexity / third;
+    FURTHER
+        .into_iter()
+        .map(|times| times * shift)
+        .filter(|shift| shift.abs() < NEAR)
+        .find_map(|shift| {
+            let other = solve(conditions, z + weakest * shift)?;
+            // Not back where it was.
+            ((&other.z - z).norm() > 0.5 * shift.abs()).then_some(other)
         })
-    }
-}
-
-/// Value, slope and bend of what holds a corner.
-fn held(setting: &Setting, hold: &Hold, phi: &Vector2<f64>) -> Option<Level> {
-    match *hold {
-        Hold::On(index, piece) => match (setting.region.bound(index)?, piece) {
-            (Bound::Clearance(clearance), Some(piece)) => Some(clearance.level(piece, phi)),
-            (bound, _) => Some(Level {
-                value: bound.margin(phi),
-                gradient: bound.gradient(phi),
-                hessian: Matrix2::zeros(),
-            }),
-        },
-    }
-}
-
-impl Look {
-    fn residual(&self) -> f64 {
-        self.gradient.amax().max(self.values.amax())
-    }
-
-    /// The step, and the multipliers after it.
-    fn newton(&self) -> Option<(DVector<f64>, DVector<f64>)> {
-        let (size, count) = (self.gradient.len(), self.values.len());
-        if !self.multipliers_known {
-            // First the multipliers that come nearest.
-            let svd = self.slopes.transpose().svd(true, true);
-            let y = svd.solve(&-&self.objective, 1e-12).ok()?;
-            return Some((DVector::zeros(size), y));
-        }
-        let mut matrix = DMatrix::zeros(size + count, size + count);
-        matrix
-            .view_mut((0, 0), (size, size))
-            .copy_from(&self.hessian);
-        matrix
-            .view_mut((size, 0), (count, size))
-            .copy_from(&self.slopes);
-        matrix
-            .view_mut((0, size), (size, count))
-            .copy_from(&self.slopes.transpose());
-        let mut right = DVector::zeros(size + count);
-        right.rows_mut(0, size).copy_from(&-&self.objective);
-        right.rows_mut(size, count).copy_from(&-&self.values);
-        let solution = matrix.lu().solve(&right)?;
-        solution.iter().all(|value| value.is_finite()).then(|| {
-            (
-                solution.rows(0, size).into_owned(),
-                solution.rows(size, count).into_owned(),
-            )
-        })
-    }
-
-    /// Least eigenvalue of the second variation where all equations hold to first order.
-    fn convexity(&self) -> f64 {
-        let size = self.gradient.len();
-        // An orthonormal basis of the shifts: what is left of the unit vectors beside the slopes.
-        let qr = self.slopes.transpose().qr();
-        let q = qr.q();
-        let projector = DMatrix::identity(size, size) - &q * q.transpose();
-        let eigen = projector.symmetric_eigen();
-        let free: Vec<usize> = (0..size).filter(|&k| eigen.eigenvalues[k] > 0.5).collect();
-        if free.is_empty() {
-            return f64::INFINITY;
-        }
-        let basis = DMatrix::from_fn(size, free.len(), |i, j| eigen.eigenvectors[(i, free[j])]);
-        let reduced = basis.tr_mul(&(&self.hessian * &basis));
-        reduced.symmetric_eigenvalues().min()
-    }
 }

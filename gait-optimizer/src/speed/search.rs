@@ -14,7 +14,7 @@ use super::polish::Polished;
 use super::problem::Setting;
 use super::samples;
 use super::selection::Group;
-use super::{Fastest, SpeedError, SpeedProblem};
+use super::{Fastest, SpeedError, SpeedProblem, widened};
 use crate::Watch;
 use crate::optimal_gait::{OptimalGait, Solution};
 use crate::parallel::in_parallel;
@@ -114,7 +114,7 @@ impl<'a> Search<'a> {
             // Where the polygon had no corner left for a short singular arc the certificate shows it.
             let passes = |answer: &Fastest| answer.gait.certificate.pass();
             let first = told(problem, setting, best, fast).filter(passes);
-            let bent = || told(problem, setting, &candidate::bent(setting, best)?, fast);
+            let bent = || told(problem, setting, &widened::bent(setting, best)?, fast);
             let Some(mut answer) = first.or_else(|| bent().filter(passes)) else {
                 better(&mut uncertified);
                 continue;

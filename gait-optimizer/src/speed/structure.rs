@@ -69,6 +69,15 @@ impl Motion {
         }
     }
 
+    /// The bound that it runs along.
+    pub(crate) fn bound(&self) -> Option<Hold> {
+        match *self {
+            Self::Straight { bound, .. } => Some(Hold::On(bound, None)),
+            Self::Curved { bound, piece, .. } => Some(Hold::On(bound, Some(piece))),
+            Self::Extreme(_) | Self::Singular { .. } => None,
+        }
+    }
+
     /// The word in files.
     pub(crate) fn kind(&self, bound: impl Fn(usize) -> Option<Bound>) -> ArcKind {
         match *self {
