@@ -9,11 +9,11 @@
 // Periods and pulses are bounded by what was checked; f32 is what the robot itself uses.
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
+use gait_player::Limits;
 use gait_player::playback::Playback;
 use gait_player::servo::ServoMap;
 use gait_player::servo::plant::PlantParameters;
 use gait_player::table::TableError;
-use gait_player::{GaitTable, Limits};
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 use swimmer_model::{Gait, InvalidSwimmer, Model, Pose, Swimmer, Tolerance, trajectory};
@@ -313,7 +313,7 @@ fn played(
     if !(0.1..=4000.0).contains(&period_s) {
         return Err(PredictionError::Period { period_s });
     }
-    let table = GaitTable::from_fn(KNOTS, |u| gait.at(u).phi.into())?;
+    let table = forecast::table(gait, KNOTS)?;
     let angle = (0..KNOTS)
         .map(|knot| gait.at(knot as f64 / KNOTS as f64).phi.amax())
         .fold(0.0, f64::max);

@@ -3,7 +3,8 @@
 use forecast::{Played, Servos, forecast};
 use gait_optimizer::OptimalGait;
 use link_protocol::MAX_KNOTS;
-use swimmer_files::{AnyGait, SwimmerFile};
+use serde::Serialize;
+use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 use swimmer_model::Model;
 
 use crate::in_fluid::InFluid;
@@ -12,17 +13,57 @@ use crate::output::aside;
 /// A cycle's duration where none is named, s: the paper's.
 pub(crate) const PERIOD_S: f64 = 30.0;
 
+/// A gait as fast as the robot of the file plays it.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct PlayedSpeed {
+    /// The gait's own period, or the shortest that the robot allows for its table, to the next millisecond.
+    pub(crate) period_s: f64,
+    pub(crate) speed_m_per_s: f64,
+    /// Of the speed as designed, taken by table, ticks, pulses and servos.
+    pub(crate) lost_share: f64,
+}
+
+impl PlayedSpeed {
+    /// Of a gait that is designed for this period \[s\]; none where these servos cannot play it.
+    pub(crate) fn new(
+        file: &SwimmerFile,
+        servo: ServoFile,
+        gait: &AnyGait,
+        period: f64,
+    ) -> Option<Self> {
+        let model = Model::new(&file.swimmer).ok()?;
+        let at = |period| forecast(&model, gait, &played(servo, period)).ok();
+        let shortest = at(period)?.verdict.min_period;
+        let period_s = if shortest > period {
+            (shortest * 1e3).ceil() / 1e3
+        } else {
+            period
+        };
+        let told = at(period_s)?;
+        let (designed, as_played) = told.ends()?;
+        let speed_m_per_s = as_played.displacement.norm() / period_s;
+        Some(Self {
+            period_s,
+            speed_m_per_s,
+            lost_share: 1.0 - speed_m_per_s * period / designed.displacement.norm(),
+        })
+    }
+}
+
+fn played(servo: ServoFile, period: f64) -> Played {
+    Played {
+        servos: Servos::on_the_robot(servo),
+        period,
+        knots: MAX_KNOTS,
+    }
+}
+
 /// Where a gait goes beyond the `[servo]` of the file: angle, clearance of the links, rate at this period.
 fn beyond(file: &SwimmerFile, gait: &AnyGait, period: f64) -> Option<String> {
     let (Some(servo), Ok(model)) = (file.servo, Model::new(&file.swimmer)) else {
         return None;
     };
-    let played = Played {
-        servos: Servos::on_the_robot(servo),
-        period,
-        knots: MAX_KNOTS,
-    };
-    match forecast(&model, gait, &played) {
+    match forecast(&model, gait, &played(servo, period)) {
         Err(error) => Some(error.to_string()),
         Ok(foretold) => match foretold.verdict.refused {
             Some(refused) => Some(format!("the robot would refuse: {refused}")),

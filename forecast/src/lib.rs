@@ -6,6 +6,7 @@
 //!
 //! - [`timing()`]: a gait is a curve; its timing is free. The best timing under a rate limit, and the shortest period;
 //!   [`timing_of_table`]: the same for the table that the robot makes of it.
+//! - [`table()`]: the table that a robot is given of a gait, its corners rounded.
 //! - [`reach()`]: the largest angle of a gait, with its place, against what the servos allow.
 //! - [`until_wall`]: how many cycles a tank has room for; [`Forecast::displacement_error`]: what a calibration leaves open.
 //! - [`demand`]: torque, power and Reynolds number in a fluid of known viscosity.
@@ -16,6 +17,7 @@ pub mod fluid;
 pub mod losses;
 pub mod path;
 pub mod reach;
+pub mod table;
 pub mod tank;
 pub mod timing;
 
@@ -23,5 +25,6 @@ pub use certainty::Ends;
 pub use fluid::{Demand, demand};
 pub use losses::{Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast};
 pub use reach::{Reach, reach};
+pub use table::table;
 pub use tank::{Meeting, Part, Tank, until_wall};
 pub use timing::{Timing, TimingError, shortest_period, timing, timing_of_table};

@@ -56,7 +56,7 @@ pub struct Timing {
     pub shortest_period: f64,
     /// The rate limit \[rad/s\]; infinite for none.
     pub max_rate: f64,
-    /// Share of the period in which a servo runs at its limit, or as much below it as the table of a corner asks.
+    /// Share of the period in which a servo runs at its limit, or within a hundredth of it.
     pub at_limit: f64,
     /// Fastest joint at constant power, without the limit \[rad/s\].
     pub rate_at_constant_power: f64,
@@ -66,8 +66,6 @@ pub struct Timing {
     pub efficiency_loss: f64,
     /// Highest power over μ \[m³/s²\]: that of every stretch where no servo is at its limit.
     pub power: f64,
-    /// k.
-    pour: f64,
     cells: Vec<Cell>,
 }
 
@@ -86,8 +84,6 @@ struct Sample {
     weight: f64,
     power_root: f64,
     turn: f64,
-    /// τ·r, or more where the curve shall be slower.
-    floor: f64,
 }
 
 /// The shortest period \[s\] in which joints of at most `max_rate` \[rad/s\] can run a gait: ∫ maxᵢ|φᵢ'| du / r.
@@ -155,12 +151,10 @@ impl Curve {
                     let power = point
                         .rate
                         .dot(&(model.power_matrix(&point.phi) * point.rate));
-                    let turn = point.rate.amax();
                     Sample {
                         weight: weight * (end - start),
                         power_root: power.max(0.0).sqrt(),
-                        turn,
-                        floor: turn,
+                        turn: point.rate.amax(),
                     }
                 })
             })
@@ -181,7 +175,7 @@ impl Curve {
     /// ∫τ.
     fn shortest(&self, max_rate: f64) -> f64 {
         let all = self.samples.iter().flatten();
-        all.map(|s| s.weight * s.floor).sum::<f64>() / max_rate
+        all.map(|s| s.weight * s.turn).sum::<f64>() / max_rate
     }
 
     /// The best timing with a period that is no shorter than the shortest.
@@ -194,7 +188,7 @@ impl Curve {
         for (&(_, end), samples) in self.cells.iter().zip(&self.samples) {
             let (mut lasts, mut spends) = (0.0, 0.0);
             for s in samples {
-                let (floor, poured) = (s.floor / max_rate, k * s.power_root);
+                let (floor, poured) = (s.turn / max_rate, k * s.power_root);
                 let slowness = floor.max(poured);
                 lasts += s.weight * slowness;
                 if slowness > 0.0 {
@@ -230,7 +224,6 @@ impl Curve {
             energy,
             efficiency_loss: (1.0 - length * length / (period * energy)).max(0.0),
             power: cells.iter().map(|cell| cell.power).fold(0.0, f64::max),
-            pour: k,
             cells,
         }
     }
@@ -248,7 +241,7 @@ fn pour<'a, I: Iterator<Item = &'a Sample>>(
     for _ in 0..STEPS {
         let (mut time, mut slope) = (0.0, 0.0);
         for s in samples() {
-            let (floor, poured) = (s.floor / max_rate, k * s.power_root);
+            let (floor, poured) = (s.turn / max_rate, k * s.power_root);
             time += s.weight * floor.max(poured);
             if poured > floor {
                 slope += s.weight * s.power_root;

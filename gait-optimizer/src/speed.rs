@@ -12,6 +12,7 @@ mod candidate;
 mod certificate;
 mod chain;
 mod error;
+mod front;
 mod interior;
 mod polish;
 mod problem;
@@ -35,6 +36,7 @@ use crate::region::Region;
 use crate::{Certificate, Immobile, Watch};
 
 pub use error::SpeedError;
+pub use front::{Front, front};
 pub use problem::HeadingRule;
 use problem::Setting;
 use search::Search;

@@ -16,6 +16,7 @@ use swimmer_model::{Gait, Links, Model, Panels, Stroke};
 
 use super::{ForecastError, Played, Verdict, gap, stroke, tolerance};
 use crate::path::{Polyline, TableCurve};
+use crate::table::{knot, table};
 
 /// A map whose nanoseconds are 3e-8 rad: pulses that round nothing that single precision does not round.
 const FINE: ServoMap = ServoMap {
@@ -39,9 +40,9 @@ impl Ways {
         gait: &G,
         played: &Played,
     ) -> Result<Self, ForecastError> {
-        let table = GaitTable::from_fn(played.knots, |u| gait.at(u).phi.into())?;
+        let table = table(gait, played.knots)?;
         let knots = played.knots;
-        let designed = (0..knots).map(|knot| gait.at(knot as f64 / knots as f64).phi);
+        let designed = (0..knots).map(|index| knot(gait, knots, index as f64 / knots as f64));
         let units = |knot| Vector2::from(table.knot(knot).map(|unit| f64::from(unit) * 1e-4));
         let servos = &played.servos;
         let (map, plant) = (servos.map(), servos.plant());

@@ -4,6 +4,7 @@ pub(crate) mod answer;
 mod better;
 mod displacement;
 mod efficiency;
+mod front;
 mod robust;
 mod sideways;
 mod speed;

@@ -5,9 +5,9 @@ use std::num::NonZero;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use gait_optimizer::{Fastest, HeadingRule, SpeedError, SpeedProblem};
+use gait_optimizer::{Fastest, HeadingRule, SpeedError, SpeedProblem, front};
 use serde::Serialize;
-use swimmer_files::{AnyGait, SwimmerFile};
+use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 
 use crate::arguments::{load_swimmer, rate, seconds};
 use crate::bounds::WholeBounds;
@@ -17,6 +17,9 @@ use crate::progress::Progress;
 use crate::quantity::{self, Rows};
 
 use super::answer::{Arc, Closing, arc_rows, arcs, unfolded};
+use super::front::{FrontAnswer, FrontFile};
+use crate::new_file::may_be_written;
+use crate::own_robot::PlayedSpeed;
 
 /// Find the fastest gait: most net displacement per unit of time, without net rotation, with servos that turn no faster than a
 /// given rate
@@ -40,6 +43,10 @@ pub(crate) struct Speed {
     period: Option<f64>,
     #[command(flatten)]
     bounds: WholeBounds,
+    /// Also draw displacement per cycle against speed, of the farthest gaits in shorter and longer periods: a figure, or their
+    /// table
+    #[arg(long, value_name = "FILE.svg|.csv", conflicts_with = "period")]
+    front: Option<FrontFile>,
     /// Write the gait, timed as it shall run, as a gait file
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
@@ -58,6 +65,9 @@ enum Heading {
 
 impl Speed {
     pub(super) fn run(self, output: Output) -> Outcome {
+        if let Some(front) = &self.front {
+            may_be_written(&front.path)?;
+        }
         let file = load_swimmer(&self.swimmer)?;
         let begun = Instant::now();
         let progress = Progress::of_a_whole("looking for the fastest gait");
@@ -72,19 +82,43 @@ impl Speed {
             threads: std::thread::available_parallelism().map_or(1, NonZero::get),
             ..SpeedProblem::new(file.swimmer, self.rates(&file))
         };
-        let found = problem.watched(&|share| progress.at_share(share))?;
+        let watch = |share| progress.at_share(share);
+        let (found, farthest) = if self.front.is_some() {
+            let front = front(&problem, &watch)?;
+            (front.fastest.clone(), Some(front))
+        } else {
+            (problem.watched(&watch)?, None)
+        };
         drop(progress);
         let seconds = begun.elapsed().as_secs_f64();
         unfolded(&found.gait)?;
         let gait_file = found.gait.gait_file(&file.name);
+        let mut answer = Answer::new(&file, &found, seconds, self.output.clone());
         if let Ok(curve) = AnyGait::from_file(&gait_file) {
-            crate::own_robot::say_if_beyond(&file, &curve, found.period);
+            let servo = self.servo(&file);
+            answer.played =
+                servo.and_then(|servo| PlayedSpeed::new(&file, servo, &curve, found.period));
+            let period = answer
+                .played
+                .as_ref()
+                .map_or(found.period, |played| played.period_s);
+            crate::own_robot::say_if_beyond(&file, &curve, period);
+        }
+        if let (Some(place), Some(farthest)) = (&self.front, &farthest) {
+            let length = file.swimmer.total_length();
+            answer.front = Some(place.write(farthest, &file.name, length)?);
         }
         if let Some(path) = &self.output {
             gait_file.save(path)?;
         }
-        output.answer(&Answer::new(&file, &found, seconds, self.output));
+        output.answer(&answer);
         Ok(())
+    }
+
+    /// The servos that shall play it: the file's, or the paper's where that is asked for.
+    fn servo(&self, file: &SwimmerFile) -> Option<ServoFile> {
+        let paper = self.bounds.playable().then(ServoFile::default);
+        file.servo.or(paper)
     }
 
     /// The limit of each servo: what was told, and the robot's own where the gait shall be playable.
@@ -125,6 +159,11 @@ struct Answer {
     longer_speed_over_length_per_s: Option<f64>,
     /// The speed of a faster chain of arcs that failed its certificate.
     uncertified_speed_over_length_per_s: Option<f64>,
+    /// What the robot of the file makes of it, as fast as it can.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    played: Option<PlayedSpeed>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    front: Option<FrontAnswer>,
     #[serde(flatten)]
     closing: Closing,
 }
@@ -149,6 +188,8 @@ impl Answer {
             found: found.found,
             longer_speed_over_length_per_s: found.longer,
             uncertified_speed_over_length_per_s: found.uncertified,
+            played: None,
+            front: None,
             closing: Closing::new(gait, None, seconds, output),
         }
     }
@@ -208,6 +249,28 @@ impl fmt::Display for Answer {
                 format!(
                     "another chain of arcs is {}, but meets not all conditions",
                     better(speed)
+                ),
+            );
+        }
+        if let Some(played) = &self.played {
+            rows.row(
+                "as played",
+                format!(
+                    "{} a second, a cycle in {:.3} s: table, ticks and servos take {:.2} %",
+                    quantity::length(played.speed_m_per_s),
+                    played.period_s,
+                    played.lost_share * 100.0
+                ),
+            );
+        }
+        if let Some(front) = &self.front {
+            rows.row(
+                "front",
+                format!(
+                    "{}: the farthest gait in {} of {} periods",
+                    front.file.display(),
+                    front.told,
+                    front.periods
                 ),
             );
         }

@@ -9,7 +9,6 @@ use host_link::{LinkError, Port as _};
 use link_protocol::{Configuration, MAX_KNOTS, TableInfo};
 use serde::Serialize;
 use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
-use swimmer_model::Gait as _;
 
 use super::access::{Access, Line};
 use super::answers::{Gait, answer_no};
@@ -250,10 +249,7 @@ impl Prepared {
 
 /// The gait as the robot holds it: as many knots as fit, so that the interpolation adds nothing.
 pub(crate) fn table_of(gait: &AnyGait) -> Result<GaitTable, gait_player::table::TableError> {
-    GaitTable::from_fn(MAX_KNOTS, |u| {
-        let phi = gait.at(u).phi;
-        [phi.x, phi.y]
-    })
+    forecast::table(gait, MAX_KNOTS)
 }
 
 fn send(line: &mut Line, gait: &Prepared, interrupt: &Interrupt) -> Outcome<TableInfo> {

@@ -1,0 +1,142 @@
+//! `swimmer optimize speed --front`: displacement per cycle against speed, as a figure or a table.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use gait_optimizer::{Fastest, Front};
+use serde::Serialize;
+use swimmer_files::write_atomically;
+
+use crate::failure::Outcome;
+use crate::report::chart::{Chart, INK, MEASURED, PREDICTED, Point, Series};
+
+/// Where the front goes, and in which form.
+#[derive(Debug, Clone)]
+pub(super) struct FrontFile {
+    pub(super) path: PathBuf,
+    form: Form,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Form {
+    Figure,
+    Table,
+}
+
+impl FromStr for FrontFile {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let path = PathBuf::from(text);
+        let form = match path.extension().and_then(|ending| ending.to_str()) {
+            Some("svg") => Form::Figure,
+            Some("csv") => Form::Table,
+            _ => return Err("name a file that ends in .svg or .csv".to_owned()),
+        };
+        Ok(Self { path, form })
+    }
+}
+
+/// What was written.
+#[derive(Debug, Serialize)]
+pub(super) struct FrontAnswer {
+    pub(super) file: PathBuf,
+    /// Periods that were looked at, and those in which a farthest gait is told.
+    pub(super) periods: usize,
+    pub(super) told: usize,
+}
+
+impl FrontFile {
+    /// Writes the front of a swimmer of this length \[m\].
+    pub(super) fn write(&self, front: &Front, name: &str, length: f64) -> Outcome<FrontAnswer> {
+        let text = match self.form {
+            Form::Figure => figure(front, name, length).svg()?,
+            Form::Table => table(front, length),
+        };
+        write_atomically(&self.path, text.as_bytes())?;
+        Ok(FrontAnswer {
+            file: self.path.clone(),
+            periods: front.periods.len(),
+            told: front.farthest.iter().flatten().count(),
+        })
+    }
+}
+
+/// A line for each period; empty where no gait is told.
+fn table(front: &Front, length: f64) -> String {
+    let mut text = String::from(
+        "period_s,displacement_over_length,displacement_m,speed_over_length_per_s,speed_m_per_s,heading_rad\n",
+    );
+    for (period, farthest) in front.periods.iter().zip(&front.farthest) {
+        let numbers = farthest.as_ref().map_or_else(
+            || ",,,,".to_owned(),
+            |gait| {
+                format!(
+                    "{:?},{:?},{:?},{:?},{:?}",
+                    gait.distance_over_length,
+                    gait.distance_over_length * length,
+                    gait.speed_over_length,
+                    gait.speed_over_length * length,
+                    gait.heading
+                )
+            },
+        );
+        let _ = writeln!(text, "{period:?},{numbers}");
+    }
+    text
+}
+
+fn figure(front: &Front, name: &str, length: f64) -> Chart {
+    let point = |gait: &Fastest| -> Point {
+        (
+            gait.speed_over_length * length * 1e3,
+            gait.distance_over_length * length * 1e3,
+        )
+    };
+    // Where no gait is told the line breaks off.
+    let mut series: Vec<Series> = front
+        .farthest
+        .split(Option::is_none)
+        .filter(|run| run.len() > 1)
+        .map(|run| Series::Line {
+            points: run.iter().flatten().map(point).collect(),
+            color: MEASURED,
+            width: 2.0,
+        })
+        .collect();
+    series.push(Series::Dots {
+        points: front.farthest.iter().flatten().map(point).collect(),
+        color: MEASURED,
+        radius: 3.0,
+    });
+    let told = front.periods.iter().zip(&front.farthest);
+    let told: Vec<_> = told
+        .filter_map(|(period, gait)| Some((period, gait.as_ref()?)))
+        .collect();
+    series.extend(told.iter().step_by(4).map(|(period, gait)| Series::Word {
+        at: point(gait),
+        text: format!("{period:.2} s"),
+        color: INK,
+    }));
+    series.push(Series::Dots {
+        points: vec![point(&front.fastest)],
+        color: PREDICTED,
+        radius: 5.0,
+    });
+    Chart {
+        title: format!("{name}: the farthest gait in each period"),
+        x_label: "speed [mm/s]".to_owned(),
+        y_label: "displacement per cycle [mm]".to_owned(),
+        size: (620, 420),
+        equal_axes: false,
+        series,
+        legend: vec![
+            ("the farthest gait in a period".to_owned(), MEASURED),
+            (
+                format!("the fastest, a cycle in {:.3} s", front.fastest.period),
+                PREDICTED,
+            ),
+        ],
+    }
+}
