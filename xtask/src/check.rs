@@ -6,6 +6,7 @@ use crate::debian;
 use crate::emulator;
 use crate::failure::Outcome;
 use crate::firmware::{self, Variant};
+use crate::python;
 use crate::run::{cargo, command, read, run};
 use crate::steps::Steps;
 use crate::toolchain::ChipToolchain;
@@ -65,6 +66,9 @@ pub(crate) fn all() -> Outcome {
             "mend what the tests name above",
         )
     });
+    // Where it cannot be tested, a person may go on; CI may not.
+    let required = std::env::var("CI").is_ok_and(|ci| ci == "true");
+    steps.take("Python wheel", || python::test(required));
     println!("\n{}", steps.summary());
     steps.verdict()
 }

@@ -12,6 +12,7 @@ mod firmware;
 mod fuzz;
 mod image;
 mod mutants;
+mod python;
 mod run;
 mod soak;
 mod steps;
@@ -55,6 +56,8 @@ enum Chore {
     },
     /// Installs the RP2040 emulator that boots the firmware in tests (npm).
     Emulator,
+    /// Builds the Python wheel, installs it under target/python, and tests it: pytest, mypy, stubtest, notebooks.
+    Python,
     /// Runs our benches, then the Python peers beside them, and prints the ratios.
     Bench {
         /// Folder of the peers' Python modules (`model.py`, `gaits.py`); it is copied, not written to.
@@ -133,6 +136,7 @@ fn perform(chore: Chore) -> Outcome {
             firmware::flash(&ChipToolchain::find_or_make()?, variant)
         }
         Chore::Emulator => emulator::install(),
+        Chore::Python => python::test(true),
         Chore::Bench { peers } => bench::run_all(&peers),
         Chore::Fuzz { target, seconds } => fuzz::run_targets(target.as_deref(), seconds),
         Chore::Deny { install } => deny::check(install),

@@ -1,0 +1,77 @@
+//! The commands: one answer as its JSON document, and the whole `swimmer` command.
+
+use std::ffi::OsString;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use swimmer_command::{Answered, Refused};
+
+use crate::errors::{BadInput, Failed};
+
+/// Main threads have as much; others as little as a quarter of it.
+const STACK_BYTES: usize = 8 << 20;
+/// How long Ctrl-C may wait to be seen.
+const LOOK_FOR_SIGNALS_EVERY: Duration = Duration::from_millis(50);
+
+/// The JSON document of a command, and the warnings that it gave.
+///
+/// It runs in a thread of its own with the interpreter free. On Ctrl-C this raises `KeyboardInterrupt` at once; what was being
+/// computed ends by itself and is dropped.
+#[pyfunction]
+#[allow(clippy::redundant_closure_for_method_calls)] // the method is not general enough over lifetimes
+pub(crate) fn answer(py: Python<'_>, words: Vec<OsString>) -> PyResult<(String, Vec<String>)> {
+    let (tell, told) = mpsc::channel();
+    thread::Builder::new()
+        .name("swimmer".to_owned())
+        .stack_size(STACK_BYTES)
+        .spawn(move || {
+            // Nobody listens any more after Ctrl-C.
+            let _ = tell.send(swimmer_command::answer(words));
+        })?;
+    py.detach(move || {
+        loop {
+            match told.recv_timeout(LOOK_FOR_SIGNALS_EVERY) {
+                Ok(Ok(Answered { document, notes })) => return Ok((document, notes)),
+                Ok(Err(refused)) => return Err(exception(refused)),
+                Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(PyRuntimeError::new_err(
+                        "the command ended without an answer, which is a fault of swimmer; please report it with what was called",
+                    ));
+                }
+            }
+        }
+    })
+}
+
+/// The command's own sentence, after the warnings that came before it.
+fn exception(refused: Refused) -> PyErr {
+    let Refused {
+        reason,
+        bad_input,
+        mut notes,
+    } = refused;
+    notes.insert(0, reason);
+    let text = notes.join("\n");
+    if bad_input {
+        BadInput::new_err(text)
+    } else {
+        Failed::new_err(text)
+    }
+}
+
+/// The whole `swimmer` command, the program's name first; gives its exit status.
+#[pyfunction]
+pub(crate) fn run(py: Python<'_>, words: Vec<OsString>) -> u8 {
+    py.detach(|| swimmer_command::run(words))
+}
+
+/// The long options that a command takes, as `["optimize", "displacement"]`.
+#[pyfunction]
+pub(crate) fn options(path: Vec<String>) -> Vec<String> {
+    let path: Vec<&str> = path.iter().map(String::as_str).collect();
+    swimmer_command::options(&path)
+}

@@ -1,0 +1,26 @@
+//! `swimmer._swimmer`, what the Python package `swimmer` stands on: the model over arrays, gaits, and the commands' answers.
+//!
+//! No physics and no schema of its own lives here. Numbers come from `swimmer-model`, files from `swimmer-files`, and an answer is
+//! the JSON document of the command line, from `swimmer_command`.
+
+// The docs are Python's help, which shows no Markdown, and Python hands its arguments over by value.
+#![allow(clippy::doc_markdown, clippy::needless_pass_by_value)]
+
+mod arrays;
+mod commands;
+mod errors;
+mod gait;
+mod swimmer;
+
+/// The extension module; `python/swimmer/_swimmer.pyi` says what is in it.
+#[pyo3::pymodule]
+mod _swimmer {
+    #[pymodule_export]
+    use super::commands::{answer, options, run};
+    #[pymodule_export]
+    use super::errors::{BadInput, Error, Failed};
+    #[pymodule_export]
+    use super::gait::Gait;
+    #[pymodule_export]
+    use super::swimmer::Swimmer;
+}

@@ -1,0 +1,41 @@
+"""Purcell's three-link swimmer and its robot: model, optimal gaits with certificates, height maps, calibration.
+
+>>> import swimmer as sw
+>>> purcell = sw.Swimmer.preset("purcell")
+>>> purcell.A([0.5, -0.3]).shape
+(3, 2)
+>>> best = sw.optimize.displacement(purcell)
+>>> round(best.displacement_over_length, 10)
+0.10353224
+
+Lengths are in metres, angles in radians; `70deg` is understood where a number is. What a command of the same name takes as
+`--max-angle` is `max_angle` here, and what it prints with `--json` are the attributes of its result.
+"""
+
+from . import optimize
+from ._commands import atlas, calibrate, certify, height_map, simulate, tracks
+from ._run import Doubt
+from ._swimmer import BadInput, Error, Failed, Gait, Swimmer
+from .results import Atlas, Calibration, HeightMap, OptimalGait, Result, Simulation
+
+__all__ = [
+    "Atlas",
+    "BadInput",
+    "Calibration",
+    "Doubt",
+    "Error",
+    "Failed",
+    "Gait",
+    "HeightMap",
+    "OptimalGait",
+    "Result",
+    "Simulation",
+    "Swimmer",
+    "atlas",
+    "calibrate",
+    "certify",
+    "height_map",
+    "optimize",
+    "simulate",
+    "tracks",
+]

@@ -1,0 +1,207 @@
+"""The commands that are functions of the package itself."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from ._run import Run, Text
+from ._swimmer import Gait, Swimmer
+from .optimize import Angle
+from .results import Atlas, Calibration, HeightMap, OptimalGait, Result, Simulation, Trajectory
+
+
+def simulate(
+    swimmer: Swimmer | Text,
+    gait: Gait | Text,
+    *,
+    cycles: int = 1,
+    played: bool = False,
+    period: float | None = None,
+    knots: int | None = None,
+    pulse_step: int | None = None,
+) -> Simulation:
+    """Swims a gait in the model: `displacement_over_length`, `rotation_rad`, `efficiency`, … of the first cycle, and the `trajectory`.
+
+    With `played` also what the robot will make of it, at `period` seconds a cycle.
+    """
+    with Run("simulate") as run:
+        run.swimmer(swimmer)
+        run.gait(gait)
+        run.options(
+            {"cycles": cycles, "played": played, "period": period, "knots": knots, "pulse_step": pulse_step}
+        )
+        table = run.place("trajectory.csv")
+        run.words(f"--trajectory={table}")
+        document = run.document()
+        rows = np.loadtxt(table, delimiter=",", skiprows=1, ndmin=2)
+    trajectory = Trajectory(rows[:, 0].astype(np.int64), rows[:, 1], rows[:, 2:4], rows[:, 4:7])
+    return Simulation(document, trajectory)
+
+
+def certify(
+    swimmer: Swimmer | Text,
+    gait: Gait | Text,
+    *,
+    objective: Literal["displacement", "efficiency", "turning", "sideways", "speed"] | None = None,
+    max_angle: Angle | None = None,
+    min_angle: Angle | None = None,
+    sector: bool = False,
+    no_overlap: bool = False,
+    clearance: float | None = None,
+    playable: bool = False,
+) -> Result:
+    """Checks a gait against the necessary conditions: `pass_`, `verdict` and `checks`, each with its number.
+
+    Objective and bounds are those of the gait's file unless told otherwise. A gait that fails is an answer, not an error.
+    """
+    with Run("certify") as run:
+        run.swimmer(swimmer)
+        run.gait(gait)
+        run.options(
+            {
+                "objective": objective,
+                "max_angle": max_angle,
+                "min_angle": min_angle,
+                "sector": sector,
+                "no_overlap": no_overlap,
+                "clearance": clearance,
+                "playable": playable,
+            }
+        )
+        return Result(run.document())
+
+
+def atlas(
+    swimmer: Swimmer | Text,
+    *,
+    objective: Literal["displacement", "efficiency"],
+    max_angle: Angle | None = None,
+    no_overlap: bool = False,
+    clearance: float | None = None,
+    playable: bool = False,
+    starts: int = 200,
+    seed: int = 1,
+    continue_: str | None = None,
+    gait: Sequence[Gait | Text] = (),
+    steps: int | None = None,
+) -> Atlas:
+    """Every local optimum that seeded starts find, with and without the paper's symmetries, each certified: `optima`, best first.
+
+    `continue_="max-angle=2.8..1.2"` follows them as a parameter changes; `gait` names those to follow.
+    """
+    with Run("atlas") as run:
+        run.swimmer(swimmer)
+        run.options(
+            {
+                "objective": objective,
+                "max_angle": max_angle,
+                "no_overlap": no_overlap,
+                "clearance": clearance,
+                "playable": playable,
+                "starts": starts,
+                "seed": seed,
+                "continue": continue_,
+                "steps": steps,
+            }
+        )
+        for one in gait:
+            run.gait(one)
+        folder = run.place("atlas")
+        run.words(f"--output={folder}")
+        document = run.document()
+        document.pop("picture", None)
+        made_for = swimmer if isinstance(swimmer, Swimmer) else Swimmer.load(swimmer)
+        document["optima"] = [
+            OptimalGait(optimum, Gait.load(run.found(optimum["gait"])), made_for)
+            for optimum in document["optima"]
+        ]
+    return Atlas(document)
+
+
+def height_map(
+    swimmer: Swimmer | Text,
+    *,
+    row: Literal["x", "y", "theta"] = "x",
+    max_angle: Angle = 2.8,
+    gait: Gait | Text | Sequence[Gait | Text] = (),
+) -> HeightMap:
+    """The height function in minimum-perturbation coordinates over |φᵢ| ≤ max_angle: `zero_on_diagonal`, `zero_curves`, … and H."""
+    gaits = [gait] if isinstance(gait, Gait | str | os.PathLike) else gait
+    with Run("height-map") as run:
+        run.swimmer(swimmer)
+        run.options({"row": row, "max_angle": max_angle})
+        for one in gaits:
+            run.gait(one)
+        table = run.place("heights.csv")
+        run.words(f"--output={table}")
+        document = run.document()
+        rows = np.loadtxt(table, delimiter=",", skiprows=1)
+    phi = np.unique(rows[:, 0])
+    order = np.lexsort((rows[:, 1], rows[:, 0]))
+    return HeightMap(document, phi, rows[order, 2].reshape(len(phi), len(phi)))
+
+
+def calibrate(
+    file: Text,
+    *,
+    gait: Gait | Text | None = None,
+    period: float | None = None,
+    swimmer: Swimmer | Text | None = None,
+    front: str | None = None,
+    back: str | None = None,
+    level: float = 0.95,
+    fit_also: Sequence[str] = (),
+    advise: bool = False,
+    scale: float | None = None,
+    rate: float | None = None,
+    axes: str | None = None,
+    likelihood: float | None = None,
+    output: Text | None = None,
+) -> Calibration:
+    """Cycles of a campaign or of one recording, and for a campaign the fit: `sphere_radius_m`, `chi`, `intervals`, `verdict`, …
+
+    A campaign is a TOML file; a single recording wants `gait`, `period` and `swimmer` here. `output` is a folder for the report.
+    """
+    with Run("calibrate", os.fspath(file)) as run:
+        if gait is not None:
+            run.gait(gait)
+        if swimmer is not None:
+            run.swimmer(swimmer)
+        run.options(
+            {
+                "period": period,
+                "front": front,
+                "back": back,
+                "level": level,
+                "fit_also": ",".join(fit_also) or None,
+                "advise": advise,
+                "scale": scale,
+                "rate": rate,
+                "axes": axes,
+                "likelihood": likelihood,
+            }
+        )
+        if Path(file).suffix != ".toml":
+            run.options({"output": output})
+            return Calibration(run.document(), None)
+        folder = Path(output) if output is not None else run.place("fit")
+        run.words(f"--output={folder}")
+        document = run.document()
+        return Calibration(document, Swimmer.load(folder / "fitted.toml"))
+
+
+def tracks(
+    file: Text,
+    *,
+    scale: float | None = None,
+    rate: float | None = None,
+    axes: str | None = None,
+    likelihood: float | None = None,
+) -> Result:
+    """What a tracking file holds, without fitting: `format`, `rate_hz`, `unit`, `frames`, `points`."""
+    with Run("tracks", os.fspath(file)) as run:
+        run.options({"scale": scale, "rate": rate, "axes": axes, "likelihood": likelihood})
+        return Result(run.document())

@@ -1,0 +1,162 @@
+import os
+from collections.abc import Sequence
+from typing import final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["BadInput", "Error", "Failed", "Gait", "Swimmer", "answer", "options", "run"]
+
+class Error(Exception):
+    """Something was asked for and not done; the text says what, and what to do next."""
+
+class BadInput(Error):
+    """An argument, or a file that it names, cannot be used (exit status 2 of the command)."""
+
+class Failed(Error):
+    """It was tried and failed: no optimum, no convergence (exit status 1 of the command)."""
+
+@final
+class Swimmer:
+    """A three-link swimmer: links, drag, sphere, and where known its fluid and servos. It never changes; `replace` gives another.
+
+    Lengths are in metres, angles in radians, drag and power over the viscosity.
+    """
+
+    @staticmethod
+    def preset(name: str) -> Swimmer:
+        """`purcell`, `robot` or `robot-slender`."""
+    @staticmethod
+    def load(preset_or_path: str | os.PathLike[str]) -> Swimmer:
+        """A swimmer file (TOML), or a preset by its name, as `--swimmer` takes them."""
+    @staticmethod
+    def from_toml(text: str) -> Swimmer:
+        """The text of a swimmer file."""
+    def replace(
+        self,
+        *,
+        name: str | None = None,
+        middle: float | None = None,
+        side: float | None = None,
+        front: float | None = None,
+        back: float | None = None,
+        chi: float | None = None,
+        sphere_radius: float | None = None,
+        log_aspect: float | None = None,
+        half_thickness: float | None = None,
+        over_viscosity: float | None = None,
+        kinematic_viscosity: float | None = None,
+        density: float | None = None,
+    ) -> Swimmer:
+        """This swimmer with other values; what is not named stays.
+
+        `side` is both side links; `log_aspect`, `half_thickness` and `over_viscosity` are the forms of c_t, of which one holds;
+        `sphere_radius=0` takes the sphere away.
+        """
+    def A(self, phi: ArrayLike) -> NDArray[np.float64]:
+        """The local connection A(Φ), body velocity (v_x, v_y, θ̇) per joint rate: (…, 2) gives (…, 3, 2)."""
+    def W(self, phi: ArrayLike) -> NDArray[np.float64]:
+        """The power matrix W(Φ) over the viscosity, power = Φ̇ᵀWΦ̇: (…, 2) gives (…, 2, 2)."""
+    def dA(self, phi: ArrayLike) -> NDArray[np.float64]:
+        """The exact derivatives of A, [..., i, j, k] is ∂A_ij/∂φ_k: (…, 2) gives (…, 3, 2, 2)."""
+    def dW(self, phi: ArrayLike) -> NDArray[np.float64]:
+        """The exact derivatives of W, [..., i, j, k] is ∂W_ij/∂φ_k: (…, 2) gives (…, 2, 2, 2)."""
+    def F(self, phi: ArrayLike) -> NDArray[np.float64]:
+        """The curvature dA + [A₁, A₂], rows (x, y, θ): (…, 2) gives (…, 3)."""
+    @property
+    def name(self) -> str:
+        """What people call it."""
+    @property
+    def middle(self) -> float:
+        """Length of the middle link [m]."""
+    @property
+    def front(self) -> float:
+        """Length of the front link [m]."""
+    @property
+    def back(self) -> float:
+        """Length of the back link [m]."""
+    @property
+    def length(self) -> float:
+        """L, the length of all links [m]."""
+    @property
+    def chi(self) -> float:
+        """χ = c_n/c_t."""
+    @property
+    def sphere_radius(self) -> float:
+        """Radius of the sphere on the middle link [m]; 0 for none."""
+    @property
+    def c_t(self) -> dict[str, float]:
+        """The form of c_t and its value, as in the swimmer file."""
+    @property
+    def hash(self) -> str:
+        """The fingerprint that gait files carry: SHA-256 of links, drag and sphere."""
+    def to_toml(self) -> str:
+        """The text of its swimmer file."""
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes its swimmer file, in the place of one that is there."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+@final
+class Gait:
+    """One cycle of joint angles. It never changes.
+
+    `Gait(phi)` takes samples of one cycle, an array (n, 2) in radians; `u` are their fractions of the period, evenly spaced where
+    they are left out, and `corners` those of `u` where the direction jumps. A cycle whose last sample is not its first is closed.
+    """
+
+    def __new__(
+        cls,
+        phi: ArrayLike,
+        u: Sequence[float] | NDArray[np.float64] | None = None,
+        corners: Sequence[float] | NDArray[np.float64] | None = None,
+    ) -> Gait: ...
+    @staticmethod
+    def circle(amplitude: float, *, clockwise: bool = False) -> Gait:
+        """Radius `amplitude` in the (φ₁, φ₂) plane [rad], at uniform angle, counter-clockwise unless told otherwise."""
+    @staticmethod
+    def square(amplitude: float, *, clockwise: bool = False) -> Gait:
+        """Corners (±`amplitude`, ±`amplitude`) [rad], at constant speed along each edge."""
+    @staticmethod
+    def load(gait: str | os.PathLike[str]) -> Gait:
+        """A gait file, or what `--gait` takes: `circle:70deg`, `square:1.2`, `best.gait`, each with `:cw` to reverse it."""
+    @staticmethod
+    def from_text(text: str) -> Gait:
+        """The text of a gait file."""
+    @property
+    def u(self) -> NDArray[np.float64]:
+        """Fractions of the period of the samples, from 0 to 1: shape (n,)."""
+    @property
+    def phi(self) -> NDArray[np.float64]:
+        """Joint angles of the samples [rad], the last the first again: shape (n, 2)."""
+    def at(self, u: ArrayLike) -> NDArray[np.float64]:
+        """Joint angles [rad] at fractions of the period: (…,) gives (…, 2). Cycles go on: 1.25 is 0.25."""
+    @property
+    def objective(self) -> str:
+        """What it was optimised for, or `unspecified`."""
+    @property
+    def corners(self) -> list[float]:
+        """Fractions of the period where the direction jumps."""
+    @property
+    def closed_form(self) -> str | None:
+        """Its word on the command line, `circle:1.2`; None for a gait from samples."""
+    def reversed(self) -> Gait:
+        """The same cycle run the other way, from the same start."""
+    def to_text(self) -> str:
+        """The text of its gait file; a closed form is sampled."""
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes its gait file, in the place of one that is there."""
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
+
+def answer(words: Sequence[str | os.PathLike[str]]) -> tuple[str, list[str]]:
+    """The JSON document of a command, and the warnings that it gave.
+
+    On Ctrl-C this raises `KeyboardInterrupt` at once; what was being computed ends by itself and is dropped.
+    """
+
+def run(words: Sequence[str]) -> int:
+    """The whole `swimmer` command, the program's name first; gives its exit status."""
+
+def options(path: Sequence[str]) -> list[str]:
+    """The long options that a command takes."""

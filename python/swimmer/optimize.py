@@ -1,0 +1,111 @@
+"""Optimal gaits, each with its certificate: `swimmer optimize …`."""
+
+import json
+from collections.abc import Sequence
+from typing import Literal, TypeAlias
+
+from ._run import Run, Text
+from ._swimmer import Gait, Swimmer
+from .results import OptimalGait, Result
+
+__all__ = ["displacement", "efficiency", "sideways", "speed", "turning"]
+
+Angle: TypeAlias = float | str
+"""Radians, or a text with its unit: `70deg`."""
+
+
+def displacement(
+    swimmer: Swimmer | Text,
+    *,
+    max_angle: Angle | None = None,
+    min_angle: Angle | None = None,
+    sector: bool = False,
+    no_overlap: bool = False,
+    clearance: float | None = None,
+    playable: bool = False,
+    sign: Literal["+", "-"] | None = None,
+    robust: Result | Text | None = None,
+    over: Literal["worst", "mean"] | None = None,
+    max_rate: Angle | None = None,
+    period: float | None = None,
+) -> OptimalGait:
+    """The gait of most net displacement of the doubly symmetric class: `displacement_over_length`, `start_angle_rad`, `arcs`, …
+
+    `clearance` in metres, `max_rate` an angle a second, `period` in seconds; `robust` a `Calibration` or its fit.json.
+    """
+    return _optimal("displacement", swimmer, locals())
+
+
+def efficiency(
+    swimmer: Swimmer | Text,
+    *,
+    gait: Literal["small", "large"] = "small",
+    method: Literal["auto", "fourier", "collocation", "shooting"] = "auto",
+    max_angle: Angle | None = None,
+    no_overlap: bool = False,
+    clearance: float | None = None,
+    playable: bool = False,
+    robust: Result | Text | None = None,
+    over: Literal["worst", "mean"] | None = None,
+    order: int | None = None,
+    max_rate: Angle | None = None,
+    period: float | None = None,
+) -> OptimalGait:
+    """The gait of most Lighthill efficiency of the doubly symmetric class, the small or the large one: `efficiency`, `residual`, …"""
+    return _optimal("efficiency", swimmer, locals())
+
+
+def turning(
+    swimmer: Swimmer | Text,
+    *,
+    max_angle: Angle | None = None,
+    no_overlap: bool = False,
+    clearance: float | None = None,
+    playable: bool = False,
+) -> OptimalGait:
+    """The simple closed gait of most net rotation: `rotation_rad`, `bridged_supremum_rad`, …"""
+    return _optimal("turning", swimmer, locals())
+
+
+def sideways(
+    swimmer: Swimmer | Text,
+    *,
+    max_angle: Angle | None = None,
+    no_overlap: bool = False,
+    clearance: float | None = None,
+    playable: bool = False,
+) -> OptimalGait:
+    """The gait of most displacement across the heading at its start, without net rotation: `lateral_over_length`, …"""
+    return _optimal("sideways", swimmer, locals())
+
+
+def speed(
+    swimmer: Swimmer | Text,
+    *,
+    max_rate: Angle | Sequence[Angle] | None = None,
+    heading: Literal["any", "forward", "sideways"] = "any",
+    period: float | None = None,
+    max_angle: Angle | None = None,
+    no_overlap: bool = False,
+    clearance: float | None = None,
+    playable: bool = False,
+) -> OptimalGait:
+    """The fastest gait under servos' rates (an angle a second, one for both or one each): `speed_over_length_per_s`, `period_s`, …"""
+    return _optimal("speed", swimmer, locals())
+
+
+def _optimal(objective: str, swimmer: Swimmer | Text, told: dict[str, object]) -> OptimalGait:
+    options = {key: value for key, value in told.items() if key != "swimmer"}
+    with Run("optimize", objective) as run:
+        run.swimmer(swimmer)
+        fit = options.get("robust")
+        if isinstance(fit, Result):
+            path = run.place("fit.json")
+            path.write_text(json.dumps(fit.to_dict()))
+            options["robust"] = path
+        run.options(options)
+        best = run.place("best.gait")
+        run.words(f"--output={best}")
+        document = run.document(stacklevel=4)
+        made_for = swimmer if isinstance(swimmer, Swimmer) else Swimmer.load(swimmer)
+        return OptimalGait(document, Gait.load(best), made_for)
