@@ -47,20 +47,26 @@ struct LinkBounds {
 /// How far beyond the robot's own clearance a gait is kept, for the rounding of its table.
 const ROOM: f64 = 1.05;
 
+/// These bounds, and those of the robot of the file.
+pub(crate) fn playable(bounds: Bounds, file: &SwimmerFile) -> Bounds {
+    let largest = file.servo.unwrap_or_default().max_angle;
+    let links = &file.swimmer.links;
+    let margin = f64::from(gait_player::clearance::MARGIN_TURN) * links.front.max(links.back);
+    Bounds {
+        max_angle: Some(bounds.max_angle.map_or(largest, |told| told.min(largest))),
+        no_overlap: true,
+        clearance: bounds.clearance.max(ROOM * margin),
+        ..bounds
+    }
+}
+
 impl LinkBounds {
     /// The bounds, and the robot's where they shall hold.
     fn tightened(self, bounds: Bounds, file: &SwimmerFile) -> Bounds {
-        if !self.playable {
-            return bounds;
-        }
-        let largest = file.servo.unwrap_or_default().max_angle;
-        let links = &file.swimmer.links;
-        let margin = f64::from(gait_player::clearance::MARGIN_TURN) * links.front.max(links.back);
-        Bounds {
-            max_angle: Some(bounds.max_angle.map_or(largest, |told| told.min(largest))),
-            no_overlap: true,
-            clearance: bounds.clearance.max(ROOM * margin),
-            ..bounds
+        if self.playable {
+            playable(bounds, file)
+        } else {
+            bounds
         }
     }
 }

@@ -27,4 +27,6 @@ pub use losses::{Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, 
 pub use reach::{Reach, reach};
 pub use table::table;
 pub use tank::{Meeting, Part, Tank, until_wall};
-pub use timing::{Timing, TimingError, shortest_period, timing, timing_of_table};
+pub use timing::{
+    Timing, TimingError, shortest_of_table, shortest_period, timing, timing_of_table,
+};

@@ -32,7 +32,7 @@ use swimmer_model::{Gait, InvalidSamples, Model};
 
 pub use error::TimingError;
 use error::{check_period, check_rate};
-pub use table::timing_of_table;
+pub use table::{shortest_of_table, timing_of_table};
 
 /// Cells of a cycle, at least; those of a sampled gait end at its samples.
 const CELLS: f64 = 2048.0;

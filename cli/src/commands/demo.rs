@@ -3,6 +3,7 @@
 mod answer;
 mod laboratory;
 mod picture;
+mod race;
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -19,6 +20,7 @@ use swimmer_model::Swimmer;
 
 use self::answer::DemoAnswer;
 use self::laboratory::Laboratory;
+use self::race::Race;
 use super::calibrate::{FittedCampaign, RunCycles, fit_campaign, single_run};
 use super::robot::table_of;
 use crate::arguments::load_swimmer;
@@ -128,6 +130,7 @@ struct Finished {
     period_s: f64,
     predicted: PredictedCycle,
     swum: RunCycles,
+    race: Race,
 }
 
 impl<'a> Round<'a> {
@@ -151,7 +154,7 @@ impl<'a> Round<'a> {
         };
         start.save(&draft.join(START))?;
         let circles = circles(servo.max_angle).count() as u64;
-        let progress = Progress::of_steps(circles + 4);
+        let progress = Progress::of_steps(circles + 5);
         let laboratory = Laboratory::open(line, seed, &draft.join(LINK_LOG), interrupt)?;
         Ok(Self {
             truth,
@@ -199,6 +202,8 @@ impl<'a> Round<'a> {
             &TrackOptions::default(),
             [None, None],
         )?;
+        self.doing("racing the fastest gait against it");
+        let race = self.race(&fitted, &best.gait_file(&fitted.name))?;
         self.laboratory.close()?;
         Ok(Finished {
             truth: self.truth,
@@ -212,6 +217,7 @@ impl<'a> Round<'a> {
             period_s,
             predicted,
             swum,
+            race,
         })
     }
 

@@ -32,6 +32,17 @@ fn demo(folder: &Path, words: &[&str], truth: (f64, f64)) -> serde_json::Value {
         "predicted {predicted} m, tracked {tracked} m"
     );
     assert!(predicted > 0.0);
+    // As fast as the servos go, and still as foretold.
+    let race = &found["race"];
+    for gait in ["fastest", "farthest"] {
+        let speed = |key: &str| number(&race[gait], key);
+        let (predicted, tracked) = (
+            speed("speed_predicted_m_per_s"),
+            speed("speed_tracked_m_per_s"),
+        );
+        assert!((predicted / tracked - 1.0).abs() <= 0.01, "{race}");
+    }
+    assert!(number(race, "times_as_fast") > 1.0, "{race}");
     found
 }
 

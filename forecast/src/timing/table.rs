@@ -32,16 +32,9 @@ pub fn timing_of_table(
     period: f64,
     max_rate: f64,
 ) -> Result<(Timing, GaitFile), TimingError> {
-    check_rate(max_rate)?;
     check_period(period)?;
-    let limits = Limits {
-        max_rate: max_rate as f32,
-        ..Limits::ROBOT
-    };
-    let curve = Curve::new(model, &AnyGait::from_file(file)?)?;
-    let shortest_of_curve = curve.shortest(max_rate);
-    let fastest = curve.timing(shortest_of_curve, max_rate);
-    let shortest = needed(&fastest, file, &limits)?;
+    let (curve, fastest) = shortest(model, file, max_rate)?;
+    let shortest = fastest.period;
     if period < shortest {
         return Err(TimingError::TooFast {
             period,
@@ -50,7 +43,7 @@ pub fn timing_of_table(
         });
     }
     let mut timing = curve.timing(period, max_rate);
-    if needed(&timing, file, &limits)? > period {
+    if needed(&timing, file, max_rate)? > period {
         timing = fastest.stretched(period);
     }
     let timing = Timing {
@@ -61,13 +54,47 @@ pub fn timing_of_table(
     Ok((timing, file))
 }
 
+/// A gait as fast as its table can run: its timing, with the file that makes the table.
+///
+/// # Errors
+/// As [`super::timing()`].
+pub fn shortest_of_table(
+    model: &Model<f64>,
+    file: &GaitFile,
+    max_rate: f64,
+) -> Result<(Timing, GaitFile), TimingError> {
+    let (_, timing) = shortest(model, file, max_rate)?;
+    let file = timing.retime_file(file);
+    Ok((timing, file))
+}
+
+fn shortest(
+    model: &Model<f64>,
+    file: &GaitFile,
+    max_rate: f64,
+) -> Result<(Curve, Timing), TimingError> {
+    check_rate(max_rate)?;
+    let curve = Curve::new(model, &AnyGait::from_file(file)?)?;
+    let fastest = curve.timing(curve.shortest(max_rate), max_rate);
+    let period = needed(&fastest, file, max_rate)?;
+    let timing = Timing {
+        shortest_period: period,
+        ..fastest.stretched(period)
+    };
+    Ok((curve, timing))
+}
+
 /// The period that the robot asks for the table of a timing, at least its own \[s\].
-fn needed(timing: &Timing, file: &GaitFile, limits: &Limits) -> Result<f64, TimingError> {
+fn needed(timing: &Timing, file: &GaitFile, max_rate: f64) -> Result<f64, TimingError> {
+    let limits = Limits {
+        max_rate: max_rate as f32,
+        ..Limits::ROBOT
+    };
     let retimed = AnyGait::from_file(&timing.retime_file(file))?;
     let Ok(table) = crate::table(&retimed, MAX_KNOTS) else {
         return Ok(timing.period);
     };
-    let of = |interval| f64::from(table.interval_period(interval, limits)) * (1.0 + SPARE);
+    let of = |interval| f64::from(table.interval_period(interval, &limits)) * (1.0 + SPARE);
     Ok((0..table.knots()).map(of).fold(timing.period, f64::max))
 }
 
@@ -81,8 +108,13 @@ impl Timing {
         self.rate_at_constant_power /= by;
         self.at_limit = if by > 1.01 { 0.0 } else { self.at_limit };
         for cell in &mut self.cells {
-            // Rounding shall not reach beyond the period.
-            cell.time = (cell.time * by).min(period);
+            // The cycle ends at its period, whatever is rounded.
+            let ends = cell.u >= 1.0;
+            cell.time = if ends {
+                period
+            } else {
+                (cell.time * by).min(period)
+            };
             cell.power /= by * by;
         }
         self

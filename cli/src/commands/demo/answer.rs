@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::race::Race;
 use super::{BEST, CYCLES, Finished, REPORT};
 use crate::commands::calibrate::FitAnswer;
 use crate::quantity::{self, Table};
@@ -16,6 +17,8 @@ pub(super) struct DemoAnswer {
     played_cycles: u32,
     displacement_predicted_m: f64,
     displacement_tracked_m: f64,
+    /// The fastest gait beside the farthest, both at the servos' full rate.
+    race: Race,
     fit: FitAnswer,
     report: String,
     /// What the fit and the prediction are held against.
@@ -39,6 +42,7 @@ impl DemoAnswer {
             played_cycles: CYCLES,
             displacement_predicted_m: round.predicted.x_m,
             displacement_tracked_m: round.swum.answer.x_m,
+            race: round.race.clone(),
             fit: round.fit.answer.clone(),
             report: place.join(REPORT).display().to_string(),
             truth: Truth {
@@ -85,6 +89,20 @@ impl fmt::Display for DemoAnswer {
             self.tracked_sd_m * 1e3,
             self.played_cycles,
             against(predicted, tracked, 1e3, "mm"),
+        )?;
+        let Race { fastest, .. } = &self.race;
+        writeln!(
+            f,
+            "  The fastest gait at the servos' full rate: {:.2} mm a second predicted, {:.2} tracked ({}), {:.2} times as fast as it",
+            fastest.speed_predicted_m_per_s * 1e3,
+            fastest.speed_tracked_m_per_s * 1e3,
+            against(
+                fastest.speed_predicted_m_per_s,
+                fastest.speed_tracked_m_per_s,
+                1e3,
+                "mm"
+            ),
+            self.race.times_as_fast,
         )?;
         write!(f, "  Report: {}", self.report)
     }
