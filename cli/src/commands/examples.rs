@@ -5,7 +5,10 @@ use clap::Command;
 /// The words of a command, and what is typed after `swimmer`.
 pub(super) const EXAMPLES: [(&str, &str); 42] = [
     ("demo", "demo --swimmer robot -o demo"),
-    ("simulate", "simulate --swimmer robot --gait circle:70deg"),
+    (
+        "simulate",
+        "simulate --swimmer robot --gait circle:70deg --picture way.svg",
+    ),
     (
         "optimize displacement",
         "optimize displacement --swimmer robot --max-angle 2.8 -o best.gait",

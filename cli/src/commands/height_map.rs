@@ -3,18 +3,19 @@
 pub(crate) mod picture;
 
 use std::fmt::{self, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::ValueEnum;
 use gait_optimizer::{Convergence, HeightMap as Map, HeightMapError, LevelCurve, Row};
 use serde::Serialize;
-use swimmer_files::{AnyGait, GaitSpec, write_atomically};
+use swimmer_files::{AnyGait, GaitSpec};
 
 use crate::arguments::{gait, load_gait_for, load_swimmer, positive_angle};
 use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
 use crate::output::{Output, verbose};
 use crate::own_robot::{PERIOD_S, say_if_beyond};
+use crate::picture_file::Kind;
 use crate::quantity::{self, Rows};
 
 /// Map the height function, with its zero-level curves and gaits
@@ -35,8 +36,8 @@ pub(crate) struct HeightMap {
     /// Lay this gait over the map and hold the area rule against what it swims; may be given several times
     #[arg(long = "gait", value_name = "GAIT", value_parser = gait)]
     gaits: Vec<GaitSpec>,
-    /// Write the map: FILE.svg as a figure, FILE.csv as a table of φ₁, φ₂, H at 201 × 201 nodes
-    #[arg(short, long, value_name = "FILE.svg|.csv")]
+    /// Write the map: .svg or .png as a figure, .csv as a table of φ₁, φ₂, H at 201 × 201 nodes
+    #[arg(short, long, value_name = "FILE.svg|.png|.csv")]
     output: Option<PathBuf>,
 }
 
@@ -54,13 +55,6 @@ enum Component {
 
 /// Nodes of the table in each direction.
 const TABLE: usize = 201;
-
-/// What is asked to be written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Figure,
-    Table,
-}
 
 impl Component {
     fn row(self) -> Row {
@@ -94,7 +88,9 @@ impl HeightMap {
     /// Maps, writes and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
         self.output.as_deref().map_or(Ok(()), may_be_written)?;
-        let kind = self.output.as_deref().map(kind).transpose()?;
+        let kinds = [Kind::Svg, Kind::Png, Kind::Csv];
+        let kind = self.output.as_deref().map(|path| Kind::of(path, &kinds));
+        let kind = kind.transpose()?;
         let file = load_swimmer(&self.swimmer)?;
         let gaits = self
             .gaits
@@ -113,7 +109,8 @@ impl HeightMap {
             .collect::<Outcome<Vec<_>>>()?;
         if let (Some(path), Some(kind)) = (&self.output, kind) {
             let text = match kind {
-                Kind::Figure => picture::svg(&picture::Figure {
+                Kind::Csv => table(&map, row),
+                _ => picture::svg(&picture::Figure {
                     title: format!("{}, |φᵢ| ≤ {} rad", file.name, self.max_angle),
                     quantity: self.row.quantity(),
                     map: &map,
@@ -121,9 +118,8 @@ impl HeightMap {
                     curves: &curves,
                     gaits: &gaits,
                 })?,
-                Kind::Table => table(&map, row),
             };
-            write_atomically(path, text.as_bytes())?;
+            kind.write(path, &text)?;
         }
         let (on_diagonal, on_antidiagonal) =
             (map.zeros_on_diagonal(row), map.zeros_on_antidiagonal(row));
@@ -143,19 +139,6 @@ impl HeightMap {
             written: self.output,
         });
         Ok(())
-    }
-}
-
-/// What the ending of the file's name asks for.
-fn kind(path: &Path) -> Outcome<Kind> {
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    match ending.map(str::to_ascii_lowercase).as_deref() {
-        Some("svg") => Ok(Kind::Figure),
-        Some("csv") => Ok(Kind::Table),
-        _ => Err(Failure::BadInput(format!(
-            "cannot tell from `{}` what to write: end the name in .svg for a figure or .csv for a table",
-            path.display()
-        ))),
     }
 }
 

@@ -12,6 +12,7 @@ use crate::output::Output;
 use crate::paper::{Row, Study, deviation, figures, number, page, printed, rows};
 use crate::progress::Progress;
 use crate::quantity::Table;
+use crate::raster::png;
 
 /// Compute every number and figure of the paper: the paper's value, ours, the deviation
 ///
@@ -19,7 +20,7 @@ use crate::quantity::Table;
 /// differs ends with status 1.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Paper {
-    /// Write the figures (SVG), their points (CSV) and one page with everything into this folder
+    /// Write the figures (SVG and PNG), their points (CSV) and one page with everything into this folder
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
 }
@@ -47,7 +48,9 @@ impl Paper {
             let drawn = figures(&study)?;
             for figure in &drawn {
                 let place = |ending: &str| folder.draft().join(format!("{}.{ending}", figure.name));
-                write_atomically(&place("svg"), figure.svg()?.as_bytes())?;
+                let drawing = figure.svg()?;
+                write_atomically(&place("svg"), drawing.as_bytes())?;
+                write_atomically(&place("png"), &png(&drawing)?)?;
                 write_atomically(&place("csv"), figure.csv().as_bytes())?;
             }
             let html = page(&rows, &drawn)?;

@@ -15,7 +15,10 @@ use crate::in_fluid::InFluid;
 use crate::new_file::may_be_written;
 use crate::output::Output;
 use crate::own_robot;
+use crate::picture_file::Kind;
 use crate::quantity::{self, Rows};
+use crate::report::style::number;
+use crate::report::swimming::{ANIMATION_SIZE, FRAMES_PER_SECOND, Swimming, animation, snapshots};
 
 /// Swim a gait in the model and print what one cycle brings
 #[derive(Debug, clap::Args)]
@@ -26,12 +29,15 @@ pub(crate) struct Simulate {
     /// circle:AMPLITUDE, square:AMPLITUDE or a gait file; add :cw to reverse it
     #[arg(long, value_name = "GAIT", value_parser = gait)]
     gait: GaitSpec,
-    /// How many cycles the trajectory has; the printed values are always those of the first
+    /// How many cycles the trajectory and the snapshots have; the printed values are always those of the first
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     cycles: u32,
     /// Write the path of the middle link as a table: cycle, u, joint angles, pose
     #[arg(long, value_name = "FILE.csv")]
     trajectory: Option<PathBuf>,
+    /// Draw the swimmer: .svg or .png for snapshots along its path over all cycles, .gif for the first cycle in motion
+    #[arg(long, value_name = "FILE.svg|.png|.gif")]
+    picture: Option<PathBuf>,
     #[command(flatten)]
     playing: played::Playing,
 }
@@ -63,6 +69,9 @@ struct Swum {
     /// The table that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     trajectory: Option<PathBuf>,
+    /// The picture that was drawn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    picture: Option<PathBuf>,
 }
 
 impl fmt::Display for Swum {
@@ -103,6 +112,9 @@ impl fmt::Display for Swum {
         if let Some(path) = &self.trajectory {
             rows.row("written to", path.display().to_string());
         }
+        if let Some(path) = &self.picture {
+            rows.row("drawn to", drawn(path));
+        }
         write!(f, "{}\n{rows}", self.title)
     }
 }
@@ -114,6 +126,7 @@ impl Simulate {
     /// Swims the gait and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
         self.trajectory.as_deref().map_or(Ok(()), may_be_written)?;
+        let kind = self.picture.as_deref().map(picture_kind).transpose()?;
         let file = load_swimmer(&self.swimmer)?;
         let gait = load_gait_for(&file, &self.gait)?;
         let model = model(&file)?;
@@ -135,6 +148,7 @@ impl Simulate {
             played: self.playing.forecast(&file, &model, &gait)?,
             fluid: InFluid::new(&file, &model, &gait, self.playing.period),
             trajectory: self.trajectory.clone(),
+            picture: self.picture.clone(),
         };
         own_robot::say_if_beyond_servos(&file, &gait, self.playing.period);
         if let Some(fluid) = &swum.fluid {
@@ -143,8 +157,37 @@ impl Simulate {
         if let Some(path) = &self.trajectory {
             write_trajectory(path, &model, &gait, self.cycles)?;
         }
+        if let (Some(path), Some(kind)) = (&self.picture, kind) {
+            let cycles = if kind == Kind::Gif { 1 } else { self.cycles };
+            let over_length = number(swum.displacement_over_length, 4);
+            let title = format!("{}: X/L = {over_length} a cycle", swum.title);
+            let swimming = Swimming::in_the_model(title, &model, &gait, cycles);
+            match kind {
+                Kind::Gif => write_atomically(path, &animation(&swimming)?)?,
+                kind => kind.write(path, &snapshots(&swimming))?,
+            }
+        }
         output.answer(&swum);
         Ok(())
+    }
+}
+
+/// What a picture's name asks for, asked before anything is done.
+fn picture_kind(path: &Path) -> Outcome<Kind> {
+    let kind = Kind::of(path, &[Kind::Svg, Kind::Png, Kind::Gif])?;
+    may_be_written(path)?;
+    Ok(kind)
+}
+
+/// Where the picture is; of an animation also how large and how fast.
+fn drawn(path: &Path) -> String {
+    let place = path.display();
+    match Kind::of(path, &[Kind::Gif]) {
+        Ok(_) => {
+            let (width, height) = ANIMATION_SIZE;
+            format!("{place}: {width} × {height}, {FRAMES_PER_SECOND} images a second")
+        }
+        Err(_) => place.to_string(),
     }
 }
 

@@ -2,11 +2,15 @@
 
 pub(crate) mod calibration;
 pub(crate) mod chart;
+pub(crate) mod drawing;
 mod figures;
 mod page;
 pub(crate) mod style;
+pub(crate) mod swimming;
 
 pub(crate) use page::{escaped, minus, page};
+
+use swimming::Swimming;
 
 /// Everything that the report shows, in SI units; the page turns them into millimetres and degrees.
 #[derive(Debug, Clone)]
@@ -35,6 +39,8 @@ pub(crate) struct Report {
     pub(crate) track: Track,
     /// The optimised gait.
     pub(crate) gait: GaitPicture,
+    /// The swimmer itself under the optimised gait, as the cameras saw it.
+    pub(crate) swimming: Swimming,
     /// The optimised gait as the cameras saw it swum.
     pub(crate) swum: Track,
     /// The same as the fitted model predicts it.

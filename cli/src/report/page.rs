@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::swimming::snapshots;
 use super::{Report, figures};
 use crate::failure::Outcome;
 use crate::quantity;
@@ -14,7 +15,15 @@ pub(crate) fn page(report: &Report) -> Outcome<String> {
     let mut html = head("Swimmer: once round the loop");
     heading(&mut html, report);
     cards(&mut html, report);
-    html.push_str("<section class=grid>");
+    html.push_str("<section>");
+    figure(
+        &mut html,
+        &snapshots(&report.swimming),
+        "The swimmer under the optimised gait",
+        "As the cameras saw it, in the colours of time: the body every few cycles, the path of its centre, and the shape it \
+         had then in the plane of the joint angles. The disc is the sphere of the fitted model.",
+    );
+    html.push_str("</section><section class=grid>");
     figure(
         &mut html,
         &figures::displacement(&report.circles, &report.fitted_curve, &report.start_curve)?,

@@ -93,7 +93,7 @@ pub(crate) fn finished(drawing: &str, size: (i32, i32)) -> String {
 }
 
 /// Text of a drawing in which `H_x` shows an x below the line.
-fn subscripted(text: &str) -> String {
+pub(super) fn subscripted(text: &str) -> String {
     split(text, |index| {
         // What follows is lifted again; the length is that of the subscript's smaller letters.
         format!(

@@ -53,6 +53,10 @@ fn the_papers_robot_and_what_the_demo_leaves_behind() {
     let out = folder.path().join("out");
     let report = std::fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.starts_with("<!doctype html>") && report.matches("<svg").count() >= 6);
+    assert!(
+        report.contains("The swimmer under the optimised gait") && report.contains("7 cycles<"),
+        "the swimmer itself"
+    );
     fits_a_telephone(&report);
     assert!(
         !report.contains("http://") || !report.contains("src="),

@@ -18,6 +18,7 @@ mod left_behind;
 mod numbers;
 mod output_discipline;
 mod paper;
+mod pictures;
 #[cfg(unix)]
 mod port_errors;
 #[cfg(unix)]

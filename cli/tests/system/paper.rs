@@ -63,6 +63,8 @@ fn the_figures_and_the_page() {
         .collect();
     assert!(pictures.len() >= 15, "{names:?}");
     for picture in pictures {
+        let pixels = fs::read(out.join(format!("{picture}.png"))).unwrap();
+        assert!(pixels.starts_with(b"\x89PNG"), "{picture}");
         let table = fs::read_to_string(out.join(format!("{picture}.csv"))).unwrap();
         assert!(table.lines().count() > 50, "{picture}");
         assert!(

@@ -70,7 +70,7 @@ impl Row {
     }
 }
 
-const ROWS: [Row; 42] = [
+const ROWS: [Row; 43] = [
     row("demo --swimmer good.toml -o out")
         .reads("good.toml")
         .writes("out")
@@ -104,6 +104,9 @@ const ROWS: [Row; 42] = [
     row("height-map --swimmer good.toml -o m.svg")
         .reads("good.toml")
         .writes("m.svg"),
+    row("simulate --swimmer good.toml --gait good.gait --picture p.png")
+        .reads("good.gait")
+        .writes("p.png"),
     row("paper -o out").writes("out").works_a_while(),
     row("swimmers robot"),
     row("gaits"),

@@ -9,6 +9,7 @@ use super::{BEST, BEST_TRACK, CAMPAIGN, FITTED, Finished, LINK_LOG, START};
 use crate::commands::calibrate::RunAnswer;
 use crate::failure::{Failure, Outcome};
 use crate::quantity;
+use crate::report::swimming::{Moment, Swimming};
 use crate::report::{GaitPicture, MeasuredCircle, ModelCircle, Parameter, Report, Track};
 
 /// The curves over the amplitude, degrees.
@@ -20,6 +21,8 @@ const SHOWN: f64 = 70.0;
 const KNOTS_DRAWN: u32 = 64;
 /// Points of an arc that are drawn.
 const ARC_POINTS: u32 = 120;
+/// Instants of a cycle at which the swimmer is known to its picture.
+const MOMENTS: usize = 240;
 /// Poses within this of a cycle's start give the frame in which the track is drawn, s.
 const START_WINDOW_S: f64 = 0.5;
 
@@ -49,6 +52,7 @@ pub(super) fn report(round: &Finished) -> Outcome<Report> {
         },
     ];
     let (shown, shown_gait) = shown_run(round)?;
+    let swum = track("tracked".into(), &round.swum.found)?;
     Ok(Report {
         swimmer: round.truth.name.clone(),
         seed: round.seed,
@@ -62,7 +66,8 @@ pub(super) fn report(round: &Finished) -> Outcome<Report> {
         start_curve: curve(round, &round.start)?,
         track: track(quantity::gait(shown_gait), shown)?,
         gait: gait(round)?,
-        swum: track("tracked".into(), &round.swum.found)?,
+        swimming: swimming(round, &swum)?,
+        swum,
         predicted: predicted(round)?,
         displacement_predicted_m: round.predicted.x_m,
         displacement_tracked_m: (round.swum.answer.x_m, round.swum.answer.x_sd_m),
@@ -189,6 +194,37 @@ fn predicted(round: &Finished) -> Outcome<Track> {
     Ok(Track {
         label: "predicted".into(),
         poses,
+    })
+}
+
+/// The tracked poses, each with the shape that the servos had then.
+fn swimming(round: &Finished, swum: &Track) -> Outcome<Swimming> {
+    let path = joint_path(
+        &round.best_gait,
+        round.fitted.servo.as_ref(),
+        round.period_s,
+    )
+    .map_err(|error| Failure::tried(&error))?;
+    let cycles = round.swum.answer.cycles.unwrap_or(0).max(1);
+    let moment = |place: usize| {
+        let cycle_u = place as f64 / MOMENTS as f64;
+        let u = cycle_u - cycle_u.floor();
+        let after = path.partition_point(|(at, _)| *at < u);
+        let (_, phi) = path.get(after).or_else(|| path.first())?;
+        let time_s = cycle_u * round.period_s;
+        let after = swum.poses.partition_point(|[at, ..]| *at < time_s);
+        let [_, x, y, theta] = swum.poses.get(after).or_else(|| swum.poses.last())?;
+        Some(Moment {
+            phi: *phi,
+            pose: Pose::new(*x, *y, *theta),
+        })
+    };
+    Ok(Swimming {
+        title: String::new(),
+        links: round.fitted.swimmer.links,
+        sphere_radius: round.fitted.swimmer.sphere_radius,
+        cycles: u32::try_from(cycles).unwrap_or(1),
+        moments: (0..=cycles * MOMENTS).filter_map(moment).collect(),
     })
 }
 

@@ -1,0 +1,161 @@
+//! Snapshots of the swimmer along its path, coloured by time, with the path of its centre, a scale and the gait.
+
+use nalgebra::Vector2;
+
+use super::body::{Look, Window, covered, draw, extent};
+use super::joints::Plane;
+use super::{Swimming, time_color};
+use crate::report::drawing::{Anchor, Drawing};
+use crate::report::style::{INK, Point, TITLE, WORDS};
+
+/// Width of the picture; where the swimmer is drawn; the plane of the joint angles beside it. Pixels of the page.
+const WIDTH: f64 = 900.0;
+const LEFT: f64 = 24.0;
+const SCENE: f64 = 590.0;
+const TALLEST: f64 = 460.0;
+const LEAST: f64 = 250.0;
+const PLANE: (f64, f64) = (668.0, 208.0);
+/// Bodies of one cycle, the last one included, and at most of several: more hide each other.
+const OF_ONE: usize = 9;
+const OF_SEVERAL: usize = 5;
+/// Air around the scene.
+const AIR: f64 = 14.0;
+/// Under the scene: scale and colours of time.
+const BELOW: f64 = 54.0;
+/// Pieces of the colour bar.
+const PIECES: u8 = 60;
+
+/// The picture as SVG.
+pub(crate) fn snapshots(swimming: &Swimming) -> String {
+    let shown = shown(swimming);
+    let bodies = shown
+        .iter()
+        .filter_map(|place| swimming.moments.get(*place));
+    let places: Vec<Vector2<f64>> = bodies
+        .flat_map(|moment| covered(swimming, moment))
+        .chain(swimming.moments.iter().map(|moment| moment.pose.position()))
+        .collect();
+    let (low, high) = extent(&places);
+    let (across, up) = ((high.x - low.x).max(1e-9), (high.y - low.y).max(1e-9));
+    let scale = ((SCENE - 2.0 * AIR) / across).min((TALLEST - 2.0 * AIR) / up);
+    let height = (scale * up + 2.0 * AIR).max(LEAST);
+    let top = if swimming.title.is_empty() { 8.0 } else { 46.0 };
+    let window = Window::showing(
+        &places,
+        (LEFT + AIR, top + AIR),
+        (SCENE - 2.0 * AIR, height - 2.0 * AIR),
+        scale,
+    );
+    let mut drawing = Drawing::new(WIDTH, top + height + BELOW);
+    drawing.words((LEFT, 28.0), TITLE, INK, Anchor::Start, &swimming.title);
+    bodies_and_path(&mut drawing, &window, swimming, &shown);
+    scale_bar(&mut drawing, swimming, scale, top + height + 20.0);
+    time_bar(&mut drawing, swimming, top + height + 20.0);
+    let plane = Plane::new(swimming, (PLANE.0, top + (height - PLANE.1) / 2.0), PLANE.1);
+    plane.frame(&mut drawing);
+    plane.gait(&mut drawing, swimming, swimming.cycles == 1);
+    for place in &shown {
+        if let Some(moment) = swimming.moments.get(*place) {
+            let color = time_color(share(swimming, *place));
+            drawing.disc(plane.at(moment.phi), 5.0, (color, 1.0));
+        }
+    }
+    drawing.svg()
+}
+
+/// Which instants are drawn: eighths of a single cycle, whole cycles of several.
+fn shown(swimming: &Swimming) -> Vec<usize> {
+    let last = swimming.moments.len().saturating_sub(1);
+    let cycles = usize::try_from(swimming.cycles.max(1)).unwrap_or(1);
+    let (pieces, every) = match cycles {
+        1 => (OF_ONE - 1, 1),
+        several => (several, several.div_ceil(OF_SEVERAL - 1)),
+    };
+    // The last one always; from there back, evenly.
+    let mut places: Vec<usize> = (0..=pieces)
+        .rev()
+        .step_by(every)
+        .map(|piece| piece * last / pieces)
+        .collect();
+    places.reverse();
+    places
+}
+
+fn share(swimming: &Swimming, place: usize) -> f64 {
+    place as f64 / swimming.moments.len().saturating_sub(1).max(1) as f64
+}
+
+fn bodies_and_path(drawing: &mut Drawing, window: &Window, swimming: &Swimming, shown: &[usize]) {
+    let last = shown.last().copied().unwrap_or_default();
+    for place in shown {
+        if let Some(moment) = swimming.moments.get(*place) {
+            let age = share(swimming, *place);
+            let look = Look {
+                color: time_color(age),
+                opacity: if *place == last {
+                    1.0
+                } else {
+                    0.30 + 0.25 * age
+                },
+                whole: *place == last,
+            };
+            draw(drawing, window, swimming, moment, look);
+        }
+    }
+    let path: Vec<Point> = swimming
+        .moments
+        .iter()
+        .map(|moment| window.at(&moment.pose.position()))
+        .collect();
+    drawing.line(&path, 4.0, (plotters::style::WHITE, 0.85));
+    let pieces = path.len().saturating_sub(1).max(1);
+    for (number, piece) in path.windows(2).enumerate() {
+        let color = time_color((number as f64 + 0.5) / pieces as f64);
+        drawing.line(piece, 2.0, (color, 1.0));
+    }
+    if let Some(end) = path.last() {
+        drawing.disc(*end, 5.0, (plotters::style::WHITE, 1.0));
+        drawing.disc(*end, 3.4, (time_color(1.0), 1.0));
+    }
+}
+
+/// A bar of a round part of L, about a fifth of the scene long.
+fn scale_bar(drawing: &mut Drawing, swimming: &Swimming, scale: f64, y: f64) {
+    let length = swimming.length();
+    let wanted = 0.2 * SCENE / (scale * length);
+    let rounds = [
+        0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0_f64,
+    ];
+    let fits = |part: &&f64| **part <= wanted;
+    let part = rounds.iter().rev().find(fits).copied().unwrap_or(0.01);
+    let (left, right) = (LEFT + AIR, LEFT + AIR + part * length * scale);
+    drawing.line(&[(left, y), (right, y)], 2.4, (INK, 1.0));
+    for end in [left, right] {
+        drawing.line(&[(end, y - 5.0), (end, y + 5.0)], 1.6, (INK, 1.0));
+    }
+    let metres = part * length;
+    let told = if metres < 1.0 {
+        format!("{part} L = {} mm", (metres * 1e4).round() / 10.0)
+    } else {
+        format!("{part} L = {} m", (metres * 1e2).round() / 100.0)
+    };
+    drawing.words((right + 10.0, y + 5.0), WORDS, INK, Anchor::Start, &told);
+}
+
+/// What the colours mean.
+fn time_bar(drawing: &mut Drawing, swimming: &Swimming, y: f64) {
+    let (left, width) = (PLANE.0, PLANE.1);
+    let step = width / f64::from(PIECES);
+    for piece in 0..PIECES {
+        let from = left + step * f64::from(piece);
+        let color = time_color((f64::from(piece) + 0.5) / f64::from(PIECES));
+        // A little overlap leaves no seams.
+        drawing.rectangle((from, y - 6.0), (from + step + 0.3, y + 4.0), (color, 1.0));
+    }
+    let cycles = match swimming.cycles {
+        1 => "1 cycle".to_owned(),
+        cycles => format!("{cycles} cycles"),
+    };
+    drawing.words((left, y + 22.0), WORDS, INK, Anchor::Start, "time 0");
+    drawing.words((left + width, y + 22.0), WORDS, INK, Anchor::End, &cycles);
+}

@@ -1,0 +1,112 @@
+//! Pictures of the swimmer: each kind is what its name says, and those of the README are what the program draws today.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::binary::typed;
+
+/// How the pictures under `docs/pictures` are made. `SWIMMER_PICTURES=overwrite cargo test -p swimmer --test system pictures`
+/// makes them again.
+const OF_THE_README: [(&str, &str); 4] = [
+    ("optimize displacement --swimmer purcell -o best.gait", ""),
+    (
+        "simulate --swimmer purcell --gait best.gait --cycles 8 --picture swimmer.png",
+        "swimmer.png",
+    ),
+    (
+        "height-map --swimmer purcell --gait best.gait -o height-map.png",
+        "height-map.png",
+    ),
+    (
+        "simulate --swimmer purcell --gait best.gait --picture cycle.gif",
+        "cycle.gif",
+    ),
+];
+
+/// As the issue of a page that loads at once asks.
+const LARGEST_ANIMATION: usize = 400_000;
+
+#[test]
+fn pictures_of_the_readme_are_what_is_drawn_today() {
+    let folder = tempfile::tempdir().unwrap();
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/pictures");
+    let overwrite = std::env::var("SWIMMER_PICTURES").is_ok_and(|word| word == "overwrite");
+    let mut stale = Vec::new();
+    for (line, picture) in OF_THE_README {
+        typed(folder.path(), line).with_status(0);
+        if picture.is_empty() {
+            continue;
+        }
+        let drawn = fs::read(folder.path().join(picture)).unwrap();
+        if picture.ends_with(".gif") {
+            assert!(drawn.len() < LARGEST_ANIMATION, "{} bytes", drawn.len());
+        }
+        let place: PathBuf = kept.join(picture);
+        if overwrite {
+            fs::write(&place, &drawn).unwrap();
+        } else if fs::read(&place).ok().as_ref() != Some(&drawn) {
+            stale.push(picture);
+        }
+    }
+    assert!(
+        stale.is_empty(),
+        "docs/pictures: {stale:?} differ from what is drawn; look at them, then run this test with SWIMMER_PICTURES=overwrite"
+    );
+}
+
+#[test]
+fn each_kind_is_what_its_name_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    let draw = |gait: &str, name: &str| {
+        let line = format!("simulate --swimmer robot --gait {gait} --picture {name}");
+        typed(folder.path(), &line)
+    };
+    draw("circle:70deg", "one.svg").with_status(0);
+    let text = String::from_utf8(file("one.svg")).unwrap();
+    // The chain of a body is a line with four points: nine bodies in a cycle; and the sphere, of the last one alone.
+    let bodies = text
+        .split("points=\"")
+        .skip(1)
+        .filter(|rest| rest.split('"').next().unwrap().split(' ').count() == 4);
+    assert_eq!(bodies.count(), 9);
+    assert!(text.contains("0.2 L = 69 mm"), "the scale");
+    assert!(text.contains("X/L = 0.0162 a cycle") && text.contains("1 cycle<"));
+    draw("circle:70deg --cycles 40", "forty.svg").with_status(0);
+    let text = String::from_utf8(file("forty.svg")).unwrap();
+    assert!(text.contains("40 cycles<"));
+
+    draw("circle:70deg", "one.png").with_status(0);
+    assert!(file("one.png").starts_with(b"\x89PNG\r\n\x1a\n"));
+    let answer = draw("circle:70deg", "one.gif").with_status(0);
+    assert!(
+        answer
+            .stdout
+            .contains("one.gif: 640 × 330, 20 images a second"),
+        "{}",
+        answer.stdout
+    );
+    let gif = file("one.gif");
+    assert!(gif.starts_with(b"GIF89a\x80\x02\x4a\x01"), "640 × 330");
+    // What is there stays.
+    let refused = draw("circle:70deg", "one.gif").with_status(2);
+    assert!(refused.stderr.contains("--overwrite"), "{}", refused.stderr);
+}
+
+/// The same swimmer, the same bytes; the other way round, another picture.
+#[test]
+fn a_picture_is_drawn_the_same_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    for (gait, name) in [
+        ("square:1", "a.gif"),
+        ("square:1", "b.gif"),
+        ("square:1:cw", "c.gif"),
+    ] {
+        let line = format!("simulate --swimmer purcell --gait {gait} --picture {name}");
+        typed(folder.path(), &line).with_status(0);
+    }
+    let [a, b, c] =
+        ["a.gif", "b.gif", "c.gif"].map(|name| fs::read(folder.path().join(name)).unwrap());
+    assert_eq!(a, b);
+    assert_ne!(a, c);
+}
