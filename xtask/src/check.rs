@@ -2,6 +2,7 @@
 
 use std::process::Command;
 
+use crate::book;
 use crate::debian;
 use crate::emulator;
 use crate::failure::Outcome;
@@ -60,6 +61,7 @@ pub(crate) fn all() -> Outcome {
             "mend what rustdoc names above",
         )
     });
+    steps.take("book: pages, formulas, links", book::build);
     steps.take("tests and doctests", || {
         run(
             &mut cargo(["test", "--workspace", "--no-fail-fast"]),

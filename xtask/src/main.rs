@@ -2,6 +2,7 @@
 
 mod bench;
 mod binary_info;
+mod book;
 mod check;
 mod debian;
 mod deny;
@@ -13,6 +14,7 @@ mod fuzz;
 mod image;
 mod mutants;
 mod python;
+mod release;
 mod run;
 mod soak;
 mod steps;
@@ -53,6 +55,14 @@ enum Chore {
         /// As for `firmware`.
         #[arg(long, value_name = "MILLI", value_parser = clap::value_parser!(u32).range(1000..))]
         battery_divider: Option<u32>,
+    },
+    /// Builds the book from the pages of this checkout, and follows every link in it.
+    Book,
+    /// Makes what a release would hold: the command, the wheel, firmware, checksums, notes.
+    Release {
+        /// Only make it, under target/release-dry-run.
+        #[arg(long)]
+        dry_run: bool,
     },
     /// Installs the RP2040 emulator that boots the firmware in tests (npm).
     Emulator,
@@ -135,6 +145,8 @@ fn perform(chore: Chore) -> Outcome {
             };
             firmware::flash(&ChipToolchain::find_or_make()?, variant)
         }
+        Chore::Book => book::build(),
+        Chore::Release { dry_run } => release::prepare(dry_run),
         Chore::Emulator => emulator::install(),
         Chore::Python => python::test(true),
         Chore::Bench { peers } => bench::run_all(&peers),

@@ -119,6 +119,23 @@ mod tests {
     use super::*;
     use crate::commands::command;
 
+    /// The book's reference leaves no command out; a transcript holds what it says of each.
+    #[test]
+    fn every_command_has_its_help_in_the_book() {
+        let book = include_str!("../../../docs/reference/commands.md");
+        let mut left = vec![("swimmer".to_owned(), command())];
+        while let Some((words, inner)) = left.pop() {
+            assert!(
+                book.contains(&format!("\n$ {words} --help\n")),
+                "docs/reference/commands.md has no `$ {words} --help`"
+            );
+            left.extend(inner.get_subcommands().map(|inner| {
+                let words = format!("{words} {}", inner.get_name());
+                (words, inner.clone())
+            }));
+        }
+    }
+
     /// Every command that does something has one, and each is understood.
     #[test]
     fn every_command_has_an_example_that_can_be_typed() {

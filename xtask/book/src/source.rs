@@ -1,0 +1,228 @@
+//! Source code as pages with numbered lines, for what the book links to; an item is found by its name, so that a link does not
+//! grow stale as lines move.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+use std::path::Path;
+use std::process::Command;
+
+use crate::failure::{Failure, Outcome};
+use crate::stage::{read, write};
+
+/// Files that the book shows, seen from the root.
+pub(crate) type Sources = BTreeSet<String>;
+
+/// Words before the name of an item in Rust, and before a heading or a function in other files.
+const BEFORE: [&str; 9] = [
+    "fn ",
+    "struct ",
+    "enum ",
+    "const ",
+    "static ",
+    "trait ",
+    "type ",
+    "mod ",
+    "function ",
+];
+
+/// The line, from 1, on which an item is declared: `name`, or `Type::name` for the one below `impl Type` or `enum Type`.
+///
+/// # Errors
+/// It is not there, or more than once.
+pub(crate) fn line_of(text: &str, item: &str) -> Result<usize, String> {
+    let (within, name) = match item.split_once("::") {
+        Some((within, name)) => (Some(within), name),
+        None => (None, item),
+    };
+    let lines: Vec<&str> = text.lines().collect();
+    let start = match within {
+        Some(within) => opened(&lines, within).ok_or_else(|| format!("no `{within}` there"))?,
+        None => 0,
+    };
+    let declared = |line: &str| {
+        BEFORE.iter().any(|word| {
+            line.match_indices(word).any(|(at, _)| {
+                let before = line[..at].trim_start();
+                let rest = &line[at + word.len()..];
+                let rest = rest.strip_prefix(name);
+                let ends = rest.is_some_and(|rest| !rest.starts_with(is_of_a_name));
+                ends && (before.is_empty() || before.ends_with(' ')) && !before.contains("//")
+            })
+        })
+    };
+    let field = |line: &str| {
+        let line = line.trim_start().trim_start_matches("pub ");
+        let line = line.trim_start_matches("pub(crate) ");
+        line.strip_prefix(name)
+            .is_some_and(|rest| rest.starts_with([',', ':', '(', ' ', '{']))
+    };
+    let mut found = Vec::new();
+    for (number, line) in lines.iter().enumerate().skip(start) {
+        if within.is_some() && number > start && *line == "}" {
+            break;
+        }
+        if declared(line) || (within.is_some() && field(line)) {
+            found.push(number + 1);
+        }
+    }
+    match found.as_slice() {
+        [line] => Ok(*line),
+        [] => Err(format!("no item `{item}` there")),
+        [first, ..] if within.is_some() => Ok(*first),
+        several => Err(format!(
+            "`{item}` on lines {several:?}; name it as Type::item"
+        )),
+    }
+}
+
+/// Where the block of a type opens: its first `impl`, or its own declaration.
+fn opened(lines: &[&str], name: &str) -> Option<usize> {
+    let named = |line: &&str| {
+        let open = !line.starts_with([' ', '/']) && line.ends_with('{');
+        open && line
+            .split(|letter: char| !is_of_a_name(letter))
+            .any(|word| word == name)
+    };
+    let own = |line: &&str| named(line) && line.contains("impl");
+    let impls = lines.iter().position(own);
+    impls.or_else(|| lines.iter().position(named))
+}
+
+fn is_of_a_name(letter: char) -> bool {
+    letter.is_alphanumeric() || letter == '_'
+}
+
+/// Files under version control below a folder.
+///
+/// # Errors
+/// Git does not answer.
+pub(crate) fn files_below(root: &Path, folder: &str) -> Outcome<Vec<String>> {
+    let failed = |why: &dyn std::fmt::Display| {
+        Failure::new(format!("listing the files of {folder} with git"), why)
+    };
+    let output = Command::new("git")
+        .args(["ls-files", folder])
+        .current_dir(root)
+        .output()
+        .map_err(|why| failed(&why))?;
+    if !output.status.success() {
+        return Err(failed(&String::from_utf8_lossy(&output.stderr).trim()));
+    }
+    let list = String::from_utf8_lossy(&output.stdout).into_owned();
+    Ok(list
+        .lines()
+        .filter(|line| is_text(line))
+        .map(str::to_owned)
+        .collect())
+}
+
+/// Files that can be read as a page.
+fn is_text(path: &str) -> bool {
+    let endings = [
+        ".rs", ".toml", ".md", ".mjs", ".trycmd", ".x", ".json", ".css", ".snap", ".py", ".pyi",
+        ".ipynb",
+    ];
+    endings.iter().any(|ending| path.ends_with(ending))
+}
+
+/// Writes a page for each file, and a list for each folder.
+///
+/// # Errors
+/// A file cannot be read or written.
+pub(crate) fn write_pages(root: &Path, sources: &Sources, output: &Path) -> Outcome {
+    let mut folders: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for path in sources {
+        let text = read(root, path)?;
+        write(
+            output,
+            &format!("source/{path}.html"),
+            page(path, &text).as_bytes(),
+        )?;
+        let mut above = path.as_str();
+        while let Some((folder, _)) = above.rsplit_once('/') {
+            folders.entry(folder.to_owned()).or_default().push(path);
+            above = folder;
+        }
+    }
+    for (folder, files) in folders {
+        let place = format!("source/{folder}/index.html");
+        write(output, &place, list(&folder, &files).as_bytes())?;
+    }
+    Ok(())
+}
+
+fn page(path: &str, text: &str) -> String {
+    let mut lines = String::new();
+    for (number, line) in text.lines().enumerate() {
+        let number = number + 1;
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            lines,
+            "<span id=\"L{number}\"><i>{number}</i>{}</span>",
+            escaped(line)
+        );
+    }
+    framed(path, &format!("<pre>{lines}</pre>"))
+}
+
+fn list(folder: &str, files: &[&str]) -> String {
+    let mut items = String::new();
+    for file in files {
+        let name = file
+            .strip_prefix(folder)
+            .unwrap_or(file)
+            .trim_start_matches('/');
+        let _ = writeln!(items, "<li><a href=\"{name}.html\">{name}</a>");
+    }
+    framed(folder, &format!("<ul>{items}</ul>"))
+}
+
+fn framed(title: &str, body: &str) -> String {
+    format!(
+        "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'><title>{title}</title>\
+         <style>body{{font:15px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:70rem;padding:0 1rem;color:#1d242c}}\
+         pre{{overflow-x:auto;line-height:1.45;font-size:13px}}pre span{{display:block}}\
+         pre i{{display:inline-block;width:3.4em;color:#9aa5b1;font-style:normal;user-select:none}}\
+         span:target{{background:#fff3c4}}</style><h1>{title}</h1>{body}</html>\n"
+    )
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('"', "&quot;")
+        .replace('\'', "&#39;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "//! fn one\n/// fn one\npub fn one() {}\nimpl<T> Two<T> {\n    pub(crate) const fn one(&self) {}\n    fn three() {}\n}\n\
+                        pub struct Four<'a> {\n    /// a\n    pub five: u8,\n}\nfn oneself() {}\nfn three() {}\n";
+
+    #[test]
+    fn items_are_found_by_name() {
+        assert_eq!(line_of(TEXT, "oneself"), Ok(12));
+        assert_eq!(line_of(TEXT, "Two::one"), Ok(5));
+        assert_eq!(line_of(TEXT, "Four::five"), Ok(10));
+        assert_eq!(line_of(TEXT, "Four"), Ok(8));
+    }
+
+    #[test]
+    fn what_is_not_there_or_not_alone_is_told() {
+        assert!(line_of(TEXT, "six").unwrap_err().contains("no item"));
+        assert!(line_of(TEXT, "one").unwrap_err().contains("[3, 5]"));
+        assert!(line_of(TEXT, "Seven::one").is_err());
+        assert!(line_of(TEXT, "Two::five").is_err());
+    }
+
+    #[test]
+    fn lines_are_numbered_and_cannot_break_the_page() {
+        let page = page("a.rs", "a < b\n</pre>");
+        assert!(
+            page.contains("<span id=\"L2\"><i>2</i>&lt;/pre></span>"),
+            "{page}"
+        );
+    }
+}
