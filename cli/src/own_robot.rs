@@ -13,6 +13,20 @@ use crate::output::aside;
 /// A cycle's duration where none is named, s: the paper's.
 pub(crate) const PERIOD_S: f64 = 30.0;
 
+/// The limit of each servo \[rad/s\]: what was told (the second is the first where only one is), and the robot's own where gaits
+/// shall be playable; none where neither was said.
+pub(crate) fn servo_rates(told: &[f64], playable: bool, file: &SwimmerFile) -> Option<[f64; 2]> {
+    let own = if playable {
+        file.servo.unwrap_or_default().max_rate
+    } else {
+        f64::INFINITY
+    };
+    let first = told.first().copied().unwrap_or(f64::INFINITY);
+    let second = told.get(1).copied().unwrap_or(first);
+    let rates = [first.min(own), second.min(own)];
+    rates.iter().all(|rate| rate.is_finite()).then_some(rates)
+}
+
 /// A gait as fast as the robot of the file plays it.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct PlayedSpeed {

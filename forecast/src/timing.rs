@@ -86,21 +86,27 @@ struct Sample {
     turn: f64,
 }
 
-/// The shortest period \[s\] in which joints of at most `max_rate` \[rad/s\] can run a gait: ∫ maxᵢ|φᵢ'| du / r.
+/// The shortest period \[s\] in which joints of at most these rates \[rad/s\] can run a gait: ∫ maxᵢ(|φᵢ'|/rᵢ) du.
 ///
 /// # Errors
 /// A rate that is none, or a gait that stands still.
-pub fn shortest_period<G: Gait<f64> + ?Sized>(gait: &G, max_rate: f64) -> Result<f64, TimingError> {
-    check_rate(max_rate)?;
-    let mut turned = 0.0;
+pub fn shortest_period<G: Gait<f64> + ?Sized>(
+    gait: &G,
+    max_rates: [f64; 2],
+) -> Result<f64, TimingError> {
+    for rate in max_rates {
+        check_rate(rate)?;
+    }
+    let mut period = 0.0;
     for (start, end) in cells(gait) {
         for (at, weight) in RULE {
             let point = gait.at(start + at * (end - start));
-            turned += weight * (end - start) * point.rate.amax();
+            let turning = point.rate.component_div(&Vector2::from(max_rates));
+            period += weight * (end - start) * turning.amax();
         }
     }
-    if turned > 0.0 {
-        Ok(turned / max_rate)
+    if period > 0.0 {
+        Ok(period)
     } else {
         Err(TimingError::Still)
     }

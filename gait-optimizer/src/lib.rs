@@ -83,6 +83,8 @@ pub use robust::{
 };
 pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways, sideways_watched};
 pub use simple_shapes::{BestAmplitude, SimpleShape, best_amplitudes};
-pub use speed::{Fastest, Front, HeadingRule, SpeedError, SpeedProblem, fastest, front};
+pub use speed::{
+    Fastest, Front, HeadingRule, SpeedAtlas, SpeedError, SpeedProblem, fastest, front,
+};
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};
 pub use turning::{Turning, TurningError, TurningProblem, turning};

@@ -92,6 +92,22 @@ impl SpeedProblem {
     /// # Errors
     /// As [`fastest`].
     pub fn watched(&self, watch: Watch<'_>) -> Result<Fastest, SpeedError> {
+        self.searched(watch, |search, watch| search.run(watch))?
+    }
+
+    /// Every locally fastest gait that the starts lead to, while somebody watches.
+    ///
+    /// # Errors
+    /// [`SpeedError`] where the problem makes no sense.
+    pub fn atlas(&self, watch: Watch<'_>) -> Result<SpeedAtlas, SpeedError> {
+        self.searched(watch, |search, watch| search.all(watch))
+    }
+
+    fn searched<R>(
+        &self,
+        watch: Watch<'_>,
+        finish: impl Fn(Search<'_>, Watch<'_>) -> R,
+    ) -> Result<R, SpeedError> {
         let problem = self;
         validate(problem)?;
         let model = Model::new(&problem.swimmer.of_unit_length())?;
@@ -118,8 +134,21 @@ impl SpeedProblem {
             roughly,
         );
         let groups = selection::groups(rough.into_iter().flatten().collect());
-        Search::new(problem, &setting, fast, &groups).run(watch)
+        Ok(finish(Search::new(problem, &setting, fast, &groups), watch))
     }
+}
+
+/// All locally fastest gaits that were found, and what became of the rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpeedAtlas {
+    /// Certified, fastest first.
+    pub optima: Vec<Fastest>,
+    /// Certified cycles of more corners than were asked for.
+    pub longer: usize,
+    /// Chains of arcs that failed their certificate, and the speed of the fastest of them, |d|/(L T) \[1/s\].
+    pub uncertified: usize,
+    /// See [`Self::uncertified`].
+    pub best_uncertified: Option<f64>,
 }
 
 /// The fastest gait.

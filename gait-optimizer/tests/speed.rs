@@ -3,7 +3,7 @@
 mod plane;
 mod speed_direct;
 
-use gait_optimizer::{Bounds, SpeedProblem, fastest};
+use gait_optimizer::{Bounds, SpeedProblem, fastest, front};
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -183,6 +183,39 @@ fn a_wider_bound_is_never_slower() {
 #[ignore = "soak: an hour"]
 fn a_wider_bound_is_never_slower_over_many() {
     monotone(20, 60, SpeedProblem::STARTS);
+}
+
+#[test]
+fn the_atlas_begins_with_the_fastest() {
+    let problem = problem(Swimmer::robot(), 2.8, 24);
+    let (best, atlas) = (fastest(&problem).unwrap(), problem.atlas(&|_| ()).unwrap());
+    assert_eq!(atlas.optima[0], best);
+    assert!(atlas.optima.len() > 1, "{atlas:?}");
+    for pair in atlas.optima.windows(2) {
+        assert!(pair[0].speed_over_length > pair[1].speed_over_length);
+    }
+}
+
+/// Nothing on the front is faster than the fastest, nor does more time ever carry less far; about the fastest gait's period the
+/// front leads through it: there D/T has slope zero.
+#[test]
+fn the_front_bends_at_the_fastest() {
+    let front = front(&problem(Swimmer::robot(), 2.8, 6), &|_| ()).unwrap();
+    let told: Vec<_> = front.farthest.iter().flatten().collect();
+    assert!(told.len() >= 15, "{}", told.len());
+    let best = &front.fastest;
+    for pair in told.windows(2) {
+        assert!(pair[0].distance_over_length <= pair[1].distance_over_length);
+        let [before, after] = [pair[0], pair[1]].map(|gait| gait.speed_over_length);
+        assert!(before.max(after) < best.speed_over_length);
+        // Faster up to the best, slower beyond it.
+        if pair[1].period < best.period {
+            assert!(after > before);
+        }
+    }
+    let near = |gait: &&&gait_optimizer::Fastest| (gait.period / best.period - 1.0).abs() < 0.05;
+    let beside = told.iter().find(near).unwrap();
+    assert!(beside.speed_over_length > best.speed_over_length * 0.998);
 }
 
 /// Cold from the project's own first guesses, and from many starts; printed, not asserted.

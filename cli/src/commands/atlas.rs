@@ -1,10 +1,11 @@
 //! `swimmer atlas`: every locally optimal gait that a seeded multi-start finds.
 
 mod follow;
+mod kept;
 mod picture;
+mod speed;
 
 use std::fmt;
-use std::fs;
 use std::num::NonZero;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -13,16 +14,20 @@ use clap::ValueEnum;
 use gait_optimizer::{Atlas as Found, AtlasError, AtlasProblem, Objective, Optimum, atlas_watched};
 use serde::Serialize;
 
-use crate::arguments::load_swimmer;
+use swimmer_files::SwimmerFile;
+
+use crate::arguments::{load_swimmer, rate};
 use crate::bounds::WholeBounds;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
-use crate::own_robot::say_how_many_are_beyond;
+use crate::own_robot::{say_how_many_are_beyond, servo_rates};
 use crate::progress::Progress;
 use crate::quantity;
 
 use super::optimize::answer::{Arc, Evidence, Figures, arcs};
+use kept::{drawn_in, saved};
+use speed::AtRate;
 
 /// Find every locally optimal gait, with and without the paper's symmetries, each certified
 ///
@@ -37,6 +42,10 @@ pub(crate) struct Atlas {
     /// What the gaits are optimal for
     #[arg(long, value_name = "OBJECTIVE")]
     objective: Aim,
+    /// No servo turns faster than this angle a second, a second one is that of joint 2: needed for speed; for displacement and
+    /// efficiency the table then tells how fast each gait is in its shortest period
+    #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2)]
+    max_rate: Vec<f64>,
     #[command(flatten)]
     bounds: WholeBounds,
     /// How many random starts; gaits that are found without a guess are starts, too, and not counted here
@@ -69,6 +78,7 @@ pub(crate) struct Atlas {
 enum Aim {
     Displacement,
     Efficiency,
+    Speed,
 }
 
 impl Atlas {
@@ -79,7 +89,9 @@ impl Atlas {
         let objective = match self.objective {
             Aim::Displacement => Objective::Displacement,
             Aim::Efficiency => Objective::Efficiency,
+            Aim::Speed => return self.of_speed(&file, output),
         };
+        let rates = self.rates(&file);
         let mut bounds = self.bounds.of(&file);
         let order = self.way.map(|way| follow::Order {
             swimmer: file.swimmer,
@@ -122,27 +134,35 @@ impl Atlas {
         let seconds = begun.elapsed().as_secs_f64();
         say_how_many_are_beyond(&file, found.optima.iter().map(|optimum| &optimum.gait));
         let mut answer = Answer::new(&file.name, objective, &found, starts, seconds);
+        if let Some(rates) = rates {
+            for (line, optimum) in answer.optima.iter_mut().zip(&found.optima) {
+                line.speed = Some(AtRate::new(optimum, rates)?);
+            }
+        }
         answer.continuation = order.map(|order| order.best(&found)).transpose()?;
         if let Some(folder) = folder {
             for (number, (optimum, line)) in found.optima.iter().zip(&mut answer.optima).enumerate()
             {
-                let name = format!("{:02}.gait", number + 1);
-                optimum
-                    .gait
-                    .gait_file(&file.name)
-                    .save(&folder.draft().join(&name))?;
-                line.gait = Some(folder.place().join(&name));
+                line.gait = Some(saved(&folder, number, &optimum.gait, &file.name)?);
             }
-            let picture = picture::svg(answer.title(), objective, &found.optima)?;
-            let path = folder.draft().join("atlas.svg");
-            fs::write(&path, picture).map_err(|error| {
-                Failure::Tried(format!("cannot write {}: {error}", path.display()))
-            })?;
-            answer.picture = Some(folder.place().join("atlas.svg"));
+            let value = |optimum: &Optimum| match objective {
+                Objective::Efficiency => format!("ξ = {:.4e}", optimum.gait.efficiency),
+                _ => format!("|d|/L = {:.5}", optimum.distance_over_length),
+            };
+            let gaits = found.optima.iter();
+            let drawn: Vec<_> = gaits
+                .map(|optimum| (&optimum.gait, value(optimum)))
+                .collect();
+            answer.picture = Some(drawn_in(&folder, answer.title(), &drawn)?);
             folder.publish()?;
         }
         output.answer(&answer);
         Ok(())
+    }
+
+    /// The limit of each servo: what was told, and the robot's own where gaits shall be playable; none where nothing was told.
+    fn rates(&self, file: &SwimmerFile) -> Option<[f64; 2]> {
+        servo_rates(&self.max_rate, self.bounds.playable(), file)
     }
 }
 
@@ -196,6 +216,9 @@ struct Line {
     symmetric: bool,
     found: usize,
     seconds: f64,
+    /// As fast as servos of the given rate run it.
+    #[serde(flatten)]
+    speed: Option<AtRate>,
     #[serde(skip_serializing_if = "Option::is_none")]
     gait: Option<PathBuf>,
 }
@@ -254,6 +277,7 @@ impl Line {
             symmetric: gait.symmetric,
             found: optimum.found,
             seconds,
+            speed: None,
             gait: None,
         }
     }
@@ -266,18 +290,26 @@ impl fmt::Display for Answer {
             write!(f, " and {} from known gaits", self.known_starts)?;
         }
         writeln!(f)?;
+        let timed = self.optima.iter().any(|line| line.speed.is_some());
+        let speed = if timed { "|d|/(L T) 1/s  " } else { "" };
         writeln!(
             f,
-            "  no   |d|/L          efficiency ξ     simple symmetric found  links cross"
+            "  no   |d|/L          efficiency ξ     {speed}simple symmetric found  links cross"
         )?;
         for (number, line) in self.optima.iter().enumerate() {
             let yes = |value: bool| if value { "yes" } else { "no" };
             writeln!(
                 f,
-                "  {:<3}  {:.10}   {:.10}     {:<6} {:<9} {:<6} {}",
+                "  {:<3}  {:.10}   {:.10}     {}{:<6} {:<9} {:<6} {}",
                 number + 1,
                 line.distance_over_length,
                 line.efficiency,
+                line.speed
+                    .as_ref()
+                    .map_or_else(String::new, |speed| format!(
+                        "{:.10}   ",
+                        speed.speed_over_length_per_s
+                    )),
                 yes(line.simple),
                 yes(line.symmetric),
                 line.found,

@@ -21,7 +21,7 @@ fn fastest(gait: &AnyGait, period: f64) -> f64 {
 
 /// A rate between the least that meets the period (share 0) and that of constant power (share 1).
 fn between(gait: &impl Gait<f64>, free: &Timing, share: f64) -> f64 {
-    let least = shortest_period(gait, 1.0).unwrap() / free.period;
+    let least = shortest_period(gait, [1.0; 2]).unwrap() / free.period;
     least + share * (free.rate_at_constant_power - least)
 }
 
@@ -54,7 +54,7 @@ fn a_circle_in_its_shortest_period() {
     // max(|cos|, |sin|) has the mean 2√2/π over a turn.
     let (rate, amplitude) = (0.8, 1.1);
     let gait = AnyGait::circle(amplitude);
-    let shortest = shortest_period(&gait, rate).unwrap();
+    let shortest = shortest_period(&gait, [rate; 2]).unwrap();
     let exact = amplitude * 4.0 * 2.0_f64.sqrt() / rate;
     assert!((shortest / exact - 1.0).abs() < 1e-6, "{shortest} {exact}");
     let at_limit = timing(&robot(), &gait, shortest * (1.0 + 1e-12), rate).unwrap();
@@ -152,7 +152,7 @@ fn a_file_is_retimed_shape_by_shape() {
         ..GaitFile::default()
     };
     let gait = AnyGait::from_file(&file).unwrap();
-    let shortest = shortest_period(&gait, 1.0).unwrap();
+    let shortest = shortest_period(&gait, [1.0; 2]).unwrap();
     assert!((shortest - 8.0).abs() < 1e-12);
     let timing = timing(&model, &gait, 1.1 * shortest, 1.0).unwrap();
     let retimed = timing.retime_file(&file);
@@ -183,7 +183,7 @@ fn nonsense_is_refused() {
             timing(&model, &gait, 5.0, rate),
             Err(TimingError::Rate { .. })
         ));
-        assert!(shortest_period(&gait, rate).is_err());
+        assert!(shortest_period(&gait, [rate; 2]).is_err());
     }
     for period in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(
@@ -205,7 +205,7 @@ proptest! {
     fn a_tighter_cap_costs_more(a in 0.4_f64..2.0, b in 0.4_f64..2.0, c in -0.2_f64..0.2, slack in 1.001_f64..1.6) {
         let gait = SymmetricFourier { coefficients: [[a, b], [c, -c]] };
         let model = robot();
-        let shortest = shortest_period(&gait, 1.0).unwrap();
+        let shortest = shortest_period(&gait, [1.0; 2]).unwrap();
         let tight = timing(&model, &gait, slack * shortest, 1.0).unwrap();
         let loose = timing(&model, &gait, slack * shortest, 1.2).unwrap();
         prop_assert!(tight.energy >= loose.energy * (1.0 - 1e-12));

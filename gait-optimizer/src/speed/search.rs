@@ -14,7 +14,7 @@ use super::polish::Polished;
 use super::problem::Setting;
 use super::samples;
 use super::selection::Group;
-use super::{Fastest, SpeedError, SpeedProblem, widened};
+use super::{Fastest, SpeedAtlas, SpeedError, SpeedProblem, widened};
 use crate::Watch;
 use crate::optimal_gait::{OptimalGait, Solution};
 use crate::parallel::in_parallel;
@@ -72,6 +72,54 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Finishes every group, and tells all chains that are certified.
+    pub(super) fn all(mut self, watch: Watch<'_>) -> SpeedAtlas {
+        let count = self.groups.len();
+        for done in (0..count).step_by(BATCH) {
+            self.finish(done..(done + BATCH).min(count));
+            watch(
+                ROUGH_SHARE + (1.0 - ROUGH_SHARE) * (done + BATCH).min(count) as f64 / count as f64,
+            );
+        }
+        let (mut optima, mut longer, mut uncertified) = (Vec::new(), 0, Vec::new());
+        for chain in shortest_of_alike(&self.chains) {
+            match self.certified(chain) {
+                Some(answer) if answer.gait.arcs.len() <= self.problem.max_corners => {
+                    optima.push(answer);
+                }
+                Some(_) => longer += 1,
+                None => uncertified.push(chain.speed * self.fast),
+            }
+        }
+        SpeedAtlas {
+            optima,
+            longer,
+            uncertified: uncertified.len(),
+            best_uncertified: uncertified.into_iter().next(),
+        }
+    }
+
+    /// A chain as an answer, where its certificate passes.
+    fn certified(&self, chain: &Polished) -> Option<Fastest> {
+        let Self {
+            problem,
+            setting,
+            fast,
+            ref chains,
+            ..
+        } = *self;
+        let passes = |answer: &Fastest| answer.gait.certificate.pass();
+        let first = told(problem, setting, chain, fast).filter(passes);
+        // Where the polygon had no corner left for a short singular arc the certificate shows it.
+        let bent = || told(problem, setting, &widened::bent(setting, chain)?, fast).filter(passes);
+        let mut answer = first.or_else(bent)?;
+        // Two of one group stand for the same starts.
+        let here = chains.iter().filter(|(one, _)| alike(one, chain));
+        let here: BTreeSet<usize> = here.map(|(_, group)| *group).collect();
+        answer.found = here.into_iter().map(|group| self.groups[group].count).sum();
+        Some(answer)
+    }
+
     /// Finishes what was chosen of some groups.
     fn finish(&mut self, groups: Range<usize>) {
         let jobs: Vec<(&Polygon, usize)> = groups
@@ -101,7 +149,6 @@ impl<'a> Search<'a> {
     fn answer(&self) -> Result<Fastest, SpeedError> {
         let Self {
             problem,
-            setting,
             fast,
             ref chains,
             ..
@@ -111,11 +158,7 @@ impl<'a> Search<'a> {
             let better = |speed: &mut Option<f64>| {
                 speed.get_or_insert(best.speed * fast);
             };
-            // Where the polygon had no corner left for a short singular arc the certificate shows it.
-            let passes = |answer: &Fastest| answer.gait.certificate.pass();
-            let first = told(problem, setting, best, fast).filter(passes);
-            let bent = || told(problem, setting, &widened::bent(setting, best)?, fast);
-            let Some(mut answer) = first.or_else(|| bent().filter(passes)) else {
+            let Some(mut answer) = self.certified(best) else {
                 better(&mut uncertified);
                 continue;
             };
@@ -123,10 +166,6 @@ impl<'a> Search<'a> {
                 better(&mut longer);
                 continue;
             }
-            // Two of one group stand for the same starts.
-            let here = chains.iter().filter(|(one, _)| alike(one, best));
-            let here: BTreeSet<usize> = here.map(|(_, group)| *group).collect();
-            answer.found = here.into_iter().map(|group| self.groups[group].count).sum();
             let clearly = |speed: Option<f64>| {
                 speed.filter(|speed| *speed > answer.speed_over_length * (1.0 + 1e-6))
             };

@@ -1,6 +1,6 @@
 //! All gaits of an atlas in one picture: closed curves in the plane of joint angles, as SVG.
 
-use gait_optimizer::{Objective, Optimum};
+use gait_optimizer::OptimalGait;
 
 use crate::failure::Outcome;
 use crate::report::chart::{Chart, Point, Series};
@@ -11,18 +11,17 @@ const MOST: usize = 2 * CURVES.len();
 /// Width and height, pixels of the page.
 const SIZE: (i32, i32) = (620, 580);
 
-/// The picture's text, the best gait on top; the second half of the gaits is dashed.
+/// The picture's text, each gait with its value, the best on top; the second half of the gaits is dashed.
 ///
 /// # Errors
 /// As the drawing of a chart.
-pub(super) fn svg(title: String, objective: Objective, optima: &[Optimum]) -> Outcome<String> {
+pub(super) fn svg(title: String, optima: &[(&OptimalGait, String)]) -> Outcome<String> {
     let mut series = Vec::new();
     let mut legend = Vec::new();
-    for (number, (optimum, color)) in optima.iter().zip(CURVES.iter().cycle()).enumerate() {
+    for (number, ((gait, value), color)) in optima.iter().zip(CURVES.iter().cycle()).enumerate() {
         if number >= MOST {
             break;
         }
-        let gait = &optimum.gait;
         let points: Vec<Point> = gait.phi().iter().map(|phi| (phi.x, phi.y)).collect();
         let (color, width) = (*color, 2.0);
         series.push(Series::Arrows {
@@ -42,10 +41,6 @@ pub(super) fn svg(title: String, objective: Objective, optima: &[Optimum]) -> Ou
                 width,
             }
         });
-        let value = match objective {
-            Objective::Efficiency => format!("ξ = {:.4e}", gait.efficiency),
-            _ => format!("|d|/L = {:.5}", optimum.distance_over_length),
-        };
         let dashed = if number < CURVES.len() {
             ""
         } else {

@@ -19,7 +19,7 @@ use crate::quantity::{self, Rows};
 use super::answer::{Arc, Closing, arc_rows, arcs, unfolded};
 use super::front::{FrontAnswer, FrontFile};
 use crate::new_file::may_be_written;
-use crate::own_robot::PlayedSpeed;
+use crate::own_robot::{PlayedSpeed, servo_rates};
 
 /// Find the fastest gait: most net displacement per unit of time, without net rotation, with servos that turn no faster than a
 /// given rate
@@ -69,6 +69,11 @@ impl Speed {
             may_be_written(&front.path)?;
         }
         let file = load_swimmer(&self.swimmer)?;
+        let Some(rates) = servo_rates(&self.max_rate, self.bounds.playable(), &file) else {
+            return Err(Failure::BadInput(
+                "give --max-rate or --playable".to_owned(),
+            ));
+        };
         let begun = Instant::now();
         let progress = Progress::of_a_whole("looking for the fastest gait");
         let problem = SpeedProblem {
@@ -80,7 +85,7 @@ impl Speed {
             },
             period: self.period,
             threads: std::thread::available_parallelism().map_or(1, NonZero::get),
-            ..SpeedProblem::new(file.swimmer, self.rates(&file))
+            ..SpeedProblem::new(file.swimmer, rates)
         };
         let watch = |share| progress.at_share(share);
         let (found, farthest) = if self.front.is_some() {
@@ -119,18 +124,6 @@ impl Speed {
     fn servo(&self, file: &SwimmerFile) -> Option<ServoFile> {
         let paper = self.bounds.playable().then(ServoFile::default);
         file.servo.or(paper)
-    }
-
-    /// The limit of each servo: what was told, and the robot's own where the gait shall be playable.
-    fn rates(&self, file: &SwimmerFile) -> [f64; 2] {
-        let own = if self.bounds.playable() {
-            file.servo.unwrap_or_default().max_rate
-        } else {
-            f64::INFINITY
-        };
-        let first = self.max_rate.first().copied().unwrap_or(f64::INFINITY);
-        let second = self.max_rate.get(1).copied().unwrap_or(first);
-        [first.min(own), second.min(own)]
     }
 }
 

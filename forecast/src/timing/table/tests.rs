@@ -80,7 +80,7 @@ fn what_is_promised_is_what_the_robot_takes() {
     let mut refused_before = 0;
     for (number, file) in gaits().iter().enumerate() {
         let gait = AnyGait::from_file(file).unwrap();
-        let of_curve = super::super::shortest_period(&gait, rate).unwrap();
+        let of_curve = super::super::shortest_period(&gait, [rate; 2]).unwrap();
         let shortest = match timing_of_table(&model, file, 0.5 * of_curve, rate) {
             Err(TimingError::TooFast { shortest, .. }) => shortest,
             other => panic!("{number}: {other:?}"),
