@@ -122,14 +122,15 @@ impl Staged {
         }
         let text = read(root, &place)?;
         self.sources.insert(place.clone());
-        let line = match item {
+        let shown = relative(page, &format!("source/{place}.html"));
+        Ok(Some(match item {
             Some(item) => {
                 let line = source::line_of(&text, item).map_err(|why| lost(&why))?;
-                format!("#L{line}")
+                // What stands after the address is told to a pointer that rests on the link.
+                format!("{shown}#L{line} \"{place}:{line}\"")
             }
-            None => String::new(),
-        };
-        Ok(Some(relative(page, &format!("source/{place}.html{line}"))))
+            None => shown,
+        }))
     }
 
     /// Writes the pages, their pictures and the table of contents into a folder for mdBook.
