@@ -30,62 +30,66 @@ const BEFORE: [&str; 9] = [
 /// # Errors
 /// It is not there, or more than once.
 pub(crate) fn line_of(text: &str, item: &str) -> Result<usize, String> {
-    let (within, name) = match item.split_once("::") {
-        Some((within, name)) => (Some(within), name),
-        None => (None, item),
-    };
     let lines: Vec<&str> = text.lines().collect();
-    let start = match within {
-        Some(within) => opened(&lines, within).ok_or_else(|| format!("no `{within}` there"))?,
-        None => 0,
+    let found: Vec<usize> = if let Some((within, name)) = item.split_once("::") {
+        member(&lines, within, name).into_iter().collect()
+    } else {
+        let numbered = lines.iter().enumerate();
+        let declaring = numbered.filter(|(_, line)| declares(line, item));
+        declaring.map(|(number, _)| number + 1).collect()
     };
-    let declared = |line: &str| {
-        BEFORE.iter().any(|word| {
-            line.match_indices(word).any(|(at, _)| {
-                let before = line[..at].trim_start();
-                let rest = &line[at + word.len()..];
-                let rest = rest.strip_prefix(name);
-                let ends = rest.is_some_and(|rest| !rest.starts_with(is_of_a_name));
-                ends && (before.is_empty() || before.ends_with(' ')) && !before.contains("//")
-            })
-        })
-    };
-    let field = |line: &str| {
-        let line = line.trim_start().trim_start_matches("pub ");
-        let line = line.trim_start_matches("pub(crate) ");
-        line.strip_prefix(name)
-            .is_some_and(|rest| rest.starts_with([',', ':', '(', ' ', '{']))
-    };
-    let mut found = Vec::new();
-    for (number, line) in lines.iter().enumerate().skip(start) {
-        if within.is_some() && number > start && *line == "}" {
-            break;
-        }
-        if declared(line) || (within.is_some() && field(line)) {
-            found.push(number + 1);
-        }
-    }
     match found.as_slice() {
         [line] => Ok(*line),
         [] => Err(format!("no item `{item}` there")),
-        [first, ..] if within.is_some() => Ok(*first),
         several => Err(format!(
             "`{item}` on lines {several:?}; name it as Type::item"
         )),
     }
 }
 
-/// Where the block of a type opens: its first `impl`, or its own declaration.
-fn opened(lines: &[&str], name: &str) -> Option<usize> {
-    let named = |line: &&str| {
-        let open = !line.starts_with([' ', '/']) && line.ends_with('{');
-        open && line
-            .split(|letter: char| !is_of_a_name(letter))
-            .any(|word| word == name)
+/// Whether a line declares something of this name.
+fn declares(line: &str, name: &str) -> bool {
+    BEFORE.iter().any(|word| {
+        line.match_indices(word).any(|(at, _)| {
+            let before = line[..at].trim_start();
+            let rest = line[at + word.len()..].strip_prefix(name);
+            let ends = rest.is_some_and(|rest| !rest.starts_with(is_of_a_name));
+            ends && (before.is_empty() || before.ends_with(' ')) && !before.contains("//")
+        })
+    })
+}
+
+/// The line of a member of a type: what one of its `impl`s declares, or a field or variant of its own declaration.
+fn member(lines: &[&str], within: &str, name: &str) -> Option<usize> {
+    let opens = |line: &str| {
+        let mut words = line.split(|letter: char| !is_of_a_name(letter));
+        !line.starts_with([' ', '/']) && line.ends_with('{') && words.any(|word| word == within)
     };
-    let own = |line: &&str| named(line) && line.contains("impl");
-    let impls = lines.iter().position(own);
-    impls.or_else(|| lines.iter().position(named))
+    let mut fields = None;
+    let (mut inside, mut of_impl) = (false, false);
+    for (number, line) in lines.iter().enumerate() {
+        if opens(line) {
+            (inside, of_impl) = (true, line.starts_with("impl"));
+        } else if *line == "}" {
+            inside = false;
+        } else if inside && of_impl && declares(line, name) {
+            return Some(number + 1);
+        } else if inside && !of_impl && is_field(line, name) {
+            fields = fields.or(Some(number + 1));
+        }
+    }
+    fields
+}
+
+/// Whether a line is the field or variant of this name.
+fn is_field(line: &str, name: &str) -> bool {
+    let Some(line) = line.strip_prefix("    ") else {
+        return false;
+    };
+    let visible = ["pub(crate) ", "pub(super) ", "pub "];
+    let bare = visible.iter().find_map(|word| line.strip_prefix(word));
+    let rest = bare.unwrap_or(line).strip_prefix(name);
+    rest.is_some_and(|rest| rest.starts_with([',', ':', '(', ' ']))
 }
 
 fn is_of_a_name(letter: char) -> bool {
