@@ -149,7 +149,13 @@ pub(super) fn than_efficiency(
         .then(|| Better::new(command(named, name, &problem.bounds, more), &gait, true))
 }
 
-fn command(named: &str, name: &str, bounds: &Bounds, more: Option<(&str, &str)>) -> String {
+/// The command that finds a gait within these bounds.
+pub(super) fn command(
+    named: &str,
+    name: &str,
+    bounds: &Bounds,
+    more: Option<(&str, &str)>,
+) -> String {
     let mut words = format!("swimmer {named} --swimmer {name}");
     // Writing to a String cannot fail.
     for (flag, value) in [

@@ -56,9 +56,11 @@ impl Displacement {
         if let Some((uncertainty, over)) = uncertain {
             let found = robust_displacement(&problem, &uncertainty, over)?;
             let seconds = begun.elapsed().as_secs_f64();
-            let timing = self
-                .timing
-                .write(&found.gait, &file.name, self.output.as_deref())?;
+            let timing = self.timing.write(
+                &found.gait,
+                (&file.name, &self.swimmer),
+                self.output.as_deref(),
+            )?;
             output.answer(&RobustAnswer::new(
                 format!("{}, most displacement, robust", file.name),
                 "X/L",
@@ -72,9 +74,9 @@ impl Displacement {
         let seconds = begun.elapsed().as_secs_f64();
         let better = than_displacement(&problem, &self.swimmer, &gait);
         say_if_beyond(&file, &gait);
-        let timing = self
-            .timing
-            .write(&gait, &file.name, self.output.as_deref())?;
+        let timing =
+            self.timing
+                .write(&gait, (&file.name, &self.swimmer), self.output.as_deref())?;
         output.answer(&Found {
             name: file.name,
             quarter: (&gait).into(),

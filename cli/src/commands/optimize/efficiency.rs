@@ -82,9 +82,11 @@ impl Efficiency {
                 over,
             )?;
             let seconds = begun.elapsed().as_secs_f64();
-            let timing = self
-                .timing
-                .write(&found.gait, &file.name, self.output.as_deref())?;
+            let timing = self.timing.write(
+                &found.gait,
+                (&file.name, &self.swimmer),
+                self.output.as_deref(),
+            )?;
             if let Some(timing) = &timing {
                 found.gait.efficiency = timing.efficiency;
             }
@@ -111,9 +113,9 @@ impl Efficiency {
         let seconds = begun.elapsed().as_secs_f64();
         let better = than_efficiency(&problem, &self.swimmer, &gait);
         say_if_beyond(&file, &gait);
-        let timing = self
-            .timing
-            .write(&gait, &file.name, self.output.as_deref())?;
+        let timing =
+            self.timing
+                .write(&gait, (&file.name, &self.swimmer), self.output.as_deref())?;
         output.answer(&Found::new(
             file.name,
             &gait,
@@ -252,7 +254,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("timed.gait");
         let told = |servos: ServoTiming| {
-            let timing = servos.write(&gait, "purcell", Some(&path)).unwrap();
+            let timing = servos
+                .write(&gait, ("purcell", "purcell"), Some(&path))
+                .unwrap();
             let found = Found::new("purcell".to_owned(), &gait, timing, None, (0.0, None));
             let file = AnyGait::from_file(&GaitFile::load(&path).unwrap()).unwrap();
             let model = Model::new(&Swimmer::purcell()).unwrap();

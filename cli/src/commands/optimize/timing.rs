@@ -1,13 +1,15 @@
 //! Servo limits on the timing of an optimised gait: `--max-rate` and `--period`.
 
+use std::num::NonZero;
 use std::path::Path;
 
 use forecast::{Timing, TimingError, timing_of_table};
-use gait_optimizer::OptimalGait;
+use gait_optimizer::{OptimalGait, SpeedProblem};
 use serde::Serialize;
-use swimmer_files::{AnyGait, GaitFile};
+use swimmer_files::{AnyGait, Bounds, GaitFile};
 use swimmer_model::{Model, Tolerance, swim};
 
+use super::better::command;
 use crate::arguments::{rate, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::quantity::{self, Rows};
@@ -46,9 +48,51 @@ pub(crate) struct TimingAnswer {
     at_limit: f64,
     /// Share of Lighthill's ξ that the limit costs.
     efficiency_loss: f64,
+    /// |d| over the period.
+    speed_m_per_s: f64,
+    /// The gait that is made for speed, where it is faster.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    known_to_be_faster: Option<Faster>,
     /// ξ of the timed gait; answers that have an efficiency say it there.
     #[serde(skip)]
     pub(super) efficiency: f64,
+}
+
+/// The fastest gait within the same bounds on shapes and rate.
+#[derive(Debug, Serialize)]
+struct Faster {
+    command: String,
+    speed_m_per_s: f64,
+    period_s: f64,
+}
+
+impl Faster {
+    /// Than a gait of this speed \[m/s\]; none where it is not, or is not found.
+    fn than(speed: f64, gait: &OptimalGait, swimmer: &str, rate: f64) -> Option<Self> {
+        let bounds = Bounds {
+            min_angle: None,
+            sector: false,
+            ..gait.bounds
+        };
+        let problem = SpeedProblem {
+            bounds,
+            threads: std::thread::available_parallelism().map_or(1, NonZero::get),
+            ..SpeedProblem::new(gait.swimmer, [rate; 2])
+        };
+        let found = problem.watched(&|_| ()).ok()?;
+        let speed_m_per_s = found.speed_over_length * gait.swimmer.total_length();
+        let rate = rate.to_string();
+        (speed_m_per_s > speed).then(|| Self {
+            command: command(
+                "optimize speed",
+                swimmer,
+                &bounds,
+                Some(("--max-rate", &rate)),
+            ),
+            speed_m_per_s,
+            period_s: found.period,
+        })
+    }
 }
 
 impl ServoTiming {
@@ -68,11 +112,12 @@ impl ServoTiming {
         }))
     }
 
-    /// Times a gait, if that was asked for, and writes it, if it was.
+    /// Times a gait, if that was asked for, and writes it, if it was. Named are the swimmer in the file, and the one of the command
+    /// line.
     pub(super) fn write(
         &self,
         gait: &OptimalGait,
-        name: &str,
+        (name, swimmer): (&str, &str),
         path: Option<&Path>,
     ) -> Outcome<Option<TimingAnswer>> {
         let file = gait.gait_file(name);
@@ -83,13 +128,13 @@ impl ServoTiming {
                 .map_or(&file, |timed| &timed.file)
                 .save(path)?;
         }
-        Ok(timed.as_ref().map(Timed::answer))
+        Ok(timed.as_ref().map(|timed| timed.answer(gait, swimmer)))
     }
 }
 
 impl Timed {
     /// What is printed of it.
-    fn answer(&self) -> TimingAnswer {
+    fn answer(&self, gait: &OptimalGait, swimmer: &str) -> TimingAnswer {
         let Timing {
             period,
             shortest_period,
@@ -99,7 +144,14 @@ impl Timed {
             efficiency_loss,
             ..
         } = self.timing;
+        let speed_m_per_s = gait
+            .displacement_over_length
+            .hypot(gait.lateral_over_length)
+            * gait.swimmer.total_length()
+            / period;
         TimingAnswer {
+            speed_m_per_s,
+            known_to_be_faster: Faster::than(speed_m_per_s, gait, swimmer, max_rate),
             period_s: period,
             period_min_s: shortest_period,
             max_rate_rad_s: max_rate,
@@ -135,7 +187,22 @@ impl TimingAnswer {
         .row(
             "limit costs",
             format!("{:.3} % of ξ", self.efficiency_loss * 100.0),
+        )
+        .row(
+            "speed",
+            format!("{} a second", quantity::length(self.speed_m_per_s)),
         );
+        if let Some(faster) = &self.known_to_be_faster {
+            rows.row(
+                "known to be faster",
+                format!(
+                    "`{}`: {} a second, a cycle in {:.3} s",
+                    faster.command,
+                    quantity::length(faster.speed_m_per_s),
+                    faster.period_s
+                ),
+            );
+        }
     }
 }
 
