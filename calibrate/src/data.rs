@@ -120,6 +120,18 @@ fn timing(told: &RunTiming) -> Result<Timing, CalibrateError> {
 }
 
 /// What reflectors and settings of a campaign say about its tracks.
+///
+/// ```
+/// use calibrate::track_options;
+/// use swimmer_files::{Campaign, TrackSettings};
+///
+/// let text = "swimmer = \"robot\"\n[reflectors]\nfront = { point = \"Front\", at = [0.03, 0.0] }\n\
+///             back = { point = \"Back\", at = [-0.03, 0.0] }\n[[run]]\ntrack = \"a.csv\"\ngait = \"circle:1\"\nperiod_s = 9.0\n";
+/// let campaign = Campaign::parse(text, "campaign.toml".as_ref())?;
+/// let pixels = TrackSettings { scale: Some(0.001), ..TrackSettings::default() };
+/// assert_eq!(track_options(&campaign.reflectors, &pixels).metres_per_unit, Some(0.001));
+/// # Ok::<(), swimmer_files::FileError>(())
+/// ```
 pub fn track_options(reflectors: &Reflectors, settings: &TrackSettings) -> TrackOptions {
     let pair = |point: &PointName| match point {
         PointName::Columns(x, y) => Some([x.clone(), y.clone()]),

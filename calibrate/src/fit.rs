@@ -220,6 +220,12 @@ fn alike(f: &mut std::fmt::Formatter<'_>, rival: Option<(&str, f64)>) -> std::fm
 }
 
 /// The c_t form in words, as `c_t_form` reports it.
+///
+/// ```
+/// use swimmer_model::TangentialDrag;
+///
+/// assert_eq!(calibrate::c_t_form(&TangentialDrag::LogAspect(4.543)), "log_aspect = 4.543");
+/// ```
 pub fn c_t_form(drag: &TangentialDrag<f64>) -> String {
     match drag {
         TangentialDrag::LogAspect(value) => format!("log_aspect = {value}"),

@@ -10,6 +10,43 @@
 //! Lengths are metres, angles radians, times seconds. Nothing here opens a file, except [`CampaignData::load`] and
 //! [`load_run`], which read what the caller names. [`predict`] is the model's side of the fit, for anyone who wants to know
 //! beforehand what the cameras will see.
+//!
+//! A fit of six runs that are told as results, as a paper's figure tells them:
+//!
+//! ```
+//! use std::fmt::Write;
+//! use calibrate::{CampaignData, EvidenceOptions, FitOptions, Further, advise, assess, calibrate_campaign, fit_further, predict, weigh_evidence};
+//! use swimmer_files::{AnyGait, Campaign, SwimmerFile};
+//!
+//! let truth = SwimmerFile::preset("robot").unwrap();
+//! let mut text = "swimmer = \"robot-slender\"\n".to_owned();
+//! for degrees in [40_u8, 50, 60, 70, 80, 90] {
+//!     let cycle = predict(&truth, &AnyGait::circle(f64::from(degrees).to_radians()), 30.0).unwrap();
+//!     write!(
+//!         text,
+//!         "[[run]]\ngait = \"circle:{degrees}deg\"\nperiod_s = 30.0\ncycles = 5\nx_mm = {:?}\nx_se_mm = 0.01\n\
+//!          delta_y_mm = {:?}\ndelta_y_se_mm = 0.01\ndelta_theta_deg = {:?}\ndelta_theta_se_deg = 0.01\n",
+//!         1e3 * cycle.x_m,
+//!         1e3 * cycle.delta_y_m,
+//!         cycle.delta_theta_rad.to_degrees(),
+//!     )?;
+//! }
+//! let mut campaign = Campaign::parse(&text, "campaign.toml".as_ref())?;
+//! campaign.swimmer.swimmer.tangential_drag = truth.swimmer.tangential_drag;
+//!
+//! let data = CampaignData::load(&campaign)?;
+//! let found = calibrate_campaign(&campaign, &data, FitOptions::default())?;
+//! assert!((found.fit.chi / truth.swimmer.chi - 1.0).abs() < 1e-3);
+//! assert!((found.fit.sphere_radius / truth.swimmer.sphere_radius - 1.0).abs() < 1e-3);
+//!
+//! let evidence = weigh_evidence(&found, EvidenceOptions { draws: 50, seed: 1 })?;
+//! let assessment = assess(&found, Some(&evidence))?;
+//! assert_ne!(assessment.verdict.word(), "do not use", "{:?}", assessment.reasons);
+//! assert!(!advise(&campaign, &found)?.candidates.is_empty());
+//! let scale = fit_further(&found, &[Further::Scale])?;
+//! assert_eq!(scale.parameters.len(), 3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 // Formulas in the docs read like the paper's: c_t, r_s.
 #![allow(clippy::doc_markdown)]

@@ -73,6 +73,19 @@ pub struct PredictedCycle {
 ///
 /// # Errors
 /// [`PredictionError`]: no swimmer, or a gait that the servos cannot play.
+///
+/// ```
+/// use calibrate::predict;
+/// use swimmer_files::{AnyGait, SwimmerFile};
+/// use swimmer_model::{Model, Tolerance, swim};
+///
+/// let robot = SwimmerFile::preset("robot").unwrap();
+/// let circle = AnyGait::circle(1.2);
+/// let cycle = predict(&robot, &circle, 30.0).unwrap();
+/// // The preset has ideal servos: what is left is the robot's table.
+/// let designed = swim(&Model::new(&robot.swimmer).unwrap(), &circle, &Tolerance::default());
+/// assert!((cycle.x_m / designed.displacement.x - 1.0).abs() < 1e-3);
+/// ```
 pub fn predict(
     file: &SwimmerFile,
     gait: &AnyGait,
@@ -87,6 +100,13 @@ pub fn predict(
 ///
 /// # Errors
 /// As [`predict`].
+///
+/// ```
+/// use swimmer_files::AnyGait;
+///
+/// let path = calibrate::joint_path(&AnyGait::circle(1.2), None, 30.0).unwrap();
+/// assert!(path.iter().all(|(_, [one, two])| (one.hypot(*two) - 1.2).abs() < 2e-3));
+/// ```
 pub fn joint_path(
     gait: &AnyGait,
     servo: Option<&ServoFile>,

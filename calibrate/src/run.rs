@@ -255,6 +255,44 @@ fn opposed(cycles: &Cycles, predicted_m: f64) -> Option<Opposed> {
 ///
 /// # Errors
 /// [`CalibrateError`]: no poses, no cycles, or a gait that the swimmer's servos cannot play.
+///
+/// ```
+/// use std::fmt::Write;
+/// use calibrate::{PoseOptions, TrackOptions, calibrate_run, load_run, load_tracks, poses, survey_file, usual_reflectors};
+/// use swimmer_files::{AnyGait, SwimmerFile};
+/// use swimmer_model::{Model, Tolerance, trajectory};
+///
+/// // Three cycles of a circle as cameras over the tank see two reflectors on the middle link, 71 mm apart.
+/// let robot = SwimmerFile::preset("robot").unwrap();
+/// let model = Model::new(&robot.swimmer).unwrap();
+/// let mut text = "t,x_front,y_front,x_back,y_back\n".to_owned();
+/// let mut start = swimmer_model::Pose::identity();
+/// for cycle in 0..4 {
+///     let mut end = start;
+///     trajectory(&model, &AnyGait::circle(1.2), &Tolerance::default(), 1000, |point| {
+///         end = start * point.pose;
+///         if point.u < 1.0 {
+///             let (sin, cos) = end.theta.sin_cos();
+///             let (t, x, y) = (10.0 * (f64::from(cycle) + point.u), 0.0355 * cos, 0.0355 * sin);
+///             writeln!(text, "{t:.2},{:.6},{:.6},{:.6},{:.6}", end.x + x, end.y + y, end.x - x, end.y - y).unwrap();
+///         }
+///     });
+///     start = end;
+/// }
+/// # let file = std::env::temp_dir().join(format!("calibrate-run-{}.csv", std::process::id()));
+/// std::fs::write(&file, text)?;
+///
+/// let options = TrackOptions::default();
+/// assert_eq!(survey_file(&file, &options)?.frames, load_tracks(&file, &options)?.frames());
+/// let run = load_run(&file, &"circle:1.2".parse()?, 10.0, &options)?;
+/// let reflectors = usual_reflectors(&run.track, &robot.swimmer);
+/// assert_eq!(poses(&run.track, &reflectors, &PoseOptions::of_period(10.0))?.samples.len(), 4000);
+/// let result = calibrate_run(&run, &reflectors, &robot)?;
+/// let x = swimmer_model::swim(&model, &AnyGait::circle(1.2), &Tolerance::default()).displacement.x;
+/// assert!((result.cycles.x.mean / x - 1.0).abs() < 0.01);
+/// # std::fs::remove_file(&file)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn calibrate_run(
     run: &RunData,
     reflectors: &Reflectors,

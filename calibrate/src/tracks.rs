@@ -230,6 +230,13 @@ struct Finished {
 ///
 /// # Errors
 /// [`TrackError`]: a file that is none, or a broken one with line and column.
+///
+/// ```
+/// let text = "t,x1,y1,x2,y2\n0,1,2,3,4\n0.01,1.5,2.5,,\n0.02,2,3,4,5\n";
+/// let file = calibrate::read_tracks(text.as_bytes(), "run.csv".as_ref()).unwrap();
+/// assert_eq!((file.frames(), file.points.len()), (3, 2));
+/// assert!((file.rate_hz - 100.0).abs() < 1e-9);
+/// ```
 pub fn read_tracks(bytes: &[u8], file: &Path) -> Result<TrackFile, TrackError> {
     read_tracks_with(bytes, file, &TrackOptions::default())
 }
@@ -238,6 +245,15 @@ pub fn read_tracks(bytes: &[u8], file: &Path) -> Result<TrackFile, TrackError> {
 ///
 /// # Errors
 /// As [`read_tracks`], and what the stream answers.
+///
+/// ```
+/// use calibrate::{TrackOptions, read_tracks_with};
+///
+/// let text = "t,x1,y1,x2,y2\n0,1,2,3,4\n0.01,2,3,4,5\n";
+/// let options = TrackOptions { rate_hz: Some(50.0), ..TrackOptions::default() };
+/// let file = read_tracks_with(text.as_bytes(), "run.csv".as_ref(), &options).unwrap();
+/// assert_eq!(file.rate_hz, 50.0);
+/// ```
 pub fn read_tracks_with(
     bytes: impl Read,
     file: &Path,
@@ -255,6 +271,14 @@ pub fn read_tracks_with(
 ///
 /// # Errors
 /// As [`read_tracks_with`].
+///
+/// ```
+/// use calibrate::{TrackOptions, survey_tracks};
+///
+/// let text = "t,x1,y1,x2,y2\n0,1,2,3,4\n0.01,1.5,2.5,,\n0.02,2,3,4,5\n";
+/// let survey = survey_tracks(text.as_bytes(), "run.csv".as_ref(), &TrackOptions::default()).unwrap();
+/// assert_eq!((survey.points[1].present, survey.points[1].gaps), (2, 1));
+/// ```
 pub fn survey_tracks(
     bytes: impl Read,
     file: &Path,

@@ -5,6 +5,27 @@
 //! [`VirtualPort`](host_link::port::VirtualPort) are as deterministic as with a twin.
 //!
 //! [rp2040js]: https://github.com/wokwi/rp2040js
+//!
+//! ```
+//! use emulator::{Board, BoardConfig, BoardKind};
+//!
+//! let elsewhere = BoardConfig::of_checkout("no/such/checkout".as_ref(), None, BoardKind::Pico);
+//! assert!(elsewhere.missing().is_some());
+//! assert!(Board::start(&elsewhere).err().unwrap().to_string().contains("cargo xtask"));
+//! ```
+//!
+//! ```no_run
+//! use emulator::{Board, BoardConfig, BoardKind, EmulatedRobot, commission};
+//! use host_link::Robot;
+//! use twin::{TwinConfig, World};
+//!
+//! /// What the firmware of this checkout calls itself.
+//! fn version(tank: &TwinConfig) -> Result<String, Box<dyn std::error::Error>> {
+//!     let board = Board::start(&BoardConfig::of_checkout(".".as_ref(), None, BoardKind::NanoConnect))?;
+//!     let robot = EmulatedRobot::new(board, World::new(tank)?)?;
+//!     Ok(Robot::connect(commission(robot, tank)?, 1)?.firmware())
+//! }
+//! ```
 
 mod board;
 mod checkout;

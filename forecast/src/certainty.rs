@@ -26,6 +26,20 @@ impl Forecast {
 }
 
 /// The swimmers at the ends of what a calibration leaves open, the other parameter at its estimate.
+///
+/// ```
+/// use forecast::{Ends, Played, Servos, forecast};
+/// use swimmer_files::{AnyGait, ServoFile};
+/// use swimmer_model::{Model, Swimmer};
+///
+/// let robot = Swimmer::robot();
+/// let played = Played { servos: Servos::on_the_robot(ServoFile::default()), period: 30.0, knots: 512 };
+/// let forecast = forecast(&Model::new(&robot)?, &AnyGait::circle(1.2), &played).unwrap();
+/// let narrow = Ends::new(&robot, [0.0690, 0.0694], [3.58, 3.62], None)?;
+/// let wide = Ends::new(&robot, [0.0680, 0.0704], [3.50, 3.70], None)?;
+/// assert!(forecast.displacement_error(&narrow) < forecast.displacement_error(&wide));
+/// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Ends {
     /// At both ends of the interval of `r_s`, the lower one first.

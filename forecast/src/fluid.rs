@@ -20,6 +20,19 @@ pub struct Demand {
 }
 
 /// What a cycle of `period` \[s\] asks in this fluid.
+///
+/// ```
+/// use forecast::demand;
+/// use swimmer_files::{AnyGait, Fluid};
+/// use swimmer_model::{Model, Swimmer};
+///
+/// let model = Model::new(&Swimmer::<f64>::robot()).unwrap();
+/// let silicone = Fluid { kinematic_viscosity: 0.06, density: 976.0 };
+/// let slow = demand(&model, &silicone, &AnyGait::circle(1.2), 30.0);
+/// let fast = demand(&model, &silicone, &AnyGait::circle(1.2), 15.0);
+/// assert!((fast.power / slow.power - 4.0).abs() < 1e-9, "power goes with the square of the speed");
+/// assert!((fast.torque[0] / slow.torque[0] - 2.0).abs() < 1e-9);
+/// ```
 pub fn demand<G: Gait<f64> + ?Sized>(
     model: &Model<f64>,
     fluid: &Fluid,

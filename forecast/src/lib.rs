@@ -11,6 +11,21 @@
 //! - [`until_wall`]: how many cycles a tank has room for; [`Forecast::displacement_error`]: what a calibration leaves open.
 //! - [`demand`]: torque, power and Reynolds number in a fluid of known viscosity.
 //! - [`forecast()`]: the displacement as designed, as stored, as commanded and as turned, loss by loss, before a gait is sent.
+//!
+//! ```
+//! use forecast::{Played, Servos, forecast};
+//! use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
+//! use swimmer_model::Model;
+//!
+//! let robot = SwimmerFile::preset("robot").unwrap();
+//! let model = Model::new(&robot.swimmer).unwrap();
+//! let played = Played { servos: Servos::on_the_robot(ServoFile::default()), period: 30.0, knots: 512 };
+//! let forecast = forecast(&model, &AnyGait::circle(1.2), &played).unwrap();
+//! assert!(forecast.verdict.refused.is_none());
+//! // The dead band costs something, and less than a tenth.
+//! assert!(forecast.total_loss() > 0.0);
+//! assert!(forecast.share(forecast.total_loss()).unwrap() < 0.1);
+//! ```
 
 pub mod certainty;
 pub mod fluid;

@@ -20,6 +20,13 @@ const LOOKS: f64 = 2048.0;
 const REFINEMENTS: usize = 44;
 
 /// The largest |φᵢ| of a gait, with its place: the best of 2048 looks and all piece ends, refined by golden section.
+///
+/// ```
+/// use swimmer_files::AnyGait;
+///
+/// let reach = forecast::reach(&AnyGait::circle(1.2));
+/// assert!((reach.angle.abs() - 1.2).abs() < 1e-6);
+/// ```
 pub fn reach<G: Gait<f64> + ?Sized>(gait: &G) -> Reach {
     let mut best = at(gait, 0.0);
     let mut width = 0.0;

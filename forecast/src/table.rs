@@ -23,6 +23,15 @@ const FEWEST: usize = 128;
 ///
 /// # Errors
 /// [`TableError`]: the number of knots, or an angle that does not fit.
+///
+/// ```
+/// use forecast::table;
+/// use swimmer_files::AnyGait;
+///
+/// let sent = table(&AnyGait::circle(1.2), 256).unwrap();
+/// assert_eq!(sent.knots(), 256);
+/// assert!(sent.knot_angles(100)[0].hypot(sent.knot_angles(100)[1]) - 1.2 < 1e-4);
+/// ```
 pub fn table<G: Gait<f64> + ?Sized>(gait: &G, knots: usize) -> Result<GaitTable, TableError> {
     GaitTable::from_fn(knots, |u| knot(gait, knots, u).into())
 }

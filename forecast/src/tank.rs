@@ -63,6 +63,19 @@ const MOST_CYCLES: u32 = 90_000;
 /// to where it was.
 ///
 /// The links are lines and the sphere a disc; walls do not slow the swimmer before they are met.
+///
+/// ```
+/// use forecast::{Tank, until_wall};
+/// use swimmer_files::AnyGait;
+/// use swimmer_model::{Model, Pose, Swimmer};
+///
+/// let model = Model::new(&Swimmer::<f64>::robot()).unwrap();
+/// let cycles = |length| {
+///     let tank = Tank { length, width: 1.0 };
+///     until_wall(&model, &AnyGait::circle(1.2), &tank, &Pose::identity()).map(|meeting| meeting.cycles)
+/// };
+/// assert!(cycles(2.0).unwrap() > cycles(1.5).unwrap(), "a longer tank has room for more");
+/// ```
 pub fn until_wall<G: Gait<f64> + ?Sized>(
     model: &Model<f64>,
     gait: &G,

@@ -90,6 +90,15 @@ struct Sample {
 ///
 /// # Errors
 /// A rate that is none, or a gait that stands still.
+///
+/// ```
+/// use forecast::shortest_period;
+/// use swimmer_files::AnyGait;
+///
+/// // Each servo turns through 4 × 1 rad there and back.
+/// let shortest = shortest_period(&AnyGait::square(1.0), [2.0; 2]).unwrap();
+/// assert!((shortest - 4.0).abs() < 1e-6, "{shortest}");
+/// ```
 pub fn shortest_period<G: Gait<f64> + ?Sized>(
     gait: &G,
     max_rates: [f64; 2],
@@ -117,6 +126,19 @@ pub fn shortest_period<G: Gait<f64> + ?Sized>(
 ///
 /// # Errors
 /// [`TimingError`]; a period that is too short comes with the shortest one.
+///
+/// ```
+/// use forecast::timing;
+/// use swimmer_files::AnyGait;
+/// use swimmer_model::{Model, Swimmer};
+///
+/// let model = Model::new(&Swimmer::<f64>::robot()).unwrap();
+/// let relaxed = timing(&model, &AnyGait::circle(1.2), 30.0, 3.5).unwrap();
+/// assert!(relaxed.efficiency_loss.abs() < 1e-9 && relaxed.at_limit == 0.0);
+/// let hurried = timing(&model, &AnyGait::circle(1.2), 1.02 * relaxed.shortest_period, 3.5).unwrap();
+/// assert!(hurried.efficiency_loss > 0.0);
+/// assert!(timing(&model, &AnyGait::circle(1.2), 0.9 * relaxed.shortest_period, 3.5).is_err());
+/// ```
 pub fn timing<G: Gait<f64> + ?Sized>(
     model: &Model<f64>,
     gait: &G,

@@ -200,6 +200,20 @@ pub type Watch<'a> = &'a (dyn Fn(f64) + Sync);
 ///
 /// # Errors
 /// [`AtlasError`]: what is wrong with the problem. An atlas without any optimum is no error.
+///
+/// ```
+/// use gait_optimizer::{AtlasProblem, Bounds, Objective, atlas};
+/// use swimmer_model::Swimmer;
+///
+/// let problem = AtlasProblem {
+///     bounds: Bounds { max_angle: Some(1.2), ..Bounds::default() },
+///     starts: 1,
+///     ..AtlasProblem::new(Swimmer::purcell(), Objective::Displacement)
+/// };
+/// let found = atlas(&problem)?;
+/// assert!(found.optima.iter().all(|optimum| optimum.gait.certificate.pass()));
+/// # Ok::<(), gait_optimizer::AtlasError>(())
+/// ```
 pub fn atlas(problem: &AtlasProblem) -> Result<Atlas, AtlasError> {
     atlas_watched(problem, &|_| ())
 }
@@ -208,6 +222,19 @@ pub fn atlas(problem: &AtlasProblem) -> Result<Atlas, AtlasError> {
 ///
 /// # Errors
 /// As [`atlas()`].
+///
+/// ```
+/// use std::sync::atomic::{AtomicBool, Ordering};
+/// use gait_optimizer::{AtlasProblem, Bounds, Objective, atlas_watched};
+/// use swimmer_model::Swimmer;
+///
+/// let bounds = Bounds { max_angle: Some(1.2), ..Bounds::default() };
+/// let problem = AtlasProblem { bounds, starts: 1, ..AtlasProblem::new(Swimmer::purcell(), Objective::Displacement) };
+/// let finished = AtomicBool::new(false);
+/// atlas_watched(&problem, &|share| finished.store(share >= 1.0, Ordering::Relaxed))?;
+/// assert!(finished.into_inner(), "the last share is one");
+/// # Ok::<(), gait_optimizer::AtlasError>(())
+/// ```
 pub fn atlas_watched(problem: &AtlasProblem, watch: Watch<'_>) -> Result<Atlas, AtlasError> {
     problem.validate()?;
     let model = Model::new(&problem.swimmer.of_unit_length())?;

@@ -109,6 +109,19 @@ struct Openness {
 /// # Errors
 /// [`CertifyError`] when there is no closed curve, no swimmer or no objective to ask about. A gait that is no optimum is no
 /// error: its certificate does not pass.
+///
+/// ```
+/// use gait_optimizer::{Bounds, DisplacementProblem, Objective, certify, displacement};
+/// use swimmer_files::{AnyGait, GaitFile};
+/// use swimmer_model::Swimmer;
+///
+/// let purcell = Swimmer::purcell();
+/// let best = displacement(&DisplacementProblem::new(purcell)).unwrap().gait_file("purcell");
+/// let circle = GaitFile::sampled(&AnyGait::circle(1.6331625), 400);
+/// let asked = |gait| certify(&purcell, gait, Objective::Displacement, &Bounds::default());
+/// assert!(asked(&best)?.pass() && !asked(&circle)?.pass());
+/// # Ok::<(), gait_optimizer::CertifyError>(())
+/// ```
 pub fn certify(
     swimmer: &Swimmer<f64>,
     gait: &GaitFile,

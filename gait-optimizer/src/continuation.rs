@@ -322,6 +322,18 @@ impl ContinuationProblem {
 /// # Errors
 /// [`ContinuationError`]: what is wrong with the problem, or that there is no gait to begin with. A branch that ends on the
 /// way is no error but an event.
+///
+/// ```
+/// use gait_optimizer::{Branch, ContinuationProblem, Parameter, Start, continuation};
+/// use swimmer_model::Swimmer;
+///
+/// let way = [2.0, 2.1];
+/// let start = Start::Efficiency(Branch::Small);
+/// let problem = ContinuationProblem { steps: 1, ..ContinuationProblem::new(Swimmer::purcell(), Parameter::Chi, way, start) };
+/// let followed = continuation(&problem).unwrap();
+/// let ends: Vec<f64> = followed.points.iter().map(|point| point.value).collect();
+/// assert!(ends.contains(&2.0) && ends.contains(&2.1), "{ends:?}");
+/// ```
 pub fn continuation(problem: &ContinuationProblem) -> Result<Continuation, ContinuationError> {
     continuation_watched(problem, &|_| ())
 }
@@ -330,6 +342,18 @@ pub fn continuation(problem: &ContinuationProblem) -> Result<Continuation, Conti
 ///
 /// # Errors
 /// As [`continuation()`].
+///
+/// ```
+/// use std::sync::Mutex;
+/// use gait_optimizer::{Branch, ContinuationProblem, Parameter, Start, continuation_watched};
+/// use swimmer_model::Swimmer;
+///
+/// let start = Start::Efficiency(Branch::Small);
+/// let problem = ContinuationProblem { steps: 2, ..ContinuationProblem::new(Swimmer::purcell(), Parameter::Chi, [2.0, 2.1], start) };
+/// let shares = Mutex::new(Vec::new());
+/// continuation_watched(&problem, &|share| shares.lock().unwrap().push(share)).unwrap();
+/// assert!(shares.into_inner().unwrap().is_sorted());
+/// ```
 pub fn continuation_watched(
     problem: &ContinuationProblem,
     watch: Watch<'_>,

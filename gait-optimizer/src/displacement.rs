@@ -178,6 +178,16 @@ impl DisplacementProblem {
 ///
 /// # Errors
 /// [`DisplacementError`]: what is wrong with the problem, or why it has no optimum.
+///
+/// ```
+/// use gait_optimizer::{DisplacementProblem, displacement};
+/// use swimmer_model::Swimmer;
+///
+/// let bounded = displacement(&DisplacementProblem::new(Swimmer::robot()).with_max_angle(1.5))?;
+/// let kinds: Vec<_> = bounded.arcs.iter().map(|arc| arc.kind.word()).collect();
+/// assert!(kinds.contains(&"upper"), "{kinds:?}");
+/// # Ok::<(), gait_optimizer::DisplacementError>(())
+/// ```
 pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, DisplacementError> {
     problem.validate()?;
     let model = Model::new(&problem.swimmer.of_unit_length())?;

@@ -118,6 +118,15 @@ impl Polish {
 ///
 /// # Errors
 /// [`Unpolished`]: the swimmer makes no sense, the curve goes nowhere, or no extremal is near.
+///
+/// ```
+/// use gait_optimizer::{Branch, EfficiencyProblem, Polish, efficiency, polish_efficiency};
+/// use swimmer_model::Swimmer;
+///
+/// let small = efficiency(&EfficiencyProblem::new(Swimmer::purcell(), Branch::Small)).unwrap();
+/// let again = polish_efficiency(&Polish::new(Swimmer::purcell()), &small.gait().unwrap()).unwrap();
+/// assert!((again.efficiency - small.efficiency).abs() < 1e-11);
+/// ```
 pub fn polish_efficiency<G: Gait<f64> + ?Sized>(
     polish_for: &Polish,
     gait: &G,

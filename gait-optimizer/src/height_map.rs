@@ -77,6 +77,17 @@ pub struct Frame {
 }
 
 /// The three height functions of a swimmer on one square.
+///
+/// ```
+/// use gait_optimizer::{HeightMap, Row};
+/// use nalgebra::Vector2;
+/// use swimmer_model::Swimmer;
+///
+/// let map = HeightMap::new(&Swimmer::purcell(), 2.5)?;
+/// assert!((map.height(Row::X, &Vector2::zeros()) - 0.0205761317).abs() < 1e-9);
+/// assert!((map.zeros_on_diagonal(Row::X)[0] - 1.41638).abs() < 1e-5);
+/// # Ok::<(), gait_optimizer::HeightMapError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct HeightMap {
     /// With L = 1.

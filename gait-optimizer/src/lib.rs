@@ -33,6 +33,31 @@
 //! | [`closed_forms`] | formulas of the paper's appendix, mended |
 //! | `simple_shapes` | circles and squares over their amplitude |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
+//!
+//! ```
+//! use gait_optimizer::{Branch, DisplacementProblem, EfficiencyProblem, displacement, efficiency};
+//! use swimmer_model::Swimmer;
+//!
+//! let farthest = displacement(&DisplacementProblem::new(Swimmer::purcell()))?;
+//! assert!((farthest.displacement_over_length - 0.1035322400).abs() < 1e-10);
+//! assert!(farthest.certificate.pass());
+//!
+//! let small = efficiency(&EfficiencyProblem::new(Swimmer::purcell(), Branch::Small)).unwrap();
+//! assert!((small.efficiency - 0.012364154624).abs() < 1e-12);
+//! # Ok::<(), gait_optimizer::DisplacementError>(())
+//! ```
+//!
+//! Servos with a rate limit make time a part of it:
+//!
+//! ```
+//! use gait_optimizer::{SpeedProblem, fastest};
+//! use swimmer_model::Swimmer;
+//!
+//! let slow = fastest(&SpeedProblem { starts: 2, ..SpeedProblem::new(Swimmer::purcell(), [1.0; 2]) })?;
+//! let quick = fastest(&SpeedProblem { starts: 2, ..SpeedProblem::new(Swimmer::purcell(), [2.0; 2]) })?;
+//! assert!((quick.speed_over_length / slow.speed_over_length - 2.0).abs() < 1e-6, "time is a scale");
+//! # Ok::<(), gait_optimizer::SpeedError>(())
+//! ```
 
 mod atlas;
 mod certificate;

@@ -286,6 +286,20 @@ fn borrowed(weighted: &[(Model<f64>, f64)]) -> Vec<(&Model<f64>, f64)> {
 ///
 /// # Errors
 /// [`RobustError`]: why there is none.
+///
+/// ```
+/// use gait_optimizer::{DisplacementProblem, Over, Uncertainty, robust_displacement};
+/// use swimmer_model::Swimmer;
+///
+/// let robot = Swimmer::robot();
+/// let uncertainty = Uncertainty {
+///     chi_interval: [3.4, 3.8],
+///     ..Uncertainty::none(robot.sphere_radius, robot.chi)
+/// };
+/// let problem = DisplacementProblem::new(robot).with_max_angle(1.5);
+/// let robust = robust_displacement(&problem, &uncertainty, Over::Worst).unwrap();
+/// assert!(robust.values.worst >= robust.nominal.worst);
+/// ```
 pub fn robust_displacement(
     problem: &DisplacementProblem,
     uncertainty: &Uncertainty,
@@ -344,6 +358,17 @@ pub fn robust_displacement(
 ///
 /// # Errors
 /// [`RobustError`]: why there is none.
+///
+/// ```
+/// use gait_optimizer::{Bounds, Branch, Over, Uncertainty, robust_efficiency};
+/// use swimmer_model::Swimmer;
+///
+/// let purcell = Swimmer::purcell();
+/// let uncertainty = Uncertainty { chi_interval: [1.9, 2.1], ..Uncertainty::none(0.0, 2.0) };
+/// let small = (Branch::Small, 3);
+/// let robust = robust_efficiency(&purcell, small, &Bounds::default(), &uncertainty, Over::Mean).unwrap();
+/// assert!((robust.gait.efficiency / 0.0123641546 - 1.0).abs() < 1e-2);
+/// ```
 pub fn robust_efficiency(
     swimmer: &Swimmer<f64>,
     (branch, order): (Branch, usize),

@@ -82,6 +82,16 @@ pub struct Sideways {
 ///
 /// # Errors
 /// [`SidewaysError`]: what is wrong with the problem, or that there is no such gait.
+///
+/// ```
+/// use gait_optimizer::{Bounds, SidewaysProblem, sideways};
+/// use swimmer_model::Swimmer;
+///
+/// let bounds = Bounds { max_angle: Some(1.2), ..Bounds::default() };
+/// let found = sideways(&SidewaysProblem { bounds, ..SidewaysProblem::new(Swimmer::purcell()) })?;
+/// assert!(found.lateral_over_length > 0.0 && found.gait.rotation.abs() < 1e-8);
+/// # Ok::<(), gait_optimizer::SidewaysError>(())
+/// ```
 pub fn sideways(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
     sideways_watched(problem, &|_| ())
 }
@@ -90,6 +100,19 @@ pub fn sideways(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
 ///
 /// # Errors
 /// As [`sideways()`].
+///
+/// ```
+/// use std::sync::Mutex;
+/// use gait_optimizer::{Bounds, SidewaysProblem, sideways_watched};
+/// use swimmer_model::Swimmer;
+///
+/// let bounds = Bounds { max_angle: Some(1.2), ..Bounds::default() };
+/// let shares = Mutex::new(Vec::new());
+/// let problem = SidewaysProblem { bounds, ..SidewaysProblem::new(Swimmer::purcell()) };
+/// sideways_watched(&problem, &|share| shares.lock().unwrap().push(share))?;
+/// assert!(shares.into_inner().unwrap().iter().all(|share| (0.0..=1.0).contains(share)));
+/// # Ok::<(), gait_optimizer::SidewaysError>(())
+/// ```
 pub fn sideways_watched(
     problem: &SidewaysProblem,
     watch: Watch<'_>,

@@ -46,6 +46,15 @@ const CLOSE: f64 = 1e-8;
 
 /// All amplitudes up to `largest` \[rad\] that are locally best, smallest first: for |X| with [`Objective::Displacement`], else
 /// for ξ at constant power.
+///
+/// ```
+/// use gait_optimizer::{Objective, SimpleShape, best_amplitudes};
+/// use swimmer_model::{Model, Swimmer};
+///
+/// let model = Model::new(&Swimmer::purcell()).unwrap();
+/// let best = best_amplitudes(&model, SimpleShape::Circle, Objective::Displacement, 2.5);
+/// assert!((best[0].amplitude - 1.6331625).abs() < 1e-6);
+/// ```
 pub fn best_amplitudes(
     model: &Model<f64>,
     shape: SimpleShape,

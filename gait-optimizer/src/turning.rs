@@ -73,6 +73,16 @@ const STEPS: f64 = 240.0;
 ///
 /// # Errors
 /// [`TurningError`]: what is wrong with the problem, or why there is no such gait.
+///
+/// ```
+/// use gait_optimizer::{Bounds, TurningProblem, turning};
+/// use swimmer_model::Swimmer;
+///
+/// let bounds = Bounds { max_angle: Some(1.2), ..Bounds::default() };
+/// let found = turning(&TurningProblem { swimmer: Swimmer::purcell(), bounds })?;
+/// assert!(found.gait.certificate.pass() && found.gait.rotation.abs() <= found.bridged_supremum.abs() + 1e-9);
+/// # Ok::<(), gait_optimizer::TurningError>(())
+/// ```
 pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
     let model = Model::new(&problem.swimmer.of_unit_length())?;
     let bounds = validated(problem)?;

@@ -12,6 +12,12 @@ const ROOM: usize = 96;
 const PATH: usize = 32;
 
 /// A note in memory that no start-up code clears. Any bits are one, most are none that was written.
+///
+/// ```
+/// use gait_player::CrashNote;
+///
+/// assert!(CrashNote::panicked("src/main.rs", 7, "no such knot").message().contains("main.rs:7"));
+/// ```
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct CrashNote {

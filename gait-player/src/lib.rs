@@ -11,6 +11,22 @@
 //!
 //! Hosts share three truths with the robot: [`servo::ServoMap`], [`servo::plant`] (what a servo makes of pulses) and
 //! [`playback`] (which joint angles a table really gives).
+//!
+//! ```
+//! use gait_player::storage::MemoryStorage;
+//! use gait_player::{Boot, Brain, BrainConfig, Identity, Inputs, TICK_US};
+//! use link_protocol::{Board, FirmwareVersion, StateName};
+//!
+//! let firmware = FirmwareVersion { major: 0, minor: 1, patch: 0, commit: *b"abcdef01" };
+//! let identity = Identity { firmware, board: Board::Pico };
+//! let mut brain = Brain::new(BrainConfig::robot(identity, Boot::power_on(1, 2)));
+//! brain.load(&mut MemoryStorage::default()).unwrap();
+//! for tick in 1..=50 {
+//!     let output = brain.tick(tick * u64::from(TICK_US), &Inputs::default());
+//!     // Nobody has armed it: no pulses, whatever time it is.
+//!     assert_eq!((output.state, output.pulses_ns), (StateName::Stopped, None));
+//! }
+//! ```
 #![cfg_attr(not(test), no_std)]
 // Knots, ticks, microseconds and pulses are bounded where they enter; `as` from a float saturates and NaN becomes 0.
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]

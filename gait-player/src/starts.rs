@@ -8,6 +8,14 @@ use link_protocol::crc32c;
 const MAGIC: [u8; 4] = *b"RUNS";
 
 /// The record that outlives a start: in RAM that resets spare, and in flash for when power was off.
+///
+/// ```
+/// use gait_player::ShortStarts;
+///
+/// let starts = ShortStarts { runs: 2 };
+/// assert_eq!(ShortStarts::decode(&starts.encode()), Some(starts));
+/// assert_eq!(ShortStarts::decode(&[0; ShortStarts::LEN]), None);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ShortStarts {
     /// Runs in a row that were short, the present one included until it has lasted for a minute.

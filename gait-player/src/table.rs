@@ -16,6 +16,18 @@ pub const MIN_KNOTS: usize = 2;
 pub const KNOT_BYTES: usize = 4;
 
 /// A table of knots; empty until filled.
+///
+/// ```
+/// use gait_player::GaitTable;
+///
+/// let circle = |u: f64| {
+///     let angle = std::f64::consts::TAU * u;
+///     [1.2 * angle.cos(), 1.2 * angle.sin()]
+/// };
+/// let table = GaitTable::from_fn(128, circle).unwrap();
+/// assert_eq!(table.knot(0), [12_000, 0], "ten-thousandths of a radian");
+/// assert_eq!(GaitTable::from_bytes(table.bytes()).unwrap().crc32(), table.crc32());
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GaitTable {
     bytes: [u8; MAX_TABLE],

@@ -6,11 +6,24 @@ use crc::{CRC_32_ISCSI, Crc, Digest, Table};
 static CRC_32C: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISCSI);
 
 /// CRC-32C of `bytes`.
+///
+/// ```
+/// assert_eq!(link_protocol::crc32c(b"123456789"), 0xE306_9283);
+/// ```
 pub fn crc32c(bytes: &[u8]) -> u32 {
     CRC_32C.checksum(bytes)
 }
 
 /// CRC-32C of bytes that come in pieces.
+///
+/// ```
+/// use link_protocol::{Checksum, crc32c};
+///
+/// let mut checksum = Checksum::new();
+/// checksum.update(b"1234");
+/// checksum.update(b"56789");
+/// assert_eq!(checksum.finish(), crc32c(b"123456789"));
+/// ```
 pub struct Checksum(Digest<'static, u32, Table<1>>);
 
 impl Checksum {

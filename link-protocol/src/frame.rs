@@ -36,6 +36,13 @@ impl Header {
 }
 
 /// The kind byte of a frame, without [`KIND_SIGNED`].
+///
+/// ```
+/// use link_protocol::{Kind, Message};
+///
+/// assert_eq!(Kind::from_byte(6), Some(Message::KeepAlive.kind()));
+/// assert_eq!(Kind::from_byte(99), None);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Kind {
@@ -147,6 +154,16 @@ pub fn encode(header: Header, message: &Message, out: &mut [u8]) -> Result<usize
 ///
 /// # Errors
 /// `out` is shorter than [`MAX_ENCODED`], or the body with its signature is too long for a frame.
+///
+/// ```
+/// use link_protocol::{Decoder, Header, Kind, MAX_ENCODED, Message, encode_body};
+///
+/// let mut frame = [0; MAX_ENCODED];
+/// let length = encode_body(Header::new(1, 2), Kind::KeepAlive as u8, &[], None, &mut frame).unwrap();
+/// let mut decoder = Decoder::new();
+/// let received = frame[..length].iter().find_map(|&byte| decoder.push(byte)).unwrap();
+/// assert_eq!(received.message, Ok(Message::KeepAlive));
+/// ```
 pub fn encode_body(
     header: Header,
     kind: u8,

@@ -50,6 +50,16 @@ pub struct HelloReply {
 
 /// How a [`HelloReply`] begins: what it tells of itself even where the rest names a board or a reason that was appended
 /// since, and is no message to this end.
+///
+/// ```
+/// use link_protocol::{FirmwareVersion, HelloReplyStart};
+///
+/// let firmware = FirmwareVersion { major: 1, minor: 2, patch: 3, commit: *b"abcdef01" };
+/// let start = HelloReplyStart { host_nonce: 5, protocol_min: 1, protocol_current: 9, schema_key: [0; 8], firmware };
+/// let mut body = [0xFF; 64]; // what a later version says after the start is not looked at
+/// postcard::to_slice(&start, &mut body).unwrap();
+/// assert_eq!(HelloReplyStart::of_body(&body), Some(start));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HelloReplyStart {
     /// As [`HelloReply::host_nonce`].

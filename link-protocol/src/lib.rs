@@ -29,6 +29,23 @@
 //! The top bit of `kind` is [`KIND_SIGNED`]: such a frame carries a [`Signature`] (monotonic counter and truncated
 //! keyed tag) between body and CRC. Robots without a key read past it; unsigned frames are unchanged by it. What signs and
 //! verifies is a [`Seal`].
+//!
+//! # An example
+//!
+//! ```
+//! use link_protocol::{Decoder, Header, MAX_ENCODED, Message, Ping, encode};
+//!
+//! let ping = Message::Ping(Ping { host_us: 7 });
+//! let mut frame = [0; MAX_ENCODED];
+//! let length = encode(Header::new(1, 2), &ping, &mut frame).unwrap();
+//!
+//! let mut decoder = Decoder::new();
+//! let received = frame[..length].iter().find_map(|&byte| decoder.push(byte)).unwrap();
+//! assert_eq!((received.header, received.message), (Header::new(1, 2), Ok(ping)));
+//!
+//! frame[4] ^= 1;
+//! assert!(frame[..length].iter().all(|&byte| decoder.push(byte).is_none()), "a flipped bit is noticed");
+//! ```
 #![cfg_attr(not(test), no_std)]
 
 mod checksum;

@@ -39,6 +39,23 @@ pub struct Binding {
 }
 
 /// A key bound to a session: signs and verifies its frames.
+///
+/// ```
+/// use link_protocol::{Binding, Decoder, Header, Key, MAX_ENCODED, Message, Ping, Seal, encode_signed};
+///
+/// let binding = Binding { boot_nonce: 1, session: 2, host_nonce: 3 };
+/// let seal = Seal::new(&Key([7; Key::LEN]), binding);
+/// let mut frame = [0; MAX_ENCODED];
+/// let ping = Message::Ping(Ping { host_us: 5 });
+/// let length = encode_signed(Header::new(2, 1), &ping, &seal, 10, &mut frame).unwrap();
+///
+/// let mut decoder = Decoder::new();
+/// let received = frame[..length].iter().find_map(|&byte| decoder.push(byte)).unwrap();
+/// let signature = received.signature.unwrap();
+/// assert!(seal.verifies(decoder.signed_bytes(), &signature));
+/// let another = Seal::new(&Key([8; Key::LEN]), binding);
+/// assert!(!another.verifies(decoder.signed_bytes(), &signature));
+/// ```
 #[derive(Clone)]
 pub struct Seal {
     keyed: SipHasher24,

@@ -65,8 +65,8 @@ def test_a_campaign_is_fitted(laboratory: Path) -> None:
     assert low < fit.chi < high and fit.verdict == "trust"
     assert fit.swimmer is not None and fit.swimmer.chi == fit.chi
     assert len(fit.runs) == 9 and fit.runs[0].file == "circle-030.csv"
-    robust = sw.optimize.displacement(fit.swimmer, max_angle=1.5, robust=fit)
-    assert robust.robust.quantity == "displacement" or robust.robust.robust.worst > 0
+    robust = sw.optimize.displacement(fit.swimmer, max_angle=1.5, robust=fit).robust
+    assert robust.robust.worst >= robust.nominal_optimum.worst > 0
 
 
 def test_a_single_run_gives_its_cycles(laboratory: Path, robot: sw.Swimmer, tmp_path: Path) -> None:

@@ -30,6 +30,14 @@ pub enum AngleError {
 ///
 /// # Errors
 /// [`AngleError::Unreadable`] for anything else, `nan` and infinities included.
+///
+/// ```
+/// use swimmer_files::parse_angle;
+///
+/// assert_eq!(parse_angle("180deg"), Ok(std::f64::consts::PI));
+/// assert_eq!(parse_angle("1.2rad"), parse_angle("1.2"));
+/// assert!(parse_angle("1.2 apples").is_err());
+/// ```
 pub fn parse_angle(text: &str) -> Result<f64, AngleError> {
     read(text).map(|(radians, _)| radians)
 }
@@ -38,6 +46,13 @@ pub fn parse_angle(text: &str) -> Result<f64, AngleError> {
 ///
 /// # Errors
 /// [`AngleError`].
+///
+/// ```
+/// use swimmer_files::parse_joint_angle;
+///
+/// assert_eq!(parse_joint_angle("1.2"), Ok(1.2));
+/// assert!(parse_joint_angle("70").unwrap_err().to_string().contains("70deg"), "degrees are meant");
+/// ```
 pub fn parse_joint_angle(text: &str) -> Result<f64, AngleError> {
     let (radians, bare) = read(text)?;
     if bare && looks_like_degrees(radians) {

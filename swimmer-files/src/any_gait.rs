@@ -9,6 +9,15 @@ use swimmer_model::{Circle, Gait, GaitPoint, InvalidSamples, Reversed, Square};
 use crate::GaitFile;
 
 /// A gait in closed form or from samples that it owns; runs forwards or backwards.
+///
+/// ```
+/// use swimmer_files::AnyGait;
+/// use swimmer_model::Gait;
+///
+/// let forwards = AnyGait::circle(1.2);
+/// let backwards = forwards.clone().reversed_if(true);
+/// assert!((forwards.at(0.25).phi - backwards.at(0.75).phi).norm() < 1e-15);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnyGait {
     shape: Shape,

@@ -17,6 +17,17 @@ const LONGEST_CHAIN: usize = 40;
 ///
 /// # Errors
 /// [`FileError::Write`] when the folder cannot be made or written to, or `path` is a folder; the temporary file is removed.
+///
+/// ```
+/// use swimmer_files::write_atomically;
+///
+/// # let path = std::env::temp_dir().join(format!("atomic-{}", std::process::id()));
+/// write_atomically(&path, b"all of it")?;
+/// write_atomically(&path, b"and all of this")?;
+/// assert_eq!(std::fs::read(&path).unwrap(), b"and all of this");
+/// # std::fs::remove_file(&path).unwrap();
+/// # Ok::<(), swimmer_files::FileError>(())
+/// ```
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let fail = |source| FileError::Write {
         path: path.to_path_buf(),

@@ -14,6 +14,27 @@ pub use known::{Known, KnownValue};
 pub use told::{ToldRun, ToldValue};
 
 /// A campaign, with its swimmer read and its paths resolved.
+///
+/// ```
+/// use swimmer_files::Campaign;
+///
+/// let text = r#"
+/// swimmer = "robot"
+/// [reflectors]
+/// front = { point = "Front", at = [0.0355, 0.0] }
+/// back = { point = "Back", at = [-0.0355, 0.0] }
+/// [[run]]
+/// track = "eps030.csv"
+/// gait = "circle:30deg"
+/// period_s = 30.0
+/// "#;
+/// let campaign = Campaign::parse(text, "campaign.toml".as_ref())?;
+/// assert_eq!(campaign.included().count(), 1);
+///
+/// let mistaken = Campaign::parse(&text.replace("30.0", "-1"), "campaign.toml".as_ref());
+/// assert!(mistaken.unwrap_err().to_string().starts_with("campaign.toml:9:"));
+/// # Ok::<(), swimmer_files::FileError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Campaign {
     /// The swimmer; its sphere radius and χ are only starting values of a fit.

@@ -10,6 +10,16 @@ use swimmer_model::{Swimmer, TangentialDrag};
 /// servos do not change which gait is best, so they stay out.
 ///
 /// Written and read as 64 hexadecimal digits.
+///
+/// ```
+/// use swimmer_files::{SwimmerFile, SwimmerHash};
+///
+/// let robot = SwimmerFile::preset("robot").unwrap();
+/// let mut renamed = robot.clone();
+/// renamed.name = "mine".to_owned();
+/// assert_eq!(SwimmerHash::of(&renamed.swimmer), robot.hash());
+/// assert_ne!(renamed.fitted(0.07, 3.5).hash(), robot.hash());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct SwimmerHash([u8; 32]);
 

@@ -11,6 +11,25 @@
 //! | gait file (plain text) | [`GaitFile`], [`GaitArc`], [`ArcKind`], [`Bounds`], [`Objective`] |
 //! | campaign file (TOML) | [`Campaign`], [`CampaignRun`], [`Reflectors`], [`TrackSettings`], [`RunTiming`], [`Axes`] |
 //! | link log (MCAP) | [`LinkLogWriter`], [`LinkFrame`], [`read_link_log`], [`plays`] |
+//!
+//! ```
+//! use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile};
+//! use swimmer_model::{Gait, Model, Tolerance, swim};
+//!
+//! let robot = SwimmerFile::find("robot")?;
+//! let again = SwimmerFile::parse(&robot.to_toml(), "robot.toml".as_ref())?;
+//! assert_eq!(again, robot);
+//!
+//! let circle = "circle:70deg:cw".parse::<GaitSpec>().unwrap().load()?;
+//! let file = GaitFile::sampled(&circle, 100);
+//! let read = GaitFile::parse(&file.to_text(), "circle.gait".as_ref())?;
+//! assert_eq!(read.phi, file.phi);
+//!
+//! let model = Model::new(&again.swimmer).unwrap();
+//! let swum = swim(&model, &AnyGait::from_file(&read).unwrap(), &Tolerance::default());
+//! assert!(swum.displacement.x < 0.0, "clockwise it swims backwards");
+//! # Ok::<(), swimmer_files::FileError>(())
+//! ```
 
 mod angle;
 mod any_gait;

@@ -3,6 +3,13 @@
 use std::path::{Path, PathBuf};
 
 /// Why a file could not be read or written.
+///
+/// ```
+/// use swimmer_files::{FileError, SwimmerFile};
+///
+/// let mistaken = SwimmerFile::parse("[links]\nmiddle = -1\n", "mine.toml".as_ref()).unwrap_err();
+/// assert!(matches!(mistaken, FileError::Content { line: 1 | 2, .. }), "{mistaken}");
+/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The file could not be read at all.

@@ -10,6 +10,20 @@ use crate::place::read_text;
 use crate::{FileError, SwimmerFile, write_atomically};
 
 /// The `[provenance]` table of a swimmer file. Readers of swimmer files pass it over: it says nothing about the swimmer.
+///
+/// ```
+/// use swimmer_files::Provenance;
+///
+/// let folder = std::env::temp_dir();
+/// let input = folder.join(format!("provenance-{}.csv", std::process::id()));
+/// std::fs::write(&input, "1,2,3")?;
+/// let made = Provenance::of_files("an example", &[input.clone()], &folder)?;
+/// assert!(made.changed(&folder).is_empty());
+/// std::fs::write(&input, "1,2,4")?;
+/// assert_eq!(made.changed(&folder).len(), 1);
+/// # std::fs::remove_file(&input)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
@@ -102,6 +116,14 @@ impl Provenance {
 ///
 /// # Errors
 /// [`FileError::Read`].
+///
+/// ```
+/// # let file = std::env::temp_dir().join(format!("hash-of-{}", std::process::id()));
+/// std::fs::write(&file, "abc")?;
+/// assert!(swimmer_files::hash_of(&file)?.starts_with("ba7816bf8f01cfea"));
+/// # std::fs::remove_file(&file)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn hash_of(path: &Path) -> Result<String, FileError> {
     let read_error = |source| FileError::Read {
         path: path.to_path_buf(),

@@ -35,6 +35,17 @@ fn bracket<T: Scalar>(a: &Vector3<T>, b: &Vector3<T>) -> Vector3<T> {
 impl<T: Scalar> FirstDerivatives<T> {
     /// Curvature of the connection, ∂₁A₂ − ∂₂A₁ + \[A₁, A₂\]: the body displacement of a tiny counter-clockwise loop
     /// over its area. (The paper prints a minus before the bracket; with q̇ = D A Φ̇ it is a plus.)
+    ///
+    /// ```
+    /// use nalgebra::Vector2;
+    /// use swimmer_model::{Model, Swimmer};
+    ///
+    /// let model = Model::new(&Swimmer::<f64>::purcell())?;
+    /// // A small loop about the straight swimmer moves it along, and neither across nor round.
+    /// let f = model.first_derivatives(&Vector2::zeros()).curvature();
+    /// assert!(f.x > 0.0 && f.y.abs() < 1e-15 && f.z.abs() < 1e-15);
+    /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+    /// ```
     pub fn curvature(&self) -> Vector3<T> {
         let [d1, d2] = &self.d_connection;
         let (a1, a2) = (

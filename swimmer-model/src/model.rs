@@ -69,11 +69,31 @@ impl<T: Scalar> Model<T> {
 
     /// A(Φ): body velocity (v_x, v_y, θ̇) of the middle link, in its own frame, per joint rate. Rows x, y in metres,
     /// row θ dimensionless.
+    ///
+    /// ```
+    /// use nalgebra::Vector2;
+    /// use swimmer_model::{Model, Swimmer};
+    ///
+    /// let model = Model::new(&Swimmer::<f64>::purcell())?;
+    /// let a = model.local_connection(&Vector2::new(0.5, -0.3));
+    /// assert!((a[(0, 0)] - 0.092985).abs() < 1e-6);
+    /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+    /// ```
     pub fn local_connection(&self, phi: &Vector2<T>) -> Matrix3x2<T> {
         self.balance(phi).connection()
     }
 
     /// W(Φ)/μ: the power is Φ̇ᵀ W Φ̇ (paper, equation for p(t)). Symmetric, positive definite, in m³.
+    ///
+    /// ```
+    /// use nalgebra::Vector2;
+    /// use swimmer_model::{Model, Swimmer};
+    ///
+    /// let model = Model::new(&Swimmer::<f64>::purcell())?;
+    /// let w = model.power_matrix(&Vector2::new(0.5, -0.3));
+    /// assert!((w[(0, 0)] - 0.203711).abs() < 1e-6 && w.determinant() > 0.0);
+    /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+    /// ```
     pub fn power_matrix(&self, phi: &Vector2<T>) -> Matrix2<T> {
         self.power(&self.balance(phi))
     }

@@ -5,6 +5,14 @@ use core::ops::Mul;
 use nalgebra::{Vector2, Vector3};
 
 /// Position of the middle link's centre \[m\] and its heading \[rad\] (not wrapped: full turns count).
+///
+/// ```
+/// use swimmer_model::Pose;
+///
+/// let turned = Pose::<f64>::new(1.0, 2.0, std::f64::consts::FRAC_PI_2);
+/// let there_and_back = turned * turned.inverse();
+/// assert!(there_and_back.x.abs() < 1e-15 && there_and_back.theta == 0.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose<T> {
     /// x \[m\].

@@ -68,6 +68,15 @@ pub type Point = Option<[f64; 3]>;
 pub type Frame = [Point; 4];
 
 /// The cameras' state of one recording.
+///
+/// ```
+/// use swimmer_model::Pose;
+/// use twin::{Camera, CameraConfig};
+///
+/// let mut camera = Camera::new(CameraConfig::perfect(), 0.3, 1, 0);
+/// let frame = camera.expose(&Pose::identity());
+/// assert!(frame.iter().flatten().count() >= 2, "it sees both reflectors");
+/// ```
 #[derive(Debug, Clone)]
 pub struct Camera {
     config: CameraConfig,

@@ -129,6 +129,14 @@ impl TwinConfig {
 }
 
 /// The configuration message for a swimmer with the limits of its servos.
+///
+/// ```
+/// use swimmer_files::{ServoFile, SwimmerFile};
+///
+/// let robot = SwimmerFile::preset("robot").unwrap().swimmer;
+/// let told = twin::configuration(&robot, &ServoFile::default());
+/// assert!((f64::from(told.chi) - 3.598).abs() < 1e-6);
+/// ```
 pub fn configuration(swimmer: &Swimmer<f64>, servo: &ServoFile) -> Configuration {
     Configuration {
         middle_m: single(swimmer.links.middle),

@@ -7,6 +7,34 @@
 //! ```text
 //!  bytes ─► Brain ─► pulses ─► Servos ─► joint angles ─► Tank ─► pose ─► Camera ─► tracking file
 //! ```
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//! use std::time::Duration;
+//! use gait_player::GaitTable;
+//! use host_link::Robot;
+//! use swimmer_files::{AnyGait, SwimmerFile};
+//! use swimmer_model::{Gait, Model, Tolerance, swim};
+//! use twin::{Twin, TwinConfig, TwinPort, WireSpeed};
+//!
+//! let file = SwimmerFile::preset("robot").unwrap();
+//! let twin = Twin::new(TwinConfig::new(&file, 1).with_ideal_servos())?;
+//! let mut robot = Robot::connect(TwinPort::new(twin, WireSpeed::robot()), 1).unwrap();
+//!
+//! let circle = AnyGait::circle(1.2);
+//! let table = GaitTable::from_fn(128, |u| circle.at(u).phi.into()).unwrap();
+//! robot.upload(table.bytes(), Duration::from_secs(60), |_| ControlFlow::Continue(())).unwrap();
+//! robot.arm(false).unwrap();
+//! robot.play(1, Duration::from_secs(10), false).unwrap();
+//! robot.wait_until_finished(|_| ControlFlow::Continue(())).unwrap();
+//!
+//! let twin = robot.into_port();
+//! let begun = twin.device().cycle_starts()[0].pose;
+//! let swum = (begun.inverse() * twin.device().pose()).position().norm();
+//! let designed = swim(&Model::new(&file.swimmer)?, &circle, &Tolerance::default()).displacement.norm();
+//! assert!(swum > 0.5 * designed, "{swum} of {designed}");
+//! # Ok::<(), swimmer_model::InvalidSwimmer>(())
+//! ```
 
 mod camera;
 mod config;

@@ -92,6 +92,12 @@ const MOST_TRIED: u64 = 100;
 ///
 /// # Errors
 /// [`ReplayError`].
+///
+/// ```
+/// use twin::{ReplayError, replay};
+///
+/// assert_eq!(replay(&[], None).unwrap_err(), ReplayError::NoClock);
+/// ```
 pub fn replay(frames: &[LinkFrame], table: Option<&GaitTable>) -> Result<Replayed, ReplayError> {
     let events = Events::read(frames)?;
     let mut life = Life::new(&events, table);

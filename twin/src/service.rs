@@ -25,6 +25,17 @@ const LONGEST_STEP: Duration = Duration::from_millis(20);
 ///
 /// # Errors
 /// A port or a robot that failed for good; clients that come and go are no failure.
+///
+/// ```
+/// use swimmer_files::SwimmerFile;
+/// use twin::{Twin, TwinConfig, serve};
+///
+/// let mut twin = Twin::new(TwinConfig::new(&SwimmerFile::preset("robot").unwrap(), 1)).unwrap();
+/// // Where there is no port there is nobody to serve.
+/// serve(&mut twin, &mut [], |_| true)?;
+/// assert_eq!(twin.now(), std::time::Duration::ZERO);
+/// # Ok::<(), std::io::Error>(())
+/// ```
 pub fn serve<R: VirtualRobot + ?Sized>(
     robot: &mut R,
     ports: &mut [&mut dyn Port],

@@ -6,6 +6,18 @@ use gait_player::servo::plant::{PlantParameters, ServoPlant};
 use nalgebra::Vector2;
 
 /// Both shafts, at rest straight at first.
+///
+/// ```
+/// use swimmer_files::SwimmerFile;
+/// use twin::{Servos, TwinConfig};
+///
+/// let config = TwinConfig::new(&SwimmerFile::preset("robot").unwrap(), 1).with_ideal_servos();
+/// let mut servos = Servos::new(config.shafts, config.plant);
+/// servos.set_pulses(Some([1_510_000; 2]));
+/// servos.advance(2.0, |_| {});
+/// // 10 µs of pulse at 0.0274 rad/µs, as near as the servos of this seed are made.
+/// assert!((servos.angles()[0].abs() - 0.274).abs() < 0.15, "{:?}", servos.angles());
+/// ```
 #[derive(Debug, Clone)]
 pub struct Servos {
     maps: [ServoMap; 2],

@@ -8,6 +8,20 @@ use swimmer_model::{InvalidSwimmer, Model, Pose, Swimmer};
 const LONGEST_PIECE: f64 = 0.02;
 
 /// A swimmer in still, very viscous fluid.
+///
+/// ```
+/// use nalgebra::Vector2;
+/// use swimmer_model::{Pose, Swimmer};
+/// use twin::Tank;
+///
+/// let mut tank = Tank::new(&Swimmer::robot(), Pose::identity())?;
+/// for (one, two) in [(0.1, 0.0), (0.1, 0.1), (0.0, 0.1), (0.0, 0.0)] {
+///     tank.move_joints(Vector2::new(one, two));
+/// }
+/// let swum = tank.pose();
+/// assert!(swum.position().norm() > 0.0 && swum.position().norm() < 1e-3, "a small loop, a small way");
+/// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Tank {
     model: Model<f64>,

@@ -48,6 +48,18 @@ struct Cameras {
 }
 
 /// A robot's servos and links in a tank under cameras.
+///
+/// ```
+/// use std::time::Duration;
+/// use swimmer_files::SwimmerFile;
+/// use twin::{TwinConfig, World};
+///
+/// let mut world = World::new(&TwinConfig::new(&SwimmerFile::preset("robot").unwrap(), 1))?;
+/// let before = world.pose();
+/// world.advance(Duration::from_secs(1));
+/// assert_eq!((world.now(), world.pose()), (Duration::from_secs(1), before), "without pulses nothing moves");
+/// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+/// ```
 #[derive(Debug)]
 pub struct World {
     servos: Servos,

@@ -1,5 +1,6 @@
 //! The project's own chores, so that no one has to remember a command line: `cargo xtask --help` lists them.
 
+mod api;
 mod bench;
 mod binary_info;
 mod book;
@@ -22,7 +23,7 @@ mod toolchain;
 mod tools;
 mod uf2;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -66,6 +67,12 @@ enum Chore {
     },
     /// Installs the RP2040 emulator that boots the firmware in tests (npm).
     Emulator,
+    /// Writes what each library offers to xtask/api, and tells which entry points have no example.
+    Api {
+        /// Write nothing: fail where a list is stale or an entry point has no example.
+        #[arg(long)]
+        check: bool,
+    },
     /// Builds the Python wheel, installs it under target/python, and tests it: pytest, mypy, stubtest, notebooks.
     Python,
     /// Runs our benches, then the Python peers beside them, and prints the ratios.
@@ -148,6 +155,7 @@ fn perform(chore: Chore) -> Outcome {
         Chore::Book => book::build(),
         Chore::Release { dry_run } => release::prepare(dry_run),
         Chore::Emulator => emulator::install(),
+        Chore::Api { check } => api::list(Path::new("."), check),
         Chore::Python => python::test(true),
         Chore::Bench { peers } => bench::run_all(&peers),
         Chore::Fuzz { target, seconds } => fuzz::run_targets(target.as_deref(), seconds),

@@ -26,6 +26,17 @@ const SPARE: f64 = 1e-5;
 ///
 /// # Errors
 /// As [`super::timing()`].
+///
+/// ```
+/// use forecast::timing_of_table;
+/// use swimmer_files::{AnyGait, GaitFile};
+/// use swimmer_model::{Model, Swimmer};
+///
+/// let model = Model::new(&Swimmer::<f64>::robot()).unwrap();
+/// let file = GaitFile::sampled(&AnyGait::circle(1.2), 200);
+/// let (timing, timed) = timing_of_table(&model, &file, 10.0, 3.5).unwrap();
+/// assert!(timing.shortest_period < 10.0 && timed.u.last() == Some(&1.0));
+/// ```
 pub fn timing_of_table(
     model: &Model<f64>,
     file: &GaitFile,
@@ -58,6 +69,17 @@ pub fn timing_of_table(
 ///
 /// # Errors
 /// As [`super::timing()`].
+///
+/// ```
+/// use forecast::{shortest_of_table, timing_of_table};
+/// use swimmer_files::{AnyGait, GaitFile};
+/// use swimmer_model::{Model, Swimmer};
+///
+/// let model = Model::new(&Swimmer::<f64>::robot()).unwrap();
+/// let file = GaitFile::sampled(&AnyGait::circle(1.2), 200);
+/// let (quickest, _) = shortest_of_table(&model, &file, 3.5).unwrap();
+/// assert!(timing_of_table(&model, &file, 0.9 * quickest.period, 3.5).is_err());
+/// ```
 pub fn shortest_of_table(
     model: &Model<f64>,
     file: &GaitFile,

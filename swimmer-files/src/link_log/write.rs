@@ -29,6 +29,17 @@ const CHUNK_NS: u64 = 500_000_000;
 
 /// Writes a link log, which grows under its own name. Dropped before [`LinkLogWriter::finish`], it ends all the same; without a
 /// single frame it leaves no file.
+///
+/// ```
+/// use std::time::Duration;
+/// use swimmer_files::{LinkLogWriter, read_link_log};
+///
+/// # let path = std::env::temp_dir().join(format!("link-log-{}.mcap", std::process::id()));
+/// LinkLogWriter::create(&path)?.finish()?;
+/// assert!(read_link_log(&path)?.frames.is_empty());
+/// # std::fs::remove_file(&path).unwrap();
+/// # Ok::<(), swimmer_files::LinkLogError>(())
+/// ```
 pub struct LinkLogWriter {
     /// Before the first frame.
     file: Option<File>,

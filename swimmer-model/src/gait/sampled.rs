@@ -11,6 +11,18 @@ use core::fmt;
 use nalgebra::Vector2;
 
 /// A closed curve through knots (uᵢ, Φᵢ), smooth but for marked corners. Borrows its samples.
+///
+/// ```
+/// use nalgebra::Vector2;
+/// use swimmer_model::{Gait, Sampled};
+///
+/// let angle = |k: u8| std::f64::consts::TAU * f64::from(k) / 60.0;
+/// let u: Vec<f64> = (0..60).map(|k| f64::from(k) / 60.0).collect();
+/// let phi: Vec<_> = (0..60).map(|k| Vector2::new(angle(k).cos(), angle(k).sin())).collect();
+/// let circle = Sampled::new(&u, &phi, &[])?;
+/// assert!((circle.at(0.123).phi.norm() - 1.0).abs() < 1e-6);
+/// # Ok::<(), swimmer_model::InvalidSamples>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampled<'a, T> {
     u: &'a [T],

@@ -26,6 +26,14 @@ const TOUCH: f64 = 1e-8;
 
 /// Share of a gait with crossing links ([`Links::cross`]), where side links that touch do not cross. Beginnings and ends are
 /// located exactly; a crossing that comes and goes between two of 256 looks may be missed.
+///
+/// ```
+/// use swimmer_model::{Circle, Swimmer, crossing_share};
+///
+/// let links = Swimmer::<f64>::purcell().links;
+/// assert_eq!(crossing_share(&links, &Circle { amplitude: 1.0 }).of_cycle, 0.0);
+/// assert!(crossing_share(&links, &Circle { amplitude: 3.1 }).of_cycle > 0.0);
+/// ```
 pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
     links: &Links<T>,
     gait: &G,

@@ -129,6 +129,18 @@ pub struct TrajectoryPoint<T> {
 }
 
 /// Swims one cycle and hands out `intervals + 1` instants evenly spaced in u, both ends included.
+///
+/// ```
+/// use swimmer_model::{Circle, Model, Swimmer, Tolerance, swim, trajectory};
+///
+/// let model = Model::new(&Swimmer::<f64>::robot())?;
+/// let circle = Circle { amplitude: 1.2 };
+/// let mut x = Vec::new();
+/// trajectory(&model, &circle, &Tolerance::default(), 100, |point| x.push(point.pose.x));
+/// let swum = swim(&model, &circle, &Tolerance::default());
+/// assert!((x[100] - swum.displacement.x).abs() < 1e-12);
+/// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+/// ```
 pub fn trajectory<T: Scalar, G: Gait<T> + ?Sized>(
     model: &Model<T>,
     gait: &G,

@@ -163,6 +163,16 @@ struct Scale<T> {
 /// resolved to the tolerance.
 ///
 /// The work is bounded: a curve that no reasonable number of panels resolves (noise, say) is finished coarsely.
+///
+/// ```
+/// use swimmer_model::{Circle, Model, Panels, Swimmer, Tolerance};
+///
+/// let model = Model::new(&Swimmer::<f64>::purcell())?;
+/// let circle = Circle { amplitude: 1.0 };
+/// let ends: Vec<f64> = Panels::new(&model, &circle, &Tolerance::default()).map(|panel| panel.end()).collect();
+/// assert_eq!(ends.last(), Some(&1.0));
+/// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+/// ```
 #[derive(Debug)]
 pub struct Panels<'a, T, G: ?Sized> {
     model: &'a Model<T>,

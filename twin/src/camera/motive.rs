@@ -23,6 +23,19 @@ pub struct TrackError {
 }
 
 /// A tracking file in the making. Dropped before [`finish`](Self::finish), it ends with the last rows that were written.
+///
+/// ```
+/// use swimmer_model::Pose;
+/// use twin::{Camera, CameraConfig, MotiveFile};
+///
+/// # let path = std::env::temp_dir().join(format!("motive-{}.csv", std::process::id()));
+/// let mut file = MotiveFile::create(&path, &CameraConfig::perfect(), 1)?;
+/// file.push(&Camera::new(CameraConfig::perfect(), 0.3, 1, 0).expose(&Pose::identity()))?;
+/// assert_eq!(file.finish()?, 1);
+/// assert!(std::fs::read_to_string(&path).unwrap().contains("Format Version,1.23"));
+/// # std::fs::remove_file(&path).unwrap();
+/// # Ok::<(), twin::TrackError>(())
+/// ```
 #[derive(Debug)]
 pub struct MotiveFile {
     path: PathBuf,

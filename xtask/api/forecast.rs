@@ -1,0 +1,263 @@
+// What `forecast` offers, without bodies and documentation: written by `cargo xtask api`, not by hand, and never compiled.
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Demand {
+    pub power: f64,
+    pub peak_power: f64,
+    pub torque: [f64; 2],
+    pub reynolds: f64,
+}
+#[derive(Debug, Clone)]
+pub struct Ends {
+    pub sphere_radius: [Model<f64>; 2],
+    pub chi: [Model<f64>; 2],
+    pub correlation: Option<f64>,
+}
+impl Ends {
+    pub fn new(
+        swimmer: &Swimmer<f64>,
+        sphere_radius: [f64; 2],
+        chi: [f64; 2],
+        correlation: Option<f64>,
+    ) -> Result<Self, InvalidSwimmer> {}
+}
+#[derive(Debug, Clone, PartialEq)]
+pub struct Forecast {
+    pub played: Played,
+    pub stages: Vec<Loss>,
+    pub way: Polyline,
+    pub reach: Reach,
+    pub gap: Gap,
+    pub designed_gap: Gap,
+    pub thickness: f64,
+    pub margin: f64,
+    pub verdict: Verdict,
+}
+impl Forecast {
+    pub fn displacement_error(&self, ends: &Ends) -> f64 {}
+}
+impl Forecast {
+    pub fn ends(&self) -> Option<(&Loss, &Loss)> {}
+    pub fn total_loss(&self) -> f64 {}
+    pub fn share(&self, loss: f64) -> Option<f64> {}
+    pub fn turn_radius(&self) -> f64 {}
+    pub fn warnings(&self) -> Vec<String> {}
+}
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ForecastError {
+    Table(TableError),
+    Range { reach: Reach, max_angle: f64 },
+    Period { period: f64 },
+    Servo { name: &'static str, value: f64, problem: &'static str },
+}
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loss {
+    pub stage: Stage,
+    pub displacement: Vector2<f64>,
+    pub rotation: f64,
+    pub delta_y: f64,
+    pub delta_theta: f64,
+    pub loss: f64,
+    pub turned: f64,
+}
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Meeting {
+    pub cycles: f64,
+    pub part: Part,
+    pub at: Vector2<f64>,
+}
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Part {
+    BackTip,
+    BackJoint,
+    FrontJoint,
+    FrontTip,
+    Sphere,
+}
+impl Part {
+    pub fn word(self) -> &'static str {}
+}
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Played {
+    pub servos: Servos,
+    pub period: f64,
+    pub knots: usize,
+}
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    pub u: f64,
+    pub joint: usize,
+    pub angle: f64,
+}
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Servos {
+    pub file: ServoFile,
+    pub pulse_step_ns: u32,
+}
+impl Servos {
+    pub const ROBOT_PULSE_STEP_NS: u32 = 320;
+    pub fn on_the_robot(file: ServoFile) -> Self {}
+    pub fn largest_angle(&self) -> f64 {}
+}
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Stage {
+    Designed,
+    Interpolated,
+    Rounded,
+    Ticked,
+    Pulsed,
+    RateLimited,
+    Played,
+}
+impl Stage {
+    pub const ALL: [Self; 7] = [
+        Self::Designed,
+        Self::Interpolated,
+        Self::Rounded,
+        Self::Ticked,
+        Self::Pulsed,
+        Self::RateLimited,
+        Self::Played,
+    ];
+    pub fn word(self) -> &'static str {}
+}
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tank {
+    pub length: f64,
+    pub width: f64,
+}
+#[derive(Debug, Clone, PartialEq)]
+pub struct Timing {
+    pub period: f64,
+    pub shortest_period: f64,
+    pub max_rate: f64,
+    pub at_limit: f64,
+    pub rate_at_constant_power: f64,
+    pub energy: f64,
+    pub efficiency_loss: f64,
+    pub power: f64,
+}
+impl Timing {
+    pub fn fraction_at(&self, u: f64) -> f64 {}
+    pub fn power_curve(&self) -> impl Iterator<Item = (f64, f64)> + '_ {}
+    pub fn retime<G: Gait<f64> + ?Sized>(
+        &self,
+        gait: &G,
+    ) -> Result<AnyGait, InvalidSamples> {}
+    #[must_use]
+    pub fn retime_file(&self, file: &GaitFile) -> GaitFile {}
+}
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum TimingError {
+    Rate { rate: f64 },
+    Period { period: f64 },
+    TooFast { period: f64, rate: f64, shortest: f64 },
+    Still,
+    Samples(InvalidSamples),
+}
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    pub refused: Option<String>,
+    pub min_period: f64,
+}
+pub fn demand<G: Gait<f64> + ?Sized>(
+    model: &Model<f64>,
+    fluid: &Fluid,
+    gait: &G,
+    period: f64,
+) -> Demand {}
+pub fn forecast<G: Gait<f64> + ?Sized>(
+    model: &Model<f64>,
+    gait: &G,
+    played: &Played,
+) -> Result<Forecast, ForecastError> {}
+pub fn reach<G: Gait<f64> + ?Sized>(gait: &G) -> Reach {}
+pub fn shortest_of_table(
+    model: &Model<f64>,
+    file: &GaitFile,
+    max_rate: f64,
+) -> Result<(Timing, GaitFile), TimingError> {}
+pub fn shortest_period<G: Gait<f64> + ?Sized>(
+    gait: &G,
+    max_rates: [f64; 2],
+) -> Result<f64, TimingError> {}
+pub fn table<G: Gait<f64> + ?Sized>(
+    gait: &G,
+    knots: usize,
+) -> Result<GaitTable, TableError> {}
+pub fn timing<G: Gait<f64> + ?Sized>(
+    model: &Model<f64>,
+    gait: &G,
+    period: f64,
+    max_rate: f64,
+) -> Result<Timing, TimingError> {}
+pub fn timing_of_table(
+    model: &Model<f64>,
+    file: &GaitFile,
+    period: f64,
+    max_rate: f64,
+) -> Result<(Timing, GaitFile), TimingError> {}
+pub fn until_wall<G: Gait<f64> + ?Sized>(
+    model: &Model<f64>,
+    gait: &G,
+    tank: &Tank,
+    start: &Pose<f64>,
+) -> Option<Meeting> {}
+pub mod certainty {
+    pub use crate::Ends;
+}
+pub mod fluid {
+    pub use crate::Demand;
+    pub use crate::demand;
+}
+pub mod losses {
+    pub use crate::Forecast;
+    pub use crate::ForecastError;
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Gap {
+        pub distance: f64,
+        pub phi: Vector2<f64>,
+    }
+    pub use crate::Loss;
+    pub use crate::Played;
+    pub use crate::Servos;
+    pub use crate::Stage;
+    pub use crate::Verdict;
+    pub use crate::forecast;
+}
+pub mod path {
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Polyline {}
+    impl Polyline {
+        pub fn new(vertices: impl IntoIterator<Item = Vector2<f64>>) -> Self {}
+        pub fn vertices(&self) -> &[Vector2<f64>] {}
+    }
+    impl Gait<f64> for Polyline {}
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct TableCurve {}
+    impl TableCurve {
+        pub fn new(knots: Vec<Vector2<f64>>) -> Self {}
+    }
+    impl Gait<f64> for TableCurve {}
+}
+pub mod reach {
+    pub use crate::Reach;
+    pub use crate::reach;
+}
+pub mod table {
+    pub use crate::table;
+}
+pub mod tank {
+    pub use crate::Meeting;
+    pub use crate::Part;
+    pub use crate::Tank;
+    pub use crate::until_wall;
+}
+pub mod timing {
+    pub use crate::Timing;
+    pub use crate::TimingError;
+    pub use crate::shortest_of_table;
+    pub use crate::shortest_period;
+    pub use crate::timing;
+    pub use crate::timing_of_table;
+}
