@@ -1,6 +1,9 @@
 //! The solver as a whole: known gaits, the maximum principle, bounds, and what it must refuse.
 
+use std::cell::Cell;
+
 use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
 use swimmer_model::{Links, Model, Swimmer, TangentialDrag};
 
 use super::*;
@@ -252,42 +255,49 @@ fn what_is_wrong_is_said() {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
-
-    /// Any swimmer, any quarter curve, any bound: an answer that its own re-integration confirms, or a reason.
-    #[test]
-    fn never_a_wrong_gait(
-        ratio in 0.3..3.0_f64,
-        chi in 1.05..6.0_f64,
-        sphere in 0.0..1.2_f64,
-        coefficients in prop::array::uniform3(prop::array::uniform2(-2.0..4.0_f64)),
-        max_angle in prop::option::of(0.3..4.0_f64),
-        (forwards, no_overlap) in any::<(bool, bool)>(),
-        (elements, degree) in (1..24_usize, 2..9_usize),
-    ) {
+/// Any swimmer, any quarter curve, any bound: an answer that its own re-integration confirms, or a reason.
+#[test]
+fn never_a_wrong_gait() {
+    let swimmers = (0.3..3.0_f64, 1.05..6.0_f64, 0.0..1.2_f64);
+    let coefficients = prop::array::uniform3(prop::array::uniform2(-2.0..4.0_f64));
+    let bounds = (prop::option::of(0.3..4.0_f64), any::<bool>());
+    let meshes = (any::<bool>(), 1..24_usize, 2..9_usize);
+    let mut runner = TestRunner::new(ProptestConfig::with_cases(64));
+    let solved = Cell::new(0);
+    let problems = (swimmers, coefficients, bounds, meshes);
+    let ran = runner.run(&problems, |(swimmer, coefficients, bounds, mesh)| {
+        let (ratio, chi, sphere) = swimmer;
         let swimmer = Swimmer {
-            links: Links { middle: 1.0, front: ratio, back: ratio },
+            links: Links {
+                middle: 1.0,
+                front: ratio,
+                back: ratio,
+            },
             chi,
             tangential_drag: TangentialDrag::OverViscosity(1.0),
             sphere_radius: sphere,
         };
         let model = Model::new(&swimmer).unwrap();
+        let (forwards, elements, degree) = mesh;
         let mut problem = CollocationProblem::new(&model, if forwards { 1.0 } else { -1.0 });
-        problem.bounds.max_angle = max_angle;
-        problem.bounds.no_overlap = no_overlap;
+        (problem.bounds.max_angle, problem.bounds.no_overlap) = bounds;
         (problem.elements, problem.degree, problem.tolerance) = (elements, degree, 1e-6);
         let [a, b, c] = coefficients;
         if let Ok(guess) = QuarterGuess::fourier(&[a, b.map(|v| 0.2 * v), c.map(|v| 0.05 * v)])
             && let Ok(solution) = solve(&problem, &guess)
         {
+            solved.set(solved.get() + 1);
             prop_assert!((solution.efficiency_again / solution.efficiency - 1.0).abs() < 1e-4);
             prop_assert!(solution.final_x * problem.sign > 0.0);
-            if let Some(max) = max_angle {
+            if let Some(max) = problem.bounds.max_angle {
                 for node in &solution.nodes {
                     prop_assert!(node.state[0].abs() <= max && node.state[1].abs() <= max);
                 }
             }
         }
-    }
+        Ok(())
+    });
+    ran.unwrap();
+    println!("{} of 64 solved", solved.get());
+    assert!(solved.get() >= 5, "only {} of 64 solved", solved.get());
 }

@@ -65,7 +65,11 @@ impl<'a> Search<'a> {
                     return answer;
                 }
             }
-            let next = (done + BATCH).min(self.groups.len());
+            // Beside the fastest that are left, only those that may turn out as fast.
+            let left = self.groups[done..].iter().take(BATCH);
+            let fastest = self.groups[done].speed();
+            let worth = left.take_while(|group| group.speed() >= HOPELESS * fastest);
+            let next = done + worth.count().max(1);
             self.finish(done..next);
             done = next;
             watch(ROUGH_SHARE + (1.0 - ROUGH_SHARE) * done as f64 / self.groups.len() as f64);
