@@ -49,6 +49,9 @@ pub(crate) struct Report {
     pub(crate) displacement_predicted_m: f64,
     /// Tracked displacement of one cycle, m, with its deviation between cycles.
     pub(crate) displacement_tracked_m: (f64, f64),
+    /// Tracked speed of the gait that is made for speed, m/s, and how many times as fast it is as the optimised gait, both at the
+    /// servos' full rate.
+    pub(crate) fastest: (f64, f64),
     /// The bound on the joints under which the robot took the gait, and the one of its servos, rad.
     pub(crate) bounds: (f64, f64),
     /// What lies in the folder beside the report: file name and what it holds.

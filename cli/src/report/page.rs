@@ -153,7 +153,9 @@ fn cards(html: &mut String, report: &Report) {
         html,
         "<dl><div><dt>predicted</dt><dd>{:.2}<small> mm per cycle</small></dd></div>\
          <div><dt>tracked</dt><dd>{:.2}<small> ± {:.2} mm</small></dd></div>\
-         <div><dt>prediction − track</dt><dd>{}</dd></div></dl></section>",
+         <div><dt>prediction − track</dt><dd>{}</dd></div>\
+         <div><dt>fastest gait, both at full rate</dt><dd>{:.2} ×<small> as fast, {:.2} mm a second</small></dd></div>\
+         </dl></section>",
         report.displacement_predicted_m * 1e3,
         tracked * 1e3,
         deviation * 1e3,
@@ -163,6 +165,8 @@ fn cards(html: &mut String, report: &Report) {
                 quantity::deviation,
             )
         ),
+        report.fastest.1,
+        report.fastest.0 * 1e3,
     );
 }
 

@@ -70,6 +70,10 @@ pub(super) fn report(round: &Finished) -> Outcome<Report> {
         swum,
         predicted: predicted(round)?,
         displacement_predicted_m: round.predicted.x_m,
+        fastest: (
+            round.race.fastest.speed_tracked_m_per_s,
+            round.race.times_as_fast,
+        ),
         displacement_tracked_m: (round.swum.answer.x_m, round.swum.answer.x_sd_m),
         bounds: round.bounds,
         files: files(),
@@ -270,6 +274,14 @@ fn files() -> Vec<(String, String)> {
         (FITTED, "the swimmer with the fitted drag"),
         (BEST, "the optimised gait"),
         (BEST_TRACK, "what the cameras saw of it"),
+        (
+            "fastest.gait, fastest.csv",
+            "the gait made for speed, at the servos' full rate",
+        ),
+        (
+            "farthest-at-full-rate.gait, farthest-at-full-rate.csv",
+            "the optimised gait at that rate",
+        ),
         (
             LINK_LOG,
             "every frame on the link, both ways (MCAP, for Foxglove)",
