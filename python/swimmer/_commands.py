@@ -22,16 +22,25 @@ def simulate(
     period: float | None = None,
     knots: int | None = None,
     pulse_step: int | None = None,
+    picture: Text | None = None,
 ) -> Simulation:
     """Swims a gait in the model: `displacement_over_length`, `rotation_rad`, `efficiency`, … of the first cycle, and the `trajectory`.
 
-    With `played` also what the robot will make of it, at `period` seconds a cycle.
+    With `played` also what the robot will make of it, at `period` seconds a cycle. `picture` is a new file: snapshots along the way
+    as .svg or .png, one cycle in motion as .gif.
     """
     with Run("simulate") as run:
         run.swimmer(swimmer)
         run.gait(gait)
         run.options(
-            {"cycles": cycles, "played": played, "period": period, "knots": knots, "pulse_step": pulse_step}
+            {
+                "cycles": cycles,
+                "played": played,
+                "period": period,
+                "knots": knots,
+                "pulse_step": pulse_step,
+                "picture": picture,
+            }
         )
         table = run.place("trajectory.csv")
         run.words(f"--trajectory={table}")
@@ -77,7 +86,8 @@ def certify(
 def atlas(
     swimmer: Swimmer | Text,
     *,
-    objective: Literal["displacement", "efficiency"],
+    objective: Literal["displacement", "efficiency", "speed"],
+    max_rate: Angle | Sequence[Angle] | None = None,
     max_angle: Angle | None = None,
     no_overlap: bool = False,
     clearance: float | None = None,
@@ -90,6 +100,7 @@ def atlas(
 ) -> Atlas:
     """Every local optimum that seeded starts find, with and without the paper's symmetries, each certified: `optima`, best first.
 
+    `max_rate`, an angle a second, one for both servos or one each, is needed for speed and tells the speed of the others.
     `continue_="max-angle=2.8..1.2"` follows them as a parameter changes; `gait` names those to follow.
     """
     with Run("atlas") as run:
@@ -97,6 +108,7 @@ def atlas(
         run.options(
             {
                 "objective": objective,
+                "max_rate": max_rate,
                 "max_angle": max_angle,
                 "no_overlap": no_overlap,
                 "clearance": clearance,

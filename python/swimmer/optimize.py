@@ -89,8 +89,12 @@ def speed(
     no_overlap: bool = False,
     clearance: float | None = None,
     playable: bool = False,
+    front: Text | None = None,
 ) -> OptimalGait:
-    """The fastest gait under servos' rates (an angle a second, one for both or one each): `speed_over_length_per_s`, `period_s`, …"""
+    """The fastest gait under servos' rates (an angle a second, one for both or one each): `speed_over_length_per_s`, `period_s`, …
+
+    `front` is a new file (.svg or .csv): displacement of a cycle against speed, over the period.
+    """
     return _optimal("speed", swimmer, locals())
 
 

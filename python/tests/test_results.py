@@ -123,7 +123,7 @@ def test_keywords_are_the_commands_options(function: object, path: list[str], ou
     have = {name.rstrip("_").replace("_", "-") for name in inspect.signature(function).parameters} - {"file"}  # type: ignore[arg-type]
     options = set(_swimmer.options(path))
     assert options, path
-    assert have == options - ours - ({"picture"} & options)
+    assert have == options - ours
 
 
 def test_calls_from_several_threads_do_not_mix(purcell: sw.Swimmer) -> None:
