@@ -271,7 +271,7 @@ mod tests {
         assert!(free.efficiency_constant_power.is_none());
         let (timed, swum) = told(ServoTiming {
             max_rate: Some(0.5),
-            period: Some(15.1012),
+            period: Some(15.12),
         });
         assert!((timed.efficiency / swum - 1.0).abs() < 1e-9, "{swum}");
         assert!(timed.efficiency < 0.95 * free.efficiency);
