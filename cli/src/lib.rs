@@ -26,6 +26,7 @@ mod quantity;
 mod raster;
 mod recording;
 mod report;
+mod threads;
 mod virtual_robot;
 
 use std::ffi::OsString;

@@ -6,7 +6,6 @@ mod picture;
 mod speed;
 
 use std::fmt;
-use std::num::NonZero;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -24,6 +23,7 @@ use crate::output::Output;
 use crate::own_robot::{say_how_many_are_beyond, servo_rates};
 use crate::progress::Progress;
 use crate::quantity;
+use crate::threads;
 
 use super::optimize::answer::{Arc, Evidence, Figures, arcs};
 use kept::{drawn_in, saved};
@@ -126,7 +126,7 @@ impl Atlas {
             bounds,
             starts,
             seed: self.seed,
-            threads: std::thread::available_parallelism().map_or(1, NonZero::get),
+            threads: threads::available(),
             ..AtlasProblem::new(swimmer, objective)
         };
         let found = atlas_watched(&asked, &|share| progress.at_share(share))?;

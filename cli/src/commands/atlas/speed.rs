@@ -1,7 +1,6 @@
 //! `swimmer atlas --objective speed`: every locally fastest gait that the starts lead to.
 
 use std::fmt;
-use std::num::NonZero;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -18,6 +17,7 @@ use crate::new_folder::NewFolder;
 use crate::output::Output;
 use crate::progress::Progress;
 use crate::quantity;
+use crate::threads;
 
 impl Atlas {
     pub(super) fn of_speed(self, file: &SwimmerFile, output: Output) -> Outcome {
@@ -41,7 +41,7 @@ impl Atlas {
             bounds: self.bounds.of(file),
             starts,
             seed: self.seed,
-            threads: std::thread::available_parallelism().map_or(1, NonZero::get),
+            threads: threads::available(),
             ..SpeedProblem::new(file.swimmer, rates)
         };
         let found = problem.atlas(&|share| progress.at_share(share))?;
@@ -173,7 +173,7 @@ impl fmt::Display for SpeedAnswer {
                 line.speed_over_length_per_s,
                 line.displacement_over_length,
                 line.period_s,
-                format!("{:.3}°", tidy(line.heading_rad.to_degrees())),
+                quantity::angle(line.heading_rad),
                 line.found,
                 quantity::crossing(line.links_cross),
             )?;
@@ -192,9 +192,4 @@ impl fmt::Display for SpeedAnswer {
         }
         Ok(())
     }
-}
-
-/// Rounded to three decimals, without the sign of a zero.
-fn tidy(degrees: f64) -> f64 {
-    (degrees * 1e3).round() / 1e3 + 0.0
 }

@@ -13,6 +13,7 @@ use crate::arguments::model;
 use crate::bounds::playable;
 use crate::commands::calibrate::single_run;
 use crate::failure::{Failure, Outcome};
+use crate::threads;
 
 /// Both, on the way from the fitted model to the tank.
 #[derive(Debug, Clone, Serialize)]
@@ -40,7 +41,7 @@ impl Round<'_> {
         let rate = self.servo.max_rate;
         let problem = SpeedProblem {
             bounds: playable(Bounds::default(), fitted),
-            threads: std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
+            threads: threads::available(),
             ..SpeedProblem::new(fitted.swimmer, [rate, rate])
         };
         let found = problem.watched(&|_| ())?;

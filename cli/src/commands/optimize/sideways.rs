@@ -1,7 +1,6 @@
 //! `swimmer optimize sideways`: the gait that moves most across its heading, without turning.
 
 use std::fmt;
-use std::num::NonZero;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -14,6 +13,7 @@ use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::progress::Progress;
 use crate::quantity::{self, Rows};
+use crate::threads;
 
 use super::answer::{Arc, Closing, arcs, say_if_beyond, unfolded};
 
@@ -41,7 +41,7 @@ impl Sideways {
         let progress = Progress::of_a_whole("looking for loops");
         let asked = SidewaysProblem {
             bounds: self.bounds.of(&file),
-            threads: std::thread::available_parallelism().map_or(1, NonZero::get),
+            threads: threads::available(),
             ..SidewaysProblem::new(file.swimmer)
         };
         let found = sideways_watched(&asked, &|share| progress.at_share(share))?;

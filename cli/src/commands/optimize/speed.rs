@@ -1,7 +1,6 @@
 //! `swimmer optimize speed`: the fastest gait that servos can play.
 
 use std::fmt;
-use std::num::NonZero;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -20,6 +19,7 @@ use super::answer::{Arc, Closing, arc_rows, arcs, unfolded};
 use super::front::{FrontAnswer, FrontFile};
 use crate::new_file::may_be_written;
 use crate::own_robot::{PlayedSpeed, servo_rates};
+use crate::threads;
 
 /// Find the fastest gait: most net displacement per unit of time, without net rotation, with servos that turn no faster than a
 /// given rate
@@ -84,7 +84,7 @@ impl Speed {
                 Heading::Sideways => HeadingRule::Sideways,
             },
             period: self.period,
-            threads: std::thread::available_parallelism().map_or(1, NonZero::get),
+            threads: threads::available(),
             ..SpeedProblem::new(file.swimmer, rates)
         };
         let watch = |share| progress.at_share(share);
@@ -210,10 +210,7 @@ impl fmt::Display for Answer {
         .row("period", format!("{:.6} s", self.period_s))
         .row(
             "leads",
-            format!(
-                "{} off the mean heading",
-                quantity::angle(tidy(self.heading_rad))
-            ),
+            format!("{} off the mean heading", quantity::angle(self.heading_rad)),
         )
         .row(
             "found",
@@ -277,11 +274,6 @@ impl fmt::Display for Answer {
             quantity::length(self.speed_m_per_s),
         )
     }
-}
-
-/// Without the sign of a zero.
-fn tidy(angle: f64) -> f64 {
-    (angle * 1e9).round() / 1e9 + 0.0
 }
 
 impl From<SpeedError> for Failure {

@@ -1,6 +1,5 @@
 //! Servo limits on the timing of an optimised gait: `--max-rate` and `--period`.
 
-use std::num::NonZero;
 use std::path::Path;
 
 use forecast::{Timing, TimingError, timing_of_table};
@@ -13,6 +12,7 @@ use super::better::command;
 use crate::arguments::{rate, seconds};
 use crate::failure::{Failure, Outcome};
 use crate::quantity::{self, Rows};
+use crate::threads;
 
 /// How fast the servos are, and in which period the gait shall run.
 #[derive(Debug, clap::Args)]
@@ -76,7 +76,7 @@ impl Faster {
         };
         let problem = SpeedProblem {
             bounds,
-            threads: std::thread::available_parallelism().map_or(1, NonZero::get),
+            threads: threads::available(),
             ..SpeedProblem::new(gait.swimmer, [rate; 2])
         };
         let found = problem.watched(&|_| ()).ok()?;
