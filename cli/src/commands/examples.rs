@@ -3,7 +3,7 @@
 use clap::Command;
 
 /// The words of a command, and what is typed after `swimmer`.
-pub(super) const EXAMPLES: [(&str, &str); 42] = [
+pub(super) const EXAMPLES: [(&str, &str); 43] = [
     ("demo", "demo --swimmer robot -o demo"),
     (
         "simulate",
@@ -38,6 +38,7 @@ pub(super) const EXAMPLES: [(&str, &str); 42] = [
         "height-map",
         "height-map --swimmer robot -o map.svg --gait best.gait",
     ),
+    ("lab", "lab --port twin"),
     ("paper", "paper -o paper"),
     ("swimmers", "swimmers robot"),
     ("gaits", "gaits"),

@@ -6,6 +6,7 @@ pub(crate) mod certify;
 pub(crate) mod demo;
 mod examples;
 pub(crate) mod height_map;
+pub(crate) mod lab;
 pub(crate) mod optimize;
 pub(crate) mod paper;
 pub(crate) mod robot;
@@ -61,6 +62,7 @@ pub(crate) enum Command {
     Paper(paper::Paper),
     Robot(robot::Robot),
     Twin(twin::Twin),
+    Lab(lab::Lab),
     Calibrate(calibrate::Calibrate),
     Tracks(tracks::Tracks),
     Swimmers(swimmers::Swimmers),
@@ -112,6 +114,7 @@ pub(crate) fn run(command: Command, output: Output) -> Outcome {
         Command::Atlas(atlas) => atlas.run(output),
         Command::Robot(robot) => robot.run(output),
         Command::Twin(twin) => twin.run(output),
+        Command::Lab(lab) => lab.run(output),
         Command::Tracks(tracks) => tracks.run(output),
         Command::Swimmers(swimmers) => swimmers.run(output),
         Command::Gaits(gaits) => {

@@ -9,6 +9,7 @@ mod flash;
 mod hc05;
 mod info;
 mod key;
+mod lent;
 mod log;
 mod motion;
 mod playing;
@@ -29,6 +30,7 @@ use swimmer_files::GaitSpec;
 
 use self::access::{Access, Met};
 use self::answers::Doing;
+pub(crate) use self::lent::{Heard, LentPort, PortToLend};
 use self::port::Pace;
 use self::port_owner::Ask;
 pub(crate) use self::upload::table_of;

@@ -6,12 +6,12 @@ use std::sync::OnceLock;
 
 use crate::binary::typed;
 
-/// A folder with `good.gait`, `good.toml`, `good.key`, `good.mcap`, `image.uf2`, `run.csv`, `wide.csv`, `campaign.toml` and a boot loader's `drive`, and a `wrong.*`
+/// A folder with `good.gait`, `good.toml`, `good.key`, `page.html`, `good.mcap`, `image.uf2`, `run.csv`, `wide.csv`, `campaign.toml` and a boot loader's `drive`, and a `wrong.*`
 /// for each kind.
 pub(crate) fn laboratory() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-    for ending in ["toml", "gait", "csv", "uf2", "mcap", "key"] {
+    for ending in ["toml", "gait", "csv", "uf2", "mcap", "key", "html"] {
         write(&format!("wrong.{ending}"), "this is\nsomething else\n");
     }
     write(
@@ -26,6 +26,10 @@ pub(crate) fn laboratory() -> tempfile::TempDir {
     write(
         "good.gait",
         &format!("# swimmer gait file, version 1\nu,phi1,phi2\n{circle}"),
+    );
+    write(
+        "page.html",
+        "<meta name=\"swimmer-lab\" content=\"0.1.0 0123456\">\n",
     );
     write("good.key", "000102030405060708090a0b0c0d0e0f\n");
     for (name, track) in ["run.csv", "wide.csv"].iter().zip(tracks()) {

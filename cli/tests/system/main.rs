@@ -12,6 +12,7 @@ mod flash;
 mod hc05;
 #[cfg(unix)]
 mod hung_holder;
+mod lab;
 #[cfg(unix)]
 mod laboratory;
 mod left_behind;

@@ -70,7 +70,7 @@ impl Row {
     }
 }
 
-const ROWS: [Row; 43] = [
+const ROWS: [Row; 45] = [
     row("demo --swimmer good.toml -o out")
         .reads("good.toml")
         .writes("out")
@@ -117,6 +117,12 @@ const ROWS: [Row; 43] = [
         .reads("campaign.toml")
         .writes("out"),
     row("twin --pty link --track k.csv").writes("k.csv").lasts(),
+    row("lab --port twin --page page.html --no-browser")
+        .reads("page.html")
+        .lasts(),
+    row("lab --export out.html --page page.html")
+        .reads("page.html")
+        .writes("out.html"),
     row("robot info --port twin"),
     row("robot status --port twin --log l.mcap").writes("l.mcap"),
     row("robot configure --swimmer good.toml --port twin").reads("good.toml"),

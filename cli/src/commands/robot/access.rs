@@ -269,7 +269,7 @@ fn reach(name: &str, means: &Means) -> Outcome<Reached> {
 }
 
 /// [`reach`], for what needs the port for itself: another `swimmer` may be about to end.
-fn reach_alone(name: &str, means: &Means) -> Outcome<Opened> {
+pub(super) fn reach_alone(name: &str, means: &Means) -> Outcome<Opened> {
     let begun = Instant::now();
     loop {
         match reach(name, means)? {

@@ -14,7 +14,7 @@ use host_link::Robot;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::super::port::AnyPort;
-use super::relay::Ask;
+use super::relay::{Ask, Relayed};
 use super::socket::{HEARD, folder, is_held, note, socket_name};
 
 /// A process that asks and says nothing is not waited for.
@@ -28,13 +28,25 @@ const LISTEN: Timespec = Timespec {
 /// Holds the port, and hears what others ask.
 pub(in super::super) struct Holder {
     open: Option<Open>,
-    asked: Vec<(Ask, UnixStream)>,
+    asked: Vec<(Ask, Asker)>,
+}
+
+/// Another process, which waits for an answer.
+pub(in super::super) struct Asker(UnixStream);
+
+impl Asker {
+    /// Answers. Whoever asked may have gone; what was asked is done.
+    pub(in super::super) fn answer(mut self, answer: &Relayed) {
+        let _ = serde_json::to_string(answer)
+            .map_err(io::Error::other)
+            .and_then(|line| writeln!(self.0, "{line}"));
+    }
 }
 
 /// A socket at which a thread listens.
 struct Open {
     path: PathBuf,
-    heard: mpsc::Receiver<(Ask, UnixStream)>,
+    heard: mpsc::Receiver<(Ask, Asker)>,
     ended: Arc<AtomicBool>,
 }
 
@@ -63,18 +75,17 @@ impl Holder {
         !self.asked.is_empty()
     }
 
-    /// Does all that was asked, the most urgent first.
-    pub(in super::super) fn serve(&mut self, robot: &mut Robot<AnyPort>) {
-        if !self.asked() {
-            return;
-        }
+    /// What was asked and by whom, the most urgent first.
+    pub(in super::super) fn take_asked(&mut self) -> Vec<(Ask, Asker)> {
+        self.asked();
         self.asked.sort_by_key(|(ask, _)| *ask as u8);
-        for (ask, mut stream) in self.asked.drain(..) {
-            let answer = ask.of(robot);
-            // Whoever asked may have gone; what was asked is done.
-            let _ = serde_json::to_string(&answer)
-                .map_err(io::Error::other)
-                .and_then(|line| writeln!(stream, "{line}"));
+        std::mem::take(&mut self.asked)
+    }
+
+    /// Does all that was asked.
+    pub(in super::super) fn serve(&mut self, robot: &mut Robot<AnyPort>) {
+        for (ask, asker) in self.take_asked() {
+            asker.answer(&ask.of(robot));
         }
     }
 }
@@ -92,7 +103,7 @@ impl Open {
                 while let Ok((stream, _)) = listener.accept() {
                     if let Some(ask) = hear(&stream) {
                         // The holder may be leaving; then the stream is closed, and who asked looks again.
-                        let _ = hears.send((ask, stream));
+                        let _ = hears.send((ask, Asker(stream)));
                     }
                 }
             }

@@ -112,11 +112,7 @@ impl Ask {
             Self::Introduce => Introduction::of(robot).map(|told| Relayed::data(&told)),
             Self::News => Ok(Relayed::data(&News::of(robot))),
         };
-        answered.unwrap_or_else(|error| Relayed {
-            done: false,
-            text: error.to_string(),
-            answer: Value::Null,
-        })
+        answered.unwrap_or_else(|error| Relayed::refused(error.to_string()))
     }
 }
 
@@ -144,6 +140,15 @@ impl Relayed {
             done: true,
             text: answer.to_string(),
             answer: serde_json::to_value(answer).unwrap_or(Value::Null),
+        }
+    }
+
+    /// No, and why.
+    pub(in super::super) fn refused(reason: String) -> Self {
+        Self {
+            done: false,
+            text: reason,
+            answer: Value::Null,
         }
     }
 

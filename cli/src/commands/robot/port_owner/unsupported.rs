@@ -24,7 +24,22 @@ impl Holder {
     }
 
     /// Nobody asks.
+    pub(in super::super) fn take_asked(&mut self) -> Vec<(Ask, Asker)> {
+        Vec::new()
+    }
+
+    /// Nobody asks.
     pub(in super::super) fn serve(&mut self, _robot: &mut Robot<AnyPort>) {}
+}
+
+/// Another process that asks, which cannot be here.
+pub(in super::super) enum Asker {}
+
+impl Asker {
+    /// Cannot be.
+    pub(in super::super) fn answer(self, _answer: &Relayed) {
+        match self {}
+    }
 }
 
 /// Another `swimmer`, which cannot be known here.

@@ -1,0 +1,223 @@
+//! `swimmer lab`: gives the lab page to a browser, and lends it the robot's port where the browser has no way of its own.
+
+mod gate;
+mod hub;
+mod page;
+mod visitor;
+
+use std::fmt;
+use std::io::{self, IsTerminal as _};
+use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream, ToSocketAddrs as _};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, mpsc};
+use std::thread;
+use std::time::Duration;
+
+use serde::Serialize;
+use swimmer_files::write_atomically;
+
+use self::gate::{Gate, Token};
+use self::visitor::House;
+use crate::commands::robot::PortToLend;
+use crate::failure::{Failure, Outcome};
+use crate::interrupt::Interrupt;
+use crate::new_file::may_be_written;
+use crate::output::{Output, aside, for_scripts};
+
+/// How often the listening thread looks whether it shall end.
+const LOOK: Duration = Duration::from_millis(20);
+/// Connections at a time; a page needs one, and a browser holds a few more in hand.
+const MOST_VISITORS: usize = 32;
+
+/// Open the lab page: height map, gaits to drag, and the robot
+///
+/// The page works alone, opened from disk; served, it also reaches a robot that --port names, from any browser on this machine.
+/// The address that is printed holds a token: who has it may drive. Ctrl-C ends it, and stops a robot that a page drives.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Lab {
+    /// Write the page to this file and end; it opens from disk, without a server
+    #[arg(long, value_name = "FILE.html", conflicts_with_all = ["port", "listen", "no_browser"])]
+    export: Option<PathBuf>,
+    /// The page, in place of the one that `cargo xtask lab` made or that came with this program
+    #[arg(long, value_name = "FILE.html")]
+    page: Option<PathBuf>,
+    /// Serve here, in place of a free port of the loopback: other machines reach what is no loopback address
+    #[arg(
+        long,
+        value_name = "HOST:PORT",
+        default_value = "127.0.0.1:0",
+        hide_default_value = true
+    )]
+    listen: String,
+    /// Start no browser
+    #[arg(long)]
+    no_browser: bool,
+    #[command(flatten)]
+    port: PortToLend,
+}
+
+#[derive(Debug, Serialize)]
+struct Exported {
+    page: String,
+    bytes: usize,
+}
+
+impl fmt::Display for Exported {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} ({} kB): open it in a browser.",
+            self.page,
+            self.bytes / 1000
+        )
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Served {
+    /// Connections of browsers.
+    connections: u64,
+}
+
+impl fmt::Display for Served {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Served {} connections.", self.connections)
+    }
+}
+
+impl Lab {
+    /// Serves until Ctrl-C, or writes the page.
+    pub(crate) fn run(self, output: Output) -> Outcome {
+        self.export.as_deref().map_or(Ok(()), may_be_written)?;
+        let page = page::load(self.page.as_deref())?;
+        if let Some(path) = &self.export {
+            write_atomically(path, page.as_bytes())?;
+            output.answer(&Exported {
+                page: path.display().to_string(),
+                bytes: page.len(),
+            });
+            return Ok(());
+        }
+        let interrupt = Interrupt::install_with_a_robot()?;
+        let listener = listen(&self.listen)?;
+        let mut port = self.port.open("swimmer lab")?;
+        let gate = Gate {
+            token: Token::new()?,
+            name: host_name(&self.listen),
+            has_robot: port.is_some(),
+        };
+        let address = address(&listener, &gate)?;
+        output.line(&format!("The lab page is at {address}\nCtrl-C ends it."));
+        if !self.no_browser && !for_scripts() && io::stdout().is_terminal() {
+            // Where there is no browser to start, the address stands there.
+            let _ = open::that_detached(&address);
+        }
+        let (hub, inbox) = mpsc::channel();
+        let house = House { gate, page, hub };
+        let ended = interrupt.clone();
+        let door = thread::Builder::new()
+            .spawn(move || attend(&listener, house, &ended))
+            .map_err(|error| {
+                Failure::Tried(format!(
+                    "the system gave no thread to listen with: {error}; try again"
+                ))
+            })?;
+        match &mut port {
+            Some(port) => hub::run(port, &inbox, || !interrupt.requested()),
+            None => {
+                while !interrupt.requested() {
+                    thread::sleep(LOOK);
+                }
+            }
+        }
+        let connections = door.join().unwrap_or_default();
+        output.answer(&Served { connections });
+        Ok(())
+    }
+}
+
+/// # Errors
+/// [`Failure::BadInput`] for what is no address, [`Failure::Tried`] where the system refuses it.
+fn listen(named: &str) -> Outcome<TcpListener> {
+    let places: Vec<SocketAddr> = named
+        .to_socket_addrs()
+        .map_err(|error| {
+            Failure::BadInput(format!(
+                "--listen `{named}` is no address: {error}; write HOST:PORT, as 127.0.0.1:8080"
+            ))
+        })?
+        .collect();
+    let listener = TcpListener::bind(places.as_slice()).map_err(|error| {
+        Failure::Tried(format!(
+            "cannot serve the page at {named}: {error}; choose another address or port"
+        ))
+    })?;
+    listener
+        .set_nonblocking(true)
+        .map_err(|error| Failure::Tried(format!("cannot wait for browsers at {named}: {error}")))?;
+    Ok(listener)
+}
+
+/// The name in `--listen` where it is none of the addresses that speak for themselves.
+fn host_name(named: &str) -> Option<String> {
+    let (host, _) = named.rsplit_once(':')?;
+    let is_address = host.trim_matches(['[', ']']).parse::<IpAddr>().is_ok();
+    (!is_address).then(|| host.to_owned())
+}
+
+/// What is typed into a browser.
+fn address(listener: &TcpListener, gate: &Gate) -> Outcome<String> {
+    let place = listener.local_addr().map_err(|error| {
+        Failure::Tried(format!("cannot tell where the page is served: {error}"))
+    })?;
+    if !place.ip().is_loopback() {
+        aside(
+            "note: other machines reach this address, and the token crosses the network in the clear: whoever reads it may drive the robot",
+        );
+    }
+    let host = match &gate.name {
+        Some(name) => format!("{name}:{}", place.port()),
+        None => place.to_string(),
+    };
+    Ok(if gate.has_robot {
+        format!("http://{host}/#link={}", gate.token)
+    } else {
+        format!("http://{host}/")
+    })
+}
+
+/// Lets browsers in until the end; each connection has a thread.
+fn attend(listener: &TcpListener, house: House, ended: &Interrupt) -> u64 {
+    let house = Arc::new(house);
+    let present = Arc::new(AtomicUsize::new(0));
+    let mut connections = 0;
+    while !ended.requested() {
+        let Ok((stream, _)) = listener.accept() else {
+            thread::sleep(LOOK);
+            continue;
+        };
+        if present.load(Ordering::Relaxed) >= MOST_VISITORS {
+            continue;
+        }
+        connections += 1;
+        let (house, present) = (Arc::clone(&house), Arc::clone(&present));
+        present.fetch_add(1, Ordering::Relaxed);
+        let leaving = Arc::clone(&present);
+        let served = thread::Builder::new().spawn(move || {
+            // A browser that goes away in the middle is not told.
+            let _ = serve(&house, stream, connections);
+            leaving.fetch_sub(1, Ordering::Relaxed);
+        });
+        if served.is_err() {
+            present.fetch_sub(1, Ordering::Relaxed);
+        }
+    }
+    connections
+}
+
+fn serve(house: &House, stream: TcpStream, id: u64) -> io::Result<()> {
+    // It may have inherited the listener's way.
+    stream.set_nonblocking(false)?;
+    house.serve(stream, id)
+}

@@ -1,0 +1,234 @@
+//! A robot's port lent to whoever talks to it from outside this program: bytes pass as they are, and this program has no session
+//! of its own, so that the lease is fed by nobody but the one who drives.
+//!
+//! Two things it does itself: a stop for those who may not drive (a session that says nothing but stop, until the robot has heard
+//! it), and to open the port again when its cable was pulled.
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use host_link::Port as _;
+use host_link::session::{Event, Session, SessionConfig};
+use link_protocol::{Decoder, Message, Request, StateName, Telemetry};
+
+use super::access::{A_MOMENT, reach_alone};
+use super::answers::{Done, state};
+use super::port::{AnyPort, BAUD, Means, Pace, open, session_seed};
+use super::port_owner::{Ask, Holder, Relayed};
+use crate::failure::Outcome;
+use crate::virtual_robot::EmulatedBoard;
+
+/// Which port, and how fast.
+#[derive(Debug, clap::Args)]
+pub(crate) struct PortToLend {
+    /// Let the page drive this robot: a serial port, pseudo-terminal, tcp:HOST:PORT, `twin` or `emulator`
+    #[arg(long, value_name = "PORT")]
+    port: Option<String>,
+    /// Speed of the serial line: that of the firmware's build
+    #[arg(long, value_name = "BAUD", default_value_t = BAUD, value_parser = clap::value_parser!(u32).range(1200..=4_000_000), hide_short_help = true)]
+    baud: u32,
+    #[command(flatten)]
+    board: EmulatedBoard,
+}
+
+/// A port whose bytes others send and read.
+pub(crate) struct LentPort {
+    name: String,
+    means: Means,
+    /// `None` while the cable is pulled.
+    port: Option<AnyPort>,
+    holder: Holder,
+    /// Says stop until the robot has heard it.
+    stopping: Option<Session>,
+    heard: Decoder,
+    told: Option<Telemetry>,
+    looked: Instant,
+}
+
+/// What came of a moment's wait at the port.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Heard {
+    /// So many bytes; none where the time passed.
+    Bytes(usize),
+    /// The port went away; it is looked for from now on.
+    Gone(String),
+    /// It is back.
+    Back,
+}
+
+impl PortToLend {
+    /// Opens it, where one was named; others are told that `command` has it.
+    ///
+    /// # Errors
+    /// [`crate::failure::Failure::Tried`] when it cannot be opened or somebody else has it.
+    pub(crate) fn open(self, command: &str) -> Outcome<Option<LentPort>> {
+        let Some(name) = self.port else {
+            return Ok(None);
+        };
+        let means = Means {
+            pace: Pace::RealTime,
+            baud: self.baud,
+            session: SessionConfig::new(session_seed()),
+            board: self.board,
+        };
+        let port = reach_alone(&name, &means)?.port;
+        Ok(Some(LentPort {
+            holder: Holder::announce(&name, command),
+            name,
+            means,
+            port: Some(port),
+            stopping: None,
+            heard: Decoder::new(),
+            told: None,
+            looked: Instant::now(),
+        }))
+    }
+}
+
+impl LentPort {
+    /// What the port is called.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Whether it is open.
+    pub(crate) fn is_open(&self) -> bool {
+        self.port.is_some()
+    }
+
+    /// Bytes per second that the line carries.
+    pub(crate) fn bytes_per_second(&self) -> f64 {
+        f64::from(self.means.baud) / 10.0
+    }
+
+    /// Waits for bytes of the robot, does what other programs ask, and sends a stop again that was not heard.
+    pub(crate) fn read(&mut self, buf: &mut [u8], timeout: Duration) -> Heard {
+        self.serve_others();
+        let Some(port) = &mut self.port else {
+            return self.look_again(timeout);
+        };
+        let count = match port.read(buf, timeout) {
+            Ok(count) => count,
+            Err(error) => return self.gone(&error),
+        };
+        let bytes = buf.get(..count).unwrap_or_default();
+        self.hear(bytes);
+        match self.drive_stop(bytes) {
+            Ok(()) => Heard::Bytes(count),
+            Err(error) => self.gone(&error),
+        }
+    }
+
+    /// Sends whole frames. What a port that is gone does not take is lost, as on any link.
+    pub(crate) fn write(&mut self, frames: &[u8]) -> Option<Heard> {
+        let error = self.port.as_mut()?.write(frames).err()?;
+        Some(self.gone(&error))
+    }
+
+    /// Stops the robot, whoever drives it: at once, and again until it has heard.
+    pub(crate) fn stop(&mut self, estop: bool) {
+        let Some(port) = &mut self.port else {
+            return;
+        };
+        let mut session = Session::new(SessionConfig {
+            seed: session_seed(),
+            ..self.means.session
+        });
+        session.request(
+            port.now(),
+            if estop { Request::EStop } else { Request::Stop },
+        );
+        self.stopping = Some(session);
+        if let Err(error) = self.drive_stop(&[]) {
+            self.gone(&error);
+        }
+    }
+
+    /// What the robot is doing, as far as its telemetry was overheard.
+    fn state(&self) -> Option<StateName> {
+        self.told.map(|told| told.state)
+    }
+
+    fn hear(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            if let Some(Message::Telemetry(told)) = self
+                .heard
+                .push(*byte)
+                .and_then(|received| received.message.ok())
+            {
+                self.told = Some(told);
+            }
+        }
+    }
+
+    fn drive_stop(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let (Some(session), Some(port)) = (&mut self.stopping, &mut self.port) else {
+            return Ok(());
+        };
+        let now = port.now();
+        session.receive(now, bytes);
+        session.poll(now);
+        let frames = session.take_outgoing();
+        let mut ended = false;
+        // The one thing asked of it was a stop: whatever ends that ends the session.
+        while let Some(event) = session.next_event() {
+            ended |= !matches!(event, Event::Telemetry { .. });
+        }
+        if ended {
+            self.stopping = None;
+        }
+        if frames.is_empty() {
+            return Ok(());
+        }
+        port.write(&frames)
+    }
+
+    fn gone(&mut self, error: &io::Error) -> Heard {
+        self.port = None;
+        self.stopping = None;
+        self.told = None;
+        self.heard = Decoder::new();
+        self.looked = Instant::now();
+        Heard::Gone(format!("{} is gone: {error}", self.name))
+    }
+
+    fn look_again(&mut self, wait: Duration) -> Heard {
+        if self.looked.elapsed() < A_MOMENT / 2 {
+            std::thread::sleep(wait);
+            return Heard::Bytes(0);
+        }
+        self.looked = Instant::now();
+        // Others know already that it is ours.
+        match open(&self.name, &self.means) {
+            Ok(opened) => {
+                self.port = Some(opened.port);
+                Heard::Back
+            }
+            Err(_) => Heard::Bytes(0),
+        }
+    }
+
+    /// What another `swimmer` asks of the robot: here it is a stop, or how it stands.
+    fn serve_others(&mut self) {
+        for (ask, asker) in self.holder.take_asked() {
+            let answer = match ask {
+                Ask::Stop | Ask::EStop => {
+                    self.stop(ask == Ask::EStop);
+                    Relayed::of(&Done {
+                        state: "stopping",
+                        sentence: "Stopping: the lab page's server passed it on.".to_owned(),
+                    })
+                }
+                Ask::Status if self.state().is_some() => Relayed::of(&Done {
+                    state: self.state().map_or("stopping", state),
+                    sentence: "As the robot told last.".to_owned(),
+                }),
+                _ => Relayed::refused(format!(
+                    "the lab page's server has {} and asks the robot nothing by itself: look at the page, or end `swimmer lab`",
+                    self.name
+                )),
+            };
+            asker.answer(&answer);
+        }
+    }
+}
