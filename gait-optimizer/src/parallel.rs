@@ -27,7 +27,7 @@ pub(crate) fn in_parallel<R, T: Send>(
             watch(finished as f64 / count as f64);
         }
     };
-    let mut all: Vec<(usize, T)> = std::thread::scope(|scope| {
+    let all: Vec<(usize, T)> = std::thread::scope(|scope| {
         let others: Vec<_> = (1..threads.clamp(1, 64))
             .map(|_| scope.spawn(worker))
             .collect();
@@ -41,6 +41,9 @@ pub(crate) fn in_parallel<R, T: Send>(
         }
         all
     });
-    all.sort_by_key(|(index, _)| *index);
-    all.into_iter().map(|(_, one)| one).collect()
+    let mut places: Vec<Option<T>> = (0..count).map(|_| None).collect();
+    for (index, one) in all {
+        places[index] = Some(one);
+    }
+    places.into_iter().flatten().collect()
 }

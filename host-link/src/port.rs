@@ -2,6 +2,8 @@
 //!
 //! A port owns its clock. A serial port's clock is the wall; a virtual port's clock stands still until somebody reads and
 //! waits, so that an hour of link time is tested in a second and twice the same.
+//!
+//! The ports of an operating system are left out where there is none (WebAssembly in a browser).
 
 mod baud;
 #[cfg(unix)]
@@ -10,10 +12,12 @@ mod faults;
 mod faulty;
 mod frames;
 mod injector;
+#[cfg(not(target_family = "wasm"))]
 mod listed;
 mod mock;
 #[cfg(unix)]
 mod pty;
+#[cfg(not(target_family = "wasm"))]
 mod serial;
 mod tcp;
 mod traced;
@@ -29,10 +33,12 @@ pub use beside::BesidePort;
 pub use faults::{Faults, FaultsError, FaultsProblem, Outage};
 pub use faulty::{FaultPlan, FaultyPort};
 pub use injector::{FaultCounts, FaultInjector};
+#[cfg(not(target_family = "wasm"))]
 pub use listed::{ListedPort, serial_ports};
 pub use mock::MockPort;
 #[cfg(unix)]
 pub use pty::{PtyError, PtyPort};
+#[cfg(not(target_family = "wasm"))]
 pub use serial::{OpenError, SerialPort};
 pub use tcp::TcpPort;
 pub use traced::{TracedFrame, TracedPort};

@@ -39,6 +39,7 @@
 mod crossing;
 mod derivatives;
 mod drag;
+mod force;
 pub mod gait;
 mod heading;
 mod model;
@@ -52,6 +53,7 @@ mod swimmer;
 
 pub use derivatives::{FirstDerivatives, SecondDerivatives};
 pub use drag::TangentialDrag;
+pub use force::LinkForce;
 pub use gait::{
     Circle, Fourier, Gait, GaitPoint, Harmonic, InvalidSamples, Reversed, Sampled, Square,
     SymmetricFourier,

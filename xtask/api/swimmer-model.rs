@@ -83,6 +83,11 @@ pub enum InvalidSwimmer {
 impl fmt::Display for InvalidSwimmer {}
 impl core::error::Error for InvalidSwimmer {}
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkForce<T> {
+    pub ends: [Vector2<T>; 2],
+    pub density: [Vector2<T>; 2],
+}
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Links<T> {
     pub middle: T,
     pub front: T,
@@ -99,6 +104,9 @@ impl<T: Scalar> Links<T> {
 pub struct Model<T> {}
 impl<T: Scalar> Model<T> {
     pub fn links_cross(&self, phi: &Vector2<T>) -> bool {}
+}
+impl<T: Scalar> Model<T> {
+    pub fn link_forces(&self, phi: &Vector2<T>, rate: &Vector2<T>) -> [LinkForce<T>; 3] {}
 }
 impl<T: Scalar> Model<T> {
     pub fn full_connection(&self, phi: &Vector2<T>, theta: T) -> Matrix3x2<T> {}

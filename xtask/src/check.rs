@@ -11,7 +11,7 @@ use crate::firmware::{self, Variant};
 use crate::python;
 use crate::run::{cargo, command, read, run};
 use crate::steps::Steps;
-use crate::toolchain::ChipToolchain;
+use crate::toolchain::{Target, Toolchain};
 
 /// Crates that also run on the chip.
 const ON_THE_CHIP: [&str; 3] = ["swimmer-model", "link-protocol", "gait-player"];
@@ -77,7 +77,7 @@ pub(crate) fn all() -> Outcome {
     steps.verdict()
 }
 
-fn for_the_chip(steps: &mut Steps, toolchain: &ChipToolchain) {
+fn for_the_chip(steps: &mut Steps, toolchain: &Toolchain) {
     steps.take("firmware: ELF, UF2, sizes", || {
         Variant::TESTED
             .into_iter()
@@ -106,7 +106,7 @@ fn packages(cargo: &mut Command, names: &[&str]) {
 }
 
 /// Finds or installs every tool; the second time it only finds them.
-fn what_is_needed() -> Outcome<ChipToolchain> {
+fn what_is_needed() -> Outcome<Toolchain> {
     debian::ensure_tool(command("cc").arg("--version"), &["gcc", "libc6-dev"])?;
     for component in ["fmt", "clippy"] {
         let next = "run `rustup component add rustfmt clippy`, and repeat the command";
@@ -115,7 +115,7 @@ fn what_is_needed() -> Outcome<ChipToolchain> {
             read(&mut cargo([component, "--version"]), next)?.trim()
         );
     }
-    let toolchain = ChipToolchain::find_or_make()?;
+    let toolchain = Toolchain::find_or_make(Target::Chip)?;
     println!("{}", toolchain.describe());
     Ok(toolchain)
 }

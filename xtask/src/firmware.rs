@@ -7,7 +7,7 @@ use crate::disk::{make_folder, read_bytes, write};
 use crate::failure::{Failure, Outcome};
 use crate::image::Image;
 use crate::run::{command, run, target_folder, works};
-use crate::toolchain::{ChipToolchain, TARGET};
+use crate::toolchain::{Target, Toolchain};
 use crate::uf2;
 
 /// Read by `firmware/src/battery.rs`.
@@ -84,13 +84,13 @@ impl Variant {
 ///
 /// # Errors
 /// When the build fails or the image takes more flash or RAM than promised.
-pub(crate) fn build(toolchain: &ChipToolchain, variant: Variant) -> Outcome {
+pub(crate) fn build(toolchain: &Toolchain, variant: Variant) -> Outcome {
     run(
         variant.select(&mut toolchain.cargo("build")),
         "mend what the compiler names above",
     )?;
     let target = target_folder()?;
-    let elf = target.join(TARGET).join("firmware/firmware");
+    let elf = target.join(Target::Chip.triple()).join("firmware/firmware");
     let bytes = read_bytes(&elf)?;
     let image = Image::from_elf(&bytes)?;
     let info = Pieces(&image.flash).binary_info()?;
@@ -111,7 +111,7 @@ pub(crate) fn build(toolchain: &ChipToolchain, variant: Variant) -> Outcome {
 ///
 /// # Errors
 /// When probe-rs is missing, finds no probe, or the build fails.
-pub(crate) fn flash(toolchain: &ChipToolchain, variant: Variant) -> Outcome {
+pub(crate) fn flash(toolchain: &Toolchain, variant: Variant) -> Outcome {
     if !works(command("probe-rs").arg("--version")) {
         return Err(Failure::new(
             "looking for `probe-rs`",

@@ -13,6 +13,7 @@ mod failure;
 mod firmware;
 mod fuzz;
 mod image;
+mod lab;
 mod mutants;
 mod python;
 mod release;
@@ -30,7 +31,7 @@ use clap::Parser;
 
 use failure::{Failure, Outcome};
 use firmware::{Board, Variant};
-use toolchain::ChipToolchain;
+use toolchain::{Target, Toolchain};
 
 /// The project's own chores.
 #[derive(Debug, Parser)]
@@ -38,7 +39,7 @@ use toolchain::ChipToolchain;
 enum Chore {
     /// Installs what is needed, builds the firmware, and runs format, clippy, documentation and every test.
     Test,
-    /// Finds the compiler for the RP2040, or makes one from Debian's packages.
+    /// Finds the compilers for the RP2040 and for the lab page, or makes them from Debian's packages.
     Toolchain,
     /// Builds the firmware's ELF and UF2 files and weighs them against the promised flash and RAM.
     Firmware {
@@ -59,6 +60,8 @@ enum Chore {
     },
     /// Builds the book from the pages of this checkout, and follows every link in it.
     Book,
+    /// Builds the lab page: the module as WebAssembly, the page round it, one HTML file in target/lab.
+    Lab,
     /// Makes what a release would hold: the command, the wheel, firmware, checksums, notes.
     Release {
         /// Only make it, under target/release-dry-run.
@@ -125,14 +128,16 @@ fn perform(chore: Chore) -> Outcome {
     match chore {
         Chore::Test => check::all(),
         Chore::Toolchain => {
-            println!("{}", ChipToolchain::find_or_make()?.describe());
+            for target in [Target::Chip, Target::Page] {
+                println!("{}", Toolchain::find_or_make(target)?.describe());
+            }
             Ok(())
         }
         Chore::Firmware {
             board,
             battery_divider: battery_divider_milli,
         } => {
-            let toolchain = ChipToolchain::find_or_make()?;
+            let toolchain = Toolchain::find_or_make(Target::Chip)?;
             let boards = board.map_or(Board::ALL.to_vec(), |board| vec![board]);
             boards
                 .into_iter()
@@ -150,9 +155,10 @@ fn perform(chore: Chore) -> Outcome {
                 board,
                 battery_divider_milli,
             };
-            firmware::flash(&ChipToolchain::find_or_make()?, variant)
+            firmware::flash(&Toolchain::find_or_make(Target::Chip)?, variant)
         }
         Chore::Book => book::build(),
+        Chore::Lab => lab::build().map(drop),
         Chore::Release { dry_run } => release::prepare(dry_run),
         Chore::Emulator => emulator::install(),
         Chore::Api { check } => api::list(Path::new("."), check),

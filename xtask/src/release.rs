@@ -11,7 +11,7 @@ use crate::disk::{copy, entries, make_folder, read_bytes, remove_folder, write};
 use crate::failure::{Failure, Outcome};
 use crate::firmware::{self, Board, Variant};
 use crate::run::{cargo, command, read, run, target_folder};
-use crate::toolchain::ChipToolchain;
+use crate::toolchain::{Target, Toolchain};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// What the archive of the command holds beside the program and its manual.
@@ -109,7 +109,7 @@ fn host(version: &str) -> Outcome<&str> {
 
 /// The firmware of both boards as it goes onto their drives.
 fn images(target: &Path, folder: &Path) -> Outcome {
-    let toolchain = ChipToolchain::find_or_make()?;
+    let toolchain = Toolchain::find_or_make(Target::Chip)?;
     for board in Board::ALL {
         firmware::build(&toolchain, Variant::plain(board))?;
     }

@@ -4,12 +4,12 @@ use crate::emulator;
 use crate::failure::Outcome;
 use crate::firmware::{self, Variant};
 use crate::run::{cargo, run};
-use crate::toolchain::ChipToolchain;
+use crate::toolchain::{Target, Toolchain};
 
 /// Provides what the tests of the booted firmware need.
 fn prepare() -> Outcome {
     emulator::install()?;
-    let toolchain = ChipToolchain::find_or_make()?;
+    let toolchain = Toolchain::find_or_make(Target::Chip)?;
     Variant::TESTED
         .into_iter()
         .try_for_each(|variant| firmware::build(&toolchain, variant))

@@ -1,5 +1,5 @@
-//! Finds a compiler for the chip: the active toolchain where it has the target or rustup can fetch it, Debian's `rustc-web`
-//! where it cannot.
+//! Finds a compiler for a target that is not this machine, the chip or the page: the active toolchain where it has the target
+//! or rustup can fetch it, Debian's `rustc-web` where it cannot.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,59 +11,78 @@ use crate::run::{cargo, command, read};
 mod fallback;
 mod rustup;
 
-/// The RP2040's Cortex-M0+.
-pub(crate) const TARGET: &str = "thumbv6m-none-eabi";
-
-/// How to compile for the chip.
-#[derive(Debug)]
-pub(crate) enum ChipToolchain {
-    /// The active toolchain has the target; nothing to set.
-    Active,
-    /// A private prefix made from Debian's packages.
-    Private(PathBuf),
+/// Where code of ours runs beside this machine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// The RP2040's Cortex-M0+.
+    Chip,
+    /// The lab page, in a browser.
+    Page,
 }
 
-impl ChipToolchain {
+impl Target {
+    /// As rustc calls it.
+    pub(crate) const fn triple(self) -> &'static str {
+        match self {
+            Self::Chip => "thumbv6m-none-eabi",
+            Self::Page => "wasm32-unknown-unknown",
+        }
+    }
+
+    /// The workspace's profile for it.
+    const fn profile(self) -> &'static str {
+        match self {
+            Self::Chip => "firmware",
+            Self::Page => "lab",
+        }
+    }
+
+    /// The crates of the standard library that our code for it stands on.
+    const fn library(self) -> &'static str {
+        match self {
+            Self::Chip => "core,alloc",
+            Self::Page => "std,panic_abort",
+        }
+    }
+}
+
+/// How to compile for a target.
+#[derive(Debug)]
+pub(crate) struct Toolchain {
+    target: Target,
+    /// A private prefix made from Debian's packages; none where the active toolchain has the target.
+    prefix: Option<PathBuf>,
+}
+
+impl Toolchain {
     /// Finds or makes it; the second time it only finds it.
     ///
     /// # Errors
     /// When the active toolchain lacks the target, rustup cannot fetch it and Debian's packages are out of reach; the message
     /// has the command.
-    pub(crate) fn find_or_make() -> Outcome<Self> {
-        let compiler = HostCompiler::active()?;
-        if has_core(&compiler.sysroot) {
-            return Ok(Self::Active);
-        }
-        if let Some(prefix) = fallback::find()? {
-            return Ok(Self::Private(prefix));
-        }
-        match rustup::add_target() {
-            Ok(()) if has_core(&compiler.sysroot) => return Ok(Self::Active),
-            Ok(()) => {
-                eprintln!("rustup has added {TARGET} to a toolchain that is not the active one");
-            }
-            Err(why) => eprintln!("{why}\nNow Debian's packages are tried in its place."),
-        }
-        fallback::make(&compiler).map(Self::Private)
+    pub(crate) fn find_or_make(target: Target) -> Outcome<Self> {
+        let prefix = find_or_make_prefix(target)?;
+        Ok(Self { target, prefix })
     }
 
-    /// `cargo SUBCOMMAND --target …` for the chip, in the small profile of the firmware.
+    /// `cargo SUBCOMMAND --target …`, in the target's own profile.
     pub(crate) fn cargo(&self, subcommand: &str) -> Command {
-        let mut cargo = cargo([subcommand, "--target", TARGET, "--profile", "firmware"]);
-        if let Self::Private(prefix) = self {
+        let (triple, profile) = (self.target.triple(), self.target.profile());
+        let mut cargo = cargo([subcommand, "--target", triple, "--profile", profile]);
+        if let Some(prefix) = &self.prefix {
             cargo.env("RUSTC", prefix.join("bin/rustc"));
         }
         cargo
     }
 
-    /// `cargo clippy` for the chip, warnings denied.
+    /// `cargo clippy` for the target, warnings denied.
     pub(crate) fn clippy(&self) -> Command {
-        match self {
-            Self::Active => {
+        match &self.prefix {
+            None => {
                 // cargo-clippy takes its driver's flags after `--`, behind the packages that the caller adds.
                 self.cargo("clippy")
             }
-            Self::Private(prefix) => {
+            Some(prefix) => {
                 // cargo-clippy would pick the active toolchain's driver; this is what it does, with the right one.
                 let mut check = self.cargo("check");
                 check.env("RUSTC_WORKSPACE_WRAPPER", prefix.join("bin/clippy-driver"));
@@ -78,21 +97,37 @@ impl ChipToolchain {
 
     /// Flags for [`Self::clippy`] that stand at the end of its command line.
     pub(crate) fn clippy_flags(&self) -> &'static [&'static str] {
-        match self {
-            Self::Active => &["--", "-D", "warnings"],
-            Self::Private(_) => &[],
+        match self.prefix {
+            None => &["--", "-D", "warnings"],
+            Some(_) => &[],
         }
     }
 
     /// One line for the reader.
     pub(crate) fn describe(&self) -> String {
-        match self {
-            Self::Active => format!("the active toolchain has {TARGET}"),
-            Self::Private(prefix) => {
-                format!("{TARGET} from Debian's rustc-web, in {}", prefix.display())
-            }
+        let triple = self.target.triple();
+        match &self.prefix {
+            None => format!("the active toolchain has {triple}"),
+            Some(prefix) => format!("{triple} from Debian's rustc-web, in {}", prefix.display()),
         }
     }
+}
+
+fn find_or_make_prefix(target: Target) -> Outcome<Option<PathBuf>> {
+    let compiler = HostCompiler::active()?;
+    if has_core(&compiler.sysroot, target) {
+        return Ok(None);
+    }
+    if let Some(prefix) = fallback::find(target)? {
+        return Ok(Some(prefix));
+    }
+    let triple = target.triple();
+    match rustup::add_target(triple) {
+        Ok(()) if has_core(&compiler.sysroot, target) => return Ok(None),
+        Ok(()) => eprintln!("rustup has added {triple} to a toolchain that is not the active one"),
+        Err(why) => eprintln!("{why}\nNow Debian's packages are tried in its place."),
+    }
+    fallback::make(&compiler, target).map(Some)
 }
 
 /// The compiler that cargo uses for the host.
@@ -129,9 +164,9 @@ fn host_triple(verbose_version: &str) -> Option<&str> {
         .map(str::trim)
 }
 
-/// Whether a sysroot holds `core` for the chip.
-fn has_core(sysroot: &Path) -> bool {
-    fs::read_dir(library_folder(sysroot)).is_ok_and(|entries| {
+/// Whether a sysroot holds `core` for the target.
+fn has_core(sysroot: &Path, target: Target) -> bool {
+    fs::read_dir(library_folder(sysroot, target)).is_ok_and(|entries| {
         entries.flatten().any(|entry| {
             let name = entry.file_name();
             let name = name.to_string_lossy();
@@ -140,9 +175,12 @@ fn has_core(sysroot: &Path) -> bool {
     })
 }
 
-/// Where a sysroot keeps its libraries for the chip.
-fn library_folder(sysroot: &Path) -> PathBuf {
-    sysroot.join("lib/rustlib").join(TARGET).join("lib")
+/// Where a sysroot keeps its libraries for the target.
+fn library_folder(sysroot: &Path, target: Target) -> PathBuf {
+    sysroot
+        .join("lib/rustlib")
+        .join(target.triple())
+        .join("lib")
 }
 
 #[cfg(test)]
@@ -159,12 +197,13 @@ mod tests {
     #[test]
     fn a_target_counts_only_with_its_core() {
         let sysroot = tempfile::tempdir().unwrap();
-        assert!(!has_core(sysroot.path()));
-        let folder = library_folder(sysroot.path());
+        assert!(!has_core(sysroot.path(), Target::Page));
+        let folder = library_folder(sysroot.path(), Target::Page);
         fs::create_dir_all(&folder).unwrap();
         fs::write(folder.join("libcore-1234.rmeta"), "").unwrap();
-        assert!(!has_core(sysroot.path()));
+        assert!(!has_core(sysroot.path(), Target::Page));
         fs::write(folder.join("libcore-1234.rlib"), "").unwrap();
-        assert!(has_core(sysroot.path()));
+        assert!(has_core(sysroot.path(), Target::Page));
+        assert!(!has_core(sysroot.path(), Target::Chip));
     }
 }

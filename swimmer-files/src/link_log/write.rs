@@ -24,6 +24,12 @@ const TELEMETRY_SCHEMA: &str = include_str!("telemetry.json");
 const TELEMETRY_SCHEMA_NAME: &str = "swimmer.Telemetry";
 const TELEMETRY_TOPIC: &str = "/robot/telemetry";
 
+/// Fast enough for a robot's log to be written as it happens.
+#[cfg(feature = "lz4")]
+const COMPRESSION: Option<mcap::Compression> = Some(mcap::Compression::Lz4);
+#[cfg(not(feature = "lz4"))]
+const COMPRESSION: Option<mcap::Compression> = None;
+
 /// A chunk holds the frames of so long, ns of the host's clock.
 const CHUNK_NS: u64 = 500_000_000;
 
@@ -128,7 +134,7 @@ impl LinkLogWriter {
             broken: false,
         };
         let mut writer = mcap::WriteOptions::new()
-            .compression(Some(mcap::Compression::Lz4))
+            .compression(COMPRESSION)
             // A chunk is written when it is whole, instead of piece by piece with its length at the end.
             .disable_seeking(true)
             .profile("")

@@ -1,45 +1,50 @@
-//! The chip's compiler for a Debian machine whose rustup cannot fetch targets.
+//! A target's compiler for a Debian machine whose rustup cannot fetch targets.
 //!
 //! Debian's security suite carries `rustc-web`, a current rustc with its sources. The packages are downloaded and
-//! unpacked into a folder of our own under the user's cache (nothing is installed, nothing shadowed), then `core` and
-//! `alloc` are built once for the chip. Half a minute, once. The linker is the `rust-lld` of the active toolchain.
+//! unpacked into a folder of our own under the user's cache (nothing is installed, nothing shadowed), then the standard
+//! library is built once for the target: half a minute for the chip, a whole one for the page. The linker is the `rust-lld` of
+//! the active toolchain.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-use super::{HostCompiler, TARGET, has_core, library_folder};
+use super::{HostCompiler, Target, has_core, library_folder};
 use crate::debian;
 use crate::disk::{copy, entries, failed, make_folder, remove_folder, write};
 use crate::failure::{Failure, Outcome};
 use crate::run::{cargo, command, read, run, target_folder, works};
 
 /// Part of the folder's name: to be raised when the recipe below changes, so that old prefixes are made anew.
-const RECIPE: u32 = 2;
+const RECIPE: u32 = 3;
 /// The package whose version all others share.
 const COMPILER: &str = "rustc-web";
+/// The empty package whose building builds the standard library.
+const PROJECT: &str = "library-of-the-target";
 
 /// The private prefix, where it was made before.
 ///
 /// # Errors
 /// The cache folder cannot be named.
-pub(super) fn find() -> Outcome<Option<PathBuf>> {
+pub(super) fn find(target: Target) -> Outcome<Option<PathBuf>> {
     if !debian::is_debian() {
         return Ok(None);
     }
-    let prefix = newest_made(&cache_folder()?, debian::candidate(COMPILER).as_deref());
-    Ok(prefix.filter(|prefix| usable(prefix)))
+    let candidate = debian::candidate(COMPILER);
+    let prefix = newest_made(&cache_folder()?, candidate.as_deref(), target);
+    Ok(prefix.filter(|prefix| usable(prefix, target)))
 }
 
 /// Makes the private prefix, unless somebody else just has.
 ///
 /// # Errors
 /// Off Debian, without package lists, or when a download or the build of `core` fails.
-pub(super) fn make(host: &HostCompiler) -> Outcome<PathBuf> {
+pub(super) fn make(host: &HostCompiler, target: Target) -> Outcome<PathBuf> {
+    let triple = target.triple();
     if !debian::is_debian() {
         return Err(Failure::new(
-            format!("looking for a compiler for {TARGET}"),
+            format!("looking for a compiler for {triple}"),
             "the active Rust toolchain has no such target, and this is not Debian, where packages could stand in",
-            format!("run `rustup target add {TARGET}`, then repeat the command"),
+            format!("run `rustup target add {triple}`, then repeat the command"),
         ));
     }
     let folder = cache_folder()?;
@@ -49,23 +54,30 @@ pub(super) fn make(host: &HostCompiler) -> Outcome<PathBuf> {
     lock.lock()
         .map_err(|why| failed("locking", &lock_path, why))?; // released when the file is closed
     debian::update()?; // a candidate of an old list may be gone from the mirror
-    if let Some(prefix) = find()? {
+    if let Some(prefix) = find(target)? {
         return Ok(prefix);
     }
     let version = debian::candidate(COMPILER).ok_or_else(|| {
         Failure::new(
-            format!("looking for a compiler for {TARGET}"),
+            format!("looking for a compiler for {triple}"),
             format!("the active Rust toolchain has no such target, and the package lists know no {COMPILER}"),
-            format!("run `rustup target add {TARGET}`; or, as root, `apt-get update` with Debian's security suite enabled"),
+            format!("run `rustup target add {triple}`; or, as root, `apt-get update` with Debian's security suite enabled"),
         )
     })?;
-    let prefix = folder.join(prefix_name(&version));
-    unpack_and_build(&folder, &prefix, &version, host)?;
+    let prefix = folder.join(prefix_name(&version, target));
+    unpack_and_build(&folder, &prefix, &version, host, target)?;
     Ok(prefix)
 }
 
 /// Downloads, unpacks and builds beside the prefix, and moves it into place only when it is whole.
-fn unpack_and_build(folder: &Path, prefix: &Path, version: &str, host: &HostCompiler) -> Outcome {
+fn unpack_and_build(
+    folder: &Path,
+    prefix: &Path,
+    version: &str,
+    host: &HostCompiler,
+    target: Target,
+) -> Outcome {
+    let triple = target.triple();
     let unfinished = folder.join("unfinished");
     for stale in [&unfinished, prefix] {
         remove_folder(stale)?;
@@ -73,17 +85,17 @@ fn unpack_and_build(folder: &Path, prefix: &Path, version: &str, host: &HostComp
     let packages = unfinished.join("packages");
     make_folder(&packages)?;
     eprintln!(
-        "No {TARGET} in the active toolchain: unpacking Debian's {COMPILER} {version} under {}",
+        "No {triple} in the active toolchain: unpacking Debian's {COMPILER} {version} under {}",
         folder.display()
     );
     download(&packages, version)?;
     unpack(&packages, &unfinished)?;
-    build_core(&unfinished, host)?;
+    build_library(&unfinished, host, target)?;
     write_wrappers(&unfinished, prefix, host)?;
     // What was compiled against another copy of `core` cannot be linked with this one.
-    remove_folder(&target_folder()?.join(TARGET))?;
+    remove_folder(&target_folder()?.join(triple))?;
     fs::rename(&unfinished, prefix).map_err(|why| failed("moving into place", prefix, why))?;
-    if usable(prefix) {
+    if usable(prefix, target) {
         Ok(())
     } else {
         Err(Failure::new(
@@ -153,14 +165,14 @@ fn unpack(packages: &Path, prefix: &Path) -> Outcome {
     remove_folder(packages)
 }
 
-/// Builds `core`, `alloc` and `compiler_builtins` from the unpacked sources, with the crates vendored among them.
-fn build_core(prefix: &Path, host: &HostCompiler) -> Outcome {
+/// Builds the standard library from the unpacked sources, with the crates vendored among them.
+fn build_library(prefix: &Path, host: &HostCompiler, target: Target) -> Outcome {
     let rust = prefix.join("usr/lib/rustlib/src/rust");
-    let project = prefix.join("core-for-the-chip");
+    let project = prefix.join(PROJECT);
     write(&project.join("src/lib.rs"), "#![no_std]\n")?;
     write(
         &project.join("Cargo.toml"),
-        "[package]\nname = \"core-for-the-chip\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[workspace]\n\n\
+        "[package]\nname = \"library-of-the-target\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[workspace]\n\n\
          [profile.release]\npanic = \"abort\"\ncodegen-units = 1\n",
     )?;
     write(
@@ -174,17 +186,17 @@ fn build_core(prefix: &Path, host: &HostCompiler) -> Outcome {
         "build",
         "--offline",
         "--release",
-        "-Zbuild-std=core,alloc",
         "--target",
-        TARGET,
+        target.triple(),
     ]);
     build
+        .arg(format!("-Zbuild-std={}", target.library()))
         .current_dir(&project)
         .env("CARGO_TARGET_DIR", project.join("target"))
         .env("RUSTC", prefix.join("usr/bin/rustc"))
         .env("RUSTC_BOOTSTRAP", "1") // build-std is unstable; the result is an ordinary sysroot
         .env("LD_LIBRARY_PATH", library_path(prefix, host))
-        // No path of this machine in the panic messages of the firmware.
+        // No path of this machine in panic messages.
         .env(
             "RUSTFLAGS",
             format!(
@@ -199,22 +211,21 @@ fn build_core(prefix: &Path, host: &HostCompiler) -> Outcome {
         "remove the folder `unfinished` beside it, and repeat the command",
     )?;
 
-    let libraries = library_folder(&prefix.join("usr"));
+    let libraries = library_folder(&prefix.join("usr"), target);
     make_folder(&libraries)?;
-    let built = project.join("target").join(TARGET).join("release/deps");
-    for name in ["libcore-", "liballoc-", "libcompiler_builtins-"] {
-        let library = entries(&built, |file| {
-            file.starts_with(name) && has_ending(file, "rlib")
-        })?;
-        let library = library.first().ok_or_else(|| {
-            Failure::new(
-                format!("looking for {name}*.rlib in {}", built.display()),
-                "it was not built",
-                "repeat the command",
-            )
-        })?;
-        let place = libraries.join(library.file_name().unwrap_or_default());
-        copy(library, &place)?;
+    let built = project
+        .join("target")
+        .join(target.triple())
+        .join("release/deps");
+    let of_the_project = format!("lib{}-", PROJECT.replace('-', "_"));
+    let built = entries(&built, |file| {
+        has_ending(file, "rlib") && !file.starts_with(&of_the_project)
+    })?;
+    for library in built {
+        copy(
+            &library,
+            &libraries.join(library.file_name().unwrap_or_default()),
+        )?;
     }
     for done_with in [
         project,
@@ -261,30 +272,30 @@ fn write_script(path: &Path, body: &str) -> Outcome {
 }
 
 /// Whether compiler, clippy, library and linker are there and run.
-fn usable(prefix: &Path) -> bool {
+fn usable(prefix: &Path, target: Target) -> bool {
     let rustlib = prefix.join("usr/lib/rustlib");
     let linker = entries(&rustlib, |name| name.contains("-linux-"))
         .unwrap_or_default()
         .into_iter()
         .map(|triple| triple.join("bin/rust-lld"))
         .find(|path| path.exists());
-    has_core(&prefix.join("usr"))
+    has_core(&prefix.join("usr"), target)
         && works(command(prefix.join("bin/rustc")).arg("--version"))
         && works(command(prefix.join("bin/clippy-driver")).arg("--version"))
         && linker.is_some_and(|linker| works(command(linker).args(["-flavor", "gnu", "--version"])))
 }
 
 /// The prefix of the candidate version; without package lists, whichever was made by this recipe.
-fn newest_made(folder: &Path, candidate: Option<&str>) -> Option<PathBuf> {
+fn newest_made(folder: &Path, candidate: Option<&str>, target: Target) -> Option<PathBuf> {
     let fits = |name: &str| match candidate {
-        Some(version) => name == prefix_name(version),
-        None => name.ends_with(&prefix_name("")),
+        Some(version) => name == prefix_name(version, target),
+        None => name.ends_with(&prefix_name("", target)),
     };
     entries(folder, fits).ok()?.pop()
 }
 
-fn prefix_name(version: &str) -> String {
-    format!("{version}-recipe-{RECIPE}")
+fn prefix_name(version: &str, target: Target) -> String {
+    format!("{version}-{}-recipe-{RECIPE}", target.triple())
 }
 
 /// `1.96.0+dfsg1-1~deb12u2` → `1.96`, as Debian names its library package.
@@ -317,7 +328,7 @@ fn cache_folder() -> Outcome<PathBuf> {
                 "set HOME",
             )
         })?;
-    Ok(cache.join("swimmer-chip-toolchain"))
+    Ok(cache.join("swimmer-toolchains"))
 }
 
 fn debs(folder: &Path) -> Outcome<Vec<PathBuf>> {
@@ -337,7 +348,10 @@ mod tests {
     #[test]
     fn names_follow_the_version() {
         assert_eq!(minor_version("1.96.0+dfsg1-1~deb12u2"), "1.96");
-        assert_eq!(prefix_name("1.96.0"), "1.96.0-recipe-2");
+        assert_eq!(
+            prefix_name("1.96.0", Target::Chip),
+            "1.96.0-thumbv6m-none-eabi-recipe-3"
+        );
         assert_eq!(multiarch("aarch64-unknown-linux-gnu"), "aarch64-linux-gnu");
     }
 
@@ -352,20 +366,27 @@ mod tests {
     #[test]
     fn a_new_candidate_does_not_find_the_old_prefix() {
         let folder = tempfile::tempdir().unwrap();
-        let old = folder.path().join(prefix_name("1.96.0"));
+        let old = folder.path().join(prefix_name("1.96.0", Target::Page));
         fs::create_dir(&old).unwrap();
         fs::create_dir(folder.path().join("unfinished")).unwrap();
         assert_eq!(
-            newest_made(folder.path(), Some("1.96.0")),
+            newest_made(folder.path(), Some("1.96.0"), Target::Page),
             Some(old.clone())
         );
-        assert_eq!(newest_made(folder.path(), Some("1.97.0")), None);
-        assert_eq!(newest_made(folder.path(), None), Some(old));
+        assert_eq!(
+            newest_made(folder.path(), Some("1.97.0"), Target::Page),
+            None
+        );
+        assert_eq!(
+            newest_made(folder.path(), Some("1.96.0"), Target::Chip),
+            None
+        );
+        assert_eq!(newest_made(folder.path(), None, Target::Page), Some(old));
     }
 
     #[test]
     fn an_empty_prefix_is_not_usable() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(!usable(folder.path()));
+        assert!(!usable(folder.path(), Target::Page));
     }
 }

@@ -1,8 +1,7 @@
-//! The ordinary way to the chip's target, for whoever has rustup and a network that reaches its server.
+//! The ordinary way to a target, for whoever has rustup and a network that reaches its server.
 
 use std::time::Duration;
 
-use super::TARGET;
 use crate::failure::{Failure, Outcome};
 use crate::run::{command, run_for, works};
 
@@ -13,7 +12,7 @@ const PATIENCE: Duration = Duration::from_mins(2);
 ///
 /// # Errors
 /// There is no rustup, or it cannot fetch the target.
-pub(super) fn add_target() -> Outcome {
+pub(super) fn add_target(triple: &str) -> Outcome {
     if !works(command("rustup").arg("--version")) {
         return Err(Failure::new(
             "looking for `rustup`",
@@ -23,7 +22,7 @@ pub(super) fn add_target() -> Outcome {
     }
     run_for(
         PATIENCE,
-        command("rustup").args(["target", "add", TARGET]),
+        command("rustup").args(["target", "add", triple]),
         "check the network, or go on without",
     )
 }

@@ -1,0 +1,67 @@
+// Bundles the page into one HTML file: `node build.mjs MODULE.wasm OUTPUT.html VERSION HASH`.
+//
+// The module goes in compressed, as text that the browser's parser passes over; a worker goes in as text that is made a Blob,
+// because a page opened from disk may load nothing beside itself.
+
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { dirname, join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+import { build } from "esbuild";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const [modulePath, outputPath, version, hash] = process.argv.slice(2);
+if (!hash) {
+  console.error("usage: node build.mjs MODULE.wasm OUTPUT.html VERSION HASH");
+  process.exit(2);
+}
+
+const options = {
+  bundle: true,
+  write: false,
+  format: "iife",
+  target: ["chrome110", "firefox115"],
+  minify: true,
+  legalComments: "none",
+  charset: "utf8",
+  jsx: "automatic",
+  jsxImportSource: "preact",
+  loader: { ".svg": "text" },
+  define: { VERSION: JSON.stringify(version), HASH: JSON.stringify(hash) },
+  logLevel: "warning",
+};
+
+/** `import source from "worker:./worker.ts"`: the bundled worker as text. */
+const workers = {
+  name: "workers",
+  setup(plugin) {
+    plugin.onResolve({ filter: /^worker:/ }, ({ path, resolveDir }) => ({
+      path: resolve(resolveDir, path.slice("worker:".length)),
+      namespace: "worker",
+    }));
+    plugin.onLoad({ filter: /.*/, namespace: "worker" }, async ({ path }) => {
+      const bundled = await build({ ...options, entryPoints: [path] });
+      return { contents: bundled.outputFiles[0].text, loader: "text" };
+    });
+  },
+};
+
+async function bundled(entry) {
+  const result = await build({ ...options, entryPoints: [join(here, entry)], outdir: "out", plugins: [workers] });
+  const of = (ending) => result.outputFiles.find((file) => file.path.endsWith(ending))?.text ?? "";
+  return { script: of(".js"), style: of(".css") };
+}
+
+const { script, style } = await bundled("src/main.tsx");
+const module = gzipSync(readFileSync(modulePath), { level: 9 }).toString("base64");
+// Nothing in it may look like the end of the element that holds it.
+const inScript = (text) => text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
+const parts = { style: style.replaceAll("</style", "<\\/style"), script: inScript(script), module };
+const template = readFileSync(join(here, "src/index.html"), "utf8");
+const page = template.replace(/@(style|script|module)@/g, (_, part) => parts[part]);
+mkdirSync(dirname(resolve(outputPath)), { recursive: true });
+writeFileSync(outputPath, page);
+const kilobytes = (length) => `${Math.round(length / 1000)} kB`;
+console.log(
+  `script ${kilobytes(script.length)}, style ${kilobytes(style.length)}, module ${kilobytes(module.length)} as text`,
+);

@@ -1,0 +1,19 @@
+// The rooms of the page: one line each. A room is mounted when it is first opened and stays.
+
+import type { ComponentType } from "preact";
+import { Explore } from "../explore/explore.tsx";
+
+export interface Room {
+  /** In the URL's fragment. */
+  id: string;
+  name: string;
+  /** What it is for, in one sentence. */
+  about: string;
+  /** The key that opens it, with Alt. */
+  key: string;
+  Panel: ComponentType;
+}
+
+export const ROOMS: readonly Room[] = [
+  { id: "explore", name: "Explore", about: "Drag a gait over the height map and watch it swim.", key: "1", Panel: Explore },
+];

@@ -1,0 +1,45 @@
+// Light, dark, or as the system says.
+
+import { effect, signal } from "@preact/signals";
+
+type Theme = "system" | "light" | "dark";
+const NEXT: Record<Theme, Theme> = { system: "light", light: "dark", dark: "system" };
+const KEY = "swimmer-lab-theme";
+
+function remembered(): Theme {
+  try {
+    const told = localStorage.getItem(KEY);
+    return told === "light" || told === "dark" ? told : "system";
+  } catch {
+    return "system"; // a page from disk may be denied storage
+  }
+}
+
+const system = matchMedia("(prefers-color-scheme: dark)");
+const theme = signal<Theme>(remembered());
+const systemDark = signal(system.matches);
+system.addEventListener("change", (event) => (systemDark.value = event.matches));
+
+/** Whether the page is dark now; whatever paints on a canvas reads it. */
+export const dark = signal(false);
+
+effect(() => {
+  dark.value = theme.value === "system" ? systemDark.value : theme.value === "dark";
+  document.documentElement.dataset.theme = dark.value ? "dark" : "light";
+});
+
+export function ThemeToggle() {
+  const change = () => {
+    theme.value = NEXT[theme.value];
+    try {
+      localStorage.setItem(KEY, theme.value);
+    } catch {
+      // It holds for this visit.
+    }
+  };
+  return (
+    <button class="quiet" onClick={change} aria-label={`Colours: ${theme.value}`} title="Light, dark, or as the system says">
+      {{ system: "◐", light: "☀", dark: "☾" }[theme.value]}
+    </button>
+  );
+}

@@ -1,0 +1,73 @@
+// The page's side of the numerics: questions to a worker, answers as promises.
+
+import source from "worker:./worker.ts";
+import { startWorker } from "./embedded.ts";
+import type { Told } from "./worker.ts";
+
+interface Waiting {
+  answered(told: Told): void;
+}
+
+/** A worker with a module of its own. Long searches have their own, so that no drag waits for them. */
+export class Lab {
+  readonly #worker: Promise<Worker>;
+  readonly #waiting = new Map<number, Waiting>();
+  #last = 0;
+
+  constructor() {
+    this.#worker = startWorker(source).then((worker) => {
+      worker.onmessage = ({ data }: MessageEvent<Told>) => {
+        this.#waiting.get(data.id)?.answered(data);
+        this.#waiting.delete(data.id);
+      };
+      return worker;
+    });
+  }
+
+  /** Asks; the reason of a refusal is the error's message. */
+  async ask(name: string, question: unknown): Promise<Told> {
+    const id = ++this.#last;
+    const worker = await this.#worker;
+    return new Promise((resolve, reject) => {
+      this.#waiting.set(id, {
+        answered: (told) => ("reason" in told ? reject(new Error(told.reason)) : resolve(told)),
+      });
+      worker.postMessage({ id, name, question });
+    });
+  }
+
+  async json<T>(name: string, question: unknown): Promise<T> {
+    const told = await this.ask(name, question);
+    if (!("json" in told)) throw new Error(`${name}: bytes where a document was expected`);
+    return told.json as T;
+  }
+
+  async bytes(name: string, question: unknown): Promise<ArrayBuffer> {
+    const told = await this.ask(name, question);
+    if (!("bytes" in told)) throw new Error(`${name}: a document where bytes were expected`);
+    return told.bytes;
+  }
+}
+
+/** Runs the newest of what it is given and forgets what was overtaken: a hand is faster than a certificate. */
+export class Latest<Q> {
+  #running = false;
+  #next: Q | undefined;
+
+  constructor(readonly perform: (question: Q) => Promise<void>) {}
+
+  give(question: Q): void {
+    this.#next = question;
+    if (!this.#running) void this.#run();
+  }
+
+  async #run(): Promise<void> {
+    this.#running = true;
+    while (this.#next !== undefined) {
+      const question = this.#next;
+      this.#next = undefined;
+      await this.perform(question);
+    }
+    this.#running = false;
+  }
+}

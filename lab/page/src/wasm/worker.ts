@@ -1,0 +1,38 @@
+// The worker behind `lab.ts`: one module, one call after the other.
+
+import { Module } from "./module.ts";
+
+export interface Asked {
+  id: number;
+  name: string;
+  question: unknown;
+}
+
+export type Told = { id: number; milliseconds: number } & ({ json: unknown } | { bytes: ArrayBuffer } | { reason: string });
+
+let loading: Promise<Module> | undefined;
+
+self.onmessage = async ({ data }: MessageEvent<ArrayBuffer | Asked>) => {
+  if (data instanceof ArrayBuffer) {
+    loading = Module.load(data);
+    return;
+  }
+  const { id, name, question } = data;
+  let begun = performance.now();
+  try {
+    if (!loading) throw new Error("calling a worker that was given no module");
+    const module = await loading;
+    begun = performance.now();
+    const answer = module.call(name, question);
+    const milliseconds = performance.now() - begun;
+    if ("bytes" in answer) {
+      const { buffer } = answer.bytes;
+      self.postMessage({ id, milliseconds, bytes: buffer } satisfies Told, { transfer: [buffer] });
+    } else {
+      self.postMessage({ id, milliseconds, json: answer.json } satisfies Told);
+    }
+  } catch (error) {
+    const reason = error instanceof Error ? error.message : String(error);
+    self.postMessage({ id, milliseconds: performance.now() - begun, reason } satisfies Told);
+  }
+};

@@ -1,0 +1,149 @@
+//! `optimize`: the optimiser's gaits by the names of the commands, each with its certificate and its file.
+
+use gait_optimizer::{
+    Bounds, Branch, DisplacementProblem, EfficiencyProblem, OptimalGait, SidewaysProblem,
+    SpeedProblem, TurningProblem, displacement, efficiency, fastest, sideways, turning,
+};
+use serde::{Deserialize, Serialize};
+
+use super::certify::Evidence;
+use crate::calls::{Lab, Outcome, json, parsed};
+use crate::input::{BoundsAsked, SwimmerText};
+
+#[derive(Deserialize)]
+struct Asked {
+    swimmer: SwimmerText,
+    what: What,
+    #[serde(default)]
+    bounds: BoundsAsked,
+    /// For `speed`; the swimmer's servos' where it is left out \[rad/s\].
+    max_rate: Option<f64>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum What {
+    Displacement,
+    EfficiencySmall,
+    EfficiencyLarge,
+    Turning,
+    Sideways,
+    Speed,
+}
+
+#[derive(Serialize)]
+struct Found {
+    displacement_over_length: f64,
+    displacement_m: f64,
+    lateral_over_length: f64,
+    rotation_rad: f64,
+    /// At constant power; of the fastest, as timed.
+    efficiency: f64,
+    start_angle_rad: f64,
+    end_angle_rad: f64,
+    arcs: Vec<ArcAnswer>,
+    links_cross: f64,
+    certificate: Evidence,
+    /// Of the fastest.
+    period_s: Option<f64>,
+    speed_over_length_per_s: Option<f64>,
+    /// What bridges to further regions would come near to.
+    bridged_supremum_rad: Option<f64>,
+    /// The gait file.
+    gait: String,
+}
+
+#[derive(Serialize)]
+struct ArcAnswer {
+    kind: &'static str,
+    from: [f64; 2],
+    to: [f64; 2],
+}
+
+/// Finds an optimum.
+pub(super) fn optimize(_: &mut Lab, bytes: &[u8]) -> Outcome {
+    let asked: Asked = parsed(bytes)?;
+    let file = asked.swimmer.read()?;
+    let (swimmer, bounds): (_, Bounds) = (file.swimmer, asked.bounds.into());
+    let of_branch = |branch| {
+        let problem = EfficiencyProblem {
+            bounds,
+            ..EfficiencyProblem::new(swimmer, branch)
+        };
+        efficiency(&problem).map_err(|why| why.to_string())
+    };
+    let found = match asked.what {
+        What::Displacement => {
+            let problem = DisplacementProblem {
+                bounds,
+                ..DisplacementProblem::new(swimmer)
+            };
+            Found::new(
+                &displacement(&problem).map_err(|why| why.to_string())?,
+                &file.name,
+            )
+        }
+        What::EfficiencySmall => Found::new(&of_branch(Branch::Small)?, &file.name),
+        What::EfficiencyLarge => Found::new(&of_branch(Branch::Large)?, &file.name),
+        What::Turning => {
+            let found =
+                turning(&TurningProblem { swimmer, bounds }).map_err(|why| why.to_string())?;
+            Found {
+                bridged_supremum_rad: Some(found.bridged_supremum),
+                ..Found::new(&found.gait, &file.name)
+            }
+        }
+        What::Sideways => {
+            let problem = SidewaysProblem {
+                bounds,
+                ..SidewaysProblem::new(swimmer)
+            };
+            Found::new(
+                &sideways(&problem).map_err(|why| why.to_string())?.gait,
+                &file.name,
+            )
+        }
+        What::Speed => {
+            let rate = asked
+                .max_rate
+                .unwrap_or(file.servo.unwrap_or_default().max_rate);
+            let problem = SpeedProblem {
+                bounds,
+                ..SpeedProblem::new(swimmer, [rate; 2])
+            };
+            let found = fastest(&problem).map_err(|why| why.to_string())?;
+            Found {
+                period_s: Some(found.period),
+                speed_over_length_per_s: Some(found.speed_over_length),
+                ..Found::new(&found.gait, &file.name)
+            }
+        }
+    };
+    json(&found)
+}
+
+impl Found {
+    fn new(gait: &OptimalGait, name: &str) -> Self {
+        let arc = |arc: &gait_optimizer::Arc| ArcAnswer {
+            kind: arc.kind.word(),
+            from: arc.from,
+            to: arc.to,
+        };
+        Self {
+            displacement_over_length: gait.displacement_over_length,
+            displacement_m: gait.displacement,
+            lateral_over_length: gait.lateral_over_length,
+            rotation_rad: gait.rotation,
+            efficiency: gait.efficiency,
+            start_angle_rad: gait.start_angle,
+            end_angle_rad: gait.end_angle,
+            arcs: gait.arcs.iter().map(arc).collect(),
+            links_cross: gait.links_cross,
+            certificate: (&gait.certificate).into(),
+            period_s: None,
+            speed_over_length_per_s: None,
+            bridged_supremum_rad: None,
+            gait: gait.gait_file(name).to_text(),
+        }
+    }
+}

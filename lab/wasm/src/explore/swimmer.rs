@@ -1,0 +1,103 @@
+//! `swimmer`: reads a swimmer and tells what it is, in the units of its file; and writes the file of one that the page's sliders
+//! made.
+
+use serde::{Deserialize, Serialize};
+use swimmer_files::{ServoFile, SwimmerFile};
+use swimmer_model::TangentialDrag;
+
+use crate::calls::{Lab, Outcome, json, parsed};
+use crate::input::SwimmerText;
+
+#[derive(Deserialize)]
+struct Asked {
+    swimmer: SwimmerText,
+    /// What the sliders say; what is left out stays.
+    #[serde(default)]
+    with: With,
+}
+
+/// Changed values, in the units of the swimmer file.
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct With {
+    chi: Option<f64>,
+    sphere_radius_m: Option<f64>,
+    middle_m: Option<f64>,
+    front_m: Option<f64>,
+    back_m: Option<f64>,
+    max_rate_rad_s: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    name: String,
+    toml: String,
+    hash: String,
+    total_length_m: f64,
+    middle_m: f64,
+    front_m: f64,
+    back_m: f64,
+    chi: f64,
+    sphere_radius_m: f64,
+    /// The form that ties drag to viscosity, and its number.
+    c_t_form: &'static str,
+    c_t: f64,
+    max_angle_rad: f64,
+    max_rate_rad_s: f64,
+    doubts: Vec<String>,
+}
+
+/// Reads, changes, tells.
+pub(super) fn swimmer(_: &mut Lab, bytes: &[u8]) -> Outcome {
+    let Asked { swimmer, with } = parsed(bytes)?;
+    let mut file = swimmer.read()?;
+    with.apply(&mut file);
+    file.swimmer
+        .validate()
+        .map_err(|why| format!("the swimmer `{}` cannot swim: {why}", file.name))?;
+    let links = &file.swimmer.links;
+    let servo = file.servo.unwrap_or_default();
+    let (c_t_form, c_t) = match file.swimmer.tangential_drag {
+        TangentialDrag::LogAspect(value) => ("log_aspect", value),
+        TangentialDrag::HalfThickness(value) => ("half_thickness", value),
+        TangentialDrag::OverViscosity(value) => ("over_viscosity", value),
+    };
+    json(&Answer {
+        toml: file.to_toml(),
+        hash: file.hash().to_string(),
+        total_length_m: file.swimmer.total_length(),
+        middle_m: links.middle,
+        front_m: links.front,
+        back_m: links.back,
+        chi: file.swimmer.chi,
+        sphere_radius_m: file.swimmer.sphere_radius,
+        c_t_form,
+        c_t,
+        max_angle_rad: servo.max_angle,
+        max_rate_rad_s: servo.max_rate,
+        doubts: file.doubts(),
+        name: file.name,
+    })
+}
+
+impl With {
+    fn apply(&self, file: &mut SwimmerFile) {
+        let swimmer = &mut file.swimmer;
+        let links = &mut swimmer.links;
+        for (place, value) in [
+            (&mut links.middle, self.middle_m),
+            (&mut links.front, self.front_m),
+            (&mut links.back, self.back_m),
+            (&mut swimmer.chi, self.chi),
+            (&mut swimmer.sphere_radius, self.sphere_radius_m),
+        ] {
+            *place = value.unwrap_or(*place);
+        }
+        if let Some(max_rate) = self.max_rate_rad_s {
+            file.servo = Some(ServoFile {
+                max_rate,
+                ..file.servo.unwrap_or_default()
+            });
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! What many calls take: a swimmer, a gait, bounds. Each is read by the room that reads it for the command line.
+
+use std::path::Path;
+
+use gait_optimizer::{Bounds, Objective};
+use nalgebra::Vector2;
+use serde::Deserialize;
+use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile};
+use swimmer_model::Model;
+
+/// A swimmer as on the command line: the name of a preset, or the text of a swimmer file.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+pub(crate) struct SwimmerText(String);
+
+impl SwimmerText {
+    /// Reads it.
+    pub(crate) fn read(&self) -> Result<SwimmerFile, String> {
+        match SwimmerFile::preset(&self.0) {
+            Some(preset) => Ok(preset),
+            None => SwimmerFile::parse(&self.0, Path::new("swimmer.toml"))
+                .map_err(|why| why.to_string()),
+        }
+    }
+
+    /// Reads it and makes its model.
+    pub(crate) fn model(&self) -> Result<(SwimmerFile, Model<f64>), String> {
+        let file = self.read()?;
+        let model = Model::new(&file.swimmer)
+            .map_err(|why| format!("the swimmer `{}` cannot swim: {why}", file.name))?;
+        Ok((file, model))
+    }
+}
+
+/// A gait: `circle:AMPLITUDE`, `square:AMPLITUDE`, the text of a gait file, or bare samples.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub(crate) enum GaitText {
+    /// As on the command line, or a file's text.
+    Text(String),
+    /// The cycle in even steps, φ₁ and φ₂ \[rad\] in turn, without the last sample, which is the first.
+    Even(Vec<f64>),
+}
+
+/// Samples that a circle or a square is written and asked by, as `swimmer certify` asks them.
+const SAMPLES: usize = 1024;
+
+impl GaitText {
+    /// The gait.
+    pub(crate) fn read(&self) -> Result<AnyGait, String> {
+        match self {
+            Self::Text(text) => match closed_form(text)? {
+                Some(gait) => Ok(gait),
+                None => of_file(&file(text)?),
+            },
+            Self::Even(phi) => of_file(&even(phi)),
+        }
+    }
+
+    /// The gait with all that a file tells.
+    pub(crate) fn file(&self) -> Result<GaitFile, String> {
+        match self {
+            Self::Text(text) => match closed_form(text)? {
+                Some(gait) => Ok(GaitFile::sampled(&gait, SAMPLES)),
+                None => file(text),
+            },
+            Self::Even(phi) => Ok(even(phi)),
+        }
+    }
+}
+
+fn of_file(file: &GaitFile) -> Result<AnyGait, String> {
+    AnyGait::from_file(file).map_err(|why| format!("reading the gait: {why}"))
+}
+
+/// A file's text has several lines; one line is a closed form or a mistake.
+fn closed_form(text: &str) -> Result<Option<AnyGait>, String> {
+    if text.contains('\n') {
+        return Ok(None);
+    }
+    match text.parse::<GaitSpec>() {
+        Ok(GaitSpec::File { path, .. }) => Err(format!(
+            "`{}` is neither circle:ANGLE nor square:ANGLE; open a gait file instead",
+            path.display()
+        )),
+        Ok(spec) => spec.load().map(Some).map_err(|why| why.to_string()),
+        Err(why) => Err(why.to_string()),
+    }
+}
+
+fn file(text: &str) -> Result<GaitFile, String> {
+    GaitFile::parse(text, Path::new("gait file")).map_err(|why| why.to_string())
+}
+
+fn even(phi: &[f64]) -> GaitFile {
+    let mut shapes: Vec<Vector2<f64>> = phi
+        .chunks_exact(2)
+        .map(|pair| Vector2::new(pair[0], pair[1]))
+        .collect();
+    let count = shapes.len();
+    shapes.extend(shapes.first().copied());
+    GaitFile {
+        u: (0..=count)
+            .map(|k| k as f64 / count.max(1) as f64)
+            .collect(),
+        phi: shapes,
+        ..GaitFile::default()
+    }
+}
+
+/// Bounds on shapes, under the names of the command line's options.
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(crate) struct BoundsAsked {
+    max_angle: Option<f64>,
+    min_angle: Option<f64>,
+    sector: bool,
+    no_overlap: bool,
+    clearance: f64,
+}
+
+impl From<BoundsAsked> for Bounds {
+    fn from(asked: BoundsAsked) -> Self {
+        Self {
+            max_angle: asked.max_angle,
+            min_angle: asked.min_angle,
+            sector: asked.sector,
+            no_overlap: asked.no_overlap || asked.clearance > 0.0,
+            clearance: asked.clearance,
+        }
+    }
+}
+
+/// An objective by its word; none for the file's own.
+pub(crate) fn objective(word: Option<&str>) -> Result<Option<Objective>, String> {
+    word.map(|word| {
+        word.parse()
+            .map_err(|_| format!("`{word}` is no objective of a gait"))
+    })
+    .transpose()
+}

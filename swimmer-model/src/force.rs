@@ -1,0 +1,96 @@
+//! The fluid's force along the links, for whoever wants to see what drives the swimmer.
+
+use crate::{Model, Scalar};
+use nalgebra::Vector2;
+
+/// One link in the middle link's frame, and the force per length that the fluid puts on it. Between the ends both run straight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkForce<T> {
+    /// Where the link begins and ends \[m\].
+    pub ends: [Vector2<T>; 2],
+    /// Force per length over μ at those ends \[m/s\].
+    pub density: [Vector2<T>; 2],
+}
+
+impl<T: Scalar> Model<T> {
+    /// The fluid's force on the back, the middle and the front link at shape Φ with joint rates Φ̇ \[rad/s\], by resistive force
+    /// theory: −c_t along the link, −c_n across it, times the local velocity. The sphere's force is not among them.
+    ///
+    /// ```
+    /// use nalgebra::Vector2;
+    /// use swimmer_model::{Model, Swimmer};
+    ///
+    /// let model = Model::new(&Swimmer::<f64>::purcell())?;
+    /// let links = model.link_forces(&Vector2::new(0.5, -0.3), &Vector2::new(1.0, 0.0));
+    /// let total: f64 = links.iter().map(|link| 0.5 * (link.density[0].x + link.density[1].x)).sum();
+    /// assert!(total.abs() < 1e-12, "links of length 1 without a sphere: no net force");
+    /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+    /// ```
+    pub fn link_forces(&self, phi: &Vector2<T>, rate: &Vector2<T>) -> [LinkForce<T>; 3] {
+        let swimmer = self.swimmer();
+        let links = &swimmer.links;
+        let body = self.local_connection(phi) * rate;
+        let outline = links.outline(phi);
+        let carried =
+            |point: &Vector2<T>| Vector2::new(body.x - body.z * point.y, body.y + body.z * point.x);
+        let (sin1, cos1) = phi.x.sin_cos();
+        let (sin2, cos2) = phi.y.sin_cos();
+        // What the joints add at the tips; the joints themselves are carried with the middle link.
+        let turned = [
+            Vector2::new(sin2, cos2) * (links.back * rate.y),
+            Vector2::zeros(),
+            Vector2::zeros(),
+            Vector2::new(-sin1, cos1) * (links.front * rate.x),
+        ];
+        let along = [
+            Vector2::new(cos2, -sin2),
+            Vector2::new(T::one(), T::zero()),
+            Vector2::new(cos1, sin1),
+        ];
+        let lengths = [links.back, links.middle, links.front];
+        core::array::from_fn(|link| {
+            let tangential = swimmer.tangential_drag.over_viscosity(lengths[link]);
+            let normal = swimmer.chi * tangential;
+            let density = |end: usize| {
+                let velocity = carried(&outline[end]) + turned[end];
+                let slip = along[link] * along[link].dot(&velocity);
+                slip * (normal - tangential) - velocity * normal
+            };
+            LinkForce {
+                ends: [outline[link], outline[link + 1]],
+                density: [density(link), density(link + 1)],
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Swimmer;
+    use core::f64::consts::PI;
+
+    /// With those of the sphere, the forces and the torques of the links balance.
+    #[test]
+    fn forces_and_torques_balance() {
+        let (phi, rate) = (Vector2::new(0.9, -1.4), Vector2::new(0.7, 1.3));
+        for swimmer in [Swimmer::<f64>::purcell(), Swimmer::robot()] {
+            let model = Model::new(&swimmer).unwrap();
+            let body = model.local_connection(&phi) * rate;
+            let drag = 6.0 * PI * swimmer.sphere_radius;
+            let mut force = Vector2::new(body.x, body.y) * -drag;
+            let mut torque = -8.0 * PI * swimmer.sphere_radius.powi(3) * body.z;
+            for link in model.link_forces(&phi, &rate) {
+                let [a, b] = link.ends;
+                let [f, g] = link.density;
+                let length = (b - a).norm();
+                force += (f + g) * (0.5 * length);
+                // Simpson's rule is exact for the product of two straight lines.
+                let middle = (a + b).perp(&(f + g)) * 0.25;
+                torque += (a.perp(&f) + 4.0 * middle + b.perp(&g)) * length / 6.0;
+            }
+            assert!(force.norm() < 1e-13 * drag.max(1.0), "{force}");
+            assert!(torque.abs() < 1e-13, "{torque}");
+        }
+    }
+}

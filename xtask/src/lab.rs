@@ -1,0 +1,138 @@
+//! `cargo xtask lab`: the lab page as one HTML file, weighed against its promised size.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::debian;
+use crate::disk::{make_folder, read_bytes};
+use crate::failure::{Failure, Outcome};
+use crate::run::{command, read, run, target_folder, works};
+use crate::toolchain::{Target, Toolchain};
+
+/// The page's sources; npm puts beside them what bundles and tests it.
+const PAGE: &str = "lab/page";
+/// Promised sizes, bytes.
+const LARGEST_MODULE: usize = 1_200_000;
+const LARGEST_PAGE: usize = 1_600_000;
+/// What the compiler may use of a browser, told to the optimiser of modules.
+const FEATURES: [&str; 6] = [
+    "--enable-bulk-memory",
+    "--enable-nontrapping-float-to-int",
+    "--enable-sign-ext",
+    "--enable-mutable-globals",
+    "--enable-reference-types",
+    "--enable-multivalue",
+];
+
+/// Builds module and page, and returns where the page is.
+///
+/// # Errors
+/// Node, npm or the compiler cannot be had, a source is wrong, or a file is larger than promised.
+pub(crate) fn build() -> Outcome<PathBuf> {
+    install()?;
+    let next = "mend what the type checker names above";
+    run(tool("tsc").arg("--noEmit"), next)?;
+    let module = module()?;
+    let page = target_folder()?.join("lab/swimmer-lab.html");
+    let (version, hash) = (env!("CARGO_PKG_VERSION"), commit());
+    run(
+        command("node")
+            .arg("build.mjs")
+            .args([&module, &page])
+            .args([version, &hash])
+            .current_dir(PAGE),
+        "mend what the bundler names above",
+    )?;
+    weigh("module", &module, LARGEST_MODULE)?;
+    weigh("page", &page, LARGEST_PAGE)?;
+    println!("{}", page.display());
+    Ok(page)
+}
+
+/// Installs what `package-lock.json` names, where that was not done since it changed.
+///
+/// # Errors
+/// Node or npm cannot be had, or a package cannot be fetched.
+pub(crate) fn install() -> Outcome {
+    debian::ensure_tool(command("node").arg("--version"), &["nodejs"])?;
+    let (wanted, installed) = ("package-lock.json", "node_modules/.installed-lock.json");
+    let lock = read_bytes(&Path::new(PAGE).join(wanted))?;
+    if std::fs::read(Path::new(PAGE).join(installed)).is_ok_and(|there| there == lock) {
+        return Ok(());
+    }
+    debian::ensure_tool(command("npm").arg("--version"), &["npm"])?;
+    run(
+        command("npm")
+            .args(["ci", "--no-audit", "--no-fund"])
+            .current_dir(PAGE),
+        "check the network and npm's registry, and repeat the command",
+    )?;
+    crate::disk::write(&Path::new(PAGE).join(installed), lock)
+}
+
+/// A program that npm installed, called in the page's folder.
+fn tool(name: &str) -> Command {
+    let mut tool = command("node");
+    tool.arg(format!("node_modules/.bin/{name}"))
+        .current_dir(PAGE);
+    tool
+}
+
+/// Compiles the module and makes it smaller.
+fn module() -> Outcome<PathBuf> {
+    let toolchain = Toolchain::find_or_make(Target::Page)?;
+    println!("{}", toolchain.describe());
+    run(
+        toolchain.cargo("build").args(["-p", "swimmer-lab"]),
+        "mend what the compiler names above",
+    )?;
+    let target = target_folder()?;
+    let built = target
+        .join(Target::Page.triple())
+        .join("lab/swimmer_lab.wasm");
+    let folder = target.join("lab");
+    make_folder(&folder)?;
+    let small = folder.join("swimmer_lab.wasm");
+    if is_newer(&small, &built) {
+        return Ok(small);
+    }
+    run(
+        tool("wasm-opt")
+            .args(FEATURES)
+            .args(["-Oz", "--merge-similar-functions", "--strip-debug", "-o"])
+            .args([&small, &built]),
+        "mend what wasm-opt names above",
+    )?;
+    Ok(small)
+}
+
+fn is_newer(made: &Path, from: &Path) -> bool {
+    let when = |path: &Path| path.metadata().and_then(|about| about.modified()).ok();
+    matches!((when(made), when(from)), (Some(made), Some(from)) if made >= from)
+}
+
+/// The commit that is checked out, marked where the checkout differs from it; `unknown` outside a repository.
+fn commit() -> String {
+    let next = "";
+    let Ok(hash) = read(
+        command("git").args(["rev-parse", "--short=12", "HEAD"]),
+        next,
+    ) else {
+        return "unknown".to_owned();
+    };
+    let clean = works(command("git").args(["diff", "--quiet", "HEAD"]));
+    format!("{}{}", hash.trim(), if clean { "" } else { "+" })
+}
+
+fn weigh(name: &str, path: &Path, most: usize) -> Outcome {
+    let size = read_bytes(path)?.len();
+    println!("{name}: {size} bytes of {most} promised");
+    if size <= most {
+        return Ok(());
+    }
+    Err(Failure::new(
+        format!("weighing {}", path.display()),
+        format!("{size} bytes, and {most} are promised"),
+        "take out what grew, or say in ARCHITECTURE.md why more is right",
+    ))
+}
