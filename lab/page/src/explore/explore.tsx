@@ -1,18 +1,40 @@
 // Explore: the height map, gaits laid over it, and what they swim.
 
-import { signal } from "@preact/signals";
-import { useEffect } from "preact/hooks";
-import { Lab } from "../wasm/lab.ts";
+import "./explore.css";
+import { useDrop } from "../files/drop.ts";
+import { Gaits } from "./gaits.tsx";
+import { HeightMap } from "./map.tsx";
+import { openFiles } from "./open.ts";
+import { Plots } from "./plots.tsx";
+import { Readout } from "./readout.tsx";
+import { followFragment } from "./share.ts";
+import { Sliders } from "./sliders.tsx";
+import { Swimming } from "./swimming.tsx";
+import { Toolbar } from "./toolbar.tsx";
 
-const lab = new Lab();
-const swum = signal("…");
+void followFragment();
+
+const open = (files: File[]) => void openFiles(files);
 
 export function Explore() {
-  useEffect(() => {
-    lab
-      .json<{ displacement_over_length: number }>("simulate", { swimmer: "purcell", gait: "circle:70deg" })
-      .then((told) => (swum.value = `X/L = ${told.displacement_over_length.toFixed(10)}`))
-      .catch((error: Error) => (swum.value = error.message));
-  }, []);
-  return <p id="swum">{swum}</p>;
+  useDrop("explore", open);
+  return (
+    <div id="explore">
+      <Toolbar />
+      <div class="explore">
+        <div class="column">
+          <HeightMap />
+          <Plots />
+        </div>
+        <div class="column">
+          <Readout />
+          <Swimming />
+        </div>
+        <div class="column">
+          <Gaits />
+          <Sliders />
+        </div>
+      </div>
+    </div>
+  );
 }

@@ -1,0 +1,71 @@
+// What the module answers, under the keys of `swimmer … --json`.
+
+export interface SwimmerAnswer {
+  name: string;
+  toml: string;
+  hash: string;
+  total_length_m: number;
+  middle_m: number;
+  front_m: number;
+  back_m: number;
+  chi: number;
+  sphere_radius_m: number;
+  max_angle_rad: number;
+  max_rate_rad_s: number;
+  doubts: string[];
+}
+
+export interface Swum {
+  links_cross: number;
+  displacement_over_length: number;
+  displacement_m: number;
+  lateral_over_length: number;
+  rotation_rad: number;
+  delta_y_over_length: number;
+  delta_theta_rad: number;
+  efficiency: number;
+  efficiency_constant_power: number;
+  peak_rates_rad_s: [number, number];
+  reach_rad: number;
+  speed_m_per_s: number;
+  speed_over_length_per_s: number;
+  shortest_period_s: number | null;
+}
+
+export interface TankAnswer {
+  cycles: number | null;
+  part: string | null;
+}
+
+export interface Check {
+  name: string;
+  value: number;
+  tolerance: number;
+  pass: boolean;
+}
+
+export interface Evidence {
+  pass: boolean;
+  verdict: "pass" | "fail" | "undecided";
+  checks: Check[];
+}
+
+export interface FoundAnswer {
+  displacement_over_length: number;
+  displacement_m: number;
+  lateral_over_length: number;
+  rotation_rad: number;
+  efficiency: number;
+  certificate: Evidence;
+  period_s: number | null;
+  speed_over_length_per_s: number | null;
+  gait: string;
+}
+
+export interface Mapped {
+  max_angle_rad: number;
+  at_origin_over_length: number;
+  zero_on_diagonal: number | null;
+  zero_on_antidiagonal: number | null;
+  zero_curves: { closed: boolean; points: [number, number][] }[];
+}

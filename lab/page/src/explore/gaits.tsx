@@ -1,0 +1,110 @@
+// The gaits: the drawn one and its class, the optimiser's to lay over or to take, and a second one beside.
+
+import { activeGait, CIRCLE, edit, editGait, type Gait, OPTIMA, type Optimum, shown } from "./document.ts";
+import { withPoints } from "./handles.tsx";
+import { curveOf, isCurrent, optima } from "./model.ts";
+import { angle, figure, NAMES } from "./names.ts";
+import { symmetrised } from "./spline.ts";
+
+export function Gaits() {
+  const { gaits, active } = shown.value;
+  const gait = activeGait(shown.value);
+  return (
+    <section class="card" aria-label="Gaits">
+      <div class="bar-of-buttons">
+        <h2>Gait {gaits[1] ? (active ? "B" : "A") : ""}</h2>
+        <span class="soft">{named(gait)}</span>
+        {gaits[1] === null ? (
+          <button onClick={() => edit({ gaits: [gaits[0], gaits[0]], active: 1 })} title="A second gait beside the first">Compare</button>
+        ) : (
+          <button onClick={() => edit({ gaits: [activeGait(shown.value), null], active: 0 })} title="Keep only the active gait">One gait</button>
+        )}
+      </div>
+      <Drawn gait={gait} />
+      <table class="optima">
+        <caption class="soft">Optimiser’s gaits: lay over, or take</caption>
+        <tbody>{OPTIMA.map((what) => <OptimumRow key={what} what={what} />)}</tbody>
+      </table>
+    </section>
+  );
+}
+
+function named(gait: Gait): string {
+  if (gait.kind === "drawn") return `drawn, ${gait.points.length} points`;
+  return gait.kind === "optimum" ? NAMES[gait.what] : gait.name;
+}
+
+function Drawn({ gait }: { gait: Gait }) {
+  if (gait.kind !== "drawn") {
+    return (
+      <div class="bar-of-buttons">
+        <button onClick={() => editGait(draggable(gait))} disabled={curveOf(gait).length === 0}>Make it draggable</button>
+        <button onClick={() => editGait(CIRCLE)}>Circle</button>
+      </div>
+    );
+  }
+  const { points, symmetric } = gait;
+  return (
+    <div class="bar-of-buttons">
+      <button
+        aria-pressed={symmetric}
+        title="Both symmetries of the paper: a point’s images move with it"
+        onClick={() => editGait(symmetric ? { ...gait, symmetric: false } : { ...gait, symmetric: true, points: symmetrised(points) })}
+      >
+        Symmetric
+      </button>
+      <button aria-label="Fewer control points" disabled={points.length <= 8} onClick={() => withPoints(gait, points.length - 4)}>−</button>
+      <button aria-label="More control points" disabled={points.length >= 32} onClick={() => withPoints(gait, points.length + 4)}>+</button>
+      <button onClick={() => editGait(CIRCLE)} title="Start again from a circle of 1.2 rad">Circle</button>
+      <button onClick={() => editGait({ ...gait, points: [points[0] ?? [0, 0], ...points.slice(1).reverse()] })} title="The same curve the other way round">Reverse</button>
+    </div>
+  );
+}
+
+/** Control points on a curve, at even lengths along it. */
+function draggable(gait: Gait): Gait {
+  const curve = curveOf(gait);
+  const lengths = [0];
+  for (let k = 1; k < curve.length; k++) {
+    const [a, b] = [curve[k - 1] ?? [0, 0], curve[k] ?? [0, 0]];
+    lengths.push((lengths[k - 1] ?? 0) + Math.hypot(b[0] - a[0], b[1] - a[1]));
+  }
+  const whole = lengths.at(-1) ?? 0;
+  const count = 16;
+  const points = Array.from({ length: count }, (_, k) => curve[lengths.findIndex((length) => length >= (whole * k) / count)] ?? ([0, 0] as const));
+  return { kind: "drawn", points, symmetric: false };
+}
+
+function OptimumRow({ what }: { what: Optimum }) {
+  const { overlaid } = shown.value;
+  const laid = overlaid.includes(what);
+  const found = optima.value.get(what);
+  const wanted = laid || shown.value.gaits.some((gait) => gait?.kind === "optimum" && gait.what === what);
+  const toggle = () => edit({ overlaid: laid ? overlaid.filter((other) => other !== what) : [...overlaid, what] });
+  return (
+    <tr class={wanted && !isCurrent(what) ? "stale" : ""}>
+      <th scope="row">
+        <label>
+          <input type="checkbox" checked={laid} onChange={toggle} />
+          <span class={`key of-${OPTIMA.indexOf(what)}`} aria-hidden="true" />
+          {NAMES[what]}
+        </label>
+      </th>
+      <td data-optimum={what}>
+        {!wanted ? "" : !found ? "…" : "reason" in found ? <span class="error reason" title={found.reason}>{found.reason}</span> : brief(what, found.told)}
+      </td>
+      <td>
+        <button class="small" onClick={() => editGait({ kind: "optimum", what })} aria-label={`Take ${NAMES[what]}`}>Take</button>
+      </td>
+    </tr>
+  );
+}
+
+function brief(what: Optimum, told: { displacement_over_length: number; efficiency: number; rotation_rad: number; lateral_over_length: number; speed_over_length_per_s: number | null; certificate: { pass: boolean } }): string {
+  const mark = told.certificate.pass ? "✓ " : "";
+  if (what === "turning") return `${mark}θ ${angle(told.rotation_rad)}`;
+  if (what === "sideways") return `${mark}Y/L ${figure(told.lateral_over_length, 4)}`;
+  if (what === "speed") return `${mark}${figure(told.speed_over_length_per_s ?? 0, 5)} L/s`;
+  if (what === "displacement") return `${mark}X/L ${figure(told.displacement_over_length, 4)}`;
+  return `${mark}ξ ${figure(told.efficiency, 5)}`;
+}

@@ -1,0 +1,187 @@
+// What is computed of the document: each effect asks a worker, and only the newest question is answered.
+
+import { computed, effect, signal } from "@preact/signals";
+import { Lab, Latest } from "../wasm/lab.ts";
+import type { Evidence, FoundAnswer, Mapped, Swum, SwimmerAnswer, TankAnswer } from "./answers.ts";
+import { type Document, type Gait, type Optimum, activeGait, shown } from "./document.ts";
+import { pairs, sampled } from "./spline.ts";
+
+/** What follows the hand, what a moment may pass for, and what is searched for. */
+export const quick = new Lab();
+const slow = new Lab();
+const search = new Lab();
+
+export const swimmer = signal<SwimmerAnswer | null>(null);
+export const trouble = signal("");
+export const swum = signal<readonly [Swum | null, Swum | null]>([null, null]);
+export const tank = signal<readonly [TankAnswer | null, TankAnswer | null]>([null, null]);
+export const evidence = signal<{ of: string; told: Evidence } | null>(null);
+export const motions = signal<readonly [Float64Array | null, Float64Array | null]>([null, null]);
+export const map = signal<{ heights: Float64Array; count: number; row: string; halfWidth: number } | null>(null);
+export const curves = signal<Mapped | null>(null);
+export type FoundOptimum = { of: string } & ({ told: FoundAnswer } | { reason: string });
+export const optima = signal<ReadonlyMap<Optimum, FoundOptimum>>(new Map());
+
+export const INTERVALS = 240;
+
+/** A gait as the module takes it; null where it is still being looked for. */
+export function asked(gait: Gait | null): string | number[] | null {
+  if (!gait) return null;
+  if (gait.kind === "drawn") return sampled(gait.points);
+  if (gait.kind === "text") return gait.text;
+  const found = optima.value.get(gait.what);
+  return found && "told" in found ? found.told.gait : null;
+}
+
+/** The curve of a gait, for the map. */
+export function curveOf(gait: Gait | null): readonly (readonly [number, number])[] {
+  const question = asked(gait);
+  if (!question) return [];
+  return typeof question === "string" ? curveOfText(question) : pairs(question);
+}
+
+/** The samples of a gait file: lines of u, φ₁, φ₂. */
+export function curveOfText(text: string): [number, number][] {
+  return text
+    .split("\n")
+    .map((line) => line.split(",").map(Number))
+    .filter((line) => line.length === 3 && line.every(Number.isFinite))
+    .map(([, one, two]) => [one ?? 0, two ?? 0]);
+}
+
+const bounds = ({ maxAngle, noOverlap }: Document) => ({
+  ...(maxAngle === null ? {} : { max_angle: maxAngle }),
+  no_overlap: noOverlap,
+});
+
+function told(error: unknown): void {
+  trouble.value = error instanceof Error ? error.message : String(error);
+}
+
+const latestSwimmer = new Latest(async (question: object) => {
+  try {
+    const answer = await quick.json<SwimmerAnswer>("swimmer", question);
+    if (answer.toml !== swimmer.value?.toml) swimmer.value = answer;
+    trouble.value = answer.doubts[0] ?? "";
+  } catch (error) {
+    told(error);
+  }
+});
+const swimmerAsked = computed(() => JSON.stringify({ swimmer: shown.value.swimmer, with: shown.value.with }));
+effect(() => latestSwimmer.give(JSON.parse(swimmerAsked.value)));
+
+type Slot = 0 | 1;
+const at = <T>(pair: readonly [T, T], slot: Slot, value: T): readonly [T, T] =>
+  slot === 0 ? [value, pair[1]] : [pair[0], value];
+
+for (const slot of [0, 1] as const) {
+  const question = computed(() => {
+    const gait = asked(shown.value.gaits[slot]);
+    return swimmer.value && gait && JSON.stringify({ swimmer: swimmer.value.toml, gait, period: shown.value.period });
+  });
+  const latest = new Latest(async (text: string) => {
+    const about = JSON.parse(text) as object;
+    try {
+      swum.value = at(swum.value, slot, await quick.json<Swum>("simulate", about));
+      const bytes = await quick.bytes("motion", { ...about, intervals: INTERVALS });
+      motions.value = at(motions.value, slot, new Float64Array(bytes));
+    } catch (error) {
+      told(error);
+    }
+  });
+  effect(() => {
+    if (question.value) latest.give(question.value);
+    else {
+      swum.value = at(swum.peek(), slot, null);
+      motions.value = at(motions.peek(), slot, null);
+    }
+  });
+  const tankAsked = computed(() => {
+    const gait = asked(shown.value.gaits[slot]);
+    const [length_m, width_m] = shown.value.tank;
+    return swimmer.value && gait && JSON.stringify({ swimmer: swimmer.value.toml, gait, length_m, width_m });
+  });
+  const latestTank = new Latest(async (text: string) => {
+    tank.value = at(tank.value, slot, await slow.json<TankAnswer>("tank", JSON.parse(text)).catch(() => null));
+  });
+  effect(() => {
+    if (tankAsked.value) latestTank.give(tankAsked.value);
+    else tank.value = at(tank.peek(), slot, null);
+  });
+}
+
+const certifyAsked = computed(() => {
+  const gait = asked(activeGait(shown.value));
+  if (!swimmer.value || !gait) return null;
+  const { objective } = shown.value;
+  const own = typeof gait === "string" && gait.includes("\n");
+  const question = { swimmer: swimmer.value.toml, gait };
+  // A file tells what it is optimal for, and within what.
+  return JSON.stringify(own && !/objective = unspecified/.test(gait) ? question : { ...question, objective, bounds: bounds(shown.value) });
+});
+const latestEvidence = new Latest(async (text: string) => {
+  try {
+    evidence.value = { of: text, told: await slow.json<Evidence>("certify", JSON.parse(text)) };
+  } catch {
+    evidence.value = null;
+  }
+});
+effect(() => {
+  if (certifyAsked.value) latestEvidence.give(certifyAsked.value);
+});
+/** Whether the certificate shown is of an older curve. */
+export const evidenceIsStale = computed(() => evidence.value?.of !== certifyAsked.value);
+
+const mapAsked = computed(() =>
+  swimmer.value
+    ? JSON.stringify({ swimmer: swimmer.value.toml, row: shown.value.row, max_angle: shown.value.halfWidth })
+    : null,
+);
+/** Nodes of the grid along each axis: at once, then fine. */
+const COARSE = 41;
+const FINE = 161;
+const mapLab = new Lab();
+const latestMap = new Latest(async (text: string) => {
+  const question = JSON.parse(text) as { row: string; max_angle: number };
+  const begun = performance.now();
+  try {
+    for (const count of [COARSE, FINE]) {
+      const bytes = await mapLab.bytes("height-grid", { ...question, count });
+      map.value = { heights: new Float64Array(bytes), count, row: question.row, halfWidth: question.max_angle };
+      // Overtaken: the next one is coarse first again.
+      if (mapAsked.peek() !== text) return;
+    }
+    curves.value = await mapLab.json<Mapped>("height-map", question);
+    performance.measure("height map", { start: begun });
+  } catch (error) {
+    told(error);
+  }
+});
+effect(() => {
+  if (mapAsked.value) latestMap.give(mapAsked.value);
+});
+
+/** The optima that something shows. */
+const wanted = computed(() => {
+  const { overlaid, gaits } = shown.value;
+  const taken = gaits.flatMap((gait) => (gait?.kind === "optimum" ? [gait.what] : []));
+  return [...new Set([...overlaid, ...taken])];
+});
+const optimumAsked = (what: Optimum) => JSON.stringify({ swimmer: swimmer.value?.toml, what, bounds: bounds(shown.value) });
+const latestOptima = new Latest(async (_: number) => {
+  for (;;) {
+    const next = wanted.peek().find((what) => optima.peek().get(what)?.of !== optimumAsked(what));
+    if (!next) return;
+    const of = optimumAsked(next);
+    const found = await search
+      .json<FoundAnswer>("optimize", JSON.parse(of))
+      .then((told) => ({ of, told }), (error: Error) => ({ of, reason: error.message }));
+    optima.value = new Map(optima.value).set(next, found);
+  }
+});
+let turn = 0;
+effect(() => {
+  if (swimmer.value && wanted.value.map(optimumAsked).length) latestOptima.give(++turn);
+});
+/** Whether an optimum is of what is shown now. */
+export const isCurrent = (what: Optimum) => optima.value.get(what)?.of === optimumAsked(what);

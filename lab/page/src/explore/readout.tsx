@@ -1,0 +1,95 @@
+// The numbers of one gait, or of two side by side, with their units; and the certificate.
+
+import type { ComponentChildren } from "preact";
+import type { Swum, TankAnswer } from "./answers.ts";
+import { edit, shown } from "./document.ts";
+import { evidence, evidenceIsStale, swum, tank, trouble } from "./model.ts";
+import { angle, figure, length } from "./names.ts";
+
+type Told = { swum: Swum; tank: TankAnswer | null };
+interface Line {
+  name: string;
+  about: string;
+  tell(told: Told): ComponentChildren;
+}
+
+const LINES: readonly Line[] = [
+  { name: "X/L", about: "Displacement of a cycle along the first heading, over the length", tell: ({ swum }) => figure(swum.displacement_over_length, 6) },
+  { name: "X", about: "Displacement of a cycle", tell: ({ swum }) => length(swum.displacement_m) },
+  { name: "Y/L", about: "Displacement across the first heading, over the length", tell: ({ swum }) => figure(swum.lateral_over_length, 6) },
+  { name: "θ", about: "Rotation of a cycle", tell: ({ swum }) => angle(swum.rotation_rad) },
+  { name: "ξ", about: "Lighthill efficiency as parametrised", tell: ({ swum }) => figure(swum.efficiency, 6) },
+  { name: "ξ, constant power", about: "Lighthill efficiency of the same curve at constant power", tell: ({ swum }) => figure(swum.efficiency_constant_power, 6) },
+  { name: "speed", about: "Net displacement over the period", tell: ({ swum }) => `${figure(swum.speed_m_per_s * 1000, 3)} mm/s` },
+  { name: "peak rates", about: "Largest joint rates in the period", tell: ({ swum }) => `${swum.peak_rates_rad_s.map((rate) => figure(rate, 2)).join(", ")} rad/s` },
+  { name: "reach", about: "Largest joint angle", tell: ({ swum }) => angle(swum.reach_rad) },
+  { name: "shortest period", about: "What the servos' rate allows as parametrised", tell: ({ swum }) => (swum.shortest_period_s === null ? "–" : `${figure(swum.shortest_period_s, 2)} s`) },
+  { name: "tank", about: "Cycles from the middle of the tank to a wall", tell: ({ tank }) => (tank ? (tank.cycles === null ? "no wall met" : `${figure(tank.cycles, 1)} cycles`) : "–") },
+  { name: "links cross", about: "Share of the cycle in which links cross", tell: ({ swum }) => (swum.links_cross > 0 ? `${figure(swum.links_cross * 100, 1)} %` : "never") },
+];
+
+export function Readout() {
+  const both = swum.value.map((told, slot) => (told ? { swum: told, tank: tank.value[slot as 0 | 1] } : null));
+  const compared = shown.value.gaits[1] !== null;
+  return (
+    <section class="card" aria-label="What a cycle brings">
+      <table class="readout">
+        {compared && (
+          <thead>
+            <tr>
+              <th scope="col">of a cycle</th>
+              {["A", "B"].map((name, slot) => (
+                <th key={name} scope="col">
+                  <button class={`small slot-${slot}`} aria-pressed={shown.value.active === slot} onClick={() => edit({ active: slot as 0 | 1 })}>{name}</button>
+                </th>
+              ))}
+            </tr>
+          </thead>
+        )}
+        <tbody>
+          {LINES.map(({ name, about, tell }) => (
+            <tr key={name} title={about}>
+              <th scope="row">{name}</th>
+              {both.slice(0, compared ? 2 : 1).map((told, slot) => (
+                <td key={slot} data-name={name} data-slot={slot}>{told ? tell(told) : "…"}</td>
+              ))}
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      <output hidden id="exact">{JSON.stringify(swum.value)}</output>
+      <Certificate />
+      {trouble.value && <p class="error" role="status">{trouble.value}</p>}
+    </section>
+  );
+}
+
+const VERDICTS = { pass: "holds every condition", fail: "no optimum", undecided: "undecided from these samples" };
+
+function Certificate() {
+  const told = evidence.value?.told;
+  if (!told) return <p class="certificate stale">Certificate: …</p>;
+  const failed = told.checks.filter((check) => !check.pass).length;
+  return (
+    <details class={`certificate ${told.verdict} ${evidenceIsStale.value ? "stale" : ""}`}>
+      <summary>
+        Certificate: {VERDICTS[told.verdict]}
+        {failed > 0 && ` (${failed} of ${told.checks.length} fail)`}
+      </summary>
+      <table>
+        <thead>
+          <tr><th scope="col">condition</th><th scope="col">number</th><th scope="col">tolerance</th></tr>
+        </thead>
+        <tbody>
+          {told.checks.map(({ name, value, tolerance, pass }) => (
+            <tr key={name} class={pass ? "" : "failed"}>
+              <th scope="row">{pass ? "✓" : "✗"} {name.replaceAll("_", " ")}</th>
+              <td>{value.toExponential(1)}</td>
+              <td>{name.endsWith("_least") ? "≥" : "≤"} {tolerance.toExponential(0)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </details>
+  );
+}

@@ -1,0 +1,88 @@
+// The document in the URL's fragment: compressed JSON, so that a link opens what its sender saw.
+
+import { effect } from "@preact/signals";
+import { fragment, setFragment } from "../shell/fragment.ts";
+import { type Document, FIRST, type Gait, OPTIMA, type Optimum, type Point, shown } from "./document.ts";
+
+const KEY = "explore";
+
+async function through(bytes: Uint8Array<ArrayBuffer>, stream: GenericTransformStream): Promise<Uint8Array<ArrayBuffer>> {
+  const piped = new Blob([bytes]).stream().pipeThrough(stream as ReadableWritablePair<Uint8Array, Uint8Array>);
+  return new Uint8Array(await new Response(piped).arrayBuffer());
+}
+
+export async function packed(document: Document): Promise<string> {
+  const bytes = await through(new TextEncoder().encode(JSON.stringify(document)), new CompressionStream("deflate-raw"));
+  const text = Array.from(bytes, (byte) => String.fromCharCode(byte)).join("");
+  return btoa(text).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+}
+
+export async function unpacked(text: string): Promise<Document> {
+  const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));
+  const plain = await through(bytes, new DecompressionStream("deflate-raw"));
+  return sound(JSON.parse(new TextDecoder().decode(plain)));
+}
+
+/** What a link says, where it makes sense; the rest is as in a fresh page. A link is a stranger's text. */
+export function sound(told: unknown): Document {
+  if (typeof told !== "object" || told === null) return FIRST;
+  const from = told as Record<string, unknown>;
+  const number = (value: unknown, [low, high]: [number, number], otherwise: number) =>
+    typeof value === "number" && value >= low && value <= high ? value : otherwise;
+  const choice = <T>(value: unknown, all: readonly T[], otherwise: T) => (all.includes(value as T) ? (value as T) : otherwise);
+  const gaits = Array.isArray(from["gaits"]) ? from["gaits"] : [];
+  const changes = Object.entries((from["with"] ?? {}) as object).filter(([key, value]) =>
+    ["chi", "sphere_radius_m", "middle_m", "front_m", "back_m", "max_rate_rad_s"].includes(key) && Number.isFinite(value));
+  const tank = Array.isArray(from["tank"]) ? from["tank"] : [];
+  const second = gaitOf(gaits[1]);
+  return {
+    swimmer: typeof from["swimmer"] === "string" ? from["swimmer"] : FIRST.swimmer,
+    with: Object.fromEntries(changes),
+    maxAngle: from["maxAngle"] === null ? null : number(from["maxAngle"], [0.1, 6], FIRST.maxAngle ?? 2.3),
+    noOverlap: from["noOverlap"] === true,
+    row: choice(from["row"], ["x", "y", "theta"] as const, FIRST.row),
+    halfWidth: number(from["halfWidth"], [0.5, 6], FIRST.halfWidth),
+    period: number(from["period"], [0.02, 4000], FIRST.period),
+    tank: [number(tank[0], [0.1, 100], FIRST.tank[0]), number(tank[1], [0.1, 100], FIRST.tank[1])],
+    objective: choice(from["objective"], ["displacement", "efficiency"] as const, FIRST.objective),
+    gaits: [gaitOf(gaits[0]) ?? FIRST.gaits[0], second],
+    active: from["active"] === 1 && second ? 1 : 0,
+    overlaid: OPTIMA.filter((what) => Array.isArray(from["overlaid"]) && from["overlaid"].includes(what)),
+  };
+}
+
+function gaitOf(told: unknown): Gait | null {
+  if (typeof told !== "object" || told === null) return null;
+  const from = told as Record<string, unknown>;
+  if (from["kind"] === "optimum" && OPTIMA.includes(from["what"] as Optimum)) return { kind: "optimum", what: from["what"] as Optimum };
+  if (from["kind"] === "text" && typeof from["text"] === "string") return { kind: "text", name: String(from["name"] ?? "gait"), text: from["text"] };
+  const points = from["points"];
+  const isPoint = (point: unknown): point is Point => Array.isArray(point) && point.length === 2 && point.every(Number.isFinite);
+  if (from["kind"] !== "drawn" || !Array.isArray(points) || points.length < 4 || points.length > 64 || !points.every(isPoint)) return null;
+  return { kind: "drawn", points, symmetric: from["symmetric"] === true };
+}
+
+/** Opens what the fragment holds, then keeps it up to date, a moment after the hand rests. */
+export async function followFragment(): Promise<void> {
+  const told = fragment().get(KEY);
+  if (told) shown.value = await unpacked(told).catch(() => FIRST);
+  let timer = 0;
+  effect(() => {
+    const document = shown.value;
+    clearTimeout(timer);
+    timer = setTimeout(async () => {
+      setFragment(KEY, document === FIRST ? undefined : await packed(document));
+    }, 300) as unknown as number;
+  });
+}
+
+/** Puts a link to what is shown on the clipboard. */
+export async function copyLink(): Promise<string> {
+  setFragment(KEY, await packed(shown.value));
+  try {
+    await navigator.clipboard.writeText(location.href);
+    return "Link copied";
+  } catch {
+    return "The link is in the address bar";
+  }
+}
