@@ -43,6 +43,20 @@ impl Servos {
         }
     }
 
+    /// The same servos within what a robot allows them: its largest angle \[rad\] and rate \[rad/s\], the decimal numbers that it was
+    /// told in single precision.
+    #[must_use]
+    pub fn within(self, max_angle: f32, max_rate: f32) -> Self {
+        Self {
+            file: ServoFile {
+                max_angle: decimal(max_angle),
+                max_rate: decimal(max_rate),
+                ..self.file
+            },
+            ..self
+        }
+    }
+
     /// The largest angle that servo and pulse window allow \[rad\].
     pub fn largest_angle(&self) -> f64 {
         self.file.max_angle
@@ -71,6 +85,11 @@ impl Servos {
             pulse_step_ns: self.pulse_step_ns,
         }
     }
+}
+
+/// The decimal number that was meant by one in single precision.
+fn decimal(single: f32) -> f64 {
+    single.to_string().parse().unwrap_or_else(|_| single.into())
 }
 
 /// How a gait shall be played.

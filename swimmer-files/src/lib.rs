@@ -39,6 +39,7 @@ mod campaign;
 mod gait_file;
 mod gait_spec;
 mod hash;
+mod key;
 mod link_log;
 mod place;
 mod provenance;
@@ -56,7 +57,10 @@ pub use campaign::{
 pub use gait_file::{ArcKind, Bounds, GaitArc, GaitFile, Objective};
 pub use gait_spec::{GaitSpec, GaitSpecError};
 pub use hash::SwimmerHash;
-pub use link_log::{LinkFrame, LinkLog, LinkLogError, LinkLogWriter, Play, plays, read_link_log};
+pub use key::parse_key;
+pub use link_log::{
+    LinkFrame, LinkLog, LinkLogError, LinkLogWriter, Play, link_log_bytes, plays, read_link_log,
+};
 pub use place::FileError;
 pub use provenance::{InputHash, Provenance, hash_of};
 pub use swimmer_file::{Fluid, ServoFile, SwimmerFile};

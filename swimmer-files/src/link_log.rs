@@ -8,6 +8,7 @@
 //!
 //! Foxglove reads no schema with alternatives, so every field has one type and what is not known is left out.
 
+mod container;
 mod frame;
 mod plays;
 mod read;
@@ -21,6 +22,28 @@ pub use read::{LinkLog, read_link_log};
 pub use write::LinkLogWriter;
 
 use crate::FileError;
+use container::Container;
+
+/// A whole link log as the bytes of its file, for who has frames and no disk.
+///
+/// # Errors
+/// [`LinkLogError::Container`] where the container's writer refuses a frame.
+///
+/// ```
+/// let empty = swimmer_files::link_log_bytes(&[])?;
+/// assert!(empty.starts_with(b"\x89MCAP"));
+/// # Ok::<(), swimmer_files::LinkLogError>(())
+/// ```
+pub fn link_log_bytes(frames: &[LinkFrame]) -> Result<Vec<u8>, LinkLogError> {
+    let written = || {
+        let mut container = Container::begin(std::io::Cursor::new(Vec::new()))?;
+        frames.iter().try_for_each(|frame| container.write(frame))?;
+        container.finish()
+    };
+    let place = Path::new("in memory");
+    let bytes = written().map_err(|error| LinkLogError::container(place, &error))?;
+    Ok(bytes.into_inner())
+}
 
 /// Why a link log could not be written or read.
 #[derive(Debug, thiserror::Error)]

@@ -2,7 +2,7 @@
 
 use link_protocol::Direction;
 use proptest::prelude::*;
-use swimmer_files::{LinkFrame, LinkLogWriter, read_link_log};
+use swimmer_files::{LinkFrame, LinkLogWriter, link_log_bytes, read_link_log};
 
 fn frame(index: u64) -> LinkFrame {
     LinkFrame {
@@ -31,6 +31,8 @@ fn every_frame_comes_back() {
     assert!(path.exists(), "the log grows under its own name");
     log.finish().unwrap();
     assert_eq!(read_link_log(&path).unwrap().frames, frames);
+    let in_memory = link_log_bytes(&frames).unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), in_memory);
     assert_eq!(
         std::fs::read_dir(path.parent().unwrap()).unwrap().count(),
         1

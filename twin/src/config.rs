@@ -160,6 +160,25 @@ pub fn configuration(swimmer: &Swimmer<f64>, servo: &ServoFile) -> Configuration
     }
 }
 
+/// Whether a robot's configuration is this swimmer's body, to the wire's precision; its limits do not matter.
+///
+/// ```
+/// use swimmer_files::{ServoFile, SwimmerFile};
+///
+/// let [robot, slender] = ["robot", "robot-slender"].map(|name| SwimmerFile::preset(name).unwrap().swimmer);
+/// let told = twin::configuration(&robot, &ServoFile::default());
+/// assert!(twin::is_configured_as(&told, &robot));
+/// assert!(!twin::is_configured_as(&told, &slender));
+/// ```
+pub fn is_configured_as(present: &Configuration, swimmer: &Swimmer<f64>) -> bool {
+    let told = configuration(swimmer, &ServoFile::default());
+    Configuration {
+        max_angle: present.max_angle,
+        max_rate: present.max_rate,
+        ..told
+    } == *present
+}
+
 fn single(value: f64) -> f32 {
     <f32 as Scalar>::from_f64(value)
 }

@@ -47,7 +47,7 @@ mod virtual_robot;
 mod world;
 
 pub use camera::{Camera, CameraConfig, Frame, MotiveFile, Point, TrackError};
-pub use config::{TwinConfig, configuration};
+pub use config::{TwinConfig, configuration, is_configured_as};
 pub use host_link::port::{VirtualPort, WireSpeed};
 pub use replay::{Difference, ReplayError, Replayed, replay};
 pub use service::serve;

@@ -97,6 +97,8 @@ pub struct Servos {
 impl Servos {
     pub const ROBOT_PULSE_STEP_NS: u32 = 320;
     pub fn on_the_robot(file: ServoFile) -> Self {}
+    #[must_use]
+    pub fn within(self, max_angle: f32, max_rate: f32) -> Self {}
     pub fn largest_angle(&self) -> f64 {}
 }
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

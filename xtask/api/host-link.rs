@@ -552,6 +552,9 @@ pub mod session {
     pub const TRIES: u32 = 5;
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
     pub struct Ticket(pub(super) _);
+    impl Ticket {
+        pub fn number(self) -> u64 {}
+    }
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum UploadPhase {
         Begin,

@@ -350,8 +350,10 @@ pub struct TrackSettings {
     pub likelihood: Option<f64>,
 }
 pub fn hash_of(path: &Path) -> Result<String, FileError> {}
+pub fn link_log_bytes(frames: &[LinkFrame]) -> Result<Vec<u8>, LinkLogError> {}
 pub fn parse_angle(text: &str) -> Result<f64, AngleError> {}
 pub fn parse_joint_angle(text: &str) -> Result<f64, AngleError> {}
+pub fn parse_key(text: &str) -> Result<Key, String> {}
 pub fn read_link_log(path: &Path) -> Result<LinkLog, LinkLogError> {}
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {}
 pub mod plays {

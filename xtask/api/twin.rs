@@ -154,6 +154,7 @@ impl World {
     pub fn advance(&mut self, to: Duration) {}
 }
 pub fn configuration(swimmer: &Swimmer<f64>, servo: &ServoFile) -> Configuration {}
+pub fn is_configured_as(present: &Configuration, swimmer: &Swimmer<f64>) -> bool {}
 pub fn replay(
     frames: &[LinkFrame],
     table: Option<&GaitTable>,

@@ -11,6 +11,13 @@ use super::upload::UploadProgress;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Ticket(pub(super) u64);
 
+impl Ticket {
+    /// The same as a number, for who keeps it outside of Rust.
+    pub fn number(self) -> u64 {
+        self.0
+    }
+}
+
 /// What a session tells its shell.
 #[derive(Debug)]
 pub enum Event {

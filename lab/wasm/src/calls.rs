@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::explore;
+use crate::{drive, explore};
 
 /// What a call answers.
 #[derive(Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub type Outcome = Result<Answer, String>;
 pub type Call = fn(&mut Lab, &[u8]) -> Outcome;
 
 /// Every call, room by room.
-const TABLES: &[&[(&str, Call)]] = &[explore::CALLS];
+const TABLES: &[&[(&str, Call)]] = &[explore::CALLS, drive::CALLS];
 
 /// What lives from one call to the next.
 #[derive(Default)]

@@ -5,5 +5,6 @@
 
 pub mod abi;
 pub mod calls;
+pub mod drive;
 pub mod explore;
 mod input;

@@ -3,35 +3,14 @@
 //! Frames go to the file in chunks of half a second of the log's own time, each at once; so a log that is cut off ends with a
 //! whole chunk, or with a piece of one, which the reader passes over.
 
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use link_protocol::{Direction, Message};
-use mcap::records::MessageHeader;
-use serde_json::Value;
-
-use super::frame::{telemetry_json, topic};
+use super::container::Container;
 use super::{LinkFrame, LinkLogError};
 use crate::FileError;
 use crate::atomic::{Destination, destination, make_folder_of};
-
-/// The JSON schema of each message, as the file carries it.
-const SCHEMA: &str = include_str!("schema.json");
-const SCHEMA_NAME: &str = "swimmer.LinkFrame";
-const TELEMETRY_SCHEMA: &str = include_str!("telemetry.json");
-const TELEMETRY_SCHEMA_NAME: &str = "swimmer.Telemetry";
-const TELEMETRY_TOPIC: &str = "/robot/telemetry";
-
-/// Fast enough for a robot's log to be written as it happens.
-#[cfg(feature = "lz4")]
-const COMPRESSION: Option<mcap::Compression> = Some(mcap::Compression::Lz4);
-#[cfg(not(feature = "lz4"))]
-const COMPRESSION: Option<mcap::Compression> = None;
-
-/// A chunk holds the frames of so long, ns of the host's clock.
-const CHUNK_NS: u64 = 500_000_000;
 
 /// Writes a link log, which grows under its own name. Dropped before [`LinkLogWriter::finish`], it ends all the same; without a
 /// single frame it leaves no file.
@@ -49,15 +28,10 @@ const CHUNK_NS: u64 = 500_000_000;
 pub struct LinkLogWriter {
     /// Before the first frame.
     file: Option<File>,
-    writer: Option<mcap::Writer<BufWriter<Growing>>>,
+    container: Option<Container<BufWriter<Growing>>>,
     path: PathBuf,
     /// Whether the file was there before.
     replaces: bool,
-    /// To the robot, from it, and its telemetry.
-    channels: [u16; 3],
-    sequence: u32,
-    /// When the chunk being filled began.
-    chunk_began_ns: Option<u64>,
 }
 
 /// A file that takes nothing more once it refused something: what the container's writer has still to say must not follow a piece
@@ -117,12 +91,9 @@ impl LinkLogWriter {
             .map_err(write_error)?;
         Ok(Self {
             file: Some(file),
-            writer: None,
+            container: None,
             path: place,
             replaces,
-            channels: [0; 3],
-            sequence: 0,
-            chunk_began_ns: None,
         })
     }
 
@@ -133,26 +104,7 @@ impl LinkLogWriter {
             file,
             broken: false,
         };
-        let mut writer = mcap::WriteOptions::new()
-            .compression(COMPRESSION)
-            // A chunk is written when it is whole, instead of piece by piece with its length at the end.
-            .disable_seeking(true)
-            .profile("")
-            .library(concat!("swimmer-files ", env!("CARGO_PKG_VERSION")))
-            .create(BufWriter::new(growing))?;
-        let schema = writer.add_schema(SCHEMA_NAME, "jsonschema", SCHEMA.as_bytes())?;
-        let telemetry = writer.add_schema(
-            TELEMETRY_SCHEMA_NAME,
-            "jsonschema",
-            TELEMETRY_SCHEMA.as_bytes(),
-        )?;
-        let empty = BTreeMap::new();
-        self.channels = [
-            writer.add_channel(schema, topic(Direction::ToRobot), "json", &empty)?,
-            writer.add_channel(schema, topic(Direction::ToHost), "json", &empty)?,
-            writer.add_channel(telemetry, TELEMETRY_TOPIC, "json", &empty)?,
-        ];
-        self.writer = Some(writer);
+        self.container = Some(Container::begin(BufWriter::new(growing))?);
         Ok(())
     }
 
@@ -171,42 +123,9 @@ impl LinkLogWriter {
     /// When the disk refuses; what was written before stays, and nothing more is taken.
     pub fn write(&mut self, frame: &LinkFrame) -> Result<(), LinkLogError> {
         self.begun()?;
-        let [to_robot, from_robot, telemetry] = self.channels;
-        let channel = match frame.direction {
-            Direction::ToRobot => to_robot,
-            Direction::ToHost => from_robot,
-        };
-        let received = frame.received();
-        self.add(channel, frame, &frame.to_json(received.as_ref()))?;
-        if let Some(Message::Telemetry(told)) = received.and_then(|received| received.message.ok())
-        {
-            self.add(telemetry, frame, &telemetry_json(&told))?;
-        }
-        let now = frame.host_time_ns;
-        let began = *self.chunk_began_ns.get_or_insert(now);
-        if self.sequence == 1 || now.saturating_sub(began) >= CHUNK_NS {
-            self.chunk_began_ns = Some(now);
-            if let Some(writer) = &mut self.writer {
-                let flushed = writer.flush();
-                flushed.map_err(|error| LinkLogError::container(&self.path, &error))?;
-            }
-        }
-        Ok(())
-    }
-
-    fn add(&mut self, channel: u16, frame: &LinkFrame, json: &Value) -> Result<(), LinkLogError> {
-        let header = MessageHeader {
-            channel_id: channel,
-            sequence: self.sequence,
-            log_time: frame.host_time_ns,
-            publish_time: frame.host_time_ns,
-        };
-        self.sequence = self.sequence.wrapping_add(1);
-        let Some(writer) = &mut self.writer else {
-            return Ok(());
-        };
-        writer
-            .write_to_known_channel(&header, json.to_string().as_bytes())
+        self.container
+            .as_mut()
+            .map_or(Ok(()), |container| container.write(frame))
             .map_err(|error| LinkLogError::container(&self.path, &error))
     }
 
@@ -216,18 +135,17 @@ impl LinkLogWriter {
     /// When the disk refuses; what was written before stays.
     pub fn finish(mut self) -> Result<(), LinkLogError> {
         self.begun()?;
-        let Some(mut writer) = self.writer.take() else {
+        let Some(container) = self.container.take() else {
             return Ok(());
         };
-        writer
+        let written = container
             .finish()
             .map_err(|error| LinkLogError::container(&self.path, &error))?;
         let write_error = |source| FileError::Write {
             path: self.path.clone(),
             source,
         };
-        let growing = writer
-            .into_inner()
+        let growing = written
             .into_inner()
             .map_err(|error| write_error(error.into_error()))?;
         Ok(growing.file.sync_all().map_err(write_error)?)

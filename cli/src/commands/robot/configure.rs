@@ -6,7 +6,6 @@ use host_link::LinkError;
 use link_protocol::{Configuration, Refusal, RobotLimits, TangentialDrag};
 use serde::Serialize;
 use swimmer_files::ServoFile;
-use swimmer_model::Swimmer;
 use twin::configuration;
 
 use super::Configure;
@@ -140,16 +139,6 @@ fn refused(error: LinkError, wanted: &Configuration, limits: &RobotLimits) -> Fa
 
 fn metres(value: f32) -> String {
     format!("{value} m")
-}
-
-/// Whether the robot's configuration is this swimmer's body, to the wire's precision; its limits do not matter.
-pub(super) fn is_configured_as(present: &Configuration, swimmer: &Swimmer<f64>) -> bool {
-    let told = configuration(swimmer, &ServoFile::default());
-    Configuration {
-        max_angle: present.max_angle,
-        max_rate: present.max_rate,
-        ..told
-    } == *present
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use host_link::LinkError;
 use host_link::session::SessionConfig;
 use link_protocol::Key;
 use serde::Serialize;
+use swimmer_files::parse_key;
 
 use super::access::Access;
 use super::port::{Pace, session_seed};
@@ -150,38 +151,8 @@ fn read(file: &Path) -> Outcome<Key> {
             file.display()
         ))
     })?;
-    parse(&text)
+    parse_key(&text)
         .map_err(|problem| Failure::BadInput(format!("the key in {}{problem}", file.display())))
-}
-
-/// 32 hexadecimal digits in one line; lines that begin with # are remarks.
-fn parse(text: &str) -> Result<Key, String> {
-    let advice = "write 32 hexadecimal digits in one line, or let `swimmer robot key make FILE` write a new file";
-    let mut lines = text
-        .lines()
-        .enumerate()
-        .map(|(number, line)| (number + 1, line.trim()))
-        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let (number, digits) = lines
-        .next()
-        .ok_or_else(|| format!(": there is none; {advice}"))?;
-    if let Some((number, _)) = lines.next() {
-        return Err(format!(
-            ", line {number}: there is a second one; leave one out"
-        ));
-    }
-    if let Some(column) = digits.chars().position(|c| !c.is_ascii_hexdigit()) {
-        let column = column + 1;
-        return Err(format!(
-            ", line {number}, column {column}: not a hexadecimal digit; {advice}"
-        ));
-    }
-    let count = digits.len();
-    u128::from_str_radix(digits, 16)
-        .ok()
-        .filter(|_| count == 2 * Key::LEN)
-        .map(|key| Key(key.to_be_bytes()))
-        .ok_or_else(|| format!(", line {number}: {count} digits; {advice}"))
 }
 
 /// A random key, in a new file that nobody else may read.
@@ -224,24 +195,6 @@ fn write_secret(file: &Path, text: &str) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_key_is_32_digits_and_a_mistake_has_its_place() {
-        let digits = "000102030405060708090a0b0c0d0e0F";
-        let key = Key(core::array::from_fn(|place| u8::try_from(place).unwrap()));
-        assert_eq!(parse(&format!("{HEAD}\n  {digits}\n")), Ok(key));
-        for (text, part) in [
-            ("# nothing\n", "there is none"),
-            ("00\n", ", line 1: 2 digits"),
-            ("\n00010203g", ", line 2, column 9"),
-            ("00\n11\n", ", line 2: there is a second"),
-            (&digits.repeat(2), ": 64 digits"),
-            ("+0000102030405060708090a0b0c0d0e", "column 1"),
-        ] {
-            let error = parse(text).unwrap_err();
-            assert!(error.contains(part), "{text:?}: {error}");
-        }
-    }
 
     #[test]
     fn a_new_file_holds_a_new_key_and_is_read_back() {

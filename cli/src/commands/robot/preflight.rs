@@ -8,10 +8,10 @@ use forecast::{Ends, Forecast, Meeting, Played, Servos, Tank, forecast, until_wa
 use link_protocol::{ANGLE_UNIT_RAD, Board, Configuration, HelloReply, MAX_KNOTS, TangentialDrag};
 use nalgebra::Vector2;
 use serde::Serialize;
-use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
+use swimmer_files::{AnyGait, SwimmerFile};
 use swimmer_model::{InvalidSwimmer, Links, Model, Pose, Swimmer};
+use twin::is_configured_as;
 
-use super::configure::is_configured_as;
 use super::playing::duration;
 use crate::arguments::{angle, period};
 use crate::commands::simulate::played::PlayedAnswer;
@@ -79,16 +79,16 @@ impl Player {
             name,
             swimmer,
             servos: Servos {
-                file: ServoFile {
-                    max_angle: double(configuration.max_angle.min(hello.limits.max_angle)),
-                    max_rate: double(configuration.max_rate.min(hello.limits.max_rate)),
-                    ..servo
-                },
+                file: servo,
                 pulse_step_ns: match hello.board {
                     Board::Twin => 0,
                     Board::NanoRp2040Connect | Board::Pico => Servos::ROBOT_PULSE_STEP_NS,
                 },
-            },
+            }
+            .within(
+                configuration.max_angle.min(hello.limits.max_angle),
+                configuration.max_rate.min(hello.limits.max_rate),
+            ),
             assumed: told.is_none(),
         }
     }
@@ -384,6 +384,7 @@ fn place(text: &str) -> Result<Place, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use swimmer_files::ServoFile;
 
     #[test]
     fn tanks_and_places_are_read() {

@@ -9,10 +9,10 @@ use host_link::{LinkError, Port as _};
 use link_protocol::{Configuration, MAX_KNOTS, TableInfo};
 use serde::Serialize;
 use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile, SwimmerHash};
+use twin::is_configured_as;
 
 use super::access::{Access, Line};
 use super::answers::{Gait, answer_no};
-use super::configure::is_configured_as;
 use super::port::Pace;
 use super::preflight::{Player, Preflight};
 use super::{Owner, Upload};

@@ -1,0 +1,222 @@
+//! The host's session with a robot that the page reaches.
+
+use std::sync::mpsc;
+use std::time::Duration;
+
+use forecast::table;
+use host_link::Port as _;
+use host_link::port::{TracedFrame, TracedPort};
+use host_link::session::{Session, SessionConfig, Ticket};
+use link_protocol::{MAX_KNOTS, Request};
+use serde::Deserialize;
+use serde_json::json;
+use swimmer_files::{LinkFrame, link_log_bytes, parse_key};
+
+use super::memory_port::MemoryPort;
+use super::{Numbered, Opened, seconds_of, step_of, told};
+use crate::calls::{Answer, Lab, Outcome, json, parsed};
+use crate::input::GaitText;
+
+/// Frames that a log keeps, about two hours of a robot that plays; older ones make room.
+const LONGEST_LOG: usize = 400_000;
+/// How long an upload may take before it is given up.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Shows each frame that passes.
+type Sink = Box<dyn FnMut(TracedFrame<'_>) + Send>;
+
+/// A session, and every frame of it.
+struct Host {
+    session: Session,
+    port: TracedPort<MemoryPort, Sink>,
+    passed: mpsc::Receiver<LinkFrame>,
+    log: Vec<LinkFrame>,
+    /// Frames that made room.
+    forgotten: usize,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Open {
+    /// Differs between pages and between their sessions.
+    seed: u64,
+    /// What the line carries.
+    bytes_per_second: f64,
+    /// When the page's clock began, seconds since 1970.
+    epoch_s: f64,
+    /// The text of a key file.
+    key: Option<String>,
+}
+
+/// Opens a session that has not greeted yet.
+pub(super) fn open(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let asked: Open = parsed(bytes)?;
+    let key = asked
+        .key
+        .as_deref()
+        .map(|text| parse_key(text).map_err(|problem| format!("reading the key{problem}")))
+        .transpose()?;
+    let epoch = seconds_of(asked.epoch_s)?;
+    let (passes, passed) = mpsc::channel();
+    let sink: Sink = Box::new(move |frame| {
+        let at = epoch + frame.at;
+        // The session that listens is gone only when this sink is.
+        let _ = passes.send(LinkFrame {
+            direction: frame.direction,
+            host_time_ns: u64::try_from(at.as_nanos()).unwrap_or(u64::MAX),
+            robot_time_us: None,
+            bytes: frame.bytes.to_vec(),
+        });
+    });
+    let host = Host {
+        session: Session::new(SessionConfig {
+            bytes_per_second: asked.bytes_per_second,
+            key,
+            ..SessionConfig::new(asked.seed)
+        }),
+        port: TracedPort::new(MemoryPort::default(), sink),
+        passed,
+        log: Vec::new(),
+        forgotten: 0,
+    };
+    json(&Opened {
+        number: lab.kept.keep(host),
+    })
+}
+
+/// Bytes that came, and a time: what is to be sent now, and what happened. Answers `[u32][bytes to be sent][JSON]`, the number
+/// being how many are to be sent.
+pub(super) fn step(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let (number, now, received) = step_of(bytes)?;
+    let host: &mut Host = lab.kept.get(number)?;
+    let sent = host.step(now, received)?;
+    let mut events = Vec::new();
+    while let Some(event) = host.session.next_event() {
+        events.push(told::event(&event, host.session.hello()));
+    }
+    let next = host
+        .session
+        .next_deadline()
+        .map(|deadline| deadline.as_secs_f64());
+    let told = json!({ "events": events, "next_s": next }).to_string();
+    let count = u32::try_from(sent.len())
+        .map_err(|_| "stepping: too much to be sent at once".to_owned())?;
+    Ok(Answer::Bytes(
+        [&count.to_le_bytes(), sent.as_slice(), told.as_bytes()].concat(),
+    ))
+}
+
+impl Host {
+    fn step(&mut self, now: Duration, received: &[u8]) -> Result<Vec<u8>, String> {
+        let port = self.port.inner_mut();
+        port.now = now;
+        port.received.extend(received);
+        let trace = |why| format!("carrying bytes: {why}");
+        let mut buf = [0; 512];
+        loop {
+            let count = self.port.read(&mut buf, Duration::ZERO).map_err(trace)?;
+            if count == 0 {
+                break;
+            }
+            self.session
+                .receive(now, buf.get(..count).unwrap_or_default());
+        }
+        self.session.poll(now);
+        let outgoing = self.session.take_outgoing();
+        self.port.write(&outgoing).map_err(trace)?;
+        self.log.extend(self.passed.try_iter());
+        let beyond = self.log.len().saturating_sub(LONGEST_LOG);
+        if beyond > LONGEST_LOG / 10 {
+            self.log.drain(..beyond);
+            self.forgotten += beyond;
+        }
+        Ok(std::mem::take(&mut self.port.inner_mut().sent))
+    }
+}
+
+/// Names a session and tells the time, for what is asked of it.
+#[derive(Deserialize)]
+struct At {
+    number: u32,
+    now_s: f64,
+}
+
+fn ticket(ticket: Ticket) -> Outcome {
+    json(&json!({ "ticket": ticket.number() }))
+}
+
+/// Greets the robot.
+pub(super) fn connect(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let At { number, now_s } = parsed(bytes)?;
+    let host: &mut Host = lab.kept.get(number)?;
+    ticket(host.session.connect(seconds_of(now_s)?))
+}
+
+#[derive(Deserialize)]
+struct Asked {
+    #[serde(flatten)]
+    at: At,
+    request: Request,
+}
+
+/// Asks something of the robot, in the link's own words (`"Stop"`, `{"Arm": {"clear_estop": false}}`).
+pub(super) fn request(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let Asked { at, request } = parsed(bytes)?;
+    let host: &mut Host = lab.kept.get(at.number)?;
+    ticket(host.session.request(seconds_of(at.now_s)?, request))
+}
+
+#[derive(Deserialize)]
+struct Upload {
+    #[serde(flatten)]
+    at: At,
+    gait: GaitText,
+}
+
+/// Sends a gait, as the table that `swimmer robot upload` makes of it.
+pub(super) fn upload(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let Upload { at, gait } = parsed(bytes)?;
+    let table = table(&gait.read()?, MAX_KNOTS)
+        .map_err(|why| format!("making a table of the gait for the robot: {why}"))?;
+    let host: &mut Host = lab.kept.get(at.number)?;
+    let now = seconds_of(at.now_s)?;
+    ticket(host.session.upload(now, 0, table.bytes(), now + PATIENCE))
+}
+
+/// Breaks an upload off.
+pub(super) fn cancel_upload(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let At { number, .. } = parsed(bytes)?;
+    lab.kept.get::<Host>(number)?.session.cancel_upload();
+    json(&json!({}))
+}
+
+/// How the link does.
+pub(super) fn link(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let Numbered { number } = parsed(bytes)?;
+    let host: &mut Host = lab.kept.get(number)?;
+    let counters = host.session.counters();
+    json(&json!({
+        "counters": counters,
+        "round_trip_s": counters.round_trip.map(|trip| trip.as_secs_f64()),
+        "last_heard_s": host.session.last_heard().as_secs_f64(),
+        "answers_signed": host.session.answers_signed(),
+        "frames": host.log.len(),
+        "forgotten": host.forgotten,
+    }))
+}
+
+/// Every frame so far as MCAP, as `swimmer robot log` writes it.
+pub(super) fn log(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let Numbered { number } = parsed(bytes)?;
+    let host: &mut Host = lab.kept.get(number)?;
+    link_log_bytes(&host.log)
+        .map(Answer::Bytes)
+        .map_err(|why| why.to_string())
+}
+
+/// Lets go of a session.
+pub(super) fn close(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let Numbered { number } = parsed(bytes)?;
+    lab.kept.drop(number);
+    json(&json!({}))
+}

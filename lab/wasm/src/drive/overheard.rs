@@ -1,0 +1,39 @@
+//! What a robot tells another host: for a page that watches.
+
+use link_protocol::{Decoder, Message};
+use serde_json::{Value, json};
+
+use super::{Numbered, Opened, step_of, told};
+use crate::calls::{Lab, Outcome, json, parsed};
+
+/// Listens from now on.
+pub(super) fn open(lab: &mut Lab, _bytes: &[u8]) -> Outcome {
+    json(&Opened {
+        number: lab.kept.keep(Decoder::new()),
+    })
+}
+
+/// Bytes that were overheard, and the telemetry in them. A signature is read past: who watches has no key.
+pub(super) fn step(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let (number, now, received) = step_of(bytes)?;
+    let decoder: &mut Decoder = lab.kept.get(number)?;
+    let events: Vec<Value> = received
+        .iter()
+        .filter_map(|byte| match decoder.push(*byte)?.message {
+            Ok(Message::Telemetry(told)) => {
+                let mut event = told::telemetry(&told);
+                event["at_s"] = json!(now.as_secs_f64());
+                Some(event)
+            }
+            _ => None,
+        })
+        .collect();
+    json(&json!({ "events": events }))
+}
+
+/// Listens no longer.
+pub(super) fn close(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let Numbered { number } = parsed(bytes)?;
+    lab.kept.drop(number);
+    json(&json!({}))
+}

@@ -1,0 +1,80 @@
+//! What the robot will make of a gait, told before it is sent, as `swimmer robot upload` tells it.
+
+use forecast::{Played, Servos, forecast};
+use link_protocol::{Board, Configuration, HelloReply, MAX_KNOTS};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use swimmer_model::Model;
+use twin::is_configured_as;
+
+use crate::calls::{Lab, Outcome, json, parsed};
+use crate::input::{GaitText, SwimmerText};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Asked {
+    swimmer: SwimmerText,
+    gait: GaitText,
+    /// Of a cycle.
+    period_s: f64,
+    /// The robot's own, where one is connected.
+    robot: Option<Connected>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Connected {
+    hello: HelloReply,
+    configuration: Configuration,
+}
+
+/// Foretells.
+pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let asked: Asked = parsed(bytes)?;
+    let file = asked.swimmer.read()?;
+    let model = Model::new(&file.swimmer)
+        .map_err(|why| format!("the swimmer `{}` cannot swim: {why}", file.name))?;
+    let servos = Servos::on_the_robot(file.servo.unwrap_or_default());
+    let servos = match &asked.robot {
+        None => servos,
+        Some(Connected {
+            hello,
+            configuration,
+        }) => Servos {
+            pulse_step_ns: match hello.board {
+                Board::Twin => 0,
+                Board::NanoRp2040Connect | Board::Pico => Servos::ROBOT_PULSE_STEP_NS,
+            },
+            ..servos
+        }
+        .within(
+            configuration.max_angle.min(hello.limits.max_angle),
+            configuration.max_rate.min(hello.limits.max_rate),
+        ),
+    };
+    let played = Played {
+        servos,
+        period: asked.period_s,
+        knots: MAX_KNOTS,
+    };
+    let told = forecast(&model, &asked.gait.read()?, &played).map_err(|why| why.to_string())?;
+    let played = told.ends().map(|(_, played)| *played);
+    let losses: Vec<Value> = told
+        .stages
+        .iter()
+        .map(|stage| json!({ "by": stage.stage.word(), "loss_share": told.share(stage.loss) }))
+        .collect();
+    json(&json!({
+        "period_s": asked.period_s,
+        "min_period_s": told.verdict.min_period,
+        "displacement_m": played.map(|played| [played.displacement.x, played.displacement.y]),
+        "rotation_rad": played.map(|played| played.rotation),
+        "loss_share": told.share(told.total_loss()),
+        "losses": losses,
+        "refused": told.verdict.refused,
+        "warnings": told.warnings(),
+        // Nothing is known of the servos but what a good one is.
+        "servo_assumed": file.servo.is_none(),
+        "configured_as": asked.robot.map(|robot| is_configured_as(&robot.configuration, &file.swimmer)),
+    }))
+}

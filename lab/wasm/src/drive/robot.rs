@@ -1,0 +1,93 @@
+//! The robot in the page: the brain that the firmware runs, in a virtual tank.
+
+use std::time::Duration;
+
+use host_link::port::Device as _;
+use serde::Deserialize;
+use serde_json::json;
+use twin::{Twin, TwinConfig, VirtualRobot as _};
+
+use super::{Numbered, Opened, step_of};
+use crate::calls::{Answer, Lab, Outcome, json, parsed};
+use crate::input::SwimmerText;
+
+/// Bytes a second of the line: a robot's.
+const LINE: f64 = 11_520.0;
+/// Most that is let out at once: what the line carries in a fifth of a second.
+const MOST: usize = 2304;
+
+/// A twin behind a line of a robot's speed.
+struct Robot {
+    twin: Twin,
+    /// Bytes that the line has carried room for since the twin was switched on, of which some were used.
+    used: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Open {
+    swimmer: SwimmerText,
+    seed: u64,
+}
+
+/// Switches a robot on: the one of the swimmer file, set up as its laboratory does it.
+pub(super) fn open(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let Open { swimmer, seed } = parsed(bytes)?;
+    let file = swimmer.read()?;
+    let twin = Twin::new(TwinConfig::new(&file, seed))
+        .map_err(|why| format!("the swimmer `{}` cannot swim: {why}", file.name))?;
+    json(&Opened {
+        number: lab.kept.keep(Robot { twin, used: 0.0 }),
+    })
+}
+
+/// Bytes for the robot, and its time, since it was switched on: what it sends.
+pub(super) fn step(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let (number, now, received) = step_of(bytes)?;
+    let robot: &mut Robot = lab.kept.get(number)?;
+    robot.twin.advance(now);
+    if !received.is_empty() {
+        robot.twin.receive(received);
+    }
+    Ok(Answer::Bytes(robot.transmit(now)))
+}
+
+impl Robot {
+    fn transmit(&mut self, now: Duration) -> Vec<u8> {
+        let carried = now.as_secs_f64() * LINE;
+        // What the line was free for long ago is gone.
+        self.used = self.used.max(carried - MOST as f64);
+        let mut out = Vec::new();
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "between 0 and MOST"
+        )]
+        let room = (carried - self.used).clamp(0.0, MOST as f64) as usize;
+        self.twin.transmit(room, &mut out);
+        self.used += out.len() as f64;
+        out
+    }
+}
+
+/// How it truly stands: what the cameras over the tank would see, and what goes to the servos.
+pub(super) fn stands(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let Numbered { number } = parsed(bytes)?;
+    let robot: &mut Robot = lab.kept.get(number)?;
+    let pose = robot.twin.pose();
+    json(&json!({
+        "now_s": robot.twin.world().now().as_secs_f64(),
+        "pose": [pose.x, pose.y, pose.theta],
+        "angles": robot.twin.angles(),
+        "state": robot.twin.state(),
+        "pulses_ns": robot.twin.output().map(|output| output.pulses_ns),
+        "cycles": robot.twin.cycle_starts().len(),
+    }))
+}
+
+/// Switches it off.
+pub(super) fn close(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let Numbered { number } = parsed(bytes)?;
+    lab.kept.drop(number);
+    json(&json!({}))
+}

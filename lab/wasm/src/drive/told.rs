@@ -1,0 +1,47 @@
+//! The session's events as JSON: the link's own types, under their own names.
+
+use host_link::session::{Event, UploadPhase};
+use link_protocol::{HelloReply, Telemetry};
+use serde_json::{Value, json};
+
+/// An event; of a connection also who is there.
+pub(super) fn event(event: &Event, hello: Option<&HelloReply>) -> Value {
+    match event {
+        Event::Connected { ticket, restarted } => {
+            json!({ "event": "connected", "ticket": ticket.number(), "restarted": restarted, "hello": hello })
+        }
+        Event::Answered { ticket, reply } => {
+            json!({ "event": "answered", "ticket": ticket.number(), "reply": reply })
+        }
+        Event::StoppedByItself { ticket, cause } => {
+            json!({ "event": "stopped_by_itself", "ticket": ticket.number(), "cause": cause })
+        }
+        Event::Uploaded { ticket, table } => {
+            json!({ "event": "uploaded", "ticket": ticket.number(), "table": table })
+        }
+        Event::Progress { ticket, progress } => {
+            let phase = match progress.phase {
+                UploadPhase::Begin => "begin",
+                UploadPhase::Chunks => "chunks",
+                UploadPhase::Commit => "commit",
+            };
+            json!({ "event": "progress", "ticket": ticket.number(), "phase": phase, "done": progress.done, "total": progress.total })
+        }
+        Event::Failed { ticket, error } => {
+            json!({ "event": "failed", "ticket": ticket.number(), "reason": error.to_string() })
+        }
+        Event::Telemetry {
+            telemetry: told,
+            at,
+        } => {
+            let mut value = telemetry(told);
+            value["at_s"] = json!(at.as_secs_f64());
+            value
+        }
+    }
+}
+
+/// What the robot told of itself, with its state and flags in words.
+pub(super) fn telemetry(told: &Telemetry) -> Value {
+    json!({ "event": "telemetry", "telemetry": told })
+}

@@ -1,0 +1,260 @@
+//! The calls of the drive room, as the page makes them: a session, the twin, and the bytes carried between the two.
+
+use link_protocol::Direction;
+use serde_json::{Value, json};
+use swimmer_files::read_link_log;
+use swimmer_lab::calls::{Answer, Lab, call};
+
+/// A page: module, clock, a session and the robot it talks to.
+struct Page {
+    lab: Lab,
+    now: f64,
+    session: u32,
+    twin: u32,
+    to_robot: Vec<u8>,
+    events: Vec<Value>,
+}
+
+fn document(answer: Answer) -> Value {
+    match answer {
+        Answer::Json(text) => serde_json::from_str(&text).unwrap(),
+        Answer::Bytes(_) => panic!("bytes where a document was expected"),
+    }
+}
+
+fn bytes(answer: Answer) -> Vec<u8> {
+    match answer {
+        Answer::Bytes(bytes) => bytes,
+        Answer::Json(text) => panic!("a document where bytes were expected: {text}"),
+    }
+}
+
+impl Page {
+    fn open(key: Option<&str>) -> Self {
+        let mut page = Self {
+            lab: Lab::default(),
+            now: 0.0,
+            session: 0,
+            twin: 0,
+            to_robot: Vec::new(),
+            events: Vec::new(),
+        };
+        page.twin = number(&page.ask("twin open", &json!({ "swimmer": "robot", "seed": 5 })));
+        let open = json!({ "seed": 3, "bytes_per_second": 11520.0, "epoch_s": 1e9, "key": key });
+        page.session = number(&page.ask("session open", &open));
+        page
+    }
+
+    fn ask(&mut self, name: &str, question: &Value) -> Value {
+        document(
+            call(
+                &mut self.lab,
+                name.as_bytes(),
+                question.to_string().as_bytes(),
+            )
+            .unwrap(),
+        )
+    }
+
+    fn step_of(&mut self, name: &str, number: u32, carried: &[u8]) -> Vec<u8> {
+        let question = [&number.to_le_bytes()[..], &self.now.to_le_bytes(), carried].concat();
+        bytes(call(&mut self.lab, name.as_bytes(), &question).unwrap())
+    }
+
+    /// Ten milliseconds of everything.
+    fn step(&mut self) {
+        self.now += 0.01;
+        let to_robot = std::mem::take(&mut self.to_robot);
+        let from_robot = self.step_of("twin step", self.twin, &to_robot);
+        self.step_session(&from_robot);
+    }
+
+    fn step_session(&mut self, from_robot: &[u8]) {
+        let answer = self.step_of("session step", self.session, from_robot);
+        let (count, rest) = answer.split_first_chunk().unwrap();
+        let (sent, told) = rest.split_at(u32::from_le_bytes(*count) as usize);
+        self.to_robot.extend_from_slice(sent);
+        let told: Value = serde_json::from_slice(told).unwrap();
+        self.events
+            .extend(told["events"].as_array().unwrap().iter().cloned());
+    }
+
+    /// Asks the robot something, and waits for the event that ends it.
+    fn asked(&mut self, name: &str, question: Value) -> Value {
+        let mut question = question;
+        question["number"] = json!(self.session);
+        question["now_s"] = json!(self.now);
+        let ticket = self.ask(name, &question)["ticket"].clone();
+        for _ in 0..3000 {
+            self.step();
+            let ended = |event: &Value| event["ticket"] == ticket && event["event"] != "progress";
+            if let Some(at) = self.events.iter().position(ended) {
+                return self.events.drain(..=at).next_back().unwrap();
+            }
+        }
+        panic!("ticket {ticket} never ended: {:?}", self.events);
+    }
+
+    fn request(&mut self, request: &Value) -> Value {
+        self.asked("session request", json!({ "request": request }))
+    }
+
+    fn stands(&mut self) -> Value {
+        let number = self.twin;
+        self.ask("twin stands", &json!({ "number": number }))
+    }
+
+    fn play(&mut self) {
+        assert_eq!(
+            self.asked("session connect", json!({}))["event"],
+            "connected"
+        );
+        let uploaded = self.asked("session upload", json!({ "gait": "circle:0.5" }));
+        assert_eq!(uploaded["event"], "uploaded", "{uploaded}");
+        let armed = self.request(&json!({ "Arm": { "clear_estop": false } }));
+        assert_eq!(armed["event"], "answered", "{armed}");
+        let play = json!({ "Play": { "cycles": 0, "period_us": 4_000_000, "detached": false } });
+        assert_eq!(self.request(&play)["event"], "answered");
+        for _ in 0..600 {
+            self.step();
+        }
+        assert_eq!(self.stands()["state"], "Playing");
+    }
+}
+
+fn number(opened: &Value) -> u32 {
+    u32::try_from(opened["number"].as_u64().unwrap()).unwrap()
+}
+
+#[test]
+fn the_page_uploads_arms_plays_and_stops_at_once() {
+    let mut page = Page::open(None);
+    page.play();
+    let stands = page.stands();
+    assert!(stands["pulses_ns"][0].is_number(), "{stands}");
+    assert!(
+        page.events
+            .iter()
+            .any(|event| event["event"] == "telemetry")
+    );
+    let before = page.now;
+    let (number, now_s) = (page.session, page.now);
+    page.ask(
+        "session request",
+        &json!({ "number": number, "now_s": now_s, "request": "EStop" }),
+    );
+    // It leaves at once, whatever the next beat would be.
+    page.step_session(&[]);
+    while !page.stands()["pulses_ns"].is_null() {
+        page.step();
+        // A tick of the brain, and a step of this loop until that is seen.
+        let pulses = page.now - before;
+        assert!(pulses < 0.0301, "pulses for {pulses} s");
+    }
+    assert_eq!(page.stands()["state"], "EStopped");
+    let link = page.ask("session link", &json!({ "number": number }));
+    assert!(link["round_trip_s"].as_f64().unwrap() < 0.1, "{link}");
+}
+
+#[test]
+fn a_page_that_falls_silent_loses_its_lease() {
+    let mut page = Page::open(None);
+    page.play();
+    // The page hangs: the twin lives on, and nobody steps the session.
+    for _ in 0..300 {
+        page.now += 0.01;
+        page.step_of("twin step", page.twin, &[]);
+    }
+    assert_eq!(page.stands()["state"], "Stopped");
+}
+
+#[test]
+fn the_log_is_a_link_log() {
+    let mut page = Page::open(None);
+    page.play();
+    let question = json!({ "number": page.session }).to_string();
+    let log = bytes(call(&mut page.lab, b"session log", question.as_bytes()).unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("page.mcap");
+    std::fs::write(&path, log).unwrap();
+    let frames = read_link_log(&path).unwrap().frames;
+    for direction in [Direction::ToRobot, Direction::ToHost] {
+        let count = frames
+            .iter()
+            .filter(|frame| frame.direction == direction)
+            .count();
+        assert!(count > 20, "{count} frames {direction:?}");
+    }
+    assert!(
+        frames
+            .iter()
+            .all(|frame| frame.host_time_ns >= 1_000_000_000_000_000_000)
+    );
+}
+
+#[test]
+fn another_page_overhears_the_telemetry() {
+    let mut page = Page::open(None);
+    page.play();
+    let ear = number(&page.ask("overhear open", &json!({})));
+    let mut heard = 0;
+    for _ in 0..100 {
+        page.now += 0.01;
+        let sent = page.step_of("twin step", page.twin, &[]);
+        let question = [&ear.to_le_bytes()[..], &page.now.to_le_bytes(), &sent].concat();
+        let told = document(call(&mut page.lab, b"overhear step", &question).unwrap());
+        heard += told["events"].as_array().unwrap().len();
+    }
+    assert!(heard >= 5, "{heard} of a second");
+}
+
+#[test]
+fn what_cannot_be_is_said() {
+    let mut page = Page::open(Some("000102030405060708090a0b0c0d0e0f"));
+    assert_eq!(
+        page.asked("session connect", json!({}))["event"],
+        "connected"
+    );
+    let reason = |lab: &mut Lab, name: &str, question: Value| {
+        call(lab, name.as_bytes(), question.to_string().as_bytes()).unwrap_err()
+    };
+    let lab = &mut page.lab;
+    let key = json!({ "seed": 3, "bytes_per_second": 1.0, "epoch_s": 0.0, "key": "12" });
+    assert!(reason(lab, "session open", key).contains("line 1: 2 digits"));
+    assert!(reason(lab, "session link", json!({ "number": 99 })).contains("open it again"));
+    assert!(
+        reason(
+            lab,
+            "session connect",
+            json!({ "number": page.session, "now_s": -1.0 })
+        )
+        .contains("-1")
+    );
+    assert!(
+        call(lab, b"session step", &[1, 2])
+            .unwrap_err()
+            .contains("less than")
+    );
+    let far = json!({ "swimmer": "robot", "gait": "circle:4", "period_s": 10.0, "robot": null });
+    assert!(reason(lab, "preflight", far).contains("beyond the servos"));
+}
+
+#[test]
+fn preflight_tells_what_the_robot_will() {
+    let mut page = Page::open(None);
+    let connected = page.asked("session connect", json!({}));
+    let answered = page.request(&json!("Configuration"));
+    let configuration = &answered["reply"]["Configuration"];
+    assert!(configuration.is_object(), "{answered}");
+    let mut asked = json!({ "swimmer": "robot", "gait": "circle:1.2", "period_s": 0.9, "robot": { "hello": connected["hello"], "configuration": configuration } });
+    let told = page.ask("preflight", &asked);
+    assert_eq!(told["configured_as"], true, "{told}");
+    assert!(
+        told["refused"].as_str().unwrap().contains("period"),
+        "{told}"
+    );
+    asked["period_s"] = json!(20.0);
+    let told = page.ask("preflight", &asked);
+    assert!(told["refused"].is_null(), "{told}");
+    assert!(told["loss_share"].as_f64().unwrap().abs() < 0.1);
+}
