@@ -1,18 +1,18 @@
-// Bundles the page into one HTML file: `node build.mjs MODULE.wasm OUTPUT.html VERSION HASH`.
+// Bundles the page into one HTML file: `node build.mjs OUTPUT.html VERSION HASH MODULE.wasm…`.
 //
-// The module goes in compressed, as text that the browser's parser passes over; a worker goes in as text that is made a Blob,
+// A module goes in compressed, as text that the browser's parser passes over; a worker goes in as text that is made a Blob,
 // because a page opened from disk may load nothing beside itself.
 
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
-import { dirname, join, resolve } from "node:path";
+import { basename, dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [modulePath, outputPath, version, hash] = process.argv.slice(2);
-if (!hash) {
-  console.error("usage: node build.mjs MODULE.wasm OUTPUT.html VERSION HASH");
+const [outputPath, version, hash, ...modulePaths] = process.argv.slice(2);
+if (modulePaths.length === 0) {
+  console.error("usage: node build.mjs OUTPUT.html VERSION HASH MODULE.wasm…");
   process.exit(2);
 }
 
@@ -53,15 +53,18 @@ async function bundled(entry) {
 }
 
 const { script, style } = await bundled("src/main.tsx");
-const module = gzipSync(readFileSync(modulePath), { level: 9 }).toString("base64");
+const packed = (path) => gzipSync(readFileSync(path), { level: 9 }).toString("base64");
+const modules = modulePaths
+  .map((path) => `<script type="text/plain" id="module-${basename(path, ".wasm")}">${packed(path)}</script>`)
+  .join("\n");
 // Nothing in it may look like the end of the element that holds it.
 const inScript = (text) => text.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
-const parts = { style: style.replaceAll("</style", "<\\/style"), script: inScript(script), module };
+const parts = { style: style.replaceAll("</style", "<\\/style"), script: inScript(script), modules, version, hash };
 const template = readFileSync(join(here, "src/index.html"), "utf8");
-const page = template.replace(/@(style|script|module)@/g, (_, part) => parts[part]);
+const page = template.replace(/@(style|script|modules|version|hash)@/g, (_, part) => parts[part]);
 mkdirSync(dirname(resolve(outputPath)), { recursive: true });
 writeFileSync(outputPath, page);
 const kilobytes = (length) => `${Math.round(length / 1000)} kB`;
 console.log(
-  `script ${kilobytes(script.length)}, style ${kilobytes(style.length)}, module ${kilobytes(module.length)} as text`,
+  `script ${kilobytes(script.length)}, style ${kilobytes(style.length)}, modules ${kilobytes(modules.length)} as text`,
 );

@@ -11,6 +11,8 @@ use crate::toolchain::{Target, Toolchain};
 
 /// The page's sources; npm puts beside them what bundles and tests it.
 const PAGE: &str = "lab/page";
+/// What is built of `lab/wasm`: a feature of it each, for a kind of worker each.
+const MODULES: [&str; 2] = ["explore", "drive"];
 /// Promised sizes, bytes.
 const LARGEST_MODULE: usize = 1_200_000;
 const LARGEST_PAGE: usize = 1_600_000;
@@ -32,18 +34,22 @@ pub(crate) fn build() -> Outcome<PathBuf> {
     install()?;
     let next = "mend what the type checker names above";
     run(tool("tsc").arg("--noEmit"), next)?;
-    let module = module()?;
+    let modules = MODULES.map(module);
+    let modules = modules.into_iter().collect::<Outcome<Vec<_>>>()?;
     let page = target_folder()?.join("lab/swimmer-lab.html");
     let (version, hash) = (env!("CARGO_PKG_VERSION"), commit());
     run(
         command("node")
             .arg("build.mjs")
-            .args([&module, &page])
+            .arg(&page)
             .args([version, &hash])
+            .args(&modules)
             .current_dir(PAGE),
         "mend what the bundler names above",
     )?;
-    weigh("module", &module, LARGEST_MODULE)?;
+    for (name, module) in MODULES.iter().zip(&modules) {
+        weigh(&format!("module {name}"), module, LARGEST_MODULE)?;
+    }
     weigh("page", &page, LARGEST_PAGE)?;
     println!("{}", page.display());
     Ok(page)
@@ -78,12 +84,18 @@ fn tool(name: &str) -> Command {
     tool
 }
 
-/// Compiles the module and makes it smaller.
-fn module() -> Outcome<PathBuf> {
+/// Compiles a module and makes it smaller.
+fn module(name: &str) -> Outcome<PathBuf> {
     let toolchain = Toolchain::find_or_make(Target::Page)?;
     println!("{}", toolchain.describe());
     run(
-        toolchain.cargo("build").args(["-p", "swimmer-lab"]),
+        toolchain.cargo("build").args([
+            "-p",
+            "swimmer-lab",
+            "--no-default-features",
+            "--features",
+            name,
+        ]),
         "mend what the compiler names above",
     )?;
     let target = target_folder()?;
@@ -92,8 +104,11 @@ fn module() -> Outcome<PathBuf> {
         .join("lab/swimmer_lab.wasm");
     let folder = target.join("lab");
     make_folder(&folder)?;
-    let small = folder.join("swimmer_lab.wasm");
-    if is_newer(&small, &built) {
+    let small = folder.join(format!("{name}.wasm"));
+    // Cargo has one place for both, and touches it only where it compiled or copied anew.
+    let kept = folder.join(format!("{name}.built"));
+    let bytes = read_bytes(&built)?;
+    if small.is_file() && std::fs::read(&kept).is_ok_and(|before| before == bytes) {
         return Ok(small);
     }
     run(
@@ -103,12 +118,8 @@ fn module() -> Outcome<PathBuf> {
             .args([&small, &built]),
         "mend what wasm-opt names above",
     )?;
+    crate::disk::write(&kept, bytes)?;
     Ok(small)
-}
-
-fn is_newer(made: &Path, from: &Path) -> bool {
-    let when = |path: &Path| path.metadata().and_then(|about| about.modified()).ok();
-    matches!((when(made), when(from)), (Some(made), Some(from)) if made >= from)
 }
 
 /// The commit that is checked out, marked where the checkout differs from it; `unknown` outside a repository.

@@ -9,7 +9,10 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::{drive, explore};
+#[cfg(feature = "drive")]
+use crate::drive;
+#[cfg(feature = "explore")]
+use crate::explore;
 
 /// What a call answers.
 #[derive(Debug, PartialEq)]
@@ -27,7 +30,12 @@ pub type Outcome = Result<Answer, String>;
 pub type Call = fn(&mut Lab, &[u8]) -> Outcome;
 
 /// Every call, room by room.
-const TABLES: &[&[(&str, Call)]] = &[explore::CALLS, drive::CALLS];
+const TABLES: &[&[(&str, Call)]] = &[
+    #[cfg(feature = "explore")]
+    explore::CALLS,
+    #[cfg(feature = "drive")]
+    drive::CALLS,
+];
 
 /// What lives from one call to the next.
 #[derive(Default)]
@@ -35,6 +43,7 @@ pub struct Lab {
     /// Things that the page knows by number.
     pub kept: Kept,
     /// What explore has read and mapped last.
+    #[cfg(feature = "explore")]
     pub explore: explore::Memory,
 }
 

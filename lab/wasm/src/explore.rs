@@ -1,6 +1,7 @@
 //! What the page's Explore calls: `swimmer`, `simulate`, `certify`, `optimize`, `height-map`, as the commands of those names, and
 //! what only a picture needs.
 
+mod bounds;
 mod certify;
 mod map;
 mod motion;

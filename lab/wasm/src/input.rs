@@ -1,8 +1,7 @@
-//! What many calls take: a swimmer, a gait, bounds. Each is read by the room that reads it for the command line.
+//! What many calls take: a swimmer, a gait. Each is read by the room that reads it for the command line.
 
 use std::path::Path;
 
-use gait_optimizer::{Bounds, Objective};
 use nalgebra::Vector2;
 use serde::Deserialize;
 use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile};
@@ -42,6 +41,7 @@ pub(crate) enum GaitText {
 }
 
 /// Samples that a circle or a square is written and asked by, as `swimmer certify` asks them.
+#[cfg(feature = "explore")]
 const SAMPLES: usize = 1024;
 
 impl GaitText {
@@ -57,6 +57,7 @@ impl GaitText {
     }
 
     /// The gait with all that a file tells.
+    #[cfg(feature = "explore")]
     pub(crate) fn file(&self) -> Result<GaitFile, String> {
         match self {
             Self::Text(text) => match closed_form(text)? {
@@ -105,36 +106,4 @@ fn even(phi: &[f64]) -> GaitFile {
         phi: shapes,
         ..GaitFile::default()
     }
-}
-
-/// Bounds on shapes, under the names of the command line's options.
-#[derive(Debug, Clone, Copy, Default, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(crate) struct BoundsAsked {
-    max_angle: Option<f64>,
-    min_angle: Option<f64>,
-    sector: bool,
-    no_overlap: bool,
-    clearance: f64,
-}
-
-impl From<BoundsAsked> for Bounds {
-    fn from(asked: BoundsAsked) -> Self {
-        Self {
-            max_angle: asked.max_angle,
-            min_angle: asked.min_angle,
-            sector: asked.sector,
-            no_overlap: asked.no_overlap || asked.clearance > 0.0,
-            clearance: asked.clearance,
-        }
-    }
-}
-
-/// An objective by its word; none for the file's own.
-pub(crate) fn objective(word: Option<&str>) -> Result<Option<Objective>, String> {
-    word.map(|word| {
-        word.parse()
-            .map_err(|_| format!("`{word}` is no objective of a gait"))
-    })
-    .transpose()
 }

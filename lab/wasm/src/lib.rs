@@ -1,10 +1,15 @@
 //! The door between the lab page and the workspace: each call of [`calls`] has the name, the keys and the functions of a
 //! command of `swimmer`. Nothing is decided here.
 //!
+//! It is built twice, once for each kind of worker: `explore` with the optimiser, `drive` with session and brain. So the lease of a
+//! robot never waits for a search, and neither module is larger than what its worker calls.
+//!
 //! The module needs nothing from the page but memory: no clock, no randomness (seeds are arguments), no imports.
 
 pub mod abi;
 pub mod calls;
+#[cfg(feature = "drive")]
 pub mod drive;
+#[cfg(feature = "explore")]
 pub mod explore;
 mod input;

@@ -15,7 +15,7 @@ export class Lab {
   #last = 0;
 
   constructor() {
-    this.#worker = startWorker(source).then((worker) => {
+    this.#worker = startWorker(source, "explore").then((worker) => {
       worker.onmessage = ({ data }: MessageEvent<Told>) => {
         this.#waiting.get(data.id)?.answered(data);
         this.#waiting.delete(data.id);

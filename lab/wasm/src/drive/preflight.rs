@@ -4,7 +4,6 @@ use forecast::{Played, Servos, forecast};
 use link_protocol::{Board, Configuration, HelloReply, MAX_KNOTS};
 use serde::Deserialize;
 use serde_json::{Value, json};
-use swimmer_model::Model;
 use twin::is_configured_as;
 
 use crate::calls::{Lab, Outcome, json, parsed};
@@ -31,9 +30,7 @@ struct Connected {
 /// Foretells.
 pub(super) fn preflight(_lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
-    let file = asked.swimmer.read()?;
-    let model = Model::new(&file.swimmer)
-        .map_err(|why| format!("the swimmer `{}` cannot swim: {why}", file.name))?;
+    let (file, model) = asked.swimmer.model()?;
     let servos = Servos::on_the_robot(file.servo.unwrap_or_default());
     let servos = match &asked.robot {
         None => servos,

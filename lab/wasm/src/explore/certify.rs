@@ -3,8 +3,9 @@
 use gait_optimizer::{Bounds, Certificate, Objective};
 use serde::{Deserialize, Serialize};
 
+use super::bounds::{BoundsAsked, objective};
 use crate::calls::{Lab, Outcome, json, parsed};
-use crate::input::{BoundsAsked, GaitText, SwimmerText, objective};
+use crate::input::{GaitText, SwimmerText};
 
 #[derive(Deserialize)]
 struct Asked {

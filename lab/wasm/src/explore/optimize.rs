@@ -6,9 +6,10 @@ use gait_optimizer::{
 };
 use serde::{Deserialize, Serialize};
 
+use super::bounds::BoundsAsked;
 use super::certify::Evidence;
 use crate::calls::{Lab, Outcome, json, parsed};
-use crate::input::{BoundsAsked, SwimmerText};
+use crate::input::SwimmerText;
 
 #[derive(Deserialize)]
 struct Asked {

@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 use swimmer_files::Objective;
 use swimmer_model::{Gait, Pose, Tolerance, crossing_share, swim};
 
+use super::bounds::{BoundsAsked, objective};
 use crate::calls::{Answer, Lab, Outcome, json, parsed};
-use crate::input::{BoundsAsked, GaitText, SwimmerText, objective};
+use crate::input::{GaitText, SwimmerText};
 
 #[derive(Deserialize)]
 struct Asked {
