@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: our benches, then the Python peers on the same machine in the same run, one thread, and the ratios.
+//! `cargo xtask bench`: our benches, the lab page by its own clock, then the Python peers on the same machine in the same run, one thread, and the ratios.
 
 use std::path::{Path, PathBuf};
 
@@ -7,6 +7,7 @@ use serde_json::Value;
 use crate::debian;
 use crate::disk::{entries, make_folder, read_bytes, write};
 use crate::failure::{Failure, Outcome};
+use crate::lab;
 use crate::run::{cargo, command, read, run, target_folder, works};
 
 /// What times the peers; it runs beside a copy of their modules.
@@ -147,6 +148,9 @@ pub(crate) fn run_all(folder: &Path) -> Outcome {
         &mut cargo(["bench", "--workspace", "--bench", "*"]),
         "mend what the benches name above",
     )?;
+    if let Err(failure) = lab::bench() {
+        println!("\n!!!! the lab page was NOT MEASURED !!!!\n{failure}");
+    }
     let target = target_folder()?;
     match peers_times(folder, &target.join("peers")) {
         Ok(times) => print_comparisons(&target, &times),

@@ -8,6 +8,7 @@ use crate::debian;
 use crate::emulator;
 use crate::failure::Outcome;
 use crate::firmware::{self, Variant};
+use crate::lab;
 use crate::python;
 use crate::run::{cargo, command, read, run};
 use crate::steps::Steps;
@@ -72,6 +73,7 @@ pub(crate) fn all() -> Outcome {
     });
     // Where it cannot be tested, a person may go on; CI may not.
     let required = std::env::var("CI").is_ok_and(|ci| ci == "true");
+    steps.take("lab page: sizes, command, browsers", || lab::test(required));
     steps.take("Python wheel", || python::test(required));
     println!("\n{}", steps.summary());
     steps.verdict()

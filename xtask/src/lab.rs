@@ -1,5 +1,7 @@
 //! `cargo xtask lab`: the lab page as one HTML file, weighed against its promised size.
 
+mod browse;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -8,6 +10,8 @@ use crate::disk::{make_folder, read_bytes};
 use crate::failure::{Failure, Outcome};
 use crate::run::{command, read, run, target_folder, works};
 use crate::toolchain::{Target, Toolchain};
+
+pub(crate) use browse::{bench, test};
 
 /// The page's sources; npm puts beside them what bundles and tests it.
 const PAGE: &str = "lab/page";

@@ -10,6 +10,7 @@ use crate::debian;
 use crate::disk::{copy, entries, make_folder, read_bytes, remove_folder, write};
 use crate::failure::{Failure, Outcome};
 use crate::firmware::{self, Board, Variant};
+use crate::lab;
 use crate::run::{cargo, command, read, run, target_folder};
 use crate::toolchain::{Target, Toolchain};
 
@@ -45,7 +46,7 @@ pub(crate) fn prepare(dry_run: bool) -> Outcome {
     command_archive(&target, &folder)?;
     images(&target, &folder)?;
     wheel(&folder, &mut missing)?;
-    lab_page(&mut missing);
+    lab_page(&folder)?;
     let changelog = String::from_utf8_lossy(&read_bytes(Path::new("CHANGELOG.md"))?).into_owned();
     write(&folder.join("NOTES.md"), notes(&changelog)?)?;
     let sums = checksums(&folder)?;
@@ -145,12 +146,9 @@ fn wheel(folder: &Path, missing: &mut Vec<&'static str>) -> Outcome {
 }
 
 /// The page for a browser.
-fn lab_page(missing: &mut Vec<&'static str>) {
-    missing.push(if Path::new("lab").is_dir() {
-        "the lab page: this chore does not build it yet"
-    } else {
-        "the lab page: it does not exist yet"
-    });
+fn lab_page(folder: &Path) -> Outcome {
+    let page = lab::build()?;
+    copy(&page, &folder.join(format!("swimmer-lab-{VERSION}.html")))
 }
 
 /// What the changelog says under `[Unreleased]`.

@@ -10,6 +10,7 @@ import { Readout } from "./readout.tsx";
 import { followFragment } from "./share.ts";
 import { Sliders } from "./sliders.tsx";
 import { Swimming } from "./swimming.tsx";
+import { waiting } from "../wasm/lab.ts";
 import { Toolbar } from "./toolbar.tsx";
 
 void followFragment();
@@ -19,7 +20,7 @@ const open = (files: File[]) => void openFiles(files);
 export function Explore() {
   useDrop("explore", open);
   return (
-    <div id="explore">
+    <div id="explore" aria-busy={waiting.value > 0}>
       <Toolbar />
       <div class="explore">
         <div class="column">

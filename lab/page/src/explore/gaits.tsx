@@ -80,7 +80,10 @@ function OptimumRow({ what }: { what: Optimum }) {
   const laid = overlaid.includes(what);
   const found = optima.value.get(what);
   const wanted = laid || shown.value.gaits.some((gait) => gait?.kind === "optimum" && gait.what === what);
-  const toggle = () => edit({ overlaid: laid ? overlaid.filter((other) => other !== what) : [...overlaid, what] });
+  const toggle = () => {
+    const others = shown.value.overlaid.filter((other) => other !== what);
+    edit({ overlaid: others.length < shown.value.overlaid.length ? others : [...others, what] });
+  };
   return (
     <tr class={wanted && !isCurrent(what) ? "stale" : ""}>
       <th scope="row">

@@ -45,7 +45,7 @@ export function Handles({ gait, second }: { gait: Gait; second: boolean }) {
           cx={x}
           cy={-y}
           r={radius}
-          tabIndex={0}
+          tabindex={0}
           role="button"
           aria-label={`Control point ${index + 1} of ${points.length}: φ₁ ${x.toFixed(2)}, φ₂ ${y.toFixed(2)} rad; arrow keys move it`}
           data-index={index}

@@ -6,9 +6,16 @@ import { type Document, FIRST, type Gait, OPTIMA, type Optimum, type Point, show
 
 const KEY = "explore";
 
-async function through(bytes: Uint8Array<ArrayBuffer>, stream: GenericTransformStream): Promise<Uint8Array<ArrayBuffer>> {
-  const piped = new Blob([bytes]).stream().pipeThrough(stream as ReadableWritablePair<Uint8Array, Uint8Array>);
-  return new Uint8Array(await new Response(piped).arrayBuffer());
+async function through(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
+  // What is wrong with the bytes is told by the reading side; the writing side only repeats it.
+  const writer = stream.writable.getWriter();
+  const repeated = () => undefined;
+  writer.write(bytes).catch(repeated);
+  writer.close().catch(repeated);
+  const pieces: Uint8Array[] = [];
+  const reader = stream.readable.getReader();
+  for (let piece = await reader.read(); !piece.done; piece = await reader.read()) pieces.push(piece.value);
+  return new Uint8Array(await new Blob(pieces as BlobPart[]).arrayBuffer());
 }
 
 export async function packed(document: Document): Promise<string> {

@@ -2,6 +2,7 @@
 
 import type { ComponentType } from "preact";
 import { Explore } from "../explore/explore.tsx";
+import { Maps } from "../maps/maps.tsx";
 
 export interface Room {
   /** In the URL's fragment. */
@@ -16,4 +17,5 @@ export interface Room {
 
 export const ROOMS: readonly Room[] = [
   { id: "explore", name: "Explore", about: "Drag a gait over the height map and watch it swim.", key: "1", Panel: Explore },
+  { id: "maps", name: "Maps", about: "Read the map of a sweep over many designs.", key: "4", Panel: Maps },
 ];

@@ -1,8 +1,20 @@
 // The page's side of the numerics: questions to a worker, answers as promises.
 
+import { signal } from "@preact/signals";
 import source from "worker:./worker.ts";
 import { startWorker } from "./embedded.ts";
 import type { Told } from "./worker.ts";
+
+/** Questions that wait for an answer, of all workers. */
+export const waiting = signal(0);
+
+/** What the latest calls took in their workers, ms by name; `cargo xtask bench` prints them. */
+export const times = new Map<string, number[]>();
+const KEPT = 100;
+
+function timed(name: string, milliseconds: number): void {
+  times.set(name, [...(times.get(name) ?? []).slice(1 - KEPT), milliseconds]);
+}
 
 interface Waiting {
   answered(told: Told): void;
@@ -27,13 +39,19 @@ export class Lab {
   /** Asks; the reason of a refusal is the error's message. */
   async ask(name: string, question: unknown): Promise<Told> {
     const id = ++this.#last;
+    waiting.value++;
     const worker = await this.#worker;
-    return new Promise((resolve, reject) => {
+    const answer = new Promise<Told>((resolve, reject) => {
       this.#waiting.set(id, {
-        answered: (told) => ("reason" in told ? reject(new Error(told.reason)) : resolve(told)),
+        answered: (told) => {
+          timed(name, told.milliseconds);
+          if ("reason" in told) reject(new Error(told.reason));
+          else resolve(told);
+        },
       });
       worker.postMessage({ id, name, question });
     });
+    return answer.finally(() => waiting.value--);
   }
 
   async json<T>(name: string, question: unknown): Promise<T> {

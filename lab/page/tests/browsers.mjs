@@ -1,0 +1,149 @@
+// The two browsers behind one small set of doings, so that a test is told once.
+
+import { readFileSync } from "node:fs";
+import { chromium } from "playwright-core";
+import puppeteer from "puppeteer-core";
+import { CHROMIUM, FIREFOX, PAGE } from "./setting.mjs";
+
+/** Browsers by name, each with a function that starts it. */
+export const BROWSERS = {
+  chromium: () => chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox", "--disable-gpu"] }),
+  firefox: () => puppeteer.launch({ browser: "firefox", executablePath: FIREFOX, headless: true }),
+};
+
+/** Milliseconds that anything may take; the machines of CI are slow and shared. */
+const PATIENCE = 60_000;
+
+/** One tab with the page in it. What the console says is kept: a page has nothing to say there. */
+export class Tab {
+  constructor(page, said) {
+    this.page = page;
+    this.said = said;
+  }
+
+  static async open(browser, { hash = "", width = 1440, height = 900, dark = false, url = PAGE } = {}) {
+    const isPlaywright = typeof browser.newContext === "function";
+    const page = isPlaywright
+      ? await browser.newPage({ viewport: { width, height }, colorScheme: dark ? "dark" : "light" })
+      : await browser.newPage();
+    if (!isPlaywright) await page.setViewport({ width, height });
+    const said = [];
+    page.on("console", (message) => said.push(message.text()));
+    page.on("pageerror", (error) => said.push(String(error)));
+    await page.goto(url + hash);
+    const tab = new Tab(page, said);
+    await tab.settled();
+    return tab;
+  }
+
+  evaluate(perform, argument) {
+    return this.page.evaluate(perform, argument);
+  }
+
+  /** Waits until the page says yes, by something that can be sent: no element. */
+  async until(ask, argument, what = ask) {
+    const begun = Date.now();
+    for (;;) {
+      const answer = await this.evaluate(ask, argument);
+      if (answer) return answer;
+      if (Date.now() - begun > PATIENCE) throw new Error(`waiting in vain for ${what}; the page said: ${this.said.join("; ")}`);
+      await new Promise((resolve) => setTimeout(resolve, 25));
+    }
+  }
+
+  /** Waits until nothing is being computed. */
+  settled() {
+    return this.until(() => document.querySelector("#explore")?.getAttribute("aria-busy") === "false", undefined, "the page to settle");
+  }
+
+  text(selector) {
+    return this.evaluate((selector) => document.querySelector(selector)?.textContent ?? null, selector);
+  }
+
+  /** The numbers of both gaits, as the module told them. */
+  async exact() {
+    return JSON.parse(await this.text("#exact"));
+  }
+
+  /** The middle of an element, on the screen. */
+  middle(selector) {
+    return this.evaluate((selector) => {
+      const element = document.querySelector(selector);
+      element.scrollIntoView({ block: "center" });
+      const box = element.getBoundingClientRect();
+      return [box.x + box.width / 2, box.y + box.height / 2];
+    }, selector);
+  }
+
+  async click(selector) {
+    const [x, y] = await this.middle(selector);
+    await this.page.mouse.click(x, y);
+  }
+
+  async drag(selector, [dx, dy], steps = 8) {
+    const [x, y] = await this.middle(selector);
+    await this.page.mouse.move(x, y);
+    await this.page.mouse.down();
+    for (let k = 1; k <= steps; k++) await this.page.mouse.move(x + (dx * k) / steps, y + (dy * k) / steps);
+    await this.page.mouse.up();
+    await this.settled();
+  }
+
+  /** Keys held together: the last is pressed, the others are held. */
+  async press(...keys) {
+    const last = keys.pop();
+    for (const key of keys) await this.page.keyboard.down(key);
+    await this.page.keyboard.press(last);
+    for (const key of keys.reverse()) await this.page.keyboard.up(key);
+    await this.settled();
+  }
+
+  /** Chooses of a list by its words. */
+  choose(label, words) {
+    return this.evaluate(
+      ([label, words]) => {
+        const select = document.querySelector(`select[aria-label="${label}"], select#${CSS.escape(label)}`);
+        select.value = words;
+        select.dispatchEvent(new Event("change", { bubbles: true }));
+      },
+      [label, words],
+    );
+  }
+
+  /** The text of what the page hands over when `perform` is done. */
+  async saved(perform) {
+    await this.evaluate(() => {
+      window.handedOver = undefined;
+      const create = URL.createObjectURL;
+      URL.createObjectURL = (blob) => {
+        URL.createObjectURL = create;
+        window.handedOver = blob;
+        return create.call(URL, blob);
+      };
+    });
+    await perform();
+    await this.until(() => window.handedOver !== undefined, undefined, "a file");
+    return this.evaluate(async () => {
+      const bytes = new Uint8Array(await window.handedOver.arrayBuffer());
+      return { type: window.handedOver.type, text: Array.from(bytes, (byte) => String.fromCharCode(byte)).join("") };
+    });
+  }
+
+  /** Drops files onto the page. */
+  async drop(...paths) {
+    const files = paths.map((path) => ({ name: path.split("/").pop(), text: readFileSync(path, "utf8") }));
+    await this.evaluate((files) => {
+      const data = new DataTransfer();
+      for (const { name, text } of files) data.items.add(new File([text], name));
+      for (const type of ["dragover", "drop"]) {
+        window.dispatchEvent(new DragEvent(type, { dataTransfer: data, bubbles: true, cancelable: true }));
+      }
+    }, files);
+    await new Promise((resolve) => setTimeout(resolve, 100));
+    await this.settled();
+  }
+
+  close() {
+    return this.page.close();
+  }
+}

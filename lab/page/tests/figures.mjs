@@ -1,0 +1,58 @@
+// What follows a hand, measured in the page by its own clock. Printed, never asserted: machines differ.
+
+import { BROWSERS, Tab } from "./browsers.mjs";
+
+const browser = await BROWSERS.chromium();
+const lines = [];
+const line = (what, values, promised) => {
+  const sorted = [...values].sort((a, b) => a - b);
+  const middle = sorted[Math.floor(sorted.length / 2)] ?? NaN;
+  lines.push({ what, "median ms": middle.toFixed(1), "longest ms": (sorted.at(-1) ?? NaN).toFixed(1), "promised ms": promised });
+};
+
+for (const swimmer of ["purcell", "robot"]) {
+  const began = Date.now();
+  const tab = await Tab.open(browser);
+  if (swimmer === "purcell") line("page from disk, to its first numbers", [Date.now() - began], 1000);
+  await tab.choose("Swimmer", swimmer);
+  await tab.settled();
+  const told = (name) => tab.evaluate((name) => globalThis.swimmerLab.times.get(name) ?? [], name);
+  const forget = () => tab.evaluate(() => globalThis.swimmerLab.times.clear());
+  await forget();
+  await tab.evaluate(() => {
+    window.frames_ = [];
+    let before = performance.now();
+    const step = (now) => {
+      window.frames_.push(now - before);
+      before = now;
+      requestAnimationFrame(step);
+    };
+    requestAnimationFrame(step);
+  });
+  await tab.drag('.handles circle[data-index="1"]', [60, -40], 90);
+  line(`${swimmer}: displacement of a 192-sample curve`, await told("simulate"), 2);
+  line(`${swimmer}: full certificate, in a worker`, await told("certify"), 40);
+  line(`${swimmer}: frames while dragging`, await tab.evaluate(() => window.frames_.slice(2)), "16.7");
+  await forget();
+  await tab.evaluate(() => document.querySelector('[aria-label="Take Displacement"]').click());
+  await tab.settled();
+  line(`${swimmer}: cold optimum of displacement, certified`, await told("optimize"), 60);
+  await forget();
+  await tab.evaluate(() => document.querySelector('[aria-label="Take Efficiency, small"]').click());
+  await tab.settled();
+  line(`${swimmer}: cold optimum of efficiency, certified`, await told("optimize"), 60);
+  await forget();
+  await tab.evaluate(() => {
+    const slider = document.querySelector("#half-width");
+    slider.value = "2.7";
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  });
+  await tab.settled();
+  const [coarse, fine] = await told("height-grid");
+  const [curves] = await told("height-map");
+  line(`${swimmer}: height map, first picture`, [coarse], 300);
+  line(`${swimmer}: height map, fine, with zero curves`, [coarse + fine + curves], 300);
+  await tab.close();
+}
+await browser.close();
+console.table(lines);
