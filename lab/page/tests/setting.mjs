@@ -9,7 +9,7 @@ const root = resolve(dirname(fileURLToPath(import.meta.url)), "../../..");
 const target = process.env.LAB_TARGET ?? join(root, "target");
 
 export const PAGE = pathToFileURL(join(target, "lab/swimmer-lab.html")).href;
-export const MODULE = join(target, "lab/swimmer_lab.wasm");
+export const MODULE = join(target, "lab/explore.wasm");
 export const SWIMMER = join(target, "debug/swimmer");
 export const OUT = join(target, "lab");
 export const SCREENSHOTS = join(OUT, "screenshots");
