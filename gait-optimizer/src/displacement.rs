@@ -4,6 +4,7 @@ mod best;
 mod error;
 pub(crate) mod flow;
 pub(crate) mod height;
+mod near;
 mod search;
 mod trunk;
 
@@ -13,6 +14,7 @@ use crate::region::Region;
 use best::{best, candidates};
 pub use error::{DisplacementError, Fates};
 use nalgebra::Vector2;
+pub use near::displacement_near;
 use search::{Candidate, LOOKS};
 use swimmer_files::{ArcKind, Bounds, Objective};
 use swimmer_model::{Links, Model, Swimmer};

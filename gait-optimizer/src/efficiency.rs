@@ -9,6 +9,7 @@ mod by_collocation;
 mod chain;
 mod error;
 mod fourier;
+mod near;
 
 use std::fmt;
 
@@ -25,6 +26,7 @@ use by_collocation::by_collocation;
 use chain::Found;
 pub(crate) use chain::starts;
 pub use error::EfficiencyError;
+pub use near::EfficiencySeed;
 
 /// Which of the two optima.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

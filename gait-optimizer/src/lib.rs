@@ -93,9 +93,12 @@ pub use continuation::{
     Continuation, ContinuationError, ContinuationProblem, Event, EventKind, Fold, OtherSide,
     Parameter, Point, Start, continuation, continuation_watched,
 };
-pub use displacement::{DisplacementError, DisplacementProblem, Fates, Heading, displacement};
+pub use displacement::{
+    DisplacementError, DisplacementProblem, Fates, Heading, displacement, displacement_near,
+};
 pub use efficiency::{
-    Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method, Reached, efficiency,
+    Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, EfficiencySeed, Method, Reached,
+    efficiency,
 };
 pub use extremal::{Polish, Unpolished, Unsolved, polish_efficiency};
 pub use height_map::{

@@ -211,6 +211,13 @@ pub struct EfficiencyProblem {
 impl EfficiencyProblem {
     pub fn new(swimmer: Swimmer<f64>, branch: Branch) -> Self {}
 }
+#[derive(Debug, Clone)]
+pub struct EfficiencySeed {}
+impl EfficiencySeed {
+    pub fn new(gait: OptimalGait) -> Self {}
+    pub fn gait(&self) -> &OptimalGait {}
+    pub fn near(&self, problem: &EfficiencyProblem) -> Option<Self> {}
+}
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event {
     pub branch: usize,
@@ -526,6 +533,7 @@ impl SpeedProblem {
     pub fn new(swimmer: Swimmer<f64>, rates: [f64; 2]) -> Self {}
     pub fn watched(&self, watch: Watch<'_>) -> Result<Fastest, SpeedError> {}
     pub fn atlas(&self, watch: Watch<'_>) -> Result<SpeedAtlas, SpeedError> {}
+    pub fn near(&self, neighbour: &Fastest) -> Option<Fastest> {}
 }
 #[derive(Debug, Clone, PartialEq)]
 pub enum Start {
@@ -633,6 +641,10 @@ pub fn continuation_watched(
 pub fn displacement(
     problem: &DisplacementProblem,
 ) -> Result<OptimalGait, DisplacementError> {}
+pub fn displacement_near(
+    problem: &DisplacementProblem,
+    neighbour: &OptimalGait,
+) -> Option<OptimalGait> {}
 pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, EfficiencyError> {}
 pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {}
 pub fn polish_efficiency<G: Gait<f64> + ?Sized>(

@@ -157,7 +157,7 @@ const CLOSE: f64 = 0.08;
 
 /// The gait with as many samples as its own certificate needs when it is worked out from the samples alone; as it is where no
 /// number of them will do.
-fn finely_sampled(
+pub(super) fn finely_sampled(
     problem: &DisplacementProblem,
     model: &Model<f64>,
     within: (&Bounds, &Region),

@@ -230,7 +230,7 @@ impl<'a> Search<'a> {
 
     /// From a place near a root to the root: secants at a middling tolerance, then a few steps at the fine one with the slope
     /// found there, since the fine shots are what costs. None where the secants lead away.
-    fn polished(&self, trunk: &Trunk, near: f64) -> Option<f64> {
+    pub(super) fn polished(&self, trunk: &Trunk, near: f64) -> Option<f64> {
         let (p, slope) = self.secants(trunk, near)?;
         let mut here = (p, self.miss(trunk, p, FINE)?);
         for _ in 0..6 {
@@ -275,7 +275,7 @@ impl<'a> Search<'a> {
     }
 
     /// The candidate that leaves a trunk at p.
-    fn candidate(&self, trunk: &Trunk, p: f64) -> Option<Candidate> {
+    pub(super) fn candidate(&self, trunk: &Trunk, p: f64) -> Option<Candidate> {
         let (quarter, final_y) = self.shoot(trunk, p, FINE)?;
         let whole = match trunk {
             Trunk::StartLine { .. } => quarter,
@@ -305,7 +305,7 @@ impl<'a> Search<'a> {
     }
 
     /// The extremal that runs along the bounds to the very end.
-    fn never_leaving(&self, trunk: &Trunk) -> Option<Candidate> {
+    pub(super) fn never_leaving(&self, trunk: &Trunk) -> Option<Candidate> {
         if trunk.on_diagonal() {
             return None; // which would be no loop
         }

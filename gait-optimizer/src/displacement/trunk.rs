@@ -2,12 +2,13 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::Vector2;
 use swimmer_files::{ArcKind, Bounds};
 
 use super::flow::{Fate, Leg, along_bounds, is_end_line};
 use super::height::Extremal;
 use super::search::{FINE, lasting};
-use crate::momentum::{Flow, Motion, State, Track};
+use crate::momentum::{Flow, Motion, State, Track, shape};
 use crate::region::{Bound, Piece, Region};
 use crate::runge_kutta::{Point, advance};
 
@@ -206,6 +207,26 @@ impl Trunk {
                 let state = advance(&drive, start, p - stretch.span[0], FINE)?.z;
                 Some(Place { state, motion })
             }
+        }
+    }
+
+    /// The place nearest to a shape, about: bounds count as the chords of their stretches.
+    pub(crate) fn nearest(&self, phi: &Vector2<f64>) -> Option<f64> {
+        match self {
+            Self::StartLine { low, high } => Some((0.5 * (phi.x + phi.y)).clamp(*low, *high)),
+            Self::Bounds { stretches, .. } => stretches
+                .iter()
+                .map(|stretch| {
+                    let (from, to) = (shape(&stretch.from), shape(&stretch.to));
+                    let chord = to - from;
+                    let share = (phi - from).dot(&chord) / chord.norm_squared();
+                    let share = share.clamp(0.0, 1.0);
+                    let apart = (from + chord * share - phi).norm();
+                    let [begins, ends] = stretch.span;
+                    (apart, begins + share * (ends - begins))
+                })
+                .min_by(|(a, _), (b, _)| a.total_cmp(b))
+                .map(|(_, p)| p),
         }
     }
 

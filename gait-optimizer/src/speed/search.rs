@@ -209,7 +209,12 @@ fn shortest_of_alike(chains: &[(Polished, usize)]) -> Vec<&Polished> {
 }
 
 /// A chain as an answer; none where its samples make no gait.
-fn told(problem: &SpeedProblem, setting: &Setting, chain: &Polished, fast: f64) -> Option<Fastest> {
+pub(super) fn told(
+    problem: &SpeedProblem,
+    setting: &Setting,
+    chain: &Polished,
+    fast: f64,
+) -> Option<Fastest> {
     // Run the way that leads forward, and of two mirror images the one that leads to the left.
     let ahead = remainder(chain.net.heading());
     let backward = ahead.cos() < -1e-9 || (ahead.cos() < 1e-9 && ahead < 0.0);
@@ -248,6 +253,7 @@ fn told(problem: &SpeedProblem, setting: &Setting, chain: &Polished, fast: f64) 
         found: 0,
         longer: None,
         uncertified: None,
+        links: chain.links.clone(),
         gait: OptimalGait::new(Solution {
             objective: Objective::Speed,
             swimmer: problem.swimmer,

@@ -28,7 +28,7 @@ pub(crate) enum Motion {
 }
 
 /// A corner and the arc that follows it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Link {
     pub(crate) corner: Vector2<f64>,
     /// Bounds that hold the corner, by their place in the region.

@@ -1,0 +1,79 @@
+//! The gait of a design from the gait of a neighbouring one: the same arcs, their place found again, no search.
+
+use swimmer_files::ArcKind;
+use swimmer_model::Model;
+
+use super::best::finely_sampled;
+use super::search::{LOOKS, Search};
+use super::trunk::{Trunk, trunks};
+use super::{DisplacementProblem, certified, touches};
+use crate::OptimalGait;
+use crate::region::Region;
+
+/// The optimum of a problem that lies near the optimum of a neighbouring one (another swimmer or other bounds, a little changed),
+/// with its own certificate. It costs a fraction of a search, and it is the neighbour's kind of gait: whether another kind has
+/// become better only [`displacement()`](super::displacement()) tells.
+///
+/// None where there is no such gait near by, where it fails its certificate, or where gaits that touch their own images would
+/// have to be looked at: then ask for [`displacement()`](super::displacement()).
+///
+/// ```
+/// use gait_optimizer::{DisplacementProblem, displacement, displacement_near};
+/// use swimmer_model::Swimmer;
+///
+/// let mut problem = DisplacementProblem::new(Swimmer::purcell());
+/// let here = displacement(&problem)?;
+/// problem.swimmer.chi = 2.01;
+/// let next = displacement_near(&problem, &here).unwrap();
+/// let direct = displacement(&problem)?;
+/// assert!(next.certificate.pass());
+/// assert!((next.displacement_over_length / direct.displacement_over_length - 1.0).abs() < 1e-10);
+/// # Ok::<(), gait_optimizer::DisplacementError>(())
+/// ```
+pub fn displacement_near(
+    problem: &DisplacementProblem,
+    neighbour: &OptimalGait,
+) -> Option<OptimalGait> {
+    problem.validate().ok()?;
+    if !neighbour.symmetric || neighbour.bounds.sector != problem.bounds.sector {
+        return None;
+    }
+    let model = Model::new(&problem.swimmer.of_unit_length()).ok()?;
+    let region = Region::new(&problem.bounds, &problem.swimmer.links);
+    let search = Search {
+        model: &model,
+        region: &region,
+        sign: problem.heading().sign(),
+        touches: 0,
+        looks: LOOKS,
+    };
+    let leaves = neighbour
+        .arcs
+        .iter()
+        .position(|arc| arc.kind == ArcKind::Singular);
+    let found = trunks(search.extremal(0.0), &problem.bounds, &region)
+        .iter()
+        .filter_map(|trunk| {
+            let along_bounds = matches!(trunk, Trunk::Bounds { .. });
+            let found = match leaves {
+                None if along_bounds => search.never_leaving(trunk),
+                Some(first) if along_bounds == (first > 0) => {
+                    let arc = neighbour.arcs.get(first)?;
+                    let p = trunk.nearest(&arc.from.into())?;
+                    search.candidate(trunk, search.polished(trunk, p)?)
+                }
+                _ => None,
+            };
+            found.filter(|candidate| search.sign * candidate.quarter.end[2] > 0.0)
+        })
+        .max_by(|a, b| {
+            let [a, b] = [a, b].map(|candidate| candidate.quarter.end[2].abs());
+            a.total_cmp(&b)
+        })?;
+    let within = (&problem.bounds, &region);
+    let gait = certified(problem, &model, within, &found)?;
+    if !gait.certificate.pass() || touches(problem, &model, Some(&gait)) {
+        return None;
+    }
+    Some(finely_sampled(problem, &model, within, (&found, gait)))
+}
