@@ -1,7 +1,7 @@
 //! Whole files or none: written beside their place and renamed into it.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::FileError;
@@ -43,12 +43,51 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     }
 }
 
+/// As [`write_atomically`], for what is too large to be held: `write` is handed the file, beside its place until it is whole.
+///
+/// # Errors
+/// As [`write_atomically`], and whatever `write` says; nothing is left behind then.
+///
+/// ```
+/// use std::io::Write as _;
+/// use swimmer_files::stream_atomically;
+///
+/// # let path = std::env::temp_dir().join(format!("streamed-{}", std::process::id()));
+/// stream_atomically(&path, |file| (0..1000).try_for_each(|row| writeln!(file, "{row}")))?;
+/// assert_eq!(std::fs::read_to_string(&path).unwrap().lines().count(), 1000);
+/// # std::fs::remove_file(&path).unwrap();
+/// # Ok::<(), swimmer_files::FileError>(())
+/// ```
+pub fn stream_atomically(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), FileError> {
+    let through = |file: File| {
+        let mut buffered = BufWriter::new(file);
+        write(&mut buffered)?;
+        buffered.flush()
+    };
+    match destination(path) {
+        Ok(Destination::Stream) => OpenOptions::new().write(true).open(path).and_then(through),
+        Ok(Destination::File(place)) => replace_with(&place, through),
+        Err(error) => Err(error),
+    }
+    .map_err(|source| FileError::Write {
+        path: path.to_path_buf(),
+        source,
+    })
+}
+
 fn replace(place: &Path, bytes: &[u8]) -> io::Result<()> {
+    replace_with(place, |mut file| file.write_all(bytes))
+}
+
+fn replace_with(place: &Path, write: impl FnOnce(File) -> io::Result<()>) -> io::Result<()> {
     make_folder_of(place)?;
     let temporary = beside(place, "partial");
     let written = File::create(&temporary)
-        .and_then(|mut file| {
-            file.write_all(bytes)?;
+        .and_then(|file| {
+            write(file.try_clone()?)?;
             file.sync_all()
         })
         .and_then(|()| fs::rename(&temporary, place));

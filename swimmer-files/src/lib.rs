@@ -48,7 +48,7 @@ mod toml_text;
 
 pub use angle::{AngleError, parse_angle, parse_joint_angle};
 pub use any_gait::AnyGait;
-pub use atomic::write_atomically;
+pub use atomic::{stream_atomically, write_atomically};
 pub use axes::Axes;
 pub use campaign::{
     Campaign, CampaignRun, Known, KnownValue, PointName, Reflector, Reflectors, RunTiming, ToldRun,

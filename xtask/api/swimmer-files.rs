@@ -355,6 +355,10 @@ pub fn parse_angle(text: &str) -> Result<f64, AngleError> {}
 pub fn parse_joint_angle(text: &str) -> Result<f64, AngleError> {}
 pub fn parse_key(text: &str) -> Result<Key, String> {}
 pub fn read_link_log(path: &Path) -> Result<LinkLog, LinkLogError> {}
+pub fn stream_atomically(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), FileError> {}
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {}
 pub mod plays {
     pub use crate::Play;
