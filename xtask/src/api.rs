@@ -32,11 +32,12 @@ pub(crate) fn check() -> Outcome {
 }
 
 /// Crates that others may build on.
-const LIBRARIES: [&str; 10] = [
+const LIBRARIES: [&str; 11] = [
     "swimmer-model",
     "swimmer-files",
     "gait-optimizer",
     "forecast",
+    "sweep",
     "calibrate",
     "gait-player",
     "link-protocol",

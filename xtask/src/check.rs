@@ -11,6 +11,7 @@ use crate::firmware::{self, Variant};
 use crate::lab;
 use crate::python;
 use crate::run::{cargo, command, read, run};
+use crate::slurm;
 use crate::steps::Steps;
 use crate::toolchain::{Target, Toolchain};
 
@@ -43,6 +44,14 @@ pub(crate) fn all() -> Outcome {
     }
     // Without it the tests of the booted firmware fail; this step says why.
     steps.take("emulator for the firmware", emulator::install);
+    // Off Debian there is none, and the test says that it is skipped; in CI it must be there.
+    let required = std::env::var("CI").is_ok_and(|ci| ci == "true");
+    steps.take("Slurm for the test of job arrays", || {
+        slurm::unpack().or_else(|failure| {
+            println!("{failure}");
+            if required { Err(failure) } else { Ok(()) }
+        })
+    });
     steps.take("clippy for the host", || {
         run(
             cargo(["clippy", "--workspace", "--all-targets"]).args(["--", "-D", "warnings"]),
@@ -72,7 +81,6 @@ pub(crate) fn all() -> Outcome {
         )
     });
     // Where it cannot be tested, a person may go on; CI may not.
-    let required = std::env::var("CI").is_ok_and(|ci| ci == "true");
     steps.take("lab page: sizes, command, browsers", || lab::test(required));
     steps.take("Python wheel", || python::test(required));
     println!("\n{}", steps.summary());

@@ -18,6 +18,7 @@ mod mutants;
 mod python;
 mod release;
 mod run;
+mod slurm;
 mod soak;
 mod steps;
 mod toolchain;
@@ -70,6 +71,8 @@ enum Chore {
     },
     /// Installs the RP2040 emulator that boots the firmware in tests (npm).
     Emulator,
+    /// Unpacks Debian's Slurm under target/slurm, for the test of job arrays.
+    Slurm,
     /// Writes what each library offers to xtask/api, and tells which entry points have no example.
     Api {
         /// Write nothing: fail where a list is stale or an entry point has no example.
@@ -160,6 +163,7 @@ fn perform(chore: Chore) -> Outcome {
         Chore::Book => book::build(),
         Chore::Lab => lab::build().map(drop),
         Chore::Release { dry_run } => release::prepare(dry_run),
+        Chore::Slurm => slurm::unpack(),
         Chore::Emulator => emulator::install(),
         Chore::Api { check } => api::list(Path::new("."), check),
         Chore::Python => python::test(true),

@@ -3,7 +3,7 @@
 use clap::Command;
 
 /// The words of a command, and what is typed after `swimmer`.
-pub(super) const EXAMPLES: [(&str, &str); 43] = [
+pub(super) const EXAMPLES: [(&str, &str); 49] = [
     ("demo", "demo --swimmer robot -o demo"),
     (
         "simulate",
@@ -39,6 +39,21 @@ pub(super) const EXAMPLES: [(&str, &str); 43] = [
         "height-map --swimmer robot -o map.svg --gait best.gait",
     ),
     ("lab", "lab --port twin"),
+    ("sweep plan", "sweep plan morphology.toml -o morphology"),
+    ("sweep run", "sweep run morphology --shard 2/7"),
+    ("sweep status", "sweep status morphology"),
+    (
+        "sweep merge",
+        "sweep merge morphology -o morphology.parquet",
+    ),
+    (
+        "sweep map",
+        "sweep map morphology --across links.ratio --up sphere.radius -o map.svg",
+    ),
+    (
+        "sweep submit slurm",
+        "sweep submit slurm morphology --shards 64 --cores 4 --submit",
+    ),
     ("paper", "paper -o paper"),
     ("swimmers", "swimmers robot"),
     ("gaits", "gaits"),

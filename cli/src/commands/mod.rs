@@ -12,6 +12,7 @@ pub(crate) mod paper;
 pub(crate) mod robot;
 pub(crate) mod shell;
 pub(crate) mod simulate;
+pub(crate) mod sweep;
 pub(crate) mod swimmers;
 pub(crate) mod tracks;
 pub(crate) mod twin;
@@ -59,6 +60,8 @@ pub(crate) enum Command {
     Atlas(atlas::Atlas),
     Certify(certify::Certify),
     HeightMap(height_map::HeightMap),
+    #[command(subcommand)]
+    Sweep(sweep::Sweep),
     Paper(paper::Paper),
     Robot(robot::Robot),
     Twin(twin::Twin),
@@ -110,6 +113,7 @@ pub(crate) fn run(command: Command, output: Output) -> Outcome {
         Command::Certify(certify) => certify.run(output),
         Command::Optimize(optimize) => optimize.run(output),
         Command::HeightMap(height_map) => height_map.run(output),
+        Command::Sweep(sweep) => sweep.run(output),
         Command::Paper(paper) => paper.run(output),
         Command::Atlas(atlas) => atlas.run(output),
         Command::Robot(robot) => robot.run(output),

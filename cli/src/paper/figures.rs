@@ -146,6 +146,7 @@ impl Figure {
                 Series::Bars { .. }
                 | Series::Arrows { .. }
                 | Series::Word { .. }
+                | Series::Cells(_)
                 | Series::Names(_) => continue,
             };
             for (x, y) in points {

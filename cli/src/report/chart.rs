@@ -51,6 +51,8 @@ pub(crate) enum Series {
         points: Vec<(f64, f64, f64)>,
         color: RGBColor,
     },
+    /// Filled rectangles, each from (left, low) to (right, high), without air around them.
+    Cells(Vec<([f64; 4], RGBColor)>),
     /// Heads of arrows along a closed curve, the way its points run; on equal axes.
     Arrows { points: Vec<Point>, color: RGBColor },
     /// Names under 1, 2, 3 … of the horizontal axis instead of numbers.
@@ -209,6 +211,12 @@ impl Chart {
                     });
                     chart.draw_series(heads).map_err(|error| said(&error))?;
                 }
+                Series::Cells(cells) => {
+                    let cells = cells.iter().map(|([left, low, right, high], color)| {
+                        Rectangle::new([(*left, *low), (*right, *high)], color.filled())
+                    });
+                    chart.draw_series(cells).map_err(|error| said(&error))?;
+                }
                 Series::Names(_) => {}
                 Series::Word { at, text, color } => {
                     let style = letters(WORDS, *color);
@@ -270,6 +278,10 @@ impl Series {
             Self::Bars { points, .. } => points
                 .iter()
                 .flat_map(|&(x, y, half)| [(x, y - half), (x, y + half)])
+                .collect(),
+            Self::Cells(cells) => cells
+                .iter()
+                .flat_map(|([left, low, right, high], _)| [(*left, *low), (*right, *high)])
                 .collect(),
             Self::Word { at, .. } => vec![*at],
             Self::Names(_) | Self::Arrows { .. } => Vec::new(),

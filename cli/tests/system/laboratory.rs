@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use crate::binary::typed;
 
-/// A folder with `good.gait`, `good.toml`, `good.key`, `page.html`, `good.mcap`, `image.uf2`, `run.csv`, `wide.csv`, `campaign.toml` and a boot loader's `drive`, and a `wrong.*`
+/// A folder with `good.gait`, `good.toml`, `good.key`, `page.html`, `good.mcap`, `image.uf2`, `run.csv`, `wide.csv`, `campaign.toml`, `spec.toml` with its finished sweep `swept`, and a boot loader's `drive`, and a `wrong.*`
 /// for each kind.
 pub(crate) fn laboratory() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -39,6 +39,13 @@ pub(crate) fn laboratory() -> tempfile::TempDir {
         "campaign.toml",
         "swimmer = \"good.toml\"\n[reflectors]\nfront = { point = \"Front\", at = [0.0355, 0.0] }\nback = { point = \"Back\", at = [-0.0355, 0.0] }\n[[run]]\ntrack = \"wide.csv\"\ngait = \"circle:90deg\"\nperiod_s = 30.0\n[[run]]\ntrack = \"run.csv\"\ngait = \"circle:50deg\"\nperiod_s = 30.0\n",
     );
+    write(
+        "spec.toml",
+        "swimmer = \"good.toml\"\nobjective = \"stub\"\n[[axis]]\nname = \"drag.chi\"\nvalues = [2, 3, 4]\n[[axis]]\nname = \"sphere.radius\"\nvalues = [0, 0.1]\n",
+    );
+    for words in ["sweep plan spec.toml -o swept", "sweep run swept"] {
+        typed(folder.path(), words).with_status(0);
+    }
     std::fs::write(folder.path().join("image.uf2"), uf2()).unwrap();
     std::fs::create_dir(folder.path().join("drive")).unwrap();
     write(

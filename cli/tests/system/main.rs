@@ -33,5 +33,9 @@ mod recordings;
 #[cfg(unix)]
 mod setup;
 #[cfg(unix)]
+mod sweep;
+#[cfg(target_os = "linux")]
+mod sweep_slurm;
+#[cfg(unix)]
 mod table;
 mod tracks;

@@ -70,7 +70,7 @@ impl Row {
     }
 }
 
-const ROWS: [Row; 45] = [
+const ROWS: [Row; 51] = [
     row("demo --swimmer good.toml -o out")
         .reads("good.toml")
         .writes("out")
@@ -107,6 +107,14 @@ const ROWS: [Row; 45] = [
     row("simulate --swimmer good.toml --gait good.gait --picture p.png")
         .reads("good.gait")
         .writes("p.png"),
+    row("sweep plan spec.toml -o out")
+        .reads("spec.toml")
+        .writes("out"),
+    row("sweep run swept --threads 1"),
+    row("sweep status swept"),
+    row("sweep merge swept -o t.parquet").writes("t.parquet"),
+    row("sweep map swept --quantity structure -o m.svg").writes("m.svg"),
+    row("sweep submit slurm swept --time 5 -o s.sh").writes("s.sh"),
     row("paper -o out").writes("out").works_a_while(),
     row("swimmers robot"),
     row("gaits"),

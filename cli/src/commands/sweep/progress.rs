@@ -1,0 +1,151 @@
+//! What a run, a look and a merge answer.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use serde::Serialize;
+use sweep::{Merged, Plan, Ran, Shard, Status};
+use swimmer_files::{FileError, hash_of};
+
+use super::shown;
+use crate::failure::Outcome;
+use crate::quantity::Rows;
+
+/// What was run.
+#[derive(Debug, Serialize)]
+pub(super) struct RunAnswer {
+    plan: String,
+    shard: String,
+    /// Of the plan.
+    tasks: u64,
+    /// Of the shard, finished now or before.
+    done: u64,
+    failed: u64,
+    blocks: u64,
+    blocks_skipped: u64,
+    seconds: f64,
+}
+
+impl RunAnswer {
+    pub(super) fn new(plan: &Plan, shard: Shard, ran: Ran, seconds: f64) -> Self {
+        Self {
+            plan: plan.hash(),
+            shard: shard.to_string(),
+            tasks: plan.tasks(),
+            done: ran.tasks,
+            failed: ran.failed,
+            blocks: ran.blocks,
+            blocks_skipped: ran.skipped,
+            seconds,
+        }
+    }
+}
+
+impl fmt::Display for RunAnswer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows = Rows::default();
+        rows.row("shard", &self.shard)
+            .row("designs", format!("{} of {}", self.done, self.tasks))
+            .row("without a gait", self.failed.to_string())
+            .row(
+                "blocks",
+                format!("{}, {} finished before", self.blocks, self.blocks_skipped),
+            )
+            .row("took", format!("{:.1} s", self.seconds));
+        write!(f, "{rows}")
+    }
+}
+
+/// How far all shards are.
+#[derive(Debug, Serialize)]
+#[serde(transparent)]
+pub(super) struct StatusAnswer(pub(super) Status);
+
+impl fmt::Display for StatusAnswer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(status) = self;
+        let mut rows = Rows::default();
+        rows.row("designs", format!("{} of {}", status.done, status.tasks))
+            .row(
+                "blocks",
+                format!(
+                    "{} of {}, {} broken",
+                    status.blocks_done, status.blocks, status.blocks_broken
+                ),
+            )
+            .row("without a gait", status.failed.to_string())
+            .row("not certified", status.uncertified.to_string())
+            .row("from a neighbour", status.warm.to_string())
+            .row("on the disk", format!("{} bytes", status.bytes));
+        let milliseconds = |seconds: f64| format!("{:.2} ms", 1e3 * seconds);
+        if let Some(design) = status.design_s {
+            rows.row("a design costs", milliseconds(design));
+        }
+        if let (Some(cold), Some(warm)) = (status.cold_s, status.warm_s) {
+            rows.row("a search", milliseconds(cold))
+                .row("a step from a neighbour", milliseconds(warm));
+        }
+        if let Some(left) = status.left_s {
+            rows.row("left", format!("{:.2} core hours", left / 3600.0));
+        }
+        write!(f, "{rows}")
+    }
+}
+
+/// What was merged.
+#[derive(Debug, Serialize)]
+pub(super) struct MergeAnswer {
+    plan: String,
+    tasks: u64,
+    done: u64,
+    failed: u64,
+    certified: u64,
+    table: PathBuf,
+    bytes: u64,
+    sha256: Option<String>,
+}
+
+impl MergeAnswer {
+    pub(super) fn new(plan: &Plan, merged: Merged, table: PathBuf) -> Outcome<Self> {
+        let read = |source| FileError::Read {
+            path: table.clone(),
+            source,
+        };
+        let bytes = std::fs::metadata(&table).map_err(read)?.len();
+        // A table that would not fit into memory is not read again for its hash.
+        let sha256 = if bytes <= MOST_HASHED {
+            Some(hash_of(&table)?)
+        } else {
+            None
+        };
+        Ok(Self {
+            plan: plan.hash(),
+            tasks: plan.tasks(),
+            done: merged.tasks,
+            failed: merged.failed,
+            certified: merged.certified,
+            table,
+            bytes,
+            sha256,
+        })
+    }
+}
+
+const MOST_HASHED: u64 = 1 << 28;
+
+impl fmt::Display for MergeAnswer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut rows = Rows::default();
+        rows.row("designs", self.done.to_string())
+            .row("certified", self.certified.to_string())
+            .row("without a gait", self.failed.to_string())
+            .row(
+                "table",
+                format!("{}, {} bytes", shown(&self.table), self.bytes),
+            );
+        if let Some(hash) = &self.sha256 {
+            rows.row("sha256", hash);
+        }
+        write!(f, "{rows}")
+    }
+}

@@ -1,0 +1,348 @@
+//! A finished grid as numbers to draw: quantities over two axes, lines where the kind of gait changes, the Pareto set of speed
+//! and efficiency.
+
+mod doubt;
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::row::Row;
+use crate::{Design, Plan, SweepError, part};
+pub use doubt::{Doubt, DoubtKind, doubts};
+
+/// Which two axes, and where on the others.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Slice {
+    /// Numbers of the axes to the right and upwards.
+    pub axes: [usize; 2],
+    /// An index for every axis; those of the two do not matter.
+    pub at: Vec<u64>,
+}
+
+impl Slice {
+    /// The first two axes, at the first value of each other one; none where the plan is no grid of two axes or more.
+    pub fn first(plan: &Plan) -> Option<Self> {
+        (plan.design() == Design::Grid && plan.axes().len() >= 2).then(|| Self {
+            axes: [0, 1],
+            at: vec![0; plan.axes().len()],
+        })
+    }
+}
+
+/// An axis of a map.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MapAxis {
+    /// The field.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// In the order of the plan.
+    pub values: Vec<f64>,
+}
+
+/// What is mapped: one row for each value of the second axis, one number for each of the first.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Quantity {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// None where there is no gait.
+    pub values: Vec<Vec<Option<f64>>>,
+}
+
+/// A design that no other one beats in speed and in efficiency at once.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Pareto {
+    /// The task.
+    pub key: u64,
+    /// |d|/(L T) \[1/s\].
+    pub speed: f64,
+    /// ξ.
+    pub efficiency: f64,
+}
+
+/// A map, as `sweep map --export` writes it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Map {
+    /// `swimmer-sweep-map 1`.
+    pub format: &'static str,
+    /// The plan's hash.
+    pub plan: String,
+    /// What the gaits are best at.
+    pub objective: &'static str,
+    /// To the right, upwards.
+    pub axes: [MapAxis; 2],
+    /// Those that any design of the slice has.
+    pub quantities: Vec<Quantity>,
+    /// Arcs of each gait.
+    pub structure: Vec<Vec<Option<String>>>,
+    /// `optimal`, `uncertified` or `none`.
+    pub status: Vec<Vec<&'static str>>,
+    /// Lines of points (values of both axes) between designs whose gaits are of different arcs, or of which one has none.
+    pub folds: Vec<Vec<[f64; 2]>>,
+    /// Of the whole plan, slowest first; empty without rates.
+    pub pareto: Vec<Pareto>,
+    /// Of the whole plan.
+    #[serde(skip)]
+    pub designs_without_gait: u64,
+}
+
+type Told = (&'static str, &'static str, fn(&Row) -> Option<f64>);
+
+const QUANTITIES: [Told; 7] = [
+    ("displacement_over_length", "", |row| {
+        row.displacement_over_length
+    }),
+    ("efficiency", "", |row| row.efficiency),
+    ("speed_over_length_per_s", "1/s", |row| {
+        row.speed_over_length_per_s
+    }),
+    ("amplitude_rad", "rad", |row| row.amplitude_rad),
+    ("rotation_rad", "rad", |row| row.rotation_rad),
+    ("lateral_over_length", "", |row| row.lateral_over_length),
+    ("period_s", "s", |row| row.period_s),
+];
+
+/// The map of a slice of a finished grid.
+///
+/// # Errors
+/// [`SweepError::NoMap`] where the slice is none of the plan's, [`SweepError::Unfinished`] where a part is missing.
+pub fn map(plan: &Plan, folder: &Path, slice: &Slice) -> Result<Map, SweepError> {
+    let [across, up] = slice.axes;
+    let axes = plan.axes();
+    let refused = |problem: &str| Err(SweepError::NoMap(problem.to_owned()));
+    if plan.design() != Design::Grid {
+        return refused("its designs are no grid; read the merged table instead");
+    }
+    let (Some(x), Some(y)) = (axes.get(across), axes.get(up)) else {
+        return refused("a map needs two axes");
+    };
+    if across == up || slice.at.len() != axes.len() {
+        return refused("its two axes must be two of the plan's");
+    }
+    if x.count().saturating_mul(y.count()) > MOST_CELLS {
+        return refused("it would have more than 4 million cells; read the merged table instead");
+    }
+    let mut cells: Vec<Vec<Option<Row>>> = vec![vec![None; whole(x.count())]; whole(y.count())];
+    let mut front: Vec<Pareto> = Vec::new();
+    let (mut lost, mut first, mut without) = (0, None, 0);
+    for block in 0..plan.blocks() {
+        let Some(rows) = part::read(plan, folder, block) else {
+            lost += 1;
+            first.get_or_insert(block);
+            continue;
+        };
+        for row in rows {
+            without += u64::from(row.certified.is_none());
+            front.extend(pareto(&row));
+            if front.len() > 2 * FRONT {
+                keep_front(&mut front);
+            }
+            let indices = plan.indices(row.key);
+            let here = indices.iter().zip(&slice.at).enumerate();
+            if here
+                .filter(|(axis, _)| ![across, up].contains(axis))
+                .all(|(_, (index, at))| index == at)
+            {
+                let cell = indices
+                    .get(up)
+                    .and_then(|row| cells.get_mut(whole(*row)))
+                    .zip(indices.get(across))
+                    .and_then(|(row, column)| row.get_mut(whole(*column)));
+                if let Some(cell) = cell {
+                    *cell = Some(row);
+                }
+            }
+        }
+    }
+    if let Some(first) = first {
+        return Err(SweepError::Unfinished {
+            missing: lost,
+            blocks: plan.blocks(),
+            first,
+        });
+    }
+    keep_front(&mut front);
+    let cells: Vec<Vec<Row>> = cells
+        .into_iter()
+        .map(|row| row.into_iter().flatten().collect())
+        .collect();
+    let axes = [x, y].map(|axis| MapAxis {
+        name: axis.name.name(),
+        unit: axis.name.unit(),
+        values: (0..axis.count()).map(|index| axis.value(index)).collect(),
+    });
+    Ok(Map {
+        format: "swimmer-sweep-map 1",
+        plan: plan.hash(),
+        objective: plan.objective().word(),
+        quantities: QUANTITIES
+            .into_iter()
+            .map(|(name, unit, value)| Quantity {
+                name,
+                unit,
+                values: each(&cells, value),
+            })
+            .filter(|quantity| quantity.values.iter().flatten().any(Option::is_some))
+            .collect(),
+        structure: each(&cells, |row| row.arcs.clone()),
+        status: each(&cells, Row::status),
+        folds: folds(&axes, &cells),
+        axes,
+        pareto: front,
+        designs_without_gait: without,
+    })
+}
+
+const MOST_CELLS: u64 = 1 << 22;
+/// Designs that are sifted at a time.
+const FRONT: usize = 1 << 14;
+
+fn whole(index: u64) -> usize {
+    usize::try_from(index).unwrap_or(usize::MAX)
+}
+
+fn each<T>(cells: &[Vec<Row>], of: impl Fn(&Row) -> T) -> Vec<Vec<T>> {
+    cells
+        .iter()
+        .map(|row| row.iter().map(&of).collect())
+        .collect()
+}
+
+fn pareto(row: &Row) -> Option<Pareto> {
+    (row.certified == Some(true)).then_some(Pareto {
+        key: row.key,
+        speed: row.speed_over_length_per_s?,
+        efficiency: row.efficiency?,
+    })
+}
+
+/// Keeps what nothing beats, slowest first.
+fn keep_front(front: &mut Vec<Pareto>) {
+    front.sort_by(|a, b| {
+        b.speed
+            .total_cmp(&a.speed)
+            .then(b.efficiency.total_cmp(&a.efficiency))
+            .then(a.key.cmp(&b.key))
+    });
+    let mut best = f64::NEG_INFINITY;
+    front.retain(|one| {
+        let keep = one.efficiency > best;
+        best = best.max(one.efficiency);
+        keep
+    });
+    front.reverse();
+}
+
+/// Borders between cells of different arcs, joined where they run straight on.
+fn folds(axes: &[MapAxis; 2], cells: &[Vec<Row>]) -> Vec<Vec<[f64; 2]>> {
+    let [x, y] = axes;
+    let (columns, rows) = (x.values.len(), y.values.len());
+    let [xs, ys] = [borders(&x.values), borders(&y.values)];
+    let arcs = |row: usize, column: usize| {
+        cells
+            .get(row)
+            .and_then(|cells| cells.get(column))
+            .and_then(|cell| cell.arcs.as_deref())
+    };
+    let mut lines: Vec<Vec<[f64; 2]>> = Vec::new();
+    let mut line =
+        |differ: &dyn Fn(usize) -> bool, count: usize, at: &dyn Fn(usize) -> [f64; 2]| {
+            let mut from = None;
+            for index in 0..=count {
+                match (from, index < count && differ(index)) {
+                    (None, true) => from = Some(index),
+                    (Some(began), false) => {
+                        lines.push(vec![at(began), at(index)]);
+                        from = None;
+                    }
+                    _ => {}
+                }
+            }
+        };
+    for (column, &border) in xs.iter().enumerate().take(columns).skip(1) {
+        line(
+            &|row| arcs(row, column) != arcs(row, column - 1),
+            rows,
+            &|row| [border, ys[row]],
+        );
+    }
+    for (row, &border) in ys.iter().enumerate().take(rows).skip(1) {
+        line(
+            &|column| arcs(row, column) != arcs(row - 1, column),
+            columns,
+            &|column| [xs[column], border],
+        );
+    }
+    lines
+}
+
+/// Ends of the cells of an axis: halfway between its values, and as far beyond the outer ones.
+pub(crate) fn borders(values: &[f64]) -> Vec<f64> {
+    let halfway = |a: f64, b: f64| 0.5 * (a + b);
+    let mut ends: Vec<f64> = values
+        .windows(2)
+        .map(|pair| match pair {
+            [a, b] => halfway(*a, *b),
+            _ => f64::NAN,
+        })
+        .collect();
+    let first = match values {
+        [a, b, ..] => a - halfway(-*a, *b),
+        [a] => a - 0.5,
+        [] => 0.0,
+    };
+    let last = match values {
+        [.., a, b] => b + halfway(-*a, *b),
+        [a] => a + 0.5,
+        [] => 0.0,
+    };
+    ends.insert(0, first);
+    ends.push(last);
+    ends
+}
+
+impl MapAxis {
+    /// Ends of its cells: one more than it has values.
+    pub fn borders(&self) -> Vec<f64> {
+        borders(&self.values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_end_halfway() {
+        let ends = borders(&[1.0, 2.0, 4.0]);
+        let expected = [0.5, 1.5, 3.0, 5.0];
+        assert!(
+            ends.iter()
+                .zip(expected)
+                .all(|(a, b)| (a - b).abs() < 1e-12),
+            "{ends:?}"
+        );
+    }
+
+    #[test]
+    fn the_front_keeps_what_nothing_beats() {
+        let one = |key, speed, efficiency| Pareto {
+            key,
+            speed,
+            efficiency,
+        };
+        let mut front = vec![
+            one(0, 1.0, 0.5),
+            one(1, 2.0, 0.4),
+            one(2, 1.5, 0.3),
+            one(3, 1.0, 0.5),
+            one(4, 0.5, 0.6),
+        ];
+        keep_front(&mut front);
+        let keys: Vec<_> = front.iter().map(|one| one.key).collect();
+        assert_eq!(keys, [4, 0, 1]);
+    }
+}

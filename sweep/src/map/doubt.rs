@@ -1,0 +1,140 @@
+//! Designs that their neighbours cast doubt on: a wider bound never makes the best gait worse, and what is best changes without
+//! jumps. What is listed is a place to look at, not yet a mistake: a gait of one class, or of one name, may end.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::{Axis, Design, Plan, SweepError, part};
+
+/// What is odd about a design.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DoubtKind {
+    /// A neighbour within tighter bounds does better.
+    Beaten,
+    /// There is no gait, but both neighbours along an axis have one.
+    Lost,
+    /// What is maximised jumps between two neighbours: by a hundredth, and ten times as much as on either side of them.
+    Jump,
+}
+
+/// A design to look at.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Doubt {
+    /// What is odd.
+    pub kind: DoubtKind,
+    /// The task.
+    pub key: u64,
+    /// The neighbour that tells.
+    pub neighbour: u64,
+    /// How much better the neighbour is, over its own value; none for a lost gait.
+    pub share: Option<f64>,
+}
+
+/// Grids of more designs are not held at once.
+const MOST: u64 = 20_000_000;
+/// A neighbour that is better by less is as good.
+const BETTER: f64 = 1e-6;
+/// What a jump is at least, over the larger value, and over the steps beside it.
+const JUMP: f64 = 1e-2;
+const STEEPER: f64 = 10.0;
+
+/// Looks at all neighbours of a finished grid, by key.
+///
+/// # Errors
+/// [`SweepError::NoMap`] where the plan is no grid, or too large to be held.
+pub fn doubts(plan: &Plan, folder: &Path) -> Result<Vec<Doubt>, SweepError> {
+    if plan.design() != Design::Grid || plan.tasks() > MOST {
+        return Err(SweepError::NoMap(
+            "neighbours are compared in grids of at most 20 million designs".to_owned(),
+        ));
+    }
+    let mut values: Vec<Option<f64>> = Vec::new();
+    for block in 0..plan.blocks() {
+        let rows = part::read(plan, folder, block).ok_or(SweepError::Unfinished {
+            missing: 1,
+            blocks: plan.blocks(),
+            first: block,
+        })?;
+        values.extend(rows.iter().map(|row| row.objective));
+    }
+    let mut found = Vec::new();
+    let mut stride = 1_u64;
+    for axis in plan.axes().iter().rev() {
+        along(axis, stride, &values, &mut found);
+        stride *= axis.count();
+    }
+    found.sort_by_key(|doubt| (doubt.key, doubt.neighbour));
+    Ok(found)
+}
+
+fn along(axis: &Axis, stride: u64, values: &[Option<f64>], found: &mut Vec<Doubt>) {
+    let value = |key: u64| {
+        usize::try_from(key)
+            .ok()
+            .and_then(|key| values.get(key))
+            .copied()
+            .flatten()
+    };
+    for key in 0..values.len() as u64 {
+        let index = key / stride % axis.count();
+        let at = |step: i64| {
+            let there = index.checked_add_signed(step)?;
+            (there < axis.count()).then_some(key.wrapping_add_signed(step * stride.cast_signed()))
+        };
+        let Some(next) = at(1) else {
+            continue;
+        };
+        let Some(here) = value(key) else {
+            if at(-1).and_then(value).is_some() && value(next).is_some() {
+                found.push(Doubt {
+                    kind: DoubtKind::Lost,
+                    key,
+                    neighbour: next,
+                    share: None,
+                });
+            }
+            continue;
+        };
+        let Some(there) = value(next) else {
+            continue;
+        };
+        let larger = here.max(there);
+        let grows = axis.value(index + 1) > axis.value(index);
+        let (tight, wide) = if grows == (axis.name.widens() > 0) {
+            ((key, here), (next, there))
+        } else {
+            ((next, there), (key, here))
+        };
+        if axis.name.widens() != 0 && tight.1 > wide.1 * (1.0 + BETTER) {
+            found.push(Doubt {
+                kind: DoubtKind::Beaten,
+                key: wide.0,
+                neighbour: tight.0,
+                share: Some(1.0 - wide.1 / tight.1),
+            });
+            continue;
+        }
+        let beside = [
+            at(-1).and_then(value).map(|before| here - before),
+            at(2).and_then(value).map(|after| after - there),
+        ];
+        let steps = beside.into_iter().flatten().map(f64::abs);
+        let steepest = steps.reduce(f64::max);
+        let step = (there - here).abs();
+        if step > JUMP * larger && steepest.is_some_and(|steepest| step > STEEPER * steepest) {
+            let (worse, better) = if here < there {
+                (key, next)
+            } else {
+                (next, key)
+            };
+            found.push(Doubt {
+                kind: DoubtKind::Jump,
+                key: worse,
+                neighbour: better,
+                share: Some(step / larger),
+            });
+        }
+    }
+}

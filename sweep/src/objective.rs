@@ -1,0 +1,256 @@
+//! One design solved: from nothing, or from the gait of its neighbour.
+
+use gait_optimizer::{
+    Branch, DisplacementProblem, EfficiencyProblem, EfficiencySeed, Fastest, OptimalGait,
+    SidewaysProblem, SpeedProblem, TurningProblem, displacement, displacement_near, efficiency,
+    sideways, turning,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::field::Design;
+use crate::row::{Row, alike};
+
+/// What the gaits of a sweep are best at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Aim {
+    /// Most net displacement, of gaits with the paper's two symmetries.
+    Displacement,
+    /// Most Lighthill efficiency: the small gait.
+    EfficiencySmall,
+    /// The large one.
+    EfficiencyLarge,
+    /// Most displacement per unit of time under the servos' rates.
+    Speed,
+    /// Most rotation.
+    Turning,
+    /// Most displacement across the heading.
+    Sideways,
+    /// Nothing is solved: a smooth function of the key, to try out a machine or a scheduler.
+    Stub,
+}
+
+impl Aim {
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Displacement => "displacement",
+            Self::EfficiencySmall => "efficiency small",
+            Self::EfficiencyLarge => "efficiency large",
+            Self::Speed => "speed",
+            Self::Turning => "turning",
+            Self::Sideways => "sideways",
+            Self::Stub => "stub",
+        }
+    }
+
+    /// What is maximised, with its unit.
+    pub fn quantity(self) -> &'static str {
+        match self {
+            Self::Displacement => "|X|/L",
+            Self::EfficiencySmall | Self::EfficiencyLarge => "ξ",
+            Self::Speed => "|d|/(L T) [1/s]",
+            Self::Turning => "rotation [rad]",
+            Self::Sideways => "|Y|/L",
+            Self::Stub => "stub",
+        }
+    }
+
+    /// Whether a neighbour's gait is a start.
+    pub(crate) fn follows(self) -> bool {
+        matches!(
+            self,
+            Self::Displacement | Self::EfficiencySmall | Self::EfficiencyLarge | Self::Speed
+        )
+    }
+}
+
+/// A gait as its neighbour may start from.
+#[derive(Debug, Clone)]
+enum Held {
+    Gait(Box<OptimalGait>),
+    Seed(Box<EfficiencySeed>),
+    Fastest(Box<Fastest>),
+    Nothing,
+}
+
+impl Held {
+    fn gait(&self) -> Option<&OptimalGait> {
+        match self {
+            Self::Gait(gait) => Some(gait),
+            Self::Seed(seed) => Some(seed.gait()),
+            Self::Fastest(found) => Some(&found.gait),
+            Self::Nothing => None,
+        }
+    }
+}
+
+/// A design solved.
+#[derive(Debug, Clone)]
+pub(crate) struct Solved {
+    pub(crate) row: Row,
+    held: Held,
+}
+
+impl Solved {
+    /// Whether two answers to one design are one gait: as good to this share, and of the same arcs.
+    pub(crate) fn same(&self, other: &Self) -> bool {
+        const SAME: f64 = 1e-7;
+        let (Some(a), Some(b)) = (self.row.objective, other.row.objective) else {
+            return false;
+        };
+        let arcs = match (self.held.gait(), other.held.gait()) {
+            (Some(a), Some(b)) => alike(a, b),
+            _ => false,
+        };
+        arcs && (a - b).abs() <= SAME * a.abs().max(b.abs())
+    }
+}
+
+/// Samples of a quarter gait. What is kept is not its samples but its numbers, which do not depend on them: X/L and ξ come from the
+/// arcs, and the certificate asks for more samples where these do not do.
+const QUARTER: usize = 64;
+
+/// How designs are solved.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Solver {
+    pub(crate) aim: Aim,
+    /// Starts of a search, where the spec tells them.
+    pub(crate) starts: Option<u32>,
+}
+
+impl Solver {
+    /// A design solved from nothing: the objective's own search.
+    ///
+    /// # Errors
+    /// Why there is no gait.
+    pub(crate) fn cold(&self, design: &Design, key: u64) -> Result<Solved, String> {
+        let of_gait =
+            |gait: OptimalGait| self.solved(design, key, false, Held::Gait(Box::new(gait)));
+        match self.aim {
+            Aim::Displacement => displacement(&Self::of_displacement(design))
+                .map(of_gait)
+                .map_err(|error| error.to_string()),
+            Aim::EfficiencySmall | Aim::EfficiencyLarge => efficiency(&self.of_efficiency(design))
+                .map(EfficiencySeed::new)
+                .map(|seed| self.solved(design, key, false, Held::Seed(Box::new(seed))))
+                .map_err(|error| error.to_string()),
+            Aim::Speed => gait_optimizer::fastest(&self.of_speed(design)?)
+                .map(|found| self.solved(design, key, false, Held::Fastest(Box::new(found))))
+                .map_err(|error| error.to_string()),
+            Aim::Turning => turning(&TurningProblem {
+                swimmer: design.swimmer,
+                bounds: design.bounds,
+            })
+            .map(|found| of_gait(found.gait))
+            .map_err(|error| error.to_string()),
+            Aim::Sideways => sideways(&SidewaysProblem {
+                bounds: design.bounds,
+                starts: self
+                    .starts
+                    .map_or(SidewaysProblem::new(design.swimmer).starts, |starts| {
+                        starts as usize
+                    }),
+                ..SidewaysProblem::new(design.swimmer)
+            })
+            .map(|found| of_gait(found.gait))
+            .map_err(|error| error.to_string()),
+            Aim::Stub => Ok(stub(key)),
+        }
+    }
+
+    /// A design solved from its neighbour's answer; none where that leads to no certified gait.
+    pub(crate) fn warm(&self, design: &Design, key: u64, near: &Solved) -> Option<Solved> {
+        let held = match (&near.held, self.aim) {
+            (Held::Gait(gait), Aim::Displacement) => Held::Gait(Box::new(displacement_near(
+                &Self::of_displacement(design),
+                gait,
+            )?)),
+            (Held::Seed(seed), Aim::EfficiencySmall | Aim::EfficiencyLarge) => {
+                Held::Seed(Box::new(seed.near(&self.of_efficiency(design))?))
+            }
+            (Held::Fastest(fastest), Aim::Speed) => {
+                Held::Fastest(Box::new(self.of_speed(design).ok()?.near(fastest)?))
+            }
+            _ => return None,
+        };
+        Some(self.solved(design, key, true, held))
+    }
+
+    fn of_displacement(design: &Design) -> DisplacementProblem {
+        DisplacementProblem {
+            bounds: design.bounds,
+            quarter_samples: QUARTER,
+            ..DisplacementProblem::new(design.swimmer)
+        }
+    }
+
+    fn of_efficiency(&self, design: &Design) -> EfficiencyProblem {
+        let branch = if self.aim == Aim::EfficiencyLarge {
+            Branch::Large
+        } else {
+            Branch::Small
+        };
+        EfficiencyProblem {
+            bounds: design.bounds,
+            quarter_samples: QUARTER,
+            ..EfficiencyProblem::new(design.swimmer, branch)
+        }
+    }
+
+    fn of_speed(&self, design: &Design) -> Result<SpeedProblem, String> {
+        let rates = design
+            .rates
+            .ok_or_else(|| "no rate of the servos is told".to_owned())?;
+        let problem = SpeedProblem {
+            bounds: design.bounds,
+            ..SpeedProblem::new(design.swimmer, rates)
+        };
+        Ok(SpeedProblem {
+            starts: self.starts.map_or(problem.starts, |starts| starts as usize),
+            ..problem
+        })
+    }
+
+    fn solved(&self, design: &Design, key: u64, warm: bool, held: Held) -> Solved {
+        let mut row = match &held {
+            Held::Gait(gait) => Row::of(gait, design.rates),
+            Held::Seed(seed) => Row::of(seed.gait(), design.rates),
+            Held::Fastest(found) => Row {
+                speed_over_length_per_s: Some(found.speed_over_length),
+                period_s: Some(found.period),
+                ..Row::of(&found.gait, None)
+            },
+            Held::Nothing => Row::default(),
+        };
+        let size = |value: Option<f64>| value.map(f64::abs);
+        row.key = key;
+        row.warm = warm;
+        row.objective = match self.aim {
+            Aim::Displacement => size(row.displacement_over_length),
+            Aim::EfficiencySmall | Aim::EfficiencyLarge => row.efficiency,
+            Aim::Speed => row.speed_over_length_per_s,
+            Aim::Turning => size(row.rotation_rad),
+            Aim::Sideways => size(row.lateral_over_length),
+            Aim::Stub => row.objective,
+        };
+        Solved { row, held }
+    }
+}
+
+/// A row without a swimmer.
+fn stub(key: u64) -> Solved {
+    let wave = (key as f64 * 1e-3).sin();
+    Solved {
+        row: Row {
+            key,
+            objective: Some(2.0 + wave),
+            displacement_over_length: Some(wave),
+            efficiency: Some(0.5 * wave * wave),
+            certified: Some(true),
+            arcs: Some(if wave > 0.0 { "upper" } else { "lower" }.to_owned()),
+            ..Row::default()
+        },
+        held: Held::Nothing,
+    }
+}

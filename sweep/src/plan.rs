@@ -1,0 +1,393 @@
+//! An immutable plan: a rule that gives every task's design, and the hash of its content.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use gait_optimizer::Bounds;
+use rand::{Rng as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+use swimmer_files::{FileError, SwimmerFile, write_atomically};
+
+use crate::field::Design as DesignPoint;
+use crate::{Aim, Field, SweepError};
+
+/// How the values between two ends lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scale {
+    /// Equal differences.
+    Lin,
+    /// Equal ratios.
+    Log,
+}
+
+/// The values of an axis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Values {
+    /// These.
+    List {
+        /// In any order.
+        values: Vec<f64>,
+    },
+    /// From one end to the other: a grid of `count`, or anywhere between them in a random or Sobol design.
+    Range {
+        /// The first.
+        from: f64,
+        /// The last.
+        to: f64,
+        /// How many of a grid; 0 in the other designs.
+        count: u64,
+        /// How they lie.
+        scale: Scale,
+    },
+}
+
+/// What changes from design to design, and how.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Axis {
+    /// What it changes.
+    pub name: Field,
+    /// Its values.
+    #[serde(flatten)]
+    pub values: Values,
+}
+
+impl Axis {
+    /// Values of a grid.
+    pub fn count(&self) -> u64 {
+        match &self.values {
+            Values::List { values } => values.len() as u64,
+            Values::Range { count, .. } => *count,
+        }
+    }
+
+    /// Value number `index` of a grid.
+    pub fn value(&self, index: u64) -> f64 {
+        match &self.values {
+            Values::List { values } => usize::try_from(index)
+                .ok()
+                .and_then(|index| values.get(index))
+                .copied()
+                .unwrap_or(f64::NAN),
+            Values::Range { count, to, .. } if *count > 1 && index + 1 == *count => *to,
+            Values::Range { count, .. } => {
+                self.between(index as f64 / count.saturating_sub(1).max(1) as f64)
+            }
+        }
+    }
+
+    /// The value at a share (0 to 1) of the way.
+    fn between(&self, share: f64) -> f64 {
+        match &self.values {
+            Values::List { .. } => f64::NAN,
+            Values::Range {
+                from, to, scale, ..
+            } => match scale {
+                Scale::Lin => from + (to - from) * share,
+                Scale::Log => from * (to / from).powf(share),
+            },
+        }
+    }
+}
+
+/// Which points of the axes are designs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase", tag = "kind")]
+pub enum Design {
+    /// Every combination of the axes' values; the last axis changes fastest.
+    Grid,
+    /// Points drawn evenly and independently.
+    Random {
+        /// How many.
+        count: u64,
+        /// Of the draws.
+        seed: u64,
+    },
+    /// The first points of an Owen-scrambled Sobol sequence.
+    Sobol {
+        /// How many, at most [`Design::MOST_SOBOL`].
+        count: u64,
+        /// Of the scrambling.
+        seed: u32,
+    },
+}
+
+impl Design {
+    /// The sequence has no more points.
+    pub const MOST_SOBOL: u64 = 1 << 16;
+}
+
+/// Bounds as a plan keeps them; angles in rad, the clearance in m.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct KeptBounds {
+    pub(crate) max_angle: Option<f64>,
+    pub(crate) min_angle: Option<f64>,
+    pub(crate) sector: bool,
+    pub(crate) no_overlap: bool,
+    pub(crate) clearance: f64,
+}
+
+impl From<KeptBounds> for Bounds {
+    fn from(kept: KeptBounds) -> Self {
+        Self {
+            max_angle: kept.max_angle,
+            min_angle: kept.min_angle,
+            sector: kept.sector,
+            no_overlap: kept.no_overlap || kept.clearance > 0.0,
+            clearance: kept.clearance,
+        }
+    }
+}
+
+/// What is hashed and written.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Content {
+    pub(crate) format: String,
+    pub(crate) version: String,
+    pub(crate) objective: Aim,
+    pub(crate) block: u64,
+    pub(crate) anchor: u64,
+    pub(crate) starts: Option<u32>,
+    pub(crate) max_rate: Option<[f64; 2]>,
+    /// A swimmer file's text.
+    pub(crate) swimmer: String,
+    pub(crate) bounds: KeptBounds,
+    pub(crate) design: Design,
+    pub(crate) axis: Vec<Axis>,
+}
+
+/// What a plan's text begins with.
+pub(crate) const FORMAT: &str = "swimmer-sweep-plan 1";
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// An immutable plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    content: Content,
+    text: String,
+    hash: [u8; 32],
+    base: SwimmerFile,
+}
+
+impl Plan {
+    /// Its name in the folder of a sweep.
+    pub const FILE: &'static str = "plan.toml";
+
+    /// The plan of a spec. A swimmer file is looked for from the spec's own folder.
+    ///
+    /// # Errors
+    /// [`SweepError::File`] with line and column, and what to do.
+    pub fn of_spec(text: &str, path: &Path) -> Result<Self, SweepError> {
+        let mut content = crate::spec::read(text, path)?;
+        FORMAT.clone_into(&mut content.format);
+        VERSION.clone_into(&mut content.version);
+        let text = toml::to_string(&content)
+            .map_err(|error| FileError::at(path, 1, 1, error.to_string()))?;
+        Self::of_text(text, path)
+    }
+
+    fn of_text(text: String, path: &Path) -> Result<Self, SweepError> {
+        let content: Content = toml::from_str(&text).map_err(|error| {
+            FileError::at(path, 1, 1, format!("this is no plan: {}", error.message()))
+        })?;
+        if content.version != VERSION || content.format != FORMAT {
+            return Err(SweepError::OtherVersion {
+                path: path.to_path_buf(),
+                theirs: content.version,
+                ours: VERSION.to_owned(),
+            });
+        }
+        let base = SwimmerFile::parse(&content.swimmer, path)?;
+        Ok(Self {
+            hash: Sha256::digest(text.as_bytes()).into(),
+            content,
+            text,
+            base,
+        })
+    }
+
+    /// Writes it into the folder of a sweep, which is made where it is missing. The same plan again changes nothing.
+    ///
+    /// # Errors
+    /// [`SweepError::OtherPlan`] where another one is there, [`SweepError::Taken`] where something else is, or that of the file.
+    pub fn save(&self, folder: &Path) -> Result<PathBuf, SweepError> {
+        let path = folder.join(Self::FILE);
+        if path.exists() {
+            let there = Self::load(folder)?;
+            return if there.hash == self.hash {
+                Ok(path)
+            } else {
+                Err(SweepError::OtherPlan {
+                    folder: folder.to_path_buf(),
+                    there: there.hash(),
+                    ours: self.hash(),
+                })
+            };
+        }
+        if fs::read_dir(folder).is_ok_and(|mut there| there.next().is_some()) {
+            return Err(SweepError::Taken {
+                folder: folder.to_path_buf(),
+            });
+        }
+        let text = format!("# sha256 {}\n{}", self.hash(), self.text);
+        write_atomically(&path, text.as_bytes())?;
+        Ok(path)
+    }
+
+    /// Reads the plan of a folder.
+    ///
+    /// # Errors
+    /// It is not there, was changed, or was made by another version.
+    pub fn load(folder: &Path) -> Result<Self, SweepError> {
+        let path = folder.join(Self::FILE);
+        let text = fs::read_to_string(&path).map_err(|source| FileError::Read {
+            path: path.clone(),
+            source,
+        })?;
+        let (told, rest) = text
+            .strip_prefix("# sha256 ")
+            .and_then(|rest| rest.split_once('\n'))
+            .ok_or_else(|| SweepError::Changed { path: path.clone() })?;
+        let plan = Self::of_text(rest.to_owned(), &path);
+        if hex(&Sha256::digest(rest.as_bytes())) != told {
+            return Err(SweepError::Changed { path });
+        }
+        plan
+    }
+
+    /// The hash of its content, 64 hexadecimal digits.
+    pub fn hash(&self) -> String {
+        hex(&self.hash)
+    }
+
+    pub(crate) fn hash_bytes(&self) -> &[u8; 32] {
+        &self.hash
+    }
+
+    /// Its text, without the hash.
+    pub(crate) fn text(&self) -> &str {
+        &self.text
+    }
+
+    pub(crate) fn content(&self) -> &Content {
+        &self.content
+    }
+
+    /// What the gaits are best at.
+    pub fn objective(&self) -> Aim {
+        self.content.objective
+    }
+
+    /// The name of the swimmer that the designs are changes of.
+    pub fn swimmer_name(&self) -> &str {
+        &self.base.name
+    }
+
+    /// What changes from design to design.
+    pub fn axes(&self) -> &[Axis] {
+        &self.content.axis
+    }
+
+    /// Which points of the axes are designs.
+    pub fn design(&self) -> Design {
+        self.content.design
+    }
+
+    /// How many designs there are; their keys are 0 … tasks − 1.
+    pub fn tasks(&self) -> u64 {
+        match self.content.design {
+            Design::Grid => self.axes().iter().map(Axis::count).product(),
+            Design::Random { count, .. } | Design::Sobol { count, .. } => count,
+        }
+    }
+
+    /// Tasks of a block; the last one may have fewer.
+    pub fn block_size(&self) -> u64 {
+        self.content.block
+    }
+
+    /// Blocks there are.
+    pub fn blocks(&self) -> u64 {
+        self.tasks().div_ceil(self.content.block)
+    }
+
+    /// The keys of a block.
+    pub fn keys(&self, block: u64) -> std::ops::Range<u64> {
+        let from = block.saturating_mul(self.content.block);
+        from.min(self.tasks())..from.saturating_add(self.content.block).min(self.tasks())
+    }
+
+    /// Which value of each axis of a grid a task has; empty in the other designs.
+    pub fn indices(&self, key: u64) -> Vec<u64> {
+        if self.content.design != Design::Grid {
+            return Vec::new();
+        }
+        let mut rest = key;
+        let mut indices: Vec<u64> = self
+            .axes()
+            .iter()
+            .rev()
+            .map(|axis| {
+                let index = rest % axis.count();
+                rest /= axis.count();
+                index
+            })
+            .collect();
+        indices.reverse();
+        indices
+    }
+
+    /// The values of the axes of a task.
+    pub fn point(&self, key: u64) -> Vec<f64> {
+        let axes = self.axes().iter();
+        match self.content.design {
+            Design::Grid => axes
+                .zip(self.indices(key))
+                .map(|(axis, index)| axis.value(index))
+                .collect(),
+            Design::Random { seed, .. } => {
+                let mut draws = ChaCha8Rng::seed_from_u64(seed);
+                // Two words a number: any point at once.
+                draws.set_word_pos(2 * u128::from(key) * axes.len() as u128);
+                axes.map(|axis| {
+                    axis.between((draws.next_u64() >> 11) as f64 / (1_u64 << 53) as f64)
+                })
+                .collect()
+            }
+            Design::Sobol { seed, .. } => {
+                let index = u32::try_from(key).unwrap_or(u32::MAX);
+                axes.zip(0..)
+                    .map(|(axis, dimension)| {
+                        axis.between(f64::from(sobol_burley::sample(index, dimension, seed)))
+                    })
+                    .collect()
+            }
+        }
+    }
+
+    /// The design of a task.
+    pub(crate) fn design_of(&self, key: u64) -> DesignPoint {
+        let mut design = DesignPoint {
+            swimmer: self.base.swimmer,
+            bounds: self.content.bounds.into(),
+            rates: self.content.max_rate,
+        };
+        for (axis, value) in self.axes().iter().zip(self.point(key)) {
+            axis.name.set(&mut design, value);
+        }
+        design
+    }
+}
+
+pub(crate) fn hex(bytes: &[u8]) -> String {
+    use std::fmt::Write as _;
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
+}

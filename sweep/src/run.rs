@@ -1,0 +1,185 @@
+//! Blocks over shards and threads.
+
+use std::fs::{self, OpenOptions};
+use std::io::Write as _;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use crate::warm::{self, Cost};
+use crate::{Plan, SweepError, part};
+
+/// A part of a sweep: every `of`-th block, from block `number` − 1 on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    number: u64,
+    of: u64,
+}
+
+impl Shard {
+    /// All blocks.
+    pub const WHOLE: Self = Self { number: 1, of: 1 };
+
+    /// Shard `number` (from 1) of so many; none where there is no such shard.
+    pub fn new(number: u64, of: u64) -> Option<Self> {
+        (number >= 1 && number <= of).then_some(Self { number, of })
+    }
+
+    /// How many of a plan's blocks are its own.
+    pub fn blocks(self, plan: &Plan) -> u64 {
+        let blocks = plan.blocks();
+        blocks / self.of + u64::from(self.number <= blocks % self.of)
+    }
+
+    fn block(self, index: u64) -> u64 {
+        self.number - 1 + index * self.of
+    }
+}
+
+impl std::fmt::Display for Shard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
+}
+
+/// How a shard is run.
+#[derive(Clone, Copy)]
+pub struct Running<'a> {
+    /// Which blocks.
+    pub shard: Shard,
+    /// Threads to work on, each on a block of its own; the answers do not depend on them.
+    pub threads: usize,
+    /// A clock \[s\], for what designs cost.
+    pub seconds: &'a (dyn Fn() -> f64 + Sync),
+    /// Is told how many of the shard's blocks are finished, and how many of them were before.
+    pub watch: &'a (dyn Fn(Ran) + Sync),
+}
+
+impl std::fmt::Debug for Running<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Running")
+            .field("shard", &self.shard)
+            .field("threads", &self.threads)
+            .finish_non_exhaustive()
+    }
+}
+
+/// How far a run is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Ran {
+    /// Blocks of the shard.
+    pub blocks: u64,
+    /// Finished, in this run or before.
+    pub done: u64,
+    /// Of these, those that were there already.
+    pub skipped: u64,
+    /// Tasks of the finished blocks.
+    pub tasks: u64,
+    /// Of these, designs without a gait.
+    pub failed: u64,
+}
+
+/// Runs a shard: every block of it that is not there, or not whole.
+///
+/// # Errors
+/// The first part that cannot be written, as where the disk is full; what is finished by then stays.
+pub fn run(plan: &Plan, folder: &Path, running: &Running<'_>) -> Result<Ran, SweepError> {
+    let shard = running.shard;
+    let blocks = shard.blocks(plan);
+    let next = AtomicU64::new(0);
+    let stop = AtomicBool::new(false);
+    let state = Mutex::new((
+        Ran {
+            blocks,
+            ..Ran::default()
+        },
+        None,
+    ));
+    let worker = || {
+        while !stop.load(Ordering::Relaxed) {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= blocks {
+                return;
+            }
+            let outcome = finished(plan, folder, running, shard.block(index));
+            let mut state = state
+                .lock()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            match outcome {
+                Ok(one) => {
+                    let ran = &mut state.0;
+                    ran.done += 1;
+                    ran.skipped += one.skipped;
+                    ran.tasks += one.tasks;
+                    ran.failed += one.failed;
+                    (running.watch)(*ran);
+                }
+                Err(error) => {
+                    stop.store(true, Ordering::Relaxed);
+                    state.1.get_or_insert(error);
+                }
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..running.threads.clamp(1, 1024) {
+            scope.spawn(worker);
+        }
+        worker();
+    });
+    match state
+        .into_inner()
+        .unwrap_or_else(std::sync::PoisonError::into_inner)
+    {
+        (_, Some(error)) => Err(error),
+        (ran, None) => Ok(ran),
+    }
+}
+
+fn finished(
+    plan: &Plan,
+    folder: &Path,
+    running: &Running<'_>,
+    block: u64,
+) -> Result<Ran, SweepError> {
+    let there = part::read(plan, folder, block);
+    let skipped = u64::from(there.is_some());
+    let rows = if let Some(rows) = there {
+        rows
+    } else {
+        let (rows, cost) = warm::block(plan, block, running.seconds);
+        part::write(plan, folder, block, &rows)?;
+        note(folder, running.shard, block, rows.len(), &cost);
+        rows
+    };
+    Ok(Ran {
+        skipped,
+        tasks: rows.len() as u64,
+        failed: rows.iter().filter(|row| row.certified.is_none()).count() as u64,
+        ..Ran::default()
+    })
+}
+
+/// Where what designs cost is noted, beside the answers, which never tell times.
+pub(crate) const COSTS: &str = "costs";
+
+/// One line for a block: `block,tasks,cold,warm,cold_s,warm_s`. It helps to plan; that it cannot be written is no reason to fail.
+fn note(folder: &Path, shard: Shard, block: u64, tasks: usize, cost: &Cost) {
+    let Cost {
+        cold,
+        warm,
+        cold_s,
+        warm_s,
+    } = cost;
+    let line = format!("{block},{tasks},{cold},{warm},{cold_s:.6},{warm_s:.6}\n");
+    let costs = folder.join(COSTS);
+    let name = format!("{}-of-{}.csv", shard.number, shard.of);
+    let _ = fs::create_dir_all(&costs)
+        .and_then(|()| {
+            OpenOptions::new()
+                .create(true)
+                .append(true)
+                .open(costs.join(name))
+        })
+        .and_then(|mut file| file.write_all(line.as_bytes()));
+}

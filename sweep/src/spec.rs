@@ -1,0 +1,423 @@
+//! What people write: a swimmer, an objective, axes. Every mistake is told with its place.
+
+use std::ops::Range;
+use std::path::Path;
+
+use serde::Deserialize;
+use swimmer_files::{FileError, SwimmerFile, parse_angle};
+use toml::Spanned;
+
+use crate::objective::Aim;
+use crate::plan::{Axis, Content, Design, KeptBounds, Scale, Values};
+use crate::{Field, SweepError};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Raw {
+    swimmer: Spanned<String>,
+    objective: Spanned<String>,
+    gait: Option<Spanned<String>>,
+    max_rate: Option<Spanned<RawRates>>,
+    design: Option<Spanned<String>>,
+    count: Option<Spanned<u64>>,
+    seed: Option<Spanned<u64>>,
+    starts: Option<Spanned<u32>>,
+    block: Option<Spanned<u64>>,
+    anchor: Option<Spanned<u64>>,
+    #[serde(default)]
+    bounds: RawBounds,
+    axis: Option<Vec<Spanned<RawAxis>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Number {
+    Plain(f64),
+    Angle(String),
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum RawRates {
+    Both(Number),
+    Each([Number; 2]),
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, default)]
+struct RawBounds {
+    max_angle: Option<Spanned<Number>>,
+    min_angle: Option<Spanned<Number>>,
+    sector: bool,
+    no_overlap: bool,
+    clearance: Option<Spanned<Number>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawAxis {
+    name: Spanned<String>,
+    values: Option<Spanned<Vec<Number>>>,
+    from: Option<Number>,
+    to: Option<Number>,
+    count: Option<Spanned<u64>>,
+    scale: Option<Scale>,
+}
+
+/// Most tasks of a plan: their keys are whole numbers in every program that reads the table.
+const MOST_TASKS: u64 = 1 << 53;
+/// Blocks of a plan unless told otherwise, about, so that folders stay quick to list; and their least size.
+const BLOCKS: u64 = 10_000;
+const LEAST_BLOCK: u64 = 64;
+const MOST_BLOCK: u64 = 1 << 20;
+/// Every so many tasks of a block are solved from nothing, to see whether what followed is still the best.
+const ANCHOR: u64 = 16;
+
+struct Text<'a> {
+    text: &'a str,
+    path: &'a Path,
+}
+
+impl Text<'_> {
+    fn wrong(&self, span: Range<usize>, problem: impl Into<String>) -> SweepError {
+        let before = self.text.get(..span.start).unwrap_or_default();
+        let line = before.matches('\n').count() + 1;
+        let column = before
+            .rsplit('\n')
+            .next()
+            .unwrap_or_default()
+            .chars()
+            .count()
+            + 1;
+        FileError::at(self.path, line, column, problem).into()
+    }
+
+    fn angle(&self, name: &str, number: &Number, span: &Range<usize>) -> Result<f64, SweepError> {
+        let value = self.number(number, span)?;
+        if value > 0.0 && value.is_finite() {
+            Ok(value)
+        } else {
+            Err(self.wrong(span.clone(), format!("{name} = {value} must be above zero")))
+        }
+    }
+
+    fn number(&self, number: &Number, span: &Range<usize>) -> Result<f64, SweepError> {
+        match number {
+            Number::Plain(value) => Ok(*value),
+            Number::Angle(text) => {
+                parse_angle(text).map_err(|error| self.wrong(span.clone(), error.to_string()))
+            }
+        }
+    }
+}
+
+/// Reads a spec into what a plan keeps of it.
+pub(crate) fn read(text: &str, path: &Path) -> Result<Content, SweepError> {
+    let raw: Raw = toml::from_str(text).map_err(|error| {
+        let at = error.span().unwrap_or(0..0);
+        Text { text, path }.wrong(at, error.message())
+    })?;
+    let source = Text { text, path };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let base = SwimmerFile::find_from(raw.swimmer.get_ref(), folder)?;
+    let objective = aim(&source, &raw)?;
+    let (axis, design) = designs(&source, &raw, objective)?;
+    let tasks = tasks(&source, &raw, &axis, design)?;
+    let max_rate = raw.max_rate.as_ref().map(|told| {
+        let rate = |one| source.angle("max_rate", one, &told.span());
+        match told.get_ref() {
+            RawRates::Both(both) => rate(both).map(|rate| [rate; 2]),
+            RawRates::Each([one, two]) => Ok([rate(one)?, rate(two)?]),
+        }
+    });
+    let max_rate = max_rate.transpose()?;
+    if objective == Aim::Speed
+        && max_rate.is_none()
+        && !axis.iter().any(|axis| axis.name == Field::MaxRate)
+    {
+        return Err(source.wrong(
+            raw.objective.span(),
+            "without a limit of the servos there is no fastest gait: say max_rate = 1.0 (rad/s) or \"60deg\", or make it an axis",
+        ));
+    }
+    Ok(Content {
+        format: String::new(),
+        version: String::new(),
+        objective,
+        block: within(&source, "block", raw.block.as_ref(), 1..=MOST_BLOCK)?
+            .unwrap_or_else(|| tasks.div_ceil(BLOCKS).next_power_of_two().max(LEAST_BLOCK))
+            .min(MOST_BLOCK),
+        anchor: within(&source, "anchor", raw.anchor.as_ref(), 1..=1_000)?.unwrap_or(ANCHOR),
+        starts: raw.starts.as_ref().map(|starts| *starts.get_ref()),
+        max_rate,
+        swimmer: base.to_toml(),
+        bounds: bounds(&source, &raw.bounds)?,
+        design,
+        axis,
+    })
+}
+
+fn within(
+    source: &Text<'_>,
+    name: &str,
+    number: Option<&Spanned<u64>>,
+    range: std::ops::RangeInclusive<u64>,
+) -> Result<Option<u64>, SweepError> {
+    let Some(number) = number else {
+        return Ok(None);
+    };
+    if range.contains(number.get_ref()) {
+        return Ok(Some(*number.get_ref()));
+    }
+    Err(source.wrong(
+        number.span(),
+        format!(
+            "{name} = {} must be from {} to {}",
+            number.get_ref(),
+            range.start(),
+            range.end()
+        ),
+    ))
+}
+
+fn aim(source: &Text<'_>, raw: &Raw) -> Result<Aim, SweepError> {
+    let word = raw.objective.get_ref().as_str();
+    let gait = raw.gait.as_ref().map(|gait| gait.get_ref().as_str());
+    if let (Some(gait), true) = (&raw.gait, word != "efficiency") {
+        return Err(source.wrong(
+            gait.span(),
+            "small and large are the two efficiency gaits: leave `gait` out, or say objective = \"efficiency\"",
+        ));
+    }
+    match (word, gait) {
+        ("displacement", _) => Ok(Aim::Displacement),
+        ("efficiency", Some("small") | None) => Ok(Aim::EfficiencySmall),
+        ("efficiency", Some("large")) => Ok(Aim::EfficiencyLarge),
+        ("efficiency", Some(other)) => Err(source.wrong(
+            raw.gait.as_ref().map_or(0..0, Spanned::span),
+            format!("gait = \"{other}\" is none of small and large"),
+        )),
+        ("speed", _) => Ok(Aim::Speed),
+        ("turning", _) => Ok(Aim::Turning),
+        ("sideways", _) => Ok(Aim::Sideways),
+        ("stub", _) => Ok(Aim::Stub),
+        (other, _) => Err(source.wrong(
+            raw.objective.span(),
+            format!(
+                "objective = \"{other}\" is none of displacement, efficiency, speed, turning, sideways (and stub, which solves \
+                 nothing, to try out a scheduler)"
+            ),
+        )),
+    }
+}
+
+fn bounds(source: &Text<'_>, raw: &RawBounds) -> Result<KeptBounds, SweepError> {
+    let angle = |name: &str, number: &Option<Spanned<Number>>| {
+        number
+            .as_ref()
+            .map(|number| source.angle(name, number.get_ref(), &number.span()))
+            .transpose()
+    };
+    Ok(KeptBounds {
+        max_angle: angle("max_angle", &raw.max_angle)?,
+        min_angle: angle("min_angle", &raw.min_angle)?,
+        sector: raw.sector,
+        no_overlap: raw.no_overlap,
+        clearance: angle("clearance", &raw.clearance)?.unwrap_or(0.0),
+    })
+}
+
+/// The axes, and which points of them are designs.
+fn designs(
+    source: &Text<'_>,
+    raw: &Raw,
+    objective: Aim,
+) -> Result<(Vec<Axis>, Design), SweepError> {
+    let kind = raw.design.as_ref().map_or("grid", |kind| kind.get_ref());
+    let span = raw.design.as_ref().map_or(0..0, Spanned::span);
+    let seed = raw.seed.as_ref().map_or(1, |seed| *seed.get_ref());
+    let count = || {
+        raw.count
+            .as_ref()
+            .map(|count| *count.get_ref())
+            .ok_or_else(|| {
+                source.wrong(
+                    span.clone(),
+                    format!("a {kind} design needs count = how many points"),
+                )
+            })
+    };
+    let design = match kind {
+        "grid" => {
+            if let Some(count) = &raw.count {
+                return Err(source.wrong(
+                    count.span(),
+                    "the points of a grid are counted axis by axis: put count into each [[axis]], or say design = \"random\"",
+                ));
+            }
+            Design::Grid
+        }
+        "random" => Design::Random {
+            count: count()?,
+            seed,
+        },
+        "sobol" => Design::Sobol {
+            count: count()?,
+            seed: u32::try_from(seed).map_err(|_| {
+                source.wrong(
+                    raw.seed.as_ref().map_or(0..0, Spanned::span),
+                    "the seed of a sobol design is at most 4294967295",
+                )
+            })?,
+        },
+        other => {
+            return Err(source.wrong(
+                span,
+                format!("design = \"{other}\" is none of grid, random and sobol"),
+            ));
+        }
+    };
+    let mut axes: Vec<Axis> = Vec::new();
+    for told in raw.axis.iter().flatten() {
+        let axis = axis(source, told, design == Design::Grid)?;
+        let name = told.get_ref().name.span();
+        if let Some(other) = axes.iter().find(|other| other.name.clashes(axis.name)) {
+            return Err(source.wrong(
+                name,
+                format!(
+                    "{} and {} say the same thing twice: keep one",
+                    other.name, axis.name
+                ),
+            ));
+        }
+        if objective != Aim::Displacement && axis.name == Field::MinAngle {
+            return Err(source.wrong(
+                name,
+                "bounds.min_angle is a bound of displacement gaits alone",
+            ));
+        }
+        axes.push(axis);
+    }
+    if axes.is_empty() {
+        return Err(source.wrong(
+            0..0,
+            "no [[axis]]: say what changes, as name = \"drag.chi\" with values, or with from, to and count",
+        ));
+    }
+    Ok((axes, design))
+}
+
+fn tasks(source: &Text<'_>, raw: &Raw, axes: &[Axis], design: Design) -> Result<u64, SweepError> {
+    let tasks = match design {
+        Design::Grid => axes
+            .iter()
+            .try_fold(1_u64, |product, axis| product.checked_mul(axis.count())),
+        Design::Random { count, .. } | Design::Sobol { count, .. } => Some(count),
+    };
+    let span = raw.count.as_ref().map_or(0..0, Spanned::span);
+    if let (Design::Sobol { .. }, Some(count)) = (design, tasks)
+        && count > Design::MOST_SOBOL
+    {
+        return Err(source.wrong(
+            span,
+            format!(
+                "a sobol design has at most {} points: take design = \"random\" for more",
+                Design::MOST_SOBOL
+            ),
+        ));
+    }
+    tasks
+        .filter(|tasks| (1..=MOST_TASKS).contains(tasks))
+        .ok_or_else(|| source.wrong(span, "a plan has from 1 to 2^53 tasks"))
+}
+
+fn axis(source: &Text<'_>, told: &Spanned<RawAxis>, grid: bool) -> Result<Axis, SweepError> {
+    let raw = told.get_ref();
+    let name = field(source, &raw.name)?;
+    let span = told.span();
+    let wrong = |problem: &str| Err(source.wrong(span.clone(), format!("axis {name}: {problem}")));
+    let number = |number: &Number| source.number(number, &span);
+    let values = match (&raw.values, &raw.from, &raw.to) {
+        (Some(values), None, None) => {
+            if !grid {
+                return wrong(
+                    "a random or sobol design draws between from and to, not from values",
+                );
+            }
+            if raw.count.is_some() || raw.scale.is_some() {
+                return wrong("count and scale go with from and to, not with values");
+            }
+            let values: Result<Vec<f64>, _> = values.get_ref().iter().map(number).collect();
+            Values::List { values: values? }
+        }
+        (None, Some(from), Some(to)) => Values::Range {
+            from: number(from)?,
+            to: number(to)?,
+            count: match (&raw.count, grid) {
+                (Some(count), true) => *count.get_ref(),
+                (None, true) => return wrong("a grid needs count = how many values"),
+                (Some(_), false) => return wrong("count belongs to the whole design here"),
+                (None, false) => 0,
+            },
+            scale: raw.scale.unwrap_or(Scale::Lin),
+        },
+        _ => return wrong("say values = [...], or from and to"),
+    };
+    let axis = Axis { name, values };
+    let ends = match &axis.values {
+        Values::List { values } => values.clone(),
+        Values::Range { from, to, .. } => vec![*from, *to],
+    };
+    if ends.is_empty() || (grid && axis.count() == 0) {
+        return wrong("it has no values");
+    }
+    let bad = |value: &&f64| {
+        !value.is_finite() || **value < 0.0 || (**value == 0.0 && !name.may_be_zero())
+    };
+    if let Some(value) = ends.iter().find(bad) {
+        return wrong(&format!("{value} is no value of it"));
+    }
+    if let Values::Range {
+        scale: Scale::Log,
+        from,
+        to,
+        ..
+    } = axis.values
+        && (from <= 0.0 || to <= 0.0)
+    {
+        return wrong("on a log scale from and to must be above zero");
+    }
+    Ok(axis)
+}
+
+fn field(source: &Text<'_>, name: &Spanned<String>) -> Result<Field, SweepError> {
+    let told = name.get_ref().as_str();
+    if let Some(field) = Field::ALL.into_iter().find(|field| field.name() == told) {
+        return Ok(field);
+    }
+    if told.starts_with("fluid.") || told.starts_with("servo.") || told == "name" {
+        return Err(source.wrong(
+            name.span(),
+            format!(
+                "{told} does not change which gait is best, so all designs would be alike; for the servos' limits take \
+                 bounds.max_angle and max_rate"
+            ),
+        ));
+    }
+    let nearest = Field::ALL
+        .into_iter()
+        .map(|field| (strsim::jaro_winkler(field.name(), told), field))
+        .max_by(|(a, _), (b, _)| a.total_cmp(b))
+        .filter(|(near, _)| *near > 0.8)
+        .map_or_else(String::new, |(_, field)| {
+            format!(" (did you mean {field}?)")
+        });
+    let all: Vec<_> = Field::ALL.into_iter().map(Field::name).collect();
+    Err(source.wrong(
+        name.span(),
+        format!(
+            "there is no field {told}{nearest}; an axis is one of {}",
+            all.join(", ")
+        ),
+    ))
+}

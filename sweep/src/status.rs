@@ -1,0 +1,107 @@
+//! How far all shards are, and what a design cost.
+
+use std::fs;
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::run::COSTS;
+use crate::{Plan, SweepError, part};
+
+/// A sweep's progress.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Status {
+    /// The plan's hash.
+    pub plan: String,
+    /// Designs of the plan.
+    pub tasks: u64,
+    /// Designs of finished blocks.
+    pub done: u64,
+    /// Of these, those without a gait.
+    pub failed: u64,
+    /// Of these, gaits whose certificate does not pass.
+    pub uncertified: u64,
+    /// Of these, gaits that were followed from their neighbour's.
+    pub warm: u64,
+    /// Blocks of the plan.
+    pub blocks: u64,
+    /// Finished and whole.
+    pub blocks_done: u64,
+    /// There, but not whole, or of another plan: run again, they are made anew.
+    pub blocks_broken: u64,
+    /// Bytes of all parts.
+    pub bytes: u64,
+    /// Core seconds of a search, the mean; none before one was timed.
+    pub cold_s: Option<f64>,
+    /// Core seconds of a step from a neighbour, the mean.
+    pub warm_s: Option<f64>,
+    /// Core seconds of a design, all told.
+    pub design_s: Option<f64>,
+    /// Core seconds that are left, by that.
+    pub left_s: Option<f64>,
+}
+
+/// Looks at every part and every note of costs.
+///
+/// # Errors
+/// None as yet; a part that cannot be read counts as missing.
+pub fn status(plan: &Plan, folder: &Path) -> Result<Status, SweepError> {
+    let mut status = Status {
+        plan: plan.hash(),
+        tasks: plan.tasks(),
+        blocks: plan.blocks(),
+        ..Status::default()
+    };
+    for block in 0..plan.blocks() {
+        let Ok(there) = fs::metadata(part::path(folder, block)) else {
+            continue;
+        };
+        status.bytes += there.len();
+        let Some(rows) = part::read(plan, folder, block) else {
+            status.blocks_broken += 1;
+            continue;
+        };
+        status.blocks_done += 1;
+        for row in rows {
+            status.done += 1;
+            status.failed += u64::from(row.certified.is_none());
+            status.uncertified += u64::from(row.certified == Some(false));
+            status.warm += u64::from(row.warm);
+        }
+    }
+    let [tasks, cold, warm, cold_s, warm_s] = costs(folder);
+    let mean = |sum: f64, count: f64| (count > 0.0).then(|| sum / count);
+    status.cold_s = mean(cold_s, cold);
+    status.warm_s = mean(warm_s, warm);
+    status.design_s = mean(cold_s + warm_s, tasks);
+    status.left_s = status
+        .design_s
+        .map(|one| one * (status.tasks - status.done) as f64);
+    Ok(status)
+}
+
+/// Tasks, searches, steps, and the seconds of both; a line cut short by a kill is passed over.
+fn costs(folder: &Path) -> [f64; 5] {
+    let mut sums = [0.0; 5];
+    let files = fs::read_dir(folder.join(COSTS)).into_iter().flatten();
+    for text in files
+        .flatten()
+        .filter_map(|file| fs::read_to_string(file.path()).ok())
+    {
+        for line in text
+            .split_inclusive('\n')
+            .filter_map(|line| line.strip_suffix('\n'))
+        {
+            let numbers: Vec<f64> = line
+                .split(',')
+                .filter_map(|word| word.parse().ok())
+                .collect();
+            if let [_, told @ ..] = numbers.as_slice()
+                && told.len() == sums.len()
+            {
+                sums.iter_mut().zip(told).for_each(|(sum, one)| *sum += one);
+            }
+        }
+    }
+    sums
+}

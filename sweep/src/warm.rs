@@ -1,0 +1,213 @@
+//! A block solved: in which order, and when a neighbour's gait is trusted.
+//!
+//! A block's keys are visited row by row of the grid's last axis, every second row backwards, so that each task is a step away
+//! from the one before. Every `anchor` tasks one is solved from nothing, and so is the last of each run of neighbours. Between two
+//! such *anchors* each task starts from the gait before it. What followed counts only if it arrives at the second anchor with that
+//! anchor's own gait: as good to 10⁻⁷, of the same arcs. Where it arrives with another, the middle is solved from nothing and both
+//! halves are asked the same, down to single tasks. So a gait that loses its place to another kind of gait is noticed unless that
+//! one wins between two anchors only; and every gait, followed or searched, carries its own certificate.
+
+use crate::Plan;
+use crate::objective::{Solved, Solver};
+use crate::row::Row;
+
+/// Counts of a block, and its time.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Cost {
+    /// Designs solved from nothing, and from their neighbour; what was thrown away counts, too.
+    pub(crate) cold: u64,
+    pub(crate) warm: u64,
+    /// \[s\]
+    pub(crate) cold_s: f64,
+    pub(crate) warm_s: f64,
+}
+
+/// Rows of a block, by key.
+pub(crate) fn block(plan: &Plan, block: u64, seconds: &dyn Fn() -> f64) -> (Vec<Row>, Cost) {
+    let content = plan.content();
+    let mut visit = Visit {
+        plan,
+        solver: Solver {
+            aim: content.objective,
+            starts: content.starts,
+        },
+        seconds,
+        rows: Vec::new(),
+        cost: Cost::default(),
+    };
+    let stride = usize::try_from(content.anchor).unwrap_or(1).max(1);
+    for run in runs(plan, block) {
+        if stride == 1 || !content.objective.follows() {
+            for key in run {
+                let solved = visit.cold(key);
+                visit.keep(key, solved);
+            }
+        } else {
+            visit.run(&run, stride);
+        }
+    }
+    visit.rows.sort_by_key(|row| row.key);
+    (visit.rows, visit.cost)
+}
+
+/// The keys of a block as runs in which each is the neighbour of the one before.
+fn runs(plan: &Plan, block: u64) -> Vec<Vec<u64>> {
+    let keys = plan.keys(block);
+    let row = match plan.design() {
+        crate::Design::Grid => plan.axes().last().map_or(1, crate::Axis::count),
+        _ => return vec![keys.collect()],
+    };
+    let mut runs: Vec<Vec<u64>> = Vec::new();
+    let mut from = keys.start;
+    let mut backwards = false;
+    while from < keys.end {
+        let to = (from - from % row).saturating_add(row).min(keys.end);
+        let mut along: Vec<u64> = (from..to).collect();
+        if backwards {
+            along.reverse();
+        }
+        match (runs.last_mut(), along.first()) {
+            (Some(run), Some(&first))
+                if run.last().is_some_and(|&last| beside(plan, last, first)) =>
+            {
+                run.extend(along);
+            }
+            _ => runs.push(along),
+        }
+        backwards = !backwards;
+        from = to;
+    }
+    runs
+}
+
+/// Whether two tasks of a grid differ by one step of one axis.
+fn beside(plan: &Plan, a: u64, b: u64) -> bool {
+    let (a, b) = (plan.indices(a), plan.indices(b));
+    a.iter().zip(&b).map(|(a, b)| a.abs_diff(*b)).sum::<u64>() == 1
+}
+
+type Answer = Result<Solved, String>;
+
+struct Visit<'a> {
+    plan: &'a Plan,
+    solver: Solver,
+    seconds: &'a dyn Fn() -> f64,
+    rows: Vec<Row>,
+    cost: Cost,
+}
+
+impl Visit<'_> {
+    fn run(&mut self, keys: &[u64], stride: usize) {
+        let Some((&first, _)) = keys.split_first() else {
+            return;
+        };
+        let mut here = self.cold(first);
+        let mut at = 0;
+        while at + 1 < keys.len() {
+            let next = (at + stride).min(keys.len() - 1);
+            let there = self.cold(keys[next]);
+            self.keep(keys[at], here.clone());
+            self.between(&keys[at..=next], &here, &there);
+            (at, here) = (next, there);
+        }
+        if let Some(&last) = keys.last() {
+            self.keep(last, here);
+        }
+    }
+
+    /// All between the first and the last of these keys, whose answers are known.
+    fn between(&mut self, keys: &[u64], first: &Answer, last: &Answer) {
+        let Some(middle) = (keys.len() > 2).then_some(keys.len() / 2) else {
+            return;
+        };
+        if let (Ok(near), Ok(goal)) = (first, last)
+            && let Some(followed) = self.followed(keys, near, goal)
+        {
+            for solved in followed {
+                self.rows.push(solved.row);
+            }
+            return;
+        }
+        let found = self.cold(keys[middle]);
+        self.between(&keys[..=middle], first, &found);
+        self.keep(keys[middle], found.clone());
+        self.between(&keys[middle..], &found, last);
+    }
+
+    /// The gaits between, each from the one before; none where they do not lead to the last one's.
+    fn followed(&mut self, keys: &[u64], near: &Solved, goal: &Solved) -> Option<Vec<Solved>> {
+        let mut found: Vec<Solved> = Vec::with_capacity(keys.len());
+        for &key in &keys[1..] {
+            let solved = self.warm(key, found.last().unwrap_or(near))?;
+            found.push(solved);
+        }
+        found.pop()?.same(goal).then_some(found)
+    }
+
+    fn cold(&mut self, key: u64) -> Answer {
+        let began = (self.seconds)();
+        let answer = self.solver.cold(&self.plan.design_of(key), key);
+        self.cost.cold += 1;
+        self.cost.cold_s += (self.seconds)() - began;
+        answer
+    }
+
+    fn warm(&mut self, key: u64, near: &Solved) -> Option<Solved> {
+        let began = (self.seconds)();
+        let found = self.solver.warm(&self.plan.design_of(key), key, near);
+        self.cost.warm += 1;
+        self.cost.warm_s += (self.seconds)() - began;
+        found
+    }
+
+    fn keep(&mut self, key: u64, answer: Answer) {
+        self.rows.push(match answer {
+            Ok(solved) => solved.row,
+            Err(reason) => Row::without(key, reason),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(text: &str) -> Plan {
+        Plan::of_spec(text, "spec.toml".as_ref()).unwrap()
+    }
+
+    #[test]
+    fn rows_are_walked_to_and_fro_and_every_key_once() {
+        let plan = plan(
+            "swimmer = \"purcell\"\nobjective = \"stub\"\nblock = 10\n\
+             [[axis]]\nname = \"drag.chi\"\nfrom = 1\nto = 2\ncount = 3\n\
+             [[axis]]\nname = \"sphere.radius\"\nfrom = 0\nto = 1\ncount = 4\n",
+        );
+        assert_eq!(plan.blocks(), 2);
+        assert_eq!(runs(&plan, 0), [vec![0, 1, 2, 3, 7, 6, 5, 4, 8, 9]]);
+        assert_eq!(runs(&plan, 1), [vec![10, 11]]);
+    }
+
+    /// A sphere that grows: the gait changes its kind on the way, and each answer is the one found from nothing.
+    #[test]
+    fn what_is_followed_is_what_is_found_from_nothing() {
+        let text = "swimmer = \"purcell\"\nobjective = \"displacement\"\n\
+             [bounds]\nmax_angle = 2.8\n\
+             [[axis]]\nname = \"sphere.radius\"\nfrom = 0.0\nto = 1.0\ncount = 33\n";
+        let warm = plan(text);
+        let cold = plan(&text.replace("[bounds]", "anchor = 1\n[bounds]"));
+        let clock = || 0.0;
+        let (rows, cost) = block(&warm, 0, &clock);
+        let (all, _) = block(&cold, 0, &clock);
+        assert!(cost.warm > cost.cold, "{cost:?}");
+        assert!(rows.iter().any(|row| row.warm));
+        for (followed, found) in rows.iter().zip(&all) {
+            assert_eq!(followed.key, found.key);
+            assert_eq!(followed.arcs, found.arcs);
+            match (followed.objective, found.objective) {
+                (Some(a), Some(b)) => assert!((a / b - 1.0).abs() < 1e-7, "{a} {b}"),
+                (a, b) => assert_eq!(a, b),
+            }
+        }
+    }
+}

@@ -1,0 +1,295 @@
+//! A sweep from its spec to its table: the same bytes however it is split, and nothing lost or half written.
+
+use std::fs;
+use std::path::Path;
+
+use parquet::file::reader::{FileReader as _, SerializedFileReader};
+use parquet::record::RowAccessor as _;
+use sweep::{Plan, Ran, Running, Shard, Slice, SweepError, doubts, map, merge, run, status};
+
+const GRID: &str = r#"
+swimmer = "purcell"
+objective = "displacement"
+max_rate = 1.0
+block = 8
+anchor = 4
+[bounds]
+max_angle = 2.4
+[[axis]]
+name = "drag.chi"
+values = [1.8, 2.0, 2.2]
+[[axis]]
+name = "sphere.radius"
+from = 0.0
+to = 0.3
+count = 9
+"#;
+
+fn plan(text: &str) -> Plan {
+    Plan::of_spec(text, "spec.toml".as_ref()).unwrap()
+}
+
+fn ran(plan: &Plan, folder: &Path, shard: Shard, threads: usize) -> Ran {
+    run(
+        plan,
+        folder,
+        &Running {
+            shard,
+            threads,
+            seconds: &|| 0.0,
+            watch: &|_| (),
+        },
+    )
+    .unwrap()
+}
+
+/// The table of a sweep run in so many shards, each on so many threads.
+fn table(text: &str, shards: u64, threads: usize) -> Vec<u8> {
+    let plan = plan(text);
+    let folder = tempfile::tempdir().unwrap();
+    for number in 1..=shards {
+        ran(
+            &plan,
+            folder.path(),
+            Shard::new(number, shards).unwrap(),
+            threads,
+        );
+    }
+    let table = folder.path().join("all.parquet");
+    merge(&plan, folder.path(), &table).unwrap();
+    fs::read(table).unwrap()
+}
+
+#[test]
+fn the_table_does_not_depend_on_shards_and_threads() {
+    let whole = table(GRID, 1, 1);
+    for (shards, threads) in [(1, 2), (2, 1), (7, 2)] {
+        assert!(
+            table(GRID, shards, threads) == whole,
+            "{shards} shards, {threads} threads"
+        );
+    }
+}
+
+#[test]
+fn the_table_is_sorted_and_whole() {
+    let plan = plan(GRID);
+    let folder = tempfile::tempdir().unwrap();
+    ran(&plan, folder.path(), Shard::WHOLE, 2);
+    let path = folder.path().join("all.parquet");
+    let merged = merge(&plan, folder.path(), &path).unwrap();
+    assert_eq!((merged.tasks, merged.failed, merged.certified), (27, 0, 27));
+    let reader = SerializedFileReader::new(fs::File::open(path).unwrap()).unwrap();
+    for (key, row) in reader.get_row_iter(None).unwrap().enumerate() {
+        let row = row.unwrap();
+        let point = plan.point(key as u64);
+        assert_eq!(row.get_long(0).unwrap(), i64::try_from(key).unwrap());
+        for (column, value) in point.iter().enumerate() {
+            assert_eq!(
+                row.get_double(column + 1).unwrap().to_bits(),
+                value.to_bits()
+            );
+        }
+        assert!(row.get_double(3).unwrap() > 0.0);
+        let names: Vec<_> = row
+            .get_column_iter()
+            .map(|(name, _)| name.clone())
+            .collect();
+        assert_eq!(
+            names[..4],
+            ["key", "drag.chi", "sphere.radius", "objective"]
+        );
+    }
+    let metadata = reader.metadata().file_metadata();
+    let told = metadata.key_value_metadata().unwrap();
+    assert!(
+        told.iter()
+            .any(|pair| pair.value.as_deref() == Some(plan.hash().as_str()))
+    );
+}
+
+#[test]
+fn what_is_finished_is_passed_over_and_what_is_broken_is_made_again() {
+    let plan = plan(GRID);
+    let folder = tempfile::tempdir().unwrap();
+    ran(&plan, folder.path(), Shard::new(1, 2).unwrap(), 1);
+    let unfinished = merge(&plan, folder.path(), &folder.path().join("x")).unwrap_err();
+    assert!(
+        matches!(
+            unfinished,
+            SweepError::Unfinished {
+                missing: 2,
+                first: 1,
+                ..
+            }
+        ),
+        "{unfinished}"
+    );
+    let rest = ran(&plan, folder.path(), Shard::WHOLE, 1);
+    assert_eq!((rest.done, rest.skipped), (4, 2));
+    let whole = |name: &str| {
+        let path = folder.path().join(name);
+        merge(&plan, folder.path(), &path).unwrap();
+        fs::read(path).unwrap()
+    };
+    let before = whole("before");
+
+    let part = folder.path().join("parts/000000/000000002.part");
+    let mut bytes = fs::read(&part).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(&part, bytes).unwrap();
+    assert_eq!(status(&plan, folder.path()).unwrap().blocks_broken, 1);
+    merge(&plan, folder.path(), &folder.path().join("x")).unwrap_err();
+    assert!(!folder.path().join("x").exists());
+    assert_eq!(ran(&plan, folder.path(), Shard::WHOLE, 1).skipped, 3);
+    assert!(whole("after") == before);
+}
+
+#[test]
+fn a_plan_never_changes() {
+    let folder = tempfile::tempdir().unwrap();
+    let ours = plan(GRID);
+    let path = ours.save(folder.path()).unwrap();
+    ours.save(folder.path()).unwrap();
+    assert_eq!(Plan::load(folder.path()).unwrap(), ours);
+    let other = plan(&GRID.replace("2.4", "2.3"));
+    assert_ne!(other.hash(), ours.hash());
+    let refused = other.save(folder.path()).unwrap_err();
+    assert!(matches!(refused, SweepError::OtherPlan { .. }), "{refused}");
+    let elsewhere = tempfile::tempdir().unwrap();
+    fs::write(elsewhere.path().join("mine"), "mine").unwrap();
+    let taken = ours.save(elsewhere.path()).unwrap_err();
+    assert!(matches!(taken, SweepError::Taken { .. }), "{taken}");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("2.4", "2.5")).unwrap();
+    let changed = Plan::load(folder.path()).unwrap_err();
+    assert!(matches!(changed, SweepError::Changed { .. }), "{changed}");
+}
+
+#[test]
+fn a_hundred_million_tasks_are_a_rule() {
+    let text = "swimmer = \"purcell\"\nobjective = \"stub\"\ndesign = \"random\"\ncount = 100000000\n\
+        [[axis]]\nname = \"drag.chi\"\nfrom = 1\nto = 4\n\
+        [[axis]]\nname = \"sphere.radius\"\nfrom = 0\nto = 1\n";
+    let random = plan(text);
+    assert_eq!(
+        (random.tasks(), random.block_size(), random.blocks()),
+        (100_000_000, 16_384, 6_104)
+    );
+    // Any point at once, the same from wherever it is asked.
+    let last = random.point(99_999_999);
+    assert_eq!(last, plan(text).point(99_999_999));
+    assert_ne!(last, random.point(99_999_998));
+    let grid = plan(
+        "swimmer = \"purcell\"\nobjective = \"stub\"\n\
+        [[axis]]\nname = \"drag.chi\"\nfrom = 1\nto = 4\ncount = 10000\n\
+        [[axis]]\nname = \"sphere.radius\"\nfrom = 0.001\nto = 1\nscale = \"log\"\ncount = 10000\n",
+    );
+    assert_eq!(grid.tasks(), 100_000_000);
+    assert_eq!(grid.point(99_999_999), [4.0, 1.0]);
+    assert_eq!(grid.point(0), [1.0, 0.001]);
+}
+
+#[test]
+fn sobol_points_fill_every_cell() {
+    let plan = plan(
+        "swimmer = \"purcell\"\nobjective = \"stub\"\ndesign = \"sobol\"\ncount = 256\nseed = 3\n\
+        [[axis]]\nname = \"drag.chi\"\nfrom = 1\nto = 2\n\
+        [[axis]]\nname = \"sphere.radius\"\nfrom = 0\nto = 1\n",
+    );
+    // A (0, 8, 2) net: one point in each of 16 × 16 squares.
+    let mut seen = std::collections::BTreeSet::new();
+    for key in 0..256 {
+        let point = plan.point(key);
+        seen.insert([point[0] - 1.0, point[1]].map(|share| (share * 16.0).floor().to_bits()));
+    }
+    assert_eq!(seen.len(), 256);
+}
+
+#[test]
+fn mistakes_are_told_with_their_place() {
+    for (wrong, place, said) in [
+        ("objective = \"fast\"", ":3:13:", "none of displacement"),
+        ("objective = \"speed\"", ":3:13:", "max_rate"),
+        ("gait = \"small\"", ":3:8:", "objective = \"efficiency\""),
+        ("colour = 1", ":3:1:", "colour"),
+        ("design = \"random\"", ":3:10:", "count"),
+        ("block = 0", ":3:9:", "block = 0 must be from 1"),
+    ] {
+        let head = if wrong.starts_with("objective") {
+            format!("swimmer = \"purcell\"\n\n{wrong}")
+        } else {
+            format!("swimmer = \"purcell\"\nobjective = \"displacement\"\n{wrong}")
+        };
+        let text = format!("{head}\n[[axis]]\nname = \"drag.chi\"\nvalues = [2]\n");
+        let told = Plan::of_spec(&text, "mine.toml".as_ref())
+            .unwrap_err()
+            .to_string();
+        assert!(
+            told.contains(&format!("mine.toml{place}")) && told.contains(said),
+            "{told}"
+        );
+    }
+    for (axis, said) in [
+        (
+            "name = \"drag.chy\"\nvalues = [1]",
+            "did you mean drag.chi?",
+        ),
+        (
+            "name = \"fluid.density\"\nvalues = [1]",
+            "does not change which gait is best",
+        ),
+        ("name = \"drag.chi\"\nvalues = [0]", "0 is no value of it"),
+        (
+            "name = \"drag.chi\"\nfrom = 1\nto = 2",
+            "a grid needs count",
+        ),
+        (
+            "name = \"drag.chi\"\nfrom = 1",
+            "say values = [...], or from and to",
+        ),
+        ("name = \"drag.chi\"\nvalues = []", "no values"),
+        (
+            "name = \"sphere.radius\"\nfrom = 0\nto = 1\ncount = 3\nscale = \"log\"",
+            "above zero",
+        ),
+        (
+            "name = \"links.side\"\nvalues = [1]\n[[axis]]\nname = \"links.ratio\"\nvalues = [1]",
+            "say the same thing twice",
+        ),
+    ] {
+        let text =
+            format!("swimmer = \"purcell\"\nobjective = \"displacement\"\n[[axis]]\n{axis}\n");
+        let error = Plan::of_spec(&text, "mine.toml".as_ref()).unwrap_err();
+        assert!(
+            error.is_bad_input() && error.to_string().contains(said),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn a_map_has_the_grids_numbers_and_its_folds() {
+    let plan = plan(&GRID.replace("max_angle = 2.4", "max_angle = 2.8"));
+    let folder = tempfile::tempdir().unwrap();
+    ran(&plan, folder.path(), Shard::WHOLE, 2);
+    let slice = Slice::first(&plan).unwrap();
+    let found = map(&plan, folder.path(), &slice).unwrap();
+    assert_eq!(found.axes.each_ref().map(|axis| axis.values.len()), [3, 9]);
+    assert!(
+        found
+            .quantities
+            .iter()
+            .all(|one| one.values.len() == 9 && one.values[0].len() == 3)
+    );
+    let kinds: std::collections::BTreeSet<_> = found.structure.iter().flatten().collect();
+    assert_eq!(kinds.len() > 1, !found.folds.is_empty());
+    assert!(!found.pareto.is_empty());
+    assert!(
+        found.pareto.windows(2).all(|pair| {
+            pair[0].speed < pair[1].speed && pair[0].efficiency > pair[1].efficiency
+        })
+    );
+    doubts(&plan, folder.path()).unwrap();
+}
