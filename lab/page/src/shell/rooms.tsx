@@ -1,6 +1,7 @@
 // The rooms of the page: one line each. A room is mounted when it is first opened and stays.
 
 import type { ComponentType } from "preact";
+import { Drive } from "../drive/drive.tsx";
 import { Explore } from "../explore/explore.tsx";
 import { Maps } from "../maps/maps.tsx";
 
@@ -17,5 +18,6 @@ export interface Room {
 
 export const ROOMS: readonly Room[] = [
   { id: "explore", name: "Explore", about: "Drag a gait over the height map and watch it swim.", key: "1", Panel: Explore },
+  { id: "drive", name: "Drive", about: "Connect the robot, upload the gait, play and stop.", key: "2", Panel: Drive },
   { id: "maps", name: "Maps", about: "Read the map of a sweep over many designs.", key: "4", Panel: Maps },
 ];

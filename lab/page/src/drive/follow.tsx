@@ -1,0 +1,67 @@
+// Where the robot is: its joints on the height map over the gait, and its predicted path from above.
+
+import { useEffect, useRef } from "preact/hooks";
+import { activeGait, shown } from "../explore/document.ts";
+import { painted, fullScale } from "../explore/colours.ts";
+import { path as line } from "../explore/map.tsx";
+import { curveOf, curves, map } from "../explore/model.ts";
+import { dark } from "../shell/theme.tsx";
+import { path, stands, telemetry } from "./robot.ts";
+
+export function Follow() {
+  const d = shown.value.halfWidth;
+  const told = telemetry.value;
+  const [phi1, phi2] = told ? [told.setpoint[0] * 1e-4, told.setpoint[1] * 1e-4] : [0, 0];
+  return (
+    <>
+      <figure class="map" aria-label="Joints of the robot on the height map">
+        <div class="plane">
+          <Heights />
+          <svg viewBox={`${-d} ${-d} ${2 * d} ${2 * d}`} role="img" aria-label="The joints’ set-point over the gait">
+            {curves.value?.zero_curves.map(({ points, closed }, k) => <path key={k} class="zero" d={line(points, closed)} />)}
+            <path class="gait first" d={line(curveOf(activeGait(shown.value)), true)} />
+            {told && <circle id="setpoint" class="joints" cx={phi1} cy={-phi2} r={d * 0.025} />}
+          </svg>
+        </div>
+      </figure>
+      <Way />
+    </>
+  );
+}
+
+function Heights() {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const [seen, isDark] = [map.value, dark.value];
+  useEffect(() => {
+    const context = canvas.current?.getContext("2d");
+    if (!context || !seen) return;
+    context.canvas.width = context.canvas.height = seen.count;
+    context.putImageData(painted(seen.heights, seen.count, fullScale(seen.heights), isDark), 0, 0);
+  }, [seen, isDark]);
+  return <canvas ref={canvas} aria-hidden="true" />;
+}
+
+/** The predicted path, and for the robot in the page where it truly is in its tank. */
+function Way() {
+  const points = path.value;
+  const truth = stands.value;
+  const xs = points.map(([x]) => x);
+  const ys = points.map(([, y]) => y);
+  const [x0, x1] = [Math.min(0, ...xs), Math.max(0.05, ...xs)];
+  const [y0, y1] = [Math.min(-0.02, ...ys), Math.max(0.02, ...ys)];
+  const room = 0.08 * (x1 - x0);
+  const box = `${x0 - room} ${-y1 - room} ${x1 - x0 + 2 * room} ${y1 - y0 + 2 * room}`;
+  const last = points.at(-1);
+  return (
+    <figure class="card way" aria-label="Predicted path">
+      <figcaption class="soft">
+        Path by the robot’s own model{last ? `: ${(last[0] * 1000).toFixed(1)} mm along, ${(last[1] * 1000).toFixed(1)} mm across` : ""}
+        {truth ? `; in the virtual tank at ${(truth.pose[0] * 1000).toFixed(0)}, ${(truth.pose[1] * 1000).toFixed(0)} mm` : ""}
+      </figcaption>
+      <svg viewBox={box} preserveAspectRatio="xMidYMid meet" role="img" aria-label="Path from above">
+        <path class="trail" d={line(points, false)} />
+        {last && <circle class="joints" cx={last[0]} cy={-last[1]} r={0.012 * (x1 - x0 + y1 - y0)} />}
+      </svg>
+    </figure>
+  );
+}

@@ -1,0 +1,212 @@
+// The robot as the page knows it: signals that follow the worker's news, and what may be asked.
+
+import { computed, effect, signal } from "@preact/signals";
+import source from "worker:./worker.ts";
+import { download } from "../files/download.ts";
+import { startWorker } from "../wasm/embedded.ts";
+import { fragment, setFragment } from "../shell/fragment.ts";
+import type { Foretold, Health, Hello, LinkState, News, Order, Request, Stands, TableInfo, Telemetry, WireAsked } from "./words.ts";
+
+export const link = signal<{ state: LinkState; name: string; reason: string }>({ state: "closed", name: "", reason: "" });
+export const wheel = signal<{ yours: boolean; free: boolean } | null>(null);
+export const telemetry = signal<Telemetry | null>(null);
+/** When it came, ms of the page's clock. */
+export const heardAt = signal(0);
+export const hello = signal<Hello | null>(null);
+export const configuration = signal<object | null>(null);
+export const table = signal<TableInfo | null>(null);
+export const health = signal<Health | null>(null);
+export const stands = signal<Stands | null>(null);
+export const progress = signal<{ done: number; total: number } | null>(null);
+export const foretold = signal<{ told: Foretold | null; reason: string } | null>(null);
+/** What was done last, or why not. */
+export const said = signal<{ text: string; failed: boolean }>({ text: "", failed: false });
+/** What is under way. */
+export const busy = signal("");
+export const wireKind = signal<WireAsked["kind"] | null>(null);
+
+/** A sample of the plots. */
+export interface Sample {
+  /** s since the robot was switched on. */
+  t: number;
+  phi: [number, number];
+  battery: number | null;
+  trip: number | null;
+}
+/** About two minutes. */
+const KEPT = 3000;
+export const history = signal<readonly Sample[]>([]);
+/** The robot's own prediction of its path in this play. */
+export const path = signal<readonly [number, number][]>([]);
+
+/** Telemetry older than this is grey: the robot sends it 25 times a second, ms. */
+const FRESH = 500;
+const tick = signal(performance.now());
+setInterval(() => (tick.value = performance.now()), 100);
+export const stale = computed(() => telemetry.value === null || tick.value - heardAt.value > FRESH);
+
+const AT_REST = new Set(["Stopped", "EStopped"]);
+/** Since a powering request was sent, ms of the page's clock. */
+let powered = -Infinity;
+/** As far as this page knows pulses may be on: then the space bar is the e-stop. */
+export function mayMove(): boolean {
+  const { state } = link.peek();
+  if (state === "closed" || state === "opening") return false;
+  if (performance.now() - powered < 2000 || stale.peek()) return true;
+  return !AT_REST.has(telemetry.peek()?.state ?? "");
+}
+
+const UPLOADING = "uploading the gait";
+let worker: Promise<Worker> | undefined;
+
+function order(order: Order): void {
+  worker ??= startWorker(source, "drive").then((started) => {
+    started.onmessage = ({ data }: MessageEvent<News>) => hear(data);
+    return started;
+  });
+  void worker.then((started) => started.postMessage(order));
+}
+
+function hear(news: News): void {
+  switch (news.told) {
+    case "link":
+      link.value = news;
+      if (news.state !== "open") busy.value = "";
+      if (news.state === "closed") wheel.value = telemetry.value = hello.value = stands.value = null;
+      break;
+    case "events":
+      for (const event of news.events) if (event.event === "telemetry") take(event.telemetry);
+      break;
+    case "done":
+      busy.value = "";
+      progress.value = null;
+      said.value = news.reason === null ? { text: done(news.what), failed: false } : { text: news.reason, failed: true };
+      break;
+    case "hello":
+      hello.value = news.hello;
+      configuration.value = news.configuration;
+      break;
+    case "table":
+      table.value = news.table;
+      break;
+    case "progress":
+      progress.value = news;
+      break;
+    case "health":
+      health.value = news.health;
+      break;
+    case "stands":
+      stands.value = news.stands;
+      break;
+    case "wheel":
+      wheel.value = news;
+      break;
+    case "stopped by another":
+      said.value = { text: "Another page has asked the robot to stop.", failed: false };
+      break;
+    case "foretold":
+      foretold.value = { told: news.foretold, reason: news.reason };
+      break;
+    case "log":
+      download("link.mcap", news.bytes, "application/octet-stream");
+  }
+}
+
+const done = (what: string) => (what === UPLOADING ? "The gait is on the robot." : `The robot has acknowledged: ${what}.`);
+
+function take(told: Telemetry): void {
+  const before = telemetry.peek();
+  telemetry.value = told;
+  heardAt.value = performance.now();
+  const sample: Sample = {
+    t: told.robot_us * 1e-6,
+    phi: [told.setpoint[0] * 1e-4, told.setpoint[1] * 1e-4],
+    battery: told.battery_mv === null ? null : told.battery_mv * 1e-3,
+    trip: health.peek()?.round_trip_s ?? null,
+  };
+  const again = before && told.robot_us < before.robot_us;
+  history.value = again ? [sample] : [...history.peek().slice(1 - KEPT), sample];
+  const began = told.state === "Starting" && before?.state !== "Starting";
+  const here: [number, number] = [told.pose.x, told.pose.y];
+  if (again || began) path.value = [here];
+  else if (told.state === "Playing") path.value = [...path.peek().slice(1 - KEPT), here];
+}
+
+export function connect(wire: WireAsked, key: string | null): void {
+  wireKind.value = wire.kind;
+  history.value = path.value = [];
+  telemetry.value = null;
+  order({ do: "open", wire, key });
+}
+
+export const disconnect = () => order({ do: "close" });
+export const takeWheel = () => order({ do: "drive" });
+export const leaveWheel = () => order({ do: "watch" });
+export const downloadLog = () => order({ do: "log" });
+export const cancelUpload = () => order({ do: "cancel upload" });
+export const foretell = (question: object) => order({ do: "preflight", question });
+
+/** Stops never wait: not for an answer, not for a dialog, not for what is under way. */
+export const stop = () => order({ do: "stop" });
+export function estop(): void {
+  powered = -Infinity;
+  order({ do: "estop" });
+}
+
+export function request(request: Request, what: string): void {
+  busy.value = what;
+  if (typeof request === "object" || request === "Resume") powered = performance.now();
+  order({ do: "request", request, what });
+}
+
+export function upload(gait: string | number[]): void {
+  busy.value = UPLOADING;
+  progress.value = { done: 0, total: 1 };
+  order({ do: "upload", gait });
+}
+
+/** What `swimmer lab --port` put into the address: kept for this tab, and taken out of the address, which may be shared. */
+const SERVED = "swimmer-link";
+export function served(): { url: string; token: string } | null {
+  const told = fragment().get("link");
+  if (told) {
+    try {
+      sessionStorage.setItem(SERVED, told);
+    } catch {
+      // A page that may keep nothing asks for the address again after a reload.
+    }
+    setFragment("link", undefined);
+    kept = told;
+  }
+  const token = kept ?? remembered();
+  if (!token || !location.protocol.startsWith("http")) return null;
+  return { url: `${location.protocol.replace("http", "ws")}//${location.host}/link`, token };
+}
+let kept: string | undefined;
+function remembered(): string | null {
+  try {
+    return sessionStorage.getItem(SERVED);
+  } catch {
+    return null;
+  }
+}
+
+/** While pulses may be on the space bar is the e-stop, wherever the focus is, in every room of the page. */
+window.addEventListener(
+  "keydown",
+  (event) => {
+    if (event.code !== "Space" || event.repeat || event.ctrlKey || event.altKey || event.metaKey || !mayMove()) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    estop();
+  },
+  { capture: true },
+);
+// The key that was pressed must not press a button when it is let go.
+window.addEventListener("keyup", (event) => event.code === "Space" && mayMove() && event.preventDefault(), { capture: true });
+
+/** The tab's title says what the robot does, for whoever is in another one. */
+effect(() => {
+  const state = telemetry.value?.state;
+  document.title = state && link.value.state !== "closed" ? `${state} – swimmer lab` : "swimmer lab";
+});

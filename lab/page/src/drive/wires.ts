@@ -1,0 +1,235 @@
+// The ways bytes go: a serial port of the browser's, a WebSocket of `swimmer lab`, the twin beside the session.
+
+import type { Module } from "../wasm/module.ts";
+import type { Stands, WireAsked } from "./words.ts";
+
+/** Who is told what a wire hears. */
+export interface Ear {
+  /** It carries bytes from now on. */
+  up(name: string, bytesPerSecond: number): void;
+  bytes(bytes: Uint8Array): void;
+  /** It is broken; it is tried again by itself. */
+  gone(reason: string): void;
+  /** Another page may drive instead. */
+  wheel(yours: boolean, free: boolean): void;
+  stoppedByAnother(): void;
+  stands(stands: Stands): void;
+}
+
+export interface Wire {
+  send(bytes: Uint8Array): void;
+  /** In words, where the wire has somebody who listens to them. */
+  say(word: "drive" | "watch" | "stop" | "estop"): void;
+  close(): void;
+}
+
+/** Time between two attempts at a wire that is broken, ms. */
+const AGAIN = 500;
+const BITS_OF_A_BYTE = 10;
+
+export function open(asked: WireAsked, module: Module, ear: Ear): Wire {
+  if (asked.kind === "twin") return new TwinWire(module, asked, ear);
+  return asked.kind === "serial" ? new SerialWire(asked.baud, ear) : new SocketWire(asked, ear);
+}
+
+/** The robot in the page lives in real time, in steps that its clock never takes more of at once. */
+class TwinWire implements Wire {
+  static readonly STEP = 10;
+  static readonly LONGEST = 0.02;
+  /** Between two looks at where the robot is, ms. */
+  static readonly LOOK = 50;
+  readonly #number: number;
+  readonly #timer: ReturnType<typeof setInterval>;
+  #waiting: Uint8Array[] = [];
+  #robot = 0;
+  #before = performance.now();
+  #looked = 0;
+
+  constructor(
+    readonly module: Module,
+    asked: { swimmer: string; seed: number },
+    readonly ear: Ear,
+  ) {
+    const { swimmer, seed } = asked;
+    const answer = module.call("twin open", { swimmer, seed });
+    this.#number = "json" in answer ? (answer.json as { number: number }).number : 0;
+    this.#timer = setInterval(() => this.#step(), TwinWire.STEP);
+    queueMicrotask(() => ear.up("the robot in this page", 11_520));
+  }
+
+  #step(): void {
+    const now = performance.now();
+    // Where the machine stalls the robot waits, like any simulation's: its lease does not run out over bytes still unread.
+    this.#robot += Math.min((now - this.#before) / 1000, TwinWire.LONGEST);
+    this.#before = now;
+    const answer = this.module.call("twin step", stepOf(this.#number, this.#robot, this.#waiting));
+    this.#waiting = [];
+    if ("bytes" in answer && answer.bytes.length > 0) this.ear.bytes(answer.bytes);
+    if (now - this.#looked < TwinWire.LOOK) return;
+    this.#looked = now;
+    const stands = this.module.call("twin stands", { number: this.#number });
+    if ("json" in stands) this.ear.stands(stands.json as Stands);
+  }
+
+  send(bytes: Uint8Array): void {
+    this.#waiting.push(bytes);
+  }
+
+  say(): void {}
+
+  close(): void {
+    clearInterval(this.#timer);
+    this.module.call("twin close", { number: this.#number });
+  }
+}
+
+/** `[u32 number][f64 s][bytes]`, as the module's steps take them. */
+export function stepOf(number: number, now: number, pieces: readonly Uint8Array[]): Uint8Array {
+  const length = pieces.reduce((sum, piece) => sum + piece.length, 12);
+  const question = new Uint8Array(length);
+  const view = new DataView(question.buffer);
+  view.setUint32(0, number, true);
+  view.setFloat64(4, now, true);
+  let at = 12;
+  for (const piece of pieces) {
+    question.set(piece, at);
+    at += piece.length;
+  }
+  return question;
+}
+
+/** The WebSocket of `swimmer lab --port`. */
+class SocketWire implements Wire {
+  #socket: WebSocket | undefined;
+  #closed = false;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(
+    readonly asked: { url: string; token: string },
+    readonly ear: Ear,
+  ) {
+    this.#dial();
+  }
+
+  #dial(): void {
+    const socket = new WebSocket(this.asked.url, ["swimmer", this.asked.token]);
+    socket.binaryType = "arraybuffer";
+    socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
+      if (data instanceof ArrayBuffer) this.ear.bytes(new Uint8Array(data));
+      else this.#hear(JSON.parse(data) as Said);
+    };
+    socket.onclose = () => {
+      if (this.#closed) return;
+      this.ear.gone("the server does not answer: is `swimmer lab` still running, and is this its newest address?");
+      this.#timer = setTimeout(() => this.#dial(), AGAIN);
+    };
+    this.#socket = socket;
+  }
+
+  #hear(said: Said): void {
+    if (said.told === "wheel") this.ear.wheel(said.yours, said.free);
+    else if (said.told === "stopped") this.ear.stoppedByAnother();
+    else if (said.open) this.ear.up(said.name, said.bytes_per_second);
+    else this.ear.gone(said.why ?? `${said.name} is gone`);
+  }
+
+  send(bytes: Uint8Array<ArrayBuffer>): void {
+    if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(bytes);
+  }
+
+  say(word: string): void {
+    if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(JSON.stringify({ ask: word }));
+  }
+
+  close(): void {
+    this.#closed = true;
+    clearTimeout(this.#timer);
+    this.#socket?.close();
+  }
+}
+
+type Said =
+  | { told: "wheel"; yours: boolean; free: boolean }
+  | { told: "port"; name: string; open: boolean; why: string | null; bytes_per_second: number }
+  | { told: "stopped" };
+
+/** The parts of Web Serial that are used; TypeScript's own library has none of it. */
+export interface SerialPort {
+  open(options: { baudRate: number; bufferSize?: number }): Promise<void>;
+  close(): Promise<void>;
+  readonly readable: ReadableStream<Uint8Array> | null;
+  readonly writable: WritableStream<Uint8Array> | null;
+}
+
+export interface Serial {
+  getPorts(): Promise<SerialPort[]>;
+  requestPort?(): Promise<SerialPort>;
+}
+
+/** The browser's serial ports, where it has any. */
+export function serial(): Serial | undefined {
+  return (navigator as { serial?: Serial }).serial;
+}
+
+/** The port that the reader has chosen in the page: the one that the browser lets this page have, found again when plugged again. */
+class SerialWire implements Wire {
+  #closed = false;
+  #writer: WritableStreamDefaultWriter<Uint8Array> | undefined;
+  #reader: ReadableStreamDefaultReader<Uint8Array> | undefined;
+  #told = "";
+
+  constructor(
+    readonly baud: number,
+    readonly ear: Ear,
+  ) {
+    void this.#live();
+  }
+
+  async #live(): Promise<void> {
+    while (!this.#closed) {
+      try {
+        // Of several the one that was allowed last.
+        const port = (await serial()?.getPorts())?.at(-1);
+        if (!port) throw new Error("there is no serial port that this page may have; plug the robot in, or choose its port again");
+        await this.#carry(port);
+      } catch (error) {
+        const reason = error instanceof Error ? error.message : String(error);
+        if (!this.#closed && reason !== this.#told) this.ear.gone(reason);
+        this.#told = reason;
+      }
+      await new Promise((resolve) => setTimeout(resolve, AGAIN));
+    }
+  }
+
+  async #carry(port: SerialPort): Promise<void> {
+    await port.open({ baudRate: this.baud, bufferSize: 4096 });
+    try {
+      this.#writer = port.writable?.getWriter();
+      this.#reader = port.readable?.getReader();
+      this.#told = "";
+      this.ear.up("the serial port", this.baud / BITS_OF_A_BYTE);
+      for (;;) {
+        const { value, done } = (await this.#reader?.read()) ?? { value: undefined, done: true };
+        if (done) throw new Error("the serial port was unplugged; plug it in again, and the robot is greeted anew");
+        if (value && value.length > 0) this.ear.bytes(value);
+      }
+    } finally {
+      this.#writer?.releaseLock();
+      this.#reader?.releaseLock();
+      this.#writer = this.#reader = undefined;
+      await port.close().catch(() => undefined);
+    }
+  }
+
+  send(bytes: Uint8Array): void {
+    // What a broken port does not take is lost, as on any link; the reader's end tells of it.
+    this.#writer?.write(bytes).catch(() => undefined);
+  }
+
+  say(): void {}
+
+  close(): void {
+    this.#closed = true;
+    void this.#reader?.cancel().catch(() => undefined);
+  }
+}

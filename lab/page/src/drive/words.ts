@@ -1,0 +1,116 @@
+// What page and worker say to each other, and the link's own words as its JSON has them.
+
+export type StateName = "Stopped" | "EStopped" | "Holding" | "Starting" | "Playing" | "Paused" | "Stopping" | "Settling";
+
+/** The robot's telemetry; see link-protocol's `Telemetry` for units. */
+export interface Telemetry {
+  robot_us: number;
+  state: StateName;
+  cause: string;
+  flags: number;
+  cycle: number;
+  cycles: number;
+  phase: number;
+  setpoint: [number, number];
+  pulse_ns: [number, number];
+  battery_mv: number | null;
+  pose: { x: number; y: number; theta: number };
+  frames_ok: number;
+  frames_bad: number;
+}
+
+export interface Hello {
+  board: string;
+  firmware: { major: number; minor: number; patch: number };
+  reset_reason: string;
+  limits: { max_angle: number; max_rate: number };
+}
+
+export interface TableInfo {
+  knots: number;
+  crc32: number;
+  stored: boolean;
+  min_period_us: number;
+}
+
+export type Reply = string | Record<string, unknown>;
+
+/** What the session tells; tickets are between worker and module. */
+export type Event =
+  | { event: "telemetry"; telemetry: Telemetry; at_s: number }
+  | { event: "connected"; ticket: number; restarted: boolean; hello: Hello }
+  | { event: "answered"; ticket: number; reply: Reply }
+  | { event: "stopped_by_itself"; ticket: number; cause: string }
+  | { event: "uploaded"; ticket: number; table: TableInfo }
+  | { event: "progress"; ticket: number; phase: string; done: number; total: number }
+  | { event: "failed"; ticket: number; reason: string };
+
+/** How bytes reach a robot. */
+export type WireAsked =
+  | { kind: "twin"; swimmer: string; seed: number }
+  | { kind: "serial"; baud: number }
+  | { kind: "socket"; url: string; token: string };
+
+export type Request = string | Record<string, unknown>;
+
+/** From the page to the worker. */
+export type Order =
+  | { do: "open"; wire: WireAsked; key: string | null }
+  | { do: "close" }
+  | { do: "request"; request: Request; what: string }
+  | { do: "upload"; gait: string | number[] }
+  | { do: "cancel upload" }
+  | { do: "stop" }
+  | { do: "estop" }
+  | { do: "drive" }
+  | { do: "watch" }
+  | { do: "preflight"; question: object }
+  | { do: "log" };
+
+/** How the link stands. */
+export type LinkState = "closed" | "opening" | "greeting" | "open" | "watching" | "gone";
+
+export interface Health {
+  counters: { frames_sent: number; retransmissions: number; received: { ok: number; bad_crc: number } };
+  round_trip_s: number | null;
+  answers_signed: boolean | null;
+  frames: number;
+  forgotten: number;
+}
+
+/** How the robot in the page truly stands. */
+export interface Stands {
+  now_s: number;
+  pose: [number, number, number];
+  angles: [number, number];
+  state: StateName;
+  pulses_ns: [number, number] | null;
+  cycles: number;
+}
+
+export interface Foretold {
+  period_s: number;
+  min_period_s: number;
+  displacement_m: [number, number] | null;
+  rotation_rad: number | null;
+  loss_share: number | null;
+  refused: string | null;
+  warnings: string[];
+  servo_assumed: boolean;
+  configured_as: boolean | null;
+}
+
+/** From the worker to the page. */
+export type News =
+  | { told: "link"; state: LinkState; name: string; reason: string }
+  | { told: "events"; events: Event[] }
+  | { told: "done"; what: string; reason: string | null }
+  | { told: "hello"; hello: Hello; configuration: object | null }
+  | { told: "table"; table: TableInfo | null }
+  | { told: "progress"; done: number; total: number }
+  | { told: "health"; health: Health }
+  | { told: "stands"; stands: Stands }
+  | { told: "wheel"; yours: boolean; free: boolean }
+  | { told: "stopped by another" }
+  | { told: "foretold"; foretold: Foretold | null; reason: string }
+  | { told: "log"; bytes: ArrayBuffer };

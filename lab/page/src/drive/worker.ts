@@ -1,0 +1,238 @@
+// The worker that has the robot: the session lives here, because a hidden page's own timers tick once a second and the robot's
+// lease is half a second.
+
+import { Module } from "../wasm/module.ts";
+import { type Ear, open, stepOf, type Wire } from "./wires.ts";
+import type { Event, Foretold, Health, News, Order, Reply, Request } from "./words.ts";
+
+/** The session is looked at at least so often, ms. */
+const BEAT = 20;
+/** Between two looks at how the link does, ms. */
+const LOOK = 500;
+
+let module: Module;
+let wire: Wire | undefined;
+let wireName = "";
+let session: number | undefined;
+let ear: number | undefined;
+let key: string | null = null;
+let timer: ReturnType<typeof setTimeout> | undefined;
+/** What each ticket is for. */
+const asked = new Map<number, string>();
+
+const now = () => performance.now() / 1000;
+const tell = (news: News, transfer: Transferable[] = []) => self.postMessage(news, { transfer });
+
+function json<T>(name: string, question: object): T {
+  const answer = module.call(name, question);
+  if (!("json" in answer)) throw new Error(`${name}: bytes where a document was expected`);
+  return answer.json as T;
+}
+
+const reasonOf = (error: unknown) => (error instanceof Error ? error.message : String(error));
+
+const GREETING = "connecting";
+const CONFIGURATION = "reading the configuration";
+const TABLE = "reading which gait is there";
+
+const ears: Ear = {
+  up(name, bytesPerSecond) {
+    wireName = name;
+    openSession(bytesPerSecond);
+  },
+  bytes(bytes) {
+    if (session !== undefined) step(bytes);
+    else if (ear !== undefined) overhear(bytes);
+  },
+  gone(reason) {
+    closeSession();
+    tell({ told: "link", state: "gone", name: wireName, reason });
+  },
+  wheel(yours, free) {
+    if (yours) {
+      if (session === undefined) openSession(lineSpeed);
+    } else {
+      closeSession();
+      ear = json<{ number: number }>("overhear open", {}).number;
+      tell({ told: "link", state: "watching", name: wireName, reason: "" });
+    }
+    tell({ told: "wheel", yours, free });
+  },
+  stoppedByAnother: () => tell({ told: "stopped by another" }),
+  stands: (stands) => tell({ told: "stands", stands }),
+};
+
+let lineSpeed = 11_520;
+
+function openSession(bytesPerSecond: number): void {
+  closeSession();
+  lineSpeed = bytesPerSecond;
+  const seed = crypto.getRandomValues(new Uint32Array(1))[0] ?? 1;
+  session = json<{ number: number }>("session open", {
+    seed,
+    bytes_per_second: bytesPerSecond,
+    epoch_s: performance.timeOrigin / 1000,
+    key,
+  }).number;
+  tell({ told: "link", state: "greeting", name: wireName, reason: "" });
+  greet();
+}
+
+function closeSession(): void {
+  clearTimeout(timer);
+  if (session !== undefined) json("session close", { number: session });
+  if (ear !== undefined) json("overhear close", { number: ear });
+  session = ear = undefined;
+  asked.clear();
+}
+
+function greet(): void {
+  ask("session connect", {}, GREETING);
+}
+
+function ask(name: string, question: object, what: string): void {
+  if (session === undefined) {
+    tell({ told: "done", what, reason: `${what}: no robot is connected` });
+    return;
+  }
+  try {
+    const { ticket } = json<{ ticket: number }>(name, { number: session, now_s: now(), ...question });
+    asked.set(ticket, what);
+  } catch (error) {
+    tell({ told: "done", what, reason: reasonOf(error) });
+  }
+  step(new Uint8Array());
+}
+
+const request = (request: Request, what: string) => ask("session request", { request }, what);
+
+/** Bytes in, bytes out, what happened, and when to look again. */
+function step(received: Uint8Array): void {
+  if (session === undefined) return;
+  const answer = module.call("session step", stepOf(session, now(), [received]));
+  if (!("bytes" in answer)) return;
+  const { bytes } = answer;
+  const count = new DataView(bytes.buffer).getUint32(0, true);
+  if (count > 0) wire?.send(bytes.slice(4, 4 + count));
+  const told = JSON.parse(new TextDecoder().decode(bytes.subarray(4 + count))) as { events: Event[]; next_s: number | null };
+  clearTimeout(timer);
+  const wait = told.next_s === null ? BEAT : Math.max(0, told.next_s - now()) * 1000;
+  timer = setTimeout(() => step(new Uint8Array()), Math.min(wait, BEAT));
+  for (const event of told.events) hear(event);
+  if (told.events.length > 0) tell({ told: "events", events: told.events });
+}
+
+function hear(event: Event): void {
+  if (event.event === "telemetry") return;
+  if (event.event === "progress") {
+    tell({ told: "progress", done: event.done, total: event.total });
+    return;
+  }
+  const what = asked.get(event.ticket) ?? "";
+  asked.delete(event.ticket);
+  if (event.event === "failed") {
+    if (what === GREETING) {
+      tell({ told: "link", state: "gone", name: wireName, reason: event.reason });
+      // A robot that is switched on later is met then.
+      timer = setTimeout(greet, LOOK);
+    } else tell({ told: "done", what, reason: event.reason });
+    return;
+  }
+  if (event.event === "connected") {
+    tell({ told: "link", state: "open", name: wireName, reason: event.restarted ? "The robot has restarted." : "" });
+    tell({ told: "hello", hello: event.hello, configuration: null });
+    hello = event.hello;
+    request("Configuration", CONFIGURATION);
+    request("Table", TABLE);
+    return;
+  }
+  if (event.event === "uploaded") tell({ told: "table", table: event.table });
+  if (event.event === "answered") answered(event.reply);
+  if (what !== CONFIGURATION && what !== TABLE) tell({ told: "done", what, reason: null });
+}
+
+let hello: (Event & { event: "connected" })["hello"];
+
+function answered(reply: Reply): void {
+  if (typeof reply !== "object") return;
+  if ("Configuration" in reply) tell({ told: "hello", hello, configuration: reply.Configuration as object });
+  if ("Table" in reply) tell({ told: "table", table: (reply.Table ?? null) as News extends { told: "table"; table: infer T } ? T : never });
+}
+
+function overhear(bytes: Uint8Array): void {
+  if (ear === undefined) return;
+  const { events } = json<{ events: Event[] }>("overhear step", stepOf(ear, now(), [bytes]));
+  if (events.length > 0) tell({ told: "events", events });
+}
+
+setInterval(() => {
+  if (session !== undefined) tell({ told: "health", health: json<Health>("session link", { number: session }) });
+}, LOOK);
+
+function perform(order: Order): void {
+  switch (order.do) {
+    case "open":
+      closeWire();
+      key = order.key;
+      tell({ told: "link", state: "opening", name: "", reason: "" });
+      wire = open(order.wire, module, ears);
+      return;
+    case "close":
+      closeWire();
+      tell({ told: "link", state: "closed", name: "", reason: "" });
+      return;
+    case "stop":
+    case "estop":
+      // Who watches has somebody else say it.
+      if (session === undefined) wire?.say(order.do);
+      else request(order.do === "stop" ? "Stop" : "EStop", order.do === "stop" ? "stop" : "e-stop");
+      return;
+    case "drive":
+    case "watch":
+      wire?.say(order.do);
+      return;
+    case "request":
+      request(order.request, order.what);
+      return;
+    case "upload":
+      ask("session upload", { gait: order.gait }, "uploading the gait");
+      return;
+    case "cancel upload":
+      if (session !== undefined) json("session cancel upload", { number: session, now_s: now() });
+      return;
+    case "preflight":
+      try {
+        tell({ told: "foretold", foretold: json<Foretold>("preflight", order.question), reason: "" });
+      } catch (error) {
+        tell({ told: "foretold", foretold: null, reason: reasonOf(error) });
+      }
+      return;
+    case "log": {
+      if (session === undefined) return;
+      const answer = module.call("session log", { number: session });
+      if ("bytes" in answer) tell({ told: "log", bytes: answer.bytes.buffer }, [answer.bytes.buffer]);
+    }
+  }
+}
+
+function closeWire(): void {
+  closeSession();
+  wire?.close();
+  wire = undefined;
+}
+
+let loading: Promise<Module> | undefined;
+
+self.onmessage = async ({ data }: MessageEvent<ArrayBuffer | Order>) => {
+  if (data instanceof ArrayBuffer) {
+    loading = Module.load(data);
+    return;
+  }
+  try {
+    if (!loading) throw new Error("ordering a worker that was given no module");
+    module = await loading;
+    perform(data);
+  } catch (error) {
+    tell({ told: "done", what: data.do, reason: reasonOf(error) });
+  }
+};
