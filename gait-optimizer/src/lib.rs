@@ -14,6 +14,7 @@
 //! | `displacement::height` | the paper's switching function F of a quarter, what the costate equations need |
 //! | `height_map` | height functions in minimum-perturbation coordinates, their zero-level curves, the area rule |
 //! | `atlas` | multi-start over closed curves of any symmetry, and which of them are one gait |
+//! | `batch` | A and W at many shapes at once |
 //! | `continuation` | an optimum followed in a parameter: folds, meetings, changes of its arcs |
 //! | `closed_curve` | displacement, rotation and cost of any closed curve, with exact first and second derivatives |
 //! | `loops` | closed loops of singular arcs and bounds, without any symmetry |
@@ -60,6 +61,7 @@
 //! ```
 
 mod atlas;
+mod batch;
 mod certificate;
 mod certify;
 mod closed_curve;
@@ -87,6 +89,7 @@ mod turning;
 pub use atlas::{
     Atlas, AtlasError, AtlasProblem, Optimum, StartCurves, Watch, atlas, atlas_watched,
 };
+pub use batch::{Batch, ConnectionsAndPowers};
 pub use certificate::{Certificate, Check, Verdict};
 pub use certify::{CertifyError, certify};
 pub use continuation::{

@@ -52,6 +52,17 @@ pub struct AtlasProblem {
 impl AtlasProblem {
     pub fn new(swimmer: Swimmer<f64>, objective: Objective) -> Self {}
 }
+#[derive(Debug, Clone, Copy)]
+pub struct Batch {}
+impl Batch {
+    pub fn new(swimmer: &Swimmer<f64>) -> Result<Self, InvalidSwimmer> {}
+    pub fn connections_and_powers(
+        &self,
+        phi1: &[f64],
+        phi2: &[f64],
+        found: &mut ConnectionsAndPowers,
+    ) {}
+}
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BestAmplitude {
     pub amplitude: f64,
@@ -87,6 +98,11 @@ pub struct Check {
     pub tolerance: f64,
     pub pass: bool,
     pub uncertainty: f64,
+}
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ConnectionsAndPowers {
+    pub connection: [Vec<f64>; 6],
+    pub power: [Vec<f64>; 3],
 }
 #[derive(Debug, Clone, PartialEq)]
 pub struct Continuation {

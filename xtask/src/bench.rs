@@ -37,7 +37,7 @@ struct Comparison {
     peers: &'static [(&'static str, &'static str)],
 }
 
-const COMPARISONS: [Comparison; 7] = [
+const COMPARISONS: [Comparison; 8] = [
     Comparison {
         what: "A and W at one shape",
         ours: "f64/connection and power",
@@ -45,6 +45,13 @@ const COMPARISONS: [Comparison; 7] = [
         peers: &[
             ("numpy_one", "NumPy, one shape a call"),
             ("casadi_one", "CasADi, one shape a call"),
+        ],
+    },
+    Comparison {
+        what: "A and W at 10 000 shapes a call, a shape",
+        ours: "batch/connection and power, a shape",
+        by: "gait-optimizer, in batches",
+        peers: &[
             ("numpy_batch", "NumPy, 10 000 shapes a call, per shape"),
             ("casadi_batch", "CasADi, 10 000 shapes a call, per shape"),
         ],

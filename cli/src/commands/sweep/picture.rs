@@ -52,18 +52,16 @@ fn chart(map: &Map, title: String, series: Vec<Series>, legend: Vec<(String, RGB
     }
 }
 
+/// Cells reach under their neighbours by this share, so that no light shows between them.
+const UNDER: f64 = 0.04;
+
 /// One cell's corners and colour.
 fn cell(map: &Map, row: usize, column: usize, color: RGBColor) -> Option<([f64; 4], RGBColor)> {
     let [x, y] = map.axes.each_ref().map(MapAxis::borders);
-    Some((
-        [
-            *x.get(column)?,
-            *y.get(row)?,
-            *x.get(column + 1)?,
-            *y.get(row + 1)?,
-        ],
-        color,
-    ))
+    let (left, low) = (*x.get(column)?, *y.get(row)?);
+    let (right, high) = (*x.get(column + 1)?, *y.get(row + 1)?);
+    let under = |from: f64, to: f64| to + UNDER * (to - from);
+    Some(([left, low, under(left, right), under(low, high)], color))
 }
 
 fn folds(map: &Map) -> impl Iterator<Item = Series> {
