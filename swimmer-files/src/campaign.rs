@@ -164,7 +164,7 @@ impl Campaign {
     /// [`FileError`] with the place in this file, or in the swimmer file.
     pub fn load(path: &Path) -> Result<Self, FileError> {
         let is_there = |file: &Path| !matches!(file.try_exists(), Ok(false));
-        read::campaign(&read_text(path)?, path, &is_there)
+        read::campaign(&read_text(path)?, path, &is_there, SwimmerFile::find_from)
     }
 
     /// Reads a campaign's text; `path` says which folder its paths start from. Whether the files of its runs are there is not
@@ -173,7 +173,41 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, FileError> {
-        read::campaign(text, path, &|_| true)
+        read::campaign(text, path, &|_| true, SwimmerFile::find_from)
+    }
+
+    /// The same where no file system is at hand (a page in a browser): `text_of` gives the text of the swimmer file that the
+    /// campaign names.
+    ///
+    /// # Errors
+    /// As [`Campaign::parse`]; the swimmer is a file whose text is not given.
+    ///
+    /// ```
+    /// use swimmer_files::{Campaign, SwimmerFile};
+    ///
+    /// let text = "swimmer = \"ours.toml\"\n[[run]]\ngait = \"circle:1\"\nperiod_s = 9.0\nx_mm = 8.0\nx_se_mm = 0.1\n";
+    /// let ours = |name: &std::path::Path| name.ends_with("ours.toml").then(|| SwimmerFile::preset("robot").unwrap().to_toml());
+    /// assert_eq!(Campaign::parse_with(text, "campaign.toml".as_ref(), ours)?.swimmer.name, "robot");
+    /// assert!(Campaign::parse_with(text, "campaign.toml".as_ref(), |_| None).is_err());
+    /// # Ok::<(), swimmer_files::FileError>(())
+    /// ```
+    pub fn parse_with(
+        text: &str,
+        path: &Path,
+        text_of: impl Fn(&Path) -> Option<String>,
+    ) -> Result<Self, FileError> {
+        let find = |name: &str, folder: &Path| {
+            if let Some(preset) = SwimmerFile::preset(name) {
+                return Ok(preset);
+            }
+            let file = folder.join(name);
+            let text = text_of(&file).ok_or_else(|| FileError::Read {
+                path: file.clone(),
+                source: std::io::ErrorKind::NotFound.into(),
+            })?;
+            SwimmerFile::parse(&text, &file)
+        };
+        read::campaign(text, path, &|_| true, find)
     }
 
     /// The places of the runs that are not excluded.

@@ -69,6 +69,11 @@ pub struct Campaign {
 impl Campaign {
     pub fn load(path: &Path) -> Result<Self, FileError> {}
     pub fn parse(text: &str, path: &Path) -> Result<Self, FileError> {}
+    pub fn parse_with(
+        text: &str,
+        path: &Path,
+        text_of: impl Fn(&Path) -> Option<String>,
+    ) -> Result<Self, FileError> {}
     pub fn included(&self) -> impl Iterator<Item = usize> {}
     pub fn files(path: &Path) -> Result<Vec<PathBuf>, FileError> {}
 }

@@ -2,8 +2,8 @@
 
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 
+#[cfg(not(target_family = "wasm"))]
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE};
-use encoding_rs_io::DecodeReaderBytesBuilder;
 
 /// Bytes by which a file's encoding is told.
 const PREFIX: usize = 4096;
@@ -26,24 +26,51 @@ pub(super) fn open<'s>(mut bytes: impl Read + 's) -> io::Result<Source<'s>> {
         .by_ref()
         .take(PREFIX as u64)
         .read_to_end(&mut prefix)?;
-    let unmarked = utf16_without_mark(&prefix);
-    if unmarked.is_none() && !prefix.starts_with(b"\xFF\xFE") && !prefix.starts_with(b"\xFE\xFF") {
-        if let Some(name) = binary_format(&prefix) {
-            return Ok(Source::Binary(name));
-        }
-        let mark = if prefix.starts_with(b"\xEF\xBB\xBF") {
-            3
-        } else {
-            0
-        };
-        prefix.drain(..mark);
-        let whole = Cursor::new(prefix).chain(bytes);
-        return Ok(Source::Text(Box::new(BufReader::with_capacity(
-            BUFFER, whole,
-        ))));
+    if let Some(order) = utf16(&prefix) {
+        return decoded(order, prefix, bytes);
     }
-    let decoded = DecodeReaderBytesBuilder::new()
-        .encoding(unmarked)
+    if let Some(name) = binary_format(&prefix) {
+        return Ok(Source::Binary(name));
+    }
+    let mark = if prefix.starts_with(b"\xEF\xBB\xBF") {
+        3
+    } else {
+        0
+    };
+    prefix.drain(..mark);
+    let whole = Cursor::new(prefix).chain(bytes);
+    Ok(Source::Text(Box::new(BufReader::with_capacity(
+        BUFFER, whole,
+    ))))
+}
+
+/// Which byte of a UTF-16 unit comes first, and whether a mark says so.
+#[derive(Clone, Copy)]
+enum Utf16 {
+    Marked,
+    Little,
+    Big,
+}
+
+fn utf16(prefix: &[u8]) -> Option<Utf16> {
+    if prefix.starts_with(b"\xFF\xFE") || prefix.starts_with(b"\xFE\xFF") {
+        Some(Utf16::Marked)
+    } else {
+        utf16_without_mark(prefix)
+    }
+}
+
+/// UTF-16 as text.
+#[cfg(not(target_family = "wasm"))]
+#[expect(clippy::unnecessary_wraps, reason = "in a browser it fails")]
+fn decoded<'s>(order: Utf16, prefix: Vec<u8>, bytes: impl Read + 's) -> io::Result<Source<'s>> {
+    let encoding: Option<&'static Encoding> = match order {
+        Utf16::Marked => None,
+        Utf16::Little => Some(UTF_16LE),
+        Utf16::Big => Some(UTF_16BE),
+    };
+    let decoded = encoding_rs_io::DecodeReaderBytesBuilder::new()
+        .encoding(encoding)
         .strip_bom(true)
         .build(Cursor::new(prefix).chain(bytes));
     Ok(Source::Text(Box::new(BufReader::with_capacity(
@@ -51,14 +78,22 @@ pub(super) fn open<'s>(mut bytes: impl Read + 's) -> io::Result<Source<'s>> {
     ))))
 }
 
+/// A page in a browser has no decoder of its own here.
+#[cfg(target_family = "wasm")]
+fn decoded<'s>(_: Utf16, _: Vec<u8>, _: impl Read + 's) -> io::Result<Source<'s>> {
+    Err(io::Error::other(
+        "it is UTF-16, which the page does not read; save it as UTF-8",
+    ))
+}
+
 /// UTF-16 whose mark was lost: every other byte of the beginning is zero.
-fn utf16_without_mark(prefix: &[u8]) -> Option<&'static Encoding> {
+fn utf16_without_mark(prefix: &[u8]) -> Option<Utf16> {
     let (pairs, _) = prefix.get(..64).unwrap_or(prefix).as_chunks::<2>();
     let all = |test: fn(&[u8; 2]) -> bool| pairs.len() >= 4 && pairs.iter().all(test);
     if all(|[low, high]| *low != 0 && *high == 0) {
-        Some(UTF_16LE)
+        Some(Utf16::Little)
     } else if all(|[high, low]| *low != 0 && *high == 0) {
-        Some(UTF_16BE)
+        Some(Utf16::Big)
     } else {
         None
     }

@@ -53,7 +53,8 @@ export class Tab {
 
   /** Waits until nothing is being computed. */
   settled() {
-    return this.until(() => document.querySelector("#explore")?.getAttribute("aria-busy") === "false", undefined, "the page to settle");
+    const quiet = () => document.querySelector("[aria-busy]") !== null && document.querySelector('[aria-busy="true"]') === null;
+    return this.until(quiet, undefined, "the page to settle");
   }
 
   text(selector) {

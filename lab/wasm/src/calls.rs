@@ -9,6 +9,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+#[cfg(feature = "calibrate")]
+use crate::calibration;
 #[cfg(feature = "drive")]
 use crate::drive;
 #[cfg(feature = "explore")]
@@ -35,6 +37,8 @@ const TABLES: &[&[(&str, Call)]] = &[
     explore::CALLS,
     #[cfg(feature = "drive")]
     drive::CALLS,
+    #[cfg(feature = "calibrate")]
+    calibration::CALLS,
 ];
 
 /// What lives from one call to the next.

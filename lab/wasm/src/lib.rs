@@ -7,6 +7,8 @@
 //! The module needs nothing from the page but memory: no clock, no randomness (seeds are arguments), no imports.
 
 pub mod abi;
+#[cfg(feature = "calibrate")]
+pub mod calibration;
 pub mod calls;
 #[cfg(feature = "drive")]
 pub mod drive;

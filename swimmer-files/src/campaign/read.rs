@@ -11,20 +11,21 @@ use super::told;
 use super::{Campaign, CampaignRun, PointName, Reflector, Reflectors, RunTiming, TrackSettings};
 use crate::{FileError, GaitSpec, SwimmerFile};
 
-/// The campaign of `text`; `is_there` says whether a file that a run names can be found.
+/// The campaign of `text`; `is_there` says whether a file that a run names can be found, `find` reads the swimmer that it names, from
+/// its folder on.
 pub(super) fn campaign(
     text: &str,
     path: &Path,
     is_there: &impl Fn(&Path) -> bool,
+    find: impl Fn(&str, &Path) -> Result<SwimmerFile, FileError>,
 ) -> Result<Campaign, FileError> {
     let raw: RawCampaign = crate::toml_text::parse(text, path)?;
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
     let error = |offset: usize, problem: String| FileError::at_offset(path, text, offset, problem);
-    let swimmer =
-        SwimmerFile::find_from(raw.swimmer.get_ref(), folder).map_err(|cause| match cause {
-            FileError::Read { .. } => error(raw.swimmer.span().start, cause.to_string()),
-            other => other,
-        })?;
+    let swimmer = find(raw.swimmer.get_ref(), folder).map_err(|cause| match cause {
+        FileError::Read { .. } => error(raw.swimmer.span().start, cause.to_string()),
+        other => other,
+    })?;
     let is_preset = SwimmerFile::preset(raw.swimmer.get_ref()).is_some();
     let swimmer_path = (!is_preset).then(|| folder.join(raw.swimmer.get_ref()));
     let reflectors = if let Some(told) = raw.reflectors {

@@ -1,7 +1,10 @@
 // The modules' bytes, unpacked from the page itself.
 
 /** What a module can do: each kind of worker has its own. */
-export type ModuleName = "explore" | "drive";
+export type ModuleName = "explore" | "drive" | "calibrate";
+
+/** Whether the page was built with a module. */
+export const hasModule = (name: ModuleName) => document.getElementById(`module-${name}`) !== null;
 
 const unpacked = new Map<ModuleName, Promise<ArrayBuffer>>();
 

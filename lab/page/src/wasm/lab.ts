@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals";
 import source from "worker:./worker.ts";
-import { startWorker } from "./embedded.ts";
+import { type ModuleName, startWorker } from "./embedded.ts";
 import type { Told } from "./worker.ts";
 
 /** Questions that wait for an answer, of all workers. */
@@ -22,25 +22,29 @@ interface Waiting {
 
 /** A worker with a module of its own. Long searches have their own, so that no drag waits for them. */
 export class Lab {
-  readonly #worker: Promise<Worker>;
+  #started: Promise<Worker> | undefined;
   readonly #waiting = new Map<number, Waiting>();
   #last = 0;
 
-  constructor() {
-    this.#worker = startWorker(source, "explore").then((worker) => {
+  constructor(readonly module: ModuleName = "explore") {}
+
+  /** The worker, started when it is first asked: what nobody opens costs nothing. */
+  #worker(): Promise<Worker> {
+    this.#started ??= startWorker(source, this.module).then((worker) => {
       worker.onmessage = ({ data }: MessageEvent<Told>) => {
         this.#waiting.get(data.id)?.answered(data);
         this.#waiting.delete(data.id);
       };
       return worker;
     });
+    return this.#started;
   }
 
   /** Asks; the reason of a refusal is the error's message. */
   async ask(name: string, question: unknown): Promise<Told> {
     const id = ++this.#last;
     waiting.value++;
-    const worker = await this.#worker;
+    const worker = await this.#worker();
     const answer = new Promise<Told>((resolve, reject) => {
       this.#waiting.set(id, {
         answered: (told) => {

@@ -1,0 +1,84 @@
+// Calibrate: the page's fit of dropped files is the command's, and its tracks are what the command says they are.
+
+import assert from "node:assert/strict";
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { BROWSERS, Tab } from "./browsers.mjs";
+import { OUT, PAGE, SCREENSHOTS, swimmer } from "./setting.mjs";
+
+const skip = readFileSync(new URL(PAGE), "utf8").includes('id="module-calibrate"') ? false : "the page was built without --calibrate";
+const PERIOD = 30;
+const CYCLES = 5;
+/** Where the reflectors sit, metres from the middle of the middle link. */
+const REACH = 0.0355;
+const AMPLITUDES = [40, 60, 80, 100];
+const folder = join(OUT, "campaign");
+const paths = [];
+
+/** What cameras would see of a swimmer, with a little noise that is always the same. */
+function track(amplitude) {
+  const way = join(folder, "way.csv");
+  swimmer("simulate", "--swimmer", "robot", "--gait", `circle:${amplitude}deg`, "--cycles", `${CYCLES}`, "--trajectory", way, "--overwrite");
+  let noise = 1;
+  const jitter = () => ((noise = (noise * 16807) % 2147483647) / 2147483647 - 0.5) * 2e-4;
+  const rows = readFileSync(way, "utf8").trim().split("\n").slice(1).map((line) => line.split(",").map(Number));
+  const lines = rows.map(([cycle, u, , , x, y, theta]) => {
+    const [dx, dy] = [REACH * Math.cos(theta), REACH * Math.sin(theta)];
+    const seen = [x + dx, y + dy, x - dx, y - dy].map((value) => (value + jitter()).toFixed(6));
+    return [((cycle + u) * PERIOD).toFixed(4), ...seen].join(",");
+  });
+  return `t,x1,y1,x2,y2\n${lines.join("\n")}\n`;
+}
+
+before(() => {
+  if (skip) return;
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(folder, { recursive: true });
+  const put = (name, text) => {
+    writeFileSync(join(folder, name), text);
+    paths.push(join(folder, name));
+  };
+  const ours = 'name = "ours"\n[links]\nmiddle = 0.071\nside = 0.137\n[drag]\nchi = 2.5\nc_t = { log_aspect = 4.543 }\n[sphere]\nradius = 0.05\n';
+  put("ours.toml", ours);
+  for (const amplitude of AMPLITUDES) put(`circle-${amplitude}.csv`, track(amplitude));
+  const runs = AMPLITUDES.map((amplitude) => `[[run]]\ntrack = "circle-${amplitude}.csv"\ngait = "circle:${amplitude}deg"\nperiod_s = ${PERIOD}.0\ncycle_start_s = 0.0\n`);
+  put(
+    "campaign.toml",
+    `swimmer = "ours.toml"\n[reflectors]\nfront = { point = ["x1", "y1"], at = [${REACH}, 0.0] }\nback = { point = ["x2", "y2"], at = [-${REACH}, 0.0] }\n${runs.join("")}`,
+  );
+});
+
+let browser;
+before(async () => (browser = await BROWSERS.chromium()));
+after(() => browser?.close());
+
+test("a campaign that is dropped is fitted as by the command", { skip }, async () => {
+  const expected = swimmer("calibrate", join(folder, "campaign.toml"));
+  const tab = await Tab.open(browser, { hash: "#room=calibrate" });
+  await tab.drop(...paths);
+  await tab.until(() => document.querySelector("#calibrate .verdict, #calibrate [role=alert]") !== null, undefined, "a verdict");
+  assert.equal(await tab.text("#calibrate [role=alert]"), null);
+  const told = JSON.parse(await tab.text("#fit-exact"));
+  for (const key of ["sphere_radius_m", "chi"]) {
+    assert.ok(Math.abs(told[key] - expected[key]) < 1e-7 * Math.abs(expected[key]), `${key}: ${told[key]} in the page, ${expected[key]} by the command`);
+  }
+  assert.equal(await tab.text("#calibrate .verdict h2"), `Verdict: ${expected.verdict}`);
+  const x = await tab.evaluate(() => [...document.querySelectorAll("#runs tbody tr")].map((row) => row.cells[3].textContent));
+  assert.deepEqual(x, expected.runs.map((run) => (run.x_m * 1000).toFixed(2)));
+  const holds = swimmer("tracks", paths[1]);
+  const row = await tab.evaluate(() => [...document.querySelector("#tracks tbody tr").cells].map((cell) => cell.textContent));
+  assert.equal(row[1], holds.format);
+  assert.equal(row[4], `${holds.frames}`);
+  await tab.page.screenshot({ path: join(SCREENSHOTS, "calibrate-light.png"), fullPage: true });
+  assert.deepEqual(tab.said, []);
+  await tab.close();
+});
+
+test("what is missing of a campaign is named", { skip }, async () => {
+  const tab = await Tab.open(browser, { hash: "#room=calibrate" });
+  await tab.drop(paths.at(-1), paths[0]);
+  await tab.until(() => document.querySelector("#calibrate [role=alert]") !== null, undefined, "a reason");
+  assert.match(await tab.text("#calibrate [role=alert]"), /circle-40\.csv, which was not dropped/);
+  await tab.close();
+});

@@ -1,0 +1,292 @@
+//! The answers, under the keys of `swimmer calibrate --json` and of its evidence, and what only pictures need.
+
+use calibrate::evidence::{CurvePoint, Evidence, Profile};
+use calibrate::{Assessment, CampaignFit, Intervals, RunResult, TrackSurvey, c_t_form};
+use serde::Serialize;
+use swimmer_files::{Campaign, GaitSpec};
+
+/// What a tracking file holds.
+#[derive(Serialize)]
+pub(super) struct Holdings {
+    format: String,
+    rate_hz: Option<f64>,
+    unit: String,
+    frames: usize,
+    points: Vec<Point>,
+    warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Point {
+    name: String,
+    present: usize,
+    gaps: usize,
+    longest_gap: usize,
+}
+
+impl From<TrackSurvey> for Holdings {
+    fn from(survey: TrackSurvey) -> Self {
+        Self {
+            format: survey.format.to_string(),
+            rate_hz: Some(survey.rate_hz).filter(|rate| *rate > 0.0),
+            unit: survey.unit.to_string(),
+            frames: survey.frames,
+            points: survey
+                .points
+                .into_iter()
+                .map(|point| Point {
+                    name: point.name,
+                    present: point.present,
+                    gaps: point.gaps,
+                    longest_gap: point.longest_gap,
+                })
+                .collect(),
+            warnings: survey.warnings.iter().map(ToString::to_string).collect(),
+        }
+    }
+}
+
+/// The fit.
+#[derive(Serialize)]
+pub(super) struct FitAnswer {
+    /// What the later steps name it by.
+    number: u32,
+    runs: Vec<Run>,
+    sphere_radius_m: f64,
+    chi: f64,
+    rmse: f64,
+    intervals: IntervalsAnswer,
+    correlation: f64,
+    c_t_form: String,
+    excluded: Vec<Excluded>,
+    warnings: Vec<String>,
+    /// The fitted swimmer's file.
+    swimmer: String,
+}
+
+#[derive(Serialize)]
+struct Run {
+    file: String,
+    gait: String,
+    /// Of a circle, with the sign that its displacement is counted by.
+    amplitude_rad: Option<f64>,
+    clockwise: bool,
+    cycles: Option<usize>,
+    x_m: f64,
+    x_sd_m: f64,
+    y_m: f64,
+    delta_y_m: f64,
+    delta_y_sd_m: f64,
+    delta_theta_rad: f64,
+    delta_theta_sd_rad: f64,
+    period_s: f64,
+    /// Start \[s\] and displacement \[m\] of each cycle that counts.
+    each: Vec<[f64; 2]>,
+    left_out: Vec<Excluded>,
+    /// x, y \[m\] of the middle link, thinned.
+    path: Vec<[f64; 2]>,
+    warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Excluded {
+    what: String,
+    reason: String,
+}
+
+#[derive(Serialize)]
+struct IntervalsAnswer {
+    sphere_radius_m: [f64; 2],
+    chi: [f64; 2],
+    level: f64,
+}
+
+impl From<&Intervals> for IntervalsAnswer {
+    fn from(intervals: &Intervals) -> Self {
+        Self {
+            sphere_radius_m: intervals.sphere_radius,
+            chi: intervals.chi,
+            level: intervals.level,
+        }
+    }
+}
+
+/// Points of a drawn path.
+const PATH: usize = 600;
+
+impl Run {
+    fn new(run: &RunResult, gait: &GaitSpec) -> Self {
+        let cycles = &run.cycles;
+        let samples = &run.poses.samples;
+        let (amplitude_rad, clockwise) = match gait {
+            GaitSpec::Circle {
+                amplitude,
+                clockwise,
+            } => (Some(*amplitude), *clockwise),
+            _ => (None, false),
+        };
+        Self {
+            file: run.file.display().to_string(),
+            gait: run.gait.clone(),
+            amplitude_rad,
+            clockwise,
+            cycles: cycles.count(),
+            x_m: cycles.x.mean,
+            x_sd_m: cycles.x.sd,
+            y_m: cycles.y.mean,
+            delta_y_m: cycles.delta_y.mean,
+            delta_y_sd_m: cycles.delta_y.sd,
+            delta_theta_rad: cycles.delta_theta.mean,
+            delta_theta_sd_rad: cycles.delta_theta.sd,
+            period_s: cycles.period_s,
+            each: cycles
+                .cycles
+                .iter()
+                .filter_map(|cycle| Some([cycle.start_s, cycle.step.as_ref()?.x]))
+                .collect(),
+            left_out: cycles
+                .left_out
+                .iter()
+                .map(|(start, reason)| Excluded {
+                    what: format!("{start:.1} s"),
+                    reason: reason.to_string(),
+                })
+                .collect(),
+            path: samples
+                .iter()
+                .step_by(samples.len().div_ceil(PATH).max(1))
+                .map(|sample| [sample.pose.x, sample.pose.y])
+                .collect(),
+            warnings: run.warnings.clone(),
+        }
+    }
+}
+
+impl FitAnswer {
+    pub(super) fn new(found: &CampaignFit, campaign: &Campaign) -> Self {
+        let fit = &found.fit;
+        Self {
+            number: 0,
+            runs: found
+                .runs
+                .iter()
+                .map(|run| Run::new(run, &campaign.runs[run.index].gait))
+                .collect(),
+            sphere_radius_m: fit.sphere_radius,
+            chi: fit.chi,
+            rmse: fit.rmse,
+            intervals: (&fit.intervals).into(),
+            correlation: fit.correlation,
+            c_t_form: c_t_form(&fit.c_t_form),
+            excluded: found
+                .excluded
+                .iter()
+                .map(|run| Excluded {
+                    what: run.file.display().to_string(),
+                    reason: run.reason.clone(),
+                })
+                .collect(),
+            warnings: fit.warnings.iter().map(ToString::to_string).collect(),
+            swimmer: found.swimmer.to_toml(),
+        }
+    }
+
+    pub(super) fn numbered(self, number: u32) -> Self {
+        Self { number, ..self }
+    }
+}
+
+/// What speaks for the fit.
+#[derive(Serialize)]
+pub(super) struct EvidenceAnswer {
+    sphere_radius_m: f64,
+    chi: f64,
+    intervals: IntervalsAnswer,
+    correlation: f64,
+    /// Of the sphere radius \[m\] and χ.
+    profiles: [ProfileAnswer; 2],
+    ridge: Vec<ContourAnswer>,
+    start_curve: Vec<CurveAnswer>,
+    fitted_curve: Vec<CurveAnswer>,
+}
+
+#[derive(Serialize)]
+struct ProfileAnswer {
+    points: Vec<(f64, f64)>,
+    threshold: f64,
+    interval: [f64; 2],
+}
+
+/// The border of a joint region of both parameters.
+#[derive(Serialize)]
+struct ContourAnswer {
+    level: f64,
+    /// Sphere radius \[m\] and χ, once round.
+    corners: Vec<(f64, f64)>,
+}
+
+#[derive(Serialize)]
+struct CurveAnswer {
+    amplitude_rad: f64,
+    x_m: f64,
+    delta_y_m: f64,
+    delta_theta_rad: f64,
+}
+
+impl From<&CurvePoint> for CurveAnswer {
+    fn from(point: &CurvePoint) -> Self {
+        Self {
+            amplitude_rad: point.amplitude_rad,
+            x_m: point.cycle.x_m,
+            delta_y_m: point.cycle.delta_y_m,
+            delta_theta_rad: point.cycle.delta_theta_rad,
+        }
+    }
+}
+
+impl From<&Evidence> for EvidenceAnswer {
+    fn from(evidence: &Evidence) -> Self {
+        let likelihood = &evidence.likelihood;
+        let profile = |profile: &Profile| ProfileAnswer {
+            points: profile.points.clone(),
+            threshold: profile.threshold,
+            interval: profile.interval,
+        };
+        Self {
+            sphere_radius_m: likelihood.estimate.sphere_radius,
+            chi: likelihood.estimate.chi,
+            intervals: (&likelihood.intervals).into(),
+            correlation: likelihood.correlation,
+            profiles: [&evidence.profiles[0], &evidence.profiles[1]].map(profile),
+            ridge: evidence
+                .ridge
+                .contours
+                .iter()
+                .map(|contour| ContourAnswer {
+                    level: contour.level,
+                    corners: contour.corners.clone(),
+                })
+                .collect(),
+            start_curve: evidence.start_curve.iter().map(Into::into).collect(),
+            fitted_curve: evidence.fitted_curve.iter().map(Into::into).collect(),
+        }
+    }
+}
+
+/// What to make of the fit.
+#[derive(Serialize)]
+pub(super) struct AssessmentAnswer {
+    verdict: &'static str,
+    reasons: Vec<String>,
+    reduced_chi2: Option<f64>,
+}
+
+impl From<&Assessment> for AssessmentAnswer {
+    fn from(assessed: &Assessment) -> Self {
+        Self {
+            verdict: assessed.verdict.word(),
+            reasons: assessed.reasons.clone(),
+            reduced_chi2: assessed.goodness.reduced_chi2,
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! The calls of the calibrate room: dropped files are fitted as the library fits them.
+#![cfg(feature = "calibrate")]
+
+use calibrate::{CampaignData, FitOptions, calibrate_campaign};
+use serde_json::{Value, json};
+use swimmer_files::{Campaign, SwimmerFile};
+use swimmer_lab::calls::{Answer, Lab, call};
+
+/// Files as the page packs them.
+fn packed(files: &[(&str, &str)]) -> Vec<u8> {
+    let list: Vec<Value> = files
+        .iter()
+        .map(|(name, text)| json!({ "name": name, "length": text.len() }))
+        .collect();
+    let list = Value::from(list).to_string();
+    let mut bytes = u32::try_from(list.len()).unwrap().to_le_bytes().to_vec();
+    bytes.extend(list.as_bytes());
+    for (_, text) in files {
+        bytes.extend(text.as_bytes());
+    }
+    bytes
+}
+
+/// Results of four circles, as somebody wrote them down.
+fn campaign(swimmer: &str) -> String {
+    let runs = [
+        (40, 1.77, 9.9, 26.0),
+        (60, 4.12, 15.2, 38.3),
+        (80, 7.1, 20.8, 49.7),
+        (100, 9.5, 26.4, 60.1),
+    ];
+    runs.iter().fold(format!("swimmer = \"{swimmer}\"\n"), |text, (amplitude, x, delta_y, turn)| {
+        text + &format!(
+            "[[run]]\ngait = \"circle:{amplitude}deg\"\nperiod_s = 30.0\nx_mm = {x}\nx_se_mm = 0.05\ndelta_y_mm = {delta_y}\n\
+             delta_y_se_mm = 0.2\ndelta_theta_deg = {turn}\ndelta_theta_se_deg = 0.4\n"
+        )
+    })
+}
+
+fn asked(lab: &mut Lab, name: &str, bytes: &[u8]) -> Result<Value, String> {
+    match call(lab, name.as_bytes(), bytes)? {
+        Answer::Json(text) => Ok(serde_json::from_str(&text).unwrap()),
+        Answer::Bytes(_) => Err("bytes".to_owned()),
+    }
+}
+
+#[test]
+fn a_campaign_is_fitted_as_by_the_library() {
+    let ours = SwimmerFile::preset("robot").unwrap().to_toml();
+    let text = campaign("ours.toml");
+    let mut lab = Lab::default();
+    let files = packed(&[("ours.toml", &ours), ("campaign.toml", &text)]);
+    let told = asked(&mut lab, "calibrate", &files).unwrap();
+
+    let same = Campaign::parse(&campaign("robot"), "campaign.toml".as_ref()).unwrap();
+    let data = CampaignData::load(&same).unwrap();
+    let found = calibrate_campaign(&same, &data, FitOptions::default()).unwrap();
+    assert_eq!(told["chi"], found.fit.chi);
+    assert_eq!(told["sphere_radius_m"], found.fit.sphere_radius);
+    assert_eq!(told["runs"].as_array().unwrap().len(), 4);
+
+    let number = json!({ "number": told["number"] }).to_string();
+    let assessed = asked(&mut lab, "calibrate assessment", number.as_bytes()).unwrap();
+    assert!(assessed["verdict"].is_string(), "{assessed}");
+    asked(&mut lab, "calibrate close", number.as_bytes()).unwrap();
+    let gone = asked(&mut lab, "calibrate evidence", number.as_bytes()).unwrap_err();
+    assert!(gone.contains("gone"), "{gone}");
+}
+
+#[test]
+fn what_was_not_dropped_is_named() {
+    let mut lab = Lab::default();
+    let files = packed(&[("campaign.toml", &campaign("ours.toml"))]);
+    let reason = asked(&mut lab, "calibrate", &files).unwrap_err();
+    assert!(reason.contains("ours.toml"), "{reason}");
+    let reason = asked(&mut lab, "calibrate", &packed(&[("notes.txt", "")])).unwrap_err();
+    assert!(reason.contains("campaign"), "{reason}");
+    assert!(
+        asked(&mut lab, "calibrate", &[1, 0])
+            .unwrap_err()
+            .contains("less than it said")
+    );
+}
