@@ -22,6 +22,7 @@ use self::answer::DemoAnswer;
 use self::laboratory::Laboratory;
 use self::race::Race;
 use super::calibrate::{FittedCampaign, RunCycles, fit_campaign, single_run};
+use super::lab;
 use super::robot::table_of;
 use crate::arguments::load_swimmer;
 use crate::failure::{Failure, Outcome};
@@ -74,6 +75,7 @@ const BEST: &str = "best.gait";
 const BEST_TRACK: &str = "best.csv";
 const LINK_LOG: &str = "link.mcap";
 const REPORT: &str = "report.html";
+const LAB: &str = "lab.html";
 
 impl Demo {
     /// Goes round the loop and answers.
@@ -96,13 +98,29 @@ impl Demo {
         let round = Round::new(truth, line, self.seed, folder.draft(), interrupt.clone())
             .and_then(Round::go)
             .map_err(broken_off)?;
-        let page = report::page(&picture::report(&round)?)?;
+        let lab = lab_page(&round, folder.draft())?;
+        let page = report::page(&picture::report(&round, lab)?)?;
         write_atomically(&folder.draft().join(REPORT), page.as_bytes())?;
         let place = folder.place().to_owned();
         folder.publish()?;
         output.answer(&DemoAnswer::new(&round, &place));
         Ok(())
     }
+}
+
+/// Puts the lab page beside the report, where this checkout or release has it, and tells where it shows what was found.
+fn lab_page(round: &Finished, draft: &Path) -> Outcome<Option<String>> {
+    let Some(page) = lab::find() else {
+        return Ok(None);
+    };
+    std::fs::copy(&page, draft.join(LAB)).map_err(|error| {
+        Failure::Tried(format!(
+            "cannot copy the lab page {} into the report's folder: {error}",
+            page.display()
+        ))
+    })?;
+    let (bound, _) = round.bounds;
+    Ok(Some(lab::beside(LAB, &round.fitted, bound, round.period_s)))
 }
 
 /// What is known at the start of the round.

@@ -18,6 +18,7 @@ use serde::Serialize;
 use swimmer_files::write_atomically;
 
 use self::gate::{Gate, Token};
+pub(crate) use self::page::{beside, find};
 use self::visitor::House;
 use crate::commands::robot::PortToLend;
 use crate::failure::{Failure, Outcome};

@@ -54,6 +54,8 @@ pub(crate) struct Report {
     pub(crate) fastest: (f64, f64),
     /// The bound on the joints under which the robot took the gait, and the one of its servos, rad.
     pub(crate) bounds: (f64, f64),
+    /// Where the lab page shows the fitted swimmer and its gait, if the page is there.
+    pub(crate) lab: Option<String>,
     /// What lies in the folder beside the report: file name and what it holds.
     pub(crate) files: Vec<(String, String)>,
 }

@@ -103,6 +103,13 @@ fn heading(html: &mut String, report: &Report) {
         report.period_s,
         report.seed,
     );
+    if let Some(lab) = &report.lab {
+        let _ = write!(
+            html,
+            "<p><a href='{}'>Open the fitted swimmer and its gait in the lab page</a>: drag it, change the fluid, drive a robot.</p>",
+            escaped(lab)
+        );
+    }
 }
 
 fn cards(html: &mut String, report: &Report) {

@@ -43,6 +43,18 @@ for (const [name, launch] of Object.entries(BROWSERS)) {
       await tab.close();
     });
 
+    test("a report's link opens its swimmer and finds its gait", async () => {
+      const shown = { swimmer: "purcell", maxAngle: 2.4, period: 20, gaits: [{ kind: "optimum", what: "displacement" }] };
+      const tab = await Tab.open(browser, { hash: `#open=${encodeURIComponent(JSON.stringify(shown))}` });
+      await tab.until(() => JSON.parse(document.querySelector("#exact").textContent)[0] !== null, undefined, "the gait");
+      await tab.settled();
+      const [told] = await tab.exact();
+      const { displacement_over_length } = swimmer("optimize", "displacement", "--swimmer", "purcell", "--max-angle", "2.4");
+      assert.ok(Math.abs(told.displacement_over_length - displacement_over_length) < 1e-9, `${told.displacement_over_length}`);
+      assert.ok(!(await tab.evaluate(() => location.hash)).includes("open="));
+      await tab.close();
+    });
+
     test("a link opens what its sender saw", async () => {
       const tab = await Tab.open(browser);
       await tab.drag(HANDLE, [-20, 35]);

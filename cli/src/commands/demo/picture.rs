@@ -5,7 +5,7 @@ use swimmer_files::{AnyGait, GaitSpec, SwimmerFile};
 use swimmer_model::{Gait as _, Pose};
 use twin::Tank;
 
-use super::{BEST, BEST_TRACK, CAMPAIGN, FITTED, Finished, LINK_LOG, START};
+use super::{BEST, BEST_TRACK, CAMPAIGN, FITTED, Finished, LAB, LINK_LOG, START};
 use crate::commands::calibrate::RunAnswer;
 use crate::failure::{Failure, Outcome};
 use crate::quantity;
@@ -30,7 +30,7 @@ const START_WINDOW_S: f64 = 0.5;
 ///
 /// # Errors
 /// [`Failure::Tried`] when a model cannot swim what it is shown with.
-pub(super) fn report(round: &Finished) -> Outcome<Report> {
+pub(super) fn report(round: &Finished, lab: Option<String>) -> Outcome<Report> {
     let [radius, chi] = [round.fit.answer.sphere_radius_m, round.fit.answer.chi];
     let intervals = &round.fit.answer.intervals;
     let parameters = vec![
@@ -76,7 +76,8 @@ pub(super) fn report(round: &Finished) -> Outcome<Report> {
         ),
         displacement_tracked_m: (round.swum.answer.x_m, round.swum.answer.x_sd_m),
         bounds: round.bounds,
-        files: files(),
+        files: files(lab.is_some()),
+        lab,
     })
 }
 
@@ -257,8 +258,9 @@ fn gait(round: &Finished) -> Outcome<GaitPicture> {
     })
 }
 
-fn files() -> Vec<(String, String)> {
-    [
+fn files(with_lab: bool) -> Vec<(String, String)> {
+    let lab = (LAB, "the lab page: height map, gaits to drag, the robot");
+    let others = [
         (
             CAMPAIGN,
             "the circles; swimmer calibrate campaign.toml fits them again",
@@ -286,7 +288,8 @@ fn files() -> Vec<(String, String)> {
             LINK_LOG,
             "every frame on the link, both ways (MCAP, for Foxglove)",
         ),
-    ]
-    .map(|(name, what)| (name.to_owned(), what.to_owned()))
-    .into()
+    ];
+    let all = others.into_iter().chain(with_lab.then_some(lab));
+    all.map(|(name, what)| (name.to_owned(), what.to_owned()))
+        .collect()
 }

@@ -4,6 +4,10 @@ use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use percent_encoding::{NON_ALPHANUMERIC, utf8_percent_encode};
+use serde_json::json;
+use swimmer_files::SwimmerFile;
+
 use crate::failure::{Failure, Outcome};
 use crate::output::aside;
 
@@ -40,12 +44,47 @@ pub(super) fn load(named: Option<&Path>) -> Outcome<String> {
     Ok(page)
 }
 
+/// A link from a page in the same folder to the lab page `name`, open at a swimmer and the farthest gait within a bound \[rad\]: the
+/// page finds that gait itself.
+pub(crate) fn beside(name: &str, swimmer: &SwimmerFile, max_angle: f64, period_s: f64) -> String {
+    let shown = json!({
+        "swimmer": swimmer.to_toml(),
+        "maxAngle": max_angle,
+        "period": period_s,
+        "gaits": [{ "kind": "optimum", "what": "displacement" }],
+    });
+    let text = shown.to_string();
+    format!(
+        "{name}#open={}",
+        utf8_percent_encode(&text, NON_ALPHANUMERIC)
+    )
+}
+
 /// The page of this checkout or this release, where there is one.
-fn find() -> Option<PathBuf> {
+pub(crate) fn find() -> Option<PathBuf> {
     let program = env::current_exe().ok()?;
     let folder = program.parent()?;
     // target/debug/swimmer and target/lab/swimmer-lab.html
     [folder.join(NAME), folder.join("../lab").join(NAME)]
         .into_iter()
         .find(|path| path.is_file())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_holds_the_swimmer_and_breaks_no_page() {
+        let robot = SwimmerFile::preset("robot").unwrap();
+        let link = beside("lab.html", &robot, 2.4, 20.0);
+        let (name, shown) = link.split_once("#open=").unwrap();
+        assert_eq!(name, "lab.html");
+        assert!(
+            shown
+                .chars()
+                .all(|letter| letter.is_ascii_alphanumeric() || letter == '%')
+        );
+        assert!(shown.contains("%22maxAngle%22%3A2%2E4"), "{shown}");
+    }
 }

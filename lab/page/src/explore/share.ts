@@ -5,6 +5,7 @@ import { fragment, setFragment } from "../shell/fragment.ts";
 import { type Document, FIRST, type Gait, OPTIMA, type Optimum, type Point, shown } from "./document.ts";
 
 const KEY = "explore";
+const PLAIN = "open";
 
 async function through(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
   // What is wrong with the bytes is told by the reading side; the writing side only repeats it.
@@ -69,10 +70,23 @@ function gaitOf(told: unknown): Gait | null {
   return { kind: "drawn", points, symmetric: from["symmetric"] === true };
 }
 
+/** What a report links to: the document as plain JSON, as far as it differs from a fresh page. */
+function openPlain(): void {
+  const told = fragment().get(PLAIN);
+  if (!told) return;
+  setFragment(PLAIN, undefined);
+  try {
+    shown.value = sound(JSON.parse(told));
+  } catch {
+    // A link that was cut off opens a fresh page.
+  }
+}
+
 /** Opens what the fragment holds, then keeps it up to date, a moment after the hand rests. */
 export async function followFragment(): Promise<void> {
   const told = fragment().get(KEY);
   if (told) shown.value = await unpacked(told).catch(() => FIRST);
+  else openPlain();
   let timer = 0;
   effect(() => {
     const document = shown.value;
