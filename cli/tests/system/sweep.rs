@@ -267,3 +267,28 @@ fn a_script_for_slurm_needs_a_time() {
         assert!(script.lines().any(|one| one == line), "{script}");
     }
 }
+
+/// Tells how much faster two threads are than one, the best of three runs each: a figure for a quiet machine, so it is told, not
+/// asked for.
+#[test]
+#[ignore = "takes a minute, and tells times"]
+fn strong_scaling_on_two_cores() {
+    let folder = tempfile::tempdir().unwrap();
+    let spec = SPEC.replace("count = 12", "count = 24");
+    fs::write(folder.path().join("spec.toml"), spec).unwrap();
+    let mut best = [f64::INFINITY; 2];
+    for round in 0..3 {
+        for (threads, best) in (1..).zip(&mut best) {
+            let sweep = format!("of-{threads}-{round}");
+            typed(folder.path(), &format!("sweep plan spec.toml -o {sweep}")).with_status(0);
+            let line = format!("sweep run {sweep} --threads {threads} --json");
+            let ran = typed(folder.path(), &line).with_status(0).json();
+            *best = best.min(number(&ran, "seconds"));
+        }
+    }
+    let [one, two] = best;
+    println!(
+        "576 designs: {one:.2} s on one thread, {two:.2} s on two, {:.2} times as fast",
+        one / two
+    );
+}
