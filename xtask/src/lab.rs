@@ -23,8 +23,9 @@ const CALIBRATE: &str = "calibrate";
 const LARGEST_MODULE: usize = 1_200_000;
 const LARGEST_PAGE: usize = 1_600_000;
 /// What the compiler may use of a browser, told to the optimiser of modules.
-const FEATURES: [&str; 6] = [
+const FEATURES: [&str; 7] = [
     "--enable-bulk-memory",
+    "--enable-simd",
     "--enable-nontrapping-float-to-int",
     "--enable-sign-ext",
     "--enable-mutable-globals",
