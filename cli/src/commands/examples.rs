@@ -3,7 +3,7 @@
 use clap::Command;
 
 /// The words of a command, and what is typed after `swimmer`.
-pub(super) const EXAMPLES: [(&str, &str); 49] = [
+pub(super) const EXAMPLES: [(&str, &str); 51] = [
     ("demo", "demo --swimmer robot -o demo"),
     (
         "simulate",
@@ -107,6 +107,8 @@ pub(super) const EXAMPLES: [(&str, &str); 49] = [
     ("tracks", "tracks run.csv"),
     ("optimize", "optimize displacement --swimmer purcell"),
     ("robot", "robot stop --port /tmp/robot"),
+    ("sweep", "sweep plan morphology.toml -o morphology"),
+    ("sweep submit", "sweep submit slurm morphology --shards 64"),
 ];
 
 /// The command with an example at the end of each help that has none.

@@ -174,18 +174,26 @@ fn address(listener: &TcpListener, gate: &Gate) -> Outcome<String> {
     })?;
     if !place.ip().is_loopback() {
         aside(
-            "note: other machines reach this address, and the token crosses the network in the clear: whoever reads it may drive the robot",
+            "note: other machines reach this page at this one's address, and the token crosses the network in the clear: whoever reads it may drive the robot",
         );
     }
-    let host = match &gate.name {
-        Some(name) => format!("{name}:{}", place.port()),
-        None => place.to_string(),
-    };
+    let host = typed(gate.name.as_deref(), place);
     Ok(if gate.has_robot {
         format!("http://{host}/#link={}", gate.token)
     } else {
         format!("http://{host}/")
     })
+}
+
+/// Host and port as they are typed on this machine.
+fn typed(name: Option<&str>, place: SocketAddr) -> String {
+    let port = place.port();
+    match name {
+        Some(name) => format!("{name}:{port}"),
+        // All addresses at once, which cannot be typed.
+        None if place.ip().is_unspecified() => format!("127.0.0.1:{port}"),
+        None => place.to_string(),
+    }
 }
 
 /// Lets browsers in until the end; each connection has a thread.
@@ -221,4 +229,19 @@ fn serve(house: &House, stream: TcpStream, id: u64) -> io::Result<()> {
     // It may have inherited the listener's way.
     stream.set_nonblocking(false)?;
     house.serve(stream, id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::typed;
+
+    #[test]
+    fn the_address_can_be_typed() {
+        let typed = |name, place: &str| typed(name, place.parse().unwrap());
+        assert_eq!(typed(None, "127.0.0.1:7070"), "127.0.0.1:7070");
+        assert_eq!(typed(None, "[::1]:7070"), "[::1]:7070");
+        assert_eq!(typed(None, "0.0.0.0:7070"), "127.0.0.1:7070");
+        assert_eq!(typed(None, "[::]:7070"), "127.0.0.1:7070");
+        assert_eq!(typed(Some("lab-pc"), "192.0.2.7:80"), "lab-pc:80");
+    }
 }
