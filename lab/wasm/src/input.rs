@@ -4,6 +4,7 @@ use std::path::Path;
 
 use nalgebra::Vector2;
 use serde::Deserialize;
+use serde_json::Value;
 use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile};
 use swimmer_model::Model;
 
@@ -32,12 +33,30 @@ impl SwimmerText {
 
 /// A gait: `circle:AMPLITUDE`, `square:AMPLITUDE`, the text of a gait file, or bare samples.
 #[derive(Debug, Deserialize)]
-#[serde(untagged)]
+#[serde(try_from = "Value")]
 pub(crate) enum GaitText {
     /// As on the command line, or a file's text.
     Text(String),
     /// The cycle in even steps, φ₁ and φ₂ \[rad\] in turn, without the last sample, which is the first.
     Even(Vec<f64>),
+}
+
+/// By way of a value, and not untagged: serde would buffer numbers, which then depends on what other crates ask of `serde_json`.
+impl TryFrom<Value> for GaitText {
+    type Error = &'static str;
+
+    fn try_from(value: Value) -> Result<Self, Self::Error> {
+        match value {
+            Value::String(text) => Some(Self::Text(text)),
+            Value::Array(phi) => phi
+                .iter()
+                .map(Value::as_f64)
+                .collect::<Option<_>>()
+                .map(Self::Even),
+            _ => None,
+        }
+        .ok_or("a gait is a text or a list of angles")
+    }
 }
 
 /// Samples that a circle or a square is written and asked by, as `swimmer certify` asks them.

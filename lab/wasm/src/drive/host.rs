@@ -154,32 +154,40 @@ pub(super) fn connect(lab: &mut Lab, bytes: &[u8]) -> Outcome {
 
 #[derive(Deserialize)]
 struct Asked {
-    #[serde(flatten)]
-    at: At,
+    number: u32,
+    now_s: f64,
     request: Request,
 }
 
 /// Asks something of the robot, in the link's own words (`"Stop"`, `{"Arm": {"clear_estop": false}}`).
 pub(super) fn request(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let Asked { at, request } = parsed(bytes)?;
-    let host: &mut Host = lab.kept.get(at.number)?;
-    ticket(host.session.request(seconds_of(at.now_s)?, request))
+    let Asked {
+        number,
+        now_s,
+        request,
+    } = parsed(bytes)?;
+    let host: &mut Host = lab.kept.get(number)?;
+    ticket(host.session.request(seconds_of(now_s)?, request))
 }
 
 #[derive(Deserialize)]
 struct Upload {
-    #[serde(flatten)]
-    at: At,
+    number: u32,
+    now_s: f64,
     gait: GaitText,
 }
 
 /// Sends a gait, as the table that `swimmer robot upload` makes of it.
 pub(super) fn upload(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let Upload { at, gait } = parsed(bytes)?;
+    let Upload {
+        number,
+        now_s,
+        gait,
+    } = parsed(bytes)?;
     let table = table(&gait.read()?, MAX_KNOTS)
         .map_err(|why| format!("making a table of the gait for the robot: {why}"))?;
-    let host: &mut Host = lab.kept.get(at.number)?;
-    let now = seconds_of(at.now_s)?;
+    let host: &mut Host = lab.kept.get(number)?;
+    let now = seconds_of(now_s)?;
     ticket(host.session.upload(now, 0, table.bytes(), now + PATIENCE))
 }
 
