@@ -12,7 +12,7 @@ mod told;
 
 use std::time::Duration;
 
-use crate::calls::Call;
+use crate::calls::{Call, Lab, Outcome, json, parsed};
 
 /// The calls, by name.
 pub const CALLS: &[(&str, Call)] = &[
@@ -24,14 +24,14 @@ pub const CALLS: &[(&str, Call)] = &[
     ("session cancel upload", host::cancel_upload),
     ("session link", host::link),
     ("session log", host::log),
-    ("session close", host::close),
+    ("session close", close),
     ("overhear open", overheard::open),
     ("overhear step", overheard::step),
-    ("overhear close", overheard::close),
+    ("overhear close", close),
     ("twin open", robot::open),
     ("twin step", robot::step),
     ("twin stands", robot::stands),
-    ("twin close", robot::close),
+    ("twin close", close),
     ("preflight", preflight::preflight),
 ];
 
@@ -50,7 +50,14 @@ fn seconds_of(seconds: f64) -> Result<Duration, String> {
         .map_err(|why| format!("reading the page's time {seconds} s: {why}"))
 }
 
-/// What a thing that is closed is named by.
+/// Lets go of a session, a robot or an ear.
+fn close(lab: &mut Lab, bytes: &[u8]) -> Outcome {
+    let Numbered { number } = parsed(bytes)?;
+    lab.kept.drop(number);
+    json(&serde_json::json!({}))
+}
+
+/// What names a thing and nothing else.
 #[derive(serde::Deserialize)]
 struct Numbered {
     number: u32,

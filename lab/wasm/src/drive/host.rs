@@ -221,10 +221,3 @@ pub(super) fn log(lab: &mut Lab, bytes: &[u8]) -> Outcome {
         .map(Answer::Bytes)
         .map_err(|why| why.to_string())
 }
-
-/// Lets go of a session.
-pub(super) fn close(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let Numbered { number } = parsed(bytes)?;
-    lab.kept.drop(number);
-    json(&json!({}))
-}

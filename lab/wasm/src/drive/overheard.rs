@@ -3,8 +3,8 @@
 use link_protocol::{Decoder, Message};
 use serde_json::{Value, json};
 
-use super::{Numbered, Opened, step_of, told};
-use crate::calls::{Lab, Outcome, json, parsed};
+use super::{Opened, step_of, told};
+use crate::calls::{Lab, Outcome, json};
 
 /// Listens from now on.
 pub(super) fn open(lab: &mut Lab, _bytes: &[u8]) -> Outcome {
@@ -29,11 +29,4 @@ pub(super) fn step(lab: &mut Lab, bytes: &[u8]) -> Outcome {
         })
         .collect();
     json(&json!({ "events": events }))
-}
-
-/// Listens no longer.
-pub(super) fn close(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let Numbered { number } = parsed(bytes)?;
-    lab.kept.drop(number);
-    json(&json!({}))
 }

@@ -84,10 +84,3 @@ pub(super) fn stands(lab: &mut Lab, bytes: &[u8]) -> Outcome {
         "cycles": robot.twin.cycle_starts().len(),
     }))
 }
-
-/// Switches it off.
-pub(super) fn close(lab: &mut Lab, bytes: &[u8]) -> Outcome {
-    let Numbered { number } = parsed(bytes)?;
-    lab.kept.drop(number);
-    json(&json!({}))
-}
