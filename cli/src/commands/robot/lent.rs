@@ -8,7 +8,7 @@ use std::io;
 use std::time::{Duration, Instant};
 
 use host_link::Port as _;
-use host_link::session::{Event, Session, SessionConfig};
+use host_link::session::{Event, Session, SessionConfig, Ticket};
 use link_protocol::{Decoder, Message, Request, StateName, Telemetry};
 
 use super::access::{A_MOMENT, reach_alone};
@@ -39,7 +39,7 @@ pub(crate) struct LentPort {
     port: Option<AnyPort>,
     holder: Holder,
     /// Says stop until the robot has heard it.
-    stopping: Option<Session>,
+    stopping: Option<(Session, Ticket)>,
     heard: Decoder,
     told: Option<Telemetry>,
     looked: Instant,
@@ -130,15 +130,19 @@ impl LentPort {
         let Some(port) = &mut self.port else {
             return;
         };
-        let mut session = Session::new(SessionConfig {
-            seed: session_seed(),
-            ..self.means.session
-        });
-        session.request(
-            port.now(),
-            if estop { Request::EStop } else { Request::Stop },
+        // The same session as of a stop that is still unanswered: it knows that an e-stop must not become a plain one.
+        let mut session = self.stopping.take().map_or_else(
+            || {
+                Session::new(SessionConfig {
+                    seed: session_seed(),
+                    ..self.means.session
+                })
+            },
+            |(session, _)| session,
         );
-        self.stopping = Some(session);
+        let request = if estop { Request::EStop } else { Request::Stop };
+        let ticket = session.request(port.now(), request);
+        self.stopping = Some((session, ticket));
         if let Err(error) = self.drive_stop(&[]) {
             self.gone(&error);
         }
@@ -162,7 +166,7 @@ impl LentPort {
     }
 
     fn drive_stop(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let (Some(session), Some(port)) = (&mut self.stopping, &mut self.port) else {
+        let (Some((session, asked)), Some(port)) = (&mut self.stopping, &mut self.port) else {
             return Ok(());
         };
         let now = port.now();
@@ -170,9 +174,14 @@ impl LentPort {
         session.poll(now);
         let frames = session.take_outgoing();
         let mut ended = false;
-        // The one thing asked of it was a stop: whatever ends that ends the session.
+        // Nothing was asked of it but stops: whatever ends the last one ends the session.
         while let Some(event) = session.next_event() {
-            ended |= !matches!(event, Event::Telemetry { .. });
+            ended |= matches!(
+                event,
+                Event::Answered { ticket, .. }
+                | Event::StoppedByItself { ticket, .. }
+                | Event::Failed { ticket, .. } if ticket == *asked
+            );
         }
         if ended {
             self.stopping = None;
