@@ -20,11 +20,15 @@ mod resolution;
 mod singular;
 mod stencil;
 mod symmetry;
+mod variation;
+
+use std::cell::OnceCell;
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{
-    InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, crossing_share, swim,
+    InvalidSamples, InvalidSwimmer, Model, SecondDerivatives, Swimmer, Tolerance, crossing_share,
+    swim,
 };
 
 use crate::OptimalGait;
@@ -87,6 +91,8 @@ struct Subject<'a> {
     path: Path,
     /// The same by the coarser polynomials.
     coarse: Path,
+    /// The model's derivatives at the shapes, once somebody asks.
+    seconds: OnceCell<Vec<SecondDerivatives<f64>>>,
     symmetric: bool,
     /// How far from a bound a sample on it may be written \[rad\].
     written: f64,
@@ -259,9 +265,11 @@ impl<'a> Subject<'a> {
             grid::told_by_arcs(gait)
         };
         let (grid, shapes) = Grid::new(gait, &along);
+        let path = Path::new(model, &grid, &shapes, Degree::Fine);
         Self {
-            path: Path::new(model, &grid, &shapes, Degree::Fine),
-            coarse: Path::new(model, &grid, &shapes, Degree::Coarse),
+            coarse: path.again(&grid, &shapes, Degree::Coarse),
+            path,
+            seconds: OnceCell::new(),
             symmetric: is_symmetric(gait),
             written: 2.0 * Rounding::of(gait).phi,
             model,
@@ -269,6 +277,15 @@ impl<'a> Subject<'a> {
             grid,
             shapes,
         }
+    }
+
+    fn seconds(&self) -> &[SecondDerivatives<f64>] {
+        self.seconds.get_or_init(|| {
+            let seconds = self.shapes.iter();
+            seconds
+                .map(|phi| self.model.second_derivatives(phi))
+                .collect()
+        })
     }
 
     fn openness(&self) -> Openness {

@@ -187,12 +187,8 @@ impl HeightMap {
         };
         for (k, row) in self.coefficients.rows.iter().enumerate() {
             let mut sums = [0.0; 3];
-            for ((column, p2), d2) in row.column_iter().zip(&p2).zip(&d2) {
-                let (mut value, mut slope) = (0.0, 0.0);
-                for ((c, p1), d1) in column.iter().zip(&p1).zip(&d1) {
-                    value += c * p1;
-                    slope += c * d1;
-                }
+            for ((column, p2), d2) in row.as_slice().chunks_exact(n).zip(&p2).zip(&d2) {
+                let [value, slope] = both(column, [&p1[..n], &d1[..n]]);
                 sums[0] += value * p2;
                 sums[1] += slope * p2;
                 sums[2] += value * d2;
@@ -290,6 +286,21 @@ impl Row {
             Self::Theta => 2,
         }
     }
+}
+
+/// The dot products of a column with values and slopes of as many polynomials. Every order is a multiple of the lanes, whose
+/// sums do not wait for one another.
+fn both(column: &[f64], [values, slopes]: [&[f64]; 2]) -> [f64; 2] {
+    const LANES: usize = 4;
+    let (mut value, mut slope) = ([0.0; LANES], [0.0; LANES]);
+    let fours = |all| <[f64]>::chunks_exact(all, LANES);
+    for ((c, p), d) in fours(column).zip(fours(values)).zip(fours(slopes)) {
+        for lane in 0..LANES {
+            value[lane] += c[lane] * p[lane];
+            slope[lane] += c[lane] * d[lane];
+        }
+    }
+    [value, slope].map(|[a, b, c, d]| (a + b) + (c + d))
 }
 
 /// R(−angle) v

@@ -8,7 +8,6 @@ use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use super::Subject;
-use super::grid::Degree;
 use super::limits::Limits;
 use super::neighbours::{Ascents, Gain, Neighbours};
 use crate::OptimalGait;
@@ -38,13 +37,13 @@ pub(crate) fn around(model: &Model<f64>, gait: &OptimalGait) -> Option<Around> {
     let limits = Limits::new(&gait.bounds, &gait.swimmer.links);
     let subject = Subject::new(model, &file, limits);
     let ascents = Neighbours {
-        model,
         grid: &subject.grid,
-        shapes: &subject.shapes,
+        path: &subject.path,
+        coarse: &subject.coarse,
+        seconds: subject.seconds(),
         gain: Gain::Displacement,
         rotation: subject.weak_momentum(Gain::Displacement)?.c,
         symmetric: false,
-        degree: Degree::Fine,
     }
     .ascents()?;
     let check = ascents.check();

@@ -162,16 +162,26 @@ impl Grid {
         let mut sums = Vec::with_capacity(values.len());
         for interval in &self.intervals {
             if let Some(interval) = interval {
-                let (weights, low) = match degree {
-                    Degree::Fine => (&interval.weights, interval.low),
-                    Degree::Coarse => (&interval.coarse, interval.coarse_low),
-                };
+                let (weights, low) = interval.by(degree);
+                let values = values.get(low..).unwrap_or_default();
                 sum = weights
                     .iter()
-                    .zip(values.iter().skip(low))
+                    .zip(values)
                     .fold(sum, |sum, (&weight, &value)| sum + value * weight);
             }
             sums.push(sum);
+        }
+        sums
+    }
+
+    /// What each node counts for in an integral round the whole cycle.
+    pub(super) fn weights(&self, degree: Degree) -> Vec<f64> {
+        let mut sums = vec![0.0; self.nodes.len()];
+        for interval in self.intervals.iter().flatten() {
+            let (weights, low) = interval.by(degree);
+            for (sum, weight) in sums.iter_mut().skip(low).zip(weights) {
+                *sum += weight;
+            }
         }
         sums
     }
@@ -206,16 +216,27 @@ impl Grid {
             // Two pieces meet here.
             return values.get(node).copied().unwrap_or(f64::NAN);
         };
-        let [weights, ..] = stencil::derivatives(&self.places(&stencil), u);
+        let [weights] = stencil::derivatives(&self.places(&stencil), u);
         let values = values.get(stencil).unwrap_or_default();
         weights.iter().zip(values).map(|(w, v)| w * v).sum()
     }
 }
 
+impl Interval {
+    /// Weights, and the node of the first.
+    fn by(&self, degree: Degree) -> (&Weights, usize) {
+        match degree {
+            Degree::Fine => (&self.weights, self.low),
+            Degree::Coarse => (&self.coarse, self.coarse_low),
+        }
+    }
+}
+
 fn weigh(weights: &Weights, values: &[Vector2<f64>], low: usize) -> Vector2<f64> {
+    let values = values.get(low..).unwrap_or_default();
     weights
         .iter()
-        .zip(values.iter().skip(low))
+        .zip(values)
         .fold(Vector2::zeros(), |sum, (&weight, value)| {
             sum + value * weight
         })

@@ -1,17 +1,17 @@
 //! The second-order test that any curve can be asked: is a neighbour better?
 //!
-//! The curve is pushed along its normal by a few smooth waves that vanish on bounds and at corners. The objective's gradient
-//! in these waves is exact, its differences give the Hessian, and on the waves that turn nothing the Hessian of an optimum
-//! has no direction that leads up.
+//! The curve is pushed along its normal by a few smooth waves that vanish on bounds and at corners. The objective's Hessian in
+//! these waves is exact ([`super::variation`]), and on the waves that turn nothing that of an optimum has no direction that
+//! leads up.
 
 use nalgebra::{DMatrix, DVector, Vector2};
-use swimmer_model::Model;
+use swimmer_model::SecondDerivatives;
 
 use super::Subject;
 use super::grid::{Along, Degree, Grid};
-use super::path::{Path, Place};
+use super::path::Path;
+use super::variation::{Push, Variation};
 use crate::certificate::Check;
-use crate::momentum::Momentum;
 
 /// What is maximised, as far as the Hessian is concerned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,25 +28,24 @@ pub(super) enum Gain {
 
 /// A curve and what it is optimal for.
 pub(super) struct Neighbours<'a> {
-    pub(super) model: &'a Model<f64>,
     pub(super) grid: &'a Grid,
-    pub(super) shapes: &'a [Vector2<f64>],
+    pub(super) path: &'a Path,
+    /// The same by the coarser polynomials.
+    pub(super) coarse: &'a Path,
+    /// The model's derivatives at its shapes.
+    pub(super) seconds: &'a [SecondDerivatives<f64>],
     pub(super) gain: Gain,
     /// Multiplier of rotation, in the units of the gain.
     pub(super) rotation: f64,
     /// Only waves that keep the paper's symmetries.
     pub(super) symmetric: bool,
-    /// Slopes and integrals by these polynomials.
-    pub(super) degree: Degree,
 }
 
 /// Waves of a gait with the paper's symmetries, and of any other gait.
 const WAVES: [usize; 2] = [10, 17];
-/// Size of the pushes \[rad\].
-const PUSH: f64 = 1e-4;
 /// Eigenvalues below this part of the largest are not told from zero.
 const FLAT: f64 = 1e-5;
-/// Differences of gradients leave less than this part of the Hessian open by rounding.
+/// Rounding leaves less than this part of the Hessian open.
 const ROUNDING: f64 = 1e-9;
 
 /// The directions that lead up from a curve.
@@ -75,13 +74,13 @@ impl Subject<'_> {
     pub(super) fn ascents(&self, gain: Gain, rotation: f64) -> Vec<Check> {
         let of = |symmetric: bool| {
             let neighbours = Neighbours {
-                model: self.model,
                 grid: &self.grid,
-                shapes: &self.shapes,
+                path: &self.path,
+                coarse: &self.coarse,
+                seconds: self.seconds(),
                 gain,
                 rotation,
                 symmetric,
-                degree: Degree::Fine,
             };
             Some(neighbours.ascents()?.check())
         };
@@ -100,13 +99,13 @@ impl Subject<'_> {
 impl Neighbours<'_> {
     /// Which directions lead up; none where the curve cannot be pushed.
     pub(super) fn ascents(&self) -> Option<Ascents> {
-        let slopes = self.grid.slopes(self.shapes, Degree::Fine);
+        let slopes: Vec<_> = self.path.places.iter().map(|place| place.rate).collect();
         let waves = self.waves(&slopes);
         let size = waves.len();
         if size == 0 {
             return None;
         }
-        let Some((reduced, before)) = self.second_variation(&waves) else {
+        let Some((reduced, before)) = self.second_variation(&waves, Degree::Fine) else {
             // Nothing is known of any.
             return Some(Ascents {
                 count: size,
@@ -124,16 +123,12 @@ impl Neighbours<'_> {
         let unsure = if count == 0 {
             0
         } else {
-            let coarse = Self {
-                degree: Degree::Coarse,
-                ..*self
-            };
-            let other = coarse.second_variation(&waves);
+            let other = self.second_variation(&waves, Degree::Coarse);
             let apart = other.map_or(f64::INFINITY, |(other, _)| (&reduced - other).norm());
             count - up(level + apart)
         };
         let weights = eigen.eigenvectors.column(values.imax());
-        let mut steepest = vec![Vector2::zeros(); self.shapes.len()];
+        let mut steepest = vec![Vector2::zeros(); slopes.len()];
         for (wave, weight) in waves.iter().zip(&weights) {
             for (sum, push) in steepest.iter_mut().zip(wave) {
                 *sum += push * *weight;
@@ -151,25 +146,30 @@ impl Neighbours<'_> {
     }
 
     /// The Hessian on the pushes that turn nothing, and the largest entry of the whole one; none where it is not finite.
-    fn second_variation(&self, waves: &[Vec<Vector2<f64>>]) -> Option<(DMatrix<f64>, f64)> {
+    fn second_variation(
+        &self,
+        waves: &[Vec<Vector2<f64>>],
+        degree: Degree,
+    ) -> Option<(DMatrix<f64>, f64)> {
         let size = waves.len();
-        let path = Path::new(self.model, self.grid, self.shapes, self.degree);
-        let turned = waves.iter().map(|wave| self.turned(&path, wave, |by| by));
+        let path = match degree {
+            Degree::Fine => self.path,
+            Degree::Coarse => self.coarse,
+        };
+        let gain = (self.gain, self.rotation);
+        let variation = Variation::new(self.grid, path, self.seconds, degree, gain);
+        let push = |wave: &Vec<Vector2<f64>>| Push {
+            slopes: self.grid.slopes(wave, degree),
+            by: wave.clone(),
+        };
+        let pushes: Vec<Push> = waves.iter().map(push).collect();
+        let turned = pushes.iter().map(|push| variation.turned(push, |by| by));
         let turned = DVector::from_iterator(size, turned);
-        let reach = waves.iter().map(|wave| self.turned(&path, wave, f64::abs));
+        let reach = pushes.iter().map(|push| variation.turned(push, f64::abs));
         let reach = reach.fold(0.0, f64::max);
         let mut hessian = DMatrix::zeros(size, size);
-        for (k, wave) in waves.iter().enumerate() {
-            let pushed = |by: f64| {
-                let shapes: Vec<_> = self
-                    .shapes
-                    .iter()
-                    .zip(wave)
-                    .map(|(shape, wave)| shape + wave * by)
-                    .collect();
-                self.gradient(&shapes, waves)
-            };
-            hessian.set_column(k, &((pushed(PUSH) - pushed(-PUSH)) / (2.0 * PUSH)));
+        for (k, push) in pushes.iter().enumerate() {
+            hessian.set_column(k, &variation.of_gradient(push, &pushes));
         }
         let hessian = 0.5 * (&hessian + hessian.transpose());
         if !hessian.iter().all(|entry| entry.is_finite()) {
@@ -264,86 +264,6 @@ impl Neighbours<'_> {
             begun = run;
         }
         windows
-    }
-
-    /// Gradient of the gain (with the multiplier of rotation) in the waves, at the curve through these shapes.
-    fn gradient(&self, shapes: &[Vector2<f64>], waves: &[Vec<Vector2<f64>>]) -> DVector<f64> {
-        let path = Path::new(self.model, self.grid, shapes, self.degree);
-        let d = path.displacement();
-        let p = match self.gain {
-            Gain::Displacement => d / d.norm(),
-            Gain::Efficiency => d / d.norm_squared(),
-            Gain::Sideways => Vector2::new(0.0, d.y.signum()),
-            Gain::Turning => Vector2::zeros(),
-        };
-        let momentum = Momentum {
-            p,
-            c: self.rotation,
-        };
-        let length = path.total_power_length();
-        let of_wave = |wave: &Vec<Vector2<f64>>| {
-            let moved = self.enclosed(&path, &momentum, wave);
-            match self.gain {
-                Gain::Efficiency => moved - self.lengthened(&path, wave) / length,
-                Gain::Displacement | Gain::Sideways | Gain::Turning => moved,
-            }
-        };
-        DVector::from_iterator(waves.len(), waves.iter().map(of_wave))
-    }
-
-    /// First variation of Δθ under a push of the curve, each part of it taken as told.
-    fn turned(&self, path: &Path, wave: &[Vector2<f64>], part: fn(f64) -> f64) -> f64 {
-        self.summed(path, wave, |place, swept| {
-            part(place.first.curvature().z * swept)
-        })
-    }
-
-    /// First variation of p · d + cΔθ under a push of the curve.
-    fn enclosed(&self, path: &Path, momentum: &Momentum, wave: &[Vector2<f64>]) -> f64 {
-        let inside = self.summed(path, wave, |place, swept| place.height(momentum) * swept);
-        let ends = match (path.places.first(), path.places.last(), wave.first()) {
-            (Some(first), Some(last), Some(push)) => (momentum.at(&last.pose)
-                - momentum.at(&first.pose))
-            .dot(&(first.first.connection * push)),
-            _ => 0.0,
-        };
-        inside + ends
-    }
-
-    /// The integral round the curve of what is gained at a place that sweeps so much area \[rad² per u\] as it is pushed.
-    fn summed(
-        &self,
-        path: &Path,
-        wave: &[Vector2<f64>],
-        gained: impl Fn(&Place, f64) -> f64,
-    ) -> f64 {
-        let gained: Vec<f64> = path
-            .places
-            .iter()
-            .zip(wave)
-            .map(|(place, push)| gained(place, push.perp(&place.rate)))
-            .collect();
-        let integrals = self.grid.integrals(&gained, 0.0, self.degree);
-        integrals.last().copied().unwrap_or_default()
-    }
-
-    /// First variation of ∮√P under a push of the curve.
-    fn lengthened(&self, path: &Path, wave: &[Vector2<f64>]) -> f64 {
-        let slopes = self.grid.slopes(wave, self.degree);
-        let longer: Vec<f64> = path
-            .places
-            .iter()
-            .zip(wave.iter().zip(&slopes))
-            .map(|(place, (push, slope))| {
-                let [d1, d2] = &place.first.d_power;
-                let rate = &place.rate;
-                let dearer =
-                    0.5 * (push.x * rate.dot(&(d1 * rate)) + push.y * rate.dot(&(d2 * rate)));
-                (rate.dot(&(place.first.power * slope)) + dearer) / place.root_power
-            })
-            .collect();
-        let integrals = self.grid.integrals(&longer, 0.0, self.degree);
-        integrals.last().copied().unwrap_or_default()
     }
 }
 

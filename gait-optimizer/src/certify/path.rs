@@ -17,6 +17,8 @@ pub(super) struct Place {
     pub(super) first: FirstDerivatives<f64>,
     /// x, y over L and θ, from the first sample.
     pub(super) pose: [f64; 3],
+    /// sin θ and cos θ.
+    pub(super) heading: (f64, f64),
     /// The root of the power `P = Φ'ᵀWΦ'`.
     pub(super) root_power: f64,
 }
@@ -44,19 +46,34 @@ impl Path {
         shapes: &[Vector2<f64>],
         degree: Degree,
     ) -> Self {
+        let firsts = shapes.iter().map(|phi| model.first_derivatives(phi));
+        Self::through(grid, shapes, firsts, degree)
+    }
+
+    /// The same path by other polynomials.
+    pub(super) fn again(&self, grid: &Grid, shapes: &[Vector2<f64>], degree: Degree) -> Self {
+        let firsts = self.places.iter().map(|place| place.first);
+        Self::through(grid, shapes, firsts, degree)
+    }
+
+    fn through(
+        grid: &Grid,
+        shapes: &[Vector2<f64>],
+        firsts: impl Iterator<Item = FirstDerivatives<f64>>,
+        degree: Degree,
+    ) -> Self {
         let rates = grid.slopes(shapes, degree);
         let mut places: Vec<Place> = shapes
             .iter()
             .zip(&rates)
-            .map(|(&phi, &rate)| {
-                let first = model.first_derivatives(&phi);
-                Place {
-                    phi,
-                    rate,
-                    first,
-                    pose: [0.0; 3],
-                    root_power: rate.dot(&(first.power * rate)).max(0.0).sqrt(),
-                }
+            .zip(firsts)
+            .map(|((&phi, &rate), first)| Place {
+                phi,
+                rate,
+                first,
+                pose: [0.0; 3],
+                heading: (0.0, 1.0),
+                root_power: rate.dot(&(first.power * rate)).max(0.0).sqrt(),
             })
             .collect();
         let body: Vec<Vector3<f64>> = places
@@ -65,11 +82,14 @@ impl Path {
             .collect();
         let turning: Vec<f64> = body.iter().map(|rate| rate.z).collect();
         let headings = grid.integrals(&turning, 0.0, degree);
+        for (place, theta) in places.iter_mut().zip(&headings) {
+            place.heading = theta.sin_cos();
+        }
         let velocities: Vec<Vector2<f64>> = body
             .iter()
-            .zip(&headings)
-            .map(|(body, theta)| {
-                let (sin, cos) = theta.sin_cos();
+            .zip(&places)
+            .map(|(body, place)| {
+                let (sin, cos) = place.heading;
                 Vector2::new(cos * body.x - sin * body.y, sin * body.x + cos * body.y)
             })
             .collect();
@@ -131,7 +151,7 @@ pub(super) fn stepped(model: &Model<f64>, grid: &Grid, shapes: &[Vector2<f64>]) 
         let places = grid.places(&stencil);
         let shapes = shapes.get(stencil).unwrap_or_default();
         let rate = |z: &[f64; 4]| {
-            let [value, slope, _] = stencil::derivatives(&places, z[0]);
+            let [value, slope] = stencil::derivatives(&places, z[0]);
             let weigh = |weights: &stencil::Weights| {
                 shapes
                     .iter()

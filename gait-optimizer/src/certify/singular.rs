@@ -64,9 +64,9 @@ impl Subject<'_> {
             .path
             .places
             .iter()
-            .map(|place| {
-                let second = self.model.second_derivatives(&place.phi);
-                let gradient = momentum.height(&second, &place.pose).gradient;
+            .zip(self.seconds())
+            .map(|(place, second)| {
+                let gradient = momentum.height(second, &place.pose).gradient;
                 let curvature = place.first.curvature();
                 Look {
                     height: place.height(&momentum),

@@ -11,11 +11,12 @@ const FEWER: usize = 2;
 /// One weight for each sample of a stencil; those beyond the stencil are zero.
 pub(super) type Weights = [f64; MOST];
 
-/// Value, slope and bend at one place of the polynomial through the samples at `places` (at most [`MOST`]).
+/// Value, slope, bend, as many of them as are asked for, at one place of the polynomial through the samples at `places` (at
+/// most [`MOST`]).
 ///
 /// B. Fornberg, *Generation of finite difference formulas on arbitrarily spaced grids*, Math. Comp. 51 (1988).
-pub(super) fn derivatives(places: &[f64], at: f64) -> [Weights; 3] {
-    let mut weights = [[0.0; MOST]; 3];
+pub(super) fn derivatives<const ORDERS: usize>(places: &[f64], at: f64) -> [Weights; ORDERS] {
+    let mut weights = [[0.0; MOST]; ORDERS];
     let (mut product, mut ahead) = (1.0, places.first().map_or(0.0, |first| first - at));
     weights[0][0] = 1.0;
     for (i, &place) in places.iter().enumerate().take(MOST).skip(1) {
@@ -26,14 +27,14 @@ pub(super) fn derivatives(places: &[f64], at: f64) -> [Weights; 3] {
             let apart = place - other;
             new_product *= apart;
             if j + 1 == i {
-                for k in (1..3).rev() {
+                for k in (1..ORDERS).rev() {
                     weights[k][i] = product
                         * (k as f64 * weights[k - 1][i - 1] - behind * weights[k][i - 1])
                         / new_product;
                 }
                 weights[0][i] = -product * behind * weights[0][i - 1] / new_product;
             }
-            for k in (1..3).rev() {
+            for k in (1..ORDERS).rev() {
                 weights[k][j] = (ahead * weights[k][j] - k as f64 * weights[k - 1][j]) / apart;
             }
             weights[0][j] *= ahead / apart;
@@ -56,7 +57,7 @@ pub(super) fn integral(places: &[f64], from: f64, to: f64) -> Weights {
     let (middle, half) = (f64::midpoint(from, to), 0.5 * (to - from));
     let mut sum = [0.0; MOST];
     for (place, weight) in RULE {
-        let [value, ..] = derivatives(places, middle + half * place);
+        let [value] = derivatives(places, middle + half * place);
         for (total, part) in sum.iter_mut().zip(value) {
             *total += half * weight * part;
         }
