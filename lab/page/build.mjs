@@ -1,7 +1,8 @@
 // Bundles the page into one HTML file: `node build.mjs OUTPUT.html VERSION HASH MODULE.wasm…`.
 //
 // A module goes in compressed, as text that the browser's parser passes over; a worker goes in as text that is made a Blob,
-// because a page opened from disk may load nothing beside itself.
+// because a page opened from disk may load nothing beside itself. The page's charset is windows-1252, so that a compressed byte is
+// a byte of the page; all else in it is ASCII, and the bundler escapes what is not.
 
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { basename, dirname, join, resolve } from "node:path";
@@ -23,7 +24,7 @@ const options = {
   target: ["chrome110", "firefox115"],
   minify: true,
   legalComments: "none",
-  charset: "utf8",
+  charset: "ascii",
   jsx: "automatic",
   jsxImportSource: "preact",
   loader: { ".svg": "text" },
@@ -53,7 +54,19 @@ async function bundled(entry) {
 }
 
 const { script, style } = await bundled("src/main.tsx");
-const packed = (path) => gzipSync(readFileSync(path), { level: 9 }).toString("base64");
+
+/** What HTML reads as something else (nothing, a return that becomes a line's end, the beginning of a tag), and the mark for it. */
+const MARK = 16;
+const READ_OTHERWISE = new Set([0, 13, 60, MARK]);
+/** A module compressed, a letter for each byte: the page is written in the one charset that has a letter for every byte. */
+function packed(path) {
+  const letters = [];
+  for (const byte of gzipSync(readFileSync(path), { level: 9 })) {
+    if (READ_OTHERWISE.has(byte)) letters.push(MARK, byte + 1);
+    else letters.push(byte);
+  }
+  return Buffer.from(letters).toString("latin1");
+}
 const modules = modulePaths
   .map((path) => `<script type="text/plain" id="module-${basename(path, ".wasm")}">${packed(path)}</script>`)
   .join("\n");
@@ -63,7 +76,8 @@ const parts = { style: style.replaceAll("</style", "<\\/style"), script: inScrip
 const template = readFileSync(join(here, "src/index.html"), "utf8");
 const page = template.replace(/@(style|script|modules|version|hash)@/g, (_, part) => parts[part]);
 mkdirSync(dirname(resolve(outputPath)), { recursive: true });
-writeFileSync(outputPath, page);
+if (/[^\0-\xff]/.test(page)) throw new Error("the page holds a letter that is no byte: write it as an escape");
+writeFileSync(outputPath, page, "latin1");
 const kilobytes = (length) => `${Math.round(length / 1000)} kB`;
 console.log(
   `script ${kilobytes(script.length)}, style ${kilobytes(style.length)}, modules ${kilobytes(modules.length)} as text`,

@@ -62,11 +62,7 @@ enum Chore {
     /// Builds the book from the pages of this checkout, and follows every link in it.
     Book,
     /// Builds the lab page: the module as WebAssembly, the page round it, one HTML file in target/lab.
-    Lab {
-        /// With the room that fits campaigns; the file is larger then than promised.
-        #[arg(long)]
-        calibrate: bool,
-    },
+    Lab,
     /// Makes what a release would hold: the command, the wheel, firmware, checksums, notes.
     Release {
         /// Only make it, under target/release-dry-run.
@@ -165,7 +161,7 @@ fn perform(chore: Chore) -> Outcome {
             firmware::flash(&Toolchain::find_or_make(Target::Chip)?, variant)
         }
         Chore::Book => book::build(),
-        Chore::Lab { calibrate } => lab::build(calibrate).map(drop),
+        Chore::Lab => lab::build().map(drop),
         Chore::Release { dry_run } => release::prepare(dry_run),
         Chore::Slurm => slurm::unpack(),
         Chore::Emulator => emulator::install(),

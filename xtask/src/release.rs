@@ -147,7 +147,7 @@ fn wheel(folder: &Path, missing: &mut Vec<&'static str>) -> Outcome {
 
 /// The page for a browser.
 fn lab_page(folder: &Path) -> Outcome {
-    let page = lab::build(false)?;
+    let page = lab::build()?;
     copy(&page, &folder.join(format!("swimmer-lab-{VERSION}.html")))
 }
 

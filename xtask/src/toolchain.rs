@@ -44,6 +44,37 @@ impl Target {
             Self::Page => "std,panic_abort",
         }
     }
+
+    /// What is compiled for it, the standard library too, is compiled with these. A page that panics has nobody to tell why: its
+    /// message, and every number in it, is a tenth of a module. What a hand waits for is compiled to be fast, and inlines no more
+    /// than the formulas' own small steps.
+    const fn flags(self) -> &'static str {
+        match self {
+            Self::Chip => "",
+            Self::Page => {
+                "-Zunstable-options -Cpanic=immediate-abort -Cllvm-args=-inline-threshold=60"
+            }
+        }
+    }
+
+    /// Arguments of cargo that build the library with what stands on it.
+    fn own_library(self) -> Vec<String> {
+        let crates = format!("-Zbuild-std={}", self.library());
+        match self {
+            Self::Chip => vec![crates],
+            Self::Page => vec![crates, "-Zbuild-std-features=optimize_for_size".to_owned()],
+        }
+    }
+
+    /// Whether a toolchain has what code for it is compiled with: the target's library, or the sources of one that suits the page.
+    fn is_served_by(self, sysroot: &Path) -> bool {
+        match self {
+            Self::Chip => has_core(sysroot, self),
+            Self::Page => sysroot
+                .join("lib/rustlib/src/rust/library/Cargo.lock")
+                .is_file(),
+        }
+    }
 }
 
 /// How to compile for a target.
@@ -71,6 +102,18 @@ impl Toolchain {
         let mut cargo = cargo([subcommand, "--target", triple, "--profile", profile]);
         if let Some(prefix) = &self.prefix {
             cargo.env("RUSTC", prefix.join("bin/rustc"));
+        }
+        if self.target == Target::Page {
+            cargo
+                .env("RUSTC_BOOTSTRAP", "1") // for the flags, and for a library of our own
+                .env_remove("RUSTFLAGS")
+                .env(
+                    "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
+                    self.target.flags(),
+                );
+            if self.prefix.is_none() {
+                cargo.args(self.target.own_library());
+            }
         }
         cargo
     }
@@ -107,7 +150,7 @@ impl Toolchain {
     pub(crate) fn describe(&self) -> String {
         let triple = self.target.triple();
         match &self.prefix {
-            None => format!("the active toolchain has {triple}"),
+            None => format!("the active toolchain has what {triple} takes"),
             Some(prefix) => format!("{triple} from Debian's rustc-web, in {}", prefix.display()),
         }
     }
@@ -115,16 +158,16 @@ impl Toolchain {
 
 fn find_or_make_prefix(target: Target) -> Outcome<Option<PathBuf>> {
     let compiler = HostCompiler::active()?;
-    if has_core(&compiler.sysroot, target) {
+    if target.is_served_by(&compiler.sysroot) {
         return Ok(None);
     }
     if let Some(prefix) = fallback::find(target)? {
         return Ok(Some(prefix));
     }
     let triple = target.triple();
-    match rustup::add_target(triple) {
-        Ok(()) if has_core(&compiler.sysroot, target) => return Ok(None),
-        Ok(()) => eprintln!("rustup has added {triple} to a toolchain that is not the active one"),
+    match rustup::add(target) {
+        Ok(()) if target.is_served_by(&compiler.sysroot) => return Ok(None),
+        Ok(()) => eprintln!("rustup has served {triple} in a toolchain that is not the active one"),
         Err(why) => eprintln!("{why}\nNow Debian's packages are tried in its place."),
     }
     fallback::make(&compiler, target).map(Some)
@@ -205,5 +248,16 @@ mod tests {
         fs::write(folder.join("libcore-1234.rlib"), "").unwrap();
         assert!(has_core(sysroot.path(), Target::Page));
         assert!(!has_core(sysroot.path(), Target::Chip));
+    }
+
+    #[test]
+    fn a_page_takes_the_sources_of_the_library() {
+        let sysroot = tempfile::tempdir().unwrap();
+        assert!(!Target::Page.is_served_by(sysroot.path()));
+        let library = sysroot.path().join("lib/rustlib/src/rust/library");
+        fs::create_dir_all(&library).unwrap();
+        fs::write(library.join("Cargo.lock"), "").unwrap();
+        assert!(Target::Page.is_served_by(sysroot.path()));
+        assert!(!Target::Chip.is_served_by(sysroot.path()));
     }
 }

@@ -93,7 +93,7 @@ impl Lab {
         self.export.as_deref().map_or(Ok(()), may_be_written)?;
         let page = page::load(self.page.as_deref())?;
         if let Some(path) = &self.export {
-            write_atomically(path, page.as_bytes())?;
+            write_atomically(path, &page)?;
             output.answer(&Exported {
                 page: path.display().to_string(),
                 bytes: page.len(),

@@ -9,3 +9,15 @@ declare module "worker:*" {
 }
 
 declare module "*.css";
+
+declare module "gifenc" {
+  type Palette = [number, number, number][];
+  export function quantize(rgba: Uint8ClampedArray, most: number): Palette;
+  export function applyPalette(rgba: Uint8ClampedArray, palette: Palette): Uint8Array;
+  /** `delay` is in ms. */
+  export function GIFEncoder(): {
+    writeFrame(indices: Uint8Array, width: number, height: number, how: { palette?: Palette | undefined; delay: number }): void;
+    finish(): void;
+    bytes(): Uint8Array;
+  };
+}

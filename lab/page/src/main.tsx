@@ -3,10 +3,11 @@
 import "./style/page.css";
 import { render } from "preact";
 import { App } from "./shell/app.tsx";
+import { firstNumbers } from "./explore/model.ts";
 import { times } from "./wasm/lab.ts";
 
 const place = document.getElementById("app");
 if (place) render(<App />, place);
 
 // For whoever measures the page.
-Object.assign(globalThis, { swimmerLab: { times } });
+Object.assign(globalThis, { swimmerLab: { times, firstNumbers } });

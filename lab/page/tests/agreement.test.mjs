@@ -1,4 +1,4 @@
-// Fifty results of the module against the command of the same commit, under the same names.
+// More than fifty results of the module against the command of the same commit, under the same names.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync } from "node:fs";
@@ -12,7 +12,7 @@ const entry = new URL("../src/wasm/module.ts", import.meta.url).pathname;
 const outfile = join(mkdtempSync(join(tmpdir(), "lab-")), "module.mjs");
 await build({ entryPoints: [entry], bundle: true, format: "esm", outfile, logLevel: "warning" });
 const { Module } = await import(outfile);
-const module = await Module.load(readFileSync(MODULE));
+const module = await Module.load(await WebAssembly.compile(readFileSync(MODULE)));
 const ask = (name, question) => module.call(name, question).json;
 
 const SWIMMERS = ["purcell", "robot", "robot-slender"];
@@ -45,6 +45,17 @@ const optima = [
     keys,
   })),
 );
+const others = [
+  ["purcell", "efficiency-large", ["efficiency", "--gait", "large"], 2.8, ["efficiency", "displacement_over_length", "start_angle_rad"]],
+  ["robot", "efficiency-large", ["efficiency", "--gait", "large"], 2.8, ["efficiency", "displacement_over_length", "start_angle_rad"]],
+  ["robot", "sideways", ["sideways"], 2, ["lateral_over_length", "displacement_over_length", "rotation_rad"]],
+  ["purcell", "speed", ["speed", "--max-rate", "3"], 2, ["speed_over_length_per_s", "displacement_over_length", "period_s"]],
+  ["robot", "speed", ["speed", "--max-rate", "3"], 2, ["speed_over_length_per_s", "displacement_over_length", "period_s"]],
+].map(([name, what, words, most, keys]) => ({
+  words: ["optimize", ...words, "--swimmer", name, "--max-angle", `${most}`],
+  call: ["optimize", { swimmer: name, what, bounds: { max_angle: most }, ...(what === "speed" ? { max_rate: 3 } : {}) }],
+  keys,
+}));
 const certificates = ["purcell", "robot"].flatMap((name) =>
   ["displacement", "efficiency"].flatMap((objective) =>
     ["circle:1.2", "square:1"].map((gait) => ({
@@ -55,10 +66,10 @@ const certificates = ["purcell", "robot"].flatMap((name) =>
     })),
   ),
 );
-const cases = [...simulations, ...maps, ...optima, ...certificates];
+const cases = [...simulations, ...maps, ...optima, ...others, ...certificates];
 
 test("the module agrees with the command", () => {
-  assert.equal(cases.length, 50);
+  assert.equal(cases.length, 55);
   for (const { words, call, keys, checks } of cases) {
     const [told, expected] = [ask(...call), swimmer(...words)];
     for (const key of keys) same(told[key], expected[key], `${words.join(" ")}: ${key}`);

@@ -65,7 +65,7 @@ export class Twin extends Process {
 }
 
 /** Any page that is not ours, or ours from another server. */
-export async function served(text = readFileSync(FILE, "utf8")) {
+export async function served(text = readFileSync(FILE)) {
   const server = createServer((_, answer) => answer.writeHead(200, { "content-type": "text/html" }).end(text));
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
   return { url: `http://127.0.0.1:${server.address().port}/`, end: () => server.close() };

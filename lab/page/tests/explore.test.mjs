@@ -122,6 +122,30 @@ for (const [name, launch] of Object.entries(BROWSERS)) {
       await tab.close();
     });
 
+    test("points of a free curve come one at a time, and a long search is stopped", async () => {
+      const tab = await Tab.open(browser);
+      const points = () => tab.evaluate(() => document.querySelectorAll(".handles circle").length);
+      const press = (words) => tab.evaluate((words) => [...document.querySelectorAll("button")].find((button) => (button.ariaLabel ?? button.textContent) === words).click(), words);
+      assert.equal(await points(), 12);
+      await press("Symmetric");
+      await press("More control points");
+      await tab.until(() => document.querySelectorAll(".handles circle").length === 13, undefined, "a thirteenth point");
+      await tab.settled();
+      const row = "td[data-optimum=sideways]";
+      const tick = () => tab.evaluate((row) => document.querySelector(row).closest("tr").querySelector("input").click(), row);
+      await tick();
+      await tab.until((row) => document.querySelector(`${row} button`) !== null, row, "a way to stop the search");
+      assert.match(await tab.text(row), /searching, \d+ s/);
+      await tab.evaluate((row) => document.querySelector(`${row} button`).click(), row);
+      await tab.until((row) => document.querySelector(row).textContent === "stopped", row, "the search to end");
+      await tab.settled();
+      await tick();
+      await tick();
+      await tab.until((row) => /…|searching|Y\/L/.test(document.querySelector(row).textContent), row, "the search to begin anew");
+      assert.deepEqual(tab.said, []);
+      await tab.close();
+    });
+
     test("two gaits stand side by side, optima are laid over, and all that is shown can be saved", async () => {
       const tab = await Tab.open(browser);
       await tab.evaluate(() => [...document.querySelectorAll("button")].find((button) => button.textContent === "Compare").click());
@@ -137,10 +161,12 @@ for (const [name, launch] of Object.entries(BROWSERS)) {
         ["Map, SVG", "image/svg+xml", "<svg"],
         ["Map, PNG", "image/png", "\u0089PNG"],
         ["Motion, CSV", "text/csv", "cycle,u,phi1_rad"],
+        ["Motion, GIF", "image/gif", "GIF89a"],
         ["Motion, WebM", "video/webm", "\u001aE\u00df\u00a3"],
         ["Swimmer file", "application/toml", "name = "],
       ]) {
         const file = await tab.saved(() => tab.choose("Save", what));
+        if (what === "Motion, GIF") writeFileSync(join(OUT, `motion-${name}.gif`), file.text, "latin1");
         assert.ok(file.type.startsWith(type) && file.text.includes(begins), `${what}: ${file.type} ${file.text.slice(0, 40)}`);
       }
       assert.deepEqual(tab.said, []);

@@ -73,7 +73,7 @@ fn assessment(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let fitted: &mut Fitted = lab.kept.get(number)?;
     let assessed: Assessment =
         assess(&fitted.found, fitted.evidence.as_ref()).map_err(|why| why.to_string())?;
-    json(&AssessmentAnswer::from(&assessed))
+    json(&AssessmentAnswer::from(assessed))
 }
 
 /// Lets go of a fit.

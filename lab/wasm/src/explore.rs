@@ -16,6 +16,7 @@ pub use map::Memory;
 /// The calls, by name.
 pub(crate) const CALLS: &[(&str, Call)] = &[
     ("swimmer", swimmer::swimmer),
+    ("net", simulate::net),
     ("simulate", simulate::simulate),
     ("gait-file", simulate::gait_file),
     ("tank", simulate::tank),
@@ -116,6 +117,8 @@ mod tests {
         let swum = asked(&mut lab, "simulate", &question);
         let motion = asked(&mut lab, "motion", &question);
         assert_eq!(motion.as_array().unwrap().len(), 41 * 26);
+        let net = asked(&mut lab, "net", &question);
+        assert_eq!(net["displacement_m"], swum["displacement_m"]);
         let end = motion[40 * 26 + 3].as_f64().unwrap();
         assert!((end - swum["displacement_m"].as_f64().unwrap()).abs() < 1e-12);
     }

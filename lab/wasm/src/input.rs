@@ -1,5 +1,6 @@
 //! What many calls take: a swimmer, a gait. Each is read by the room that reads it for the command line.
 
+use std::cell::RefCell;
 use std::path::Path;
 
 use nalgebra::Vector2;
@@ -12,9 +13,27 @@ use swimmer_model::Model;
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub(crate) struct SwimmerText(String);
 
+thread_local! {
+    /// The swimmer that was read last: a hand that drags a gait asks with the same one at every step.
+    static READ: RefCell<Option<(SwimmerText, SwimmerFile)>> = const { RefCell::new(None) };
+}
+
 impl SwimmerText {
     /// Reads it.
     pub(crate) fn read(&self) -> Result<SwimmerFile, String> {
+        let known = READ.with_borrow(|last| {
+            let same = last.as_ref().filter(|(text, _)| text == self);
+            same.map(|(_, file)| file.clone())
+        });
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        let file = self.parse()?;
+        READ.set(Some((self.clone(), file.clone())));
+        Ok(file)
+    }
+
+    fn parse(&self) -> Result<SwimmerFile, String> {
         match SwimmerFile::preset(&self.0) {
             Some(preset) => Ok(preset),
             None => SwimmerFile::parse(&self.0, Path::new("swimmer.toml"))

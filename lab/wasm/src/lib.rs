@@ -14,4 +14,5 @@ pub mod calls;
 pub mod drive;
 #[cfg(feature = "explore")]
 pub mod explore;
+#[cfg(any(feature = "explore", feature = "drive"))]
 mod input;

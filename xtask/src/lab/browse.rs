@@ -17,7 +17,7 @@ const BROWSERS: [(&str, &str); 2] = [("chromium", "chromium"), ("firefox-esr", "
 /// # Errors
 /// The page cannot be built, a test fails, or a browser that is required cannot be had.
 pub(crate) fn test(required: bool) -> Outcome {
-    build(false)?;
+    build()?;
     let next = "mend what the compiler names above";
     run(&mut cargo(["build", "--quiet", "-p", "swimmer"]), next)?;
     let tests = entries(&Path::new(PAGE).join("tests"), |name| {
@@ -52,7 +52,7 @@ pub(crate) fn test(required: bool) -> Outcome {
 /// # Errors
 /// The page cannot be built or opened.
 pub(crate) fn bench() -> Outcome {
-    build(false)?;
+    build()?;
     browsers()?;
     run(
         command("node")

@@ -15,7 +15,7 @@ use crate::failure::{Failure, Outcome};
 use crate::run::{cargo, command, read, run, target_folder, works};
 
 /// Part of the folder's name: to be raised when the recipe below changes, so that old prefixes are made anew.
-const RECIPE: u32 = 3;
+const RECIPE: u32 = 4;
 /// The package whose version all others share.
 const COMPILER: &str = "rustc-web";
 /// The empty package whose building builds the standard library.
@@ -190,7 +190,7 @@ fn build_library(prefix: &Path, host: &HostCompiler, target: Target) -> Outcome 
         target.triple(),
     ]);
     build
-        .arg(format!("-Zbuild-std={}", target.library()))
+        .args(target.own_library())
         .current_dir(&project)
         .env("CARGO_TARGET_DIR", project.join("target"))
         .env("RUSTC", prefix.join("usr/bin/rustc"))
@@ -200,8 +200,9 @@ fn build_library(prefix: &Path, host: &HostCompiler, target: Target) -> Outcome 
         .env(
             "RUSTFLAGS",
             format!(
-                "-Cembed-bitcode=yes --remap-path-prefix={}=/rustc",
-                rust.display()
+                "-Cembed-bitcode=yes --remap-path-prefix={}=/rustc {}",
+                rust.display(),
+                target.flags()
             ),
         )
         .env_remove("RUSTC_WRAPPER")

@@ -15,21 +15,26 @@ const NAME: &str = "swimmer-lab.html";
 /// What every lab page says of itself in its head.
 const MARK: &str = "<meta name=\"swimmer-lab\" content=\"";
 
+/// It says so within so many bytes.
+const HEAD: usize = 4096;
+
 /// Reads the page: the one that was named, the one beside this program (a release's), or the one that this checkout's
 /// `cargo xtask lab` made.
 ///
 /// # Errors
 /// [`Failure::BadInput`] where there is none, with how to make one.
-pub(super) fn load(named: Option<&Path>) -> Outcome<String> {
+pub(super) fn load(named: Option<&Path>) -> Outcome<Vec<u8>> {
     let path = named.map(Path::to_path_buf).or_else(find).ok_or_else(|| {
         Failure::BadInput(format!(
             "there is no lab page here: in a checkout make it with `cargo xtask lab` (it needs node), or name a release's with --page {NAME}"
         ))
     })?;
     let shown = path.display();
-    let page = fs::read_to_string(&path)
+    let page = fs::read(&path)
         .map_err(|error| Failure::BadInput(format!("cannot read the page {shown}: {error}")))?;
-    let Some((_, after)) = page.split_once(MARK) else {
+    // Its head is ASCII; behind it modules lie as bytes.
+    let head = String::from_utf8_lossy(page.get(..HEAD).unwrap_or(&page));
+    let Some((_, after)) = head.split_once(MARK) else {
         return Err(Failure::BadInput(format!(
             "{shown} is no lab page; name the {NAME} of `cargo xtask lab` or of a release"
         )));

@@ -25,7 +25,7 @@ const LONGEST_MESSAGE: usize = 8 << 10;
 /// What all connections share.
 pub(super) struct House {
     pub(super) gate: Gate,
-    pub(super) page: String,
+    pub(super) page: Vec<u8>,
     pub(super) hub: Sender<(PageId, FromPage)>,
 }
 
@@ -42,15 +42,9 @@ impl House {
         let here = stream.local_addr()?;
         match self.gate.judge(&head, here) {
             Ok(Wanted::Page { head_only }) => {
-                let body = if head_only { "" } else { &self.page };
+                let body: &[u8] = if head_only { &[] } else { &self.page };
                 let length = self.page.len();
-                answer(
-                    &mut stream,
-                    "200 OK",
-                    "text/html; charset=utf-8",
-                    length,
-                    body,
-                )
+                answer(&mut stream, "200 OK", "text/html", length, body)
             }
             Ok(Wanted::Link { accept }) => {
                 write!(
@@ -67,7 +61,7 @@ impl House {
                     status,
                     "text/plain; charset=utf-8",
                     body.len(),
-                    &body,
+                    body.as_bytes(),
                 )
             }
         }
@@ -161,12 +155,13 @@ fn answer(
     status: &str,
     kind: &str,
     length: usize,
-    body: &str,
+    body: &[u8],
 ) -> io::Result<()> {
     write!(
         stream,
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nConnection: close\r\nCache-Control: no-store\r\n\
-         X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nContent-Security-Policy: frame-ancestors 'none'\r\n\r\n{body}"
+         X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nContent-Security-Policy: frame-ancestors 'none'\r\n\r\n"
     )?;
+    stream.write_all(body)?;
     stream.flush()
 }

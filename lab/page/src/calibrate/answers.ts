@@ -24,7 +24,9 @@ export interface Run {
   x_m: number;
   x_sd_m: number | null;
   delta_y_m: number;
+  delta_y_sd_m: number | null;
   delta_theta_rad: number;
+  delta_theta_sd_rad: number | null;
   period_s: number;
   each: [number, number][];
   left_out: { what: string; reason: string }[];
@@ -49,12 +51,15 @@ export interface FitAnswer {
 export interface CurvePoint {
   amplitude_rad: number;
   x_m: number;
+  delta_y_m: number;
+  delta_theta_rad: number;
 }
 
 export interface EvidenceAnswer {
   sphere_radius_m: number;
   chi: number;
   intervals: Intervals;
+  correlation: number;
   profiles: [Profile, Profile];
   /** Borders of joint regions: rₛ [m] and χ, once round. */
   ridge: { level: number; corners: [number, number][] }[];
@@ -72,4 +77,7 @@ export interface AssessmentAnswer {
   verdict: "trust" | "caution" | "do not use";
   reasons: string[];
   reduced_chi2: number | null;
+  systematics: { sphere_radius_m: number; chi: number; intervals: Intervals } | null;
+  budget: { name: string; by: number; unit: string; sphere_radius_m: number; chi: number; width: number | null; stated: boolean }[];
+  explanations: { name: string; gain: number; estimate: { sphere_radius_m: number; chi: number } }[];
 }

@@ -1,7 +1,7 @@
 // The figures of a calibration: X over the amplitude, the ridge of r_s and χ, the ways that were swum.
 
 import type { ComponentChildren } from "preact";
-import type { EvidenceAnswer, Run } from "./answers.ts";
+import type { CurvePoint, EvidenceAnswer, Run } from "./answers.ts";
 
 const [WIDTH, HEIGHT] = [420, 300];
 const MARGIN = { left: 64, right: 12, top: 10, bottom: 40 };
@@ -66,27 +66,106 @@ export function named(run: Run): string {
   return `circle ${Number(degrees(run.amplitude_rad).toFixed(2))}°${run.clockwise ? " clockwise" : ""}`;
 }
 
-/** Measured X of the circles, with twice its standard deviation, and what the model makes of them. */
+/** A quantity of a circle's cycle: its name, and where runs and curves have it, in the unit of the name. */
+interface OfACircle {
+  title: string;
+  name: string;
+  measured(run: Run): readonly [value: number, sd: number];
+  foretold(point: CurvePoint): number;
+}
+
+const OF_A_CIRCLE: readonly OfACircle[] = [
+  {
+    title: "X over the amplitude",
+    name: "X [mm]",
+    measured: (run) => [run.x_m * (run.clockwise ? -1000 : 1000), (run.x_sd_m ?? 0) * 1000],
+    foretold: (point) => point.x_m * 1000,
+  },
+  {
+    title: "ΔY over the amplitude",
+    name: "ΔY [mm]",
+    measured: (run) => [run.delta_y_m * 1000, (run.delta_y_sd_m ?? 0) * 1000],
+    foretold: (point) => point.delta_y_m * 1000,
+  },
+  {
+    title: "Δθ over the amplitude",
+    name: "Δθ [°]",
+    measured: (run) => [degrees(run.delta_theta_rad), degrees(run.delta_theta_sd_rad ?? 0)],
+    foretold: (point) => degrees(point.delta_theta_rad),
+  },
+];
+
+/** What circles measure, with twice its standard deviation, and what the model makes of them. */
 export function OverAmplitude({ runs, evidence }: { runs: readonly Run[]; evidence: EvidenceAnswer | null }) {
-  const measured = runs.flatMap((run) =>
-    run.amplitude_rad === null ? [] : [[degrees(run.amplitude_rad), run.x_m * (run.clockwise ? -1000 : 1000), (run.x_sd_m ?? 0) * 1000] as const]);
-  const curve = (points: EvidenceAnswer["fitted_curve"]) => points.map(({ amplitude_rad, x_m }) => [degrees(amplitude_rad), x_m * 1000] as const);
+  return <>{OF_A_CIRCLE.map((quantity) => <OneOverAmplitude key={quantity.title} of={quantity} runs={runs} evidence={evidence} />)}</>;
+}
+
+function OneOverAmplitude({ of, runs, evidence }: { of: OfACircle; runs: readonly Run[]; evidence: EvidenceAnswer | null }) {
+  const measured = runs.flatMap((run) => (run.amplitude_rad === null ? [] : [[degrees(run.amplitude_rad), ...of.measured(run)] as const]));
+  const curve = (points: readonly CurvePoint[]) => points.map((point) => [degrees(point.amplitude_rad), of.foretold(point)] as const);
   const fitted = evidence ? curve(evidence.fitted_curve) : [];
   const start = evidence ? curve(evidence.start_curve) : [];
-  const all = [...measured, ...fitted];
+  const all = [...measured.map(([x, y]) => [x, y] as const), ...fitted];
   if (all.length === 0) return null;
   const to = scale(all.map(([x]) => x), all.map(([, y]) => y));
   return (
-    <Chart title="X over the amplitude" names={["amplitude ε [°]", "X [mm]"]} to={to}>
+    <Chart title={of.title} names={["amplitude ε [°]", of.name]} to={to}>
       <path class="curve faint" d={line(start, to)} />
       <path class="curve" d={line(fitted, to)} />
-      {measured.map(([x, y, sd]) => (
-        <g key={x} class="measured">
+      {measured.map(([x, y, sd], k) => (
+        <g key={k} class="measured">
           <path d={`M${to.x(x)} ${to.y(y - 2 * sd)}V${to.y(y + 2 * sd)}`} />
-          <circle cx={to.x(x)} cy={to.y(y)} r="3.5"><title>{`${x.toFixed(0)}°: ${y.toFixed(2)} mm`}</title></circle>
+          <circle cx={to.x(x)} cy={to.y(y)} r="3.5"><title>{`${x.toFixed(0)}°: ${y.toFixed(2)}`}</title></circle>
         </g>
       ))}
     </Chart>
+  );
+}
+
+/** How far the likelihood falls as one parameter is held elsewhere, and where its interval ends. */
+export function Profiles({ evidence }: { evidence: EvidenceAnswer }) {
+  const names = ["rₛ [mm]", "χ"];
+  return (
+    <>
+      {evidence.profiles.map(({ points, threshold }, k) => {
+        const scaled = points.map(([value, height]) => [k === 0 ? value * 1000 : value, height] as const);
+        const near = scaled.filter(([, height]) => height >= 3 * threshold);
+        if (near.length < 2) return null;
+        const to = scale(near.map(([value]) => value), near.map(([, height]) => height));
+        return (
+          <Chart key={names[k]} title={`Profile of ${names[k]?.split(" ")[0]}`} names={[names[k] ?? "", "ln likelihood below its top"]} to={to}>
+            <path class="curve" d={line(near, to)} />
+            <path class="curve faint" d={`M${MARGIN.left} ${to.y(threshold)}H${WIDTH - MARGIN.right}`} />
+          </Chart>
+        );
+      })}
+    </>
+  );
+}
+
+/** The displacement of every cycle that counts, run by run. */
+export function Cycles({ runs }: { runs: readonly Run[] }) {
+  const known = runs.filter((run) => run.each.length > 0);
+  if (known.length === 0) return null;
+  return (
+    <section class="card scroll" aria-label="Cycles">
+      <h2>Cycles</h2>
+      <table class="readout" id="cycles">
+        <thead><tr>{["run", "period [s]", "X of each [mm], its start [s] below"].map((name) => <th key={name} scope="col">{name}</th>)}</tr></thead>
+        <tbody>
+          {known.map((run) => (
+            <tr key={run.file}>
+              <th scope="row">{run.file.split("/").pop()}</th>
+              <td>{run.period_s.toFixed(2)}</td>
+              <td class="each">
+                {run.each.map(([start, x]) => <span key={start}>{(x * 1000).toFixed(2)}<small class="soft">{start.toFixed(1)}</small></span>)}
+                {run.left_out.map(({ what, reason }) => <span key={what} class="out" title={reason}>–<small class="soft">{what}</small></span>)}
+              </td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </section>
   );
 }
 

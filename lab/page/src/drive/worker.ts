@@ -223,8 +223,8 @@ function closeWire(): void {
 
 let loading: Promise<Module> | undefined;
 
-self.onmessage = async ({ data }: MessageEvent<ArrayBuffer | Order>) => {
-  if (data instanceof ArrayBuffer) {
+self.onmessage = async ({ data }: MessageEvent<WebAssembly.Module | Order>) => {
+  if (data instanceof WebAssembly.Module) {
     loading = Module.load(data);
     return;
   }

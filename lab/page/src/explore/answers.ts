@@ -15,8 +15,8 @@ export interface SwimmerAnswer {
   doubts: string[];
 }
 
-export interface Swum {
-  links_cross: number;
+/** What follows a hand. */
+export interface Net {
   displacement_over_length: number;
   displacement_m: number;
   lateral_over_length: number;
@@ -25,10 +25,14 @@ export interface Swum {
   delta_theta_rad: number;
   efficiency: number;
   efficiency_constant_power: number;
-  peak_rates_rad_s: [number, number];
-  reach_rad: number;
   speed_m_per_s: number;
   speed_over_length_per_s: number;
+}
+
+export interface Swum extends Net {
+  links_cross: number;
+  peak_rates_rad_s: [number, number];
+  reach_rad: number;
   shortest_period_s: number | null;
 }
 

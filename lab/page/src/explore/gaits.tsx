@@ -1,10 +1,13 @@
 // The gaits: the drawn one and its class, the optimiser's to lay over or to take, and a second one beside.
 
 import { activeGait, CIRCLE, edit, editGait, type Gait, OPTIMA, type Optimum, shown } from "./document.ts";
-import { withPoints } from "./handles.tsx";
-import { curveOf, isCurrent, optima } from "./model.ts";
+import { FEWEST, withPoints } from "./handles.tsx";
+import { curveOf, forgetStopped, isCurrent, optima, searching, stopSearch } from "./model.ts";
 import { angle, figure, NAMES } from "./names.ts";
 import { symmetrised } from "./spline.ts";
+
+/** Control points of a drawn gait, at most. */
+const MOST = 32;
 
 export function Gaits() {
   const { gaits, active } = shown.value;
@@ -44,6 +47,9 @@ function Drawn({ gait }: { gait: Gait }) {
     );
   }
   const { points, symmetric } = gait;
+  // Both symmetries make four of every point.
+  const step = symmetric ? 4 : 1;
+  const fewest = symmetric ? 8 : FEWEST;
   return (
     <div class="bar-of-buttons">
       <button
@@ -53,8 +59,8 @@ function Drawn({ gait }: { gait: Gait }) {
       >
         Symmetric
       </button>
-      <button aria-label="Fewer control points" disabled={points.length <= 8} onClick={() => withPoints(gait, points.length - 4)}>−</button>
-      <button aria-label="More control points" disabled={points.length >= 32} onClick={() => withPoints(gait, points.length + 4)}>+</button>
+      <button aria-label="Fewer control points" disabled={points.length - step < fewest} onClick={() => withPoints(gait, points.length - step)}>−</button>
+      <button aria-label="More control points" disabled={points.length + step > MOST} onClick={() => withPoints(gait, points.length + step)}>+</button>
       <button onClick={() => editGait(CIRCLE)} title="Start again from a circle of 1.2 rad">Circle</button>
       <button onClick={() => editGait({ ...gait, points: [points[0] ?? [0, 0], ...points.slice(1).reverse()] })} title="The same curve the other way round">Reverse</button>
     </div>
@@ -81,8 +87,13 @@ function OptimumRow({ what }: { what: Optimum }) {
   const found = optima.value.get(what);
   const wanted = laid || shown.value.gaits.some((gait) => gait?.kind === "optimum" && gait.what === what);
   const toggle = () => {
+    forgetStopped(what);
     const others = shown.value.overlaid.filter((other) => other !== what);
     edit({ overlaid: others.length < shown.value.overlaid.length ? others : [...others, what] });
+  };
+  const take = () => {
+    forgetStopped(what);
+    editGait({ kind: "optimum", what });
   };
   return (
     <tr class={wanted && !isCurrent(what) ? "stale" : ""}>
@@ -94,12 +105,23 @@ function OptimumRow({ what }: { what: Optimum }) {
         </label>
       </th>
       <td data-optimum={what}>
-        {!wanted ? "" : !found ? "…" : "reason" in found ? <span class="error reason" title={found.reason}>{found.reason}</span> : brief(what, found.told)}
+        {!wanted ? "" : searching.value?.what === what ? <Searching seconds={searching.value.seconds} /> : !found ? "…" : "reason" in found ? <span class="error reason" title={found.reason}>{found.reason}</span> : brief(what, found.told)}
       </td>
       <td>
-        <button class="small" onClick={() => editGait({ kind: "optimum", what })} aria-label={`Take ${NAMES[what]}`}>Take</button>
+        <button class="small" onClick={take} aria-label={`Take ${NAMES[what]}`}>Take</button>
       </td>
     </tr>
+  );
+}
+
+/** A search that lasts says so, and can be stopped. */
+function Searching({ seconds }: { seconds: number }) {
+  if (seconds === 0) return <>…</>;
+  return (
+    <>
+      <span role="status">searching, {seconds} s </span>
+      <button class="small" onClick={stopSearch}>Stop</button>
+    </>
   );
 }
 

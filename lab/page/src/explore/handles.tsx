@@ -7,7 +7,8 @@ import { moved, resampled } from "./spline.ts";
 /** Steps of the arrow keys [rad]. */
 const STEP = 0.01;
 const LARGE_STEP = 0.1;
-const FEWEST = 4;
+/** Control points of a drawn gait, at least. */
+export const FEWEST = 4;
 /** No joint of a drawn gait turns further [rad]. */
 const FARTHEST = 6;
 

@@ -2,7 +2,7 @@
 
 import { computed, effect, signal } from "@preact/signals";
 import { Lab, Latest } from "../wasm/lab.ts";
-import type { Evidence, FoundAnswer, Mapped, Swum, SwimmerAnswer, TankAnswer } from "./answers.ts";
+import type { Evidence, FoundAnswer, Mapped, Net, Swum, SwimmerAnswer, TankAnswer } from "./answers.ts";
 import { type Document, type Gait, type Optimum, activeGait, shown } from "./document.ts";
 import { pairs, sampled } from "./spline.ts";
 
@@ -12,6 +12,8 @@ const slow = new Lab();
 const search = new Lab();
 
 export const swimmer = signal<SwimmerAnswer | null>(null);
+/** When the first numbers were there, ms since the page was opened. */
+export const firstNumbers = signal<number | null>(null);
 export const trouble = signal("");
 export const swum = signal<readonly [Swum | null, Swum | null]>([null, null]);
 export const tank = signal<readonly [TankAnswer | null, TankAnswer | null]>([null, null]);
@@ -70,6 +72,11 @@ const latestSwimmer = new Latest(async (question: object) => {
 const swimmerAsked = computed(() => JSON.stringify({ swimmer: shown.value.swimmer, with: shown.value.with }));
 effect(() => latestSwimmer.give(JSON.parse(swimmerAsked.value)));
 
+/** Whether the first numbers are there: what is only looked at waits for them, so that the page opens at once. */
+const begun = signal(false);
+const afterFirst = <T>(question: T | null): T | null =>
+  begun.value || shown.value.gaits[0].kind === "optimum" ? question : null;
+
 type Slot = 0 | 1;
 const at = <T>(pair: readonly [T, T], slot: Slot, value: T): readonly [T, T] =>
   slot === 0 ? [value, pair[1]] : [pair[0], value];
@@ -79,15 +86,27 @@ for (const slot of [0, 1] as const) {
     const gait = asked(shown.value.gaits[slot]);
     return swimmer.value && gait && JSON.stringify({ swimmer: swimmer.value.toml, gait, period: shown.value.period });
   });
+  // What follows a hand comes first, and nothing else of a gait that the hand has left behind.
   const latest = new Latest(async (text: string) => {
     const about = JSON.parse(text) as object;
+    const overtaken = () => question.peek() !== text;
     try {
-      swum.value = at(swum.value, slot, await quick.json<Swum>("simulate", about));
+      const before = swum.peek()[slot];
+      if (before) {
+        const net = await quick.json<Net>("net", about);
+        swum.value = at(swum.peek(), slot, { ...before, ...net });
+      }
+      if (overtaken()) return;
       const bytes = await quick.bytes("motion", { ...about, intervals: INTERVALS });
-      motions.value = at(motions.value, slot, new Float64Array(bytes));
+      motions.value = at(motions.peek(), slot, new Float64Array(bytes));
+      if (overtaken() && before) return;
+      const whole = await quick.json<Swum>("simulate", about);
+      swum.value = at(swum.peek(), slot, whole);
     } catch (error) {
       told(error);
     }
+    begun.value = true;
+    firstNumbers.value ??= performance.now();
   });
   effect(() => {
     if (question.value) latest.give(question.value);
@@ -99,10 +118,11 @@ for (const slot of [0, 1] as const) {
   const tankAsked = computed(() => {
     const gait = asked(shown.value.gaits[slot]);
     const [length_m, width_m] = shown.value.tank;
-    return swimmer.value && gait && JSON.stringify({ swimmer: swimmer.value.toml, gait, length_m, width_m });
+    return afterFirst(swimmer.value) && gait && JSON.stringify({ swimmer: swimmer.value?.toml, gait, length_m, width_m });
   });
   const latestTank = new Latest(async (text: string) => {
-    tank.value = at(tank.value, slot, await slow.json<TankAnswer>("tank", JSON.parse(text)).catch(() => null));
+    const told = await slow.json<TankAnswer>("tank", JSON.parse(text)).catch(() => null);
+    tank.value = at(tank.peek(), slot, told);
   });
   effect(() => {
     if (tankAsked.value) latestTank.give(tankAsked.value);
@@ -112,7 +132,7 @@ for (const slot of [0, 1] as const) {
 
 const certifyAsked = computed(() => {
   const gait = asked(activeGait(shown.value));
-  if (!swimmer.value || !gait) return null;
+  if (!afterFirst(swimmer.value) || !swimmer.value || !gait) return null;
   const { objective } = shown.value;
   const own = typeof gait === "string" && gait.includes("\n");
   const question = { swimmer: swimmer.value.toml, gait };
@@ -133,7 +153,7 @@ effect(() => {
 export const evidenceIsStale = computed(() => evidence.value?.of !== certifyAsked.value);
 
 const mapAsked = computed(() =>
-  swimmer.value
+  afterFirst(swimmer.value) && swimmer.value
     ? JSON.stringify({ swimmer: swimmer.value.toml, row: shown.value.row, max_angle: shown.value.halfWidth })
     : null,
 );
@@ -168,15 +188,33 @@ const wanted = computed(() => {
   return [...new Set([...overlaid, ...taken])];
 });
 const optimumAsked = (what: Optimum) => JSON.stringify({ swimmer: swimmer.value?.toml, what, bounds: bounds(shown.value) });
+/** What is being searched for, and for how many seconds. */
+export const searching = signal<{ what: Optimum; seconds: number } | null>(null);
+const STOPPED = "stopped";
+/** Ends the search that is under way. */
+export const stopSearch = () => search.stop(STOPPED);
+/** Lets a search that was stopped be begun anew. */
+export function forgetStopped(what: Optimum): void {
+  const found = optima.peek().get(what);
+  if (!found || !("reason" in found) || found.reason !== STOPPED) return;
+  const others = new Map(optima.peek());
+  others.delete(what);
+  optima.value = others;
+}
+
 const latestOptima = new Latest(async (_: number) => {
   for (;;) {
-    const next = wanted.peek().find((what) => optima.peek().get(what)?.of !== optimumAsked(what));
-    if (!next) return;
-    const of = optimumAsked(next);
+    const what = wanted.peek().find((what) => optima.peek().get(what)?.of !== optimumAsked(what));
+    if (!what) return;
+    const of = optimumAsked(what);
+    searching.value = { what, seconds: 0 };
+    const counting = setInterval(() => (searching.value = { what, seconds: (searching.peek()?.seconds ?? 0) + 1 }), 1000);
     const found = await search
       .json<FoundAnswer>("optimize", JSON.parse(of))
       .then((told) => ({ of, told }), (error: Error) => ({ of, reason: error.message }));
-    optima.value = new Map(optima.value).set(next, found);
+    clearInterval(counting);
+    searching.value = null;
+    optima.value = new Map(optima.value).set(what, found);
   }
 });
 let turn = 0;

@@ -1,5 +1,6 @@
 // Everything shown, as files: gait, swimmer, map, motion.
 
+import { applyPalette, GIFEncoder, quantize } from "gifenc";
 import { download } from "../files/download.ts";
 import { activeGait, shown } from "./document.ts";
 import { asked, INTERVALS, motions, quick, swimmer } from "./model.ts";
@@ -73,20 +74,49 @@ export async function savePng(): Promise<void> {
   download("height-map.png", blob, "image/png");
 }
 
+/** A canvas for a film of all cycles, and the seconds that it lasts. */
+function film(width: number, height: number): { context: CanvasRenderingContext2D; seconds: number } {
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [width, height];
+  const context = canvas.getContext("2d", { willReadFrequently: true });
+  if (!context) throw new Error("saving the motion: the browser gave no canvas");
+  return { context, seconds: 2 * CYCLES };
+}
+
+/** Pictures of a GIF for each second of it, of the hundredths that the format counts in. */
+const PICTURES = 12.5;
+
+/** All cycles in motion, as a picture that moves wherever pictures are shown. */
+export async function saveGif(): Promise<void> {
+  const [width, height] = [640, 320];
+  const { context, seconds } = film(width, height);
+  const count = Math.round(seconds * PICTURES);
+  const drawn = (k: number) => {
+    picture(context, (k / count) * CYCLES, width, height);
+    return context.getImageData(0, 0, width, height).data;
+  };
+  // The colours are those of the page, and the same in every picture.
+  const palette = quantize(drawn(Math.round(count / 2)), 64);
+  const gif = GIFEncoder();
+  for (let k = 0; k < count; k++) {
+    gif.writeFrame(applyPalette(drawn(k), palette), width, height, { palette: k === 0 ? palette : undefined, delay: 1000 / PICTURES });
+    if (k % 8 === 0) await new Promise((resolve) => setTimeout(resolve));
+  }
+  gif.finish();
+  download("motion.gif", new Uint8Array(gif.bytes()), "image/gif");
+}
+
 /** All cycles in motion, as the browser records it; it takes as long as it lasts. */
 export async function saveVideo(): Promise<void> {
   const type = ["video/webm;codecs=vp9", "video/webm"].find((each) => MediaRecorder.isTypeSupported(each));
   if (!type) throw new Error("saving the motion: this browser records no WebM");
-  const canvas = document.createElement("canvas");
-  [canvas.width, canvas.height] = [960, 480];
-  const context = canvas.getContext("2d");
-  if (!context) throw new Error("saving the motion: the browser gave no canvas");
+  const { context, seconds } = film(960, 480);
+  const { canvas } = context;
   const recorder = new MediaRecorder(canvas.captureStream(30), { mimeType: type, videoBitsPerSecond: 4_000_000 });
   const pieces: Blob[] = [];
   recorder.ondataavailable = ({ data }) => pieces.push(data);
   const stopped = new Promise((resolve) => (recorder.onstop = resolve));
   recorder.start();
-  const seconds = 2 * CYCLES;
   const begun = performance.now();
   await new Promise<void>((resolve) => {
     const step = (now: number) => {

@@ -5,7 +5,7 @@ import { useEffect } from "preact/hooks";
 import { OpenButton } from "../files/open-button.tsx";
 import { canRedo, canUndo, redo, undo } from "./document.ts";
 import { openFiles } from "./open.ts";
-import { saveGait, savePng, saveSvg, saveSwimmer, saveTable, saveVideo } from "./save.ts";
+import { saveGait, saveGif, savePng, saveSvg, saveSwimmer, saveTable, saveVideo } from "./save.ts";
 import { copyLink } from "./share.ts";
 import { playing } from "./swimming.tsx";
 
@@ -16,6 +16,7 @@ const SAVES: readonly { name: string; save: () => void | Promise<void> }[] = [
   { name: "Swimmer file", save: saveSwimmer },
   { name: "Map, SVG", save: saveSvg },
   { name: "Map, PNG", save: savePng },
+  { name: "Motion, GIF", save: saveGif },
   { name: "Motion, WebM", save: saveVideo },
   { name: "Motion, CSV", save: saveTable },
 ];

@@ -15,7 +15,7 @@ export interface SweepMap {
   structure: (string | null)[][];
   status: string[][];
   folds: [number, number][][];
-  pareto: { key: string; speed: number; efficiency: number }[];
+  pareto: { key: number; speed: number; efficiency: number }[];
 }
 
 export interface Axis {

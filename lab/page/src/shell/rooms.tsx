@@ -5,7 +5,6 @@ import { Calibrate } from "../calibrate/calibrate.tsx";
 import { Drive } from "../drive/drive.tsx";
 import { Explore } from "../explore/explore.tsx";
 import { Maps } from "../maps/maps.tsx";
-import { hasModule } from "../wasm/embedded.ts";
 
 export interface Room {
   /** In the URL's fragment. */
@@ -18,11 +17,9 @@ export interface Room {
   Panel: ComponentType;
 }
 
-const CALIBRATE: Room = { id: "calibrate", name: "Calibrate", about: "Fit drag and sphere to tracking files.", key: "3", Panel: Calibrate };
-
 export const ROOMS: readonly Room[] = [
   { id: "explore", name: "Explore", about: "Drag a gait over the height map and watch it swim.", key: "1", Panel: Explore },
   { id: "drive", name: "Drive", about: "Connect the robot, upload the gait, play and stop.", key: "2", Panel: Drive },
-  ...(hasModule("calibrate") ? [CALIBRATE] : []),
+  { id: "calibrate", name: "Calibrate", about: "Fit drag and sphere to tracking files.", key: "3", Panel: Calibrate },
   { id: "maps", name: "Maps", about: "Read the map of a sweep over many designs.", key: "4", Panel: Maps },
 ];

@@ -41,21 +41,31 @@ export class Lab {
   }
 
   /** Asks; the reason of a refusal is the error's message. */
-  async ask(name: string, question: unknown): Promise<Told> {
+  ask(name: string, question: unknown): Promise<Told> {
     const id = ++this.#last;
     waiting.value++;
-    const worker = await this.#worker();
     const answer = new Promise<Told>((resolve, reject) => {
       this.#waiting.set(id, {
         answered: (told) => {
-          timed(name, told.milliseconds);
           if ("reason" in told) reject(new Error(told.reason));
-          else resolve(told);
+          else {
+            timed(name, told.milliseconds);
+            resolve(told);
+          }
         },
       });
-      worker.postMessage({ id, name, question });
+      this.#worker().then((worker) => worker.postMessage({ id, name, question }), reject);
     });
     return answer.finally(() => waiting.value--);
+  }
+
+  /** Ends what is being computed, and the worker with it: each question is refused with the reason. The next one has a new worker. */
+  stop(reason: string): void {
+    const ended = this.#started;
+    this.#started = undefined;
+    void ended?.then((worker) => worker.terminate());
+    for (const { answered } of this.#waiting.values()) answered({ id: 0, milliseconds: 0, reason });
+    this.#waiting.clear();
   }
 
   async json<T>(name: string, question: unknown): Promise<T> {

@@ -24,9 +24,9 @@ export class Module {
     this.#exports = exports;
   }
 
-  static async load(bytes: BufferSource): Promise<Module> {
-    const { instance } = await WebAssembly.instantiate(bytes, {});
-    return new Module(instance.exports as unknown as Exports);
+  static async load(compiled: WebAssembly.Module): Promise<Module> {
+    const { exports } = await WebAssembly.instantiate(compiled, {});
+    return new Module(exports as unknown as Exports);
   }
 
   /** Performs a call by name; `question` is bytes as they are, or anything that JSON holds. Throws its reason in one sentence. */

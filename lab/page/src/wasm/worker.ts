@@ -12,8 +12,8 @@ export type Told = { id: number; milliseconds: number } & ({ json: unknown } | {
 
 let loading: Promise<Module> | undefined;
 
-self.onmessage = async ({ data }: MessageEvent<ArrayBuffer | Asked>) => {
-  if (data instanceof ArrayBuffer) {
+self.onmessage = async ({ data }: MessageEvent<WebAssembly.Module | Asked>) => {
+  if (data instanceof WebAssembly.Module) {
     loading = Module.load(data);
     return;
   }

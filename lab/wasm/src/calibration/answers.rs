@@ -1,5 +1,6 @@
 //! The answers, under the keys of `swimmer calibrate --json` and of its evidence, and what only pictures need.
 
+use calibrate::assessment::{BudgetLine, Explanation, Systematics};
 use calibrate::evidence::{CurvePoint, Evidence, Profile};
 use calibrate::{Assessment, CampaignFit, Intervals, RunResult, TrackSurvey, c_t_form};
 use serde::Serialize;
@@ -279,14 +280,33 @@ pub(super) struct AssessmentAnswer {
     verdict: &'static str,
     reasons: Vec<String>,
     reduced_chi2: Option<f64>,
+    /// Null where the runs are too few for it.
+    systematics: Option<EstimateAnswer>,
+    budget: Vec<BudgetLine>,
+    explanations: Vec<Explanation>,
 }
 
-impl From<&Assessment> for AssessmentAnswer {
-    fn from(assessed: &Assessment) -> Self {
+#[derive(Serialize)]
+struct EstimateAnswer {
+    sphere_radius_m: f64,
+    chi: f64,
+    intervals: IntervalsAnswer,
+}
+
+impl From<Assessment> for AssessmentAnswer {
+    fn from(assessed: Assessment) -> Self {
+        let estimate = |found: &Systematics| EstimateAnswer {
+            sphere_radius_m: found.estimate.sphere_radius,
+            chi: found.estimate.chi,
+            intervals: (&found.intervals).into(),
+        };
         Self {
             verdict: assessed.verdict.word(),
-            reasons: assessed.reasons.clone(),
+            reasons: assessed.reasons,
             reduced_chi2: assessed.goodness.reduced_chi2,
+            systematics: assessed.systematics.as_ref().map(estimate),
+            budget: assessed.budget,
+            explanations: assessed.explanations,
         }
     }
 }

@@ -34,6 +34,7 @@ enum What {
 
 #[derive(Serialize)]
 struct Found {
+    /// Of the fastest |d|, else X.
     displacement_over_length: f64,
     displacement_m: f64,
     lateral_over_length: f64,
@@ -116,6 +117,8 @@ pub(super) fn optimize(_: &mut Lab, bytes: &[u8]) -> Outcome {
             Found {
                 period_s: Some(found.period),
                 speed_over_length_per_s: Some(found.speed_over_length),
+                displacement_over_length: found.distance_over_length,
+                displacement_m: found.distance_over_length * swimmer.total_length(),
                 ..Found::new(&found.gait, &file.name)
             }
         }

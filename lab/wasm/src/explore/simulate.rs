@@ -1,9 +1,9 @@
-//! `simulate`, `gait-file` and `tank`: what one cycle brings, the file that says so anywhere, and how many cycles there is room for.
+//! `net`, `simulate`, `gait-file` and `tank`: what one cycle brings, the file that says so anywhere, and how many cycles there is room for.
 
 use forecast::{Tank, shortest_period, until_wall};
 use serde::{Deserialize, Serialize};
-use swimmer_files::Objective;
-use swimmer_model::{Gait, Pose, Tolerance, crossing_share, swim};
+use swimmer_files::{AnyGait, Objective};
+use swimmer_model::{Gait, Model, Pose, Tolerance, crossing_share, swim};
 
 use super::bounds::{BoundsAsked, objective};
 use crate::calls::{Answer, Lab, Outcome, json, parsed};
@@ -22,10 +22,9 @@ const fn one_second() -> f64 {
     1.0
 }
 
-/// One cycle, under the keys of `swimmer simulate --json`, and what the page tells beside it.
+/// What follows a hand: the net motion, under the keys of `swimmer simulate --json`.
 #[derive(Serialize)]
-struct Swum {
-    links_cross: f64,
+struct Net {
     displacement_over_length: f64,
     displacement_m: f64,
     lateral_over_length: f64,
@@ -34,13 +33,21 @@ struct Swum {
     delta_theta_rad: f64,
     efficiency: f64,
     efficiency_constant_power: f64,
+    /// In the period asked for.
+    speed_m_per_s: f64,
+    speed_over_length_per_s: f64,
+}
+
+/// One cycle, under the keys of `swimmer simulate --json`, and what the page tells beside it.
+#[derive(Serialize)]
+struct Swum {
+    #[serde(flatten)]
+    net: Net,
+    links_cross: f64,
     /// Largest |φ̇ᵢ| of each joint in the period asked for.
     peak_rates_rad_s: [f64; 2],
     /// Largest |φᵢ|.
     reach_rad: f64,
-    /// In the period asked for.
-    speed_m_per_s: f64,
-    speed_over_length_per_s: f64,
     /// Fastest cycle that the swimmer's servos follow as parametrised, in seconds.
     shortest_period_s: Option<f64>,
 }
@@ -48,13 +55,38 @@ struct Swum {
 /// Looks per cycle for the peak rates; a spline of 192 knots turns on ten of them.
 const LOOKS: usize = 1920;
 
-/// Swims a gait.
+impl Net {
+    fn of(model: &Model<f64>, gait: &AnyGait, period: f64) -> Self {
+        let stroke = swim(model, gait, &Tolerance::default());
+        let over_length = stroke.displacement_over_length();
+        let speed = stroke.displacement.norm() / period;
+        Self {
+            displacement_over_length: over_length.x,
+            displacement_m: stroke.displacement.x,
+            lateral_over_length: over_length.y,
+            rotation_rad: stroke.rotation,
+            delta_y_over_length: stroke.delta_y / stroke.total_length,
+            delta_theta_rad: stroke.delta_theta,
+            efficiency: stroke.efficiency(),
+            efficiency_constant_power: stroke.efficiency_constant_power(),
+            speed_m_per_s: speed,
+            speed_over_length_per_s: speed / stroke.total_length,
+        }
+    }
+}
+
+/// The net motion of a gait, at once.
+pub(super) fn net(_: &mut Lab, bytes: &[u8]) -> Outcome {
+    let asked: Asked = parsed(bytes)?;
+    let (_, model) = asked.swimmer.model()?;
+    json(&Net::of(&model, &asked.gait.read()?, asked.period))
+}
+
+/// Swims a gait, and looks at all of it.
 pub(super) fn simulate(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let asked: Asked = parsed(bytes)?;
     let (file, model) = asked.swimmer.model()?;
     let gait = asked.gait.read()?;
-    let stroke = swim(&model, &gait, &Tolerance::default());
-    let over_length = stroke.displacement_over_length();
     let mut peaks = [0.0_f64; 2];
     for look in 0..LOOKS {
         let rate = gait.at(look as f64 / LOOKS as f64).rate;
@@ -63,21 +95,11 @@ pub(super) fn simulate(_: &mut Lab, bytes: &[u8]) -> Outcome {
         }
     }
     let servo = file.servo.unwrap_or_default();
-    let speed = stroke.displacement.norm() / asked.period;
     json(&Swum {
+        net: Net::of(&model, &gait, asked.period),
         links_cross: crossing_share(&file.swimmer.links, &gait).of_cycle,
-        displacement_over_length: over_length.x,
-        displacement_m: stroke.displacement.x,
-        lateral_over_length: over_length.y,
-        rotation_rad: stroke.rotation,
-        delta_y_over_length: stroke.delta_y / stroke.total_length,
-        delta_theta_rad: stroke.delta_theta,
-        efficiency: stroke.efficiency(),
-        efficiency_constant_power: stroke.efficiency_constant_power(),
         peak_rates_rad_s: peaks.map(|peak| peak / asked.period),
         reach_rad: forecast::reach(&gait).angle.abs(),
-        speed_m_per_s: speed,
-        speed_over_length_per_s: speed / stroke.total_length,
         shortest_period_s: shortest_period(&gait, [servo.max_rate; 2]).ok(),
     })
 }
