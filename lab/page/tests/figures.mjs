@@ -10,6 +10,18 @@ const line = (what, values, promised) => {
   lines.push({ what, "median ms": middle.toFixed(1), "longest ms": (sorted.at(-1) ?? NaN).toFixed(1), "promised ms": promised });
 };
 
+async function slide(tab, id, value) {
+  await tab.evaluate(
+    ([id, value]) => {
+      const slider = document.getElementById(id);
+      slider.value = `${value}`;
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+    },
+    [id, value],
+  );
+  await tab.settled();
+}
+
 for (const swimmer of ["purcell", "robot"]) {
   const tab = await Tab.open(browser);
   if (swimmer === "purcell") {
@@ -17,7 +29,8 @@ for (const swimmer of ["purcell", "robot"]) {
     line("page from disk, until nothing is computed any more", [await tab.evaluate(() => performance.now())], "");
   }
   await tab.choose("Swimmer", swimmer);
-  await tab.settled();
+  // A bound for which nothing was searched yet.
+  await slide(tab, "max-angle", 2.25);
   const told = (name) => tab.evaluate((name) => globalThis.swimmerLab.times.get(name) ?? [], name);
   const forget = () => tab.evaluate(() => globalThis.swimmerLab.times.clear());
   await forget();
@@ -45,12 +58,7 @@ for (const swimmer of ["purcell", "robot"]) {
   await tab.settled();
   line(`${swimmer}: cold optimum of efficiency, certified`, await told("optimize"), 60);
   await forget();
-  await tab.evaluate(() => {
-    const slider = document.querySelector("#half-width");
-    slider.value = "2.7";
-    slider.dispatchEvent(new Event("input", { bubbles: true }));
-  });
-  await tab.settled();
+  await slide(tab, "half-width", 2.7);
   const [coarse, fine] = await told("height-grid");
   const [curves] = await told("height-map");
   line(`${swimmer}: height map, first picture`, [coarse], 300);
