@@ -351,7 +351,7 @@ mod tests {
         assert_eq!(minor_version("1.96.0+dfsg1-1~deb12u2"), "1.96");
         assert_eq!(
             prefix_name("1.96.0", Target::Chip),
-            "1.96.0-thumbv6m-none-eabi-recipe-3"
+            "1.96.0-thumbv6m-none-eabi-recipe-4"
         );
         assert_eq!(multiarch("aarch64-unknown-linux-gnu"), "aarch64-linux-gnu");
     }
