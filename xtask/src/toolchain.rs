@@ -106,7 +106,8 @@ impl Toolchain {
         if self.target == Target::Page {
             cargo
                 .env("RUSTC_BOOTSTRAP", "1") // for the flags, and for a library of our own
-                .env_remove("RUSTFLAGS")
+                .env_remove("RUSTFLAGS") // either would take the place of ours
+                .env_remove("CARGO_ENCODED_RUSTFLAGS")
                 .env(
                     "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS",
                     self.target.flags(),
