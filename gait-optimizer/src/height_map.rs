@@ -33,6 +33,8 @@ mod zeros;
 use nalgebra::{DMatrix, Vector2, Vector3};
 use swimmer_model::{Model, Swimmer};
 
+use crate::batch::{Batch, First};
+
 pub use area_rule::AreaRule;
 pub use error::HeightMapError;
 pub use level_curve::LevelCurve;
@@ -254,12 +256,17 @@ impl HeightMap {
         let p2 = p2.transpose();
         let [x, y, theta] = &self.coefficients.rows;
         let b = [&p1 * x * &p2, &p1 * y * &p2, &p1 * theta * &p2];
-        DMatrix::from_fn(first.len(), second.len(), |i, j| {
-            let phi = Vector2::new(first[i], second[j]) * self.half_width;
-            let curvature = self.model.first_derivatives(&phi).curvature();
-            let frame = Vector3::new(b[0][(i, j)], b[1][(i, j)], b[2][(i, j)]);
-            carried(&curvature, &frame)[row.index()]
-        })
+        let mut heights = DMatrix::zeros(first.len(), second.len());
+        // Column by column, as matrices are stored.
+        let phi = second.iter().flat_map(|&s2| {
+            let shape = move |&s1: &f64| Vector2::new(s1, s2) * self.half_width;
+            first.iter().map(shape)
+        });
+        Batch::of(&self.model).each(First, phi, |number, derivatives| {
+            let frame = Vector3::new(b[0][number], b[1][number], b[2][number]);
+            heights[number] = carried(&derivatives.curvature(), &frame)[row.index()];
+        });
+        heights
     }
 
     /// Zero-level curves of a height on the square: every component, each vertex with |H| ≤ 1e-12.

@@ -89,7 +89,7 @@ mod turning;
 pub use atlas::{
     Atlas, AtlasError, AtlasProblem, Optimum, StartCurves, Watch, atlas, atlas_watched,
 };
-pub use batch::{Batch, ConnectionsAndPowers};
+pub use batch::{Batch, ConnectionsAndPowers, ManyFirstDerivatives};
 pub use certificate::{Certificate, Check, Verdict};
 pub use certify::{CertifyError, certify};
 pub use continuation::{

@@ -35,6 +35,8 @@
 #![cfg_attr(not(test), no_std)]
 // Formulas in the docs read like the paper's: c_t, r_s, l_i.
 #![allow(clippy::doc_markdown)]
+// A loop over many shapes becomes vector instructions only where all of the model is in it.
+#![allow(clippy::inline_always)]
 
 mod crossing;
 mod derivatives;

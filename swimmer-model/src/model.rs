@@ -80,7 +80,7 @@ impl<T: Scalar> Model<T> {
     /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
     /// ```
     pub fn local_connection(&self, phi: &Vector2<T>) -> Matrix3x2<T> {
-        self.balance(phi).connection()
+        self.balance(turns(phi)).connection()
     }
 
     /// W(Φ)/μ: the power is Φ̇ᵀ W Φ̇ (paper, equation for p(t)). Symmetric, positive definite, in m³.
@@ -95,65 +95,71 @@ impl<T: Scalar> Model<T> {
     /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
     /// ```
     pub fn power_matrix(&self, phi: &Vector2<T>) -> Matrix2<T> {
-        self.power(&self.balance(phi))
+        self.power(&self.balance(turns(phi)))
     }
 
     /// A(Φ) and W(Φ)/μ together, at hardly more than the price of one.
     pub fn connection_and_power(&self, phi: &Vector2<T>) -> (Matrix3x2<T>, Matrix2<T>) {
-        let balance = self.balance(phi);
-        (balance.connection(), self.power(&balance))
+        self.connection_and_power_at(turns(phi))
     }
 
     /// A, W and their exact first derivatives ∂₁, ∂₂ with respect to φ₁, φ₂.
     pub fn first_derivatives(&self, phi: &Vector2<T>) -> FirstDerivatives<T> {
-        let balance = self.balance(phi);
-        self.first(&balance).0
+        self.first_derivatives_at(turns(phi))
     }
 
     /// A, W and their exact first and second derivatives.
     pub fn second_derivatives(&self, phi: &Vector2<T>) -> SecondDerivatives<T> {
-        let balance = self.balance(phi);
+        self.second_derivatives_at(turns(phi))
+    }
+
+    /// As [`Self::connection_and_power`], from (sin φ₁, cos φ₁) and (sin φ₂, cos φ₂). This and the next two have no branch and are
+    /// inlined whole: a loop of them over many shapes can become vector instructions.
+    #[inline(always)]
+    pub fn connection_and_power_at(&self, turns: [(T, T); 2]) -> (Matrix3x2<T>, Matrix2<T>) {
+        let balance = self.balance(turns);
+        (balance.connection(), self.power(&balance))
+    }
+
+    /// As [`Self::first_derivatives`], from (sin φ₁, cos φ₁) and (sin φ₂, cos φ₂).
+    #[inline(always)]
+    pub fn first_derivatives_at(&self, turns: [(T, T); 2]) -> FirstDerivatives<T> {
+        self.first(&self.balance(turns)).0
+    }
+
+    /// As [`Self::second_derivatives`], from (sin φ₁, cos φ₁) and (sin φ₂, cos φ₂).
+    #[inline(always)]
+    pub fn second_derivatives_at(&self, turns: [(T, T); 2]) -> SecondDerivatives<T> {
+        let balance = self.balance(turns);
         let (first, slopes) = self.first(&balance);
-        let curvatures: [Blocks<T>; 2] = core::array::from_fn(|i| {
-            self.sides[i].blocks(&balance.terms[i].derivative().derivative())
-        });
-        let mut d2_connection = [Matrix3x2::zeros(); 3];
-        let mut d2_power = [Matrix2::zeros(); 3];
-        for (n, (i, j)) in [(0, 0), (0, 1), (1, 1)].into_iter().enumerate() {
-            // ∂ᵢⱼA = −M⁻¹(∂ᵢⱼN + ∂ᵢⱼM A + ∂ᵢM ∂ⱼA + ∂ⱼM ∂ᵢA); M and N have no mixed second derivatives.
-            let (di, dj) = (&slopes.da[i], &slopes.da[j]);
-            let mut force: [Vector3<T>; 2] = core::array::from_fn(|k| {
-                slopes.blocks[i].body.times(&dj[k]) + slopes.blocks[j].body.times(&di[k])
-            });
-            // ∂ᵢⱼW = ∂ᵢⱼNᵀA + Aᵀ∂ᵢⱼN + Aᵀ∂ᵢⱼM A + Yᵢᵀ∂ⱼA + ∂ⱼAᵀYᵢ with Yᵢ = ∂ᵢN + ∂ᵢM A.
-            let y = &slopes.force[i];
-            let mut w = symmetric(|k, l| y[k].dot(&dj[l]) + y[l].dot(&dj[k]));
-            if i == j {
-                let (extra, power) = second_order(&curvatures[i], i, &balance.a);
-                force[0] += extra[0];
-                force[1] += extra[1];
-                w += power;
-            }
-            d2_connection[n] = Matrix3x2::from_columns(&force.map(|v| balance.factors.balance(&v)));
-            d2_power[n] = w;
-        }
+        let factors = &balance.factors;
+        let connection = |force: [Vector3<T>; 2]| columns(&factors.both(&force));
+        let (bent1, curved1) = second_order(&self.slope(&balance.terms, 0, 2), 0, &balance.a);
+        let (bent2, curved2) = second_order(&self.slope(&balance.terms, 1, 2), 1, &balance.a);
+        // M and N have no mixed second derivatives.
+        let (force11, power11) = slopes.crossed(0, 0);
+        let (force12, power12) = slopes.crossed(0, 1);
+        let (force22, power22) = slopes.crossed(1, 1);
         SecondDerivatives {
             first,
-            d2_connection,
-            d2_power,
+            d2_connection: [
+                connection([force11[0] + bent1[0], force11[1] + bent1[1]]),
+                connection(force12),
+                connection([force22[0] + bent2[0], force22[1] + bent2[1]]),
+            ],
+            d2_power: [power11 + curved1, power12, power22 + curved2],
         }
     }
 
-    #[inline]
-    fn balance(&self, phi: &Vector2<T>) -> Balance<T> {
-        let turns = [phi.x.sin_cos(), phi.y.sin_cos()];
+    #[inline(always)]
+    fn balance(&self, turns: [(T, T); 2]) -> Balance<T> {
         let terms = [self.sides[0].terms(turns[0]), self.sides[1].terms(turns[1])];
         let [front, back] = [
             self.sides[0].blocks(&terms[0]),
             self.sides[1].blocks(&terms[1]),
         ];
         let factors = self.middle.plus(&front.body).plus(&back.body).factorise();
-        let a = [front.joint, back.joint].map(|n| factors.balance(&n));
+        let a = factors.both(&[front.joint, back.joint]);
         Balance {
             turns,
             terms,
@@ -164,15 +170,18 @@ impl<T: Scalar> Model<T> {
 
     /// W = U + NᵀA as what it stands for: the sum of every link's power. Sums of squares keep W positive, and keep its
     /// small direction exact to rounding where U + NᵀA would leave a difference of large numbers.
-    #[inline]
+    #[inline(always)]
     fn power(&self, balance: &Balance<T>) -> Matrix2<T> {
         let Balance { turns, a, .. } = balance;
         let (zero, one) = (T::zero(), T::one());
-        let slips: [[Vector3<T>; 2]; 2] = core::array::from_fn(|i| {
-            core::array::from_fn(|k| {
-                self.sides[i].slips(turns[i], &a[k], if i == k { one } else { zero })
-            })
-        });
+        let slips = |i: usize, rates: [T; 2]| {
+            let side = &self.sides[i];
+            [
+                side.slips(turns[i], &a[0], rates[0]),
+                side.slips(turns[i], &a[1], rates[1]),
+            ]
+        };
+        let slips = [slips(0, [one, zero]), slips(1, [zero, one])];
         symmetric(|k, l| {
             let middle = self.middle.xx * a[k].x * a[l].x
                 + self.middle.yy * a[k].y * a[l].y
@@ -181,21 +190,33 @@ impl<T: Scalar> Model<T> {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn first(&self, balance: &Balance<T>) -> (FirstDerivatives<T>, Slopes<T>) {
-        let blocks: [Blocks<T>; 2] =
-            core::array::from_fn(|i| self.sides[i].blocks(&balance.terms[i].derivative()));
+        let blocks = [
+            self.slope(&balance.terms, 0, 1),
+            self.slope(&balance.terms, 1, 1),
+        ];
         // ∂ᵢA = −M⁻¹Yᵢ and ∂ᵢW = ∂ᵢNᵀA + Aᵀ∂ᵢN + Aᵀ∂ᵢM A, Yᵢ = ∂ᵢN + ∂ᵢM A.
-        let orders: [_; 2] = core::array::from_fn(|i| second_order(&blocks[i], i, &balance.a));
-        let force = orders.map(|(force, _)| force);
-        let da = force.map(|y| y.map(|v| balance.factors.balance(&v)));
+        let [(force1, power1), (force2, power2)] = [
+            second_order(&blocks[0], 0, &balance.a),
+            second_order(&blocks[1], 1, &balance.a),
+        ];
+        let force = [force1, force2];
+        let da = [balance.factors.both(&force1), balance.factors.both(&force2)];
         let first = FirstDerivatives {
             connection: balance.connection(),
             power: self.power(balance),
-            d_connection: da.map(|columns| Matrix3x2::from_columns(&columns)),
-            d_power: orders.map(|(_, power)| power),
+            d_connection: [columns(&da[0]), columns(&da[1])],
+            d_power: [power1, power2],
         };
         (first, Slopes { blocks, force, da })
+    }
+
+    /// Blocks of side link `i`, differentiated once or twice by its angle.
+    #[inline(always)]
+    fn slope(&self, terms: &[Terms<T>; 2], i: usize, times: usize) -> Blocks<T> {
+        let once = terms[i].derivative();
+        self.sides[i].blocks(&if times == 1 { once } else { once.derivative() })
     }
 }
 
@@ -206,23 +227,39 @@ struct Slopes<T> {
     da: [[Vector3<T>; 2]; 2],
 }
 
+impl<T: Scalar> Slopes<T> {
+    /// What first derivatives add up to in ∂ᵢⱼA = −M⁻¹(∂ᵢⱼN + ∂ᵢⱼM A + ∂ᵢM ∂ⱼA + ∂ⱼM ∂ᵢA) and in
+    /// ∂ᵢⱼW = ∂ᵢⱼNᵀA + Aᵀ∂ᵢⱼN + Aᵀ∂ᵢⱼM A + Yᵢᵀ∂ⱼA + ∂ⱼAᵀYᵢ, Yᵢ = ∂ᵢN + ∂ᵢM A.
+    #[inline(always)]
+    fn crossed(&self, i: usize, j: usize) -> ([Vector3<T>; 2], Matrix2<T>) {
+        let (di, dj, y) = (&self.da[i], &self.da[j], &self.force[i]);
+        let (mi, mj) = (&self.blocks[i].body, &self.blocks[j].body);
+        let force = [
+            mi.times(&dj[0]) + mj.times(&di[0]),
+            mi.times(&dj[1]) + mj.times(&di[1]),
+        ];
+        let power = symmetric(|k, l| y[k].dot(&dj[l]) + y[l].dot(&dj[k]));
+        (force, power)
+    }
+}
+
 impl<T: Scalar> Balance<T> {
-    #[inline]
+    #[inline(always)]
     fn connection(&self) -> Matrix3x2<T> {
-        Matrix3x2::from_columns(&self.a)
+        columns(&self.a)
     }
 }
 
 /// For differentiated blocks of side link `i`: the columns of N′ + M′A, and N′ᵀA + AᵀN′ + AᵀM′A.
-#[inline]
+#[inline(always)]
 fn second_order<T: Scalar>(
     blocks: &Blocks<T>,
     i: usize,
     a: &[Vector3<T>; 2],
 ) -> ([Vector3<T>; 2], Matrix2<T>) {
-    let mut force = a.map(|column| blocks.body.times(&column));
+    let mut force = [blocks.body.times(&a[0]), blocks.body.times(&a[1])];
     force[i] += blocks.joint;
-    let by_joint = a.map(|column| blocks.joint.dot(&column));
+    let by_joint = [blocks.joint.dot(&a[0]), blocks.joint.dot(&a[1])];
     let power = symmetric(|k, l| {
         let direct = force[k].dot(&a[l]);
         if l == i { direct + by_joint[k] } else { direct }
@@ -230,7 +267,17 @@ fn second_order<T: Scalar>(
     (force, power)
 }
 
-#[inline]
+#[inline(always)]
+fn columns<T: Scalar>([one, two]: &[Vector3<T>; 2]) -> Matrix3x2<T> {
+    Matrix3x2::new(one.x, two.x, one.y, two.y, one.z, two.z)
+}
+
+/// Sines and cosines of φ₁ and φ₂.
+fn turns<T: Scalar>(phi: &Vector2<T>) -> [(T, T); 2] {
+    [phi.x.sin_cos(), phi.y.sin_cos()]
+}
+
+#[inline(always)]
 fn symmetric<T: Scalar>(entry: impl Fn(usize, usize) -> T) -> Matrix2<T> {
     let off = entry(0, 1);
     Matrix2::new(entry(0, 0), off, off, entry(1, 1))

@@ -43,6 +43,7 @@ impl<T: Scalar> Symmetric3<T> {
         }
     }
 
+    #[inline(always)]
     pub(crate) fn plus(&self, o: &Self) -> Self {
         Self {
             xx: self.xx + o.xx,
@@ -54,7 +55,7 @@ impl<T: Scalar> Symmetric3<T> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn times(&self, v: &Vector3<T>) -> Vector3<T> {
         Vector3::new(
             self.xx * v.x + self.xy * v.y + self.xz * v.z,
@@ -64,7 +65,7 @@ impl<T: Scalar> Symmetric3<T> {
     }
 
     /// L D Lᵀ of a positive definite matrix: backward stable whatever the units of the rows.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn factorise(&self) -> Factors3<T> {
         let one = T::one();
         let inv_x = one / self.xx;
@@ -97,7 +98,7 @@ pub(crate) struct Factors3<T> {
 
 impl<T: Scalar> Factors3<T> {
     /// −M⁻¹ v, the body velocity that balances the generalised force v.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn balance(&self, v: &Vector3<T>) -> Vector3<T> {
         let y = v.y - self.yx * v.x;
         let z = v.z - self.zx * v.x - self.zy * y;
@@ -105,6 +106,12 @@ impl<T: Scalar> Factors3<T> {
         let y = -y * self.inv_y - self.zy * z;
         let x = -v.x * self.inv_x - self.yx * y - self.zx * z;
         Vector3::new(x, y, z)
+    }
+
+    /// The same of two forces.
+    #[inline(always)]
+    pub(crate) fn both(&self, [one, two]: &[Vector3<T>; 2]) -> [Vector3<T>; 2] {
+        [self.balance(one), self.balance(two)]
     }
 }
 
@@ -147,7 +154,7 @@ pub(crate) struct Blocks<T> {
 
 impl<T: Scalar> Terms<T> {
     /// d/dφ of all terms.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn derivative(&self) -> Self {
         let twice_r = self.r + self.r;
         Self {
@@ -185,7 +192,7 @@ impl<T: Scalar> SideLink<T> {
 
     /// How fast the link slips along itself, across itself at its centre, and turns, each times the root of its
     /// resistance, for the body velocity `body` and the joint rate `rate`. The squares add up to its power.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn slips(&self, (sin, cos): (T, T), body: &Vector3<T>, rate: T) -> Vector3<T> {
         let (x, y, turn) = (self.mirror * body.x, body.y, self.mirror * body.z);
         // Velocity of the joint, in the frame mirrored for the back link.
@@ -198,12 +205,12 @@ impl<T: Scalar> SideLink<T> {
     }
 
     /// u, the constant joint/joint block: the torque about the joint for a unit rate of the free link.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn hinge(&self) -> T {
         self.hinge
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn terms(&self, (sin, cos): (T, T)) -> Terms<T> {
         let (sin2, cos2) = (sin * sin, cos * cos);
         Terms {
@@ -216,7 +223,7 @@ impl<T: Scalar> SideLink<T> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn blocks(&self, t: &Terms<T>) -> Blocks<T> {
         let (h, s) = (self.arm, self.mirror);
         let hf = h * t.f;

@@ -56,11 +56,18 @@ impl AtlasProblem {
 pub struct Batch {}
 impl Batch {
     pub fn new(swimmer: &Swimmer<f64>) -> Result<Self, InvalidSwimmer> {}
+    pub fn of(model: &Model<f64>) -> Self {}
     pub fn connections_and_powers(
         &self,
         phi1: &[f64],
         phi2: &[f64],
         found: &mut ConnectionsAndPowers,
+    ) {}
+    pub fn first_derivatives(
+        &self,
+        phi1: &[f64],
+        phi2: &[f64],
+        found: &mut ManyFirstDerivatives,
     ) {}
 }
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -350,6 +357,11 @@ pub struct LevelCurve {
     pub points: Vec<Vector2<f64>>,
     pub closed: bool,
     pub residual: f64,
+}
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ManyFirstDerivatives {
+    pub values: ConnectionsAndPowers,
+    pub slopes: [ConnectionsAndPowers; 2],
 }
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Method {

@@ -120,6 +120,12 @@ impl<T: Scalar> Model<T> {
     pub fn connection_and_power(&self, phi: &Vector2<T>) -> (Matrix3x2<T>, Matrix2<T>) {}
     pub fn first_derivatives(&self, phi: &Vector2<T>) -> FirstDerivatives<T> {}
     pub fn second_derivatives(&self, phi: &Vector2<T>) -> SecondDerivatives<T> {}
+    pub fn connection_and_power_at(
+        &self,
+        turns: [(T, T); 2],
+    ) -> (Matrix3x2<T>, Matrix2<T>) {}
+    pub fn first_derivatives_at(&self, turns: [(T, T); 2]) -> FirstDerivatives<T> {}
+    pub fn second_derivatives_at(&self, turns: [(T, T); 2]) -> SecondDerivatives<T> {}
 }
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Panel<T> {}

@@ -9,6 +9,7 @@ use swimmer_model::{Model, SecondDerivatives};
 
 use super::Basis;
 use super::basis::{PARTIAL, STAGES, WEIGHTS};
+use crate::batch::{self, Batch, Second};
 
 /// What one cycle brings and costs. Lengths in the model's unit, energies over μ for a period of 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -90,13 +91,13 @@ impl<'a> Functional<'a> {
     pub(crate) fn values(&self, coefficients: &DMatrix<f64>, work: &mut Workspace) -> Values {
         self.place(coefficients, work);
         let mut costs = (0.0, 0.0);
-        for node in 0..self.basis.nodes() {
-            let (phi, slope) = (column(&work.phi, node), column(&work.slope, node));
-            let (connection, power) = self.model.connection_and_power(&phi);
+        let phi = (0..self.basis.nodes()).map(|node| column(&work.phi, node));
+        Batch::of(self.model).each(batch::Values, phi, |node, (connection, power)| {
+            let slope = column(&work.slope, node);
             let weight = WEIGHTS[node % STAGES];
             add_cost(&mut costs, weight, slope.dot(&(power * slope)));
             work.motion[node] = connection * slope * weight;
-        }
+        });
         self.summed(work, costs)
     }
 
@@ -104,14 +105,14 @@ impl<'a> Functional<'a> {
     pub(crate) fn gradients(&self, coefficients: &DMatrix<f64>, work: &mut Workspace) -> Values {
         self.place(coefficients, work);
         let mut costs = (0.0, 0.0);
-        for node in 0..self.basis.nodes() {
-            let (phi, slope) = (column(&work.phi, node), column(&work.slope, node));
-            let second = self.model.second_derivatives(&phi);
+        let phi = (0..self.basis.nodes()).map(|node| column(&work.phi, node));
+        Batch::of(self.model).each(Second, phi, |node, second| {
+            let slope = column(&work.slope, node);
             let weight = WEIGHTS[node % STAGES];
             add_cost(&mut costs, weight, slope.dot(&(second.first.power * slope)));
             work.motion[node] = second.first.connection * slope * weight;
             work.derivatives[node] = second;
-        }
+        });
         let values = self.summed(work, costs);
         self.levers(work);
         work.gradients.fill(0.0);

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, Vector2};
 use swimmer_model::Model;
 
 use super::space::{Field, Space, table};
+use crate::batch::{Batch, Connection};
 
 /// b_x, b_y, b_θ in products of orthonormal Legendre polynomials of Φ / D; rows run along φ₁, lengths over L.
 #[derive(Debug, Clone)]
@@ -51,17 +52,20 @@ impl Rows {
             y: zero(),
             theta: zero(),
         };
-        for (j, s2) in space.nodes.iter().enumerate() {
-            for (i, s1) in space.nodes.iter().enumerate() {
-                let phi = Vector2::new(*s1, *s2) * half_width;
-                let a = model.local_connection(&phi) * half_width;
-                for joint in 0..2 {
-                    rows.x[joint][(i, j)] = a[(0, joint)];
-                    rows.y[joint][(i, j)] = a[(1, joint)];
-                    rows.theta[joint][(i, j)] = a[(2, joint)];
-                }
+        // Column by column, as matrices are stored.
+        let shape = |number: usize| {
+            let (s1, s2) = (space.nodes[number % count], space.nodes[number / count]);
+            Vector2::new(s1, s2) * half_width
+        };
+        let phi = (0..count * count).map(shape);
+        Batch::of(model).each(Connection, phi, |number, a| {
+            let a = a * half_width;
+            for joint in 0..2 {
+                rows.x[joint][number] = a[(0, joint)];
+                rows.y[joint][number] = a[(1, joint)];
+                rows.theta[joint][number] = a[(2, joint)];
             }
-        }
+        });
         rows
     }
 }

@@ -7,6 +7,7 @@ use nalgebra::{Vector2, Vector3};
 use swimmer_model::Model;
 
 use super::quadrature::{Rule, legendre};
+use crate::batch::{Batch, Connection, First};
 use crate::region::{Clearance, Piece};
 
 /// Most coefficients of a bent arc.
@@ -136,16 +137,19 @@ impl Shape {
         ends: &[Vector2<f64>; 2],
         bends: &[f64],
     ) -> [f64; 4] {
-        let rate = |&s: &f64| {
-            let (phi, rate) = if *self == Self::Straight {
-                (ends[0] + (ends[1] - ends[0]) * s, ends[1] - ends[0])
-            } else {
-                let place = self.place::<MOST_PARAMETERS>(ends, bends, s);
-                (place.phi, place.rate)
-            };
-            model.connection_and_power(&phi).0 * rate
+        let place = |&s: &f64| {
+            if *self == Self::Straight {
+                return (ends[0] + (ends[1] - ends[0]) * s, ends[1] - ends[0]);
+            }
+            let place = self.place::<MOST_PARAMETERS>(ends, bends, s);
+            (place.phi, place.rate)
         };
-        let rates: Vec<Vector3<f64>> = rule.nodes.iter().map(rate).collect();
+        let places: Vec<(Vector2<f64>, Vector2<f64>)> = rule.nodes.iter().map(place).collect();
+        let mut rates: Vec<Vector3<f64>> = Vec::with_capacity(places.len());
+        let phi = places.iter().map(|(phi, _)| *phi);
+        Batch::of(model).each(Connection, phi, |node, connection| {
+            rates.push(connection * places[node].1);
+        });
         let mut value = [0.0; 4];
         for (rate, (weight, up_to)) in rates.iter().zip(rule.weights.iter().zip(&rule.cumulative)) {
             let theta: f64 = up_to.iter().zip(&rates).map(|(w, rate)| w * rate.z).sum();
@@ -169,21 +173,20 @@ impl Shape {
         bends: &[f64],
     ) -> Jet {
         let parameters = 4 + self.bends();
-        let nodes: Vec<(Vector3<f64>, [Vector3<f64>; P])> = rule
-            .nodes
-            .iter()
-            .map(|&s| {
-                let place = self.place::<P>(ends, bends, s);
-                let first = model.first_derivatives(&place.phi);
-                let [one, two] = first.d_connection.map(|d| d * place.rate);
-                let mut slopes = [Vector3::zeros(); P];
-                for (p, slope) in slopes.iter_mut().enumerate().take(parameters) {
-                    let d = place.d_phi[p];
-                    *slope = one * d.x + two * d.y + first.connection * place.d_rate[p];
-                }
-                (first.connection * place.rate, slopes)
-            })
-            .collect();
+        let places = rule.nodes.iter().map(|&s| self.place::<P>(ends, bends, s));
+        let places: Vec<Place<P>> = places.collect();
+        let mut nodes: Vec<(Vector3<f64>, [Vector3<f64>; P])> = Vec::with_capacity(places.len());
+        let phi = places.iter().map(|place| place.phi);
+        Batch::of(model).each(First, phi, |node, first| {
+            let place = &places[node];
+            let [one, two] = first.d_connection.map(|d| d * place.rate);
+            let mut slopes = [Vector3::zeros(); P];
+            for (p, slope) in slopes.iter_mut().enumerate().take(parameters) {
+                let d = place.d_phi[p];
+                *slope = one * d.x + two * d.y + first.connection * place.d_rate[p];
+            }
+            nodes.push((first.connection * place.rate, slopes));
+        });
         let mut jet = Jet {
             value: [0.0; 4],
             slopes: [[0.0; 4]; MOST_PARAMETERS],

@@ -11,6 +11,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix3x2, Matrix4, SMatrix, Vector2, 
 use swimmer_model::{Model, SecondDerivatives};
 
 use super::Grid;
+use crate::batch::{self, Batch, Second};
 
 /// A gait's worth.
 #[derive(Debug, Clone, Copy)]
@@ -72,16 +73,13 @@ impl Objective<'_> {
     /// The objective alone, with x and S of the quarter.
     pub(crate) fn value(&self, coefficients: &[f64]) -> Value {
         let root = self.model.side_drag().sqrt();
-        let moments: Vec<(Vector3<f64>, f64)> = self
-            .grid
-            .nodes
-            .iter()
-            .map(|&s| {
-                let (phi, rate) = series(coefficients, s);
-                let (a, w) = self.model.connection_and_power(&phi);
-                (a * rate, rate.dot(&(w * rate)).max(0.0).sqrt())
-            })
-            .collect();
+        let places = self.places(coefficients);
+        let mut moments: Vec<(Vector3<f64>, f64)> = Vec::with_capacity(places.len());
+        let phi = places.iter().map(|(phi, _)| *phi);
+        Batch::of(self.model).each(batch::Values, phi, |node, (a, w)| {
+            let rate = places[node].1;
+            moments.push((a * rate, rate.dot(&(w * rate)).max(0.0).sqrt()));
+        });
         let turning = DVector::from_iterator(moments.len(), moments.iter().map(|(v, _)| v.z));
         let theta = &self.grid.integral * turning;
         let x: f64 = moments
@@ -99,6 +97,12 @@ impl Objective<'_> {
         }
     }
 
+    /// Φ and Φ′ at each node.
+    fn places(&self, coefficients: &[f64]) -> Vec<(Vector2<f64>, Vector2<f64>)> {
+        let nodes = self.grid.nodes.iter();
+        nodes.map(|&s| series(coefficients, s)).collect()
+    }
+
     fn objective(&self, x: f64, length: f64, energy: f64) -> f64 {
         x.abs().ln()
             - (1.0 - self.gauge) * length.ln()
@@ -110,15 +114,12 @@ impl Objective<'_> {
         let (count, size) = (self.grid.nodes.len(), coefficients.len());
         let dt = self.grid.weight;
         let over_drag = 1.0 / self.model.side_drag();
-        let locals: Vec<Local> = self
-            .grid
-            .nodes
-            .iter()
-            .map(|&s| {
-                let (phi, rate) = series(coefficients, s);
-                Local::new(&self.model.second_derivatives(&phi), &rate, over_drag)
-            })
-            .collect();
+        let places = self.places(coefficients);
+        let mut locals: Vec<Local> = Vec::with_capacity(count);
+        let phi = places.iter().map(|(phi, _)| *phi);
+        Batch::of(self.model).each(Second, phi, |node, second| {
+            locals.push(Local::new(&second, &places[node].1, over_drag));
+        });
         let theta = &self.grid.integral
             * DVector::from_iterator(count, locals.iter().map(|local| local.body.z));
         let turned: Vec<(f64, f64)> = theta.iter().map(|theta| theta.sin_cos()).collect();
