@@ -48,6 +48,12 @@ pub enum Field {
     /// Clearance of the side links \[m\].
     #[serde(rename = "bounds.clearance")]
     Clearance,
+    /// Whether gaits stay in the sector φ₁ ≥ |φ₂|: 0 or 1.
+    #[serde(rename = "bounds.sector")]
+    Sector,
+    /// Whether the side links may not cross: 0 or 1.
+    #[serde(rename = "bounds.no_overlap")]
+    NoOverlap,
     /// Largest rate of both servos \[rad/s\].
     #[serde(rename = "max_rate")]
     MaxRate,
@@ -64,7 +70,7 @@ pub(crate) struct Design {
 
 impl Field {
     /// All there are.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::Middle,
         Self::Side,
         Self::Front,
@@ -78,6 +84,8 @@ impl Field {
         Self::MaxAngle,
         Self::MinAngle,
         Self::Clearance,
+        Self::Sector,
+        Self::NoOverlap,
         Self::MaxRate,
     ];
 
@@ -97,6 +105,8 @@ impl Field {
             Self::MaxAngle => "bounds.max_angle",
             Self::MinAngle => "bounds.min_angle",
             Self::Clearance => "bounds.clearance",
+            Self::Sector => "bounds.sector",
+            Self::NoOverlap => "bounds.no_overlap",
             Self::MaxRate => "max_rate",
         }
     }
@@ -113,20 +123,36 @@ impl Field {
             | Self::Clearance => "m",
             Self::MaxAngle | Self::MinAngle => "rad",
             Self::MaxRate => "rad/s",
-            Self::Ratio | Self::Chi | Self::LogAspect | Self::OverViscosity => "",
+            Self::Ratio
+            | Self::Chi
+            | Self::LogAspect
+            | Self::OverViscosity
+            | Self::Sector
+            | Self::NoOverlap => "",
         }
     }
 
     /// Whether zero is a value of it.
     pub(crate) fn may_be_zero(self) -> bool {
-        matches!(self, Self::Sphere | Self::Clearance)
+        matches!(self, Self::Sphere | Self::Clearance) || self.chooses()
+    }
+
+    /// Whether its values are false and true, kept as 0 and 1.
+    pub(crate) fn chooses(self) -> bool {
+        matches!(self, Self::Sector | Self::NoOverlap)
+    }
+
+    /// Whether it bounds a quarter, and so displacement gaits alone.
+    pub(crate) fn of_quarters(self) -> bool {
+        matches!(self, Self::MinAngle | Self::Sector)
     }
 
     /// +1 where a larger value lets in more gaits, −1 where it lets in fewer, 0 where it does neither.
     pub(crate) fn widens(self) -> i8 {
         match self {
             Self::MaxAngle | Self::MaxRate => 1,
-            Self::MinAngle | Self::Clearance => -1,
+            // The sector asks for a gait that leads the other way.
+            Self::MinAngle | Self::Clearance | Self::NoOverlap => -1,
             _ => 0,
         }
     }
@@ -141,8 +167,10 @@ impl Field {
             )
         };
         let sides = |field| matches!(field, Self::Front | Self::Back);
+        let crossings = |field| matches!(field, Self::Clearance | Self::NoOverlap);
         self == other
             || (drags(self) && drags(other))
+            || (crossings(self) && crossings(other))
             || (self == Self::Ratio && lengths(other))
             || (other == Self::Ratio && lengths(self))
             || (self == Self::Side && sides(other))
@@ -169,6 +197,8 @@ impl Field {
             Self::MaxAngle => bounds.max_angle = Some(value),
             Self::MinAngle => bounds.min_angle = Some(value),
             Self::Clearance => (bounds.clearance, bounds.no_overlap) = (value, true),
+            Self::Sector => bounds.sector = value > 0.0,
+            Self::NoOverlap => bounds.no_overlap = value > 0.0,
             Self::MaxRate => design.rates = Some([value; 2]),
         }
     }

@@ -37,6 +37,7 @@ struct Raw {
 enum Number {
     Plain(f64),
     Angle(String),
+    Choice(bool),
 }
 
 #[derive(Deserialize)]
@@ -107,6 +108,10 @@ impl Text<'_> {
     fn number(&self, number: &Number, span: &Range<usize>) -> Result<f64, SweepError> {
         match number {
             Number::Plain(value) => Ok(*value),
+            Number::Choice(_) => Err(self.wrong(
+                span.clone(),
+                "a number is meant here, or an angle such as \"160deg\"",
+            )),
             Number::Angle(text) => {
                 parse_angle(text).map_err(|error| self.wrong(span.clone(), error.to_string()))
             }

@@ -258,6 +258,26 @@ fn mistakes_are_told_with_their_place() {
             "name = \"links.side\"\nvalues = [1]\n[[axis]]\nname = \"links.ratio\"\nvalues = [1]",
             "say the same thing twice",
         ),
+        (
+            "name = \"bounds.no_overlap\"\nvalues = [true]\n[[axis]]\nname = \"bounds.clearance\"\nvalues = [0.1]",
+            "say the same thing twice",
+        ),
+        (
+            "name = \"bounds.sector\"\nvalues = [0, 1]",
+            "say values = [false, true]",
+        ),
+        (
+            "name = \"bounds.sector\"\nfrom = false\nto = true\ncount = 2",
+            "say values = [false, true]",
+        ),
+        (
+            "name = \"drag.chi\"\nvalues = [true]",
+            "neither true nor false",
+        ),
+        (
+            "name = \"bounds.no_overlap\"\nvalues = [true]\n[bounds]\nclearance = 0.1",
+            "a clearance keeps the links apart in every design",
+        ),
     ] {
         let text =
             format!("swimmer = \"purcell\"\nobjective = \"displacement\"\n[[axis]]\n{axis}\n");
@@ -267,6 +287,51 @@ fn mistakes_are_told_with_their_place() {
             "{error}"
         );
     }
+}
+
+#[test]
+fn a_choice_is_an_axis() {
+    let folder = |text: &str| {
+        let (plan, folder) = (plan(text), tempfile::tempdir().unwrap());
+        ran(&plan, folder.path(), Shard::WHOLE, 1);
+        (plan, folder)
+    };
+    let (plan, all) = folder(
+        "swimmer = \"purcell\"\nobjective = \"displacement\"\n[bounds]\nmax_angle = 2.9\n\
+         [[axis]]\nname = \"bounds.sector\"\nvalues = [false, true]\n\
+         [[axis]]\nname = \"bounds.no_overlap\"\nvalues = [false, true]\n",
+    );
+    assert_eq!(plan.point(1), [0.0, 1.0]);
+    let slice = Slice::first(&plan).unwrap();
+    let found = map(&plan, all.path(), &slice).unwrap();
+    let quantity =
+        |map: &sweep::Map, row: usize, column: usize| map.quantities[0].values[row][column];
+    for (sector, no_overlap) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let (alone, one) = folder(&format!(
+            "swimmer = \"purcell\"\nobjective = \"displacement\"\n\
+             [bounds]\nmax_angle = 2.9\nsector = {}\nno_overlap = {}\n\
+             [[axis]]\nname = \"drag.chi\"\nvalues = [2]\n[[axis]]\nname = \"sphere.radius\"\nvalues = [0]\n",
+            sector == 1,
+            no_overlap == 1,
+        ));
+        let told = map(&alone, one.path(), &Slice::first(&alone).unwrap()).unwrap();
+        let (ours, told) = (quantity(&found, no_overlap, sector), quantity(&told, 0, 0));
+        assert_eq!(
+            ours.map(f64::to_bits),
+            told.map(f64::to_bits),
+            "{sector} {no_overlap}"
+        );
+    }
+    let farthest = |row, column| quantity(&found, row, column).unwrap().abs();
+    assert!(
+        farthest(1, 1) < 0.9 * farthest(0, 1),
+        "crossing links reach farther"
+    );
+    assert!(
+        farthest(0, 0) < farthest(0, 1),
+        "the sector is that of the other way"
+    );
+    assert_eq!(doubts(&plan, all.path()).unwrap(), []);
 }
 
 #[test]

@@ -60,10 +60,12 @@ pub enum Field {
     MaxAngle,
     MinAngle,
     Clearance,
+    Sector,
+    NoOverlap,
     MaxRate,
 }
 impl Field {
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::Middle,
         Self::Side,
         Self::Front,
@@ -77,6 +79,8 @@ impl Field {
         Self::MaxAngle,
         Self::MinAngle,
         Self::Clearance,
+        Self::Sector,
+        Self::NoOverlap,
         Self::MaxRate,
     ];
     pub fn name(self) -> &'static str {}

@@ -70,10 +70,16 @@ pub(super) fn designs(
                 ),
             ));
         }
-        if objective != Aim::Displacement && axis.name == Field::MinAngle {
+        if objective != Aim::Displacement && axis.name.of_quarters() {
             return Err(source.wrong(
                 name,
-                "bounds.min_angle is a bound of displacement gaits alone",
+                format!("{} is a bound of displacement gaits alone", axis.name),
+            ));
+        }
+        if axis.name == Field::NoOverlap && raw.bounds.clearance.is_some() {
+            return Err(source.wrong(
+                name,
+                "a clearance keeps the links apart in every design: leave it out, or make bounds.clearance the axis",
             ));
         }
         axes.push(axis);
@@ -87,12 +93,25 @@ pub(super) fn designs(
     Ok((axes, design))
 }
 
+const CHOICE: &str = "say values = [false, true], in a grid";
+
 fn axis(source: &Text<'_>, told: &Spanned<RawAxis>, grid: bool) -> Result<Axis, SweepError> {
     let raw = told.get_ref();
     let name = field(source, &raw.name)?;
     let span = told.span();
-    let wrong = |problem: &str| Err(source.wrong(span.clone(), format!("axis {name}: {problem}")));
-    let number = |number: &Number| source.number(number, &span);
+    let mistake = |problem: &str| source.wrong(span.clone(), format!("axis {name}: {problem}"));
+    let wrong = |problem: &str| Err(mistake(problem));
+    let number = |number: &Number| match (number, name.chooses()) {
+        (Number::Choice(choice), true) => Ok(f64::from(u8::from(*choice))),
+        (Number::Choice(_), false) => {
+            Err(mistake("its values are numbers, neither true nor false"))
+        }
+        (_, true) => Err(mistake(CHOICE)),
+        (number, false) => source.number(number, &span),
+    };
+    if name.chooses() && raw.values.is_none() {
+        return wrong(CHOICE);
+    }
     let values = match (&raw.values, &raw.from, &raw.to) {
         (Some(values), None, None) => {
             if !grid {
