@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::row::Row;
 use crate::{Design, Plan, SweepError, part};
+pub(crate) use doubt::among;
 pub use doubt::{Doubt, DoubtKind, doubts};
 
 /// Which two axes, and where on the others.

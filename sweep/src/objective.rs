@@ -1,14 +1,14 @@
 //! One design solved: from nothing, or from the gait of its neighbour.
 
 use gait_optimizer::{
-    Branch, DisplacementProblem, EfficiencyProblem, EfficiencySeed, Fastest, OptimalGait,
-    SidewaysProblem, SpeedProblem, TurningProblem, displacement, displacement_near, efficiency,
-    sideways, turning,
+    Branch, DisplacementError, DisplacementProblem, EfficiencyProblem, EfficiencySeed, Fastest,
+    OptimalGait, SidewaysProblem, SpeedProblem, TurningProblem, displacement, displacement_near,
+    efficiency, sideways, turning,
 };
 use serde::{Deserialize, Serialize};
 
 use crate::field::Design;
-use crate::row::{Row, alike};
+use crate::row::Row;
 
 /// What the gaits of a sweep are best at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -74,17 +74,6 @@ enum Held {
     Nothing,
 }
 
-impl Held {
-    fn gait(&self) -> Option<&OptimalGait> {
-        match self {
-            Self::Gait(gait) => Some(gait),
-            Self::Seed(seed) => Some(seed.gait()),
-            Self::Fastest(found) => Some(&found.gait),
-            Self::Nothing => None,
-        }
-    }
-}
-
 /// A design solved.
 #[derive(Debug, Clone)]
 pub(crate) struct Solved {
@@ -93,23 +82,71 @@ pub(crate) struct Solved {
 }
 
 impl Solved {
+    /// The answer of a solver that keeps nothing to start a neighbour from.
+    pub(crate) fn of_row(row: Row) -> Self {
+        Self {
+            row,
+            held: Held::Nothing,
+        }
+    }
+
     /// Whether two answers to one design are one gait: as good to this share, and of the same arcs.
     pub(crate) fn same(&self, other: &Self) -> bool {
         const SAME: f64 = 1e-7;
         let (Some(a), Some(b)) = (self.row.objective, other.row.objective) else {
             return false;
         };
-        let arcs = match (self.held.gait(), other.held.gait()) {
-            (Some(a), Some(b)) => alike(a, b),
-            _ => false,
-        };
-        arcs && (a - b).abs() <= SAME * a.abs().max(b.abs())
+        self.row.arcs == other.row.arcs && (a - b).abs() <= SAME * a.abs().max(b.abs())
     }
 }
 
 /// Samples of a quarter gait. What is kept is not its samples but its numbers, which do not depend on them: X/L and ξ come from the
 /// arcs, and the certificate asks for more samples where these do not do.
 const QUARTER: usize = 64;
+
+/// Why a design has no gait.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Missing {
+    pub(crate) reason: String,
+    /// What a gait that is no proven optimum is known to come to: one that comes to less is not the best.
+    pub(crate) outdone: Option<f64>,
+}
+
+impl From<String> for Missing {
+    fn from(reason: String) -> Self {
+        Self {
+            reason,
+            outdone: None,
+        }
+    }
+}
+
+impl From<DisplacementError> for Missing {
+    fn from(error: DisplacementError) -> Self {
+        Self {
+            reason: error.to_string(),
+            outdone: match error {
+                DisplacementError::NoOptimum { outdone, .. } => outdone.map(f64::abs),
+                DisplacementError::NotCertified {
+                    displacement_over_length,
+                    ..
+                } => Some(displacement_over_length.abs()),
+                _ => None,
+            },
+        }
+    }
+}
+
+/// What came of a design.
+pub(crate) type Answer = Result<Solved, Missing>;
+
+/// What solves the designs of a plan.
+pub(crate) trait Solve {
+    /// From nothing: the objective's own search.
+    fn cold(&self, design: &Design, key: u64) -> Answer;
+    /// From its neighbour's answer; none where that leads to no certified gait.
+    fn warm(&self, design: &Design, key: u64, near: &Solved) -> Option<Solved>;
+}
 
 /// How designs are solved.
 #[derive(Debug, Clone, Copy)]
@@ -120,63 +157,6 @@ pub(crate) struct Solver {
 }
 
 impl Solver {
-    /// A design solved from nothing: the objective's own search.
-    ///
-    /// # Errors
-    /// Why there is no gait.
-    pub(crate) fn cold(&self, design: &Design, key: u64) -> Result<Solved, String> {
-        let of_gait =
-            |gait: OptimalGait| self.solved(design, key, false, Held::Gait(Box::new(gait)));
-        match self.aim {
-            Aim::Displacement => displacement(&Self::of_displacement(design))
-                .map(of_gait)
-                .map_err(|error| error.to_string()),
-            Aim::EfficiencySmall | Aim::EfficiencyLarge => efficiency(&self.of_efficiency(design))
-                .map(EfficiencySeed::new)
-                .map(|seed| self.solved(design, key, false, Held::Seed(Box::new(seed))))
-                .map_err(|error| error.to_string()),
-            Aim::Speed => gait_optimizer::fastest(&self.of_speed(design)?)
-                .map(|found| self.solved(design, key, false, Held::Fastest(Box::new(found))))
-                .map_err(|error| error.to_string()),
-            Aim::Turning => turning(&TurningProblem {
-                swimmer: design.swimmer,
-                bounds: design.bounds,
-            })
-            .map(|found| of_gait(found.gait))
-            .map_err(|error| error.to_string()),
-            Aim::Sideways => sideways(&SidewaysProblem {
-                bounds: design.bounds,
-                starts: self
-                    .starts
-                    .map_or(SidewaysProblem::new(design.swimmer).starts, |starts| {
-                        starts as usize
-                    }),
-                ..SidewaysProblem::new(design.swimmer)
-            })
-            .map(|found| of_gait(found.gait))
-            .map_err(|error| error.to_string()),
-            Aim::Stub => Ok(stub(key)),
-        }
-    }
-
-    /// A design solved from its neighbour's answer; none where that leads to no certified gait.
-    pub(crate) fn warm(&self, design: &Design, key: u64, near: &Solved) -> Option<Solved> {
-        let held = match (&near.held, self.aim) {
-            (Held::Gait(gait), Aim::Displacement) => Held::Gait(Box::new(displacement_near(
-                &Self::of_displacement(design),
-                gait,
-            )?)),
-            (Held::Seed(seed), Aim::EfficiencySmall | Aim::EfficiencyLarge) => {
-                Held::Seed(Box::new(seed.near(&self.of_efficiency(design))?))
-            }
-            (Held::Fastest(fastest), Aim::Speed) => {
-                Held::Fastest(Box::new(self.of_speed(design).ok()?.near(fastest)?))
-            }
-            _ => return None,
-        };
-        Some(self.solved(design, key, true, held))
-    }
-
     fn of_displacement(design: &Design) -> DisplacementProblem {
         DisplacementProblem {
             bounds: design.bounds,
@@ -238,19 +218,70 @@ impl Solver {
     }
 }
 
+impl Solve for Solver {
+    fn cold(&self, design: &Design, key: u64) -> Answer {
+        let of_gait =
+            |gait: OptimalGait| self.solved(design, key, false, Held::Gait(Box::new(gait)));
+        match self.aim {
+            Aim::Displacement => displacement(&Self::of_displacement(design))
+                .map(of_gait)
+                .map_err(Missing::from),
+            Aim::EfficiencySmall | Aim::EfficiencyLarge => efficiency(&self.of_efficiency(design))
+                .map(EfficiencySeed::new)
+                .map(|seed| self.solved(design, key, false, Held::Seed(Box::new(seed))))
+                .map_err(|error| error.to_string().into()),
+            Aim::Speed => gait_optimizer::fastest(&self.of_speed(design)?)
+                .map(|found| self.solved(design, key, false, Held::Fastest(Box::new(found))))
+                .map_err(|error| error.to_string().into()),
+            Aim::Turning => turning(&TurningProblem {
+                swimmer: design.swimmer,
+                bounds: design.bounds,
+            })
+            .map(|found| of_gait(found.gait))
+            .map_err(|error| error.to_string().into()),
+            Aim::Sideways => sideways(&SidewaysProblem {
+                bounds: design.bounds,
+                starts: self
+                    .starts
+                    .map_or(SidewaysProblem::new(design.swimmer).starts, |starts| {
+                        starts as usize
+                    }),
+                ..SidewaysProblem::new(design.swimmer)
+            })
+            .map(|found| of_gait(found.gait))
+            .map_err(|error| error.to_string().into()),
+            Aim::Stub => Ok(stub(key)),
+        }
+    }
+
+    fn warm(&self, design: &Design, key: u64, near: &Solved) -> Option<Solved> {
+        let held = match (&near.held, self.aim) {
+            (Held::Gait(gait), Aim::Displacement) => Held::Gait(Box::new(displacement_near(
+                &Self::of_displacement(design),
+                gait,
+            )?)),
+            (Held::Seed(seed), Aim::EfficiencySmall | Aim::EfficiencyLarge) => {
+                Held::Seed(Box::new(seed.near(&self.of_efficiency(design))?))
+            }
+            (Held::Fastest(fastest), Aim::Speed) => {
+                Held::Fastest(Box::new(self.of_speed(design).ok()?.near(fastest)?))
+            }
+            _ => return None,
+        };
+        Some(self.solved(design, key, true, held))
+    }
+}
+
 /// A row without a swimmer.
 fn stub(key: u64) -> Solved {
     let wave = (key as f64 * 1e-3).sin();
-    Solved {
-        row: Row {
-            key,
-            objective: Some(2.0 + wave),
-            displacement_over_length: Some(wave),
-            efficiency: Some(0.5 * wave * wave),
-            certified: Some(true),
-            arcs: Some(if wave > 0.0 { "upper" } else { "lower" }.to_owned()),
-            ..Row::default()
-        },
-        held: Held::Nothing,
-    }
+    Solved::of_row(Row {
+        key,
+        objective: Some(2.0 + wave),
+        displacement_over_length: Some(wave),
+        efficiency: Some(0.5 * wave * wave),
+        certified: Some(true),
+        arcs: Some(if wave > 0.0 { "upper" } else { "lower" }.to_owned()),
+        ..Row::default()
+    })
 }

@@ -1,6 +1,6 @@
 //! What is kept of a design.
 
-use gait_optimizer::{ArcKind, OptimalGait};
+use gait_optimizer::OptimalGait;
 use serde::{Deserialize, Serialize};
 
 /// One design's answer. Quantities are none where there is no gait, or where the objective knows no such thing.
@@ -98,11 +98,4 @@ fn shortest_period(gait: &OptimalGait, rates: [f64; 2]) -> f64 {
             (turned.x.abs() / rates[0]).max(turned.y.abs() / rates[1])
         })
         .sum()
-}
-
-/// Whether two gaits have the same kinds of arcs.
-pub(crate) fn alike(a: &OptimalGait, b: &OptimalGait) -> bool {
-    let kinds =
-        |gait: &OptimalGait| -> Vec<ArcKind> { gait.arcs.iter().map(|arc| arc.kind).collect() };
-    kinds(a) == kinds(b)
 }

@@ -5,11 +5,19 @@
 //! such *anchors* each task starts from the gait before it. What followed counts only if it arrives at the second anchor with that
 //! anchor's own gait: as good to 10⁻⁷, of the same arcs. Where it arrives with another, the middle is solved from nothing and both
 //! halves are asked the same, down to single tasks. So a gait that loses its place to another kind of gait is noticed unless that
-//! one wins between two anchors only; and every gait, followed or searched, carries its own certificate.
+//! one wins between two anchors only; and every gait, followed or searched, carries its own certificate. In the end neighbours of
+//! unlike gaits try each other's ([`again`]).
 
-use crate::Plan;
-use crate::objective::{Solved, Solver};
+mod again;
+
+use std::collections::BTreeMap;
+
+use crate::objective::{Answer, Solve, Solved, Solver};
 use crate::row::Row;
+use crate::{Design, Plan};
+
+/// The gaits of larger blocks are not held, and so not compared.
+const MOST_COMPARED: u64 = 4_096;
 
 /// Counts of a block, and its time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -25,36 +33,59 @@ pub(crate) struct Cost {
 /// Rows of a block, by key.
 pub(crate) fn block(plan: &Plan, block: u64, seconds: &dyn Fn() -> f64) -> (Vec<Row>, Cost) {
     let content = plan.content();
+    let solver = Solver {
+        aim: content.objective,
+        starts: content.starts,
+    };
+    solved(plan, block, &solver, seconds)
+}
+
+fn solved(
+    plan: &Plan,
+    block: u64,
+    solver: &dyn Solve,
+    seconds: &dyn Fn() -> f64,
+) -> (Vec<Row>, Cost) {
+    let content = plan.content();
+    let keys = plan.keys(block);
+    let follows = content.objective.follows();
     let mut visit = Visit {
         plan,
-        solver: Solver {
-            aim: content.objective,
-            starts: content.starts,
-        },
+        solver,
         seconds,
-        rows: Vec::new(),
+        compares: follows
+            && plan.design() == Design::Grid
+            && keys.end - keys.start <= MOST_COMPARED,
+        answers: BTreeMap::new(),
         cost: Cost::default(),
     };
     let stride = usize::try_from(content.anchor).unwrap_or(1).max(1);
     for run in runs(plan, block) {
-        if stride == 1 || !content.objective.follows() {
+        if stride == 1 || !follows {
             for key in run {
-                let solved = visit.cold(key);
-                visit.keep(key, solved);
+                let answer = visit.cold(key);
+                visit.keep(key, answer);
             }
         } else {
             visit.run(&run, stride);
         }
     }
-    visit.rows.sort_by_key(|row| row.key);
-    (visit.rows, visit.cost)
+    if visit.compares {
+        visit.look_again(&keys);
+    }
+    let answers = visit.answers.into_iter();
+    let rows = answers.map(|(key, answer)| match answer {
+        Ok(solved) => solved.row,
+        Err(missing) => Row::without(key, missing.reason),
+    });
+    (rows.collect(), visit.cost)
 }
 
 /// The keys of a block as runs in which each is the neighbour of the one before.
 fn runs(plan: &Plan, block: u64) -> Vec<Vec<u64>> {
     let keys = plan.keys(block);
     let row = match plan.design() {
-        crate::Design::Grid => plan.axes().last().map_or(1, crate::Axis::count),
+        Design::Grid => plan.axes().last().map_or(1, crate::Axis::count),
         _ => return vec![keys.collect()],
     };
     let mut runs: Vec<Vec<u64>> = Vec::new();
@@ -86,13 +117,13 @@ fn beside(plan: &Plan, a: u64, b: u64) -> bool {
     a.iter().zip(&b).map(|(a, b)| a.abs_diff(*b)).sum::<u64>() == 1
 }
 
-type Answer = Result<Solved, String>;
-
 struct Visit<'a> {
     plan: &'a Plan,
-    solver: Solver,
+    solver: &'a dyn Solve,
     seconds: &'a dyn Fn() -> f64,
-    rows: Vec<Row>,
+    /// Whether neighbours are compared in the end, so that their gaits are kept.
+    compares: bool,
+    answers: BTreeMap<u64, Answer>,
     cost: Cost,
 }
 
@@ -124,7 +155,7 @@ impl Visit<'_> {
             && let Some(followed) = self.followed(keys, near, goal)
         {
             for solved in followed {
-                self.rows.push(solved.row);
+                self.keep(solved.row.key, Ok(solved));
             }
             return;
         }
@@ -161,10 +192,11 @@ impl Visit<'_> {
     }
 
     fn keep(&mut self, key: u64, answer: Answer) {
-        self.rows.push(match answer {
-            Ok(solved) => solved.row,
-            Err(reason) => Row::without(key, reason),
-        });
+        let answer = match answer {
+            Ok(solved) if !self.compares => Ok(Solved::of_row(solved.row)),
+            answer => answer,
+        };
+        self.answers.insert(key, answer);
     }
 }
 
@@ -186,6 +218,76 @@ mod tests {
         assert_eq!(plan.blocks(), 2);
         assert_eq!(runs(&plan, 0), [vec![0, 1, 2, 3, 7, 6, 5, 4, 8, 9]]);
         assert_eq!(runs(&plan, 1), [vec![10, 11]]);
+    }
+
+    /// Two kinds of gait; the second is better in some columns of the grid alone.
+    struct Two {
+        columns: std::ops::Range<u64>,
+    }
+
+    impl Two {
+        fn of(&self, key: u64, kind: &str) -> Option<Solved> {
+            let better = self.columns.contains(&(key % 17));
+            let value = 2.0 + 1e-4 * (key % 17) as f64;
+            let objective = match kind {
+                "one" => value,
+                _ if better => value + 1e-3,
+                _ => return None,
+            };
+            Some(Solved::of_row(Row {
+                key,
+                objective: Some(objective),
+                arcs: Some(kind.to_owned()),
+                certified: Some(true),
+                ..Row::default()
+            }))
+        }
+    }
+
+    impl Solve for Two {
+        fn cold(&self, _: &crate::field::Design, key: u64) -> Answer {
+            let best = self.of(key, "two").or_else(|| self.of(key, "one"));
+            best.ok_or_else(|| "none".to_owned().into())
+        }
+
+        fn warm(&self, _: &crate::field::Design, key: u64, near: &Solved) -> Option<Solved> {
+            let mut solved = self.of(key, near.row.arcs.as_deref()?)?;
+            solved.row.warm = true;
+            Some(solved)
+        }
+    }
+
+    /// Keys whose answer is not the better kind, though it is there; of a grid of 17 columns.
+    fn missed(rows: u64, anchor: u64, columns: std::ops::Range<u64>) -> Vec<u64> {
+        let plan = plan(&format!(
+            "swimmer = \"purcell\"\nobjective = \"displacement\"\nanchor = {anchor}\nblock = 1000\n\
+             [[axis]]\nname = \"drag.chi\"\nfrom = 1.5\nto = 2\ncount = {rows}\n\
+             [[axis]]\nname = \"sphere.radius\"\nfrom = 0\nto = 1\ncount = 17\n"
+        ));
+        let two = Two {
+            columns: columns.clone(),
+        };
+        let (found, _) = solved(&plan, 0, &two, &|| 0.0);
+        assert_eq!(found.len() as u64, 17 * rows);
+        let right =
+            |row: &Row| (row.arcs.as_deref() == Some("two")) == columns.contains(&(row.key % 17));
+        found
+            .iter()
+            .filter(|row| !right(row))
+            .map(|row| row.key)
+            .collect()
+    }
+
+    /// The limit that the book names: a better kind that begins and ends between two searches is not seen, unless another row
+    /// meets it.
+    #[test]
+    fn a_better_kind_between_two_searches() {
+        assert_eq!(missed(1, 16, 5..9), [5, 6, 7, 8]);
+        assert!(missed(1, 1, 5..9).is_empty());
+        assert!(missed(1, 4, 5..9).is_empty());
+        // Searches lie elsewhere in each row, and what one finds is carried to its neighbours.
+        assert!(missed(8, 16, 5..9).is_empty());
+        assert!(missed(3, 8, 4..7).is_empty());
     }
 
     /// A sphere that grows: the gait changes its kind on the way, and each answer is the one found from nothing.

@@ -1,6 +1,7 @@
 //! Designs that their neighbours cast doubt on: a wider bound never makes the best gait worse, and what is best changes without
 //! jumps. What is listed is a place to look at, not yet a mistake: a gait of one class, or of one name, may end.
 
+use std::ops::Range;
 use std::path::Path;
 
 use serde::Serialize;
@@ -59,29 +60,42 @@ pub fn doubts(plan: &Plan, folder: &Path) -> Result<Vec<Doubt>, SweepError> {
         })?;
         values.extend(rows.iter().map(|row| row.objective));
     }
+    let value = |key: u64| {
+        let key = usize::try_from(key).ok()?;
+        values.get(key).copied().flatten()
+    };
+    Ok(among(plan, 0..values.len() as u64, &value))
+}
+
+/// Looks at the neighbours among some tasks of a grid, by key; those outside of them have no value.
+pub(crate) fn among(
+    plan: &Plan,
+    keys: Range<u64>,
+    value: &dyn Fn(u64) -> Option<f64>,
+) -> Vec<Doubt> {
     let mut found = Vec::new();
     let mut stride = 1_u64;
     for axis in plan.axes().iter().rev() {
-        along(axis, stride, &values, &mut found);
+        along(axis, stride, &keys, value, &mut found);
         stride *= axis.count();
     }
     found.sort_by_key(|doubt| (doubt.key, doubt.neighbour));
-    Ok(found)
+    found
 }
 
-fn along(axis: &Axis, stride: u64, values: &[Option<f64>], found: &mut Vec<Doubt>) {
-    let value = |key: u64| {
-        usize::try_from(key)
-            .ok()
-            .and_then(|key| values.get(key))
-            .copied()
-            .flatten()
-    };
-    for key in 0..values.len() as u64 {
+fn along(
+    axis: &Axis,
+    stride: u64,
+    keys: &Range<u64>,
+    value: &dyn Fn(u64) -> Option<f64>,
+    found: &mut Vec<Doubt>,
+) {
+    for key in keys.clone() {
         let index = key / stride % axis.count();
         let at = |step: i64| {
             let there = index.checked_add_signed(step)?;
-            (there < axis.count()).then_some(key.wrapping_add_signed(step * stride.cast_signed()))
+            let key = key.wrapping_add_signed(step * stride.cast_signed());
+            (there < axis.count() && keys.contains(&key)).then_some(key)
         };
         let Some(next) = at(1) else {
             continue;
