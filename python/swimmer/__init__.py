@@ -12,7 +12,7 @@ Lengths are in metres, angles in radians; `70deg` is understood where a number i
 `--max-angle` is `max_angle` here, and what it prints with `--json` are the attributes of its result.
 """
 
-from . import optimize
+from . import optimize, sweep
 from ._commands import atlas, calibrate, certify, height_map, simulate, tracks
 from ._run import Doubt
 from ._swimmer import BadInput, Error, Failed, Gait, Swimmer
@@ -37,5 +37,6 @@ __all__ = [
     "height_map",
     "optimize",
     "simulate",
+    "sweep",
     "tracks",
 ]

@@ -116,11 +116,15 @@ def test_files_of_ours_are_named_shortly(robot: sw.Swimmer, purcell: sw.Swimmer)
         (sw.optimize.turning, ["optimize", "turning"], {"output"}),
         (sw.optimize.sideways, ["optimize", "sideways"], {"output"}),
         (sw.optimize.speed, ["optimize", "speed"], {"output"}),
+        (sw.sweep.plan, ["sweep", "plan"], set()),
+        (sw.sweep.run, ["sweep", "run"], set()),
+        (sw.sweep.merge, ["sweep", "merge"], set()),
+        (sw.sweep.map, ["sweep", "map"], set()),
     ],
 )
 def test_keywords_are_the_commands_options(function: object, path: list[str], ours: set[str]) -> None:
     """`ours` are the options that the wheel gives itself, for files that become attributes."""
-    have = {name.rstrip("_").replace("_", "-") for name in inspect.signature(function).parameters} - {"file"}  # type: ignore[arg-type]
+    have = {name.rstrip("_").replace("_", "-") for name in inspect.signature(function).parameters} - {"file", "folder", "spec"}  # type: ignore[arg-type]
     options = set(_swimmer.options(path))
     assert options, path
     assert have == options - ours

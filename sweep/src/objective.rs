@@ -146,6 +146,8 @@ pub(crate) trait Solve {
     fn cold(&self, design: &Design, key: u64) -> Answer;
     /// From its neighbour's answer; none where that leads to no certified gait.
     fn warm(&self, design: &Design, key: u64, near: &Solved) -> Option<Solved>;
+    /// From the answer to a design that differs in the servos' rates alone; none where these decide which gait is best.
+    fn timed_anew(&self, design: &Design, key: u64, same: &Answer) -> Option<Answer>;
 }
 
 /// How designs are solved.
@@ -269,6 +271,16 @@ impl Solve for Solver {
             _ => return None,
         };
         Some(self.solved(design, key, true, held))
+    }
+
+    fn timed_anew(&self, design: &Design, key: u64, same: &Answer) -> Option<Answer> {
+        if self.aim == Aim::Speed {
+            return None;
+        }
+        Some(match same {
+            Ok(found) => Ok(self.solved(design, key, found.row.warm, found.held.clone())),
+            Err(missing) => Err(missing.clone()),
+        })
     }
 }
 

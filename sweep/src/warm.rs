@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 use crate::objective::{Answer, Solve, Solved, Solver};
 use crate::row::Row;
-use crate::{Design, Plan};
+use crate::{Axis, Design, Field, Plan};
 
 /// The gaits of larger blocks are not held, and so not compared.
 const MOST_COMPARED: u64 = 4_096;
@@ -169,13 +169,41 @@ impl Visit<'_> {
     fn followed(&mut self, keys: &[u64], near: &Solved, goal: &Solved) -> Option<Vec<Solved>> {
         let mut found: Vec<Solved> = Vec::with_capacity(keys.len());
         for &key in &keys[1..] {
-            let solved = self.warm(key, found.last().unwrap_or(near))?;
+            let solved = match self.twin(key, &found) {
+                Some(answer) => answer.ok()?,
+                None => self.warm(key, found.last().unwrap_or(near))?,
+            };
             found.push(solved);
         }
         found.pop()?.same(goal).then_some(found)
     }
 
+    /// The answer to a task that differs in the servos' rates alone, where there is one already.
+    fn twin(&self, key: u64, just_found: &[Solved]) -> Option<Answer> {
+        if !self.compares {
+            return None;
+        }
+        let axes = self.plan.axes();
+        let rates = axes.iter().position(|axis| axis.name == Field::MaxRate)?;
+        let stride: u64 = axes.iter().skip(rates + 1).map(Axis::count).product();
+        let count = axes.get(rates)?.count();
+        let first = key - key / stride % count * stride;
+        let design = self.plan.design_of(key);
+        (0..count).find_map(|index| {
+            let twin = first + index * stride;
+            let just = just_found.iter().find(|found| found.row.key == twin);
+            match (just, self.answers.get(&twin)) {
+                (Some(found), _) => self.solver.timed_anew(&design, key, &Ok(found.clone())),
+                (None, Some(answer)) => self.solver.timed_anew(&design, key, answer),
+                (None, None) => None,
+            }
+        })
+    }
+
     fn cold(&mut self, key: u64) -> Answer {
+        if let Some(answer) = self.twin(key, &[]) {
+            return answer;
+        }
         let began = (self.seconds)();
         let answer = self.solver.cold(&self.plan.design_of(key), key);
         self.cost.cold += 1;
@@ -254,6 +282,49 @@ mod tests {
             let mut solved = self.of(key, near.row.arcs.as_deref()?)?;
             solved.row.warm = true;
             Some(solved)
+        }
+
+        fn timed_anew(&self, _: &crate::field::Design, _: u64, _: &Answer) -> Option<Answer> {
+            None
+        }
+    }
+
+    /// The best gait does not depend on the servos' rates, so it is found once for all of them.
+    #[test]
+    fn rates_cost_nothing() {
+        let text = "swimmer = \"purcell\"\nobjective = \"displacement\"\n[bounds]\nmax_angle = 2.4\n\
+             [[axis]]\nname = \"sphere.radius\"\nfrom = 0.0\nto = 0.2\ncount = 5\n";
+        let rates = "[[axis]]\nname = \"max_rate\"\nvalues = [1.0, 2.0, 4.0]\n";
+        let plain = plan(text);
+        let (rows, cost) = block(&plain, 0, &|| 0.0);
+        for text in [
+            format!("{text}{rates}"),
+            text.replacen("[[axis]]", &format!("{rates}[[axis]]"), 1),
+        ] {
+            let plan = plan(&text);
+            let (timed, of_all) = block(&plan, 0, &|| 0.0);
+            assert_eq!(timed.len(), 15);
+            // Fewer gaits are sought than there are designs.
+            assert!(of_all.cold + of_all.warm < 15, "{of_all:?} {cost:?}");
+            let mut turns = BTreeMap::new();
+            for row in timed {
+                let [radius, rate] = [Field::Sphere, Field::MaxRate].map(|field| {
+                    let axes = plan.axes().iter().zip(plan.point(row.key));
+                    axes.filter(|(axis, _)| axis.name == field)
+                        .map(|(_, value)| value)
+                        .sum::<f64>()
+                });
+                let alone = rows
+                    .iter()
+                    .find(|row| (plain.point(row.key)[0] - radius).abs() < 1e-12)
+                    .unwrap();
+                assert_eq!((row.objective, &row.arcs), (alone.objective, &alone.arcs));
+                let speed = row.speed_over_length_per_s.unwrap() * row.period_s.unwrap();
+                assert!((speed / row.objective.unwrap() - 1.0).abs() < 1e-9);
+                let turned = row.period_s.unwrap() * rate;
+                let before = *turns.entry(radius.to_bits()).or_insert(turned);
+                assert!((turned / before - 1.0).abs() < 1e-12, "{turned} {before}");
+            }
         }
     }
 

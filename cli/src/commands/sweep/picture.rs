@@ -175,12 +175,15 @@ fn pareto(map: &Map) -> Outcome<String> {
     let points: Vec<(f64, f64)> = map
         .pareto
         .iter()
-        .map(|one| (one.speed, 1e3 * one.efficiency))
+        .map(|one| (one.speed, 1e2 * one.efficiency))
         .collect();
     Chart {
-        title: format!("not beaten in both, of gaits best for {}", map.objective),
+        title: format!(
+            "designs that none beats in both; gaits best for {}",
+            map.objective
+        ),
         x_label: "speed |d|/(L T) [1/s]".to_owned(),
-        y_label: "1000 × Lighthill efficiency".to_owned(),
+        y_label: "Lighthill efficiency [%]".to_owned(),
         size: SIZE,
         equal_axes: false,
         series: vec![
