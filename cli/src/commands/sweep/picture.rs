@@ -41,8 +41,13 @@ fn named(axis: &MapAxis) -> String {
 
 fn chart(map: &Map, title: String, series: Vec<Series>, legend: Vec<(String, RGBColor)>) -> Chart {
     let [x, y] = &map.axes;
+    let white = map.status.iter().flatten().any(|status| *status == "none");
     Chart {
-        title,
+        title: if white {
+            format!("{title} (white: no gait)")
+        } else {
+            title
+        },
         x_label: named(x),
         y_label: named(y),
         size: SIZE,
