@@ -13,10 +13,10 @@ use std::fmt;
 use crate::region::Region;
 use best::{best, candidates};
 pub use error::{DisplacementError, Fates};
-use nalgebra::Vector2;
+
 pub use near::displacement_near;
 use search::{Candidate, LOOKS};
-use swimmer_files::{ArcKind, Bounds, Objective};
+use swimmer_files::{Bounds, Objective};
 use swimmer_model::{Links, Model, Swimmer};
 
 use crate::cycle::QuarterTrace;
@@ -62,6 +62,9 @@ pub struct DisplacementProblem {
     pub heading: Option<Heading>,
     /// Samples of the quarter gait; the cycle has four times as many.
     pub quarter_samples: usize,
+    /// Only gaits whose quarters stay off the diagonals φ₂ = ±φ₁ but for their ends, as the paper's (a) to (c): not those that
+    /// touch their own images there, which are limits of simple curves and may carry farther.
+    pub simple: bool,
 }
 
 impl DisplacementProblem {
@@ -72,6 +75,7 @@ impl DisplacementProblem {
             bounds: Bounds::default(),
             heading: None,
             quarter_samples: 192,
+            simple: false,
         }
     }
 
@@ -91,19 +95,16 @@ impl DisplacementProblem {
             })
     }
 
-    /// Whether gaits that touch their own images along a diagonal are gaits too.
+    /// Whether gaits that touch their own images along a diagonal are to be looked at beside the others. Where nothing bounds
+    /// the angles from above they have no limit.
     fn may_touch(&self) -> bool {
         let Bounds {
             max_angle,
-            min_angle,
             sector,
             no_overlap,
             ..
         } = self.bounds;
-        self.heading() == Heading::Forwards
-            && (max_angle.is_some() || no_overlap)
-            && min_angle.is_none()
-            && !sector
+        !self.simple && !sector && (max_angle.is_some() || no_overlap)
     }
 
     /// The bounds that such gaits obey.
@@ -168,11 +169,10 @@ impl DisplacementProblem {
 /// Displacement optima are weak, local in shape: small reverse loops would add to X, so the certificate also asks for a
 /// simple curve. With several optima the one with the largest |X| is returned.
 ///
-/// A simple curve with these symmetries keeps each quarter between the diagonals φ₂ = ±φ₁. Where a region that the gait
-/// should go round is cut off by a bound, no such curve is the best one: the best ones touch their own images along a
-/// diagonal (as the paper's gait in the sector does). Such a gait, with its `diagonal` arcs, is returned where bounds on the
-/// angles leave no other forward gait, or only one that carries less far and ends in a corner of the bounds or goes round a
-/// straight shape at which it loses. Its bounds say so: they have the sector.
+/// A simple curve with these symmetries keeps each quarter between the diagonals φ₂ = ±φ₁. Of such curves the best may not be
+/// among them but a limit of them, which touches its own image along a diagonal (as the paper's gait in the sector does) or
+/// begins in the straight shape. Such a gait, with its `diagonal` arcs, is returned where it carries farther and a bound keeps
+/// the angles from above, unless [`DisplacementProblem::simple`] leaves it out. Its bounds say so: they have the sector.
 ///
 /// Shapes that a gait should not go round may lie off all bounds. Then the gaits that carry farthest reach them along a slit,
 /// out and back along itself. Slits along the diagonals are found; others are not, and what is returned may carry less far
@@ -197,7 +197,7 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
     let links = &problem.swimmer.links;
     let region = Region::new(&problem.bounds, links);
     let (found, _) = best(problem, &model, (&problem.bounds, &region));
-    if !touches(problem, &model, found.as_ref().ok()) {
+    if !problem.may_touch() {
         return found;
     }
     let bounds = problem.touching();
@@ -205,8 +205,9 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
     let within = (&bounds, &region);
     let (touching, seen) = best(problem, &model, within);
     let farthest = seen.farthest(problem, &model, within);
+    let sign = problem.heading().sign();
     let carries =
-        |gait: &Result<OptimalGait, _>| gait.as_ref().map_or(0.0, |gait| gait.displacement);
+        |gait: &Result<OptimalGait, _>| gait.as_ref().map_or(0.0, |gait| sign * gait.displacement);
     let mut answer = if carries(&touching) > carries(&found) {
         touching
     } else {
@@ -214,8 +215,8 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
     };
     match &mut answer {
         Ok(gait) => {
-            let least = gait.displacement_over_length * (1.0 + OUTDONE);
-            gait.outdone_over_length = farthest.filter(|farthest| *farthest > least);
+            let least = gait.displacement_over_length.abs() * (1.0 + OUTDONE);
+            gait.outdone_over_length = farthest.filter(|farthest| sign * farthest > least);
         }
         Err(DisplacementError::NoOptimum { outdone, .. }) => *outdone = farthest,
         Err(_) => {}
@@ -225,17 +226,6 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
 
 /// How much farther, relatively, a gait that is no optimum must carry to be told of.
 const OUTDONE: f64 = 1e-6;
-
-/// Whether gaits that touch their own images are to be looked at beside the best of the others: where there is none, or it
-/// is cut off, or it goes round a straight shape that it had better not.
-fn touches(problem: &DisplacementProblem, model: &Model<f64>, best: Option<&OptimalGait>) -> bool {
-    problem.may_touch() && best.is_none_or(|gait| cut_off(gait) || loses_when_straight(model))
-}
-
-/// Whether going round the straight shape counter-clockwise carries the swimmer backwards.
-fn loses_when_straight(model: &Model<f64>) -> bool {
-    model.first_derivatives(&Vector2::zeros()).curvature().x < 0.0
-}
 
 /// Every gait that the search finds, farthest first: also those that fail their certificate, and those that touch their own
 /// images where [`displacement()`] would look for them.
@@ -252,18 +242,11 @@ pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, D
         gaits.collect::<Vec<_>>()
     };
     let mut gaits = of(&problem.bounds);
-    let best = gaits.iter().find(|gait| gait.certificate.pass());
-    if touches(problem, &model, best) {
+    if problem.may_touch() {
         gaits.extend(of(&problem.touching()));
     }
     gaits.sort_by(|a, b| b.displacement.abs().total_cmp(&a.displacement.abs()));
     Ok(gaits)
-}
-
-/// Whether a quarter ends along a bound.
-fn cut_off(gait: &OptimalGait) -> bool {
-    let last = gait.arcs.last().map(|arc| arc.kind);
-    last != Some(ArcKind::Singular)
 }
 
 /// A candidate as a full cycle with its certificate and the bounds that it was found within, which are those that it can be

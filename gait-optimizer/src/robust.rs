@@ -305,6 +305,11 @@ pub fn robust_displacement(
     uncertainty: &Uncertainty,
     over: Over,
 ) -> Result<RobustGait, RobustError> {
+    // Corners of a gait that touches its own images move with every swimmer of the ensemble.
+    let problem = &DisplacementProblem {
+        simple: true,
+        ..*problem
+    };
     let ensemble = Ensemble::new(&problem.swimmer, uncertainty)?;
     let swimmer = uncertainty.nominal(&problem.swimmer);
     let nominal = displacement(&DisplacementProblem {

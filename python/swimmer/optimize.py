@@ -24,6 +24,7 @@ def displacement(
     clearance: float | None = None,
     playable: bool = False,
     sign: Literal["+", "-"] | None = None,
+    simple: bool = False,
     robust: Result | Text | None = None,
     over: Literal["worst", "mean"] | None = None,
     max_rate: Angle | None = None,

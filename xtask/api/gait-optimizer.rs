@@ -176,6 +176,7 @@ pub struct DisplacementProblem {
     pub bounds: Bounds,
     pub heading: Option<Heading>,
     pub quarter_samples: usize,
+    pub simple: bool,
 }
 impl DisplacementProblem {
     pub fn new(swimmer: Swimmer<f64>) -> Self {}

@@ -315,6 +315,7 @@ impl<'a> Round<'a> {
     ) -> Result<(OptimalGait, AnyGait, f64), Refused> {
         let problem = DisplacementProblem {
             heading: Some(heading),
+            simple: true,
             ..DisplacementProblem::new(fitted.swimmer).with_max_angle(bound)
         };
         let best = displacement(&problem).map_err(|error| match error {

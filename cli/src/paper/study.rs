@@ -78,6 +78,7 @@ impl Study {
                 sector,
                 ..Bounds::default()
             },
+            simple: true,
             ..DisplacementProblem::new(robot)
         };
         let robot_displacement = [

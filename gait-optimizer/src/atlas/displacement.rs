@@ -51,12 +51,16 @@ impl Seek for Displacement<'_> {
     }
 
     fn known(&self, problem: &AtlasProblem) -> Vec<OptimalGait> {
-        [Heading::Forwards, Heading::Backwards]
+        // The best simple curve may be an optimum beside the limit of such curves that carries farther.
+        let classes = [Heading::Forwards, Heading::Backwards]
             .into_iter()
-            .filter_map(|heading| {
+            .flat_map(|heading| [(heading, true), (heading, false)]);
+        classes
+            .filter_map(|(heading, simple)| {
                 crate::displacement(&DisplacementProblem {
                     bounds: problem.bounds,
                     heading: Some(heading),
+                    simple,
                     quarter_samples: problem.samples.div_ceil(4),
                     ..DisplacementProblem::new(problem.swimmer)
                 })

@@ -68,6 +68,7 @@ fn no_certified_gait_is_lost() {
     let known = crate::displacement(&crate::DisplacementProblem {
         bounds,
         heading: Some(crate::Heading::Backwards),
+        simple: true,
         ..crate::DisplacementProblem::new(swimmer)
     })
     .unwrap();
@@ -111,6 +112,7 @@ fn what_is_best_of_its_symmetry_only_is_not_listed() {
     let known = crate::displacement(&crate::DisplacementProblem {
         bounds,
         heading: Some(crate::Heading::Backwards),
+        simple: true,
         ..crate::DisplacementProblem::new(swimmer)
     })
     .unwrap();

@@ -35,7 +35,7 @@ pub(super) fn begun_on_the_diagonal(gait: &GaitFile) -> Option<GaitFile> {
         return None;
     }
     let near = 1e-9 + 4.0 * Rounding::of(gait).phi;
-    let alike = |phi: &Vector2<f64>| (phi.x - phi.y).abs() < near && phi.x > 0.0;
+    let alike = |phi: &Vector2<f64>| (phi.x - phi.y).abs() < near && phi.x > -near;
     // Of a stretch along the diagonal only where it begins or ends, or an arc does.
     let is_end = |u: f64| gait.arcs.iter().any(|arc| (arc.from - u).abs() <= 1e-12);
     let last = gait.u.len().saturating_sub(1);
@@ -45,5 +45,11 @@ pub(super) fn begun_on_the_diagonal(gait: &GaitFile) -> Option<GaitFile> {
         .filter(|&at| !on(at + 1) || !on(at - 1) || gait.u.get(at).is_some_and(|&u| is_end(u)))
         .take(MOST_STARTS)
         .map(|at| gait.begun_at(at))
-        .find(is_symmetric)
+        .find(|gait| is_symmetric(gait) && ends_upwards(gait))
+}
+
+/// Whether the first quarter ends where φ₂ > 0: a cycle may pass the straight shape twice, and its quarters begin at one of them.
+fn ends_upwards(gait: &GaitFile) -> bool {
+    let end = gait.u.partition_point(|&u| u < 0.25 - 1e-12);
+    gait.phi.get(end).is_some_and(|phi| phi.y > 0.0)
 }

@@ -11,20 +11,26 @@ pub(super) struct Displacement<'a> {
 }
 
 impl Displacement<'_> {
-    /// Every gait at a value that heads a way, farthest first; also those that fail their certificate.
-    fn all(&self, value: f64, heading: Option<Heading>) -> Result<Vec<OptimalGait>, String> {
+    /// Every gait at a value that heads a way, farthest first; also those that fail their certificate. A simple gait is followed
+    /// among such.
+    fn all(
+        &self,
+        value: f64,
+        (heading, simple): (Option<Heading>, bool),
+    ) -> Result<Vec<OptimalGait>, String> {
         every(&DisplacementProblem {
             swimmer: self.problem.swimmer_at(value),
             bounds: self.problem.bounds_at(value),
             heading,
             quarter_samples: (self.problem.samples / 4).clamp(64, 1 << 12),
+            simple,
         })
         .map_err(|error| error.to_string())
     }
 
     fn nearest(&self, value: f64, to: &OptimalGait) -> Result<Kept<()>, String> {
         let place = kept(0.0, to.clone());
-        let all = self.all(value, Some(heading(to)))?;
+        let all = self.all(value, (Some(heading(to)), !to.bounds.sector))?;
         let found = all.into_iter().map(|gait| kept(value, gait));
         // An optimum before an extremal that is none.
         let far = |kept: &Kept<()>| {
@@ -63,7 +69,7 @@ impl Family for Displacement<'_> {
         let value = self.problem.from;
         match start {
             Start::Displacement { heading, rank } => {
-                let all = self.all(value, *heading)?;
+                let all = self.all(value, (*heading, true))?;
                 let mut optima = all.into_iter().filter(|gait| gait.certificate.pass());
                 let gait = optima.nth(*rank);
                 gait.map(|gait| kept(value, gait))
@@ -81,7 +87,9 @@ impl Family for Displacement<'_> {
     }
 
     fn optimum(&self, value: f64, last: &Kept<()>) -> Option<Kept<()>> {
-        let all = self.all(value, Some(heading(&last.gait))).ok()?;
+        let all = self
+            .all(value, (Some(heading(&last.gait)), !last.gait.bounds.sector))
+            .ok()?;
         let optima = all.into_iter().filter(|gait| gait.certificate.pass());
         optima
             .map(|gait| kept(value, gait))

@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use swimmer_files::Bounds;
 use swimmer_model::Model;
 
+use super::flow::Touch;
 use super::search::{CLOSER_LOOKS, Candidate, LOOKS, Search, Seen};
 use super::trunk::{Trunk, trunks, trunks_on_the_diagonal};
 use super::{DisplacementError, DisplacementProblem, Fates, certified};
@@ -17,8 +18,7 @@ pub(super) struct Extremals<'a> {
     /// The extremals that head the right way, farthest first.
     pub(super) found: Vec<Candidate>,
     /// What the scans saw beside them; only of quarters that may touch their images.
-    scans: Vec<(Search<'a>, Seen)>,
-    trunks: Vec<Trunk>,
+    scans: Vec<(Search<'a>, Vec<Trunk>, Seen)>,
     /// What became of all that were sent out along the bounds and from φ₁ = φ₂.
     fates: Fates,
 }
@@ -30,35 +30,38 @@ pub(super) fn candidates<'a>(
     looks: usize,
 ) -> Extremals<'a> {
     let sign = problem.heading().sign();
-    let mut search = Search {
+    let search = |touch| Search {
         model,
         region,
         sign,
-        touches: 0,
+        touch,
         looks,
     };
-    let mut trunks = trunks(search.extremal(0.0), bounds, region);
-    let (mut found, seen) = search.candidates(&trunks);
+    let bare = search(Touch::Ends).extremal(0.0);
+    let off_the_diagonal = trunks(bare, bounds, region);
+    let (mut found, seen) = search(Touch::Ends).candidates(&off_the_diagonal);
     let fates = seen.fates;
     let mut scans = Vec::new();
     if region.has_diagonals() {
-        scans.push((search, seen));
-        search.touches = 1;
-        trunks.extend(trunks_on_the_diagonal(
-            search.extremal(0.0),
-            region,
-            &trunks,
-        ));
-        let (touching, seen) = search.candidates(&trunks);
-        found.extend(touching);
-        scans.push((search, seen));
+        scans.push((search(Touch::Ends), off_the_diagonal.clone(), seen));
+        for touch in [Touch::GoesInwards, Touch::GoesOutwards] {
+            let mut trunks = off_the_diagonal.clone();
+            trunks.extend(trunks_on_the_diagonal(
+                bare,
+                region,
+                &off_the_diagonal,
+                touch,
+            ));
+            let (touching, seen) = search(touch).candidates(&trunks);
+            found.extend(touching);
+            scans.push((search(touch), trunks, seen));
+        }
     }
     found.retain(|candidate| sign * candidate.quarter.end[2] > 0.0);
     found.sort_by(farther);
     Extremals {
         found,
         scans,
-        trunks,
         fates,
     }
 }
@@ -72,19 +75,21 @@ fn farther(a: &Candidate, b: &Candidate) -> Ordering {
 impl Extremals<'_> {
     /// How far, over L, gaits carry at least that are no extremals; none where no such gait was seen.
     pub(super) fn farthest(
-        self,
+        &self,
         problem: &DisplacementProblem,
         model: &Model<f64>,
         within: (&Bounds, &Region),
     ) -> Option<f64> {
-        let trunks = &self.trunks;
-        let scans = self.scans.into_iter();
+        let sign = problem.heading().sign();
+        let scans = self.scans.iter();
         let mut carried: Vec<Candidate> = scans
-            .flat_map(|(search, seen)| search.farthest(trunks, seen))
+            .flat_map(|(search, trunks, seen)| search.farthest(trunks, seen))
+            .filter(|candidate| sign * candidate.quarter.end[2] > 0.0)
             .collect();
         carried.sort_by(farther);
         carried.iter().find_map(|candidate| {
             let gait = certified(problem, model, within, candidate)?;
+
             is_gait(&gait).then_some(gait.displacement_over_length)
         })
     }

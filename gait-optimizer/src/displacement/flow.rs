@@ -30,14 +30,24 @@ pub(crate) use quarter::{Fate, Leg, MOST_ARCS, Quarter};
 /// Longest curve of a quarter \[rad\].
 const LONGEST_CURVE: f64 = 40.0;
 
+/// What a quarter does where it first meets φ₁ = −φ₂.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Touch {
+    /// Ends there.
+    Ends,
+    /// Goes on along that line, which must be a bound, towards the straight shape: the quarter and its image touch there.
+    GoesInwards,
+    /// The same, away from the straight shape.
+    GoesOutwards,
+}
+
 /// How to follow arcs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Course {
     pub(crate) control: StepControl,
-    /// How often to go on along φ₁ = −φ₂, where that is a bound, instead of ending there.
-    pub(crate) touches: usize,
-    /// How often the quarter has touched that line before the state that is followed from.
-    pub(crate) touched: usize,
+    pub(crate) touch: Touch,
+    /// Whether the quarter has touched φ₁ = −φ₂ before the state that is followed from.
+    pub(crate) touched: bool,
     /// φ₁ + φ₂ where the quarter began.
     pub(crate) began: f64,
 }
@@ -53,18 +63,18 @@ pub(crate) fn follow(
     arcs(extremal, region, start, first, course, true)
 }
 
-/// Follows the bounds from a state on one of them, never leaving them, touching φ₁ = −φ₂ as often as told.
+/// Follows the bounds from a state on one of them, never leaving them.
 pub(crate) fn along_bounds(
     extremal: Extremal<'_>,
     region: &Region,
     start: State,
     first: Track,
-    (control, touches): (StepControl, usize),
+    (control, touch): (StepControl, Touch),
 ) -> Quarter {
     let course = Course {
         control,
-        touches,
-        touched: 0,
+        touch,
+        touched: false,
         began: start[0] + start[1],
     };
     arcs(extremal, region, start, Motion::Along(first), course, false)
@@ -103,7 +113,7 @@ fn arcs(
             control: course.control,
             leaves,
             began: course.began,
-            ends_straight: quarter.touched > 0,
+            ends_straight: quarter.touched,
         };
         let (end, length, event) = tracer.arc(quarter.end);
         *leg = Leg {
@@ -115,11 +125,11 @@ fn arcs(
         quarter.end = end;
         quarter.count += 1;
         let ends = event == Some(Event::End);
-        let touch = (ends && quarter.touched < course.touches)
-            .then(|| tracer.along_the_end(&end))
+        let touch = (ends && !quarter.touched)
+            .then(|| tracer.along_the_end(&end, course.touch))
             .flatten();
         if let Some(touch) = touch {
-            quarter.touched += 1;
+            quarter.touched = true;
             motion = touch;
             continue;
         }
@@ -271,10 +281,19 @@ impl Tracer<'_> {
         (z, length)
     }
 
-    /// On along φ₁ = −φ₂ towards the straight shape, where that line is a bound: the quarter and its image touch there.
-    fn along_the_end(&self, at: &State) -> Option<Motion> {
+    /// On along φ₁ = −φ₂; none where the quarter shall end, that line is no bound or another bound is in the way.
+    fn along_the_end(&self, at: &State, touch: Touch) -> Option<Motion> {
+        const AHEAD: f64 = 1e-6;
         let index = self.region.bounds().position(|bound| is_end_line(&bound))?;
-        Track::new(self.region, index, &shape(at), 1.0).map(Motion::Along)
+        let phi = shape(at);
+        let inwards = Track::new(self.region, index, &phi, 1.0)?;
+        let track = match touch {
+            Touch::Ends => return None,
+            Touch::GoesInwards => inwards,
+            Touch::GoesOutwards => inwards.back(),
+        };
+        let ahead = phi + track.direction(&phi) * AHEAD;
+        (self.region.overstepped(&ahead) < 0.5 * AHEAD).then_some(Motion::Along(track))
     }
 
     /// What follows an arc.

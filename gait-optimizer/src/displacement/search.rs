@@ -8,7 +8,7 @@
 use swimmer_model::Model;
 
 use super::Fates;
-use super::flow::{Course, Fate, Leg, Quarter, follow};
+use super::flow::{Course, Fate, Leg, Quarter, Touch, follow};
 use super::height::Extremal;
 use super::trunk::{Place, Trunk};
 use crate::momentum::{Motion, State, shape};
@@ -30,8 +30,8 @@ pub(crate) struct Search<'a> {
     pub(crate) region: &'a Region,
     /// λ₃.
     pub(crate) sign: f64,
-    /// How often the quarter touches φ₁ = −φ₂ before it ends there.
-    pub(crate) touches: usize,
+    /// What the quarter does where it first meets φ₁ = −φ₂; it ends where it meets that line again.
+    pub(crate) touch: Touch,
     /// Places to look at on each trunk.
     pub(crate) looks: usize,
 }
@@ -62,15 +62,21 @@ pub(super) const FINE: StepControl = StepControl {
     tolerance: 1e-13,
     longest: 0.3,
 };
-/// Halvings of an interval of which only one end has an extremal that ends.
-const HALVINGS: usize = 5;
+/// Halvings of an interval at whose ends different arcs follow each other, or of which only one end has an extremal that ends.
+const HALVINGS: usize = 10;
+/// Most extremals that these cost on a trunk: where other arcs follow from place to place, that is rounding.
+const MOST_CLOSER_LOOKS: usize = 2 * LOOKS;
 
-/// What a place on a trunk leads to.
+/// An extremal that ends.
 #[derive(Debug, Clone, Copy)]
-enum Look {
-    Miss { p: f64, lambda4: f64 },
-    Nothing,
+struct Miss {
+    lambda4: f64,
+    /// Which arcs follow each other.
+    arcs: u64,
 }
+
+/// A place looked at, and the extremal from there where it ends.
+type Look = (f64, Option<Miss>);
 
 impl<'a> Search<'a> {
     /// All candidates, in the order of the trunks, and what became of the rest.
@@ -86,110 +92,97 @@ impl<'a> Search<'a> {
 
     /// Those of the extremals seen that carry farthest, best first, traced finely one after the other: gaits within the bounds,
     /// but no optima, since their λ₄ does not end at zero.
-    pub(crate) fn farthest(
-        self,
-        trunks: &[Trunk],
-        mut seen: Seen,
-    ) -> impl Iterator<Item = Candidate> {
+    pub(crate) fn farthest(self, trunks: &[Trunk], seen: &Seen) -> impl Iterator<Item = Candidate> {
         const MOST: usize = 24;
-        seen.ended.sort_by(|a, b| b.2.total_cmp(&a.2));
-        let best = seen.ended.into_iter().take(MOST);
+        let mut ended = seen.ended.clone();
+        ended.sort_by(|a, b| b.2.total_cmp(&a.2));
+        let best = ended.into_iter().take(MOST);
         best.filter_map(move |(index, p, _)| self.candidate(trunks.get(index)?, p))
     }
 
     fn scan(&self, (index, trunk): (usize, &Trunk), seen: &mut Seen, found: &mut Vec<Candidate>) {
         let [low, high] = trunk.range();
         let place = |look: usize| low + (high - low) * (look as f64 + 0.5) / self.looks as f64;
-        let mut before = Look::Nothing;
-        let mut last_p = low;
+        let mut left = MOST_CLOSER_LOOKS;
+        let mut before: Option<Look> = None;
         for look in 0..self.looks {
             let p = place(look);
-            let here = self.look((index, trunk), p, seen);
-            match (before, here) {
-                (Look::Miss { p: p0, lambda4: r0 }, Look::Miss { lambda4: r1, .. }) => {
-                    self.between(trunk, (p0, r0), (p, r1), found);
-                }
-                (Look::Miss { p: p0, lambda4 }, Look::Nothing) => {
-                    self.towards_the_fold(trunk, (p0, lambda4), p, found);
-                }
-                (Look::Nothing, Look::Miss { lambda4, .. }) => {
-                    self.towards_the_fold(trunk, (p, lambda4), last_p, found);
-                }
-                (Look::Nothing, Look::Nothing) => {}
+            let here = (p, self.look((index, trunk), p, seen));
+            match before {
+                Some(before) => self.refine(trunk, [before, here], &mut left, found),
+                None => self.towards_the_end(trunk, (here, low), &mut left, found),
             }
-            if look == 0
-                && let Look::Miss { lambda4, .. } = here
-            {
-                self.towards_the_end(trunk, (p, lambda4), low, found);
-            }
-            before = here;
-            last_p = p;
+            before = Some(here);
         }
-        if let Look::Miss { p, lambda4 } = before {
-            self.towards_the_end(trunk, (p, lambda4), high, found);
+        if let Some(last) = before {
+            self.towards_the_end(trunk, (last, high), &mut left, found);
         }
     }
 
     /// One extremal of the scan.
-    fn look(&self, (index, trunk): (usize, &Trunk), p: f64, seen: &mut Seen) -> Look {
+    fn look(&self, (index, trunk): (usize, &Trunk), p: f64, seen: &mut Seen) -> Option<Miss> {
         let fates = &mut seen.fates;
         fates.sent += 1;
         let Some((quarter, final_y)) = self.shoot(trunk, p, COARSE) else {
             fates.wrong_way += 1;
-            return Look::Nothing;
+            return None;
         };
         match quarter.fate {
             Fate::Ended if self.ended(&quarter) => {
                 fates.ended += 1;
-                let lambda4 = quarter.end[3] - final_y;
-                fates.nearest = Some(
-                    fates
-                        .nearest
-                        .map_or(lambda4.abs(), |nearest| nearest.min(lambda4.abs())),
-                );
+                let miss = Miss::of(&quarter, final_y);
+                let nearest = fates.nearest.unwrap_or(f64::INFINITY);
+                fates.nearest = Some(nearest.min(miss.lambda4.abs()));
                 seen.ended.push((index, p, self.sign * quarter.end[2]));
-                return Look::Miss { p, lambda4 };
+                return Some(miss);
             }
             Fate::Ended => fates.ended += 1,
             Fate::CameBack => fates.came_back += 1,
             Fate::LeftHorizon => fates.left_horizon += 1,
             Fate::Stalled | Fate::TooManyArcs => fates.lost += 1,
         }
-        Look::Nothing
+        None
     }
 
     /// Between the outermost place looked at and the trunk's own end, where its arc shrinks to nothing.
     fn towards_the_end(
         &self,
         trunk: &Trunk,
-        outermost: (f64, f64),
-        end: f64,
+        (outermost, end): (Look, f64),
+        left: &mut usize,
         found: &mut Vec<Candidate>,
     ) {
-        let last = end + 1e-7 * (outermost.0 - end);
-        match self.miss(trunk, last, COARSE) {
-            Some(lambda4) => self.between(trunk, outermost, (last, lambda4), found),
-            None => self.towards_the_fold(trunk, outermost, end, found),
+        if outermost.1.is_some() {
+            let last = end + 1e-7 * (outermost.0 - end);
+            let last = (last, self.missed(trunk, last));
+            self.refine(trunk, [outermost, last], left, found);
         }
     }
 
-    /// Between an extremal that ends and one that does not: looks closer at the last ones that end.
-    fn towards_the_fold(
+    /// Roots between two places: where other arcs follow, or the extremal of one does not end, looks closer. At most
+    /// `left` times.
+    fn refine(
         &self,
         trunk: &Trunk,
-        ended: (f64, f64),
-        beyond: f64,
+        [a, b]: [Look; 2],
+        left: &mut usize,
         found: &mut Vec<Candidate>,
     ) {
-        let (mut ended, mut beyond) = (ended, beyond);
-        for _ in 0..HALVINGS {
-            let p = 0.5 * (ended.0 + beyond);
-            match self.miss(trunk, p, COARSE) {
-                Some(lambda4) => {
-                    self.between(trunk, ended, (p, lambda4), found);
-                    ended = (p, lambda4);
+        let mut open = vec![(a, b, HALVINGS)];
+        while let Some((a, b, halvings)) = open.pop() {
+            match (a.1, b.1) {
+                (None, None) => {}
+                (Some(from), Some(to)) if from.arcs == to.arcs || halvings == 0 || *left == 0 => {
+                    self.between(trunk, (a.0, from.lambda4), (b.0, to.lambda4), found);
                 }
-                None => beyond = p,
+                _ if halvings == 0 || *left == 0 => {}
+                _ => {
+                    *left -= 1;
+                    let p = 0.5 * (a.0 + b.0);
+                    let middle = (p, self.missed(trunk, p));
+                    open.push((middle, b, halvings - 1));
+                    open.push((a, middle, halvings - 1));
+                }
             }
         }
     }
@@ -280,7 +273,7 @@ impl<'a> Search<'a> {
         let whole = match trunk {
             Trunk::StartLine { .. } => quarter,
             // Again from the start: the multiplier itself must fall to zero at p.
-            Trunk::Bounds { .. } => {
+            Trunk::Bounds { .. } | Trunk::EndLine { .. } => {
                 let start = trunk.start()?;
                 let extremal = self.extremal(final_y);
                 let whole = follow(
@@ -288,7 +281,7 @@ impl<'a> Search<'a> {
                     self.region,
                     start.state,
                     start.motion,
-                    self.course(FINE, &start.state, 0),
+                    self.course(FINE, &start.state, trunk.begins_straight()),
                 );
                 let left = whole
                     .legs()
@@ -306,7 +299,7 @@ impl<'a> Search<'a> {
 
     /// The extremal that runs along the bounds to the very end.
     pub(super) fn never_leaving(&self, trunk: &Trunk) -> Option<Candidate> {
-        if trunk.on_diagonal() {
+        if trunk.touched() {
             return None; // which would be no loop
         }
         let final_y = trunk.end()?[3];
@@ -317,7 +310,7 @@ impl<'a> Search<'a> {
             self.region,
             start.state,
             start.motion,
-            self.course(FINE, &start.state, 0),
+            self.course(FINE, &start.state, false),
         );
         let stayed = quarter
             .legs()
@@ -333,12 +326,19 @@ impl<'a> Search<'a> {
         self.ended(&quarter).then(|| quarter.end[3] - final_y)
     }
 
+    /// The same coarsely, with the arcs.
+    fn missed(&self, trunk: &Trunk, p: f64) -> Option<Miss> {
+        let (quarter, final_y) = self.shoot(trunk, p, COARSE)?;
+        self.ended(&quarter).then(|| Miss::of(&quarter, final_y))
+    }
+
     /// The quarter that becomes singular at place p of a trunk, with its `y_f`. None where the singular control would leave
     /// the region, or no `y_f` makes the height vanish.
     fn shoot(&self, trunk: &Trunk, p: f64, control: StepControl) -> Option<(Quarter, f64)> {
-        let Place { state, motion } = self.place(trunk, p)?;
+        let place = self.place(trunk, p)?;
+        let final_y = trunk.final_y(self.model, &place, p)?;
+        let Place { state, motion } = place;
         let (phi, pose) = (shape(&state), [state[2], state[3], state[4]]);
-        let final_y = Extremal::final_y_of_zero(self.model, &phi, &pose)?;
         let extremal = self.extremal(final_y);
         let (height, ..) = extremal.height_and_gradient(&phi, &pose);
         let direction = height.singular_direction();
@@ -362,17 +362,18 @@ impl<'a> Search<'a> {
     }
 
     /// From a state of a quarter that began in another.
-    fn course(&self, control: StepControl, began: &State, touched: usize) -> Course {
+    fn course(&self, control: StepControl, began: &State, touched: bool) -> Course {
         Course {
             control,
-            touches: self.touches,
+            touch: self.touch,
             touched,
             began: began[0] + began[1],
         }
     }
 
     fn ended(&self, quarter: &Quarter) -> bool {
-        quarter.fate == Fate::Ended && quarter.touched == self.touches && !quarter.ends_in_a_spike()
+        let touches = self.touch != Touch::Ends;
+        quarter.fate == Fate::Ended && quarter.touched == touches && !quarter.ends_in_a_spike()
     }
 
     fn place(&self, trunk: &Trunk, p: f64) -> Option<Place> {
@@ -384,6 +385,22 @@ impl<'a> Search<'a> {
             model: self.model,
             sign: self.sign,
             final_y,
+        }
+    }
+}
+
+impl Miss {
+    fn of(quarter: &Quarter, final_y: f64) -> Self {
+        let arcs = lasting(quarter.legs()).fold(0, |arcs: u64, leg| {
+            let arc = match leg.motion {
+                Motion::Singular => 1,
+                Motion::Along(track) => 2 + track.index as u64,
+            };
+            arcs.wrapping_mul(31).wrapping_add(arc)
+        });
+        Self {
+            lambda4: quarter.end[3] - final_y,
+            arcs,
         }
     }
 }

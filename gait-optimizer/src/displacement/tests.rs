@@ -1,5 +1,6 @@
 use super::*;
 use crate::certify;
+use swimmer_files::ArcKind;
 use swimmer_model::TangentialDrag;
 
 /// Three links without a sphere.

@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 use nalgebra::Vector2;
 use swimmer_files::{ArcKind, Bounds};
 
-use super::flow::{Fate, Leg, along_bounds, is_end_line};
+use swimmer_model::Model;
+
+use super::flow::{Course, Fate, Leg, Touch, along_bounds, follow, is_end_line};
 use super::height::Extremal;
 use super::search::{FINE, lasting};
 use crate::momentum::{Flow, Motion, State, Track, shape};
@@ -18,12 +20,12 @@ pub(crate) enum Trunk {
     /// φ₁ = φ₂ = p.
     StartLine { low: f64, high: f64 },
     /// Along bounds; p is the way along them. Poses are carried along.
-    Bounds {
+    Bounds { stretches: Vec<Stretch> },
+    /// Along bounds and then along φ₁ = −φ₂, up to where the multiplier falls to zero. The place is fixed and λ₄ is free; p is
+    /// a measure of it, from −1 for −∞ to 1 for ∞.
+    EndLine {
         stretches: Vec<Stretch>,
-        /// Where arcs may begin at the earliest.
-        low: f64,
-        /// How often φ₁ = −φ₂ was touched up to there.
-        touched: usize,
+        turn: State,
     },
 }
 
@@ -70,52 +72,72 @@ pub(crate) fn trunks(extremal: Extremal<'_>, bounds: &Bounds, region: &Region) -
                 Piece::Tips
             });
         }
-        let way = along_bounds(extremal, region, state, track, (FINE, 0));
+        let way = along_bounds(extremal, region, state, track, (FINE, Touch::Ends));
         let stretches = stretches(way.legs());
         if way.fate == Fate::Ended && !stretches.is_empty() {
-            trunks.push(Trunk::Bounds {
-                stretches,
-                low: 0.0,
-                touched: 0,
-            });
+            trunks.push(Trunk::Bounds { stretches });
         }
     }
     trunks
 }
 
-/// The trunks along φ₁ = −φ₂, where that is a bound, inwards from where those along other bounds meet it. Quarters leave them
-/// to go round shapes about the straight one that the other bounds do not meet.
+/// The trunks of quarters that touch φ₁ = −φ₂, where that is a bound: those along other bounds and on along that line from where
+/// they meet it, and those outwards from the straight shape. Quarters leave them to go round shapes about the straight one
+/// that the other bounds do not meet, or to leave those shapes out.
 pub(crate) fn trunks_on_the_diagonal(
     extremal: Extremal<'_>,
     region: &Region,
     trunks: &[Trunk],
+    touch: Touch,
 ) -> Vec<Trunk> {
-    let mut found = Vec::new();
     let Some(index) = region.bounds().position(|bound| is_end_line(&bound)) else {
-        return found;
+        return Vec::new();
     };
-    for trunk in trunks {
-        let Some(Place {
-            state,
-            motion: Motion::Along(track),
-        }) = trunk.start()
-        else {
-            continue;
+    let on_bounds = trunks.iter().filter_map(Trunk::start);
+    let straight = (touch == Touch::GoesOutwards)
+        .then(|| straight_shape(region, index))
+        .flatten();
+    let ways = on_bounds.chain(straight).filter_map(|start| {
+        let Motion::Along(track) = start.motion else {
+            return None;
         };
-        let way = along_bounds(extremal, region, state, track, (FINE, 1));
-        let stretches = stretches(way.legs());
+        let way = along_bounds(extremal, region, start.state, track, (FINE, touch));
+        let mut stretches = stretches(way.legs());
         let touching = stretches
             .iter()
-            .find(|stretch| stretch.track.index == index);
-        if let (Fate::Ended, Some(touching)) = (way.fate, touching) {
-            found.push(Trunk::Bounds {
-                low: touching.span[0],
-                stretches,
-                touched: 1,
-            });
-        }
+            .position(|stretch| stretch.track.index == index)?;
+        stretches.truncate(touching + 1);
+        let turn = turn(extremal, region, stretches.last()?)?;
+        Some(Trunk::EndLine { stretches, turn })
+    });
+    ways.collect()
+}
+
+/// Where quarters begin that leave the straight shape along φ₁ = −φ₂; none where the bounds do not allow it.
+fn straight_shape(region: &Region, index: usize) -> Option<Place> {
+    let straight = Vector2::zeros();
+    let track = Track::new(region, index, &straight, 1.0)?.back();
+    (region.overstepped(&straight) <= 0.0).then_some(Place {
+        state: [0.0; 6],
+        motion: Motion::Along(track),
+    })
+}
+
+/// Where the multiplier of φ₁ = −φ₂ falls to zero along a stretch of that line. Its curvature has no θ component, so it is the
+/// same place for every λ₄.
+fn turn(extremal: Extremal<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
+    let course = Course {
+        control: FINE,
+        touch: Touch::Ends,
+        touched: true,
+        began: 0.0,
+    };
+    let along = Motion::Along(stretch.track);
+    let way = follow(extremal, region, stretch.from, along, course);
+    match way.legs() {
+        [first, next, ..] if next.motion == Motion::Singular => Some(first.to),
+        _ => None,
     }
-    found
 }
 
 /// Legs along bounds, one after the other.
@@ -162,28 +184,27 @@ impl Trunk {
     pub(crate) fn range(&self) -> [f64; 2] {
         match self {
             Self::StartLine { low, high } => [*low, *high],
-            Self::Bounds { stretches, low, .. } => {
-                [*low, stretches.last().map_or(*low, |last| last.span[1])]
-            }
+            Self::Bounds { stretches } => [0.0, stretches.last().map_or(0.0, |last| last.span[1])],
+            Self::EndLine { .. } => [-1.0, 1.0],
         }
     }
 
-    /// How often a quarter has touched φ₁ = −φ₂ where it leaves the trunk.
-    pub(crate) fn touched(&self) -> usize {
+    fn stretches(&self) -> &[Stretch] {
         match self {
-            Self::StartLine { .. } => 0,
-            Self::Bounds { touched, .. } => *touched,
+            Self::StartLine { .. } => &[],
+            Self::Bounds { stretches } | Self::EndLine { stretches, .. } => stretches,
         }
     }
 
-    /// Whether the places lie on φ₁ = −φ₂.
-    pub(crate) fn on_diagonal(&self) -> bool {
-        match self {
-            Self::StartLine { .. } => false,
-            Self::Bounds { stretches, .. } => stretches
-                .last()
-                .is_some_and(|last| is_end_line(&last.track.bound)),
-        }
+    /// Whether a quarter has touched φ₁ = −φ₂ where it leaves the trunk.
+    pub(crate) fn touched(&self) -> bool {
+        matches!(self, Self::EndLine { .. })
+    }
+
+    /// Whether the trunk begins on φ₁ = −φ₂: in the straight shape.
+    pub(crate) fn begins_straight(&self) -> bool {
+        let first = self.stretches().first();
+        first.is_some_and(|first| is_end_line(&first.track.bound))
     }
 
     /// The state at a place; `extremal` only carries the model. None outside the trunk.
@@ -193,7 +214,7 @@ impl Trunk {
                 state: [p, p, 0.0, 0.0, 0.0, 0.0],
                 motion: Motion::Singular,
             }),
-            Self::Bounds { stretches, .. } => {
+            Self::Bounds { stretches } => {
                 let stretch = stretches
                     .iter()
                     .find(|stretch| p >= stretch.span[0] && p <= stretch.span[1])?;
@@ -207,14 +228,28 @@ impl Trunk {
                 let state = advance(&drive, start, p - stretch.span[0], FINE)?.z;
                 Some(Place { state, motion })
             }
+            Self::EndLine { stretches, turn } => Some(Place {
+                state: *turn,
+                motion: Motion::Along(stretches.last()?.track),
+            }),
         }
     }
 
-    /// The place nearest to a shape, about: bounds count as the chords of their stretches.
+    /// `y_f` of the extremal that becomes singular at a place: the one for which the height vanishes there.
+    pub(crate) fn final_y(&self, model: &Model<f64>, place: &Place, p: f64) -> Option<f64> {
+        let [.., y, theta] = pose(&place.state);
+        match self {
+            Self::EndLine { .. } => Some(y + p / (1.0 - p * p)).filter(|y| y.is_finite()),
+            _ => Extremal::final_y_of_zero(model, &shape(&place.state), &[0.0, y, theta]),
+        }
+    }
+
+    /// The place nearest to a shape, about: bounds count as the chords of their stretches. None where shapes do not tell.
     pub(crate) fn nearest(&self, phi: &Vector2<f64>) -> Option<f64> {
         match self {
             Self::StartLine { low, high } => Some((0.5 * (phi.x + phi.y)).clamp(*low, *high)),
-            Self::Bounds { stretches, .. } => stretches
+            Self::EndLine { .. } => None,
+            Self::Bounds { stretches } => stretches
                 .iter()
                 .map(|stretch| {
                     let (from, to) = (shape(&stretch.from), shape(&stretch.to));
@@ -232,20 +267,19 @@ impl Trunk {
 
     /// The first place along bounds.
     pub(crate) fn start(&self) -> Option<Place> {
-        match self {
-            Self::StartLine { .. } => None,
-            Self::Bounds { stretches, .. } => stretches.first().map(|first| Place {
-                state: first.from,
-                motion: Motion::Along(first.track),
-            }),
-        }
+        self.stretches().first().map(|first| Place {
+            state: first.from,
+            motion: Motion::Along(first.track),
+        })
     }
 
     /// The last state along bounds.
     pub(crate) fn end(&self) -> Option<State> {
-        match self {
-            Self::StartLine { .. } => None,
-            Self::Bounds { stretches, .. } => stretches.last().map(|last| last.to),
-        }
+        self.stretches().last().map(|last| last.to)
     }
+}
+
+/// x, y and θ of a state.
+fn pose(state: &State) -> [f64; 3] {
+    [state[2], state[3], state[4]]
 }

@@ -13,7 +13,10 @@ fn fit() -> Uncertainty {
 }
 
 fn bounded() -> DisplacementProblem {
-    DisplacementProblem::new(Swimmer::robot()).with_max_angle(2.8)
+    DisplacementProblem {
+        simple: true,
+        ..DisplacementProblem::new(Swimmer::robot()).with_max_angle(2.8)
+    }
 }
 
 /// X/L by the model's own integration.

@@ -12,8 +12,6 @@ use swimmer_files::Bounds;
 
 use crate::quantity::{self, Rows};
 
-/// The lower bound of the paper's gait (c) \[rad\].
-const PAPERS_LOWER: f64 = 1.5;
 /// What is less better is the same gait.
 const BETTER: f64 = 1e-6;
 /// Starts of the look beyond the paper's symmetries, a thread each.
@@ -61,35 +59,25 @@ impl Better {
     }
 }
 
-/// The gait that carries farthest, either way, of those that other commands find within the same bounds on shapes: the other
-/// direction, each quarter in its sector, and with the paper's lower bound.
+/// The gait that carries farthest, either way, within the same bounds on shapes, without those on the quarter: a wider bound never
+/// lowers the answer.
 pub(super) fn than_displacement(
     problem: &DisplacementProblem,
     name: &str,
     found: &OptimalGait,
 ) -> Option<Better> {
-    let wide = Bounds {
-        min_angle: None,
-        sector: false,
-        ..problem.bounds
-    };
-    let with = |sector, min_angle, heading| DisplacementProblem {
+    let wide = |heading| DisplacementProblem {
         bounds: Bounds {
-            sector,
-            min_angle,
-            ..wide
+            sector: false,
+            min_angle: None,
+            ..problem.bounds
         },
         heading: Some(heading),
+        simple: false,
         ..*problem
     };
-    let lower = wide.max_angle.is_none_or(|max| max > PAPERS_LOWER);
-    let mut others = Vec::new();
-    for heading in [Heading::Forwards, Heading::Backwards] {
-        others.push(with(false, None, heading));
-        others.push(with(true, None, heading));
-        others.extend(lower.then(|| with(false, Some(PAPERS_LOWER), heading)));
-    }
-    let best = others
+    let best = [Heading::Forwards, Heading::Backwards]
+        .map(wide)
         .into_iter()
         .filter_map(|other| Some((displacement(&other).ok()?, other)))
         .max_by(|(a, _), (b, _)| a.displacement.abs().total_cmp(&b.displacement.abs()))?;

@@ -34,6 +34,10 @@ pub(crate) struct Displacement {
     /// The sign of X: + or -
     #[arg(long, value_name = "SIGN", value_parser = sign, allow_hyphen_values = true)]
     sign: Option<Heading>,
+    /// Only gaits that do not touch their own images, as the paper's (a) to (c); limits of these may carry a little farther, along
+    /// slits that cost time. Implied by --robust and --max-rate
+    #[arg(long)]
+    simple: bool,
     #[command(flatten)]
     robustly: Robustly,
     #[command(flatten)]
@@ -51,6 +55,8 @@ impl Displacement {
         let problem = DisplacementProblem {
             bounds: self.bounds.of(&file),
             heading: self.sign,
+            // A slit costs no displacement, but time.
+            simple: self.simple || self.timing.max_rate.is_some(),
             ..DisplacementProblem::new(file.swimmer)
         };
         if let Some((uncertainty, over)) = uncertain {

@@ -35,8 +35,8 @@ pub(crate) const MOST_ARCS: usize = 12;
 pub(crate) struct Quarter {
     pub(super) legs: [Leg; MOST_ARCS],
     pub(super) count: usize,
-    /// How often it touched φ₁ = −φ₂ and went on along it.
-    pub(crate) touched: usize,
+    /// Whether it touched φ₁ = −φ₂ and went on along it.
+    pub(crate) touched: bool,
     pub(crate) fate: Fate,
     pub(crate) end: State,
 }

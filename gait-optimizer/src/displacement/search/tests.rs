@@ -35,7 +35,7 @@ fn the_second_variation_agrees_with_the_neighbours() {
                         model: &model,
                         region: &region,
                         sign,
-                        touches: 0,
+                        touch: Touch::Ends,
                         looks: LOOKS,
                     };
                     for trunk in trunks(search.extremal(0.0), &bounds, &region) {
@@ -82,6 +82,7 @@ fn neighbour_gain(search: &Search<'_>, trunk: &Trunk, candidate: &Candidate) -> 
             .take_while(|leg| leg.motion != Motion::Singular)
             .map(|leg| leg.length)
             .sum(),
+        Trunk::EndLine { .. } => return None,
     };
     let x = |p: f64| {
         let (quarter, _) = search.shoot(trunk, p, FINE)?;
