@@ -163,6 +163,8 @@ impl Solver {
         DisplacementProblem {
             bounds: design.bounds,
             quarter_samples: QUARTER,
+            // Limits that touch their own images cannot be followed: they are searched where there is no simple gait.
+            simple: true,
             ..DisplacementProblem::new(design.swimmer)
         }
     }
@@ -226,6 +228,12 @@ impl Solve for Solver {
             |gait: OptimalGait| self.solved(design, key, false, Held::Gait(Box::new(gait)));
         match self.aim {
             Aim::Displacement => displacement(&Self::of_displacement(design))
+                .or_else(|_| {
+                    displacement(&DisplacementProblem {
+                        simple: false,
+                        ..Self::of_displacement(design)
+                    })
+                })
                 .map(of_gait)
                 .map_err(Missing::from),
             Aim::EfficiencySmall | Aim::EfficiencyLarge => efficiency(&self.of_efficiency(design))

@@ -5,8 +5,8 @@ use swimmer_model::Model;
 
 use super::best::finely_sampled;
 use super::flow::Touch;
-use super::search::{Candidate, LOOKS, Search};
-use super::trunk::{Trunk, trunks, trunks_on_the_diagonal};
+use super::search::{LOOKS, Search};
+use super::trunk::{Trunk, trunks};
 use super::{DisplacementProblem, certified};
 use crate::OptimalGait;
 use crate::region::Region;
@@ -15,8 +15,8 @@ use crate::region::Region;
 /// with its own certificate. It costs a fraction of a search, and it is the neighbour's kind of gait: whether another kind has
 /// become better only [`displacement()`](super::displacement()) tells.
 ///
-/// None where there is no such gait near by, or where it fails its certificate: then ask for
-/// [`displacement()`](super::displacement()).
+/// None where there is no such gait near by, where it fails its certificate, or where the neighbour touches its own images: then
+/// ask for [`displacement()`](super::displacement()).
 ///
 /// ```
 /// use gait_optimizer::{DisplacementProblem, displacement, displacement_near};
@@ -36,73 +36,46 @@ pub fn displacement_near(
     neighbour: &OptimalGait,
 ) -> Option<OptimalGait> {
     problem.validate().ok()?;
-    let touching = neighbour.bounds.sector;
-    if !neighbour.symmetric || (problem.bounds.sector && !touching) {
+    // Gaits that touch their own images have the sector among their bounds.
+    if !neighbour.symmetric || neighbour.bounds.sector != problem.bounds.sector {
         return None;
     }
-    let bounds = match touching {
-        true if problem.may_touch() => problem.touching(),
-        true if !problem.bounds.sector => return None,
-        _ => problem.bounds,
-    };
     let model = Model::new(&problem.swimmer.of_unit_length()).ok()?;
-    let region = Region::new(&bounds, &problem.swimmer.links);
-    let search = |touch| Search {
+    let region = Region::new(&problem.bounds, &problem.swimmer.links);
+    let search = Search {
         model: &model,
         region: &region,
         sign: problem.heading().sign(),
-        touch,
+        touch: Touch::Ends,
         looks: LOOKS,
     };
-    let sign = problem.heading().sign();
-    let bare = search(Touch::Ends).extremal(0.0);
-    let off_the_diagonal = trunks(bare, &bounds, &region);
-    let mut found = nearest(&search(Touch::Ends), &off_the_diagonal, neighbour);
-    if touching {
-        for touch in [Touch::GoesInwards, Touch::GoesOutwards] {
-            let mut trunks = off_the_diagonal.clone();
-            trunks.extend(trunks_on_the_diagonal(
-                bare,
-                &region,
-                &off_the_diagonal,
-                touch,
-            ));
-            found.extend(nearest(&search(touch), &trunks, neighbour));
-        }
-    }
-    let farther = |a: &Candidate, b: &Candidate| {
-        let [a, b] = [a, b].map(|candidate| sign * candidate.quarter.end[2]);
-        a.total_cmp(&b)
-    };
-    let found = found
-        .into_iter()
-        .filter(|candidate| sign * candidate.quarter.end[2] > 0.0)
-        .max_by(farther)?;
-    let within = (&bounds, &region);
+    let leaves = neighbour
+        .arcs
+        .iter()
+        .position(|arc| arc.kind == ArcKind::Singular);
+    let found = trunks(search.extremal(0.0), &problem.bounds, &region)
+        .iter()
+        .filter_map(|trunk| {
+            let along_bounds = matches!(trunk, Trunk::Bounds { .. });
+            let found = match leaves {
+                None if along_bounds => search.never_leaving(trunk),
+                Some(first) if along_bounds == (first > 0) => {
+                    let arc = neighbour.arcs.get(first)?;
+                    let p = trunk.nearest(&arc.from.into())?;
+                    search.candidate(trunk, search.polished(trunk, p)?)
+                }
+                _ => None,
+            };
+            found.filter(|candidate| search.sign * candidate.quarter.end[2] > 0.0)
+        })
+        .max_by(|a, b| {
+            let [a, b] = [a, b].map(|candidate| candidate.quarter.end[2].abs());
+            a.total_cmp(&b)
+        })?;
+    let within = (&problem.bounds, &region);
     let gait = certified(problem, &model, within, &found)?;
     if !gait.certificate.pass() {
         return None;
     }
     Some(finely_sampled(problem, &model, within, (&found, gait)))
-}
-
-/// The extremals that leave the trunks where the neighbour's leaves its own.
-fn nearest(search: &Search<'_>, trunks: &[Trunk], neighbour: &OptimalGait) -> Vec<Candidate> {
-    let leaves = neighbour
-        .arcs
-        .iter()
-        .position(|arc| arc.kind == ArcKind::Singular);
-    let found = trunks.iter().filter_map(|trunk| {
-        let along_bounds = matches!(trunk, Trunk::Bounds { .. });
-        match leaves {
-            None if along_bounds => search.never_leaving(trunk),
-            Some(first) if along_bounds == (first > 0) => {
-                let arc = neighbour.arcs.get(first)?;
-                let p = trunk.nearest(&arc.from.into())?;
-                search.candidate(trunk, search.polished(trunk, p)?)
-            }
-            _ => None,
-        }
-    });
-    found.collect()
 }
