@@ -6,6 +6,7 @@ use gait_optimizer::{
     efficiency, sideways, turning,
 };
 use serde::{Deserialize, Serialize};
+use swimmer_files::ArcKind;
 
 use crate::field::Design;
 use crate::row::Row;
@@ -163,7 +164,8 @@ impl Solver {
         DisplacementProblem {
             bounds: design.bounds,
             quarter_samples: QUARTER,
-            // Limits that touch their own images cannot be followed: they are searched where there is no simple gait.
+            // Limits that touch their own images cannot be followed: they are searched where there is no simple gait, or one
+            // that a bound cuts off.
             simple: true,
             ..DisplacementProblem::new(design.swimmer)
         }
@@ -222,18 +224,29 @@ impl Solver {
     }
 }
 
+/// Whether a quarter ends along a bound.
+fn cut_off(gait: &OptimalGait) -> bool {
+    let last = gait.arcs.last();
+    last.is_none_or(|arc| arc.kind != ArcKind::Singular)
+}
+
 impl Solve for Solver {
     fn cold(&self, design: &Design, key: u64) -> Answer {
         let of_gait =
             |gait: OptimalGait| self.solved(design, key, false, Held::Gait(Box::new(gait)));
         match self.aim {
             Aim::Displacement => displacement(&Self::of_displacement(design))
-                .or_else(|_| {
-                    displacement(&DisplacementProblem {
-                        simple: false,
-                        ..Self::of_displacement(design)
-                    })
-                })
+                .ok()
+                .filter(|gait| !cut_off(gait))
+                .map_or_else(
+                    || {
+                        displacement(&DisplacementProblem {
+                            simple: false,
+                            ..Self::of_displacement(design)
+                        })
+                    },
+                    Ok,
+                )
                 .map(of_gait)
                 .map_err(Missing::from),
             Aim::EfficiencySmall | Aim::EfficiencyLarge => efficiency(&self.of_efficiency(design))
@@ -266,10 +279,10 @@ impl Solve for Solver {
 
     fn warm(&self, design: &Design, key: u64, near: &Solved) -> Option<Solved> {
         let held = match (&near.held, self.aim) {
-            (Held::Gait(gait), Aim::Displacement) => Held::Gait(Box::new(displacement_near(
-                &Self::of_displacement(design),
-                gait,
-            )?)),
+            (Held::Gait(gait), Aim::Displacement) => {
+                let next = displacement_near(&Self::of_displacement(design), gait)?;
+                Held::Gait(Box::new(Some(next).filter(|gait| !cut_off(gait))?))
+            }
             (Held::Seed(seed), Aim::EfficiencySmall | Aim::EfficiencyLarge) => {
                 Held::Seed(Box::new(seed.near(&self.of_efficiency(design))?))
             }
