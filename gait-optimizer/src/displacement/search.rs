@@ -73,6 +73,8 @@ struct Miss {
     lambda4: f64,
     /// Which arcs follow each other.
     arcs: u64,
+    /// Whether it heads the right way; what does not is no gait.
+    heads: bool,
 }
 
 /// A place looked at, and the extremal from there where it ends.
@@ -130,7 +132,7 @@ impl<'a> Search<'a> {
         match quarter.fate {
             Fate::Ended if self.ended(&quarter) => {
                 fates.ended += 1;
-                let miss = Miss::of(&quarter, final_y);
+                let miss = Miss::of(&quarter, final_y, self.sign);
                 let nearest = fates.nearest.unwrap_or(f64::INFINITY);
                 fates.nearest = Some(nearest.min(miss.lambda4.abs()));
                 seen.ended.push((index, p, self.sign * quarter.end[2]));
@@ -171,7 +173,10 @@ impl<'a> Search<'a> {
         let mut open = vec![(a, b, HALVINGS)];
         while let Some((a, b, halvings)) = open.pop() {
             match (a.1, b.1) {
-                (None, None) => {}
+                (a, b)
+                    if !a
+                        .or(b)
+                        .is_some_and(|a| a.heads || b.is_some_and(|b| b.heads)) => {}
                 (Some(from), Some(to)) if from.arcs == to.arcs || halvings == 0 || *left == 0 => {
                     self.between(trunk, (a.0, from.lambda4), (b.0, to.lambda4), found);
                 }
@@ -329,7 +334,8 @@ impl<'a> Search<'a> {
     /// The same coarsely, with the arcs.
     fn missed(&self, trunk: &Trunk, p: f64) -> Option<Miss> {
         let (quarter, final_y) = self.shoot(trunk, p, COARSE)?;
-        self.ended(&quarter).then(|| Miss::of(&quarter, final_y))
+        self.ended(&quarter)
+            .then(|| Miss::of(&quarter, final_y, self.sign))
     }
 
     /// The quarter that becomes singular at place p of a trunk, with its `y_f`. None where the singular control would leave
@@ -390,7 +396,7 @@ impl<'a> Search<'a> {
 }
 
 impl Miss {
-    fn of(quarter: &Quarter, final_y: f64) -> Self {
+    fn of(quarter: &Quarter, final_y: f64, sign: f64) -> Self {
         let arcs = lasting(quarter.legs()).fold(0, |arcs: u64, leg| {
             let arc = match leg.motion {
                 Motion::Singular => 1,
@@ -401,6 +407,7 @@ impl Miss {
         Self {
             lambda4: quarter.end[3] - final_y,
             arcs,
+            heads: sign * quarter.end[2] > 0.0,
         }
     }
 }

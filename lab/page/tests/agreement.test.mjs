@@ -35,7 +35,7 @@ const maps = SWIMMERS.flatMap((name) =>
   })),
 );
 const optima = [
-  ["displacement", ["displacement"], ["displacement_over_length", "start_angle_rad"]],
+  ["displacement", ["displacement", "--simple"], ["displacement_over_length", "start_angle_rad"]],
   ["efficiency-small", ["efficiency", "--gait", "small"], ["efficiency", "displacement_over_length", "start_angle_rad"]],
   ["turning", ["turning"], ["rotation_rad", "bridged_supremum_rad"]],
 ].flatMap(([what, words, keys]) =>

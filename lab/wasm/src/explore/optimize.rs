@@ -78,6 +78,8 @@ pub(super) fn optimize(_: &mut Lab, bytes: &[u8]) -> Outcome {
         What::Displacement => {
             let problem = DisplacementProblem {
                 bounds,
+                // Limits of simple gaits take ten times as long to find, and a hand waits.
+                simple: true,
                 ..DisplacementProblem::new(swimmer)
             };
             Found::new(
