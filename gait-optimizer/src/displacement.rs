@@ -13,7 +13,6 @@ use std::fmt;
 use crate::region::Region;
 use best::{best, candidates};
 pub use error::{DisplacementError, Fates};
-
 pub use near::displacement_near;
 use search::{Candidate, LOOKS};
 use swimmer_files::{Bounds, Objective};
@@ -196,28 +195,23 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
     refuse_immobile(&model, &problem.bounds)?;
     let links = &problem.swimmer.links;
     let region = Region::new(&problem.bounds, links);
-    let (found, _) = best(problem, &model, (&problem.bounds, &region));
+    let (found, _) = best(problem, &model, (&problem.bounds, &region), 0.0);
     if !problem.may_touch() {
         return found;
     }
     let bounds = problem.touching();
     let region = Region::new(&bounds, links);
     let within = (&bounds, &region);
-    let (touching, seen) = best(problem, &model, within);
-    let farthest = seen.farthest(problem, &model, within);
-    let sign = problem.heading().sign();
-    let carries =
-        |gait: &Result<OptimalGait, _>| gait.as_ref().map_or(0.0, |gait| sign * gait.displacement);
-    let mut answer = if carries(&touching) > carries(&found) {
-        touching
-    } else {
-        found
+    let carries = |gait: &Result<OptimalGait, _>| {
+        gait.as_ref()
+            .map_or(0.0, |gait| gait.displacement_over_length.abs())
     };
+    let (touching, seen) = best(problem, &model, within, carries(&found));
+    let mut answer = if touching.is_ok() { touching } else { found };
+    let least = carries(&answer) * (1.0 + OUTDONE);
+    let farthest = seen.farthest(problem, &model, within, least);
     match &mut answer {
-        Ok(gait) => {
-            let least = gait.displacement_over_length.abs() * (1.0 + OUTDONE);
-            gait.outdone_over_length = farthest.filter(|farthest| sign * farthest > least);
-        }
+        Ok(gait) => gait.outdone_over_length = farthest,
         Err(DisplacementError::NoOptimum { outdone, .. }) => *outdone = farthest,
         Err(_) => {}
     }
@@ -235,7 +229,7 @@ pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, D
     refuse_immobile(&model, &problem.bounds)?;
     let of = |bounds: &Bounds| {
         let region = Region::new(bounds, &problem.swimmer.links);
-        let gaits = candidates(problem, &model, (bounds, &region), LOOKS)
+        let gaits = candidates(problem, &model, (bounds, &region), LOOKS, 0.0)
             .found
             .into_iter()
             .filter_map(|candidate| certified(problem, &model, (bounds, &region), &candidate));
@@ -257,13 +251,7 @@ fn certified(
     (bounds, region): (&Bounds, &Region),
     candidate: &Candidate,
 ) -> Option<OptimalGait> {
-    let extremal = height::Extremal {
-        model,
-        sign: problem.heading().sign(),
-        final_y: candidate.final_y,
-    };
-    let legs: Vec<_> = search::lasting(candidate.quarter.legs()).copied().collect();
-    let trace = QuarterTrace::new(extremal, region, &legs, problem.quarter_samples)?;
+    let trace = traced(problem, model, region, candidate, problem.quarter_samples)?;
     let cycle = trace.cycle();
     let displacement_over_length = 4.0 * candidate.quarter.end[2];
     let stroke = cycle.swum(model)?;
@@ -288,6 +276,23 @@ fn certified(
     gait.start_angle = trace.start().x;
     gait.end_angle = trace.end().y;
     Some(gait)
+}
+
+/// A candidate's quarter, sampled; none where it cannot be traced.
+fn traced(
+    problem: &DisplacementProblem,
+    model: &Model<f64>,
+    region: &Region,
+    candidate: &Candidate,
+    samples: usize,
+) -> Option<QuarterTrace> {
+    let extremal = height::Extremal {
+        model,
+        sign: problem.heading().sign(),
+        final_y: candidate.final_y,
+    };
+    let legs: Vec<_> = search::lasting(candidate.quarter.legs()).copied().collect();
+    QuarterTrace::new(extremal, region, &legs, samples)
 }
 
 #[cfg(test)]

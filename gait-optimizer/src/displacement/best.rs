@@ -8,8 +8,9 @@ use swimmer_model::Model;
 use super::flow::Touch;
 use super::search::{CLOSER_LOOKS, Candidate, LOOKS, Search, Seen};
 use super::trunk::{Trunk, trunks, trunks_on_the_diagonal};
-use super::{DisplacementError, DisplacementProblem, Fates, certified};
+use super::{DisplacementError, DisplacementProblem, Fates, certified, traced};
 use crate::OptimalGait;
+use crate::certificate::turning_number;
 use crate::certify::samples_suffice;
 use crate::region::Region;
 
@@ -28,6 +29,7 @@ pub(super) fn candidates<'a>(
     model: &'a Model<f64>,
     (bounds, region): (&Bounds, &'a Region),
     looks: usize,
+    least: f64,
 ) -> Extremals<'a> {
     let sign = problem.heading().sign();
     let search = |touch| Search {
@@ -57,7 +59,7 @@ pub(super) fn candidates<'a>(
             scans.push((search(touch), trunks, seen));
         }
     }
-    found.retain(|candidate| sign * candidate.quarter.end[2] > 0.0);
+    found.retain(|candidate| 4.0 * sign * candidate.quarter.end[2] > least);
     found.sort_by(farther);
     Extremals {
         found,
@@ -73,36 +75,43 @@ fn farther(a: &Candidate, b: &Candidate) -> Ordering {
 }
 
 impl Extremals<'_> {
-    /// How far, over L, gaits carry at least that are no extremals; none where no such gait was seen.
+    /// How far, over L, gaits carry that are no extremals; none where none was seen that carries farther than `least`.
     pub(super) fn farthest(
         &self,
         problem: &DisplacementProblem,
         model: &Model<f64>,
         within: (&Bounds, &Region),
+        least: f64,
     ) -> Option<f64> {
         let sign = problem.heading().sign();
         let scans = self.scans.iter();
         let mut carried: Vec<Candidate> = scans
-            .flat_map(|(search, trunks, seen)| search.farthest(trunks, seen))
-            .filter(|candidate| sign * candidate.quarter.end[2] > 0.0)
+            .flat_map(|(search, trunks, seen)| search.farthest(trunks, seen, least / 4.0))
+            .filter(|candidate| 4.0 * sign * candidate.quarter.end[2] > least)
             .collect();
         carried.sort_by(farther);
         carried.iter().find_map(|candidate| {
+            // Most that carry far wind several times, which a few samples tell.
+            let few = traced(problem, model, within.1, candidate, 32)?.cycle();
+            if (turning_number(&few.phi) - 1.0).abs() > 0.5 {
+                return None;
+            }
             let gait = certified(problem, model, within, candidate)?;
-
             is_gait(&gait).then_some(gait.displacement_over_length)
         })
     }
 }
 
-/// The best gait that certifies within these bounds, which may be tighter than the problem's; and what else was seen there.
+/// The best gait that certifies within these bounds, which may be tighter than the problem's, and carries farther than `least`,
+/// over L; and what else was seen there.
 pub(super) fn best<'a>(
     problem: &DisplacementProblem,
     model: &'a Model<f64>,
     within: (&Bounds, &'a Region),
+    least: f64,
 ) -> (Result<OptimalGait, DisplacementError>, Extremals<'a>) {
     let mut refused = None;
-    let mut seen = candidates(problem, model, within, LOOKS);
+    let mut seen = candidates(problem, model, within, LOOKS, least);
     for closer in [true, false] {
         for candidate in &seen.found {
             let Some(gait) = certified(problem, model, within, candidate) else {
@@ -116,10 +125,10 @@ pub(super) fn best<'a>(
             refused.get_or_insert(gait);
         }
         // Where many get lost, closer looks would only lose more.
-        if !closer || refused.is_some() || 8 * seen.fates.lost > seen.fates.sent {
+        if !closer || least > 0.0 || refused.is_some() || 8 * seen.fates.lost > seen.fates.sent {
             break;
         }
-        seen = candidates(problem, model, within, CLOSER_LOOKS);
+        seen = candidates(problem, model, within, CLOSER_LOOKS, least);
     }
     let fates = seen.fates;
     let error = match refused {

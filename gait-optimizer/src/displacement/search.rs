@@ -93,10 +93,18 @@ impl<'a> Search<'a> {
     }
 
     /// Those of the extremals seen that carry farthest, best first, traced finely one after the other: gaits within the bounds,
-    /// but no optima, since their λ₄ does not end at zero.
-    pub(crate) fn farthest(self, trunks: &[Trunk], seen: &Seen) -> impl Iterator<Item = Candidate> {
+    /// but no optima, since their λ₄ does not end at zero. Only such as may carry a quarter farther than `least`.
+    pub(crate) fn farthest(
+        self,
+        trunks: &[Trunk],
+        seen: &Seen,
+        least: f64,
+    ) -> impl Iterator<Item = Candidate> {
         const MOST: usize = 24;
+        /// How far off the coarse scan may be, over L.
+        const OFF: f64 = 1e-3;
         let mut ended = seen.ended.clone();
+        ended.retain(|(_, _, carried)| *carried > least - OFF);
         ended.sort_by(|a, b| b.2.total_cmp(&a.2));
         let best = ended.into_iter().take(MOST);
         best.filter_map(move |(index, p, _)| self.candidate(trunks.get(index)?, p))
@@ -172,11 +180,11 @@ impl<'a> Search<'a> {
     ) {
         let mut open = vec![(a, b, HALVINGS)];
         while let Some((a, b, halvings)) = open.pop() {
+            let mut ends = [a.1, b.1].into_iter().flatten();
+            if !ends.any(|miss| miss.heads) {
+                continue;
+            }
             match (a.1, b.1) {
-                (a, b)
-                    if !a
-                        .or(b)
-                        .is_some_and(|a| a.heads || b.is_some_and(|b| b.heads)) => {}
                 (Some(from), Some(to)) if from.arcs == to.arcs || halvings == 0 || *left == 0 => {
                     self.between(trunk, (a.0, from.lambda4), (b.0, to.lambda4), found);
                 }

@@ -79,6 +79,12 @@ pub(super) fn than_displacement(
     let best = [Heading::Forwards, Heading::Backwards]
         .map(wide)
         .into_iter()
+        .filter(|other| {
+            // Unless that is the problem just solved.
+            let found_there =
+                (other.heading == Some(Heading::Forwards)) == (found.displacement > 0.0);
+            !(found_there && other.bounds == problem.bounds && !problem.simple)
+        })
         .filter_map(|other| Some((displacement(&other).ok()?, other)))
         .max_by(|(a, _), (b, _)| a.displacement.abs().total_cmp(&b.displacement.abs()))?;
     let (gait, other) = best;
