@@ -229,7 +229,7 @@ pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, D
     refuse_immobile(&model, &problem.bounds)?;
     let of = |bounds: &Bounds| {
         let region = Region::new(bounds, &problem.swimmer.links);
-        let gaits = candidates(problem, &model, (bounds, &region), LOOKS, 0.0)
+        let gaits = candidates(problem, &model, (bounds, &region), LOOKS)
             .found
             .into_iter()
             .filter_map(|candidate| certified(problem, &model, (bounds, &region), &candidate));

@@ -29,7 +29,6 @@ pub(super) fn candidates<'a>(
     model: &'a Model<f64>,
     (bounds, region): (&Bounds, &'a Region),
     looks: usize,
-    least: f64,
 ) -> Extremals<'a> {
     let sign = problem.heading().sign();
     let search = |touch| Search {
@@ -59,7 +58,7 @@ pub(super) fn candidates<'a>(
             scans.push((search(touch), trunks, seen));
         }
     }
-    found.retain(|candidate| 4.0 * sign * candidate.quarter.end[2] > least);
+    found.retain(|candidate| sign * candidate.quarter.end[2] > 0.0);
     found.sort_by(farther);
     Extremals {
         found,
@@ -111,9 +110,10 @@ pub(super) fn best<'a>(
     least: f64,
 ) -> (Result<OptimalGait, DisplacementError>, Extremals<'a>) {
     let mut refused = None;
-    let mut seen = candidates(problem, model, within, LOOKS, least);
+    let mut seen = candidates(problem, model, within, LOOKS);
     for closer in [true, false] {
-        for candidate in &seen.found {
+        let farther = |candidate: &&Candidate| 4.0 * candidate.quarter.end[2].abs() > least;
+        for candidate in seen.found.iter().filter(farther) {
             let Some(gait) = certified(problem, model, within, candidate) else {
                 continue;
             };
@@ -128,7 +128,7 @@ pub(super) fn best<'a>(
         if !closer || least > 0.0 || refused.is_some() || 8 * seen.fates.lost > seen.fates.sent {
             break;
         }
-        seen = candidates(problem, model, within, CLOSER_LOOKS, least);
+        seen = candidates(problem, model, within, CLOSER_LOOKS);
     }
     let fates = seen.fates;
     let error = match refused {
