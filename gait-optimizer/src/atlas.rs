@@ -11,15 +11,15 @@
 //! Gaits that the solvers of quarter gaits find are starts, too. Those that are certified for the very bounds of the atlas, and
 //! of displacement are no saddles among all closed curves, are listed in any case, each counted as one start that ended in it.
 
+mod barrier;
 mod curve;
 mod displacement;
 pub(crate) mod distinct;
 mod efficiency;
-mod fence;
-mod gates;
 mod newton;
 mod objective;
 mod pipeline;
+mod sections;
 mod starts;
 
 use swimmer_files::{Bounds, Objective};

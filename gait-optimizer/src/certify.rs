@@ -9,7 +9,7 @@
 //! arc. Polynomials of degree six tell how much the sampling leaves open: that much is added to the tolerances, and a gait
 //! that is sampled too coarsely fails the check of its sampling instead of passing the others by their width.
 
-mod around;
+mod ascent;
 mod bounds;
 mod grid;
 mod limits;
@@ -37,7 +37,7 @@ use crate::certificate::{
 };
 use crate::region::Region;
 use crate::speed::certify_speed;
-pub(crate) use around::{Curve, around};
+pub(crate) use ascent::{Curve, around};
 use grid::{Along, Degree, Grid};
 use limits::{Limit, Limits};
 use path::Path;

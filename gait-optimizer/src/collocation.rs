@@ -15,7 +15,6 @@
 //! `ipopt` binds to C, `interiors` builds its matrices anew at every call; `ripopt` and `pounce-rs`, ports of Ipopt in
 //! Rust, are under the EPL and bring a second linear algebra.
 
-mod again;
 mod block;
 mod elimination;
 mod error;
@@ -25,6 +24,7 @@ mod newton;
 mod path;
 mod radau;
 mod refine;
+mod reintegration;
 mod solution;
 #[cfg(test)]
 mod tests;
@@ -204,7 +204,7 @@ fn refined(
     loop {
         let newton = Newton::new(problem.model, &mesh, walls, problem.sign, HORIZON, phi);
         let optimum = newton.run(barrier)?;
-        let again = again::again(problem.model, &mesh, walls, &optimum.path).ok_or(
+        let again = reintegration::again(problem.model, &mesh, walls, &optimum.path).ok_or(
             CollocationError::NotIntegrated {
                 efficiency: lighthill(problem.model, &optimum.path),
             },

@@ -13,11 +13,11 @@
 //! | `displacement` | the next gait as the nearest of all that the search finds |
 //! | `meeting` | two branches side by side |
 
+mod branch_crossing;
+mod branch_point;
 mod displacement;
 mod efficiency;
 mod follow;
-mod kept;
-mod meeting;
 mod parameter;
 #[cfg(test)]
 mod tests;
@@ -27,8 +27,8 @@ use swimmer_model::{InvalidSwimmer, Swimmer};
 
 use crate::displacement::Heading;
 use crate::{Branch, OptimalGait, Watch};
+use branch_point::BranchPoint;
 use follow::{Family, Track};
-use kept::Kept;
 pub use parameter::Parameter;
 
 /// Where a branch begins.
@@ -372,7 +372,7 @@ fn all<F: Family>(
 ) -> Result<Continuation, ContinuationError> {
     let mut tracks: Vec<Track<F::Held>> = Vec::with_capacity(problem.starts.len());
     for (branch, start) in problem.starts.iter().enumerate() {
-        let first: Kept<F::Held> =
+        let first: BranchPoint<F::Held> =
             family
                 .start(start)
                 .map_err(|reason| ContinuationError::NoStart {
@@ -385,7 +385,7 @@ fn all<F: Family>(
         let watch = |share: f64| watch((branch as f64 + share) / branches);
         tracks.push(follow::follow(problem, family, branch, first, &watch));
     }
-    let meetings = meeting::meetings(problem, family, &tracks);
+    let meetings = branch_crossing::meetings(problem, family, &tracks);
     let mut found = Continuation {
         points: Vec::new(),
         events: Vec::new(),

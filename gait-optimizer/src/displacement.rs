@@ -6,7 +6,7 @@ pub(crate) mod flow;
 pub(crate) mod height;
 mod near;
 mod search;
-mod trunk;
+mod start_family;
 
 use std::fmt;
 
@@ -14,7 +14,7 @@ use crate::region::Region;
 use best::{best, candidates};
 pub use error::{DisplacementError, Fates};
 pub use near::displacement_near;
-use search::{Candidate, LOOKS};
+use search::{Candidate, SCAN_POINTS};
 use swimmer_files::{Bounds, Objective};
 use swimmer_model::{Links, Model, Swimmer};
 
@@ -229,7 +229,7 @@ pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, D
     refuse_immobile(&model, &problem.bounds)?;
     let of = |bounds: &Bounds| {
         let region = Region::new(bounds, &problem.swimmer.links);
-        let gaits = candidates(problem, &model, (bounds, &region), LOOKS)
+        let gaits = candidates(problem, &model, (bounds, &region), SCAN_POINTS)
             .found
             .into_iter()
             .filter_map(|candidate| certified(problem, &model, (bounds, &region), &candidate));

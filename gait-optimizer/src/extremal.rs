@@ -38,7 +38,7 @@ use swimmer_model::{Gait, InvalidSwimmer, Model, Swimmer};
 use crate::OptimalGait;
 
 use equations::shape;
-use guess::Swum;
+use guess::Trajectory;
 pub use shooting::Unsolved;
 use shooting::{Class, Solved, solve};
 use structure::{next_structure, of_curve};
@@ -156,7 +156,7 @@ pub(crate) fn polish<G: Gait<f64> + ?Sized>(
             .nearest(phi)
             .is_none_or(|(_, depth)| depth < -structure::NEAR)
     };
-    let swum = Swum::new(model, gait, inside).ok_or(Unpolished::NoGuess)?;
+    let swum = Trajectory::new(model, gait, inside).ok_or(Unpolished::NoGuess)?;
     let (chain, class) = of_curve(&swum, walls, quarter);
     polish_chain(model, walls, class, chain)
 }

@@ -21,7 +21,7 @@
 //! | `sideways` | the gait of most displacement across the heading at its start |
 //! | `region` | the bounds: straight ones of the joint angles, and the curved one that keeps the side links apart |
 //! | `displacement::flow` | one quarter gait: arc after arc, event after event |
-//! | `displacement::trunk` | where singular arcs may begin: φ₁ = φ₂, and chains of bounds from there |
+//! | `displacement::start_family` | where singular arcs may begin: φ₁ = φ₂, and chains of bounds from there |
 //! | `efficiency` | the small and the large Lighthill gait: Fourier series, then `extremal`, bounds followed |
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs, second-order test |
 //! | `cycle` | from a quarter to the full cycle, at constant power |

@@ -11,6 +11,6 @@ mod flow;
 mod shooting;
 mod trace;
 
-pub(crate) use flow::{Course, Home, Lap};
-pub(crate) use shooting::{Closed, Gate, Loop, close};
+pub(crate) use flow::{ClosedOrbit, Launch, ReturnCondition};
+pub(crate) use shooting::{Closed, Loop, Section, close};
 pub(crate) use trace::LoopTrace;

@@ -81,7 +81,7 @@ impl Momentum {
     }
 
     /// Height, connection and power matrix at a shape, from one look at the model.
-    pub(crate) fn look(
+    pub(crate) fn evaluate(
         &self,
         model: &Model<f64>,
         phi: &Vector2<f64>,

@@ -17,11 +17,11 @@
 )]
 
 mod arcs;
+mod certificate;
 mod cycle;
 mod fourier;
 mod newton;
 mod nodes;
-mod proof;
 mod quarter;
 #[cfg(test)]
 mod tests;
@@ -333,9 +333,13 @@ pub fn robust_displacement(
     };
     let values = ensemble.values(&family, &found.x, sign);
     let (cycle, arcs) = cycle::of_arcs(&ensemble.nominal, &family, &found.x);
-    let mut checks = proof::of_arcs(&family, &found.x, &borrowed(&found.weighted));
-    checks.extend(proof::of_curve(&cycle, &problem.bounds, &swimmer.links));
-    checks.extend(proof::of_displacement(
+    let mut checks = certificate::of_arcs(&family, &found.x, &borrowed(&found.weighted));
+    checks.extend(certificate::of_curve(
+        &cycle,
+        &problem.bounds,
+        &swimmer.links,
+    ));
+    checks.extend(certificate::of_displacement(
         &ensemble,
         &cycle,
         &values,
@@ -412,9 +416,9 @@ pub fn robust_efficiency(
     {
         return Err(RobustError::Bound { reach, max_angle });
     }
-    let mut checks = proof::of_series(&family, &found.x, &borrowed(&found.weighted));
-    checks.extend(proof::of_curve(&cycle, bounds, &swimmer.links));
-    checks.extend(proof::of_efficiency(
+    let mut checks = certificate::of_series(&family, &found.x, &borrowed(&found.weighted));
+    checks.extend(certificate::of_curve(&cycle, bounds, &swimmer.links));
+    checks.extend(certificate::of_efficiency(
         &ensemble,
         &cycle,
         &values,

@@ -21,11 +21,11 @@
     reason = "formulas in the docs read like the paper's: F_θ"
 )]
 
+mod border;
+mod certificate;
 mod crossing;
 mod error;
-mod evidence;
 mod piece;
-mod shore;
 mod walk;
 
 use nalgebra::{DMatrix, Vector2};
@@ -40,9 +40,9 @@ use crate::height_map::legendre::gauss;
 use crate::height_map::{Level, LevelSearch, level_seeds};
 use crate::optimal_gait::{Arc, Solution};
 use crate::region::Region;
+use border::Border;
 use piece::{Piece, Round};
-use shore::Shore;
-use walk::{Country, Lost, curvature};
+use walk::{Domain, TraceError, curvature};
 
 /// Whose gait, and within what.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,12 +87,12 @@ pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
     let model = Model::new(&problem.swimmer.of_unit_length())?;
     let bounds = validated(problem)?;
     let region = Region::new(&bounds, &problem.swimmer.links);
-    let shore = Shore::new(&region, DIRECTIONS).ok_or(TurningError::Border)?;
-    let reach = shore.reach();
+    let border = Border::new(&region, DIRECTIONS).ok_or(TurningError::Border)?;
+    let reach = border.reach();
     let level = Level(|phi: &Vector2<f64>| curvature(&model, phi));
-    let country = Country {
+    let domain = Domain {
         region: &region,
-        shore: &shore,
+        border: &border,
         level: &level,
         step: reach / STEPS,
     };
@@ -104,11 +104,11 @@ pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
             model.first_derivatives(&phi).curvature().z
         })
     });
-    let rounds = country.rounds(&search, seeds)?;
+    let rounds = domain.rounds(&search, seeds)?;
     let mut bridged_supremum = 0.0;
     let mut best: Option<(f64, Vec<Piece>)> = None;
     for round in &rounds {
-        let pieces = begun_on_diagonal(round, &shore, &level);
+        let pieces = begun_on_diagonal(round, &border, &level);
         let Some(rotation) = cycle(&pieces, &model)
             .and_then(|cycle| cycle.swum(&model))
             .map(|stroke| stroke.rotation)
@@ -116,7 +116,7 @@ pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
             return Err(no_gait(&pieces));
         };
         bridged_supremum += rotation;
-        let outside = evidence::area(&pieces) > 0.0;
+        let outside = certificate::area(&pieces) > 0.0;
         if outside && best.as_ref().is_none_or(|(most, _)| rotation > *most) {
             best = Some((rotation, pieces));
         }
@@ -139,8 +139,8 @@ pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
     })
 }
 
-impl From<Lost> for TurningError {
-    fn from(lost: Lost) -> Self {
+impl From<TraceError> for TurningError {
+    fn from(lost: TraceError) -> Self {
         Self::Lost {
             near: lost.near.into(),
             what: lost.what,
@@ -184,7 +184,7 @@ fn validated(problem: &TurningProblem) -> Result<Bounds, TurningError> {
 /// The pieces in order from where the curve first meets φ₁ = φ₂ > 0; from where they are where it does not.
 fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     round: &Round,
-    shore: &Shore<'_>,
+    border: &Border<'_>,
     level: &Level<F>,
 ) -> Vec<Piece> {
     let off = |phi: &Vector2<f64>| phi.x - phi.y;
@@ -205,9 +205,9 @@ fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
             let met = if piece.kind == ArcKind::Singular {
                 level.between(&diagonal(middle - step), &diagonal(middle + step))
             } else {
-                shore
+                border
                     .at(std::f64::consts::FRAC_PI_4)
-                    .map(|station| station.phi)
+                    .map(|point| point.phi)
                     .filter(|phi| (phi - diagonal(middle)).norm() < step)
             };
             if let Some(met) = met
@@ -356,7 +356,7 @@ fn certified<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
 ) -> Option<OptimalGait> {
     let cycle = cycle(pieces, model)?;
     let stroke = cycle.swum(model)?;
-    let certificate = evidence::certificate(model, region, level, pieces, &cycle, &stroke)?;
+    let certificate = certificate::certificate(model, region, level, pieces, &cycle, &stroke)?;
     let arcs = pieces
         .iter()
         .filter_map(|piece| {

@@ -9,11 +9,11 @@ use swimmer_files::Objective;
 use swimmer_model::{Model, Stroke};
 
 use super::AtlasProblem;
+use super::barrier::Barrier;
 use super::distinct::Outline;
-use super::fence::Fence;
-use super::gates::guesses;
 use super::newton::{Settings, Stationary};
-use super::pipeline::{Seek, distance};
+use super::pipeline::{MultiStart, distance};
+use super::sections::guesses;
 use super::starts::through;
 use crate::certify::{Curve, around};
 use crate::closed_curve::Functional;
@@ -33,8 +33,8 @@ pub(super) struct Displacement<'a> {
     pub(super) region: &'a Region,
 }
 
-impl Seek for Displacement<'_> {
-    const THRIFT: &'static [f64] = &[0.6, 0.25, 0.1];
+impl MultiStart for Displacement<'_> {
+    const ENERGY_WEIGHTS: &'static [f64] = &[0.6, 0.25, 0.1];
     const SETTINGS: Settings = Settings {
         iterations: 80,
         residual: 1e-7,
@@ -74,7 +74,7 @@ impl Seek for Displacement<'_> {
     fn polished(
         &self,
         functional: &Functional<'_>,
-        fence: &Fence,
+        barrier: &Barrier,
         coarse: &Stationary,
     ) -> Option<OptimalGait> {
         let (gait, pushed) = self.asked(self.extremals(functional, &coarse.coefficients).next()?);
@@ -83,7 +83,7 @@ impl Seek for Displacement<'_> {
         }
         // A saddle. Where it is pushed up, a better extremal may be near.
         pushed.iter().find_map(|pushed| {
-            self.extremals(functional, &through(pushed, functional.basis, fence))
+            self.extremals(functional, &through(pushed, functional.basis, barrier))
                 .filter(|there| distance(there) > distance(&gait) + HIGHER)
                 .map(|there| self.asked(there).0)
                 .find(|there| there.certificate.pass())
@@ -101,7 +101,7 @@ impl Displacement<'_> {
         let (model, region) = (self.model, self.region);
         guesses(functional, model, region, coarse)
             .into_iter()
-            .filter_map(|guess| close(model, region, guess.gate, guess.from, guess.length))
+            .filter_map(|guess| close(model, region, guess.section, guess.from, guess.length))
             .filter_map(|closed| self.certified(&closed))
     }
 

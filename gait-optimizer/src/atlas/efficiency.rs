@@ -4,10 +4,10 @@ use nalgebra::{DMatrix, Vector2};
 use swimmer_model::{Fourier, Gait, GaitPoint, Harmonic, Model, Stroke};
 
 use super::AtlasProblem;
+use super::barrier::Barrier;
 use super::distinct::Outline;
-use super::fence::Fence;
 use super::newton::{Settings, Stationary};
-use super::pipeline::Seek;
+use super::pipeline::MultiStart;
 use crate::certificate::{Certificate, Check};
 use crate::closed_curve::Functional;
 use crate::extremal::gait::{Order, gait};
@@ -23,8 +23,8 @@ pub(super) struct Efficiency<'a> {
     pub(super) walls: &'a Walls,
 }
 
-impl Seek for Efficiency<'_> {
-    const THRIFT: &'static [f64] = &[1.0];
+impl MultiStart for Efficiency<'_> {
+    const ENERGY_WEIGHTS: &'static [f64] = &[1.0];
     const SETTINGS: Settings = Settings {
         iterations: 100,
         residual: 1e-9,
@@ -53,7 +53,7 @@ impl Seek for Efficiency<'_> {
     fn polished(
         &self,
         _functional: &Functional<'_>,
-        _fence: &Fence,
+        _fence: &Barrier,
         coarse: &Stationary,
     ) -> Option<OptimalGait> {
         let curve = series(&coarse.coefficients);

@@ -1,4 +1,4 @@
-//! Newton's method for a closed curve with no net rotation inside a fence: primal–dual interior point with exact second
+//! Newton's method for a closed curve with no net rotation inside a barrier: primal–dual interior point with exact second
 //! derivatives, damped until the Hessian on the constraint is positive definite.
 //!
 //! The free shift of u along the curve leaves one direction flat; the damping takes care of it. A second-order correction
@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector4};
 
-use super::fence::{Fence, MOST};
+use super::barrier::{Barrier, MOST};
 use super::objective::{Aim, Expansion};
 use crate::closed_curve::{Functional, Values, Weights, Workspace};
 use crate::region::Level;
@@ -33,7 +33,7 @@ pub(crate) struct Stationary {
 pub(crate) struct Newton<'a> {
     functional: Functional<'a>,
     aim: Aim,
-    fence: Fence,
+    barrier: Barrier,
     work: Workspace,
     matrix: DMatrix<f64>,
     gradient: DVector<f64>,
@@ -52,13 +52,13 @@ struct Here {
 }
 
 impl<'a> Newton<'a> {
-    pub(crate) fn new(functional: Functional<'a>, aim: Aim, fence: Fence) -> Self {
+    pub(crate) fn new(functional: Functional<'a>, aim: Aim, barrier: Barrier) -> Self {
         let (nodes, unknowns) = (functional.basis.nodes(), functional.unknowns());
-        let none = fence.margins(&Vector2::zeros());
+        let none = barrier.margins(&Vector2::zeros());
         Self {
             functional,
             aim,
-            fence,
+            barrier,
             work: functional.workspace(),
             matrix: DMatrix::zeros(unknowns, unknowns),
             gradient: DVector::zeros(unknowns),
@@ -74,7 +74,7 @@ impl<'a> Newton<'a> {
         self.aim = aim;
     }
 
-    /// The stationary curve that the iteration runs into from a start inside the fence; none where it does not settle.
+    /// The stationary curve that the iteration runs into from a start inside the barrier; none where it does not settle.
     pub(crate) fn solve(
         &mut self,
         start: &DMatrix<f64>,
@@ -182,7 +182,7 @@ impl<'a> Newton<'a> {
     fn look_at_margins(&mut self) -> Option<()> {
         for (node, margins) in self.margins.iter_mut().enumerate() {
             let phi = Vector2::new(self.work.phi[(0, node)], self.work.phi[(1, node)]);
-            *margins = self.fence.margins(&phi);
+            *margins = self.barrier.margins(&phi);
             if margins.iter().any(|margin| margin.value <= 0.0) {
                 return None;
             }
@@ -196,7 +196,7 @@ impl<'a> Newton<'a> {
         weights.z += here.rotation;
         self.gradient.gemv(1.0, &self.work.gradients, &weights, 0.0);
         self.spin.copy_from(&self.work.gradients.column(2));
-        let count = self.fence.count();
+        let count = self.barrier.count();
         for (node, margins) in self.margins.iter().enumerate() {
             let mut pull = Vector2::zeros();
             for margin in margins.iter().take(count) {
@@ -212,7 +212,7 @@ impl<'a> Newton<'a> {
 
     /// The Hessian of the Lagrangian with the barrier's part.
     fn second_order(&mut self, here: &Here) {
-        let count = self.fence.count();
+        let count = self.barrier.count();
         for ((local, margins), pressures) in
             self.local.iter_mut().zip(&self.margins).zip(&self.pressure)
         {
@@ -247,7 +247,7 @@ impl<'a> Newton<'a> {
     fn scale(&self) -> f64 {
         let length = self.work.slope.norm_squared() / self.functional.basis.nodes() as f64;
         let panels = self.functional.basis.panels() as f64;
-        2.0 * self.aim.thrift().max(0.1) / (length * panels * panels).max(1e-12)
+        2.0 * self.aim.energy_weight().max(0.1) / (length * panels * panels).max(1e-12)
     }
 
     /// The damped Newton step; none where the matrix is not positive definite.
@@ -289,7 +289,7 @@ impl<'a> Newton<'a> {
         })
     }
 
-    /// The point after a step, cut to stay inside the fence; none where the merit does not fall.
+    /// The point after a step, cut to stay inside the barrier; none where the merit does not fall.
     fn try_step(
         &mut self,
         from: &DMatrix<f64>,
@@ -334,9 +334,9 @@ impl<'a> Newton<'a> {
         None
     }
 
-    /// Objective, barrier and penalty of the curve at hand; none outside the fence. `old` takes the margins at hand.
+    /// Objective, barrier and penalty of the curve at hand; none outside the barrier. `old` takes the margins at hand.
     fn merit(&self, values: &Values, barrier: f64, penalty: f64, old: bool) -> Option<f64> {
-        let count = self.fence.count();
+        let count = self.barrier.count();
         let mut logs = 0.0;
         for (node, before) in self.margins.iter().enumerate() {
             if old {
@@ -344,7 +344,7 @@ impl<'a> Newton<'a> {
                 continue;
             }
             let phi = Vector2::new(self.work.phi[(0, node)], self.work.phi[(1, node)]);
-            let margins = self.fence.margins(&phi);
+            let margins = self.barrier.margins(&phi);
             for (margin, before) in margins.iter().zip(before).take(count) {
                 // No margin may shrink to a hundredth at once.
                 if margin.value.is_nan() || margin.value <= 0.01 * before.value {
@@ -359,7 +359,7 @@ impl<'a> Newton<'a> {
 
     /// New multipliers of the margins.
     fn press(&mut self, step: &Step, new: &New, barrier: f64) {
-        let count = self.fence.count();
+        let count = self.barrier.count();
         for (node, (pressures, margins)) in self.pressure.iter_mut().zip(&self.margins).enumerate()
         {
             let values = self.functional.basis.values.column(node);
@@ -368,7 +368,7 @@ impl<'a> Newton<'a> {
                 moved += Vector2::new(step.by[2 * j], step.by[2 * j + 1]) * *value;
             }
             let phi = Vector2::new(self.work.phi[(0, node)], self.work.phi[(1, node)]);
-            let after = self.fence.margins(&phi);
+            let after = self.barrier.margins(&phi);
             for ((z, margin), after) in pressures.iter_mut().zip(margins).zip(&after).take(count) {
                 let wanted = barrier / margin.value
                     - *z / margin.value * margin.gradient.dot(&moved) * new.length;

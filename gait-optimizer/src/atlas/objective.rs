@@ -10,7 +10,7 @@ pub(crate) enum Aim {
     /// −ln |d|² + κ ln ∮P du. κ = 1 is Lighthill's efficiency; κ → 0 the displacement, whose optima κ keeps from curling.
     Far {
         /// κ.
-        thrift: f64,
+        energy_weight: f64,
     },
 }
 
@@ -23,9 +23,9 @@ pub(crate) struct Expansion {
 }
 
 impl Aim {
-    pub(crate) fn thrift(self) -> f64 {
+    pub(crate) fn energy_weight(self) -> f64 {
         match self {
-            Self::Far { thrift } => thrift,
+            Self::Far { energy_weight } => energy_weight,
         }
     }
 
@@ -34,7 +34,7 @@ impl Aim {
         let squared = match self {
             Self::Far { .. } => d.norm_squared(),
         };
-        self.thrift() * values.energy.ln() - squared.ln()
+        self.energy_weight() * values.energy.ln() - squared.ln()
     }
 
     pub(crate) fn expansion(self, values: &Values) -> Expansion {
@@ -52,8 +52,8 @@ impl Aim {
                 hessian[(1, 0)] = hessian[(0, 1)];
             }
         }
-        gradient.w = self.thrift() / values.energy;
-        hessian[(3, 3)] = -self.thrift() / (values.energy * values.energy);
+        gradient.w = self.energy_weight() / values.energy;
+        hessian[(3, 3)] = -self.energy_weight() / (values.energy * values.energy);
         Expansion {
             value: self.value(values),
             gradient,

@@ -4,9 +4,9 @@ use nalgebra::{DMatrix, Vector2};
 use swimmer_files::AnyGait;
 use swimmer_model::{Model, Stroke, Tolerance, swim};
 
+use super::barrier::Barrier;
 use super::curve::{double_area, is_simple, polygon};
 use super::distinct::{Outline, Symmetries, classes};
-use super::fence::Fence;
 use super::newton::{Newton, Settings, Stationary};
 use super::objective::Aim;
 use super::starts::{fitted, off_centre, start};
@@ -27,9 +27,9 @@ const LEAVING: f64 = 0.3;
 const STARTS: f64 = 0.5;
 
 /// How one objective is sought.
-pub(super) trait Seek: Sync {
+pub(super) trait MultiStart: Sync {
     /// κ of the coarse objective, one after the other.
-    const THRIFT: &'static [f64];
+    const ENERGY_WEIGHTS: &'static [f64];
     /// How closely the coarse curves are solved.
     const SETTINGS: Settings;
     /// Whether only simple curves count; the coarse curve is the last simple one.
@@ -49,7 +49,7 @@ pub(super) trait Seek: Sync {
     fn polished(
         &self,
         functional: &Functional<'_>,
-        fence: &Fence,
+        barrier: &Barrier,
         coarse: &Stationary,
     ) -> Option<OptimalGait>;
 }
@@ -66,23 +66,23 @@ struct Settled {
     points: Vec<Vector2<f64>>,
 }
 
-pub(super) fn run<S: Seek>(
+pub(super) fn run<S: MultiStart>(
     problem: &AtlasProblem,
     model: &Model<f64>,
-    seek: &S,
+    objective: &S,
     watch: Watch<'_>,
 ) -> Atlas {
     let basis = Basis::fourier(problem.order, 8 + 2 * problem.order);
     let functional = Functional::new(model, &basis);
     let links = &model.swimmer().links;
     let clearance = problem.bounds.clearance / problem.swimmer.total_length();
-    let fence = Fence::new(&problem.bounds, *links, clearance, Region::HORIZON);
+    let barrier = Barrier::new(&problem.bounds, *links, clearance, Region::HORIZON);
     let symmetries = Symmetries {
         swap: (links.front - links.back).abs() < 1e-12,
         turns: problem.bounds.max_angle.is_none() && !problem.bounds.no_overlap,
     };
     let known = match problem.from {
-        StartCurves::Random => seek.known(problem),
+        StartCurves::Random => objective.known(problem),
         StartCurves::OffCentre => Vec::new(),
     };
     // What is certified for these very bounds is in the atlas, wherever its coarse curve leads.
@@ -96,13 +96,13 @@ pub(super) fn run<S: Seek>(
         count,
         problem.threads,
         &|share| watch(STARTS * share),
-        || Newton::new(functional, Aim::Far { thrift: 1.0 }, fence),
+        || Newton::new(functional, Aim::Far { energy_weight: 1.0 }, barrier),
         |newton, index| {
             let curve = match known.get(index.wrapping_sub(problem.starts)) {
-                Some(known) => fitted(known, &basis, &fence),
+                Some(known) => fitted(known, &basis, &barrier),
                 None => match problem.from {
-                    StartCurves::Random => start(&basis, &fence, problem.seed, index),
-                    StartCurves::OffCentre => off_centre(&basis, &fence, index),
+                    StartCurves::Random => start(&basis, &barrier, problem.seed, index),
+                    StartCurves::OffCentre => off_centre(&basis, &barrier, index),
                 },
             };
             coarse::<S>(newton, &basis, curve, symmetries.turns)
@@ -140,7 +140,7 @@ pub(super) fn run<S: Seek>(
         || (),
         |(), class| {
             let first = coarse_classes.get(class)?.first()?;
-            seek.polished(&functional, &fence, &settled.get(*first)?.0.stationary)
+            objective.polished(&functional, &barrier, &settled.get(*first)?.0.stationary)
         },
     );
     let mut gaits: Vec<(OptimalGait, usize)> = Vec::new();
@@ -165,7 +165,7 @@ pub(super) fn run<S: Seek>(
 }
 
 /// What a coarse curve brings, if it can be swum.
-fn value_of<S: Seek>(model: &Model<f64>, points: &[Vector2<f64>]) -> Option<f64> {
+fn value_of<S: MultiStart>(model: &Model<f64>, points: &[Vector2<f64>]) -> Option<f64> {
     let sides = points.len().saturating_sub(1) as f64;
     let u: Vec<f64> = (0..points.len()).map(|k| k as f64 / sides).collect();
     let curve = AnyGait::from_samples(&u, points, &[]).ok()?;
@@ -173,7 +173,7 @@ fn value_of<S: Seek>(model: &Model<f64>, points: &[Vector2<f64>]) -> Option<f64>
 }
 
 /// One entry for each gait, best first.
-fn distinct<S: Seek>(gaits: &[(OptimalGait, usize)], symmetries: Symmetries) -> Vec<Optimum> {
+fn distinct<S: MultiStart>(gaits: &[(OptimalGait, usize)], symmetries: Symmetries) -> Vec<Optimum> {
     let outlines: Vec<(f64, Outline)> = gaits
         .iter()
         .map(|(gait, _)| (S::value(gait), Outline::new(gait.phi())))
@@ -203,7 +203,7 @@ pub(super) fn distance(gait: &OptimalGait) -> f64 {
 }
 
 /// Leads one start to a coarse optimum.
-fn coarse<S: Seek>(
+fn coarse<S: MultiStart>(
     newton: &mut Newton<'_>,
     basis: &Basis,
     start: DMatrix<f64>,
@@ -211,8 +211,8 @@ fn coarse<S: Seek>(
 ) -> Ended {
     let mut curve = start;
     let mut last = None;
-    for &thrift in S::THRIFT {
-        newton.set_aim(Aim::Far { thrift });
+    for &energy_weight in S::ENERGY_WEIGHTS {
+        newton.set_aim(Aim::Far { energy_weight });
         let Some(stationary) = newton.solve(&curve, &S::SETTINGS) else {
             break;
         };

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 
 use swimmer_model::Gait;
 
-use super::fence::Fence;
+use super::barrier::Barrier;
 use crate::OptimalGait;
 use crate::closed_curve::Basis;
 
@@ -16,12 +16,12 @@ const MOST_HARMONICS: usize = 4;
 /// A start keeps this share of the way to the bounds.
 const INSIDE: f64 = 0.97;
 
-/// Coefficients of a start in a Fourier basis, inside the fence.
-pub(crate) fn start(basis: &Basis, fence: &Fence, seed: u64, index: usize) -> DMatrix<f64> {
+/// Coefficients of a start in a Fourier basis, inside the barrier.
+pub(crate) fn start(basis: &Basis, barrier: &Barrier, seed: u64, index: usize) -> DMatrix<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(index as u64);
     let functions = basis.functions();
-    let reach = fence.max_angle();
+    let reach = barrier.max_angle();
     let size = reach * rng.random_range(0.12..1.0);
     let highest = rng.random_range(1..=MOST_HARMONICS).min(functions / 2);
     let mut curve = DMatrix::zeros(2, functions);
@@ -59,13 +59,13 @@ pub(crate) fn start(basis: &Basis, fence: &Fence, seed: u64, index: usize) -> DM
             set(2 * k, draw(part), draw(part));
         }
     }
-    shrink_into(&mut curve, basis, fence);
+    shrink_into(&mut curve, basis, barrier);
     curve
 }
 
 /// A circle round a shape with φ₁ = −φ₂, half way out, on either side and of two sizes.
-pub(crate) fn off_centre(basis: &Basis, fence: &Fence, index: usize) -> DMatrix<f64> {
-    let reach = fence.max_angle().min(std::f64::consts::PI);
+pub(crate) fn off_centre(basis: &Basis, barrier: &Barrier, index: usize) -> DMatrix<f64> {
+    let reach = barrier.max_angle().min(std::f64::consts::PI);
     let side = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
     let radius = if index < 2 { 0.35 } else { 0.2 } * reach;
     let mut curve = DMatrix::zeros(2, basis.functions());
@@ -73,12 +73,12 @@ pub(crate) fn off_centre(basis: &Basis, fence: &Fence, index: usize) -> DMatrix<
     curve[(1, 0)] = 0.6 * side * reach;
     curve[(0, 1)] = radius;
     curve[(1, 2)] = radius;
-    shrink_into(&mut curve, basis, fence);
+    shrink_into(&mut curve, basis, barrier);
     curve
 }
 
-/// A gait's cycle as a series of the basis's order, shrunk into the fence.
-pub(crate) fn fitted(gait: &OptimalGait, basis: &Basis, fence: &Fence) -> DMatrix<f64> {
+/// A gait's cycle as a series of the basis's order, shrunk into the barrier.
+pub(crate) fn fitted(gait: &OptimalGait, basis: &Basis, barrier: &Barrier) -> DMatrix<f64> {
     const SAMPLES: usize = 512;
     let mut curve = DMatrix::zeros(2, basis.functions());
     if let Ok(any) = gait.gait() {
@@ -94,15 +94,15 @@ pub(crate) fn fitted(gait: &OptimalGait, basis: &Basis, fence: &Fence) -> DMatri
             }
         }
     }
-    shrink_into(&mut curve, basis, fence);
+    shrink_into(&mut curve, basis, barrier);
     curve
 }
 
-/// A closed curve through these shapes, each with its u from 0 to 1, as a series of the basis's order, shrunk into the fence.
+/// A closed curve through these shapes, each with its u from 0 to 1, as a series of the basis's order, shrunk into the barrier.
 pub(crate) fn through(
     points: &[(f64, Vector2<f64>)],
     basis: &Basis,
-    fence: &Fence,
+    barrier: &Barrier,
 ) -> DMatrix<f64> {
     let mut curve = DMatrix::zeros(2, basis.functions());
     let mut here = vec![(0.0, 0.0); basis.functions()];
@@ -116,16 +116,16 @@ pub(crate) fn through(
             }
         }
     }
-    shrink_into(&mut curve, basis, fence);
+    shrink_into(&mut curve, basis, barrier);
     curve
 }
 
-/// Scales a curve about the straight swimmer until it lies inside the fence.
-pub(crate) fn shrink_into(curve: &mut DMatrix<f64>, basis: &Basis, fence: &Fence) {
+/// Scales a curve about the straight swimmer until it lies inside the barrier.
+pub(crate) fn shrink_into(curve: &mut DMatrix<f64>, basis: &Basis, barrier: &Barrier) {
     for _ in 0..200 {
         let inside = (0..basis.nodes()).all(|node| {
             let shape = curve as &DMatrix<f64> * basis.values.column(node);
-            fence.least(&Vector2::new(shape[0], shape[1])) > (1.0 - INSIDE) * 0.1
+            barrier.least(&Vector2::new(shape[0], shape[1])) > (1.0 - INSIDE) * 0.1
         });
         if inside {
             return;

@@ -5,9 +5,9 @@
 //! Meth. 36 (2015): the degree is raised by what an error of order d^−d promises, up to a limit. Kinks are no guess here:
 //! the multiplier of the bound jumps there, and the margin before it grows as a square.
 
-use super::again::Again;
 use super::mesh::{Element, Mesh};
 use super::newton::Optimum;
+use super::reintegration::Reintegration;
 use super::walls::Wall;
 
 /// What to do with a mesh.
@@ -75,7 +75,7 @@ pub(crate) fn judge(
     mesh: &Mesh,
     kinks: &[f64],
     pace: f64,
-    again: &Again,
+    again: &Reintegration,
     tolerance: f64,
 ) -> Verdict {
     let uneven = again.uneven_power().powi(2);

@@ -3,9 +3,9 @@
 use nalgebra::Vector2;
 use swimmer_files::ArcKind;
 
-use super::again::Again;
 use super::mesh::Mesh;
 use super::newton::Optimum;
+use super::reintegration::Reintegration;
 use super::walls::Wall;
 use super::{ACTIVE, ACTIVE_AT_ALL, CollocationProblem, lighthill, lighthill_of};
 use super::{CollocationError, QuarterGuess};
@@ -128,7 +128,7 @@ pub(crate) fn finish(
     mesh: &Mesh,
     walls: &[Wall],
     optimum: Optimum,
-    again: &Again,
+    again: &Reintegration,
     rounds: Vec<MeshRound>,
 ) -> CollocationSolution {
     let Optimum {

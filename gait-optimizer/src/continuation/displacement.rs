@@ -1,7 +1,7 @@
 //! Displacement gaits: the search needs no guess, so the next gait is the nearest of all that it finds.
 
+use super::branch_point::BranchPoint;
 use super::follow::Family;
-use super::kept::Kept;
 use super::{ContinuationProblem, OtherSide, Start};
 use crate::OptimalGait;
 use crate::displacement::{DisplacementProblem, Heading, every};
@@ -28,12 +28,12 @@ impl Displacement<'_> {
         .map_err(|error| error.to_string())
     }
 
-    fn nearest(&self, value: f64, to: &OptimalGait) -> Result<Kept<()>, String> {
+    fn nearest(&self, value: f64, to: &OptimalGait) -> Result<BranchPoint<()>, String> {
         let place = kept(0.0, to.clone());
         let all = self.all(value, (Some(heading(to)), !to.bounds.sector))?;
         let found = all.into_iter().map(|gait| kept(value, gait));
         // An optimum before an extremal that is none.
-        let far = |kept: &Kept<()>| {
+        let far = |kept: &BranchPoint<()>| {
             let apart = kept.apart(&place);
             if kept.gait.certificate.pass() || apart > 0.05 {
                 apart
@@ -55,9 +55,9 @@ fn heading(gait: &OptimalGait) -> Heading {
     }
 }
 
-fn kept(value: f64, gait: OptimalGait) -> Kept<()> {
+fn kept(value: f64, gait: OptimalGait) -> BranchPoint<()> {
     let residual = gait.certificate.value("final_lambda4").unwrap_or(f64::NAN);
-    Kept::new(value, gait, residual, ())
+    BranchPoint::new(value, gait, residual, ())
 }
 
 impl Family for Displacement<'_> {
@@ -65,7 +65,7 @@ impl Family for Displacement<'_> {
 
     const JUMPS: bool = true;
 
-    fn start(&self, start: &Start) -> Result<Kept<()>, String> {
+    fn start(&self, start: &Start) -> Result<BranchPoint<()>, String> {
         let value = self.problem.from;
         match start {
             Start::Displacement { heading, rank } => {
@@ -82,11 +82,16 @@ impl Family for Displacement<'_> {
         }
     }
 
-    fn next(&self, value: f64, here: &Kept<()>, _: Option<&Kept<()>>) -> Result<Kept<()>, String> {
+    fn next(
+        &self,
+        value: f64,
+        here: &BranchPoint<()>,
+        _: Option<&BranchPoint<()>>,
+    ) -> Result<BranchPoint<()>, String> {
         self.nearest(value, &here.gait)
     }
 
-    fn optimum(&self, value: f64, last: &Kept<()>) -> Option<Kept<()>> {
+    fn optimum(&self, value: f64, last: &BranchPoint<()>) -> Option<BranchPoint<()>> {
         let all = self
             .all(value, (Some(heading(&last.gait)), !last.gait.bounds.sector))
             .ok()?;
@@ -96,7 +101,7 @@ impl Family for Displacement<'_> {
             .min_by(|a, b| a.apart(last).total_cmp(&b.apart(last)))
     }
 
-    fn other_side(&self, _: &Kept<()>, _: &Kept<()>) -> Option<OtherSide> {
+    fn other_side(&self, _: &BranchPoint<()>, _: &BranchPoint<()>) -> Option<OtherSide> {
         None
     }
 }

@@ -2,8 +2,8 @@
 
 use swimmer_model::{Gait, Model};
 
+use super::branch_point::BranchPoint;
 use super::follow::Family;
-use super::kept::Kept;
 use super::{ContinuationProblem, OtherSide, Start};
 use crate::extremal::continuation::{alike, mirrored, other_side, within_walls};
 use crate::extremal::gait::{Order, gait};
@@ -35,7 +35,7 @@ impl Efficiency<'_> {
         value: f64,
         model: &Model<f64>,
         extremal: Extremal,
-    ) -> Result<Kept<Extremal>, String> {
+    ) -> Result<BranchPoint<Extremal>, String> {
         let (swimmer, bounds) = (
             self.problem.swimmer_at(value),
             self.problem.bounds_at(value),
@@ -48,7 +48,7 @@ impl Efficiency<'_> {
         };
         let gait = gait(&order, &extremal).map_err(|error| error.to_string())?;
         let residual = extremal.solved.residual;
-        Ok(Kept::new(value, gait, residual, extremal))
+        Ok(BranchPoint::new(value, gait, residual, extremal))
     }
 
     fn polished<G: Gait<f64> + ?Sized>(
@@ -56,7 +56,7 @@ impl Efficiency<'_> {
         value: f64,
         curve: &G,
         quarter: bool,
-    ) -> Result<Kept<Extremal>, String> {
+    ) -> Result<BranchPoint<Extremal>, String> {
         let model = self.model(value)?;
         let extremal = polish(&model, &self.walls(value), curve, quarter)
             .map_err(|error| error.to_string())?;
@@ -69,7 +69,7 @@ impl Family for Efficiency<'_> {
 
     const JUMPS: bool = false;
 
-    fn start(&self, start: &Start) -> Result<Kept<Extremal>, String> {
+    fn start(&self, start: &Start) -> Result<BranchPoint<Extremal>, String> {
         let value = self.problem.from;
         let gait = match start {
             Start::Gait(gait) => (**gait).clone(),
@@ -97,9 +97,9 @@ impl Family for Efficiency<'_> {
     fn next(
         &self,
         value: f64,
-        here: &Kept<Extremal>,
-        before: Option<&Kept<Extremal>>,
-    ) -> Result<Kept<Extremal>, String> {
+        here: &BranchPoint<Extremal>,
+        before: Option<&BranchPoint<Extremal>>,
+    ) -> Result<BranchPoint<Extremal>, String> {
         let (model, walls) = (self.model(value)?, self.walls(value));
         let chain = &here.held.solved.chain;
         let secant = before.and_then(|before| {
@@ -128,11 +128,15 @@ impl Family for Efficiency<'_> {
         self.polished(value, &curve, false).map_err(|_| reason)
     }
 
-    fn optimum(&self, _: f64, _: &Kept<Extremal>) -> Option<Kept<Extremal>> {
+    fn optimum(&self, _: f64, _: &BranchPoint<Extremal>) -> Option<BranchPoint<Extremal>> {
         None
     }
 
-    fn other_side(&self, before: &Kept<Extremal>, last: &Kept<Extremal>) -> Option<OtherSide> {
+    fn other_side(
+        &self,
+        before: &BranchPoint<Extremal>,
+        last: &BranchPoint<Extremal>,
+    ) -> Option<OtherSide> {
         let model = self.model(before.value).ok()?;
         let other = other_side(&model, &before.held, &last.held)?;
         Some(OtherSide {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::kept::{FIGURES, Kept, slope};
+use super::branch_point::{BranchPoint, FIGURES, slope};
 use crate::Watch;
 
 use super::{ContinuationProblem, Event, EventKind, Fold, OtherSide, Start};
@@ -33,26 +33,34 @@ pub(super) trait Family {
     const JUMPS: bool;
 
     /// The first gait.
-    fn start(&self, start: &Start) -> Result<Kept<Self::Held>, String>;
+    fn start(&self, start: &Start) -> Result<BranchPoint<Self::Held>, String>;
 
     /// A gait near the last one (and the one before it), at another value.
     fn next(
         &self,
         value: f64,
-        here: &Kept<Self::Held>,
-        before: Option<&Kept<Self::Held>>,
-    ) -> Result<Kept<Self::Held>, String>;
+        here: &BranchPoint<Self::Held>,
+        before: Option<&BranchPoint<Self::Held>>,
+    ) -> Result<BranchPoint<Self::Held>, String>;
 
     /// The optimum nearest to a gait that is none any more, where one shall be followed instead.
-    fn optimum(&self, value: f64, last: &Kept<Self::Held>) -> Option<Kept<Self::Held>>;
+    fn optimum(
+        &self,
+        value: f64,
+        last: &BranchPoint<Self::Held>,
+    ) -> Option<BranchPoint<Self::Held>>;
 
     /// The extremal that a branch meets where it ends.
-    fn other_side(&self, before: &Kept<Self::Held>, last: &Kept<Self::Held>) -> Option<OtherSide>;
+    fn other_side(
+        &self,
+        before: &BranchPoint<Self::Held>,
+        last: &BranchPoint<Self::Held>,
+    ) -> Option<OtherSide>;
 }
 
 /// A branch.
 pub(super) struct Track<H> {
-    pub(super) kept: Vec<Kept<H>>,
+    pub(super) kept: Vec<BranchPoint<H>>,
     pub(super) events: Vec<Event>,
 }
 
@@ -69,19 +77,19 @@ pub(super) fn smallest(problem: &ContinuationProblem) -> f64 {
 
 /// Why a step failed.
 enum Refused<H> {
-    Another(Box<Kept<H>>),
+    Another(Box<BranchPoint<H>>),
     Nothing(String),
 }
 
 /// A gait that may be the next one, and how far off it is over what a step may change.
-type Tried<H> = Result<(Kept<H>, f64), Refused<H>>;
+type Tried<H> = Result<(BranchPoint<H>, f64), Refused<H>>;
 
 /// Follows one branch.
 pub(super) fn follow<F: Family>(
     problem: &ContinuationProblem,
     family: &F,
     branch: usize,
-    first: Kept<F::Held>,
+    first: BranchPoint<F::Held>,
     watch: Watch<'_>,
 ) -> Track<F::Held> {
     Walk {
@@ -111,8 +119,8 @@ struct Walk<'a, F: Family> {
     /// First point since the last jump.
     since: usize,
     track: Track<F::Held>,
-    here: Kept<F::Held>,
-    before: Option<Kept<F::Held>>,
+    here: BranchPoint<F::Held>,
+    before: Option<BranchPoint<F::Held>>,
 }
 
 impl<F: Family> Walk<'_, F> {
@@ -184,7 +192,7 @@ impl<F: Family> Walk<'_, F> {
     }
 
     /// Takes a gait for the next one; false where the branch ends in it.
-    fn accepts(&mut self, found: Kept<F::Held>) -> bool {
+    fn accepts(&mut self, found: BranchPoint<F::Held>) -> bool {
         let mut from = self.here.clone();
         if !found.gait.certificate.pass() {
             let (last, next) = self.parted(&from, &found, |kept| kept.gait.certificate.pass());
@@ -214,10 +222,10 @@ impl<F: Family> Walk<'_, F> {
     /// Two gaits close by, of which the first still has a property of `from` and the second has not.
     fn parted(
         &mut self,
-        from: &Kept<F::Held>,
-        to: &Kept<F::Held>,
-        has: impl Fn(&Kept<F::Held>) -> bool,
-    ) -> (Kept<F::Held>, Kept<F::Held>) {
+        from: &BranchPoint<F::Held>,
+        to: &BranchPoint<F::Held>,
+        has: impl Fn(&BranchPoint<F::Held>) -> bool,
+    ) -> (BranchPoint<F::Held>, BranchPoint<F::Held>) {
         let (mut last, mut next) = (from.clone(), to.clone());
         while (next.value - last.value).abs() > smallest(self.problem) && self.gaits > 0 {
             self.gaits -= 1;
@@ -271,7 +279,7 @@ impl<F: Family> Walk<'_, F> {
     }
 
     /// Goes on from another gait that is further off than a step may lead.
-    fn lands(&mut self, found: Kept<F::Held>) {
+    fn lands(&mut self, found: BranchPoint<F::Held>) {
         let (apart, exponent) = (self.here.apart(&found), self.exponent());
         let (value, within) = between(self.here.value, found.value);
         self.event(value, within, EventKind::Jump { apart, exponent });
@@ -306,7 +314,7 @@ impl<F: Family> Walk<'_, F> {
     }
 
     /// The end of a gap in which there is no optimum, nearest to here.
-    fn nearest(&self, found: Kept<F::Held>) -> Kept<F::Held> {
+    fn nearest(&self, found: BranchPoint<F::Held>) -> BranchPoint<F::Held> {
         let (mut none, mut nearest) = (self.here.value, found);
         for _ in 0..MOST_HALVINGS {
             if (nearest.value - none).abs() <= smallest(self.problem) {
@@ -322,7 +330,7 @@ impl<F: Family> Walk<'_, F> {
     }
 
     /// An event: the arcs are others.
-    fn changes(&mut self, last: &Kept<F::Held>, next: &Kept<F::Held>) {
+    fn changes(&mut self, last: &BranchPoint<F::Held>, next: &BranchPoint<F::Held>) {
         let (value, within) = between(last.value, next.value);
         let kind = EventKind::Structure {
             before: last.arcs(),

@@ -143,12 +143,14 @@ impl QuarterTrace {
                 .find(|&count| count as f64 * total >= samples as f64 * leg_length)
                 .unwrap_or(samples.max(fewest));
             let direction = equations.direction(&shape(&here), &[here[2], here[3], here[4]]);
-            trace.meet(direction);
+            trace.begin_arc(direction);
             let from = trace.phi.len() - 1;
             let step = leg.length / intervals as f64;
             let mut before = None;
             for interval in 0..intervals {
-                let push = trace.evidence.look(&equations, region, &here, last.to[2]);
+                let push = trace
+                    .evidence
+                    .evaluate(&equations, region, &here, last.to[2]);
                 trace.evidence.vary(before, push, step);
                 before = push;
                 let point = Point::new(&equations, here);
@@ -158,7 +160,9 @@ impl QuarterTrace {
                 trace.phi.push(shape(&here));
                 trace.power_length.push(along);
             }
-            let push = trace.evidence.look(&equations, region, &here, last.to[2]);
+            let push = trace
+                .evidence
+                .evaluate(&equations, region, &here, last.to[2]);
             trace.evidence.vary(before, push, step);
             let gap = (shape(&here) - shape(&leg.to)).norm();
             trace.evidence.retraced = trace.evidence.retraced.max(gap);
@@ -172,7 +176,7 @@ impl QuarterTrace {
     }
 
     /// A new arc sets out in this direction: is there a corner?
-    fn meet(&mut self, direction: Vector2<f64>) {
+    fn begin_arc(&mut self, direction: Vector2<f64>) {
         if self.kinds.is_empty() {
             self.first_direction = direction;
         } else if (direction - self.last_direction).norm() > SMOOTH {
@@ -259,7 +263,7 @@ impl Evidence {
     }
 
     /// Takes in one sample of an arc; what a push there does to the displacement, where pushes are free.
-    fn look(
+    fn evaluate(
         &mut self,
         equations: &Equations<'_>,
         region: &Region,

@@ -6,8 +6,8 @@ use swimmer_files::Bounds;
 use swimmer_model::Model;
 
 use super::flow::Touch;
-use super::search::{CLOSER_LOOKS, Candidate, LOOKS, Search, Seen};
-use super::trunk::{Trunk, trunks, trunks_on_the_diagonal};
+use super::search::{Candidate, FINER_SCAN, SCAN_POINTS, Search, Seen};
+use super::start_family::{StartFamily, families, families_on_the_diagonal};
 use super::{DisplacementError, DisplacementProblem, Fates, certified, traced};
 use crate::OptimalGait;
 use crate::certificate::turning_number;
@@ -19,7 +19,7 @@ pub(super) struct Extremals<'a> {
     /// The extremals that head the right way, farthest first.
     pub(super) found: Vec<Candidate>,
     /// What the scans saw beside them; only of quarters that may touch their images.
-    scans: Vec<(Search<'a>, Vec<Trunk>, Seen)>,
+    scans: Vec<(Search<'a>, Vec<StartFamily>, Seen)>,
     /// What became of all that were sent out along the bounds and from φ₁ = φ₂.
     fates: Fates,
 }
@@ -28,7 +28,7 @@ pub(super) fn candidates<'a>(
     problem: &DisplacementProblem,
     model: &'a Model<f64>,
     (bounds, region): (&Bounds, &'a Region),
-    looks: usize,
+    scan_points: usize,
 ) -> Extremals<'a> {
     let sign = problem.heading().sign();
     let search = |touch| Search {
@@ -36,26 +36,26 @@ pub(super) fn candidates<'a>(
         region,
         sign,
         touch,
-        looks,
+        scan_points,
     };
     let bare = search(Touch::Ends).extremal(0.0);
-    let off_the_diagonal = trunks(bare, bounds, region);
+    let off_the_diagonal = families(bare, bounds, region);
     let (mut found, seen) = search(Touch::Ends).candidates(&off_the_diagonal);
     let fates = seen.fates;
     let mut scans = Vec::new();
     if region.has_diagonals() {
         scans.push((search(Touch::Ends), off_the_diagonal.clone(), seen));
         for touch in [Touch::GoesInwards, Touch::GoesOutwards] {
-            let mut trunks = off_the_diagonal.clone();
-            trunks.extend(trunks_on_the_diagonal(
+            let mut families = off_the_diagonal.clone();
+            families.extend(families_on_the_diagonal(
                 bare,
                 region,
                 &off_the_diagonal,
                 touch,
             ));
-            let (touching, seen) = search(touch).candidates(&trunks);
+            let (touching, seen) = search(touch).candidates(&families);
             found.extend(touching);
-            scans.push((search(touch), trunks, seen));
+            scans.push((search(touch), families, seen));
         }
     }
     found.retain(|candidate| sign * candidate.quarter.end[2] > 0.0);
@@ -85,7 +85,7 @@ impl Extremals<'_> {
         let sign = problem.heading().sign();
         let scans = self.scans.iter();
         let mut carried: Vec<Candidate> = scans
-            .flat_map(|(search, trunks, seen)| search.farthest(trunks, seen, least / 4.0))
+            .flat_map(|(search, families, seen)| search.farthest(families, seen, least / 4.0))
             .filter(|candidate| 4.0 * sign * candidate.quarter.end[2] > least)
             .collect();
         carried.sort_by(farther);
@@ -110,7 +110,7 @@ pub(super) fn best<'a>(
     least: f64,
 ) -> (Result<OptimalGait, DisplacementError>, Extremals<'a>) {
     let mut refused = None;
-    let mut seen = candidates(problem, model, within, LOOKS);
+    let mut seen = candidates(problem, model, within, SCAN_POINTS);
     for closer in [true, false] {
         let farther = |candidate: &&Candidate| 4.0 * candidate.quarter.end[2].abs() > least;
         for candidate in seen.found.iter().filter(farther) {
@@ -124,11 +124,11 @@ pub(super) fn best<'a>(
             }
             refused.get_or_insert(gait);
         }
-        // Where many get lost, closer looks would only lose more.
+        // Where many get lost, a finer scan would only lose more.
         if !closer || least > 0.0 || refused.is_some() || 8 * seen.fates.lost > seen.fates.sent {
             break;
         }
-        seen = candidates(problem, model, within, CLOSER_LOOKS);
+        seen = candidates(problem, model, within, FINER_SCAN);
     }
     let fates = seen.fates;
     let error = match refused {

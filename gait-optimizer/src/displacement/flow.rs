@@ -43,7 +43,7 @@ pub(crate) enum Touch {
 
 /// How to follow arcs.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Course {
+pub(crate) struct TraceOptions {
     pub(crate) control: StepControl,
     pub(crate) touch: Touch,
     /// Whether the quarter has touched φ₁ = −φ₂ before the state that is followed from.
@@ -58,9 +58,9 @@ pub(crate) fn follow(
     region: &Region,
     start: State,
     first: Motion,
-    course: Course,
+    options: TraceOptions,
 ) -> Quarter {
-    arcs(extremal, region, start, first, course, true)
+    arcs(extremal, region, start, first, options, true)
 }
 
 /// Follows the bounds from a state on one of them, never leaving them.
@@ -71,13 +71,20 @@ pub(crate) fn along_bounds(
     first: Track,
     (control, touch): (StepControl, Touch),
 ) -> Quarter {
-    let course = Course {
+    let options = TraceOptions {
         control,
         touch,
         touched: false,
         began: start[0] + start[1],
     };
-    arcs(extremal, region, start, Motion::Along(first), course, false)
+    arcs(
+        extremal,
+        region,
+        start,
+        Motion::Along(first),
+        options,
+        false,
+    )
 }
 
 fn arcs(
@@ -85,7 +92,7 @@ fn arcs(
     region: &Region,
     start: State,
     first: Motion,
-    course: Course,
+    options: TraceOptions,
     leaves: bool,
 ) -> Quarter {
     let still = Leg {
@@ -97,7 +104,7 @@ fn arcs(
     let mut quarter = Quarter {
         legs: [still; MOST_ARCS],
         count: 0,
-        touched: course.touched,
+        touched: options.touched,
         fate: Fate::TooManyArcs,
         end: start,
     };
@@ -110,9 +117,9 @@ fn arcs(
                 motion,
             },
             region,
-            control: course.control,
+            control: options.control,
             leaves,
-            began: course.began,
+            began: options.began,
             ends_straight: quarter.touched,
         };
         let (end, length, event) = tracer.arc(quarter.end);
@@ -126,7 +133,7 @@ fn arcs(
         quarter.count += 1;
         let ends = event == Some(Event::End);
         let touch = (ends && !quarter.touched)
-            .then(|| tracer.along_the_end(&end, course.touch))
+            .then(|| tracer.along_the_end(&end, options.touch))
             .flatten();
         if let Some(touch) = touch {
             quarter.touched = true;

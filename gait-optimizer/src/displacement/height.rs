@@ -60,7 +60,7 @@ impl Extremal<'_> {
         phi: &Vector2<f64>,
         pose: &[f64; 3],
     ) -> (Height, Matrix3x2<f64>, Matrix2<f64>) {
-        self.momentum().look(self.model, phi, pose)
+        self.momentum().evaluate(self.model, phi, pose)
     }
 
     /// The height with its gradient, and everything that the costate equations need, from one look at the model.

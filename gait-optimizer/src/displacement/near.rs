@@ -5,8 +5,8 @@ use swimmer_model::Model;
 
 use super::best::finely_sampled;
 use super::flow::Touch;
-use super::search::{LOOKS, Search};
-use super::trunk::{Trunk, trunks};
+use super::search::{SCAN_POINTS, Search};
+use super::start_family::{StartFamily, families};
 use super::{DisplacementProblem, certified};
 use crate::OptimalGait;
 use crate::region::Region;
@@ -47,22 +47,22 @@ pub fn displacement_near(
         region: &region,
         sign: problem.heading().sign(),
         touch: Touch::Ends,
-        looks: LOOKS,
+        scan_points: SCAN_POINTS,
     };
     let leaves = neighbour
         .arcs
         .iter()
         .position(|arc| arc.kind == ArcKind::Singular);
-    let found = trunks(search.extremal(0.0), &problem.bounds, &region)
+    let found = families(search.extremal(0.0), &problem.bounds, &region)
         .iter()
-        .filter_map(|trunk| {
-            let along_bounds = matches!(trunk, Trunk::Bounds { .. });
+        .filter_map(|family| {
+            let along_bounds = matches!(family, StartFamily::Bounds { .. });
             let found = match leaves {
-                None if along_bounds => search.never_leaving(trunk),
+                None if along_bounds => search.never_leaving(family),
                 Some(first) if along_bounds == (first > 0) => {
                     let arc = neighbour.arcs.get(first)?;
-                    let p = trunk.nearest(&arc.from.into())?;
-                    search.candidate(trunk, search.polished(trunk, p)?)
+                    let p = family.nearest(&arc.from.into())?;
+                    search.candidate(family, search.polished(family, p)?)
                 }
                 _ => None,
             };

@@ -1,16 +1,16 @@
 //! The search for the start: every extremal leaves the same one-parameter family, and is kept where λ₄ ends at zero.
 //!
 //! A singular arc can begin in two places: on φ₁ = φ₂ at some angle, or at the end of an arc that ran along a bound from the
-//! corner where that bound meets φ₁ = φ₂. Such a line of places is a [`Trunk`]. At each place the height vanishes for just
-//! one `y_f`, so the place fixes the whole extremal, and a scan over the trunk with a scalar root search on
+//! corner where that bound meets φ₁ = φ₂. Such a line of places is a [`StartFamily`]. At each place the height vanishes for just
+//! one `y_f`, so the place fixes the whole extremal, and a scan over the family with a scalar root search on
 //! `λ₄(t_f) = 0` finds every quarter gait without a guess. One more candidate never leaves the bound at all.
 
 use swimmer_model::Model;
 
 use super::Fates;
-use super::flow::{Course, Fate, Leg, Quarter, Touch, follow};
+use super::flow::{Fate, Leg, Quarter, Touch, TraceOptions, follow};
 use super::height::Extremal;
-use super::trunk::{Place, Trunk};
+use super::start_family::{Place, StartFamily};
 use crate::momentum::{Motion, State, shape};
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
@@ -32,22 +32,22 @@ pub(crate) struct Search<'a> {
     pub(crate) sign: f64,
     /// What the quarter does where it first meets φ₁ = −φ₂; it ends where it meets that line again.
     pub(crate) touch: Touch,
-    /// Places to look at on each trunk.
-    pub(crate) looks: usize,
+    /// Places to look at on each family.
+    pub(crate) scan_points: usize,
 }
 
 /// What a scan saw beside the candidates.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Seen {
     pub(crate) fates: Fates,
-    /// Extremals that end, whatever their λ₄ there: the trunk's index, the place on it and λ₃ x.
+    /// Extremals that end, whatever their λ₄ there: the family's index, the place on it and λ₃ x.
     ended: Vec<(usize, f64, f64)>,
 }
 
-/// Places looked at on each trunk.
-pub(crate) const LOOKS: usize = 40;
+/// Places looked at on each family.
+pub(crate) const SCAN_POINTS: usize = 40;
 /// The same where that finds no optimum: the places from which extremals end may lie in a narrow gap.
-pub(crate) const CLOSER_LOOKS: usize = 320;
+pub(crate) const FINER_SCAN: usize = 320;
 const COARSE: StepControl = StepControl {
     tolerance: 1e-4,
     longest: 0.7,
@@ -64,8 +64,8 @@ pub(super) const FINE: StepControl = StepControl {
 };
 /// Halvings of an interval at whose ends different arcs follow each other, or of which only one end has an extremal that ends.
 const HALVINGS: usize = 10;
-/// Most extremals that these cost on a trunk: where other arcs follow from place to place, that is rounding.
-const MOST_CLOSER_LOOKS: usize = 2 * LOOKS;
+/// Most extremals that these cost on a family: where other arcs follow from place to place, that is rounding.
+const MOST_REFINEMENTS: usize = 2 * SCAN_POINTS;
 
 /// An extremal that ends.
 #[derive(Debug, Clone, Copy)]
@@ -81,13 +81,13 @@ struct Miss {
 type Look = (f64, Option<Miss>);
 
 impl<'a> Search<'a> {
-    /// All candidates, in the order of the trunks, and what became of the rest.
-    pub(crate) fn candidates(&self, trunks: &[Trunk]) -> (Vec<Candidate>, Seen) {
+    /// All candidates, in the order of the families, and what became of the rest.
+    pub(crate) fn candidates(&self, families: &[StartFamily]) -> (Vec<Candidate>, Seen) {
         let mut seen = Seen::default();
         let mut found = Vec::new();
-        for (index, trunk) in trunks.iter().enumerate() {
-            self.scan((index, trunk), &mut seen, &mut found);
-            found.extend(self.never_leaving(trunk));
+        for (index, family) in families.iter().enumerate() {
+            self.scan((index, family), &mut seen, &mut found);
+            found.extend(self.never_leaving(family));
         }
         (found, seen)
     }
@@ -96,7 +96,7 @@ impl<'a> Search<'a> {
     /// but no optima, since their λ₄ does not end at zero. Only such as may carry a quarter farther than `least`.
     pub(crate) fn farthest(
         self,
-        trunks: &[Trunk],
+        families: &[StartFamily],
         seen: &Seen,
         least: f64,
     ) -> impl Iterator<Item = Candidate> {
@@ -107,33 +107,44 @@ impl<'a> Search<'a> {
         ended.retain(|(_, _, carried)| *carried > least - OFF);
         ended.sort_by(|a, b| b.2.total_cmp(&a.2));
         let best = ended.into_iter().take(MOST);
-        best.filter_map(move |(index, p, _)| self.candidate(trunks.get(index)?, p))
+        best.filter_map(move |(index, p, _)| self.candidate(families.get(index)?, p))
     }
 
-    fn scan(&self, (index, trunk): (usize, &Trunk), seen: &mut Seen, found: &mut Vec<Candidate>) {
-        let [low, high] = trunk.range();
-        let place = |look: usize| low + (high - low) * (look as f64 + 0.5) / self.looks as f64;
-        let mut left = MOST_CLOSER_LOOKS;
+    fn scan(
+        &self,
+        (index, family): (usize, &StartFamily),
+        seen: &mut Seen,
+        found: &mut Vec<Candidate>,
+    ) {
+        let [low, high] = family.range();
+        let place =
+            |look: usize| low + (high - low) * (look as f64 + 0.5) / self.scan_points as f64;
+        let mut left = MOST_REFINEMENTS;
         let mut before: Option<Look> = None;
-        for look in 0..self.looks {
+        for look in 0..self.scan_points {
             let p = place(look);
-            let here = (p, self.look((index, trunk), p, seen));
+            let here = (p, self.look((index, family), p, seen));
             match before {
-                Some(before) => self.refine(trunk, [before, here], &mut left, found),
-                None => self.towards_the_end(trunk, (here, low), &mut left, found),
+                Some(before) => self.refine(family, [before, here], &mut left, found),
+                None => self.towards_the_end(family, (here, low), &mut left, found),
             }
             before = Some(here);
         }
         if let Some(last) = before {
-            self.towards_the_end(trunk, (last, high), &mut left, found);
+            self.towards_the_end(family, (last, high), &mut left, found);
         }
     }
 
     /// One extremal of the scan.
-    fn look(&self, (index, trunk): (usize, &Trunk), p: f64, seen: &mut Seen) -> Option<Miss> {
+    fn look(
+        &self,
+        (index, family): (usize, &StartFamily),
+        p: f64,
+        seen: &mut Seen,
+    ) -> Option<Miss> {
         let fates = &mut seen.fates;
         fates.sent += 1;
-        let Some((quarter, final_y)) = self.shoot(trunk, p, COARSE) else {
+        let Some((quarter, final_y)) = self.shoot(family, p, COARSE) else {
             fates.wrong_way += 1;
             return None;
         };
@@ -154,18 +165,18 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Between the outermost place looked at and the trunk's own end, where its arc shrinks to nothing.
+    /// Between the outermost place looked at and the family's own end, where its arc shrinks to nothing.
     fn towards_the_end(
         &self,
-        trunk: &Trunk,
+        family: &StartFamily,
         (outermost, end): (Look, f64),
         left: &mut usize,
         found: &mut Vec<Candidate>,
     ) {
         if outermost.1.is_some() {
             let last = end + 1e-7 * (outermost.0 - end);
-            let last = (last, self.missed(trunk, last));
-            self.refine(trunk, [outermost, last], left, found);
+            let last = (last, self.missed(family, last));
+            self.refine(family, [outermost, last], left, found);
         }
     }
 
@@ -173,7 +184,7 @@ impl<'a> Search<'a> {
     /// `left` times.
     fn refine(
         &self,
-        trunk: &Trunk,
+        family: &StartFamily,
         [a, b]: [Look; 2],
         left: &mut usize,
         found: &mut Vec<Candidate>,
@@ -186,13 +197,13 @@ impl<'a> Search<'a> {
             }
             match (a.1, b.1) {
                 (Some(from), Some(to)) if from.arcs == to.arcs || halvings == 0 || *left == 0 => {
-                    self.between(trunk, (a.0, from.lambda4), (b.0, to.lambda4), found);
+                    self.between(family, (a.0, from.lambda4), (b.0, to.lambda4), found);
                 }
                 _ if halvings == 0 || *left == 0 => {}
                 _ => {
                     *left -= 1;
                     let p = 0.5 * (a.0 + b.0);
-                    let middle = (p, self.missed(trunk, p));
+                    let middle = (p, self.missed(family, p));
                     open.push((middle, b, halvings - 1));
                     open.push((a, middle, halvings - 1));
                 }
@@ -201,17 +212,23 @@ impl<'a> Search<'a> {
     }
 
     /// A root between two places, where `λ₄(t_f)` changes sign there.
-    fn between(&self, trunk: &Trunk, a: (f64, f64), b: (f64, f64), found: &mut Vec<Candidate>) {
+    fn between(
+        &self,
+        family: &StartFamily,
+        a: (f64, f64),
+        b: (f64, f64),
+        found: &mut Vec<Candidate>,
+    ) {
         if a.1.signum() * b.1.signum() < 0.0
-            && let Some(p) = self.root(trunk, a, b)
+            && let Some(p) = self.root(family, a, b)
         {
-            found.extend(self.candidate(trunk, p));
+            found.extend(self.candidate(family, p));
         }
     }
 
     /// The root of `λ₄(t_f)` in a bracket of the coarse scan: regula falsi (Illinois) at the coarse tolerance, which the
     /// bracket holds for, then secants at the fine one. None at a jump.
-    fn root(&self, trunk: &Trunk, a: (f64, f64), b: (f64, f64)) -> Option<f64> {
+    fn root(&self, family: &StartFamily, a: (f64, f64), b: (f64, f64)) -> Option<f64> {
         let (mut a, mut b) = (a, b);
         for step in 0..40 {
             let secant = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
@@ -220,7 +237,7 @@ impl<'a> Search<'a> {
             } else {
                 secant
             };
-            let lambda4 = self.miss(trunk, p, COARSE)?;
+            let lambda4 = self.miss(family, p, COARSE)?;
             if lambda4.signum() * b.1.signum() < 0.0 {
                 a = b;
             } else {
@@ -228,7 +245,7 @@ impl<'a> Search<'a> {
             }
             b = (p, lambda4);
             if lambda4.abs() < NEAR {
-                return self.polished(trunk, p);
+                return self.polished(family, p);
             }
         }
         None
@@ -236,15 +253,15 @@ impl<'a> Search<'a> {
 
     /// From a place near a root to the root: secants at a middling tolerance, then a few steps at the fine one with the slope
     /// found there, since the fine shots are what costs. None where the secants lead away.
-    pub(super) fn polished(&self, trunk: &Trunk, near: f64) -> Option<f64> {
-        let (p, slope) = self.secants(trunk, near)?;
-        let mut here = (p, self.miss(trunk, p, FINE)?);
+    pub(super) fn polished(&self, family: &StartFamily, near: f64) -> Option<f64> {
+        let (p, slope) = self.secants(family, near)?;
+        let mut here = (p, self.miss(family, p, FINE)?);
         for _ in 0..6 {
             if here.1.abs() < 1e-14 {
                 return Some(here.0);
             }
             let next = here.0 - here.1 / slope;
-            let lambda4 = self.miss(trunk, next, FINE)?;
+            let lambda4 = self.miss(family, next, FINE)?;
             if lambda4.abs() > 0.5 * here.1.abs() {
                 break; // rounding, or a slope that does not hold
             }
@@ -254,10 +271,10 @@ impl<'a> Search<'a> {
     }
 
     /// Secant method at the middling tolerance: a place with a small `λ₄(t_f)` and the slope there.
-    fn secants(&self, trunk: &Trunk, near: f64) -> Option<(f64, f64)> {
-        let mut before = (near, self.miss(trunk, near, MIDDLING)?);
-        // Away from the trunk's end, which may be nearer.
-        let [low, high] = trunk.range();
+    fn secants(&self, family: &StartFamily, near: f64) -> Option<(f64, f64)> {
+        let mut before = (near, self.miss(family, near, MIDDLING)?);
+        // Away from the family's end, which may be nearer.
+        let [low, high] = family.range();
         let aside = if near < 0.5 * (low + high) {
             1e-5
         } else {
@@ -265,7 +282,7 @@ impl<'a> Search<'a> {
         };
         let mut here = near + aside;
         for _ in 0..12 {
-            let lambda4 = self.miss(trunk, here, MIDDLING)?;
+            let lambda4 = self.miss(family, here, MIDDLING)?;
             let slope = (lambda4 - before.1) / (here - before.0);
             let next = here - lambda4 / slope;
             if !next.is_finite() || (next - near).abs() > 0.05 {
@@ -280,27 +297,27 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// The candidate that leaves a trunk at p.
-    pub(super) fn candidate(&self, trunk: &Trunk, p: f64) -> Option<Candidate> {
-        let (quarter, final_y) = self.shoot(trunk, p, FINE)?;
-        let whole = match trunk {
-            Trunk::StartLine { .. } => quarter,
+    /// The candidate that leaves a family at p.
+    pub(super) fn candidate(&self, family: &StartFamily, p: f64) -> Option<Candidate> {
+        let (quarter, final_y) = self.shoot(family, p, FINE)?;
+        let whole = match family {
+            StartFamily::StartLine { .. } => quarter,
             // Again from the start: the multiplier itself must fall to zero at p.
-            Trunk::Bounds { .. } | Trunk::EndLine { .. } => {
-                let start = trunk.start()?;
+            StartFamily::Bounds { .. } | StartFamily::EndLine { .. } => {
+                let start = family.start()?;
                 let extremal = self.extremal(final_y);
                 let whole = follow(
                     extremal,
                     self.region,
                     start.state,
                     start.motion,
-                    self.course(FINE, &start.state, trunk.begins_straight()),
+                    self.options(FINE, &start.state, family.begins_straight()),
                 );
                 let left = whole
                     .legs()
                     .iter()
                     .find(|leg| leg.motion == Motion::Singular)?;
-                let place = self.place(trunk, p)?.state;
+                let place = self.place(family, p)?.state;
                 ((shape(&left.from) - shape(&place)).norm() < 1e-6).then_some(whole)?
             }
         };
@@ -311,19 +328,19 @@ impl<'a> Search<'a> {
     }
 
     /// The extremal that runs along the bounds to the very end.
-    pub(super) fn never_leaving(&self, trunk: &Trunk) -> Option<Candidate> {
-        if trunk.touched() {
+    pub(super) fn never_leaving(&self, family: &StartFamily) -> Option<Candidate> {
+        if family.touched() {
             return None; // which would be no loop
         }
-        let final_y = trunk.end()?[3];
-        let start = trunk.start()?;
+        let final_y = family.end()?[3];
+        let start = family.start()?;
         let extremal = self.extremal(final_y);
         let quarter = follow(
             extremal,
             self.region,
             start.state,
             start.motion,
-            self.course(FINE, &start.state, false),
+            self.options(FINE, &start.state, false),
         );
         let stayed = quarter
             .legs()
@@ -333,24 +350,24 @@ impl<'a> Search<'a> {
             .then_some(Candidate { quarter, final_y })
     }
 
-    /// `λ₄(t_f)` over λ₃ of the extremal that leaves a trunk at p, where that extremal ends.
-    fn miss(&self, trunk: &Trunk, p: f64, control: StepControl) -> Option<f64> {
-        let (quarter, final_y) = self.shoot(trunk, p, control)?;
+    /// `λ₄(t_f)` over λ₃ of the extremal that leaves a family at p, where that extremal ends.
+    fn miss(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<f64> {
+        let (quarter, final_y) = self.shoot(family, p, control)?;
         self.ended(&quarter).then(|| quarter.end[3] - final_y)
     }
 
     /// The same coarsely, with the arcs.
-    fn missed(&self, trunk: &Trunk, p: f64) -> Option<Miss> {
-        let (quarter, final_y) = self.shoot(trunk, p, COARSE)?;
+    fn missed(&self, family: &StartFamily, p: f64) -> Option<Miss> {
+        let (quarter, final_y) = self.shoot(family, p, COARSE)?;
         self.ended(&quarter)
             .then(|| Miss::of(&quarter, final_y, self.sign))
     }
 
-    /// The quarter that becomes singular at place p of a trunk, with its `y_f`. None where the singular control would leave
+    /// The quarter that becomes singular at place p of a family, with its `y_f`. None where the singular control would leave
     /// the region, or no `y_f` makes the height vanish.
-    fn shoot(&self, trunk: &Trunk, p: f64, control: StepControl) -> Option<(Quarter, f64)> {
-        let place = self.place(trunk, p)?;
-        let final_y = trunk.final_y(self.model, &place, p)?;
+    fn shoot(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<(Quarter, f64)> {
+        let place = self.place(family, p)?;
+        let final_y = family.final_y(self.model, &place, p)?;
         let Place { state, motion } = place;
         let (phi, pose) = (shape(&state), [state[2], state[3], state[4]]);
         let extremal = self.extremal(final_y);
@@ -360,7 +377,7 @@ impl<'a> Search<'a> {
             Motion::Singular => direction.y - direction.x,
             Motion::Along(track) => track.inwards(&phi).dot(&direction),
         };
-        let began = trunk.start().map_or(state, |start| start.state);
+        let began = family.start().map_or(state, |start| start.state);
         (inwards > 0.0).then(|| {
             (
                 follow(
@@ -368,7 +385,7 @@ impl<'a> Search<'a> {
                     self.region,
                     state,
                     Motion::Singular,
-                    self.course(control, &began, trunk.touched()),
+                    self.options(control, &began, family.touched()),
                 ),
                 final_y,
             )
@@ -376,8 +393,8 @@ impl<'a> Search<'a> {
     }
 
     /// From a state of a quarter that began in another.
-    fn course(&self, control: StepControl, began: &State, touched: bool) -> Course {
-        Course {
+    fn options(&self, control: StepControl, began: &State, touched: bool) -> TraceOptions {
+        TraceOptions {
             control,
             touch: self.touch,
             touched,
@@ -390,8 +407,8 @@ impl<'a> Search<'a> {
         quarter.fate == Fate::Ended && quarter.touched == touches && !quarter.ends_in_a_spike()
     }
 
-    fn place(&self, trunk: &Trunk, p: f64) -> Option<Place> {
-        trunk.place(self.extremal(0.0), p)
+    fn place(&self, family: &StartFamily, p: f64) -> Option<Place> {
+        family.place(self.extremal(0.0), p)
     }
 
     pub(super) fn extremal(&self, final_y: f64) -> Extremal<'a> {

@@ -137,7 +137,7 @@ pub(crate) fn follow(model: &Model<f64>, walls: &Walls, chain: &Chain) -> Option
         for _ in 0..LOOKS {
             let point = Point::new(&equations, here);
             here = advance(&equations, point, share / LOOKS as f64, CONTROL)?.z;
-            evidence.look(&equations, walls, &here);
+            evidence.evaluate(&equations, walls, &here);
         }
         pose = [here[2], here[3], here[4]];
         if let Some((next_index, kinks, next)) = next {
@@ -174,7 +174,7 @@ fn start(equations: &Equations<'_>, state: &State, pose: &[f64; 3]) -> Plain {
 }
 
 impl Evidence {
-    fn look(&mut self, equations: &Equations<'_>, walls: &Walls, s: &Plain) {
+    fn evaluate(&mut self, equations: &Equations<'_>, walls: &Walls, s: &Plain) {
         let phi = Vector2::new(s[0], s[1]);
         let u = equations.control(s);
         let power = u.dot(&(equations.model.power_matrix(&phi) * u));

@@ -8,7 +8,7 @@ use super::shooting::{Chain, Entry, Stretch};
 use crate::runge_kutta::{Point, StepControl, advance};
 
 /// A closed curve swum once, densely.
-pub(crate) struct Swum {
+pub(crate) struct Trajectory {
     /// Power length up to each sample.
     pub(crate) length: Vec<f64>,
     /// States: shapes, directions (never wrapped), momenta.
@@ -20,7 +20,7 @@ pub(crate) struct Swum {
 /// How many samples a curve is looked at with.
 const SAMPLES: usize = 1440;
 
-impl Swum {
+impl Trajectory {
     /// Swims a gait and fits the multiplier of rotation, the one that is free, to the parts of the curve that are `free`.
     ///
     /// None where the gait stands still or goes nowhere.

@@ -10,7 +10,7 @@ mod spans;
 use swimmer_model::Model;
 
 use super::equations::{Motion, State, Turning, momentum, shape};
-use super::guess::Swum;
+use super::guess::Trajectory;
 use super::shooting::{Chain, Class, Entry};
 use super::wall::{Wall, Walls};
 use samples::Samples;
@@ -185,7 +185,7 @@ pub(crate) fn simpler(model: &Model<f64>, class: Class, chain: &Chain) -> Option
 }
 
 /// The structure of a sampled curve: it runs along a bound where it comes near it.
-pub(crate) fn of_curve(swum: &Swum, walls: &Walls, quarter: bool) -> (Chain, Class) {
+pub(crate) fn of_curve(swum: &Trajectory, walls: &Walls, quarter: bool) -> (Chain, Class) {
     let near = |state: &State| {
         let nearest = walls.nearest(&shape(state));
         nearest

@@ -1,4 +1,4 @@
-//! One lap: arc after arc, each ended by an event, until the start is met again.
+//! One orbit: arc after arc, each ended by an event, until the start is met again.
 
 use nalgebra::Vector2;
 use swimmer_model::Model;
@@ -7,7 +7,7 @@ use crate::momentum::{Flow, Momentum, Motion, State, Track, shape};
 use crate::region::{Bound, Region};
 use crate::runge_kutta::{Point, StepControl, controlled_step, exact_step, locate};
 
-/// One arc of a lap.
+/// One arc of an orbit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Leg {
     pub(crate) motion: Motion,
@@ -15,27 +15,27 @@ pub(crate) struct Leg {
     pub(crate) to: State,
 }
 
-/// Most arcs of a lap.
+/// Most arcs of an orbit.
 const MOST_ARCS: usize = 24;
-/// Longest lap \[rad\].
+/// Longest orbit \[rad\].
 const LONGEST: f64 = 60.0;
 /// Most steps of an arc: where steps shrink to nothing the zero of the height has no direction.
 const MOST_STEPS: usize = 600;
-/// A lap that reaches its start's bound this near to the start is home \[rad\].
+/// An orbit that reaches its start's bound this near to the start has returned \[rad\].
 const AT_START: f64 = 1e-7;
 /// The height may start this much below zero on a bound, over L.
 const SLACK: f64 = 1e-9;
 
-/// A lap that came back, or not.
+/// An orbit that came back, or not.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Lap {
+pub(crate) struct ClosedOrbit {
     pub(crate) legs: Vec<Leg>,
     pub(crate) end: State,
 }
 
-/// What ends a lap.
+/// What ends an orbit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Home {
+pub(crate) enum ReturnCondition {
     /// Leaving the bound with this index near the start.
     Exit(usize),
     /// Crossing the line across the curve at the start.
@@ -44,16 +44,16 @@ pub(crate) enum Home {
     Along(usize),
 }
 
-/// Where a lap begins and what ends it.
+/// Where an orbit begins and what ends it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Course<'a> {
+pub(crate) struct Launch<'a> {
     pub(crate) model: &'a Model<f64>,
     pub(crate) region: &'a Region,
     pub(crate) momentum: Momentum,
     pub(crate) start: Vector2<f64>,
     /// What the first arc runs along.
     pub(crate) first: Motion,
-    pub(crate) home: Home,
+    pub(crate) until: ReturnCondition,
     /// Direction of the curve at the start.
     pub(crate) ahead: Vector2<f64>,
     /// No end before this much of the curve \[rad\] …
@@ -69,13 +69,13 @@ enum Event {
     Reached(usize),
     HeightGone,
     PieceEnd,
-    Home,
+    Returned,
 }
 
-impl Course<'_> {
-    /// Runs the lap; none where it does not come back.
-    pub(crate) fn lap(&self) -> Option<Lap> {
-        let mut lap = Lap {
+impl Launch<'_> {
+    /// Runs the orbit; none where it does not come back.
+    pub(crate) fn orbit(&self) -> Option<ClosedOrbit> {
+        let mut orbit = ClosedOrbit {
             legs: Vec::with_capacity(8),
             end: [self.start.x, self.start.y, 0.0, 0.0, 0.0, 0.0],
         };
@@ -87,32 +87,32 @@ impl Course<'_> {
                 momentum: self.momentum,
                 motion,
             };
-            let (end, event, length) = self.arc(&drive, lap.end, travelled)?;
-            lap.legs.push(Leg {
+            let (end, event, length) = self.arc(&drive, orbit.end, travelled)?;
+            orbit.legs.push(Leg {
                 motion,
-                from: lap.end,
+                from: orbit.end,
                 to: end,
             });
-            lap.end = end;
+            orbit.end = end;
             travelled += length;
             let phi = shape(&end);
             match event {
-                Event::Home => return Some(lap),
+                Event::Returned => return Some(orbit),
                 Event::HeightGone => {
-                    let at_home = bound_of(&motion).map(Home::Exit) == Some(self.home)
+                    let returned = bound_of(&motion).map(ReturnCondition::Exit) == Some(self.until)
                         && travelled > self.shortest
                         && (phi - self.start).norm() < self.near;
-                    if at_home {
-                        return Some(lap);
+                    if returned {
+                        return Some(orbit);
                     }
                     motion = Motion::Singular;
                 }
                 Event::Reached(index)
-                    if self.home == Home::Along(index)
+                    if self.until == ReturnCondition::Along(index)
                         && travelled > self.shortest
                         && (phi - self.start).norm() < AT_START =>
                 {
-                    return Some(lap);
+                    return Some(orbit);
                 }
                 Event::Reached(index) => {
                     motion = along(self.region, index, &phi, &motion)?;
@@ -164,8 +164,11 @@ impl Course<'_> {
                 }
             }
             let far_enough = before + length + step.length > self.shortest;
-            if own.is_some() && self.home == own.map_or(Home::Line, Home::Along) && far_enough {
-                let event = Event::Home;
+            if own.is_some()
+                && self.until == own.map_or(ReturnCondition::Line, ReturnCondition::Along)
+                && far_enough
+            {
+                let event = Event::Returned;
                 consider(
                     event,
                     self.value(drive, event, &here).0,
@@ -185,8 +188,8 @@ impl Course<'_> {
                     self.value(drive, event, &here).0,
                     self.value(drive, event, &step.end).0,
                 );
-            } else if self.home == Home::Line && far_enough {
-                let event = Event::Home;
+            } else if self.until == ReturnCondition::Line && far_enough {
+                let event = Event::Returned;
                 let near = (shape(&step.end.z) - self.start).norm() < self.near;
                 let (from, to) = (
                     self.value(drive, event, &here).0,
@@ -223,7 +226,7 @@ impl Course<'_> {
                 Motion::Singular => None,
             }
             .map_or((1.0, 0.0), |(left, slope)| (left, slope.dot(&rate))),
-            Event::Home => (-(phi - self.start).dot(&self.ahead), -rate.dot(&self.ahead)),
+            Event::Returned => (-(phi - self.start).dot(&self.ahead), -rate.dot(&self.ahead)),
         }
     }
 

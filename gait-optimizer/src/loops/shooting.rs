@@ -3,14 +3,14 @@
 use nalgebra::{Matrix2, Vector2, Vector3};
 use swimmer_model::Model;
 
-use super::flow::{Course, Home, Lap};
+use super::flow::{ClosedOrbit, Launch, ReturnCondition};
 use crate::momentum::{Momentum, Motion, pose, shape};
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
 
 /// A one-parameter family of starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Gate {
+pub(crate) struct Section {
     /// The start for parameter 0.
     pub(crate) at: Vector2<f64>,
     /// How it moves with the parameter.
@@ -22,7 +22,7 @@ pub(crate) struct Gate {
 /// A guess: a start and the momentum's direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Loop {
-    /// Place along the gate \[rad\].
+    /// Place along the section \[rad\].
     pub(crate) place: f64,
     /// Angle of p against the heading at the start \[rad\].
     pub(crate) angle: f64,
@@ -33,7 +33,7 @@ pub(crate) struct Loop {
 pub(crate) struct Closed {
     pub(crate) start: Vector2<f64>,
     pub(crate) momentum: Momentum,
-    pub(crate) lap: Lap,
+    pub(crate) orbit: ClosedOrbit,
     /// What is left of the conditions.
     pub(crate) residual: f64,
 }
@@ -56,8 +56,8 @@ const CLOSED: f64 = 1e-11;
 struct Problem<'a> {
     model: &'a Model<f64>,
     region: &'a Region,
-    gate: Gate,
-    /// About how long the lap is \[rad\].
+    section: Section,
+    /// About how long the orbit is \[rad\].
     length: f64,
 }
 
@@ -65,23 +65,23 @@ struct Problem<'a> {
 pub(crate) fn close(
     model: &Model<f64>,
     region: &Region,
-    gate: Gate,
+    section: Section,
     guess: Loop,
     length: f64,
 ) -> Option<Closed> {
     let problem = Problem {
         model,
         region,
-        gate,
+        section,
         length,
     };
     let mut here = guess;
     let mut control = COARSE;
-    let (mut miss, mut lap) = problem.shoot(&here, control)?;
+    let (mut miss, mut orbit) = problem.shoot(&here, control)?;
     for _ in 0..ROUNDS {
         if miss.norm() < NEAR && control.tolerance > FINE.tolerance {
             control = FINE;
-            (miss, lap) = problem.shoot(&here, control)?;
+            (miss, orbit) = problem.shoot(&here, control)?;
         }
         let step = problem.step(&here, &miss, control)?;
         let mut factor = (STRIDE / step.amax()).min(1.0);
@@ -102,7 +102,7 @@ pub(crate) fn close(
         let Some((there, new, new_lap)) = better else {
             break;
         };
-        (here, miss, lap) = (there, new, new_lap);
+        (here, miss, orbit) = (there, new, new_lap);
         if miss.norm() < 1e-13 {
             break;
         }
@@ -111,48 +111,55 @@ pub(crate) fn close(
     (control.tolerance <= FINE.tolerance && miss.norm() < CLOSED).then_some(Closed {
         start,
         momentum: Momentum::of_zero(model, &start, here.angle)?,
-        lap,
+        orbit,
         residual: miss.norm(),
     })
 }
 
 impl Problem<'_> {
     fn start(&self, at: &Loop) -> Vector2<f64> {
-        let straight = self.gate.at + self.gate.along * at.place;
-        match self.gate.bound.and_then(|index| self.region.bound(index)) {
+        let straight = self.section.at + self.section.along * at.place;
+        match self
+            .section
+            .bound
+            .and_then(|index| self.region.bound(index))
+        {
             Some(bound) => bound.onto(&straight),
             None => straight,
         }
     }
 
-    /// Place, heading and the part of the displacement across p that the lap ends with.
-    fn shoot(&self, at: &Loop, control: StepControl) -> Option<(Vector3<f64>, Lap)> {
+    /// Place, heading and the part of the displacement across p that the orbit ends with.
+    fn shoot(&self, at: &Loop, control: StepControl) -> Option<(Vector3<f64>, ClosedOrbit)> {
         let start = self.start(at);
         let momentum = Momentum::of_zero(self.model, &start, at.angle)?;
         let state = [start.x, start.y, 0.0, 0.0, 0.0, 0.0];
-        let (height, ..) = momentum.look(self.model, &shape(&state), &pose(&state));
+        let (height, ..) = momentum.evaluate(self.model, &shape(&state), &pose(&state));
         let ahead = height.singular_direction();
-        let course = Course {
+        let launch = Launch {
             model: self.model,
             region: self.region,
             momentum,
             start,
             first: Motion::Singular,
-            home: self.gate.bound.map_or(Home::Line, Home::Exit),
+            until: self
+                .section
+                .bound
+                .map_or(ReturnCondition::Line, ReturnCondition::Exit),
             ahead,
             shortest: 0.5 * self.length,
             near: 1.0,
             control,
         };
-        let lap = course.lap()?;
-        let end = lap.end;
+        let orbit = launch.orbit()?;
+        let end = orbit.end;
         let off = Vector2::new(end[0], end[1]) - start;
         let miss = Vector3::new(
-            off.dot(&self.gate.along),
+            off.dot(&self.section.along),
             end[4],
             momentum.p.perp(&Vector2::new(end[2], end[3])),
         );
-        miss.norm().is_finite().then_some((miss, lap))
+        miss.norm().is_finite().then_some((miss, orbit))
     }
 
     /// The Gauss–Newton step, by differences.

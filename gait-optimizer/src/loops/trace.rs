@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use swimmer_files::{ArcKind, GaitArc};
 use swimmer_model::{Model, Stroke};
 
-use super::flow::{Lap, Leg};
+use super::flow::{ClosedOrbit, Leg};
 use super::shooting::Closed;
 use crate::certificate::{again_within, simple_and_turning_once};
 use crate::cycle::Cycle;
@@ -72,8 +72,8 @@ impl LoopTrace {
         closed: &Closed,
         samples: usize,
     ) -> Option<Self> {
-        let total = closed.lap.end[5];
-        let legs = lasting(&closed.lap);
+        let total = closed.orbit.end[5];
+        let legs = lasting(&closed.orbit);
         let home = Self::home(model, closed, &legs);
         let (first, state) = home.unwrap_or((0, legs.first()?.from));
         let momentum = closed.momentum.seen_from(&pose(&state));
@@ -90,21 +90,29 @@ impl LoopTrace {
         Self::along(model, region, momentum, start, &route, total, samples)
     }
 
-    /// Traces a lap from its own start.
+    /// Traces an orbit from its own start.
     pub(crate) fn from_start(
         model: &Model<f64>,
         region: &Region,
         momentum: Momentum,
-        lap: &Lap,
+        orbit: &ClosedOrbit,
         samples: usize,
     ) -> Option<Self> {
-        let legs = lasting(lap);
+        let legs = lasting(orbit);
         let start = legs.first()?.from;
         let route: Vec<(Motion, f64)> = legs
             .iter()
             .map(|leg| (leg.motion, leg.to[5] - leg.from[5]))
             .collect();
-        Self::along(model, region, momentum, start, &route, lap.end[5], samples)
+        Self::along(
+            model,
+            region,
+            momentum,
+            start,
+            &route,
+            orbit.end[5],
+            samples,
+        )
     }
 
     /// Where the loop crosses φ₁ = φ₂ > 0: the leg, and the state there.
@@ -251,7 +259,7 @@ impl LoopTrace {
                     .find(|&count| count as f64 >= samples as f64 * (to - from))
                     .unwrap_or(samples.max(fewest));
                 for interval in 0..intervals {
-                    evidence.look(&system, region, &here);
+                    evidence.evaluate(&system, region, &here);
                     let step = (to - from) * total / intervals as f64;
                     here = advance(&system, Point::new(&system, here), step, CONTROL)?.z;
                     // Exactly `to` in the end: corners are named by their sample's fraction.
@@ -264,7 +272,7 @@ impl LoopTrace {
                     cycle.phi.push(shape(&here));
                 }
             }
-            evidence.look(&system, region, &here);
+            evidence.evaluate(&system, region, &here);
             directions.push((set_out, system.0.direction(&here)));
             done += length;
             let kind = kind(motion);
@@ -309,7 +317,7 @@ impl LoopTrace {
 }
 
 impl LoopEvidence {
-    fn look(&mut self, system: &ByPower<'_>, region: &Region, z: &State) {
+    fn evaluate(&mut self, system: &ByPower<'_>, region: &Region, z: &State) {
         let height = system.0.height(z);
         let slope = height.gradient.norm();
         self.overstepped = self.overstepped.max(region.overstepped(&shape(z)));
@@ -330,9 +338,9 @@ impl LoopEvidence {
 }
 
 /// Arcs that last.
-fn lasting(lap: &Lap) -> Vec<Leg> {
-    let total = lap.end[5];
-    let legs = lap.legs.iter();
+fn lasting(orbit: &ClosedOrbit) -> Vec<Leg> {
+    let total = orbit.end[5];
+    let legs = orbit.legs.iter();
     legs.filter(|leg| leg.to[5] - leg.from[5] > LASTING * total)
         .copied()
         .collect()

@@ -55,7 +55,7 @@ pub(crate) struct Flow<'a> {
 impl Flow<'_> {
     /// The height at a state.
     pub(crate) fn height(&self, z: &State) -> Height {
-        self.momentum.look(self.model, &shape(z), &pose(z)).0
+        self.momentum.evaluate(self.model, &shape(z), &pose(z)).0
     }
 
     /// Unit direction of motion at a state.
@@ -72,7 +72,8 @@ impl System<6> for Flow<'_> {
         let phi = shape(z);
         let (direction, connection, power) = match self.motion {
             Motion::Singular => {
-                let (height, connection, power) = self.momentum.look(self.model, &phi, &pose(z));
+                let (height, connection, power) =
+                    self.momentum.evaluate(self.model, &phi, &pose(z));
                 (height.singular_direction(), connection, power)
             }
             Motion::Along(track) => {

@@ -16,7 +16,7 @@ use swimmer_model::{Gait, Model};
 use super::RobustError;
 use super::newton::{Design, newton};
 use super::nodes::Nodes;
-use super::quarter::{ArcCurve, Swum};
+use super::quarter::{ArcCurve, Trajectory};
 use crate::OptimalGait;
 
 /// Degree of the polynomial of an arc: of one of several, and of one that is the whole quarter.
@@ -144,7 +144,7 @@ impl Arcs {
         let count: usize = arcs.iter().map(|arc| arc.phi.len()).sum();
         let mut heights = vec![0.0; count];
         for (model, weight) in members.iter().filter(|(_, weight)| *weight != 0.0) {
-            let swum = Swum::new(model, &self.nodes, arcs);
+            let swum = Trajectory::new(model, &self.nodes, arcs);
             let shapes = arcs.iter().flat_map(|arc| &arc.phi);
             for ((index, phi), height) in shapes.enumerate().zip(&mut heights) {
                 *height += self.sign * weight * swum.height(model, index, phi);
@@ -165,7 +165,7 @@ impl Arcs {
         let swum: Vec<_> = members
             .iter()
             .filter(|(_, weight)| *weight != 0.0)
-            .map(|(model, weight)| (*model, *weight, Swum::new(model, &self.nodes, &arcs)))
+            .map(|(model, weight)| (*model, *weight, Trajectory::new(model, &self.nodes, &arcs)))
             .collect();
         let mut index = 0;
         for (leg, arc) in self.legs.iter().zip(&arcs) {
@@ -216,7 +216,7 @@ impl Design for Arcs {
         let arcs = self.curves(x);
         members
             .iter()
-            .map(|model| self.sign * Swum::new(model, &self.nodes, &arcs).displacement)
+            .map(|model| self.sign * Trajectory::new(model, &self.nodes, &arcs).displacement)
             .collect()
     }
 

@@ -12,7 +12,7 @@ use swimmer_model::{Model, SymmetricFourier};
 use super::RobustError;
 use super::newton::Design;
 use super::nodes::Nodes;
-use super::quarter::{ArcCurve, Swum};
+use super::quarter::{ArcCurve, Trajectory};
 use crate::Branch;
 use crate::efficiency::starts;
 
@@ -129,7 +129,7 @@ impl FourierFamily {
 
     fn valued(&self, x: &DVector<f64>, model: &Model<f64>) -> Valued {
         let curve = self.curve(x);
-        let swum = Swum::new(model, &self.nodes, std::slice::from_ref(&curve));
+        let swum = Trajectory::new(model, &self.nodes, std::slice::from_ref(&curve));
         // At each node: height, what E gains by Φ and by Φ′ there.
         let mut power = Vec::with_capacity(curve.phi.len());
         let (mut by_phi, mut by_slope) = (Vec::new(), Vec::new());

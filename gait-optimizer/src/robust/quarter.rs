@@ -14,7 +14,7 @@ pub(super) struct ArcCurve {
 
 /// A swimmer's way along a quarter gait. Lengths are over L.
 #[derive(Debug, Clone)]
-pub(super) struct Swum {
+pub(super) struct Trajectory {
     /// X of the full cycle, four times the quarter's.
     pub(super) displacement: f64,
     /// Heading and y at the nodes, arc after arc, and y at the quarter's end.
@@ -23,7 +23,7 @@ pub(super) struct Swum {
     final_y: f64,
 }
 
-impl Swum {
+impl Trajectory {
     pub(super) fn new(model: &Model<f64>, nodes: &Nodes, arcs: &[ArcCurve]) -> Self {
         let (mut x, mut y, mut theta) = (0.0, 0.0, 0.0);
         let mut swum = Self {

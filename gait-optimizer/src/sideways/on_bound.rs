@@ -6,7 +6,7 @@
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use crate::loops::{Course, Lap, LoopTrace};
+use crate::loops::{ClosedOrbit, Launch, LoopTrace};
 use crate::momentum::{Momentum, Motion, Track};
 use crate::region::{Bound, Edge, Region};
 use crate::runge_kutta::StepControl;
@@ -45,9 +45,9 @@ pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) ->
                 sign,
             };
             for rotation in family.roots() {
-                let trace = family.shoot(rotation, FINE).and_then(|lap| {
+                let trace = family.shoot(rotation, FINE).and_then(|orbit| {
                     let momentum = family.momentum(rotation);
-                    LoopTrace::from_start(model, region, momentum, &lap, samples)
+                    LoopTrace::from_start(model, region, momentum, &orbit, samples)
                 });
                 found.extend(trace);
             }
@@ -123,8 +123,8 @@ impl Family<'_> {
         }
     }
 
-    fn shoot(&self, rotation: f64, control: StepControl) -> Option<Lap> {
-        let course = Course {
+    fn shoot(&self, rotation: f64, control: StepControl) -> Option<ClosedOrbit> {
+        let launch = Launch {
             model: self.model,
             region: self.region,
             momentum: self.momentum(rotation),
@@ -135,13 +135,13 @@ impl Family<'_> {
                 &self.start.at,
                 1.0,
             )?),
-            home: crate::loops::Home::Along(self.start.bound),
+            until: crate::loops::ReturnCondition::Along(self.start.bound),
             ahead: self.start.along,
             shortest: 0.5,
             near: f64::INFINITY,
             control,
         };
-        course.lap()
+        launch.orbit()
     }
 
     fn miss(&self, rotation: f64, control: StepControl) -> Option<f64> {

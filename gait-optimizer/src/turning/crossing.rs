@@ -2,12 +2,16 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::walk::{Country, Lost};
+use super::walk::{Domain, TraceError};
 use crate::height_map::OnCurve;
 
-impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
+impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
     /// A little way from a crossing along the other curve.
-    pub(super) fn after(&self, node: Vector2<f64>, ahead: Vector2<f64>) -> Result<OnCurve, Lost> {
+    pub(super) fn after(
+        &self,
+        node: Vector2<f64>,
+        ahead: Vector2<f64>,
+    ) -> Result<OnCurve, TraceError> {
         let mut step = self.step;
         for _ in 0..6 {
             let guess = node + ahead * step;
@@ -18,7 +22,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
             }
             step *= 0.5;
         }
-        Err(Lost::at(node, "zero-level curves cross too flatly"))
+        Err(TraceError::at(node, "zero-level curves cross too flatly"))
     }
 
     /// The crossing of two zero-level curves between two points of one, and the direction to its left on the other.

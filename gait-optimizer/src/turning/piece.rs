@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use swimmer_files::ArcKind;
 
-use super::shore::{Bounding, Station};
+use super::border::{BorderPoint, Bounding};
 
 /// One arc of a walk.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,23 +37,23 @@ pub(super) fn close_up(points: &mut Vec<Vector2<f64>>, end: Vector2<f64>, gap: f
 pub(super) fn pieces_of(
     begin: Vector2<f64>,
     bound: Bounding,
-    stations: &[Station],
+    border: &[BorderPoint],
     end: Vector2<f64>,
     gap: f64,
 ) -> Vec<Piece> {
     let mut pieces: Vec<Piece> = Vec::new();
     let mut points = vec![begin];
     let mut bound = bound;
-    for station in stations {
-        if bound != station.bound {
-            // Both stations of a corner stand at one place: it ends one piece and begins the next.
-            ended(&mut pieces, bound.kind, &mut points, station.phi, gap);
-            bound = station.bound;
+    for point in border {
+        if bound != point.bound {
+            // Both points of a corner stand at one place: it ends one piece and begins the next.
+            ended(&mut pieces, bound.kind, &mut points, point.phi, gap);
+            bound = point.bound;
         } else if points
             .last()
-            .is_none_or(|last| (last - station.phi).norm() >= gap)
+            .is_none_or(|last| (last - point.phi).norm() >= gap)
         {
-            points.push(station.phi);
+            points.push(point.phi);
         }
     }
     ended(&mut pieces, bound.kind, &mut points, end, gap);

@@ -5,24 +5,24 @@ use nalgebra::Vector2;
 use swimmer_files::ArcKind;
 use swimmer_model::Model;
 
+use super::border::Border;
 use super::piece::{Piece, Round, close_up, pieces_of, singular};
-use super::shore::Shore;
 use crate::height_map::{Level, LevelSearch, OnCurve, passes};
 use crate::region::Region;
 
 /// What the walks go by.
-pub(super) struct Country<'a, F> {
+pub(super) struct Domain<'a, F> {
     pub(super) region: &'a Region,
-    pub(super) shore: &'a Shore<'a>,
+    pub(super) border: &'a Border<'a>,
     pub(super) level: &'a Level<F>,
     pub(super) step: f64,
 }
 
 /// A place of the border where the curvature changes sign.
 #[derive(Debug, Clone, Copy)]
-struct Port {
+struct Crossing {
     phi: Vector2<f64>,
-    /// Index of the station before it.
+    /// Index of the point before it.
     after: usize,
     /// Whether the curvature falls there, going counter-clockwise: a walk leaves the border.
     leaves: bool,
@@ -30,12 +30,12 @@ struct Port {
 
 /// Where a walk lost its way, and why.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Lost {
+pub(super) struct TraceError {
     pub(super) near: Vector2<f64>,
     pub(super) what: &'static str,
 }
 
-impl Lost {
+impl TraceError {
     pub(super) fn at(near: Vector2<f64>, what: &'static str) -> Self {
         Self { near, what }
     }
@@ -43,7 +43,7 @@ impl Lost {
 
 /// Curvatures this small count as zero.
 const ZERO: f64 = 1e-13;
-/// A curve ends at a port if it comes this near \[rad\].
+/// A curve ends at a crossing if it comes this near \[rad\].
 const ARRIVED: f64 = 1e-6;
 /// More points than this and the walk has lost its way.
 const MOST_POINTS: usize = 60_000;
@@ -55,44 +55,46 @@ pub(super) fn curvature(model: &Model<f64>, phi: &Vector2<f64>) -> (f64, Vector2
     (second.first.curvature().z, Vector2::new(along1.z, along2.z))
 }
 
-impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
+impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
     /// All walks, or where one loses its way.
     pub(super) fn rounds(
         &self,
         search: &LevelSearch,
         seeds: Vec<Vector2<f64>>,
-    ) -> Result<Vec<Round>, Lost> {
-        let ports = self.ports().ok_or(Lost::at(
+    ) -> Result<Vec<Round>, TraceError> {
+        let crossings = self.crossings().ok_or(TraceError::at(
             Vector2::zeros(),
             "the curvature vanishes all along the bounds",
         ))?;
         let mut rounds = Vec::new();
-        let mut unused: Vec<usize> = (0..ports.len())
-            .filter(|&i| ports.get(i).is_some_and(|port| port.leaves))
+        let mut unused: Vec<usize> = (0..crossings.len())
+            .filter(|&i| crossings.get(i).is_some_and(|crossing| crossing.leaves))
             .collect();
         while let Some(&first) = unused.first() {
             let mut round = Round { pieces: Vec::new() };
             let mut at = first;
             loop {
-                unused.retain(|&port| port != at);
-                let (inland, arrived) = self.across(&ports, at)?;
+                unused.retain(|&crossing| crossing != at);
+                let (inland, arrived) = self.across(&crossings, at)?;
                 round.pieces.extend(inland);
-                let (along, left) = self.along_border(&ports, arrived)?;
+                let (along, left) = self.along_border(&crossings, arrived)?;
                 round.pieces.extend(along);
                 at = left;
                 if at == first {
                     break;
                 }
                 if !unused.contains(&at) {
-                    return Err(Lost::at(
-                        ports.get(at).map_or(Vector2::zeros(), |port| port.phi),
+                    return Err(TraceError::at(
+                        crossings
+                            .get(at)
+                            .map_or(Vector2::zeros(), |crossing| crossing.phi),
                         "two regions share an edge",
                     ));
                 }
             }
             rounds.push(round);
         }
-        if ports.is_empty() && self.border_is_positive() {
+        if crossings.is_empty() && self.border_is_positive() {
             rounds.push(Round {
                 pieces: self.whole_border(),
             });
@@ -127,13 +129,13 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
         i8::from(value > ZERO) - i8::from(value < -ZERO)
     }
 
-    /// All ports, counter-clockwise.
-    fn ports(&self) -> Option<Vec<Port>> {
-        let stations = &self.shore.stations;
-        let signs: Vec<i8> = stations.iter().map(|s| self.sign(&s.phi)).collect();
-        let count = stations.len();
+    /// All crossings, counter-clockwise.
+    fn crossings(&self) -> Option<Vec<Crossing>> {
+        let points = &self.border.points;
+        let signs: Vec<i8> = points.iter().map(|s| self.sign(&s.phi)).collect();
+        let count = points.len();
         let start = signs.iter().position(|&sign| sign != 0)?;
-        let mut ports = Vec::new();
+        let mut crossings = Vec::new();
         let (mut last, mut last_sign) = (start, *signs.get(start)?);
         for k in 1..=count {
             let i = (start + k) % count;
@@ -142,27 +144,27 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
                 continue;
             }
             if sign != last_sign {
-                ports.push(self.port(last, i, last_sign > 0)?);
+                crossings.push(self.crossing(last, i, last_sign > 0)?);
             }
             (last, last_sign) = (i, sign);
         }
-        ports.sort_by_key(|port| port.after);
-        Some(ports)
+        crossings.sort_by_key(|crossing| crossing.after);
+        Some(crossings)
     }
 
-    /// The port between two stations of different sign; stations between them, if any, are zeros.
-    fn port(&self, last: usize, next: usize, leaves: bool) -> Option<Port> {
-        let stations = &self.shore.stations;
-        let count = stations.len();
+    /// The crossing between two points of different sign; points between them, if any, are zeros.
+    fn crossing(&self, last: usize, next: usize, leaves: bool) -> Option<Crossing> {
+        let points = &self.border.points;
+        let count = points.len();
         if (last + 1) % count != next {
             let zero = (last + 1) % count;
-            return Some(Port {
-                phi: stations.get(zero)?.phi,
+            return Some(Crossing {
+                phi: points.get(zero)?.phi,
                 after: zero,
                 leaves,
             });
         }
-        let (a, b) = (stations.get(last)?, stations.get(next)?);
+        let (a, b) = (points.get(last)?, points.get(next)?);
         let mut low = a.direction;
         // Across direction 0 the next one is a turn ahead.
         let mut high = if b.direction < low {
@@ -172,49 +174,56 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
         };
         let mut phi = a.phi;
         for _ in 0..70 {
-            let station = self.shore.at(f64::midpoint(low, high))?;
-            phi = station.phi;
+            let point = self.border.at(f64::midpoint(low, high))?;
+            phi = point.phi;
             let value = self.value(&phi);
             if value.abs() < 1e-16 {
                 break;
             }
             if (value > 0.0) == leaves {
-                low = station.direction;
+                low = point.direction;
             } else {
-                high = station.direction;
+                high = point.direction;
             }
         }
-        Some(Port {
+        Some(Crossing {
             phi,
             after: last,
             leaves,
         })
     }
 
-    /// From a port inland along zero-level curves to the port where they meet the border again.
-    fn across(&self, ports: &[Port], from: usize) -> Result<(Vec<Piece>, usize), Lost> {
-        let none = Lost::at(Vector2::zeros(), "there is no such port");
-        let port = ports.get(from).ok_or(none)?;
+    /// From a crossing inland along zero-level curves to the crossing where they meet the border again.
+    fn across(
+        &self,
+        crossings: &[Crossing],
+        from: usize,
+    ) -> Result<(Vec<Piece>, usize), TraceError> {
+        let none = TraceError::at(Vector2::zeros(), "there is no such crossing");
+        let crossing = crossings.get(from).ok_or(none)?;
         let begin = self
             .level
-            .corrected(&port.phi, None, 1e-6)
-            .ok_or(Lost::at(port.phi, "zero-level curves cross on the bound"))?;
+            .corrected(&crossing.phi, None, 1e-6)
+            .ok_or(TraceError::at(
+                crossing.phi,
+                "zero-level curves cross on the bound",
+            ))?;
         let begin = OnCurve {
-            phi: port.phi,
+            phi: crossing.phi,
             ..positive_left(begin)
         };
         let (mut pieces, end) = self.inland(begin, None)?;
         let end = end.ok_or(none)?;
-        let arrived = (0..ports.len())
+        let arrived = (0..crossings.len())
             .filter_map(|i| {
-                let port = ports.get(i)?;
-                (!port.leaves).then_some((i, (port.phi - end).norm()))
+                let crossing = crossings.get(i)?;
+                (!crossing.leaves).then_some((i, (crossing.phi - end).norm()))
             })
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .filter(|&(_, gap)| gap < ARRIVED)
-            .ok_or(Lost::at(end, "a zero-level curve touches the bound"))?
+            .ok_or(TraceError::at(end, "a zero-level curve touches the bound"))?
             .0;
-        let met = ports.get(arrived).ok_or(none)?.phi;
+        let met = crossings.get(arrived).ok_or(none)?.phi;
         let last = pieces.last_mut().ok_or(none)?;
         close_up(&mut last.points, met, 0.3 * self.step);
         Ok((pieces, arrived))
@@ -226,7 +235,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
         &self,
         begin: OnCurve,
         home: Option<Vector2<f64>>,
-    ) -> Result<(Vec<Piece>, Option<Vector2<f64>>), Lost> {
+    ) -> Result<(Vec<Piece>, Option<Vector2<f64>>), TraceError> {
         let mut pieces = Vec::new();
         let mut points = vec![begin.phi];
         let (mut here, mut step) = (begin, self.step);
@@ -247,7 +256,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
                 if step > 1e-8 * self.step {
                     Ok(0.5 * step)
                 } else {
-                    Err(Lost::at(here.phi, what))
+                    Err(TraceError::at(here.phi, what))
                 }
             };
             let Some(next) = self.level.stepped(&here, step) else {
@@ -256,7 +265,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
             };
             walked += 1;
             if self.region.overstepped(&next.phi) > 1e-12 {
-                let stuck = Lost::at(here.phi, "a zero-level curve runs along the bound");
+                let stuck = TraceError::at(here.phi, "a zero-level curve runs along the bound");
                 let end = self.leaving(&here, step).ok_or(stuck)?;
                 pieces.push(singular(points));
                 return Ok((pieces, Some(end)));
@@ -277,7 +286,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
             points.push(here.phi);
             step = (1.5 * step).min(self.step);
         }
-        Err(Lost::at(here.phi, "a zero-level curve does not end"))
+        Err(TraceError::at(here.phi, "a zero-level curve does not end"))
     }
 
     /// Where a step leaves the region.
@@ -298,15 +307,22 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
         Some(end)
     }
 
-    /// Counter-clockwise along the border from a port to the next one where the walk leaves it.
-    fn along_border(&self, ports: &[Port], from: usize) -> Result<(Vec<Piece>, usize), Lost> {
-        let none = Lost::at(Vector2::zeros(), "there is no such port");
-        let stations = &self.shore.stations;
-        let count = stations.len();
-        let to = (from + 1) % ports.len();
-        let (begin, end) = (ports.get(from).ok_or(none)?, ports.get(to).ok_or(none)?);
+    /// Counter-clockwise along the border from a crossing to the next one where the walk leaves it.
+    fn along_border(
+        &self,
+        crossings: &[Crossing],
+        from: usize,
+    ) -> Result<(Vec<Piece>, usize), TraceError> {
+        let none = TraceError::at(Vector2::zeros(), "there is no such crossing");
+        let points = &self.border.points;
+        let count = points.len();
+        let to = (from + 1) % crossings.len();
+        let (begin, end) = (
+            crossings.get(from).ok_or(none)?,
+            crossings.get(to).ok_or(none)?,
+        );
         if !end.leaves {
-            return Err(Lost::at(
+            return Err(TraceError::at(
                 end.phi,
                 "the curvature changes sign twice at one place of the bound",
             ));
@@ -315,37 +331,37 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Country<'_, F> {
         let mut i = begin.after;
         while i != end.after && ahead.len() <= count {
             i = (i + 1) % count;
-            ahead.push(*stations.get(i).ok_or(none)?);
+            ahead.push(*points.get(i).ok_or(none)?);
         }
-        // The stretch that ends at the port is bounded as the station before it.
-        let bound = stations.get(begin.after).ok_or(none)?.bound;
+        // The stretch that ends at the crossing is bounded as the point before it.
+        let bound = points.get(begin.after).ok_or(none)?.bound;
         let pieces = pieces_of(begin.phi, bound, &ahead, end.phi, 0.3 * self.step);
         Ok((pieces, to))
     }
 
     fn border_is_positive(&self) -> bool {
-        self.shore
-            .stations
+        self.border
+            .points
             .first()
-            .is_some_and(|station| self.sign(&station.phi) > 0)
+            .is_some_and(|point| self.sign(&point.phi) > 0)
     }
 
     fn whole_border(&self) -> Vec<Piece> {
-        let stations = &self.shore.stations;
-        let Some(first) = stations.first() else {
+        let points = &self.border.points;
+        let Some(first) = points.first() else {
             return Vec::new();
         };
-        pieces_of(first.phi, first.bound, stations, first.phi, 0.3 * self.step)
+        pieces_of(first.phi, first.bound, points, first.phi, 0.3 * self.step)
     }
 
     /// A walk that never meets the border.
-    fn inland_round(&self, seed: &Vector2<f64>) -> Result<Vec<Piece>, Lost> {
+    fn inland_round(&self, seed: &Vector2<f64>) -> Result<Vec<Piece>, TraceError> {
         let begin = self.level.corrected(seed, None, 1e-6);
-        let begin = begin.ok_or(Lost::at(*seed, "zero-level curves branch"))?;
+        let begin = begin.ok_or(TraceError::at(*seed, "zero-level curves branch"))?;
         let begin = positive_left(begin);
         match self.inland(begin, Some(begin.phi))? {
             (pieces, None) => Ok(pieces),
-            (_, Some(end)) => Err(Lost::at(end, "a zero-level curve grazes the bound")),
+            (_, Some(end)) => Err(TraceError::at(end, "a zero-level curve grazes the bound")),
         }
     }
 }

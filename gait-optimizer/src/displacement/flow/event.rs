@@ -45,7 +45,7 @@ pub(super) fn first_event(before: &Watched, after: &Watched, length: f64) -> Opt
 
 /// Where the cubic with these values and slopes at both ends first falls through zero.
 fn falls(value: [f64; 2], slope: [f64; 2], length: f64) -> Option<f64> {
-    const LOOKS: u32 = 8;
+    const SCAN_POINTS: u32 = 8;
     let cubic = |s: f64| {
         let rest = 1.0 - s;
         let (off0, off1) = (
@@ -55,8 +55,8 @@ fn falls(value: [f64; 2], slope: [f64; 2], length: f64) -> Option<f64> {
         value[0] * rest + value[1] * s + (off0 * rest - off1 * s) * (s * rest)
     };
     let mut low = 0.0;
-    for look in 1..=LOOKS {
-        let mut high = f64::from(look) / f64::from(LOOKS);
+    for look in 1..=SCAN_POINTS {
+        let mut high = f64::from(look) / f64::from(SCAN_POINTS);
         if cubic(high) < 0.0 {
             for _ in 0..20 {
                 let middle = 0.5 * (low + high);

@@ -1,6 +1,6 @@
 use super::*;
 use crate::cycle::QuarterTrace;
-use crate::displacement::trunk::trunks;
+use crate::displacement::start_family::families;
 use swimmer_files::Bounds;
 use swimmer_model::{Links, Swimmer, TangentialDrag};
 
@@ -36,12 +36,12 @@ fn the_second_variation_agrees_with_the_neighbours() {
                         region: &region,
                         sign,
                         touch: Touch::Ends,
-                        looks: LOOKS,
+                        scan_points: SCAN_POINTS,
                     };
-                    for trunk in trunks(search.extremal(0.0), &bounds, &region) {
-                        let (found, _) = search.candidates(std::slice::from_ref(&trunk));
+                    for family in families(search.extremal(0.0), &bounds, &region) {
+                        let (found, _) = search.candidates(std::slice::from_ref(&family));
                         for candidate in found {
-                            let Some(gain) = neighbour_gain(&search, &trunk, &candidate) else {
+                            let Some(gain) = neighbour_gain(&search, &family, &candidate) else {
                                 continue;
                             };
                             let legs: Vec<_> = lasting(candidate.quarter.legs()).copied().collect();
@@ -64,28 +64,28 @@ fn the_second_variation_agrees_with_the_neighbours() {
     assert!(maxima >= 40 && others >= 1, "{maxima} {others}");
 }
 
-/// The larger gain in λ₃ x of the two extremals beside a candidate on its trunk; none where it is not on it, or both neighbours
+/// The larger gain in λ₃ x of the two extremals beside a candidate on its family; none where it is not on it, or both neighbours
 /// do not end.
-fn neighbour_gain(search: &Search<'_>, trunk: &Trunk, candidate: &Candidate) -> Option<f64> {
+fn neighbour_gain(search: &Search<'_>, family: &StartFamily, candidate: &Candidate) -> Option<f64> {
     const BESIDE: f64 = 1e-3;
     let first = candidate
         .quarter
         .legs()
         .iter()
         .find(|leg| leg.motion == Motion::Singular)?;
-    let p = match trunk {
-        Trunk::StartLine { .. } => first.from[0],
-        Trunk::Bounds { .. } => candidate
+    let p = match family {
+        StartFamily::StartLine { .. } => first.from[0],
+        StartFamily::Bounds { .. } => candidate
             .quarter
             .legs()
             .iter()
             .take_while(|leg| leg.motion != Motion::Singular)
             .map(|leg| leg.length)
             .sum(),
-        Trunk::EndLine { .. } => return None,
+        StartFamily::EndLine { .. } => return None,
     };
     let x = |p: f64| {
-        let (quarter, _) = search.shoot(trunk, p, FINE)?;
+        let (quarter, _) = search.shoot(family, p, FINE)?;
         (quarter.fate == Fate::Ended).then_some(search.sign * quarter.end[2])
     };
     let here = x(p)?;

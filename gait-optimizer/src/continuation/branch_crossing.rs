@@ -1,7 +1,7 @@
 //! Two branches side by side: where they become one, and where one overtakes the other.
 
+use super::branch_point::BranchPoint;
 use super::follow::{Family, Track, smallest, stop};
-use super::kept::Kept;
 use super::{ContinuationProblem, Event, EventKind};
 
 /// Gaits are the same if their curves are this close \[rad\] (they are compared as polygons of 96 points) and their gains agree
@@ -11,7 +11,7 @@ const SAME_GAIN: f64 = 1e-7;
 /// How often the place of a meeting is halved.
 const MOST_HALVINGS: usize = 24;
 
-fn same<H>(a: &Kept<H>, b: &Kept<H>) -> bool {
+fn same<H>(a: &BranchPoint<H>, b: &BranchPoint<H>) -> bool {
     (a.gain() - b.gain()).abs() <= SAME_GAIN * a.gain().max(b.gain()) && a.apart(b) < SAME_PLACE
 }
 
@@ -42,7 +42,7 @@ fn meeting<F: Family>(
         let mut found = found.filter(|kept| kept.value.to_bits() == value.to_bits());
         found.next().cloned()
     };
-    let mut last: Option<[Kept<F::Held>; 2]> = None;
+    let mut last: Option<[BranchPoint<F::Held>; 2]> = None;
     for number in 0..=problem.steps {
         let value = stop(problem, number);
         let (Some(a), Some(b)) = (at(one, value), at(two, value)) else {
@@ -88,9 +88,9 @@ fn meeting<F: Family>(
 fn halved<F: Family>(
     problem: &ContinuationProblem,
     family: &F,
-    mut last: [Kept<F::Held>; 2],
+    mut last: [BranchPoint<F::Held>; 2],
     mut beyond: f64,
-    has: impl Fn(&[Kept<F::Held>; 2]) -> bool,
+    has: impl Fn(&[BranchPoint<F::Held>; 2]) -> bool,
 ) -> (f64, f64) {
     for _ in 0..MOST_HALVINGS {
         let here = last[0].value;

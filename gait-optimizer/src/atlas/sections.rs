@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, Vector2};
 use swimmer_model::Model;
 
 use crate::closed_curve::Functional;
-use crate::loops::{Gate, Loop};
+use crate::loops::{Loop, Section};
 use crate::region::Region;
 
 /// A coarse node nearer than this to a bound lies on it [rad].
@@ -15,7 +15,7 @@ const FREE_GATES: usize = 3;
 /// A loop to close.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Guess {
-    pub(crate) gate: Gate,
+    pub(crate) section: Section,
     pub(crate) from: Loop,
     /// About how long the loop is \[rad\].
     pub(crate) length: f64,
@@ -66,7 +66,7 @@ pub(crate) fn guesses(
         };
         let at = bound.onto(&shape(node));
         found.push(Guess {
-            gate: Gate {
+            section: Section {
                 at,
                 along: bound.tangent(&at),
                 bound: Some(index),
@@ -95,7 +95,7 @@ pub(crate) fn guesses(
             let ahead = shape(node + 1) - shape(node + nodes - 1);
             let ahead = ahead / ahead.norm();
             found.push(Guess {
-                gate: Gate {
+                section: Section {
                     at: shape(node),
                     along: Vector2::new(-ahead.y, ahead.x),
                     bound: None,

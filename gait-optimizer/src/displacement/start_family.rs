@@ -7,7 +7,7 @@ use swimmer_files::{ArcKind, Bounds};
 
 use swimmer_model::Model;
 
-use super::flow::{Course, Fate, Leg, Touch, along_bounds, follow, is_end_line};
+use super::flow::{Fate, Leg, Touch, TraceOptions, along_bounds, follow, is_end_line};
 use super::height::Extremal;
 use super::search::{FINE, lasting};
 use crate::momentum::{Flow, Motion, State, Track, shape};
@@ -16,7 +16,7 @@ use crate::runge_kutta::{Point, advance};
 
 /// A line of places.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Trunk {
+pub(crate) enum StartFamily {
     /// φ₁ = φ₂ = p.
     StartLine { low: f64, high: f64 },
     /// Along bounds; p is the way along them. Poses are carried along.
@@ -39,7 +39,7 @@ pub(crate) struct Stretch {
     span: [f64; 2],
 }
 
-/// A place on a trunk.
+/// A place on a family.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place {
     pub(crate) state: State,
@@ -47,9 +47,13 @@ pub(crate) struct Place {
     pub(crate) motion: Motion,
 }
 
-/// All trunks of a region.
-pub(crate) fn trunks(extremal: Extremal<'_>, bounds: &Bounds, region: &Region) -> Vec<Trunk> {
-    let mut trunks = vec![Trunk::StartLine {
+/// All families of a region.
+pub(crate) fn families(
+    extremal: Extremal<'_>,
+    bounds: &Bounds,
+    region: &Region,
+) -> Vec<StartFamily> {
+    let mut families = vec![StartFamily::StartLine {
         low: bounds.min_angle.unwrap_or(0.0),
         high: bounds.max_angle.unwrap_or(PI).min(PI),
     }];
@@ -75,25 +79,25 @@ pub(crate) fn trunks(extremal: Extremal<'_>, bounds: &Bounds, region: &Region) -
         let way = along_bounds(extremal, region, state, track, (FINE, Touch::Ends));
         let stretches = stretches(way.legs());
         if way.fate == Fate::Ended && !stretches.is_empty() {
-            trunks.push(Trunk::Bounds { stretches });
+            families.push(StartFamily::Bounds { stretches });
         }
     }
-    trunks
+    families
 }
 
-/// The trunks of quarters that touch φ₁ = −φ₂, where that is a bound: those along other bounds and on along that line from where
+/// The families of quarters that touch φ₁ = −φ₂, where that is a bound: those along other bounds and on along that line from where
 /// they meet it, and those outwards from the straight shape. Quarters leave them to go round shapes about the straight one
 /// that the other bounds do not meet, or to leave those shapes out.
-pub(crate) fn trunks_on_the_diagonal(
+pub(crate) fn families_on_the_diagonal(
     extremal: Extremal<'_>,
     region: &Region,
-    trunks: &[Trunk],
+    families: &[StartFamily],
     touch: Touch,
-) -> Vec<Trunk> {
+) -> Vec<StartFamily> {
     let Some(index) = region.bounds().position(|bound| is_end_line(&bound)) else {
         return Vec::new();
     };
-    let on_bounds = trunks.iter().filter_map(Trunk::start);
+    let on_bounds = families.iter().filter_map(StartFamily::start);
     let straight = (touch == Touch::GoesOutwards)
         .then(|| straight_shape(region, index))
         .flatten();
@@ -108,7 +112,7 @@ pub(crate) fn trunks_on_the_diagonal(
             .position(|stretch| stretch.track.index == index)?;
         stretches.truncate(touching + 1);
         let turn = turn(extremal, region, stretches.last()?)?;
-        Some(Trunk::EndLine { stretches, turn })
+        Some(StartFamily::EndLine { stretches, turn })
     });
     ways.collect()
 }
@@ -126,14 +130,14 @@ fn straight_shape(region: &Region, index: usize) -> Option<Place> {
 /// Where the multiplier of φ₁ = −φ₂ falls to zero along a stretch of that line. Its curvature has no θ component, so it is the
 /// same place for every λ₄.
 fn turn(extremal: Extremal<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
-    let course = Course {
+    let options = TraceOptions {
         control: FINE,
         touch: Touch::Ends,
         touched: true,
         began: 0.0,
     };
     let along = Motion::Along(stretch.track);
-    let way = follow(extremal, region, stretch.from, along, course);
+    let way = follow(extremal, region, stretch.from, along, options);
     match way.legs() {
         [first, next, ..] if next.motion == Motion::Singular => Some(first.to),
         _ => None,
@@ -180,7 +184,7 @@ fn stretch(leg: &Leg, p: f64) -> Option<Stretch> {
     })
 }
 
-impl Trunk {
+impl StartFamily {
     pub(crate) fn range(&self) -> [f64; 2] {
         match self {
             Self::StartLine { low, high } => [*low, *high],
@@ -196,18 +200,18 @@ impl Trunk {
         }
     }
 
-    /// Whether a quarter has touched φ₁ = −φ₂ where it leaves the trunk.
+    /// Whether a quarter has touched φ₁ = −φ₂ where it leaves the family.
     pub(crate) fn touched(&self) -> bool {
         matches!(self, Self::EndLine { .. })
     }
 
-    /// Whether the trunk begins on φ₁ = −φ₂: in the straight shape.
+    /// Whether the family begins on φ₁ = −φ₂: in the straight shape.
     pub(crate) fn begins_straight(&self) -> bool {
         let first = self.stretches().first();
         first.is_some_and(|first| is_end_line(&first.track.bound))
     }
 
-    /// The state at a place; `extremal` only carries the model. None outside the trunk.
+    /// The state at a place; `extremal` only carries the model. None outside the family.
     pub(crate) fn place(&self, extremal: Extremal<'_>, p: f64) -> Option<Place> {
         match self {
             Self::StartLine { .. } => Some(Place {

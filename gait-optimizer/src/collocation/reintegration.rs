@@ -14,7 +14,7 @@ use crate::runge_kutta::{Point, StepControl, advance};
 
 /// Errors of each element and the quarter swum again.
 #[derive(Debug, Clone)]
-pub(crate) struct Again {
+pub(crate) struct Reintegration {
     /// Of each element: the largest error at its nodes of θ \[rad\], of x over `x_f` and of E over `E_f`.
     pub(crate) errors: Vec<f64>,
     /// Of each element: least and largest P/`E_f` − 1 between the nodes. The power of an optimum is constant.
@@ -33,7 +33,7 @@ type State = [f64; 5];
 /// Places between two nodes where the power is looked at.
 const LOOKS: usize = 2;
 
-impl Again {
+impl Reintegration {
     /// Largest error of an element.
     pub(crate) fn error(&self) -> f64 {
         self.errors.iter().copied().fold(0.0, f64::max)
@@ -54,7 +54,12 @@ impl Again {
 }
 
 /// Integrates again; none where the integrator gives up.
-pub(crate) fn again(model: &Model<f64>, mesh: &Mesh, walls: &[Wall], path: &Path) -> Option<Again> {
+pub(crate) fn again(
+    model: &Model<f64>,
+    mesh: &Mesh,
+    walls: &[Wall],
+    path: &Path,
+) -> Option<Reintegration> {
     let rates: Vec<Vector2<f64>> = path.nodes.iter().map(|node| node.rate).collect();
     let collocated = path.distance_and_energy(mesh);
     let (of_x, of_energy) = (1.0 / path.final_x.abs(), 1.0 / path.final_energy);
@@ -62,7 +67,7 @@ pub(crate) fn again(model: &Model<f64>, mesh: &Mesh, walls: &[Wall], path: &Path
         tolerance: 1e-13,
         longest: 1.0,
     };
-    let mut found = Again {
+    let mut found = Reintegration {
         errors: Vec::with_capacity(mesh.elements.len()),
         power: Vec::with_capacity(mesh.elements.len()),
         overstepped: Vec::with_capacity(mesh.elements.len()),

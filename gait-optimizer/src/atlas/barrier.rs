@@ -14,7 +14,7 @@ pub(crate) const MOST: usize = 6;
 
 /// The region that a curve is kept in.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Fence {
+pub(crate) struct Barrier {
     max_angle: f64,
     /// Links with L = 1, and the clearance over L, where they may not cross.
     links: Option<(Links<f64>, f64)>,
@@ -23,7 +23,7 @@ pub(crate) struct Fence {
 /// How sharp the rounded corner is, in 1/L: its depth is ln 4 over this.
 const SHARPNESS: f64 = 400.0;
 
-impl Fence {
+impl Barrier {
     /// `links` with L = 1; without a bound on the angles curves are kept within the horizon [rad].
     pub(crate) fn new(bounds: &Bounds, links: Links<f64>, clearance: f64, horizon: f64) -> Self {
         Self {
@@ -41,7 +41,7 @@ impl Fence {
         if self.links.is_some() { MOST } else { 4 }
     }
 
-    /// All margins at a shape; entries beyond [`Fence::count`] are not meant.
+    /// All margins at a shape; entries beyond [`Barrier::count`] are not meant.
     pub(crate) fn margins(&self, phi: &Vector2<f64>) -> [Level; MOST] {
         let straight = |x: f64, y: f64| Level {
             value: self.max_angle - x * phi.x - y * phi.y,

@@ -10,7 +10,7 @@ use crate::region::{Bound, Piece, Region};
 
 /// A point of the border.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Station {
+pub(super) struct BorderPoint {
     /// Its direction from Φ = 0 \[rad\], 0 to 2π.
     pub(super) direction: f64,
     pub(super) phi: Vector2<f64>,
@@ -27,18 +27,18 @@ pub(super) struct Bounding {
 
 /// The border of a region.
 #[derive(Debug)]
-pub(super) struct Shore<'a> {
+pub(super) struct Border<'a> {
     region: &'a Region,
     /// Between directions \[rad\].
     spacing: f64,
-    /// Counter-clockwise; where the bound changes, two stations stand at the corner, one of each.
-    pub(super) stations: Vec<Station>,
+    /// Counter-clockwise; where the bound changes, two points stand at the corner, one of each.
+    pub(super) points: Vec<BorderPoint>,
 }
 
-/// Neighbouring stations farther apart than a tenth of a radian plus this many times the turn between them tell of a jump:
+/// Neighbouring points farther apart than a tenth of a radian plus this many times the turn between them tell of a jump:
 /// the border hides behind itself there.
 const JUMP: f64 = 8.0;
-/// Neighbours farther apart than this many of the spacing get stations between them.
+/// Neighbours farther apart than this many of the spacing get points between them.
 const WIDEST_GAP: f64 = 2.0;
 /// Nor do neighbours on a curved bound that leave the middle between them this far off their chord, in its length: a fiftieth
 /// of a radian apart. Round the tips the bound is as sharp as the clearance is small.
@@ -46,50 +46,50 @@ const MOST_BULGE: f64 = 0.0025;
 /// Neighbours nearer than this are left as they are \[rad\].
 const NARROWEST_GAP: f64 = 1e-4;
 
-impl<'a> Shore<'a> {
+impl<'a> Border<'a> {
     /// The border in `count` directions and all corners. None where it is not bounded in every direction, or hides behind
     /// itself.
     pub(super) fn new(region: &'a Region, count: usize) -> Option<Self> {
-        let mut shore = Self {
+        let mut border = Self {
             region,
             spacing: std::f64::consts::TAU / count as f64,
-            stations: Vec::with_capacity(count + 16),
+            points: Vec::with_capacity(count + 16),
         };
-        let step = shore.spacing;
+        let step = border.spacing;
         // Not at a corner of the square nor on an axis of symmetry.
-        let mut before = shore.at(step / 3.0)?;
-        shore.stations.push(before);
+        let mut before = border.at(step / 3.0)?;
+        border.points.push(before);
         for k in 1..=count {
             let direction = step * (k as f64 + 1.0 / 3.0);
-            let next = shore.at(direction)?;
-            shore.corners_between(&before, &next, 0);
-            let last = shore.stations.last().copied().unwrap_or(before);
-            shore.fill_between(&last, &next, 0);
+            let next = border.at(direction)?;
+            border.corners_between(&before, &next, 0);
+            let last = border.points.last().copied().unwrap_or(before);
+            border.fill_between(&last, &next, 0);
             if k < count {
-                shore.stations.push(next);
+                border.points.push(next);
             }
             before = next;
         }
-        let jumps = shore.stations.windows(2).any(|pair| match pair {
+        let jumps = border.points.windows(2).any(|pair| match pair {
             [a, b] => {
                 let turn = (b.direction - a.direction).abs();
                 (b.phi - a.phi).norm() > 0.1 + JUMP * turn
             }
             _ => false,
         });
-        (!jumps).then_some(shore)
+        (!jumps).then_some(border)
     }
 
     /// The largest |φᵢ| on the border.
     pub(super) fn reach(&self) -> f64 {
-        self.stations
+        self.points
             .iter()
-            .map(|station| station.phi.amax())
+            .map(|point| point.phi.amax())
             .fold(0.0, f64::max)
     }
 
     /// The border in one direction.
-    pub(super) fn at(&self, direction: f64) -> Option<Station> {
+    pub(super) fn at(&self, direction: f64) -> Option<BorderPoint> {
         let (sin, cos) = direction.sin_cos();
         let ray = Vector2::new(cos, sin);
         let mut nearest: Option<(f64, usize)> = None;
@@ -113,7 +113,7 @@ impl<'a> Shore<'a> {
         let (way, index) = nearest?;
         let phi = ray * way;
         let bound = self.region.bound(index)?;
-        Some(Station {
+        Some(BorderPoint {
             direction,
             phi,
             bound: Bounding {
@@ -124,8 +124,8 @@ impl<'a> Shore<'a> {
         })
     }
 
-    /// Adds stations where two with the same bound are far apart: the border runs away from the straight shape.
-    fn fill_between(&mut self, before: &Station, after: &Station, depth: usize) {
+    /// Adds points where two with the same bound are far apart: the border runs away from the straight shape.
+    fn fill_between(&mut self, before: &BorderPoint, after: &BorderPoint, depth: usize) {
         let chord = after.phi - before.phi;
         let apart = chord.norm();
         let near = apart < WIDEST_GAP * self.spacing * after.phi.norm();
@@ -144,12 +144,12 @@ impl<'a> Shore<'a> {
             return;
         }
         self.fill_between(before, &middle, depth + 1);
-        self.stations.push(middle);
+        self.points.push(middle);
         self.fill_between(&middle, after, depth + 1);
     }
 
-    /// Adds the corners between two stations with different bounds, by bisection; there may be two close together.
-    fn corners_between(&mut self, before: &Station, after: &Station, depth: usize) {
+    /// Adds the corners between two points with different bounds, by bisection; there may be two close together.
+    fn corners_between(&mut self, before: &BorderPoint, after: &BorderPoint, depth: usize) {
         if before.bound == after.bound || depth > 4 {
             return;
         }
@@ -169,8 +169,8 @@ impl<'a> Shore<'a> {
         }
         let corner = low.phi;
         self.fill_between(before, &low, 0);
-        self.stations.push(low);
-        self.stations.push(Station {
+        self.points.push(low);
+        self.points.push(BorderPoint {
             phi: corner,
             bound: high.bound,
             ..high

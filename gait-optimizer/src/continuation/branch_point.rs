@@ -13,7 +13,7 @@ pub(super) const FIGURES: usize = 4;
 
 /// A gait at a value of the parameter, with what its family needs for the next one.
 #[derive(Debug, Clone)]
-pub(super) struct Kept<H> {
+pub(super) struct BranchPoint<H> {
     pub(super) value: f64,
     pub(super) gait: OptimalGait,
     pub(super) residual: f64,
@@ -21,7 +21,7 @@ pub(super) struct Kept<H> {
     outline: Outline,
 }
 
-impl<H> Kept<H> {
+impl<H> BranchPoint<H> {
     pub(super) fn new(value: f64, gait: OptimalGait, residual: f64, held: H) -> Self {
         Self {
             value,
