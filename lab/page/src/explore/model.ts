@@ -1,6 +1,6 @@
 // What is computed of the document: each effect asks a worker, and only the newest question is answered.
 
-import { computed, effect, signal } from "@preact/signals";
+import { batch, computed, effect, signal } from "@preact/signals";
 import { Lab, Latest } from "../wasm/lab.ts";
 import type { Evidence, FoundAnswer, Mapped, Net, Swum, SwimmerAnswer, TankAnswer } from "./answers.ts";
 import { type Document, type Gait, type Optimum, activeGait, shown } from "./document.ts";
@@ -77,12 +77,21 @@ const begun = signal(false);
 const afterFirst = <T>(question: T | null): T | null =>
   begun.value || shown.value.gaits[0].kind === "optimum" ? question : null;
 
+/** Whether a search has lasted so long that what it will change is computed of what is there. */
+const overdue = signal(false);
+const PATIENCE_MS = 200;
+/** In place of a question about an optimum that will be another one in a moment: what is shown stays, and no worker takes the
+ * search's time. */
+const HELD = "";
+const isHeld = (gait: Gait | null) => gait?.kind === "optimum" && !isCurrent(gait.what) && !overdue.value;
+
 type Slot = 0 | 1;
 const at = <T>(pair: readonly [T, T], slot: Slot, value: T): readonly [T, T] =>
   slot === 0 ? [value, pair[1]] : [pair[0], value];
 
 for (const slot of [0, 1] as const) {
   const question = computed(() => {
+    if (isHeld(shown.value.gaits[slot])) return HELD;
     const gait = asked(shown.value.gaits[slot]);
     return swimmer.value && gait && JSON.stringify({ swimmer: swimmer.value.toml, gait, period: shown.value.period });
   });
@@ -110,12 +119,13 @@ for (const slot of [0, 1] as const) {
   });
   effect(() => {
     if (question.value) latest.give(question.value);
-    else {
+    else if (question.value !== HELD) {
       swum.value = at(swum.peek(), slot, null);
       motions.value = at(motions.peek(), slot, null);
     }
   });
   const tankAsked = computed(() => {
+    if (isHeld(shown.value.gaits[slot])) return HELD;
     const gait = asked(shown.value.gaits[slot]);
     const [length_m, width_m] = shown.value.tank;
     return afterFirst(swimmer.value) && gait && JSON.stringify({ swimmer: swimmer.value?.toml, gait, length_m, width_m });
@@ -126,11 +136,12 @@ for (const slot of [0, 1] as const) {
   });
   effect(() => {
     if (tankAsked.value) latestTank.give(tankAsked.value);
-    else tank.value = at(tank.peek(), slot, null);
+    else if (tankAsked.value !== HELD) tank.value = at(tank.peek(), slot, null);
   });
 }
 
 const certifyAsked = computed(() => {
+  if (isHeld(activeGait(shown.value))) return HELD;
   const gait = asked(activeGait(shown.value));
   if (!afterFirst(swimmer.value) || !swimmer.value || !gait) return null;
   const { objective } = shown.value;
@@ -207,17 +218,25 @@ const latestOptima = new Latest(async (_: number) => {
     if (!what) return;
     const of = optimumAsked(what);
     searching.value = { what, seconds: 0 };
+    const late = setTimeout(() => (overdue.value = true), PATIENCE_MS);
     const counting = setInterval(() => (searching.value = { what, seconds: (searching.peek()?.seconds ?? 0) + 1 }), 1000);
     const found = await search
       .json<FoundAnswer>("optimize", JSON.parse(of))
       .then((told) => ({ of, told }), (error: Error) => ({ of, reason: error.message }));
+    clearTimeout(late);
     clearInterval(counting);
-    searching.value = null;
-    optima.value = new Map(optima.value).set(what, found);
+    batch(() => {
+      searching.value = null;
+      optima.value = new Map(optima.value).set(what, found);
+      overdue.value = false;
+    });
   }
 });
 let warm = false;
-/** Code that has never run is slow: so the first searches are not those that a reader waits for. What they find is kept. */
+/** After what is shown, these bounds: a search along a bound has code of its own. */
+const WARM_BOUNDS = [2, 2.4];
+/** Browsers compile with care only what has run for a while: so the first searches are not those that a reader waits for. What they
+ * find of the swimmer that is shown is kept; whoever asks meanwhile waits for one of them at most. */
 async function warmUp(): Promise<void> {
   if (warm) return;
   warm = true;
@@ -225,6 +244,7 @@ async function warmUp(): Promise<void> {
     const of = optimumAsked(what);
     const told = await search.json<FoundAnswer>("optimize", JSON.parse(of)).catch(() => null);
     if (told && !optima.peek().has(what)) optima.value = new Map(optima.peek()).set(what, { of, told });
+    for (const max_angle of WARM_BOUNDS) await search.ask("optimize", { ...JSON.parse(of), bounds: { max_angle } }).catch(() => null);
   }
 }
 

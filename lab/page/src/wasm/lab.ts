@@ -1,6 +1,6 @@
 // The page's side of the numerics: questions to a worker, answers as promises.
 
-import { signal } from "@preact/signals";
+import { signal, untracked } from "@preact/signals";
 import source from "worker:./worker.ts";
 import { type ModuleName, startWorker } from "./embedded.ts";
 import type { Told } from "./worker.ts";
@@ -90,7 +90,8 @@ export class Latest<Q> {
 
   give(question: Q): void {
     this.#next = question;
-    if (!this.#running) void this.#run();
+    // What performing looks at is nothing that who gives, an effect, should be run again for.
+    if (!this.#running) void untracked(() => this.#run());
   }
 
   async #run(): Promise<void> {
