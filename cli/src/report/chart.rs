@@ -106,6 +106,14 @@ impl Chart {
         Ok(finished(&text, size))
     }
 
+    /// Room for the numbers beside the y axis and its name \[px\].
+    fn label_width(&self, y_range: &Range<f64>) -> i32 {
+        let format = label_format(y_range, 6);
+        let longest = [y_range.start, y_range.end].map(|value| format(&value).chars().count());
+        let beyond_four = longest.into_iter().max().unwrap_or(0).saturating_sub(4);
+        64 + 8 * i32::try_from(beyond_four).unwrap_or(0)
+    }
+
     #[allow(clippy::too_many_lines)] // one chart, part after part
     fn draw(&self, whole: &Area<'_>) -> Result<(), String> {
         whole.fill(&WHITE).map_err(|error| said(&error))?;
@@ -115,16 +123,18 @@ impl Chart {
             .map(|(name, color)| (name.as_str(), *color));
         legend(whole, (64, self.size.1), named)?;
         let (area, _) = whole.split_vertically(self.size.1 * SCALE);
-        let label_width = 64 * SCALE;
         let label_height = 42 * SCALE;
         let (top, right) = (self.top() * SCALE, 24 * SCALE);
+        let inside = |label_width: i32| {
+            (
+                self.size.0 * SCALE - label_width - right,
+                self.size.1 * SCALE - label_height - top,
+            )
+        };
+        let label_width = self.label_width(&self.ranges(inside(64 * SCALE)).1) * SCALE;
         area.draw_text(&self.title, &letters(TITLE, INK), (label_width, 10 * SCALE))
             .map_err(|error| said(&error))?;
-        let inside = (
-            self.size.0 * SCALE - label_width - right,
-            self.size.1 * SCALE - label_height - top,
-        );
-        let (x_range, y_range) = self.ranges(inside);
+        let (x_range, y_range) = self.ranges(inside(label_width));
         let x_label = label_format(&x_range, 7);
         let mut chart = ChartBuilder::on(&area)
             .margin_top(top)
