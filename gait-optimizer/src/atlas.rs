@@ -23,10 +23,11 @@ mod sections;
 mod starts;
 
 use swimmer_files::{Bounds, Objective};
-use swimmer_model::{InvalidSwimmer, Model, Swimmer};
+use swimmer_model::{Model, Swimmer};
 
 use crate::extremal::Walls;
 use crate::immobile::refuse_immobile;
+use crate::problem::{GaitClass, InvalidProblem, validated};
 use crate::region::Region;
 use crate::{Immobile, OptimalGait};
 
@@ -80,7 +81,7 @@ impl AtlasProblem {
         }
     }
 
-    fn validate(&self) -> Result<(), AtlasError> {
+    fn validated(&self) -> Result<Model<f64>, AtlasError> {
         if !matches!(
             self.objective,
             Objective::Displacement | Objective::Efficiency
@@ -89,28 +90,13 @@ impl AtlasProblem {
                 objective: self.objective,
             });
         }
-        if self.bounds.sector || self.bounds.min_angle.is_some() {
-            return Err(AtlasError::QuarterBound);
-        }
-        if let Some(max) = self.bounds.max_angle
-            && !(max > 0.0 && max <= Region::HORIZON)
-        {
-            return Err(AtlasError::MaxAngle { value: max });
-        }
-        let (clearance, middle) = (self.bounds.clearance, self.swimmer.links.middle);
-        if !(clearance >= 0.0 && clearance < middle) {
-            return Err(AtlasError::Clearance {
-                value: clearance,
-                middle,
-            });
-        }
         if !(1..=100_000).contains(&self.starts) || !(1..=24).contains(&self.order) {
             return Err(AtlasError::Size {
                 starts: self.starts,
                 order: self.order,
             });
         }
-        Ok(())
+        Ok(validated(&self.swimmer, &self.bounds, GaitClass::Closed)?)
     }
 }
 
@@ -147,9 +133,9 @@ pub struct Atlas {
 /// Why there is no atlas.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AtlasError {
-    /// The swimmer's parameters are out of range.
-    #[error("cannot make an atlas for this swimmer: {0}")]
-    Swimmer(#[from] InvalidSwimmer),
+    /// It makes no sense.
+    #[error(transparent)]
+    Problem(#[from] InvalidProblem),
     /// Gaits do not move it.
     #[error(transparent)]
     Immobile(#[from] Immobile),
@@ -160,28 +146,6 @@ pub enum AtlasError {
     Objective {
         /// Asked for.
         objective: Objective,
-    },
-    /// A bound on a quarter gait.
-    #[error(
-        "an atlas holds closed curves of any symmetry, so bounds on a quarter (a least angle, the sector) mean nothing; \
-         leave them out"
-    )]
-    QuarterBound,
-    /// The largest angle makes no sense.
-    #[error(
-        "max_angle = {value} rad: an upper bound must be above 0 and at most one turn, 6.283 rad"
-    )]
-    MaxAngle {
-        /// Asked for \[rad\].
-        value: f64,
-    },
-    /// The clearance makes no sense.
-    #[error("a clearance of {value} m: give 0 or more, below the middle link's {middle} m")]
-    Clearance {
-        /// Asked for \[m\].
-        value: f64,
-        /// l₀ \[m\].
-        middle: f64,
     },
     /// Too many or too few starts, or too high an order.
     #[error("{starts} starts of order {order}: give 1 to 100000 starts and an order of 1 to 24")]
@@ -236,8 +200,7 @@ pub fn atlas(problem: &AtlasProblem) -> Result<Atlas, AtlasError> {
 /// # Ok::<(), gait_optimizer::AtlasError>(())
 /// ```
 pub fn atlas_watched(problem: &AtlasProblem, watch: Watch<'_>) -> Result<Atlas, AtlasError> {
-    problem.validate()?;
-    let model = Model::new(&problem.swimmer.of_unit_length())?;
+    let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
     Ok(match problem.objective {
         Objective::Efficiency => pipeline::run(

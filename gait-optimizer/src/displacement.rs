@@ -16,11 +16,12 @@ pub use error::{DisplacementError, Fates};
 pub use near::displacement_near;
 use search::{Candidate, SCAN_POINTS};
 use swimmer_files::{Bounds, Objective};
-use swimmer_model::{Links, Model, Swimmer};
+use swimmer_model::{Model, Swimmer};
 
 use crate::cycle::QuarterTrace;
 use crate::immobile::refuse_immobile;
 use crate::optimal_gait::Solution;
+use crate::problem::{GaitClass, InvalidProblem, validated};
 use crate::{Certificate, OptimalGait};
 
 /// Which way a counter-clockwise gait shall carry the swimmer.
@@ -114,51 +115,8 @@ impl DisplacementProblem {
         }
     }
 
-    fn validate(&self) -> Result<(), DisplacementError> {
-        let Links { front, back, .. } = self.swimmer.links;
-        if (front - back).abs() > 1e-12 * front.abs() {
-            return Err(DisplacementError::Asymmetric { front, back });
-        }
-        let bound = |name, value, problem| {
-            Err(DisplacementError::Bound {
-                name,
-                value,
-                problem,
-            })
-        };
-        if let Some(max) = self.bounds.max_angle
-            && !(max > 0.0 && max <= Region::HORIZON)
-        {
-            return bound(
-                "max_angle",
-                max,
-                "an upper bound must be above 0 and at most one turn, 6.283 rad",
-            );
-        }
-        if let Some(min) = self.bounds.min_angle {
-            if !(min > 0.0 && min < Region::HORIZON) {
-                return bound(
-                    "min_angle",
-                    min,
-                    "a lower bound must be above 0 and below one turn",
-                );
-            }
-            if self.bounds.max_angle.is_some_and(|max| min >= max) {
-                return bound(
-                    "min_angle",
-                    min,
-                    "the lower bound must be below the upper one",
-                );
-            }
-        }
-        let Bounds { clearance, .. } = self.bounds;
-        if !(clearance >= 0.0 && clearance < self.swimmer.links.middle) {
-            return Err(DisplacementError::Clearance {
-                value: clearance,
-                middle: self.swimmer.links.middle,
-            });
-        }
-        Ok(())
+    fn validated(&self) -> Result<Model<f64>, InvalidProblem> {
+        validated(&self.swimmer, &self.bounds, GaitClass::Quarters)
     }
 }
 
@@ -190,8 +148,7 @@ impl DisplacementProblem {
 /// # Ok::<(), gait_optimizer::DisplacementError>(())
 /// ```
 pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, DisplacementError> {
-    problem.validate()?;
-    let model = Model::new(&problem.swimmer.of_unit_length())?;
+    let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
     let links = &problem.swimmer.links;
     let region = Region::new(&problem.bounds, links);
@@ -224,8 +181,7 @@ const OUTDONE: f64 = 1e-6;
 /// Every gait that the search finds, farthest first: also those that fail their certificate, and those that touch their own
 /// images where [`displacement()`] would look for them.
 pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, DisplacementError> {
-    problem.validate()?;
-    let model = Model::new(&problem.swimmer.of_unit_length())?;
+    let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
     let of = |bounds: &Bounds| {
         let region = Region::new(bounds, &problem.swimmer.links);

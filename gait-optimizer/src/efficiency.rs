@@ -14,13 +14,14 @@ mod near;
 use std::fmt;
 
 use swimmer_files::Bounds;
-use swimmer_model::{Links, Model, Swimmer};
+use swimmer_model::{Model, Swimmer};
 
 use crate::OptimalGait;
 use crate::certificate::{crossings, simple_and_turning_once};
 use crate::extremal::gait::{Order, gait};
 use crate::extremal::{Extremal, Unpolished, Walls};
 use crate::immobile::refuse_immobile;
+use crate::problem::{GaitClass, InvalidProblem, validated};
 pub use bounded::Reached;
 use by_collocation::by_collocation;
 use chain::Found;
@@ -132,30 +133,8 @@ impl EfficiencyProblem {
         }
     }
 
-    fn validate(&self) -> Result<(), EfficiencyError> {
-        let Links { front, back, .. } = self.swimmer.links;
-        if (front - back).abs() > 1e-12 * front.abs() {
-            return Err(EfficiencyError::Asymmetric { front, back });
-        }
-        let unknown = |name| Err(EfficiencyError::UnknownBound { name });
-        if self.bounds.min_angle.is_some() {
-            return unknown("min_angle");
-        }
-        if self.bounds.sector {
-            return unknown("sector");
-        }
-        let (value, middle) = (self.bounds.clearance, self.swimmer.links.middle);
-        if !(value >= 0.0 && value < middle) {
-            return Err(EfficiencyError::Clearance { value, middle });
-        }
-        match self.bounds.max_angle {
-            Some(value) if !(value > 0.0 && value.is_finite()) => Err(EfficiencyError::Bound {
-                name: "max_angle",
-                value,
-                problem: "an upper bound must be a finite angle above 0",
-            }),
-            _ => Ok(()),
-        }
+    fn validated(&self) -> Result<Model<f64>, InvalidProblem> {
+        validated(&self.swimmer, &self.bounds, GaitClass::Symmetric)
     }
 }
 
@@ -177,8 +156,7 @@ pub struct EfficiencyFigures {
 /// # Errors
 /// [`EfficiencyError`]: what is wrong with the problem, or why the branch has no optimum.
 pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, EfficiencyError> {
-    problem.validate()?;
-    let model = Model::new(&problem.swimmer.of_unit_length())?;
+    let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
     let mut best: Option<(OptimalGait, Extremal)> = None;
     let mut refused: Option<EfficiencyError> = None;

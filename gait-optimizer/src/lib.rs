@@ -9,6 +9,7 @@
 //!
 //! | module | what lives there |
 //! |---|---|
+//! | `problem` | what every problem has to be before anything is searched |
 //! | `displacement` | the problem, the search for the quarter gait, the result |
 //! | `momentum` | the multipliers as a momentum that the body carries, and the height: what a push of the curve gains; the flow of an arc |
 //! | `displacement::height` | the paper's switching function F of a quarter, what the costate equations need |
@@ -78,6 +79,7 @@ mod loops;
 mod momentum;
 mod optimal_gait;
 mod parallel;
+mod problem;
 mod region;
 mod robust;
 mod runge_kutta;
@@ -109,6 +111,7 @@ pub use height_map::{
 };
 pub use immobile::Immobile;
 pub use optimal_gait::{Arc, OptimalGait};
+pub use problem::InvalidProblem;
 pub use robust::{
     Over, RobustError, RobustGait, Uncertainty, Values, robust_displacement, robust_efficiency,
 };

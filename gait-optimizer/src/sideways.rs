@@ -27,6 +27,7 @@ use crate::certify::samples_suffice;
 use crate::cycle::Cycle;
 use crate::loops::LoopTrace;
 use crate::optimal_gait::Solution;
+use crate::problem::{GaitClass, validated};
 use crate::region::Region;
 use crate::{Arc, AtlasProblem, OptimalGait, Watch, atlas_watched};
 
@@ -189,7 +190,8 @@ fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sid
 /// samples alone.
 fn from_this_end(problem: &SidewaysProblem, watch: Watch<'_>) -> Result<Sideways, SidewaysError> {
     let found = sampled_as_asked(problem, watch)?;
-    let model = Model::new(&problem.swimmer.of_unit_length()).map_err(crate::AtlasError::from)?;
+    let model = validated(&problem.swimmer, &problem.bounds, GaitClass::Closed)
+        .map_err(crate::AtlasError::from)?;
     let mut finer = *problem;
     let mut sampled = found.clone();
     while !samples_suffice(&model, &sampled.gait) {
@@ -217,7 +219,8 @@ fn sampled_as_asked(
         ..AtlasProblem::new(problem.swimmer, Objective::Displacement)
     };
     let loops = atlas_watched(&asked, watch)?;
-    let model = Model::new(&problem.swimmer.of_unit_length()).map_err(crate::AtlasError::from)?;
+    let model = validated(&problem.swimmer, &problem.bounds, GaitClass::Closed)
+        .map_err(crate::AtlasError::from)?;
     let region = Region::new(&problem.bounds, &problem.swimmer.links);
     let mut found: Vec<Sideways> = Vec::new();
     for optimum in &loops.optima {

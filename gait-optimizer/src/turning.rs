@@ -39,6 +39,7 @@ use crate::cycle::Cycle;
 use crate::height_map::legendre::gauss;
 use crate::height_map::{Level, LevelSearch, level_seeds};
 use crate::optimal_gait::{Arc, Solution};
+use crate::problem::{GaitClass, validated};
 use crate::region::Region;
 use border::Border;
 use piece::{Piece, Round};
@@ -84,8 +85,11 @@ const STEPS: f64 = 240.0;
 /// # Ok::<(), gait_optimizer::TurningError>(())
 /// ```
 pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
-    let model = Model::new(&problem.swimmer.of_unit_length())?;
-    let bounds = validated(problem)?;
+    let mut bounds = problem.bounds;
+    let model = validated(&problem.swimmer, &bounds, GaitClass::Closed)?;
+    if bounds.max_angle.is_none() && !bounds.no_overlap {
+        bounds.max_angle = Some(std::f64::consts::PI);
+    }
     let region = Region::new(&bounds, &problem.swimmer.links);
     let border = Border::new(&region, DIRECTIONS).ok_or(TurningError::Border)?;
     let reach = border.reach();
@@ -155,30 +159,6 @@ fn no_gait(pieces: &[Piece]) -> TurningError {
         near: first.map_or([f64::NAN; 2], |phi| (*phi).into()),
         what: "it is too small",
     }
-}
-
-/// The bounds that the search really has.
-fn validated(problem: &TurningProblem) -> Result<Bounds, TurningError> {
-    let mut bounds = problem.bounds;
-    if bounds.min_angle.is_some() || bounds.sector {
-        return Err(TurningError::QuarterBounds);
-    }
-    if let Some(max) = bounds.max_angle
-        && !(max > 0.0 && max <= Region::HORIZON)
-    {
-        return Err(TurningError::MaxAngle { value: max });
-    }
-    let middle = problem.swimmer.links.middle;
-    if bounds.no_overlap && !(0.0..middle).contains(&bounds.clearance) {
-        return Err(TurningError::Clearance {
-            value: bounds.clearance,
-            middle,
-        });
-    }
-    if bounds.max_angle.is_none() && !bounds.no_overlap {
-        bounds.max_angle = Some(std::f64::consts::PI);
-    }
-    Ok(bounds)
 }
 
 /// The pieces in order from where the curve first meets φ₁ = φ₂ > 0; from where they are where it does not.

@@ -5,7 +5,9 @@ mod plane;
 mod swimmers;
 
 use direct::Direct;
-use gait_optimizer::{ArcKind, DisplacementError, DisplacementProblem, OptimalGait, displacement};
+use gait_optimizer::{
+    ArcKind, DisplacementError, DisplacementProblem, InvalidProblem, OptimalGait, displacement,
+};
 use swimmer_files::{Bounds, GaitFile};
 use swimmer_model::{Links, Swimmer, TangentialDrag, Tolerance, swim};
 use swimmers::{Case, best_simple_displacement};
@@ -229,17 +231,17 @@ fn impossible_problems_are_named() {
     let ask = |problem: DisplacementProblem| displacement(&problem).unwrap_err();
     assert!(matches!(
         ask(DisplacementProblem::new(lopsided)),
-        DisplacementError::Asymmetric { .. }
+        DisplacementError::Problem(InvalidProblem::Asymmetric { .. })
     ));
     for max in [0.0, -1.0, f64::NAN, 7.0] {
         let error = ask(DisplacementProblem::new(Swimmer::purcell()).with_max_angle(max));
         assert!(
             matches!(
                 error,
-                DisplacementError::Bound {
+                DisplacementError::Problem(InvalidProblem::Bound {
                     name: "max_angle",
                     ..
-                }
+                })
             ),
             "{max}"
         );
@@ -250,7 +252,7 @@ fn impossible_problems_are_named() {
     };
     assert!(matches!(
         ask(DisplacementProblem::new(broken)),
-        DisplacementError::Swimmer(_)
+        DisplacementError::Problem(InvalidProblem::Swimmer(_))
     ));
 }
 

@@ -3,7 +3,8 @@
 mod paper_shooting;
 
 use gait_optimizer::{
-    Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, Method, OptimalGait, efficiency,
+    Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, InvalidProblem, Method,
+    OptimalGait, efficiency,
 };
 use nalgebra::Vector4;
 use swimmer_files::{AnyGait, ArcKind, GaitFile};
@@ -187,13 +188,13 @@ fn problems_that_make_no_sense_are_refused() {
     problem.bounds.max_angle = Some(f64::NAN);
     assert!(matches!(
         efficiency(&problem),
-        Err(EfficiencyError::Bound { .. })
+        Err(EfficiencyError::Problem(InvalidProblem::Bound { .. }))
     ));
     problem.bounds.max_angle = None;
     problem.bounds.clearance = -0.1;
     assert!(matches!(
         efficiency(&problem),
-        Err(EfficiencyError::Clearance { .. })
+        Err(EfficiencyError::Problem(InvalidProblem::Clearance { .. }))
     ));
     problem.bounds.clearance = 0.0;
     problem.bounds.sector = true;

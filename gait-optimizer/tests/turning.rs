@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use gait_optimizer::{Bounds, Objective, Turning, TurningError, TurningProblem, certify, turning};
+use gait_optimizer::{
+    Bounds, InvalidProblem, Objective, Turning, TurningError, TurningProblem, certify, turning,
+};
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::{Links, Model, Swimmer, TangentialDrag, Tolerance, swim};
@@ -155,13 +157,13 @@ fn nonsense_is_refused() {
     for value in [0.0, -1.0, f64::NAN, 7.0, f64::INFINITY] {
         assert!(matches!(
             refused(within(value)),
-            TurningError::MaxAngle { .. }
+            TurningError::Problem(InvalidProblem::Bound { .. })
         ));
     }
     for value in [-0.1, f64::NAN, 0.08, f64::INFINITY] {
         assert!(matches!(
             refused(apart(2.0, value)),
-            TurningError::Clearance { .. }
+            TurningError::Problem(InvalidProblem::Clearance { .. })
         ));
     }
     for bounds in [
@@ -174,7 +176,10 @@ fn nonsense_is_refused() {
             ..within(2.0)
         },
     ] {
-        assert!(matches!(refused(bounds), TurningError::QuarterBounds));
+        assert!(matches!(
+            refused(bounds),
+            TurningError::Problem(InvalidProblem::QuarterBound { .. })
+        ));
     }
     let broken = Swimmer {
         chi: f64::NAN,
@@ -184,7 +189,10 @@ fn nonsense_is_refused() {
         swimmer: broken,
         bounds: within(2.0),
     };
-    assert!(matches!(turning(&problem), Err(TurningError::Swimmer(_))));
+    assert!(matches!(
+        turning(&problem),
+        Err(TurningError::Problem(InvalidProblem::Swimmer(_)))
+    ));
 }
 
 /// A number between 0 and 1 that fills the interval evenly with growing `index` (van der Corput).

@@ -29,12 +29,9 @@ pub struct Atlas {
 }
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AtlasError {
-    Swimmer(InvalidSwimmer),
+    Problem(InvalidProblem),
     Immobile(Immobile),
     Objective { objective: Objective },
-    QuarterBound,
-    MaxAngle { value: f64 },
-    Clearance { value: f64, middle: f64 },
     Size { starts: usize, order: usize },
 }
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -158,11 +155,8 @@ pub struct Convergence {
 }
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DisplacementError {
-    Swimmer(InvalidSwimmer),
+    Problem(InvalidProblem),
     Immobile(Immobile),
-    Asymmetric { front: f64, back: f64 },
-    Bound { name: &'static str, value: f64, problem: &'static str },
-    Clearance { value: f64, middle: f64 },
     NoUnboundedOptimum { fates: Fates },
     NoOptimum { heading: Heading, fates: Fates, outdone: Option<f64> },
     NotCertified { displacement_over_length: f64, failed: String },
@@ -185,12 +179,8 @@ impl DisplacementProblem {
 }
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EfficiencyError {
-    Swimmer(InvalidSwimmer),
+    Problem(InvalidProblem),
     Immobile(Immobile),
-    Asymmetric { front: f64, back: f64 },
-    Bound { name: &'static str, value: f64, problem: &'static str },
-    Clearance { value: f64, middle: f64 },
-    UnknownBound { name: &'static str },
     BranchEnds { branch: Branch, reached: Reached, reason: String },
     NotFollowed { branch: Branch, reason: String },
     NoStart { branch: Branch, best: f64 },
@@ -352,6 +342,14 @@ pub enum HeightMapError {
 pub struct Immobile {
     pub chi: f64,
     pub contrast: f64,
+}
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum InvalidProblem {
+    Swimmer(InvalidSwimmer),
+    Asymmetric { front: f64, back: f64 },
+    Bound { name: &'static str, value: f64, problem: &'static str },
+    Clearance { value: f64, middle: f64 },
+    QuarterBound { name: &'static str },
 }
 #[derive(Debug, Clone, PartialEq)]
 pub struct LevelCurve {
@@ -583,16 +581,13 @@ pub struct Turning {
 }
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TurningError {
-    Swimmer(InvalidSwimmer),
-    MaxAngle { value: f64 },
-    Clearance { value: f64, middle: f64 },
-    QuarterBounds,
+    Problem(InvalidProblem),
     Border,
     Lost { near: [f64; 2], what: &'static str },
     NoRegion,
     NotCertified { rotation: f64, failed: String },
 }
-impl From<Lost> for TurningError {}
+impl From<TraceError> for TurningError {}
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TurningProblem {
     pub swimmer: Swimmer<f64>,

@@ -2,7 +2,7 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, Objective};
 use swimmer_model::{Links, Model, Swimmer, TangentialDrag, Tolerance, swim, trajectory};
 
-use super::{AtlasError, AtlasProblem, atlas};
+use super::{AtlasError, AtlasProblem, InvalidProblem, atlas};
 use crate::OptimalGait;
 use crate::certify::around;
 
@@ -198,12 +198,16 @@ fn senseless_problems_are_refused() {
         sector: true,
         ..Bounds::default()
     };
-    assert_eq!(with(sector), Err(AtlasError::QuarterBound));
+    let quarter = InvalidProblem::QuarterBound { name: "sector" };
+    assert_eq!(with(sector), Err(quarter.into()));
     let max = Bounds {
         max_angle: Some(-1.0),
         ..Bounds::default()
     };
-    assert!(matches!(with(max), Err(AtlasError::MaxAngle { .. })));
+    assert!(matches!(
+        with(max),
+        Err(AtlasError::Problem(InvalidProblem::Bound { .. }))
+    ));
     let none = atlas(&AtlasProblem { starts: 0, ..good });
     assert!(matches!(none, Err(AtlasError::Size { .. })));
 }

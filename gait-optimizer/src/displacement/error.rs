@@ -2,10 +2,8 @@
 
 use std::fmt;
 
-use swimmer_model::InvalidSwimmer;
-
 use super::Heading;
-use crate::Immobile;
+use crate::{Immobile, InvalidProblem};
 
 /// What became of the extremals that the search sent out.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -50,43 +48,12 @@ impl fmt::Display for Fates {
 /// Why there is no displacement gait to return.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DisplacementError {
-    /// The swimmer's parameters are out of range.
-    #[error("cannot optimise this swimmer: {0}")]
-    Swimmer(#[from] InvalidSwimmer),
+    /// It makes no sense.
+    #[error(transparent)]
+    Problem(#[from] InvalidProblem),
     /// Gaits do not move it.
     #[error(transparent)]
     Immobile(#[from] Immobile),
-    /// The quarter gait rests on front and back links being alike.
-    #[error(
-        "the side links differ (front {front} m, back {back} m): a gait with the paper's two symmetries needs them alike"
-    )]
-    Asymmetric {
-        /// l₁ \[m\].
-        front: f64,
-        /// l₂ \[m\].
-        back: f64,
-    },
-    /// A bound makes no sense.
-    #[error("{name} = {value} rad: {problem}")]
-    Bound {
-        /// Which.
-        name: &'static str,
-        /// Its value \[rad\].
-        value: f64,
-        /// What is wrong.
-        problem: &'static str,
-    },
-    /// A clearance that no shape can have.
-    #[error(
-        "clearance = {value} m: the side links hang {middle} m apart on the middle link, so their clearance must be below \
-         that and not below 0"
-    )]
-    Clearance {
-        /// Its value \[m\].
-        value: f64,
-        /// l₀ \[m\].
-        middle: f64,
-    },
     /// Without bounds on the angles there is no optimum.
     #[error(
         "this swimmer has no gait of most displacement without a bound on the joint angles; give one, as --max-angle 2.8: a \

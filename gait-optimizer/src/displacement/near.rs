@@ -1,7 +1,6 @@
 //! The gait of a design from the gait of a neighbouring one: the same arcs, their place found again, no search.
 
 use swimmer_files::ArcKind;
-use swimmer_model::Model;
 
 use super::best::finely_sampled;
 use super::flow::Touch;
@@ -35,12 +34,11 @@ pub fn displacement_near(
     problem: &DisplacementProblem,
     neighbour: &OptimalGait,
 ) -> Option<OptimalGait> {
-    problem.validate().ok()?;
+    let model = problem.validated().ok()?;
     // Gaits that touch their own images have the sector among their bounds.
     if !neighbour.symmetric || neighbour.bounds.sector != problem.bounds.sector {
         return None;
     }
-    let model = Model::new(&problem.swimmer.of_unit_length()).ok()?;
     let region = Region::new(&problem.bounds, &problem.swimmer.links);
     let search = Search {
         model: &model,

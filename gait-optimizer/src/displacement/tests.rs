@@ -1,6 +1,7 @@
 use super::*;
 use crate::certify;
 use swimmer_files::ArcKind;
+use swimmer_model::Links;
 use swimmer_model::TangentialDrag;
 
 /// Three links without a sphere.

@@ -1,55 +1,17 @@
 //! Why there is no efficiency gait to return.
 
-use swimmer_model::InvalidSwimmer;
-
 use super::{Branch, Reached};
-use crate::Immobile;
+use crate::{Immobile, InvalidProblem};
 
 /// Why there is no efficiency gait to return.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EfficiencyError {
-    /// The swimmer's parameters are out of range.
-    #[error("cannot optimise this swimmer: {0}")]
-    Swimmer(#[from] InvalidSwimmer),
+    /// It makes no sense.
+    #[error(transparent)]
+    Problem(#[from] InvalidProblem),
     /// Gaits do not move it.
     #[error(transparent)]
     Immobile(#[from] Immobile),
-    /// The quarter gait rests on front and back links being alike.
-    #[error(
-        "the side links differ (front {front} m, back {back} m): a gait with the paper's two symmetries needs them alike"
-    )]
-    Asymmetric {
-        /// l₁ \[m\].
-        front: f64,
-        /// l₂ \[m\].
-        back: f64,
-    },
-    /// A bound makes no sense.
-    #[error("{name} = {value} rad: {problem}")]
-    Bound {
-        /// Which.
-        name: &'static str,
-        /// Its value \[rad\].
-        value: f64,
-        /// What is wrong.
-        problem: &'static str,
-    },
-    /// A clearance that makes no sense.
-    #[error(
-        "clearance = {value} m: it must be 0 or above, and below the middle link's length, {middle} m"
-    )]
-    Clearance {
-        /// The clearance \[m\].
-        value: f64,
-        /// l₀ \[m\].
-        middle: f64,
-    },
-    /// A bound that this objective does not know.
-    #[error("efficiency gaits under the bound `{name}` are not computed; leave it out")]
-    UnknownBound {
-        /// Which.
-        name: &'static str,
-    },
     /// The free gait breaks a bound, and cannot be followed all the way to where it obeys it.
     #[error("the {branch} gait, followed as the bounds tighten, ends at {reached}: {reason}")]
     BranchEnds {
@@ -215,13 +177,6 @@ impl EfficiencyError {
 
     /// Whether the problem itself makes no sense, rather than having no solution.
     pub fn is_bad_input(&self) -> bool {
-        matches!(
-            self,
-            Self::Swimmer(_)
-                | Self::Asymmetric { .. }
-                | Self::Bound { .. }
-                | Self::Clearance { .. }
-                | Self::UnknownBound { .. }
-        )
+        matches!(self, Self::Problem(_))
     }
 }

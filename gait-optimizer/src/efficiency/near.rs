@@ -1,7 +1,5 @@
 //! The gait of a design from the gait of a neighbouring one: its arcs shot again, no series and no path of bounds.
 
-use swimmer_model::Model;
-
 use super::chain::Found;
 use super::{EfficiencyProblem, Method, finished};
 use crate::OptimalGait;
@@ -50,11 +48,10 @@ impl EfficiencySeed {
     /// [`efficiency()`](super::efficiency()). None where the arcs lead to no gait of the branch, or to one that fails its
     /// certificate.
     pub fn near(&self, problem: &EfficiencyProblem) -> Option<Self> {
-        problem.validate().ok()?;
+        let model = problem.validated().ok()?;
         if !self.gait.symmetric {
             return None;
         }
-        let model = Model::new(&problem.swimmer.of_unit_length()).ok()?;
         let walls = Walls::new(&problem.bounds, &problem.swimmer.links);
         let extremal = match &self.extremal {
             Some(Extremal { solved, class, .. }) => {

@@ -2,7 +2,7 @@ use swimmer_files::{Bounds, Objective};
 use swimmer_model::{Model, Swimmer, Tolerance, swim};
 
 use super::{SidewaysError, SidewaysProblem, sideways};
-use crate::AtlasError;
+use crate::InvalidProblem;
 
 fn problem(swimmer: Swimmer<f64>) -> SidewaysProblem {
     SidewaysProblem {
@@ -78,6 +78,6 @@ fn front_and_back_are_names() {
 fn senseless_problems_are_refused() {
     let mut bad = problem(Swimmer::purcell());
     bad.bounds.sector = true;
-    let quarter = SidewaysError::Problem(AtlasError::QuarterBound);
+    let quarter = SidewaysError::Problem(InvalidProblem::QuarterBound { name: "sector" }.into());
     assert_eq!(sideways(&bad), Err(quarter));
 }

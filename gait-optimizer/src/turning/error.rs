@@ -1,35 +1,13 @@
 //! Why there is no turning gait to return.
 
-use swimmer_model::InvalidSwimmer;
+use crate::InvalidProblem;
 
 /// Why there is no turning gait to return.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TurningError {
-    /// The swimmer's parameters are out of range.
-    #[error("cannot optimise this swimmer: {0}")]
-    Swimmer(#[from] InvalidSwimmer),
-    /// The upper bound makes no sense.
-    #[error(
-        "max_angle = {value} rad: an upper bound must be above 0 and at most one turn, 6.283 rad"
-    )]
-    MaxAngle {
-        /// Its value \[rad\].
-        value: f64,
-    },
-    /// The clearance makes no sense.
-    #[error("clearance = {value} m: give 0 or more, and less than the middle link, {middle} m")]
-    Clearance {
-        /// Its value \[m\].
-        value: f64,
-        /// l₀ \[m\].
-        middle: f64,
-    },
-    /// Lower bounds and the sector only make sense for quarters.
-    #[error(
-        "a lower bound and the sector belong to gaits made of four like quarters; a turning gait takes an upper bound and \
-         links kept from crossing"
-    )]
-    QuarterBounds,
+    /// It makes no sense.
+    #[error(transparent)]
+    Problem(#[from] InvalidProblem),
     /// The border of the region cannot be seen from the straight shape.
     #[error(
         "the shapes that these bounds allow are hidden from the straight shape in part; give a tighter upper bound"

@@ -160,10 +160,7 @@ impl From<DisplacementError> for Failure {
     /// A problem that makes no sense is bad input; one without an optimum was tried.
     fn from(error: DisplacementError) -> Self {
         match error {
-            DisplacementError::Swimmer(_)
-            | DisplacementError::Asymmetric { .. }
-            | DisplacementError::Bound { .. }
-            | DisplacementError::Clearance { .. } => Self::bad_input(&error),
+            DisplacementError::Problem(_) => Self::bad_input(&error),
             _ => Self::tried_with_details(&error, error.details()),
         }
     }

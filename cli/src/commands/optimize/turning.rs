@@ -133,10 +133,7 @@ impl From<TurningError> for Failure {
     /// A problem that makes no sense is bad input; one without a gait was tried.
     fn from(error: TurningError) -> Self {
         match error {
-            TurningError::Swimmer(_)
-            | TurningError::MaxAngle { .. }
-            | TurningError::Clearance { .. }
-            | TurningError::QuarterBounds => Self::bad_input(&error),
+            TurningError::Problem(_) => Self::bad_input(&error),
             _ => Self::tried(&error),
         }
     }
