@@ -6,6 +6,8 @@ use gait_optimizer::{Bounds, Parameter};
 use serde::{Deserialize, Serialize};
 use swimmer_model::{Swimmer, TangentialDrag};
 
+use crate::Aim;
+
 /// A number of a design that an axis changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Field {
@@ -57,6 +59,9 @@ pub enum Field {
     /// Largest rate of both servos \[rad/s\].
     #[serde(rename = "max_rate")]
     MaxRate,
+    /// What the gaits are best at: an index into [`Aim::ALL`].
+    #[serde(rename = "objective")]
+    Objective,
 }
 
 /// A design: all that its best gait depends on.
@@ -66,11 +71,13 @@ pub(crate) struct Design {
     pub(crate) bounds: Bounds,
     /// Largest |φ̇ᵢ| \[rad/s\], where it is told.
     pub(crate) rates: Option<[f64; 2]>,
+    /// What its gait is best at.
+    pub(crate) aim: Aim,
 }
 
 impl Field {
     /// All there are.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Middle,
         Self::Side,
         Self::Front,
@@ -87,6 +94,7 @@ impl Field {
         Self::Sector,
         Self::NoOverlap,
         Self::MaxRate,
+        Self::Objective,
     ];
 
     /// Its name in a spec, a dotted path.
@@ -108,6 +116,7 @@ impl Field {
             Self::Sector => "bounds.sector",
             Self::NoOverlap => "bounds.no_overlap",
             Self::MaxRate => "max_rate",
+            Self::Objective => "objective",
         }
     }
 
@@ -128,18 +137,32 @@ impl Field {
             | Self::LogAspect
             | Self::OverViscosity
             | Self::Sector
-            | Self::NoOverlap => "",
+            | Self::NoOverlap
+            | Self::Objective => "",
         }
     }
 
     /// Whether zero is a value of it.
     pub(crate) fn may_be_zero(self) -> bool {
-        matches!(self, Self::Sphere | Self::Clearance) || self.chooses()
+        matches!(self, Self::Sphere | Self::Clearance | Self::Objective) || self.chooses()
     }
 
     /// Whether its values are false and true, kept as 0 and 1.
     pub(crate) fn chooses(self) -> bool {
         matches!(self, Self::Sector | Self::NoOverlap)
+    }
+
+    /// Whether what is maximised at its values can be compared.
+    pub(crate) fn compares(self) -> bool {
+        self != Self::Objective
+    }
+
+    /// Its value as words: that of an objective.
+    pub fn parse(self, text: &str) -> Option<f64> {
+        match self {
+            Self::Objective => Aim::of_word(text).map(Aim::index),
+            _ => text.parse().ok(),
+        }
     }
 
     /// Whether it bounds a quarter, and so displacement gaits alone.
@@ -200,6 +223,7 @@ impl Field {
             Self::Sector => bounds.sector = value > 0.0,
             Self::NoOverlap => bounds.no_overlap = value > 0.0,
             Self::MaxRate => design.rates = Some([value; 2]),
+            Self::Objective => design.aim = Aim::of_index(value).unwrap_or(design.aim),
         }
     }
 }

@@ -8,7 +8,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::row::Row;
-use crate::{Design, Plan, SweepError, part};
+use crate::{Design, Field, Plan, SweepError, part};
 pub(crate) use doubt::among;
 pub use doubt::{Doubt, DoubtKind, doubts};
 
@@ -24,8 +24,11 @@ pub struct Slice {
 impl Slice {
     /// The first two axes, at the first value of each other one; none where the plan is no grid of two axes or more.
     pub fn first(plan: &Plan) -> Option<Self> {
-        (plan.design() == Design::Grid && plan.axes().len() >= 2).then(|| Self {
-            axes: [0, 1],
+        let axes = plan.axes().iter().enumerate();
+        let mut drawn = axes.filter(|(_, axis)| axis.name.compares());
+        let ((across, _), (up, _)) = drawn.next().zip(drawn.next())?;
+        (plan.design() == Design::Grid).then(|| Self {
+            axes: [across, up],
             at: vec![0; plan.axes().len()],
         })
     }
@@ -120,6 +123,11 @@ pub fn map(plan: &Plan, folder: &Path, slice: &Slice) -> Result<Map, SweepError>
     let (Some(x), Some(y)) = (axes.get(across), axes.get(up)) else {
         return refused("a map needs two axes");
     };
+    if !(x.name.compares() && y.name.compares()) {
+        return refused(
+            "gaits that are best at different things are drawn one after the other: take --at objective=speed",
+        );
+    }
     if across == up || slice.at.len() != axes.len() {
         return refused("its two axes must be two of the plan's");
     }
@@ -178,7 +186,7 @@ pub fn map(plan: &Plan, folder: &Path, slice: &Slice) -> Result<Map, SweepError>
     Ok(Map {
         format: "swimmer-sweep-map 1",
         plan: plan.hash(),
-        objective: plan.objective().word(),
+        objective: objective(plan, slice),
         quantities: QUANTITIES
             .into_iter()
             .map(|(name, unit, value)| Quantity {
@@ -195,6 +203,19 @@ pub fn map(plan: &Plan, folder: &Path, slice: &Slice) -> Result<Map, SweepError>
         pareto: front,
         designs_without_gait: without,
     })
+}
+
+/// What the gaits of a slice are best at.
+fn objective(plan: &Plan, slice: &Slice) -> &'static str {
+    let aims = plan.objectives();
+    let axis = plan
+        .axes()
+        .iter()
+        .position(|axis| axis.name == Field::Objective);
+    let index = axis
+        .and_then(|axis| slice.at.get(axis).copied())
+        .unwrap_or(0);
+    aims.get(whole(index)).map_or("", |aim| aim.word())
 }
 
 const MOST_CELLS: u64 = 1 << 22;

@@ -15,7 +15,7 @@ use parquet::schema::types::Type;
 use swimmer_files::stream_atomically;
 
 use crate::row::Row;
-use crate::{Plan, SweepError, part};
+use crate::{Aim, Field, Plan, SweepError, part};
 
 /// What was merged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -28,6 +28,8 @@ pub struct Merged {
     pub certified: u64,
 }
 
+/// The column of an axis of objectives, as words: `objective` is what was maximised.
+const BEST_FOR: &str = "best_for";
 /// Rows of a row group, at least; what is held at once.
 const GROUP: usize = 1 << 16;
 
@@ -50,7 +52,7 @@ const NUMBERS: [Number; 11] = [
     ("links_cross", |row| row.links_cross),
 ];
 
-/// Writes the table of a finished sweep: `key`, each axis by its name, the quantities of [`Row`], `arcs`, `status`
+/// Writes the table of a finished sweep: `key`, each axis by its name (the objective's as `best_for`), the quantities of [`Row`], `arcs`, `status`
 /// (`optimal`, `uncertified` or `none`), `certified`, `warm` and `reason`. Its metadata has the plan and its hash.
 ///
 /// # Errors
@@ -131,7 +133,11 @@ fn schema(plan: &Plan) -> Result<Type, ParquetError> {
     let (must, may) = (Repetition::REQUIRED, Repetition::OPTIONAL);
     let mut columns = vec![column("key", Physical::INT64, must, None)?];
     for axis in plan.axes() {
-        columns.push(column(axis.name.name(), Physical::DOUBLE, must, None)?);
+        columns.push(if axis.name == Field::Objective {
+            column(BEST_FOR, Physical::BYTE_ARRAY, must, text())?
+        } else {
+            column(axis.name.name(), Physical::DOUBLE, must, None)?
+        });
     }
     for (name, _) in NUMBERS {
         columns.push(column(name, Physical::DOUBLE, may, None)?);
@@ -151,9 +157,17 @@ type Group<'a, 'f> = SerializedRowGroupWriter<'a, &'f mut BufWriter<File>>;
 fn columns(plan: &Plan, group: &mut Group<'_, '_>, rows: &[Row]) -> Result<(), ParquetError> {
     let keys: Vec<i64> = rows.iter().map(|row| row.key.cast_signed()).collect();
     must::<Int64Type>(group, &keys)?;
-    for axis in 0..plan.axes().len() {
-        let value = |row: &Row| plan.point(row.key).get(axis).copied().unwrap_or(f64::NAN);
-        must::<DoubleType>(group, &rows.iter().map(value).collect::<Vec<_>>())?;
+    for (index, axis) in plan.axes().iter().enumerate() {
+        let values = rows
+            .iter()
+            .map(|row| plan.point(row.key).get(index).copied().unwrap_or(f64::NAN));
+        if axis.name == Field::Objective {
+            let words =
+                values.map(|value| ByteArray::from(Aim::of_index(value).map_or("", Aim::word)));
+            must::<ByteArrayType>(group, &words.collect::<Vec<_>>())?;
+        } else {
+            must::<DoubleType>(group, &values.collect::<Vec<_>>())?;
+        }
     }
     for (_, value) in NUMBERS {
         may::<DoubleType>(group, rows.iter().map(value))?;

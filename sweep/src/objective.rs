@@ -32,6 +32,35 @@ pub enum Aim {
 }
 
 impl Aim {
+    /// All there are, in the order that a plan counts them.
+    pub const ALL: [Self; 7] = [
+        Self::Displacement,
+        Self::EfficiencySmall,
+        Self::EfficiencyLarge,
+        Self::Speed,
+        Self::Turning,
+        Self::Sideways,
+        Self::Stub,
+    ];
+
+    /// The one of this word; `efficiency` alone is the small gait's.
+    pub fn of_word(word: &str) -> Option<Self> {
+        let small = (word == "efficiency").then_some(Self::EfficiencySmall);
+        small.or_else(|| Self::ALL.into_iter().find(|aim| aim.word() == word))
+    }
+
+    /// Its place in [`Aim::ALL`], which a plan keeps as a value of an axis.
+    pub(crate) fn index(self) -> f64 {
+        let places = Self::ALL.into_iter().position(|aim| aim == self);
+        places.unwrap_or(0) as f64
+    }
+
+    pub(crate) fn of_index(index: f64) -> Option<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|aim| (aim.index() - index).abs() < 0.5)
+    }
+
     /// Its word.
     pub fn word(self) -> &'static str {
         match self {
@@ -154,7 +183,6 @@ pub(crate) trait Solve {
 /// How designs are solved.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Solver {
-    pub(crate) aim: Aim,
     /// Starts of a search, where the spec tells them.
     pub(crate) starts: Option<u32>,
 }
@@ -171,8 +199,8 @@ impl Solver {
         }
     }
 
-    fn of_efficiency(&self, design: &Design) -> EfficiencyProblem {
-        let branch = if self.aim == Aim::EfficiencyLarge {
+    fn of_efficiency(design: &Design) -> EfficiencyProblem {
+        let branch = if design.aim == Aim::EfficiencyLarge {
             Branch::Large
         } else {
             Branch::Small
@@ -184,7 +212,7 @@ impl Solver {
         }
     }
 
-    fn of_speed(&self, design: &Design) -> Result<SpeedProblem, String> {
+    fn of_speed(self, design: &Design) -> Result<SpeedProblem, String> {
         let rates = design
             .rates
             .ok_or_else(|| "no rate of the servos is told".to_owned())?;
@@ -198,7 +226,7 @@ impl Solver {
         })
     }
 
-    fn solved(&self, design: &Design, key: u64, warm: bool, held: Held) -> Solved {
+    fn solved(design: &Design, key: u64, warm: bool, held: Held) -> Solved {
         let mut row = match &held {
             Held::Gait(gait) => Row::of(gait, design.rates),
             Held::Seed(seed) => Row::of(seed.gait(), design.rates),
@@ -212,7 +240,7 @@ impl Solver {
         let size = |value: Option<f64>| value.map(f64::abs);
         row.key = key;
         row.warm = warm;
-        row.objective = match self.aim {
+        row.objective = match design.aim {
             Aim::Displacement => size(row.displacement_over_length),
             Aim::EfficiencySmall | Aim::EfficiencyLarge => row.efficiency,
             Aim::Speed => row.speed_over_length_per_s,
@@ -233,8 +261,8 @@ fn cut_off(gait: &OptimalGait) -> bool {
 impl Solve for Solver {
     fn cold(&self, design: &Design, key: u64) -> Answer {
         let of_gait =
-            |gait: OptimalGait| self.solved(design, key, false, Held::Gait(Box::new(gait)));
-        match self.aim {
+            |gait: OptimalGait| Self::solved(design, key, false, Held::Gait(Box::new(gait)));
+        match design.aim {
             Aim::Displacement => displacement(&Self::of_displacement(design))
                 .ok()
                 .filter(|gait| !cut_off(gait))
@@ -249,12 +277,12 @@ impl Solve for Solver {
                 )
                 .map(of_gait)
                 .map_err(Missing::from),
-            Aim::EfficiencySmall | Aim::EfficiencyLarge => efficiency(&self.of_efficiency(design))
+            Aim::EfficiencySmall | Aim::EfficiencyLarge => efficiency(&Self::of_efficiency(design))
                 .map(EfficiencySeed::new)
-                .map(|seed| self.solved(design, key, false, Held::Seed(Box::new(seed))))
+                .map(|seed| Self::solved(design, key, false, Held::Seed(Box::new(seed))))
                 .map_err(|error| error.to_string().into()),
             Aim::Speed => gait_optimizer::fastest(&self.of_speed(design)?)
-                .map(|found| self.solved(design, key, false, Held::Fastest(Box::new(found))))
+                .map(|found| Self::solved(design, key, false, Held::Fastest(Box::new(found))))
                 .map_err(|error| error.to_string().into()),
             Aim::Turning => turning(&TurningProblem {
                 swimmer: design.swimmer,
@@ -278,28 +306,33 @@ impl Solve for Solver {
     }
 
     fn warm(&self, design: &Design, key: u64, near: &Solved) -> Option<Solved> {
-        let held = match (&near.held, self.aim) {
+        let held = match (&near.held, design.aim) {
             (Held::Gait(gait), Aim::Displacement) => {
                 let next = displacement_near(&Self::of_displacement(design), gait)?;
                 Held::Gait(Box::new(Some(next).filter(|gait| !cut_off(gait))?))
             }
             (Held::Seed(seed), Aim::EfficiencySmall | Aim::EfficiencyLarge) => {
-                Held::Seed(Box::new(seed.near(&self.of_efficiency(design))?))
+                Held::Seed(Box::new(seed.near(&Self::of_efficiency(design))?))
             }
             (Held::Fastest(fastest), Aim::Speed) => {
                 Held::Fastest(Box::new(self.of_speed(design).ok()?.near(fastest)?))
             }
             _ => return None,
         };
-        Some(self.solved(design, key, true, held))
+        Some(Self::solved(design, key, true, held))
     }
 
     fn timed_anew(&self, design: &Design, key: u64, same: &Answer) -> Option<Answer> {
-        if self.aim == Aim::Speed {
+        if design.aim == Aim::Speed {
             return None;
         }
         Some(match same {
-            Ok(found) => Ok(self.solved(design, key, found.row.warm, found.held.clone())),
+            Ok(found) => Ok(Self::solved(
+                design,
+                key,
+                found.row.warm,
+                found.held.clone(),
+            )),
             Err(missing) => Err(missing.clone()),
         })
     }

@@ -278,9 +278,15 @@ impl Plan {
         &self.content
     }
 
-    /// What the gaits are best at.
-    pub fn objective(&self) -> Aim {
-        self.content.objective
+    /// What the gaits are best at; several where that is an axis.
+    pub fn objectives(&self) -> Vec<Aim> {
+        let mut axes = self.axes().iter();
+        match axes.find(|axis| axis.name == Field::Objective) {
+            Some(axis) => (0..axis.count())
+                .filter_map(|index| Aim::of_index(axis.value(index)))
+                .collect(),
+            None => vec![self.content.objective],
+        }
     }
 
     /// The name of the swimmer that the designs are changes of.
@@ -376,6 +382,7 @@ impl Plan {
             swimmer: self.base.swimmer,
             bounds: self.content.bounds.into(),
             rates: self.content.max_rate,
+            aim: self.content.objective,
         };
         for (axis, value) in self.axes().iter().zip(self.point(key)) {
             axis.name.set(&mut design, value);

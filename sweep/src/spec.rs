@@ -18,7 +18,7 @@ use axes::designs;
 #[serde(deny_unknown_fields)]
 struct Raw {
     swimmer: Spanned<String>,
-    objective: Spanned<String>,
+    objective: Option<Spanned<String>>,
     gait: Option<Spanned<String>>,
     max_rate: Option<Spanned<RawRates>>,
     design: Option<Spanned<String>>,
@@ -128,8 +128,8 @@ pub(crate) fn read(text: &str, path: &Path) -> Result<Content, SweepError> {
     let source = Text { text, path };
     let folder = path.parent().unwrap_or(Path::new(""));
     let base = SwimmerFile::find_from(raw.swimmer.get_ref(), folder)?;
-    let objective = aim(&source, &raw)?;
-    let (axis, design) = designs(&source, &raw, objective)?;
+    let (axis, design) = designs(&source, &raw)?;
+    let objectives = objectives(&source, &raw, &axis)?;
     let tasks = tasks(&source, &raw, &axis, design)?;
     let max_rate = raw.max_rate.as_ref().map(|told| {
         let rate = |one| source.angle("max_rate", one, &told.span());
@@ -139,19 +139,19 @@ pub(crate) fn read(text: &str, path: &Path) -> Result<Content, SweepError> {
         }
     });
     let max_rate = max_rate.transpose()?;
-    if objective == Aim::Speed
+    if objectives.contains(&Aim::Speed)
         && max_rate.is_none()
         && !axis.iter().any(|axis| axis.name == Field::MaxRate)
     {
         return Err(source.wrong(
-            raw.objective.span(),
+            raw.objective.as_ref().map_or(0..0, Spanned::span),
             "without a limit of the servos there is no fastest gait: say max_rate = 1.0 (rad/s) or \"60deg\", or make it an axis",
         ));
     }
     Ok(Content {
         format: String::new(),
         version: String::new(),
-        objective,
+        objective: objectives.first().copied().unwrap_or(Aim::Displacement),
         block: within(&source, "block", raw.block.as_ref(), 1..=MOST_BLOCK)?
             .unwrap_or_else(|| tasks.div_ceil(BLOCKS).next_power_of_two().max(LEAST_BLOCK))
             .min(MOST_BLOCK),
@@ -188,8 +188,41 @@ fn within(
     ))
 }
 
-fn aim(source: &Text<'_>, raw: &Raw) -> Result<Aim, SweepError> {
-    let word = raw.objective.get_ref().as_str();
+/// What the gaits are best at, once or as an axis; and whether all axes are for that.
+fn objectives(source: &Text<'_>, raw: &Raw, axes: &[Axis]) -> Result<Vec<Aim>, SweepError> {
+    let axis = axes.iter().find(|axis| axis.name == Field::Objective);
+    let objectives = match (&raw.objective, axis) {
+        (Some(told), None) => vec![aim(source, raw, told)?],
+        (None, Some(axis)) => (0..axis.count())
+            .filter_map(|index| Aim::of_index(axis.value(index)))
+            .collect(),
+        (None, None) => {
+            return Err(source.wrong(
+                0..0,
+                "no objective: say objective = \"displacement\", or make it an axis with values = [\"displacement\", \"speed\"]",
+            ));
+        }
+        (Some(told), Some(_)) => {
+            return Err(source.wrong(
+                told.span(),
+                "the objective is an axis, too: leave it out here",
+            ));
+        }
+    };
+    let of_quarters = raw.axis.iter().flatten().zip(axes);
+    for (told, axis) in of_quarters.filter(|(_, axis)| axis.name.of_quarters()) {
+        if objectives.iter().any(|aim| *aim != Aim::Displacement) {
+            return Err(source.wrong(
+                told.get_ref().name.span(),
+                format!("{} is a bound of displacement gaits alone", axis.name),
+            ));
+        }
+    }
+    Ok(objectives)
+}
+
+fn aim(source: &Text<'_>, raw: &Raw, told: &Spanned<String>) -> Result<Aim, SweepError> {
+    let word = told.get_ref().as_str();
     let gait = raw.gait.as_ref().map(|gait| gait.get_ref().as_str());
     if let (Some(gait), true) = (&raw.gait, word != "efficiency") {
         return Err(source.wrong(
@@ -210,7 +243,7 @@ fn aim(source: &Text<'_>, raw: &Raw) -> Result<Aim, SweepError> {
         ("sideways", _) => Ok(Aim::Sideways),
         ("stub", _) => Ok(Aim::Stub),
         (other, _) => Err(source.wrong(
-            raw.objective.span(),
+            told.span(),
             format!(
                 "objective = \"{other}\" is none of displacement, efficiency, speed, turning, sideways (and stub, which solves \
                  nothing, to try out a scheduler)"

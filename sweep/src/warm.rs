@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 use crate::objective::{Answer, Solve, Solved, Solver};
 use crate::row::Row;
-use crate::{Axis, Design, Field, Plan};
+use crate::{Aim, Axis, Design, Field, Plan};
 
 /// The gaits of larger blocks are not held, and so not compared.
 const MOST_COMPARED: u64 = 4_096;
@@ -34,7 +34,6 @@ pub(crate) struct Cost {
 pub(crate) fn block(plan: &Plan, block: u64, seconds: &dyn Fn() -> f64) -> (Vec<Row>, Cost) {
     let content = plan.content();
     let solver = Solver {
-        aim: content.objective,
         starts: content.starts,
     };
     solved(plan, block, &solver, seconds)
@@ -48,7 +47,7 @@ fn solved(
 ) -> (Vec<Row>, Cost) {
     let content = plan.content();
     let keys = plan.keys(block);
-    let follows = content.objective.follows();
+    let follows = plan.objectives().into_iter().any(Aim::follows);
     let mut visit = Visit {
         plan,
         solver,

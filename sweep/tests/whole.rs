@@ -278,6 +278,10 @@ fn mistakes_are_told_with_their_place() {
             "name = \"bounds.no_overlap\"\nvalues = [true]\n[bounds]\nclearance = 0.1",
             "a clearance keeps the links apart in every design",
         ),
+        (
+            "name = \"objective\"\nvalues = [\"speed\"]",
+            "the objective is an axis, too",
+        ),
     ] {
         let text =
             format!("swimmer = \"purcell\"\nobjective = \"displacement\"\n[[axis]]\n{axis}\n");
@@ -287,6 +291,89 @@ fn mistakes_are_told_with_their_place() {
             "{error}"
         );
     }
+}
+
+/// Each design's answer is that of the plan of its objective alone; neighbours are not of unlike objectives.
+#[test]
+fn the_objective_is_an_axis() {
+    let rest = "max_rate = 1.0\n[bounds]\nmax_angle = 2.0\n\
+         [[axis]]\nname = \"sphere.radius\"\nfrom = 0.0\nto = 0.2\ncount = 3\n";
+    let words = ["displacement", "efficiency small", "turning"];
+    let axis = format!("[[axis]]\nname = \"objective\"\nvalues = {words:?}\n");
+    let rows = |text: &str| {
+        let (plan, folder) = (plan(text), tempfile::tempdir().unwrap());
+        ran(&plan, folder.path(), Shard::WHOLE, 1);
+        assert_eq!(doubts(&plan, folder.path()).unwrap(), []);
+        let table = folder.path().join("all.parquet");
+        merge(&plan, folder.path(), &table).unwrap();
+        let reader = SerializedFileReader::new(fs::File::open(table).unwrap()).unwrap();
+        let rows = reader.get_row_iter(None).unwrap();
+        rows.map(|row| {
+            let row = row.unwrap();
+            let of = |name: &str| {
+                let mut columns = row.get_column_iter();
+                columns
+                    .find(|(column, _)| *column == name)
+                    .map(|(_, field)| field.to_string())
+            };
+            let best_for = of("best_for").map(|word| word.replace('"', ""));
+            (
+                best_for,
+                of("sphere.radius").unwrap(),
+                of("objective").unwrap(),
+                of("arcs").unwrap(),
+            )
+        })
+        .collect::<Vec<_>>()
+    };
+    let swimmer = "swimmer = \"purcell\"\n";
+    for all in [
+        format!("{swimmer}{rest}{axis}"),
+        format!(
+            "{swimmer}{}",
+            rest.replacen("[[axis]]", &format!("{axis}[[axis]]"), 1)
+        ),
+    ] {
+        let all = rows(&all);
+        assert_eq!(all.len(), 9);
+        for word in words {
+            let gait = if word.starts_with("efficiency") {
+                "objective = \"efficiency\""
+            } else {
+                &format!("objective = \"{word}\"")
+            };
+            let alone = rows(&format!("{swimmer}{gait}\n{rest}"));
+            let ours: Vec<_> = all
+                .iter()
+                .filter(|row| row.0.as_deref() == Some(word))
+                .collect();
+            for (ours, alone) in ours.iter().zip(&alone) {
+                assert_eq!((&ours.1, &ours.3), (&alone.1, &alone.3), "{word}");
+                let [ours, alone] = [&ours.2, &alone.2].map(|value| value.parse::<f64>().unwrap());
+                assert!((ours / alone - 1.0).abs() < 1e-7, "{word}: {ours} {alone}");
+            }
+            assert_eq!((ours.len(), alone.len()), (3, 3));
+        }
+    }
+    let refused = |axis: &str| {
+        let text = format!("swimmer = \"purcell\"\nmax_rate = 1.0\n{axis}");
+        Plan::of_spec(&text, "mine.toml".as_ref())
+            .unwrap_err()
+            .to_string()
+    };
+    let objective = "[[axis]]\nname = \"objective\"\n";
+    assert!(
+        refused(&format!("{objective}values = [\"spped\"]"))
+            .contains("say values = [\"displacement\"")
+    );
+    assert!(
+        refused(&format!("{objective}from = 1\nto = 2\ncount = 2"))
+            .contains("say values = [\"displacement\"")
+    );
+    assert!(refused("[[axis]]\nname = \"drag.chi\"\nvalues = [2.0]\n").contains("no objective"));
+    let quarter = "[[axis]]\nname = \"bounds.min_angle\"\nvalues = [1.0]\n";
+    let both = format!("{objective}values = [\"displacement\", \"speed\"]\n{quarter}");
+    assert!(refused(&both).contains("displacement gaits alone"));
 }
 
 #[test]

@@ -11,6 +11,16 @@ pub enum Aim {
     Stub,
 }
 impl Aim {
+    pub const ALL: [Self; 7] = [
+        Self::Displacement,
+        Self::EfficiencySmall,
+        Self::EfficiencyLarge,
+        Self::Speed,
+        Self::Turning,
+        Self::Sideways,
+        Self::Stub,
+    ];
+    pub fn of_word(word: &str) -> Option<Self> {}
     pub fn word(self) -> &'static str {}
     pub fn quantity(self) -> &'static str {}
 }
@@ -63,9 +73,10 @@ pub enum Field {
     Sector,
     NoOverlap,
     MaxRate,
+    Objective,
 }
 impl Field {
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Middle,
         Self::Side,
         Self::Front,
@@ -82,9 +93,11 @@ impl Field {
         Self::Sector,
         Self::NoOverlap,
         Self::MaxRate,
+        Self::Objective,
     ];
     pub fn name(self) -> &'static str {}
     pub fn unit(self) -> &'static str {}
+    pub fn parse(self, text: &str) -> Option<f64> {}
 }
 impl fmt::Display for Field {}
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -129,7 +142,7 @@ impl Plan {
     pub fn save(&self, folder: &Path) -> Result<PathBuf, SweepError> {}
     pub fn load(folder: &Path) -> Result<Self, SweepError> {}
     pub fn hash(&self) -> String {}
-    pub fn objective(&self) -> Aim {}
+    pub fn objectives(&self) -> Vec<Aim> {}
     pub fn swimmer_name(&self) -> &str {}
     pub fn axes(&self) -> &[Axis] {}
     pub fn design(&self) -> Design {}

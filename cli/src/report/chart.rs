@@ -107,7 +107,7 @@ impl Chart {
     }
 
     /// Room for the numbers beside the y axis and its name \[px\].
-    fn label_width(&self, y_range: &Range<f64>) -> i32 {
+    fn label_width(y_range: &Range<f64>) -> i32 {
         let format = label_format(y_range, 6);
         let longest = [y_range.start, y_range.end].map(|value| format(&value).chars().count());
         let beyond_four = longest.into_iter().max().unwrap_or(0).saturating_sub(4);
@@ -131,7 +131,7 @@ impl Chart {
                 self.size.1 * SCALE - label_height - top,
             )
         };
-        let label_width = self.label_width(&self.ranges(inside(64 * SCALE)).1) * SCALE;
+        let label_width = Self::label_width(&self.ranges(inside(64 * SCALE)).1) * SCALE;
         area.draw_text(&self.title, &letters(TITLE, INK), (label_width, 10 * SCALE))
             .map_err(|error| said(&error))?;
         let (x_range, y_range) = self.ranges(inside(label_width));

@@ -76,7 +76,9 @@ pub(crate) fn among(
     let mut found = Vec::new();
     let mut stride = 1_u64;
     for axis in plan.axes().iter().rev() {
-        along(axis, stride, &keys, value, &mut found);
+        if axis.name.compares() {
+            along(axis, stride, &keys, value, &mut found);
+        }
         stride *= axis.count();
     }
     found.sort_by_key(|doubt| (doubt.key, doubt.neighbour));

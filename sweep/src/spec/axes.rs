@@ -3,16 +3,11 @@
 use toml::Spanned;
 
 use super::{Number, Raw, RawAxis, Text};
-use crate::objective::Aim;
 use crate::plan::{Axis, Design, Scale, Values};
 use crate::{Field, SweepError};
 
 /// The axes, and which points of them are designs.
-pub(super) fn designs(
-    source: &Text<'_>,
-    raw: &Raw,
-    objective: Aim,
-) -> Result<(Vec<Axis>, Design), SweepError> {
+pub(super) fn designs(source: &Text<'_>, raw: &Raw) -> Result<(Vec<Axis>, Design), SweepError> {
     let kind = raw.design.as_ref().map_or("grid", |kind| kind.get_ref());
     let span = raw.design.as_ref().map_or(0..0, Spanned::span);
     let seed = raw.seed.as_ref().map_or(1, |seed| *seed.get_ref());
@@ -70,12 +65,6 @@ pub(super) fn designs(
                 ),
             ));
         }
-        if objective != Aim::Displacement && axis.name.of_quarters() {
-            return Err(source.wrong(
-                name,
-                format!("{} is a bound of displacement gaits alone", axis.name),
-            ));
-        }
         if axis.name == Field::NoOverlap && raw.bounds.clearance.is_some() {
             return Err(source.wrong(
                 name,
@@ -94,6 +83,8 @@ pub(super) fn designs(
 }
 
 const CHOICE: &str = "say values = [false, true], in a grid";
+const OBJECTIVES: &str = "say values = [\"displacement\", \"efficiency small\", \"efficiency large\", \"speed\", \"turning\", \"sideways\"], or some \
+                          of them, in a grid";
 
 fn axis(source: &Text<'_>, told: &Spanned<RawAxis>, grid: bool) -> Result<Axis, SweepError> {
     let raw = told.get_ref();
@@ -102,6 +93,10 @@ fn axis(source: &Text<'_>, told: &Spanned<RawAxis>, grid: bool) -> Result<Axis, 
     let mistake = |problem: &str| source.wrong(span.clone(), format!("axis {name}: {problem}"));
     let wrong = |problem: &str| Err(mistake(problem));
     let number = |number: &Number| match (number, name.chooses()) {
+        (Number::Angle(word), _) if name == Field::Objective => {
+            name.parse(word).ok_or_else(|| mistake(OBJECTIVES))
+        }
+        _ if name == Field::Objective => Err(mistake(OBJECTIVES)),
         (Number::Choice(choice), true) => Ok(f64::from(u8::from(*choice))),
         (Number::Choice(_), false) => {
             Err(mistake("its values are numbers, neither true nor false"))
@@ -109,6 +104,9 @@ fn axis(source: &Text<'_>, told: &Spanned<RawAxis>, grid: bool) -> Result<Axis, 
         (_, true) => Err(mistake(CHOICE)),
         (number, false) => source.number(number, &span),
     };
+    if name == Field::Objective && raw.values.is_none() {
+        return wrong(OBJECTIVES);
+    }
     if name.chooses() && raw.values.is_none() {
         return wrong(CHOICE);
     }

@@ -55,9 +55,9 @@ impl Visit<'_> {
         };
         let mut stride = 1;
         for axis in self.plan.axes().iter().rev() {
-            let next = keys
-                .clone()
-                .filter(|key| key / stride % axis.count() + 1 < axis.count());
+            let next = keys.clone().filter(|key| {
+                axis.name.compares() && key / stride % axis.count() + 1 < axis.count()
+            });
             let next = next.map(|key| (key, key + stride));
             pairs.extend(
                 next.filter(|&(one, other)| keys.contains(&other) && arcs(one) != arcs(other)),

@@ -30,7 +30,7 @@ pub(crate) struct Map {
     /// The axis upwards; the second one unless told
     #[arg(long, value_name = "AXIS", value_parser = field)]
     up: Option<Field>,
-    /// Where on another axis, as drag.chi=2: its nearest value is taken; its first one unless told
+    /// Where on another axis, as drag.chi=2 or objective=speed: its nearest value is taken; its first one unless told
     #[arg(long, value_name = "AXIS=VALUE", value_parser = at)]
     at: Vec<(Field, f64)>,
     /// What to draw
@@ -268,8 +268,9 @@ fn at(text: &str) -> Result<(Field, f64), String> {
     let (name, value) = text
         .split_once('=')
         .ok_or_else(|| "write an axis and its value, as drag.chi=2".to_owned())?;
-    let value = value
-        .parse::<f64>()
-        .map_err(|_| format!("{value} is no number"))?;
-    Ok((field(name)?, value))
+    let field = field(name)?;
+    let value = field
+        .parse(value)
+        .ok_or_else(|| format!("{value} is no value of {field}"))?;
+    Ok((field, value))
 }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use sweep::{Design, Plan};
+use sweep::{Aim, Design, Plan};
 use swimmer_files::FileError;
 
 use super::shown;
@@ -28,7 +28,7 @@ pub(crate) struct PlanSpec {
 struct Answer {
     plan: String,
     folder: PathBuf,
-    objective: &'static str,
+    objective: String,
     tasks: u64,
     done: u64,
     failed: u64,
@@ -63,7 +63,10 @@ impl Answer {
         Self {
             plan: plan.hash(),
             folder: folder.to_path_buf(),
-            objective: plan.objective().word(),
+            objective: {
+                let words: Vec<_> = plan.objectives().into_iter().map(Aim::word).collect();
+                words.join(", ")
+            },
             tasks: plan.tasks(),
             done: 0,
             failed: 0,
@@ -90,7 +93,7 @@ impl fmt::Display for Answer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
         rows.row("plan", self.plan.get(..16).unwrap_or_default())
-            .row("objective", self.objective)
+            .row("objective", &self.objective)
             .row("designs", self.tasks.to_string());
         for axis in &self.axes {
             let values = match axis.count {
