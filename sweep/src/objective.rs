@@ -44,6 +44,14 @@ impl Aim {
     ];
 
     /// The one of this word; `efficiency` alone is the small gait's.
+    ///
+    /// ```
+    /// use sweep::Aim;
+    ///
+    /// assert_eq!(Aim::of_word("efficiency"), Some(Aim::EfficiencySmall));
+    /// assert_eq!(Aim::of_word("speed").map(Aim::quantity), Some("|d|/(L T) [1/s]"));
+    /// assert_eq!(Aim::of_word("height"), None);
+    /// ```
     pub fn of_word(word: &str) -> Option<Self> {
         let small = (word == "efficiency").then_some(Self::EfficiencySmall);
         small.or_else(|| Self::ALL.into_iter().find(|aim| aim.word() == word))
