@@ -21,7 +21,8 @@
 //! | `loops` | closed loops of singular arcs and bounds, without any symmetry |
 //! | `sideways` | the gait of most displacement across the heading at its start |
 //! | `region` | the bounds: straight ones of the joint angles, and the curved one that keeps the side links apart |
-//! | `displacement::flow` | one quarter gait: arc after arc, event after event |
+//! | `arcs` | an arc of most displacement, integrated until an event ends it; of quarters and of closed curves |
+//! | `displacement::flow` | what follows an arc of a quarter, and where quarters end |
 //! | `displacement::start_family` | where singular arcs may begin: φ₁ = φ₂, and chains of bounds from there |
 //! | `efficiency` | the small and the large Lighthill gait: Fourier series, then `extremal`, bounds followed |
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs, second-order test |
@@ -61,6 +62,7 @@
 //! # Ok::<(), gait_optimizer::SpeedError>(())
 //! ```
 
+mod arcs;
 mod atlas;
 mod batch;
 mod certificate;

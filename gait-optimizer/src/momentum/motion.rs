@@ -13,6 +13,32 @@ pub(crate) enum Motion {
     Along(Track),
 }
 
+impl Motion {
+    /// Place of the bound that is run along; none for the singular control.
+    pub(crate) fn bound(&self) -> Option<usize> {
+        match self {
+            Self::Singular => None,
+            Self::Along(track) => Some(track.index),
+        }
+    }
+
+    /// What is left of the bound's piece, with its slope in Φ; none where it does not end.
+    pub(crate) fn piece_end(&self, phi: &Vector2<f64>) -> Option<(f64, Vector2<f64>)> {
+        match self {
+            Self::Singular => None,
+            Self::Along(track) => track.piece_end(phi),
+        }
+    }
+
+    /// Along the bound's next piece, where there is one.
+    pub(crate) fn next_piece(&self) -> Option<Self> {
+        match self {
+            Self::Singular => None,
+            Self::Along(track) => track.next_piece().map(Self::Along),
+        }
+    }
+}
+
 /// A bound with the way that it is run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Track {

@@ -3,42 +3,42 @@
 
 /// What may end an arc. Each has a value that falls through zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Event {
-    /// Margin to a bound.
-    Edge(usize),
+pub(crate) enum Event<E> {
+    /// The margin to a bound, by its place in the region.
+    Bound(usize),
     /// What is left of the piece of the bound that the arc runs along.
     PieceEnd,
-    /// φ₁ + φ₂.
-    End,
-    /// φ₂ − φ₁.
-    Start,
-    /// What is left to the horizon.
-    Horizon,
-    /// The multiplier of the edge that the arc runs along.
-    Multiplier,
+    /// The height along a bound, which is the bound's multiplier.
+    HeightGone,
+    /// What ends the whole chain.
+    End(E),
 }
 
 /// Events have at most this many sources: eight bounds and five others.
 pub(super) const MOST_EVENTS: usize = 13;
 /// Each watched event with its value and slope at one end of a step.
-pub(super) type Watched = [Option<(Event, f64, f64)>; MOST_EVENTS];
+pub(super) type Watched<E> = [Option<(Event<E>, f64, f64)>; MOST_EVENTS];
 
 /// Events this close along a step \[rad\] happen together: finer than the first guess of where they are.
 const SAME_PLACE: f64 = 1e-6;
 
-/// The first event whose value falls through zero within a step, and where.
-pub(super) fn first_event(before: &Watched, after: &Watched, length: f64) -> Option<(Event, f64)> {
+/// The first event that counts whose value falls through zero within a step, and where.
+pub(super) fn first_event<E: Copy>(
+    (before, after): (&Watched<E>, &Watched<E>),
+    length: f64,
+    counts: impl Fn(&Event<E>) -> bool,
+    precedes: impl Fn(&Event<E>) -> bool,
+) -> Option<(Event<E>, f64)> {
     let crossings = before.iter().zip(after).filter_map(|pair| match pair {
         (Some((event, v0, s0)), Some((_, v1, s1))) => {
-            falls([*v0, *v1], [*s0, *s1], length).map(|at| (*event, at))
+            let at = falls([*v0, *v1], [*s0, *s1], length)?;
+            counts(event).then_some((*event, at))
         }
         _ => None,
     });
     let earliest = crossings.clone().min_by(|a, b| a.1.total_cmp(&b.1))?;
     // In a corner of the region on φ₁ = −φ₂ both bounds and the end are met at once: it is the end.
-    let end = crossings
-        .into_iter()
-        .find(|(event, _)| *event == Event::End);
+    let end = crossings.into_iter().find(|(event, _)| precedes(event));
     end.filter(|(_, at)| at - earliest.1 < SAME_PLACE)
         .or(Some(earliest))
 }

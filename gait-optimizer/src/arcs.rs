@@ -1,0 +1,194 @@
+//! An arc of most displacement, integrated until an event ends it: for quarters and for closed curves.
+//!
+//! ```text
+//!                a bound is reached
+//!   singular ──────────────────────────► along that bound ──┐ its next piece,
+//!      ▲  │                                 │    ▲          │ or another bound
+//!      │  │                                 │    └──────────┘
+//!      │  └────────► the chain's own end ◄──┤
+//!      └────────────────────────────────────┘
+//!                the height falls to zero
+//! ```
+//!
+//! On entering a bound the height is zero as well; there it rises, so the exit event, which waits for it to *fall* to zero,
+//! is armed only once it has left that neighbourhood.
+
+mod event;
+
+pub(crate) use event::Event;
+use event::{MOST_EVENTS, Watched, first_event};
+
+use crate::momentum::{Flow, Motion, State, shape};
+use crate::region::{Bound, Region};
+use crate::runge_kutta::{Point, StepControl, controlled_step, exact_step, locate};
+
+/// What ends a chain of arcs.
+pub(crate) trait EndCondition {
+    /// Its ways to end.
+    type End: Copy + PartialEq;
+
+    /// Those that may end it along such an arc.
+    fn watched(&self, motion: &Motion) -> impl Iterator<Item = Self::End>;
+
+    /// A value that falls through zero where the chain ends, with its slope along the arc.
+    fn value(&self, end: Self::End, at: &Point<6>) -> (f64, f64);
+
+    /// Whether it counts within a step up to a point, where the chain is so long \[rad\].
+    fn counts(&self, _end: Self::End, _after: &Point<6>, _length: f64) -> bool {
+        true
+    }
+
+    /// Whether it comes before a bound that is met at the same place.
+    fn precedes_bounds(_end: Self::End) -> bool {
+        false
+    }
+
+    /// Whether a bound ends such an arc.
+    fn stops_at(&self, _bound: &Bound, _motion: &Motion) -> bool {
+        true
+    }
+}
+
+/// One arc to be traced.
+pub(crate) struct Tracer<'a, C> {
+    pub(crate) flow: Flow<'a>,
+    pub(crate) region: &'a Region,
+    pub(crate) control: StepControl,
+    /// Whether bounds are left where the height falls to zero.
+    pub(crate) leaves: bool,
+    pub(crate) ends: &'a C,
+    /// Length of the chain before this arc, and how long it may become \[rad\].
+    pub(crate) before: f64,
+    pub(crate) longest: f64,
+}
+
+/// An arc traced.
+pub(crate) struct TracedArc<E> {
+    pub(crate) end: State,
+    /// Of its curve in the (φ₁, φ₂) plane \[rad\].
+    pub(crate) length: f64,
+    /// None where steps fail or the chain grows too long.
+    pub(crate) event: Option<Event<E>>,
+}
+
+/// Most steps of an arc: where steps shrink to nothing the zero of the height has no direction.
+const MOST_STEPS: usize = 600;
+
+impl<C: EndCondition> Tracer<'_, C> {
+    /// Integrates until the first event.
+    pub(crate) fn arc(&self, start: State) -> TracedArc<C::End> {
+        let mut here = Point::new(&self.flow, start);
+        let mut watched = self.watch(&here);
+        let mut length = 0.0;
+        let mut try_length = 0.05;
+        for _ in 0..MOST_STEPS {
+            if self.before + length >= self.longest {
+                break;
+            }
+            let step = controlled_step(&self.flow, &here, try_length, self.control);
+            let Some(step) = step else { break };
+            let after = self.watch(&step.end);
+            let travelled = self.before + length + step.length;
+            let counts = |event: &Event<C::End>| match event {
+                Event::End(end) => self.ends.counts(*end, &step.end, travelled),
+                _ => true,
+            };
+            let precedes = |event: &Event<C::End>| matches!(event, Event::End(end) if C::precedes_bounds(*end));
+            if let Some((event, at)) =
+                first_event((&watched, &after), step.length, counts, precedes)
+            {
+                let (end, at) = self.located(&here, event, at, step.length);
+                return TracedArc {
+                    end,
+                    length: length + at,
+                    event: Some(event),
+                };
+            }
+            here = step.end;
+            watched = after;
+            length += step.length;
+            try_length = step.next;
+        }
+        TracedArc {
+            end: here.z,
+            length,
+            event: None,
+        }
+    }
+
+    /// Every event's value and slope at a point.
+    fn watch(&self, at: &Point<6>) -> Watched<C::End> {
+        let mut watched = [None; MOST_EVENTS];
+        let mut slots = watched.iter_mut();
+        let mut add = |event| {
+            if let Some(slot) = slots.next() {
+                let (value, slope) = self.value(event, at);
+                *slot = Some((event, value, slope));
+            }
+        };
+        let motion = &self.flow.motion;
+        let own = motion.bound();
+        if own.is_some() && self.leaves {
+            add(Event::HeightGone);
+        }
+        if motion.piece_end(&shape(&at.z)).is_some() {
+            add(Event::PieceEnd);
+        }
+        for (index, bound) in self.region.bounds().enumerate() {
+            if Some(index) != own && self.ends.stops_at(&bound, motion) {
+                add(Event::Bound(index));
+            }
+        }
+        self.ends.watched(motion).map(Event::End).for_each(add);
+        watched
+    }
+
+    fn value(&self, event: Event<C::End>, at: &Point<6>) -> (f64, f64) {
+        let (phi, rate) = (shape(&at.z), shape(&at.rate));
+        match event {
+            Event::Bound(index) => self.region.bound(index).map_or((1.0, 0.0), |bound| {
+                (bound.margin(&phi), bound.gradient(&phi).dot(&rate))
+            }),
+            Event::PieceEnd => {
+                let end = self.flow.motion.piece_end(&phi);
+                end.map_or((1.0, 0.0), |(left, slope)| (left, slope.dot(&rate)))
+            }
+            // The height where the region lies left of the motion, minus the height where it lies right (paper, exit
+            // criterion, with the sign that belongs to a maximum).
+            Event::HeightGone => match self.flow.motion {
+                Motion::Along(track) => {
+                    let height = self.flow.height(&at.z);
+                    (
+                        track.way * height.value,
+                        track.way * height.gradient.dot(&rate),
+                    )
+                }
+                Motion::Singular => (1.0, 0.0),
+            },
+            Event::End(end) => self.ends.value(end, at),
+        }
+    }
+
+    /// Cuts the step to end where the event's value is zero.
+    fn located(
+        &self,
+        here: &Point<6>,
+        event: Event<C::End>,
+        guess: f64,
+        longest: f64,
+    ) -> (State, f64) {
+        let at = |length| Some(exact_step(&self.flow, here, length));
+        let value = |at: &Point<6>| self.value(event, at);
+        let Some((there, length)) = locate([guess, longest], at, value) else {
+            return (here.z, 0.0);
+        };
+        let mut z = there.z;
+        if let Event::Bound(index) = event
+            && let Some(bound) = self.region.bound(index)
+        {
+            let on = bound.onto(&shape(&z));
+            (z[0], z[1]) = (on.x, on.y);
+        }
+        (z, length)
+    }
+}
