@@ -9,6 +9,7 @@
 
 mod bootstrap;
 mod curves;
+mod document;
 mod leave_one_out;
 mod likelihood_problem;
 mod profile;
@@ -20,6 +21,7 @@ use crate::fit::run_model::RunModel;
 use crate::fit::{CampaignFit, Intervals};
 use crate::quantities::{NAMES, QUANTITIES, TELLING};
 pub use curves::{CurvePoint, circle_curve};
+pub use document::EvidenceDocument;
 use likelihood_problem::{LikelihoodProblem, RECTANGLES};
 use profile::Scale;
 use surface::Surface;
@@ -89,7 +91,7 @@ pub struct Likelihood {
 }
 
 /// What is left of one quantity of one run at the estimate of greatest likelihood; m or rad.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct RunError {
     /// Measured mean.
     pub measured: f64,
@@ -115,7 +117,7 @@ impl RunError {
 }
 
 /// A profile likelihood.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Profile {
     /// The parameter (m, or χ) and log-likelihood less its largest value, the other parameter set free.
     pub points: Vec<(f64, f64)>,
@@ -130,9 +132,10 @@ pub struct Profile {
 }
 
 /// The log-likelihood over both parameters, for drawing.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Ridge {
     /// r_s \[m\] of the grid's columns.
+    #[serde(rename = "sphere_radius_m")]
     pub sphere_radius: Vec<f64>,
     /// χ of its rows.
     pub chi: Vec<f64>,
@@ -143,7 +146,7 @@ pub struct Ridge {
 }
 
 /// The border of a joint region.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Contour {
     /// Its level.
     pub level: f64,

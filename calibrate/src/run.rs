@@ -1,5 +1,6 @@
 //! One run from its track to its cycles: everything that a fit takes from it.
 
+mod diagnoses;
 mod either;
 mod told;
 

@@ -126,6 +126,9 @@ pub struct Evidence {
     pub fitted_curve: Vec<CurvePoint>,
     pub surface_error: f64,
 }
+impl Evidence {
+    pub fn document<'a>(&'a self, names: &'a [String]) -> EvidenceDocument<'a> {}
+}
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EvidenceOptions {
     pub draws: usize,
@@ -232,7 +235,7 @@ impl FurtherFit {
     pub fn parameter(&self, name: &str) -> Option<&FittedParameter> {}
     pub fn intervals(&self) -> Option<Intervals> {}
 }
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Intervals {
     pub sphere_radius: [f64; 2],
     pub chi: [f64; 2],
@@ -423,6 +426,9 @@ pub struct RunResult {
 }
 impl RunResult {
     pub fn is_told(&self) -> bool {}
+}
+impl RunResult {
+    pub fn diagnoses(&self) -> Vec<String> {}
 }
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
@@ -753,7 +759,7 @@ pub mod cycles {
     pub use crate::Timing;
 }
 pub mod evidence {
-    #[derive(Debug, Clone, PartialEq)]
+    #[derive(Debug, Clone, PartialEq, serde::Serialize)]
     pub struct Contour {
         pub level: f64,
         pub threshold: f64,
@@ -773,6 +779,8 @@ pub mod evidence {
         pub points: Vec<Pair>,
     }
     pub use crate::Evidence;
+    #[derive(Debug, Serialize)]
+    pub struct EvidenceDocument<'a> {}
     pub use crate::EvidenceOptions;
     #[derive(Debug, Clone, PartialEq)]
     pub struct Likelihood {
@@ -794,7 +802,7 @@ pub mod evidence {
         pub sphere_radius: f64,
         pub chi: f64,
     }
-    #[derive(Debug, Clone, PartialEq)]
+    #[derive(Debug, Clone, PartialEq, serde::Serialize)]
     pub struct Profile {
         pub points: Vec<(f64, f64)>,
         pub threshold: f64,
@@ -812,14 +820,14 @@ pub mod evidence {
         pub const ALL: [Self; 3] = [Self::X, Self::DeltaY, Self::DeltaTheta];
     }
     impl std::fmt::Display for Quantity {}
-    #[derive(Debug, Clone, PartialEq)]
+    #[derive(Debug, Clone, PartialEq, serde::Serialize)]
     pub struct Ridge {
         pub sphere_radius: Vec<f64>,
         pub chi: Vec<f64>,
         pub log_ratio: Vec<Vec<f64>>,
         pub contours: Vec<Contour>,
     }
-    #[derive(Debug, Clone, Copy, PartialEq)]
+    #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
     pub struct RunError {
         pub measured: f64,
         pub predicted: f64,

@@ -9,9 +9,10 @@ use super::run_values::RunValues;
 use crate::least_squares::{Minimum, weighted};
 
 /// Intervals of both parameters.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Intervals {
     /// r_s \[m\], from and to; never below 0.
+    #[serde(rename = "sphere_radius_m")]
     pub sphere_radius: [f64; 2],
     /// χ, from and to.
     pub chi: [f64; 2],

@@ -2,7 +2,6 @@
 
 mod answer;
 mod assessment;
-mod diagnoses;
 mod folder;
 mod further;
 mod joints;
@@ -126,7 +125,7 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
         sphere_radius_m: fit.sphere_radius,
         chi: fit.chi,
         rmse: fit.rmse,
-        intervals: (&fit.intervals).into(),
+        intervals: fit.intervals,
         correlation: fit.correlation,
         c_t_form: c_t_form(&fit.c_t_form),
         likelihood: None,

@@ -64,7 +64,10 @@ fn evidence(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let fitted: &mut Fitted = lab.kept.get(number)?;
     let weighed =
         weigh_evidence(&fitted.found, EvidenceOptions::default()).map_err(|why| why.to_string())?;
-    json(&EvidenceAnswer::from(&*fitted.evidence.insert(weighed)))
+    let runs = fitted.found.runs.iter();
+    let names: Vec<String> = runs.map(|run| run.file.display().to_string()).collect();
+    let weighed = fitted.evidence.insert(weighed);
+    json(&EvidenceAnswer::new(weighed, &names))
 }
 
 /// What to make of a fit.

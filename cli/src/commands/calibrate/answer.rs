@@ -4,12 +4,11 @@ use std::fmt;
 use std::path::Path;
 
 use calibrate::evidence::Likelihood;
-use calibrate::{Origin, RunResult, Stretch};
+use calibrate::{Intervals, Origin, RunResult, Stretch};
 use serde::Serialize;
 use swimmer_files::GaitSpec;
 
 use super::assessment::AssessmentAnswer;
-use super::diagnoses;
 use super::further::{FurtherAnswers, Shown};
 use super::joints::{JointsAnswer, RunJoints};
 use crate::quantity::{self, Rows, Table};
@@ -137,13 +136,6 @@ pub(crate) struct FitAnswer {
     pub(crate) beyond: FurtherAnswers,
 }
 
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct Intervals {
-    pub(crate) sphere_radius_m: [f64; 2],
-    pub(crate) chi: [f64; 2],
-    pub(crate) level: f64,
-}
-
 /// The estimate of greatest likelihood, with its profiles' intervals.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct LikelihoodAnswer {
@@ -157,17 +149,7 @@ impl From<&Likelihood> for LikelihoodAnswer {
         Self {
             sphere_radius_m: likelihood.estimate.sphere_radius,
             chi: likelihood.estimate.chi,
-            intervals: (&likelihood.intervals).into(),
-        }
-    }
-}
-
-impl From<&calibrate::Intervals> for Intervals {
-    fn from(intervals: &calibrate::Intervals) -> Self {
-        Self {
-            sphere_radius_m: intervals.sphere_radius,
-            chi: intervals.chi,
-            level: intervals.level,
+            intervals: likelihood.intervals,
         }
     }
 }
@@ -274,7 +256,7 @@ pub(super) fn with_intervals(sphere_radius_m: f64, chi: f64, intervals: &Interva
     [
         of(
             sphere_radius_m * 1e3,
-            intervals.sphere_radius_m.map(|end| end * 1e3),
+            intervals.sphere_radius.map(|end| end * 1e3),
             " mm",
         ),
         of(chi, intervals.chi, ""),
@@ -378,7 +360,7 @@ impl RunAnswer {
             joints: RunJoints::of(run),
             swaps: run.poses.report.swaps.iter().map(Into::into).collect(),
             ghosts: run.poses.report.ghosts.iter().map(Into::into).collect(),
-            diagnoses: diagnoses::of_run(run),
+            diagnoses: run.diagnoses(),
             samples: Samples {
                 frames: run.poses.frames,
                 seen: run.poses.seen().count(),

@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use calibrate::assessment::{
     Assessment, BudgetLine, Explanation, Headline, Nuisance, RunGoodness, SignTest, Unforeseen,
 };
-use calibrate::{CampaignFit, ExcludedRun};
+use calibrate::{CampaignFit, ExcludedRun, Intervals};
 use serde::Serialize;
 
-use super::answer::{Intervals, RunAnswer, with_intervals};
+use super::answer::{RunAnswer, with_intervals};
 use super::further::{Shown, readable};
 use crate::quantity::{self, Table};
 
@@ -112,7 +112,7 @@ impl AssessmentAnswer {
             verdict: assessment.verdict.word(),
             reasons: assessment.reasons.clone(),
             reduced_chi2: goodness.reduced_chi2,
-            intervals_with_systematics: systematics.as_ref().map(|s| (&s.intervals).into()),
+            intervals_with_systematics: systematics.as_ref().map(|s| s.intervals),
             headline: HeadlineAnswer::new(headline),
             goodness: GoodnessAnswer {
                 freedom: goodness.freedom,

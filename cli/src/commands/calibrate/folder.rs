@@ -10,7 +10,7 @@ use super::FittedCampaign;
 use crate::failure::Outcome;
 use crate::new_folder::NewFolder;
 use crate::output::document;
-use crate::report::calibration::{Calibration, evidence_json, page, tables};
+use crate::report::calibration::{Calibration, page, tables};
 
 const FITTED: &str = "fitted.toml";
 const FITTED_FURTHER: &str = "fitted-further.toml";
@@ -50,10 +50,7 @@ pub(super) fn write(
     provenance.save_with(&recommended, &draft.join(FITTED))?;
     save(FIT, &document(answer))?;
     let names: Vec<String> = answer.runs.iter().map(|run| run.file.clone()).collect();
-    save(
-        EVIDENCE,
-        &document(&evidence_json(evidence, options, &names)),
-    )?;
+    save(EVIDENCE, &document(&evidence.document(&names)))?;
     let mut files = vec![
         (
             FITTED,

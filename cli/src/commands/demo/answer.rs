@@ -63,7 +63,7 @@ impl fmt::Display for DemoAnswer {
         let percent = self.fit.intervals.level * 100.0;
         let mut table = Table::new(["", "found", "interval", "truth", "deviation"]);
         let ([r_low, r_high], [chi_low, chi_high]) =
-            (self.fit.intervals.sphere_radius_m, self.fit.intervals.chi);
+            (self.fit.intervals.sphere_radius, self.fit.intervals.chi);
         let (radius, chi) = (self.fit.sphere_radius_m, self.fit.chi);
         table.line([
             "r_s [mm]".into(),

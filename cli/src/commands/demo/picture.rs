@@ -39,7 +39,7 @@ pub(super) fn report(round: &Finished, lab: Option<String>) -> Outcome<Report> {
             unit: "mm",
             start: round.start.swimmer.sphere_radius * 1e3,
             fitted: radius * 1e3,
-            interval: intervals.sphere_radius_m.map(|metres| metres * 1e3),
+            interval: intervals.sphere_radius.map(|metres| metres * 1e3),
             truth: round.truth.swimmer.sphere_radius * 1e3,
         },
         Parameter {

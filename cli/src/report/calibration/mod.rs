@@ -1,7 +1,6 @@
 //! The report of a calibration: one page, and every intermediate as CSV and JSON.
 
 mod figures;
-mod json;
 mod page;
 mod tables;
 
@@ -10,7 +9,6 @@ use calibrate::evidence::{CurvePoint, Evidence};
 use calibrate::{CampaignFit, EvidenceOptions};
 use swimmer_files::{Campaign, GaitSpec, Provenance, SwimmerFile};
 
-pub(crate) use self::json::evidence_json;
 pub(crate) use self::page::page;
 pub(crate) use self::tables::{field, tables};
 use super::{MeasuredCircle, ModelCircle};

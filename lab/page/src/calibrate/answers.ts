@@ -30,7 +30,10 @@ export interface Run {
   period_s: number;
   each: [number, number][];
   left_out: { what: string; reason: string }[];
+  /** Front and back, where reflectors on the side links showed them. */
+  servos: [Servo, Servo] | null;
   path: [number, number][];
+  diagnoses: string[];
   warnings: string[];
 }
 
@@ -43,6 +46,7 @@ export interface FitAnswer {
   intervals: Intervals;
   correlation: number;
   c_t_form: string;
+  servos: [Servo, Servo] | null;
   excluded: { what: string; reason: string }[];
   warnings: string[];
   swimmer: string;
@@ -55,14 +59,31 @@ export interface CurvePoint {
   delta_theta_rad: number;
 }
 
-export interface EvidenceAnswer {
+export interface Pair {
   sphere_radius_m: number;
   chi: number;
-  intervals: Intervals;
-  correlation: number;
-  profiles: [Profile, Profile];
-  /** Borders of joint regions: rₛ [m] and χ, once round. */
-  ridge: { level: number; corners: [number, number][] }[];
+}
+
+/** What is left of a quantity of a run; null where it was not measured. */
+export interface RunError {
+  measured: number | null;
+  predicted: number | null;
+  standard_error: number | null;
+  standardised: number | null;
+}
+
+/** The command's `evidence.json`, and what pictures need beside it. */
+export interface EvidenceAnswer {
+  likelihood: { estimate: Pair; intervals: Intervals; correlation: number };
+  run_errors: { file: string; x_m: RunError; delta_y_m: RunError; delta_theta_rad: RunError }[];
+  profiles: { sphere_radius_m: Profile; chi: Profile };
+  /** The ln of the likelihood over its largest value, a row for each χ; borders of joint regions (rₛ [m], χ), once round. */
+  ridge: { sphere_radius_m: number[]; chi: number[]; log_ratio: (number | null)[][]; contours: { level: number; corners: [number, number][] }[] };
+  /** Null of fewer than five runs. */
+  bootstrap: { draws: number; at_border: number; intervals: Intervals } | null;
+  without_run: { file: string; paper: Pair; likelihood: Pair | null }[];
+  outliers: { file: string; quantity: string; standard_errors: number }[];
+  draws: Pair[];
   start_curve: CurvePoint[];
   fitted_curve: CurvePoint[];
 }
@@ -71,6 +92,19 @@ export interface Profile {
   points: [number, number][];
   threshold: number;
   interval: [number | null, number | null];
+}
+
+/** What a servo made of its command; the error is null where nothing tells it. */
+export interface Servo {
+  gain: Measured;
+  dead_band_rad: Measured;
+  offset_rad: Measured;
+  lag_s: Measured | null;
+}
+
+export interface Measured {
+  value: number;
+  error: number | null;
 }
 
 export interface AssessmentAnswer {

@@ -1,68 +1,16 @@
-// The figures of a calibration: X over the amplitude, the ridge of r_s and χ, the ways that were swum.
+// The figures of a calibration: circles over the amplitude, profiles, the ridge of r_s and χ, what hangs on a single run, the ways
+// that were swum.
 
-import type { ComponentChildren } from "preact";
-import type { CurvePoint, EvidenceAnswer, Run } from "./answers.ts";
+import { useMemo } from "preact/hooks";
+import type { CurvePoint, EvidenceAnswer, Pair, Profile as ProfileAnswer, Run } from "./answers.ts";
+import { Chart, degrees, Dots, HEIGHT, line, MARGIN, scale, type Scale, WIDTH } from "./chart.tsx";
 
-const [WIDTH, HEIGHT] = [420, 300];
-const MARGIN = { left: 64, right: 12, top: 10, bottom: 40 };
-
-interface Scale {
-  x(value: number): number;
-  y(value: number): number;
-  ticks: [number[], number[]];
-}
-
-/** Round numbers that divide a range into about five. */
-function rounded(low: number, high: number): number[] {
-  const raw = (high - low) / 5 || 1;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = power * ([1, 2, 5, 10].find((digit) => digit * power >= raw) ?? 10);
-  const first = Math.ceil(low / step);
-  return Array.from({ length: Math.floor(high / step) - first + 1 }, (_, k) => Number(((first + k) * step).toPrecision(6)));
-}
-
-function scale(xs: readonly number[], ys: readonly number[], room = 0.05): Scale {
-  const ends = (values: readonly number[]): [number, number] => {
-    const [low, high] = [Math.min(...values), Math.max(...values)];
-    const more = (high - low || Math.abs(high) || 1) * room;
-    return [low - more, high + more];
-  };
-  const [[x0, x1], [y0, y1]] = [ends(xs), ends(ys)];
-  return {
-    x: (value) => MARGIN.left + ((value - x0) / (x1 - x0)) * (WIDTH - MARGIN.left - MARGIN.right),
-    y: (value) => HEIGHT - MARGIN.bottom - ((value - y0) / (y1 - y0)) * (HEIGHT - MARGIN.top - MARGIN.bottom),
-    ticks: [rounded(x0, x1), rounded(y0, y1)],
-  };
-}
-
-function Chart({ title, names, to, children }: { title: string; names: [string, string]; to: Scale; children: ComponentChildren }) {
-  const [bottom, left] = [HEIGHT - MARGIN.bottom, MARGIN.left];
-  return (
-    <section class="card" aria-label={title}>
-      <h2>{title}</h2>
-      <svg class="chart" viewBox={`0 0 ${WIDTH} ${HEIGHT}`} role="img" aria-label={title}>
-        {to.ticks[0].map((tick) => (
-          <g key={tick}><path class="grid" d={`M${to.x(tick)} ${MARGIN.top}V${bottom}`} /><text x={to.x(tick)} y={bottom + 14} text-anchor="middle">{tick}</text></g>
-        ))}
-        {to.ticks[1].map((tick) => (
-          <g key={tick}><path class="grid" d={`M${left} ${to.y(tick)}H${WIDTH - MARGIN.right}`} /><text x={left - 5} y={to.y(tick) + 4} text-anchor="end">{tick}</text></g>
-        ))}
-        <text x={(left + WIDTH - MARGIN.right) / 2} y={HEIGHT - 6} text-anchor="middle">{names[0]}</text>
-        <text transform={`translate(11 ${(MARGIN.top + bottom) / 2}) rotate(-90)`} text-anchor="middle">{names[1]}</text>
-        {children}
-      </svg>
-    </section>
-  );
-}
-
-const line = (points: readonly (readonly [number, number])[], to: Scale) =>
-  points.map(([x, y], k) => `${k ? "L" : "M"}${to.x(x).toFixed(1)} ${to.y(y).toFixed(1)}`).join("");
-
-const degrees = (radians: number) => (radians * 180) / Math.PI;
+/** A file by its own name. */
+export const short = (file: string) => file.split("/").pop() ?? file;
 
 /** A gait as people say it: circles in whole degrees. */
 export function named(run: Run): string {
-  if (run.amplitude_rad === null) return run.gait.split("/").pop() ?? run.gait;
+  if (run.amplitude_rad === null) return short(run.gait);
   return `circle ${Number(degrees(run.amplitude_rad).toFixed(2))}°${run.clockwise ? " clockwise" : ""}`;
 }
 
@@ -123,67 +71,119 @@ function OneOverAmplitude({ of, runs, evidence }: { of: OfACircle; runs: readonl
 }
 
 /** How far the likelihood falls as one parameter is held elsewhere, and where its interval ends. */
-export function Profiles({ evidence }: { evidence: EvidenceAnswer }) {
-  const names = ["rₛ [mm]", "χ"];
+export function Profiles({ evidence: { profiles } }: { evidence: EvidenceAnswer }) {
   return (
     <>
-      {evidence.profiles.map(({ points, threshold }, k) => {
-        const scaled = points.map(([value, height]) => [k === 0 ? value * 1000 : value, height] as const);
-        const near = scaled.filter(([, height]) => height >= 3 * threshold);
-        if (near.length < 2) return null;
-        const to = scale(near.map(([value]) => value), near.map(([, height]) => height));
-        return (
-          <Chart key={names[k]} title={`Profile of ${names[k]?.split(" ")[0]}`} names={[names[k] ?? "", "ln likelihood below its top"]} to={to}>
-            <path class="curve" d={line(near, to)} />
-            <path class="curve faint" d={`M${MARGIN.left} ${to.y(threshold)}H${WIDTH - MARGIN.right}`} />
-          </Chart>
-        );
-      })}
+      <Profile title="Profile of rₛ" name="rₛ [mm]" of={profiles.sphere_radius_m} factor={1000} />
+      <Profile title="Profile of χ" name="χ" of={profiles.chi} factor={1} />
     </>
   );
 }
 
-/** The displacement of every cycle that counts, run by run. */
-export function Cycles({ runs }: { runs: readonly Run[] }) {
-  const known = runs.filter((run) => run.each.length > 0);
-  if (known.length === 0) return null;
+function Profile({ title, name, of: { points, threshold }, factor }: { title: string; name: string; of: ProfileAnswer; factor: number }) {
+  const near = points.filter(([, height]) => height >= 3 * threshold).map(([value, height]) => [value * factor, height] as const);
+  if (near.length < 2) return null;
+  const to = scale(near.map(([value]) => value), near.map(([, height]) => height));
   return (
-    <section class="card scroll" aria-label="Cycles">
-      <h2>Cycles</h2>
-      <table class="readout" id="cycles">
-        <thead><tr>{["run", "period [s]", "X of each [mm], its start [s] below"].map((name) => <th key={name} scope="col">{name}</th>)}</tr></thead>
-        <tbody>
-          {known.map((run) => (
-            <tr key={run.file}>
-              <th scope="row">{run.file.split("/").pop()}</th>
-              <td>{run.period_s.toFixed(2)}</td>
-              <td class="each">
-                {run.each.map(([start, x]) => <span key={start}>{(x * 1000).toFixed(2)}<small class="soft">{start.toFixed(1)}</small></span>)}
-                {run.left_out.map(({ what, reason }) => <span key={what} class="out" title={reason}>–<small class="soft">{what}</small></span>)}
-              </td>
-            </tr>
-          ))}
-        </tbody>
-      </table>
-    </section>
+    <Chart title={title} names={[name, "ln likelihood below its top"]} to={to}>
+      <path class="curve" d={line(near, to)} />
+      <path class="curve faint" d={`M${MARGIN.left} ${to.y(threshold)}H${WIDTH - MARGIN.right}`} />
+    </Chart>
   );
 }
 
-/** Joint regions of r_s and χ: long and thin, because each makes up for the other. */
-export function Ridge({ evidence }: { evidence: EvidenceAnswer }) {
-  const regions = [...evidence.ridge].sort((a, b) => b.level - a.level);
+const placed = ({ sphere_radius_m, chi }: Pair) => [sphere_radius_m * 1000, chi] as const;
+const AXES: [string, string] = ["rₛ [mm]", "χ"];
+
+/** The likelihood over both parameters, its joint regions (long and thin, because each makes up for the other) and the draws of the
+ * bootstrap. */
+export function Ridge({ evidence, paper }: { evidence: EvidenceAnswer; paper: Pair }) {
+  const { ridge, draws, likelihood } = evidence;
+  const regions = [...ridge.contours].sort((a, b) => b.level - a.level);
   const corners = regions.flatMap((region) => region.corners);
   if (corners.length === 0) return null;
   const to = scale(corners.map(([radius]) => radius * 1000), corners.map(([, chi]) => chi));
+  const levels = regions.map(({ level }) => `${Math.round(level * 100)} %`).join(", ");
+  const within = ([x, y]: readonly [number, number]) => Math.abs(to.x(x) - WIDTH / 2) < WIDTH / 2 - MARGIN.right && to.y(y) > MARGIN.top && to.y(y) < HEIGHT - MARGIN.bottom && to.x(x) > MARGIN.left;
   return (
-    <Chart title="Ridge of rₛ and χ" names={["rₛ [mm]", "χ"]} to={to}>
-      {regions.map(({ level, corners }, k) => (
-        <path key={level} class={`region within-${k}`} d={`${line(corners.map(([radius, chi]) => [radius * 1000, chi] as const), to)}Z`}>
+    <Chart title="Ridge of rₛ and χ" names={AXES} to={to}>
+      <clipPath id="ridge-frame"><rect x={MARGIN.left} y={MARGIN.top} width={WIDTH - MARGIN.left - MARGIN.right} height={HEIGHT - MARGIN.top - MARGIN.bottom} /></clipPath>
+      <g clip-path="url(#ridge-frame)"><LikelihoodMap of={ridge} to={to} /></g>
+      <Dots kind="draws" radius={1.2} to={to} of={draws.map(placed).filter(within).map((at) => [at, "a draw of the bootstrap"])} />
+      {regions.map(({ level, corners }) => (
+        <path key={level} class="region" d={`${line(corners.map(([radius, chi]) => [radius * 1000, chi] as const), to)}Z`}>
           <title>{`${Math.round(level * 100)} %`}</title>
         </path>
       ))}
-      <g class="measured"><circle cx={to.x(evidence.sphere_radius_m * 1000)} cy={to.y(evidence.chi)} r="4"><title>likeliest</title></circle></g>
-      <text x={WIDTH - MARGIN.right - 4} y={MARGIN.top + 14} text-anchor="end">{regions.map(({ level }) => `${Math.round(level * 100)} %`).join(", ")}</text>
+      <Dots kind="measured" radius={4} to={to} of={[[placed(likelihood.estimate), "likeliest"]]} />
+      <Dots kind="paper" radius={4} to={to} of={[[placed(paper), "least squares"]]} />
+      <text x={WIDTH - MARGIN.right - 4} y={MARGIN.top + 14} text-anchor="end">{levels}</text>
+    </Chart>
+  );
+}
+
+/** The likelihood over its largest value, one cell of colour for each node of the grid. */
+function LikelihoodMap({ of: { sphere_radius_m, chi, log_ratio }, to }: { of: EvidenceAnswer["ridge"]; to: Scale }) {
+  const [columns, rows] = [sphere_radius_m.length, chi.length];
+  const picture = useMemo(() => {
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [columns, rows];
+    const context = canvas.getContext("2d");
+    const image = context?.createImageData(columns, rows);
+    if (!context || !image) return "";
+    log_ratio.forEach((row, k) =>
+      row.forEach((height, i) => image.data.set([88, 128, 178, 170 * Math.exp(height ?? -Infinity)], 4 * ((rows - 1 - k) * columns + i))),
+    );
+    context.putImageData(image, 0, 0);
+    return canvas.toDataURL();
+  }, [log_ratio]);
+  const ends = (values: readonly number[], step = ((values.at(-1) ?? 0) - (values[0] ?? 0)) / Math.max(1, values.length - 1)) =>
+    [(values[0] ?? 0) - step / 2, (values.at(-1) ?? 0) + step / 2] as const;
+  const [[x0, x1], [y0, y1]] = [ends(sphere_radius_m.map((radius) => radius * 1000)), ends(chi)];
+  return <image href={picture} x={to.x(x0)} y={to.y(y1)} width={to.x(x1) - to.x(x0)} height={to.y(y0) - to.y(y1)} preserveAspectRatio="none" />;
+}
+
+/** Where both fits would be without each run: what hangs on a single one. */
+export function WithoutRun({ evidence, paper }: { evidence: EvidenceAnswer; paper: Pair }) {
+  const without = evidence.without_run;
+  if (without.length === 0) return null;
+  const of = (fit: "paper" | "likelihood") => without.flatMap((one) => (one[fit] ? [[placed(one[fit]), `without ${short(one.file)}`] as const] : []));
+  const all = [placed(paper), ...of("paper").map(([at]) => at), ...of("likelihood").map(([at]) => at)];
+  const to = scale(all.map(([x]) => x), all.map(([, y]) => y), 0.12);
+  return (
+    <Chart title="Without each run" names={AXES} to={to}>
+      <Dots kind="measured" to={to} of={of("likelihood")} />
+      <Dots kind="others" to={to} of={of("paper")} />
+      <Dots kind="paper" radius={4} to={to} of={[[placed(paper), "all runs, least squares"]]} />
+      {without.map(({ file, paper }) => {
+        const [x, y] = placed(paper);
+        const isRight = to.x(x) > WIDTH / 2;
+        return <text key={file} x={to.x(x) + (isRight ? -7 : 7)} y={to.y(y) + 4} text-anchor={isRight ? "end" : "start"}>{short(file).replace(/\.\w+$/, "")}</text>;
+      })}
+    </Chart>
+  );
+}
+
+/** What is left of each run at the likeliest estimate, in standard errors. */
+export function Residuals({ evidence }: { evidence: EvidenceAnswer }) {
+  const of = (key: "x_m" | "delta_y_m" | "delta_theta_rad", name: string, aside: number) =>
+    evidence.run_errors.flatMap((run, k) => {
+      const left = run[key].standardised;
+      return left === null ? [] : [[[k + 1 + aside, left], `${name} of ${short(run.file)}: ${left.toFixed(2)}`] as const];
+    });
+  const [x, deltaY, deltaTheta] = [of("x_m", "X", -0.12), of("delta_y_m", "ΔY", 0), of("delta_theta_rad", "Δθ", 0.12)];
+  const heights = [...x, ...deltaY, ...deltaTheta].map(([[, height]]) => height);
+  if (heights.length === 0) return null;
+  const to = scale([0.5, evidence.run_errors.length + 0.5], [...heights, -2.5, 2.5], 0);
+  return (
+    <Chart title="Residuals" names={["run", "X, ΔY, Δθ over their standard errors"]} to={to}>
+      {[-2, 0, 2].map((at) => <path key={at} class="curve faint" d={`M${MARGIN.left} ${to.y(at)}H${WIDTH - MARGIN.right}`} />)}
+      <Dots kind="measured" to={to} of={x} />
+      <Dots kind="others" to={to} of={deltaY} />
+      <Dots kind="paper" to={to} of={deltaTheta} />
+      {[["measured", "X"], ["others", "ΔY"], ["paper", "Δθ"]].map(([kind, name], k) => (
+        <g key={name} class={kind}><circle cx={MARGIN.left + 12 + 44 * k} cy={MARGIN.top + 10} r={3.5} /><text x={MARGIN.left + 20 + 44 * k} y={MARGIN.top + 14}>{name}</text></g>
+      ))}
     </Chart>
   );
 }

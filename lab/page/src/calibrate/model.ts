@@ -10,8 +10,17 @@ export const tracks = signal<readonly { name: string; holds: Holdings }[]>([]);
 export const fit = signal<FitAnswer | null>(null);
 export const evidence = signal<EvidenceAnswer | null>(null);
 export const assessment = signal<AssessmentAnswer | null>(null);
-export const doing = signal("");
+/** What is computed now, and for how many seconds. */
+export const doing = signal<{ what: string; seconds: number } | null>(null);
 export const problem = signal("");
+
+setInterval(() => {
+  if (doing.value) doing.value = { ...doing.value, seconds: doing.value.seconds + 1 };
+}, 1000);
+const begin = (what: string) => (doing.value = { what, seconds: 0 });
+
+/** Ends what is computed; what is there already stays. */
+export const stop = () => lab.stop("stopped; drop a file or open one to begin again");
 
 let dropped = new Map<string, Uint8Array>();
 
@@ -40,7 +49,7 @@ export async function open(files: readonly File[]): Promise<void> {
   } catch (error) {
     problem.value = error instanceof Error ? error.message : String(error);
   }
-  doing.value = "";
+  doing.value = null;
 }
 
 export function clear(): void {
@@ -52,7 +61,7 @@ async function survey(): Promise<void> {
   const known = new Set(tracks.value.map(({ name }) => name));
   for (const [name, bytes] of dropped) {
     if (/\.(toml|txt|gait)$/.test(name) || known.has(name)) continue;
-    doing.value = `reading ${name}`;
+    begin(`reading ${name}`);
     const holds = await lab.json<Holdings>("tracks", packed([[name, bytes]]));
     tracks.value = [...tracks.value, { name, holds }];
   }
@@ -61,12 +70,12 @@ async function survey(): Promise<void> {
 async function calibrate(): Promise<void> {
   if (fit.value) await lab.json("calibrate close", { number: fit.value.number });
   [fit.value, evidence.value, assessment.value] = [null, null, null];
-  doing.value = "fitting rₛ and χ";
+  begin("fitting rₛ and χ");
   const fitted = await lab.json<FitAnswer>("calibrate", packed([...dropped]));
   fit.value = fitted;
   const { number } = fitted;
-  doing.value = "weighing the evidence";
+  begin("weighing the evidence: likelihood, bootstrap, fits without each run");
   evidence.value = await lab.json<EvidenceAnswer>("calibrate evidence", { number });
-  doing.value = "assessing the fit";
+  begin("assessing the fit");
   assessment.value = await lab.json<AssessmentAnswer>("calibrate assessment", { number });
 }

@@ -1,8 +1,10 @@
 //! The answers, under the keys of `swimmer calibrate --json` and of its evidence, and what only pictures need.
 
 use calibrate::assessment::{BudgetLine, Explanation, Systematics};
-use calibrate::evidence::{CurvePoint, Evidence, Profile};
-use calibrate::{Assessment, CampaignFit, Intervals, RunResult, TrackSurvey, c_t_form};
+use calibrate::evidence::{CurvePoint, Evidence, EvidenceDocument, Pair};
+use calibrate::{
+    Assessment, CampaignFit, Intervals, MeasuredServo, RunResult, TrackSurvey, c_t_form,
+};
 use serde::Serialize;
 use swimmer_files::{Campaign, GaitSpec};
 
@@ -56,9 +58,11 @@ pub(super) struct FitAnswer {
     sphere_radius_m: f64,
     chi: f64,
     rmse: f64,
-    intervals: IntervalsAnswer,
+    intervals: Intervals,
     correlation: f64,
     c_t_form: String,
+    /// The mean of the runs' servos.
+    servos: Option<[MeasuredServo; 2]>,
     excluded: Vec<Excluded>,
     warnings: Vec<String>,
     /// The fitted swimmer's file.
@@ -84,8 +88,12 @@ struct Run {
     /// Start \[s\] and displacement \[m\] of each cycle that counts.
     each: Vec<[f64; 2]>,
     left_out: Vec<Excluded>,
+    /// What the servos made of their commands, front and back, where reflectors on the side links showed it.
+    servos: Option<[MeasuredServo; 2]>,
     /// x, y \[m\] of the middle link, thinned.
     path: Vec<[f64; 2]>,
+    /// Of its track.
+    diagnoses: Vec<String>,
     warnings: Vec<String>,
 }
 
@@ -93,23 +101,6 @@ struct Run {
 struct Excluded {
     what: String,
     reason: String,
-}
-
-#[derive(Serialize)]
-struct IntervalsAnswer {
-    sphere_radius_m: [f64; 2],
-    chi: [f64; 2],
-    level: f64,
-}
-
-impl From<&Intervals> for IntervalsAnswer {
-    fn from(intervals: &Intervals) -> Self {
-        Self {
-            sphere_radius_m: intervals.sphere_radius,
-            chi: intervals.chi,
-            level: intervals.level,
-        }
-    }
 }
 
 /// Points of a drawn path.
@@ -153,11 +144,13 @@ impl Run {
                     reason: reason.to_string(),
                 })
                 .collect(),
+            servos: run.joints.as_ref().and_then(|joints| joints.servos),
             path: samples
                 .iter()
                 .step_by(samples.len().div_ceil(PATH).max(1))
                 .map(|sample| [sample.pose.x, sample.pose.y])
                 .collect(),
+            diagnoses: run.diagnoses(),
             warnings: run.warnings.clone(),
         }
     }
@@ -176,9 +169,10 @@ impl FitAnswer {
             sphere_radius_m: fit.sphere_radius,
             chi: fit.chi,
             rmse: fit.rmse,
-            intervals: (&fit.intervals).into(),
+            intervals: fit.intervals,
             correlation: fit.correlation,
             c_t_form: c_t_form(&fit.c_t_form),
+            servos: found.servos(),
             excluded: found
                 .excluded
                 .iter()
@@ -199,32 +193,18 @@ impl FitAnswer {
 
 /// What speaks for the fit.
 #[derive(Serialize)]
-pub(super) struct EvidenceAnswer {
-    sphere_radius_m: f64,
-    chi: f64,
-    intervals: IntervalsAnswer,
-    correlation: f64,
-    /// Of the sphere radius \[m\] and χ.
-    profiles: [ProfileAnswer; 2],
-    ridge: Vec<ContourAnswer>,
+pub(super) struct EvidenceAnswer<'a> {
+    /// What the command leaves as `evidence.json`.
+    #[serde(flatten)]
+    document: EvidenceDocument<'a>,
+    /// Of the bootstrap, thinned.
+    draws: Vec<Pair>,
     start_curve: Vec<CurveAnswer>,
     fitted_curve: Vec<CurveAnswer>,
 }
 
-#[derive(Serialize)]
-struct ProfileAnswer {
-    points: Vec<(f64, f64)>,
-    threshold: f64,
-    interval: [f64; 2],
-}
-
-/// The border of a joint region of both parameters.
-#[derive(Serialize)]
-struct ContourAnswer {
-    level: f64,
-    /// Sphere radius \[m\] and χ, once round.
-    corners: Vec<(f64, f64)>,
-}
+/// Draws that a picture holds.
+const DRAWS: usize = 400;
 
 #[derive(Serialize)]
 struct CurveAnswer {
@@ -245,29 +225,15 @@ impl From<&CurvePoint> for CurveAnswer {
     }
 }
 
-impl From<&Evidence> for EvidenceAnswer {
-    fn from(evidence: &Evidence) -> Self {
-        let likelihood = &evidence.likelihood;
-        let profile = |profile: &Profile| ProfileAnswer {
-            points: profile.points.clone(),
-            threshold: profile.threshold,
-            interval: profile.interval,
-        };
+impl<'a> EvidenceAnswer<'a> {
+    /// `names` are the runs' files.
+    pub(super) fn new(evidence: &'a Evidence, names: &'a [String]) -> Self {
+        let bootstrap = evidence.bootstrap.as_ref();
+        let draws = bootstrap.map_or(&[][..], |bootstrap| &bootstrap.points);
+        let every = draws.len().div_ceil(DRAWS).max(1);
         Self {
-            sphere_radius_m: likelihood.estimate.sphere_radius,
-            chi: likelihood.estimate.chi,
-            intervals: (&likelihood.intervals).into(),
-            correlation: likelihood.correlation,
-            profiles: [&evidence.profiles[0], &evidence.profiles[1]].map(profile),
-            ridge: evidence
-                .ridge
-                .contours
-                .iter()
-                .map(|contour| ContourAnswer {
-                    level: contour.level,
-                    corners: contour.corners.clone(),
-                })
-                .collect(),
+            document: evidence.document(names),
+            draws: draws.iter().step_by(every).copied().collect(),
             start_curve: evidence.start_curve.iter().map(Into::into).collect(),
             fitted_curve: evidence.fitted_curve.iter().map(Into::into).collect(),
         }
@@ -290,7 +256,7 @@ pub(super) struct AssessmentAnswer {
 struct EstimateAnswer {
     sphere_radius_m: f64,
     chi: f64,
-    intervals: IntervalsAnswer,
+    intervals: Intervals,
 }
 
 impl From<Assessment> for AssessmentAnswer {
@@ -298,7 +264,7 @@ impl From<Assessment> for AssessmentAnswer {
         let estimate = |found: &Systematics| EstimateAnswer {
             sphere_radius_m: found.estimate.sphere_radius,
             chi: found.estimate.chi,
-            intervals: (&found.intervals).into(),
+            intervals: found.intervals,
         };
         Self {
             verdict: assessed.verdict.word(),

@@ -1,0 +1,61 @@
+//! What is noteworthy about one run's track, in a few words each.
+
+use super::RunResult;
+use crate::poses::Stretch;
+
+/// Reflectors whose distance differs by more from what `at` says are worth a word, as a share.
+const FAR: f64 = 0.01;
+
+/// Stretches whose times are told; JSON has all.
+const TOLD: usize = 4;
+
+/// When stretches were.
+fn times(stretches: &[Stretch]) -> String {
+    let time = |stretch: &Stretch| {
+        if stretch.rows > 1 {
+            format!("{:.2}–{:.2} s", stretch.from_s, stretch.until_s)
+        } else {
+            format!("{:.2} s", stretch.from_s)
+        }
+    };
+    let mut told: Vec<String> = stretches.iter().take(TOLD).map(time).collect();
+    let more = stretches.len().saturating_sub(TOLD);
+    if more > 0 {
+        told.push(format!("and {more} times more"));
+    }
+    told.join(", ")
+}
+
+impl RunResult {
+    /// Swaps, ghosts, the reflectors' distance and jumps of the frame, in words.
+    pub fn diagnoses(&self) -> Vec<String> {
+        let report = &self.poses.report;
+        let mut out = Vec::new();
+        if report.swaps_repaired > 0 {
+            out.push(format!(
+                "labels exchanged {} times, set right: {}",
+                report.swaps_repaired,
+                times(&report.swaps)
+            ));
+        }
+        if report.ghosts_rejected > 0 {
+            out.push(format!(
+                "{} points that are no reflector: {}",
+                report.ghosts_rejected,
+                times(&report.ghosts)
+            ));
+        }
+        let apart = report.distance_m / self.reflector_distance_m - 1.0;
+        if apart.abs() > FAR {
+            out.push(format!(
+                "reflectors {:.2} mm apart, {:+.1} % from what `at` says",
+                1e3 * report.distance_m,
+                100.0 * apart
+            ));
+        }
+        for jump in &self.poses.jumps {
+            out.push(format!("the frame jumped at {:.2} s", jump.after_s));
+        }
+        out
+    }
+}

@@ -1,0 +1,162 @@
+// The tables of a calibration: the fits with their intervals, runs and their cycles, servos, what both parameters hang on.
+
+import type { ComponentChildren } from "preact";
+import { figure } from "../explore/names.ts";
+import type { AssessmentAnswer, EvidenceAnswer, FitAnswer, Intervals, Measured, Pair, Run } from "./answers.ts";
+import { degrees } from "./chart.tsx";
+import { named, short } from "./figures.tsx";
+
+const millimetres = (metres: number) => figure(metres * 1000, 2);
+const chiOf = (value: number) => figure(value, 3);
+
+function Head({ of }: { of: readonly string[] }) {
+  return <thead><tr>{of.map((name) => <th key={name} scope="col">{name}</th>)}</tr></thead>;
+}
+
+/** A table in a card of its own. */
+export function Table({ title, id, head, children }: { title: string; id: string; head: readonly string[]; children: ComponentChildren }) {
+  return (
+    <section class="card scroll" aria-label={title}>
+      <h2>{title}</h2>
+      <table class="readout" id={id}><Head of={head} /><tbody>{children}</tbody></table>
+    </section>
+  );
+}
+
+/** A way of fitting; null where it tells nothing, undefined while it is computed. */
+interface Way {
+  name: string;
+  estimate: Pair | null | undefined;
+  intervals: Intervals | null | undefined;
+  correlation?: number | undefined;
+}
+
+/** Both parameters, each way of fitting in a line. */
+export function Parameters({ fit, evidence, assessment }: { fit: FitAnswer; evidence: EvidenceAnswer | null; assessment: AssessmentAnswer | null }) {
+  const likelihood = evidence?.likelihood;
+  const wider = assessment ? assessment.systematics : undefined;
+  const bootstrap = evidence ? evidence.bootstrap : undefined;
+  const ways: Way[] = [
+    { name: "least squares", estimate: fit, intervals: fit.intervals, correlation: fit.correlation },
+    { name: "bootstrap", estimate: bootstrap && fit, intervals: bootstrap && bootstrap.intervals },
+    { name: "likelihood", estimate: likelihood?.estimate, intervals: likelihood?.intervals, correlation: likelihood?.correlation },
+    { name: "with systematics", estimate: wider, intervals: wider && wider.intervals },
+  ];
+  const cell = (value: number | undefined, range: [number, number] | undefined, tell: (value: number) => string, none: string) =>
+    value === undefined || range === undefined ? none : <>{tell(value)}<br /><small class="soft">{`${tell(range[0])} … ${tell(range[1])}`}</small></>;
+  return (
+    <section class="card scroll" aria-label="Fit">
+      <h2>Fit</h2>
+      <table class="readout" id="fit">
+        <Head of={[`${Math.round(fit.intervals.level * 100)} % intervals`, "rₛ [mm]", "χ", "correlation"]} />
+        <tbody>
+          {ways.map(({ name, estimate, intervals, correlation }) => {
+            const none = estimate === null || assessment ? "–" : "…";
+            return (
+              <tr key={name}>
+                <th scope="row">{name}</th>
+                <td>{cell(estimate?.sphere_radius_m, intervals?.sphere_radius_m, millimetres, none)}</td>
+                <td>{cell(estimate?.chi, intervals?.chi, chiOf, none)}</td>
+                <td>{correlation === undefined ? "" : figure(correlation, 3)}</td>
+              </tr>
+            );
+          })}
+        </tbody>
+      </table>
+      <p class="soft">RMSE {fit.rmse.toPrecision(3)}; c_t: {fit.c_t_form}</p>
+      {evidence?.bootstrap && <p class="soft">{`Bootstrap of ${evidence.bootstrap.draws} draws, ${evidence.bootstrap.at_border} of them at the border.`}</p>}
+      {evidence?.outliers.map(({ file, quantity, standard_errors }) => (
+        <p key={file + quantity} class="soft">{`${quantity} of ${short(file)} stands out by ${standard_errors.toFixed(1)} standard errors: the likelihood leaves it out`}</p>
+      ))}
+      {[...fit.excluded.map(({ what, reason }) => `${what} is left out: ${reason}`), ...fit.warnings].map((line) => <p key={line} class="soft">{line}</p>)}
+    </section>
+  );
+}
+
+/** How far both would move with what is taken for granted, and what would explain the runs better. */
+export function Budget({ told }: { told: AssessmentAnswer }) {
+  if (told.budget.length === 0) return null;
+  const amount = (by: number, unit: string) => `${Number(by.toPrecision(2))}${unit ? ` ${unit}` : ""}`;
+  return (
+    <>
+      <Table title="Budget" id="budget" head={["if off", "by", "rₛ [mm]", "χ", "known to"]}>
+        {told.budget.map(({ name, by, unit, sphere_radius_m, chi, width, stated }) => (
+          <tr key={name}>
+            <th scope="row">{name}</th>
+            <td>{amount(by, unit)}</td>
+            <td>{figure(sphere_radius_m * 1000, 3)}</td>
+            <td>{figure(chi, 4)}</td>
+            <td>{width === null ? "exact" : `${amount(width, unit)}${stated ? ", stated" : ""}`}</td>
+          </tr>
+        ))}
+      </Table>
+      {told.explanations.length > 0 && (
+        <Table title="What would explain the runs better" id="explanations" head={["if this were so", "gain of ln likelihood", "rₛ [mm]", "χ"]}>
+          {told.explanations.map(({ name, gain, estimate }) => (
+            <tr key={name}><th scope="row">{name}</th><td>{figure(gain, 1)}</td><td>{millimetres(estimate.sphere_radius_m)}</td><td>{chiOf(estimate.chi)}</td></tr>
+          ))}
+        </Table>
+      )}
+    </>
+  );
+}
+
+/** What each run measured, and what is noteworthy about it. */
+export function Runs({ fit }: { fit: FitAnswer }) {
+  return (
+    <Table title="Runs" id="runs" head={["run", "gait", "cycles", "X [mm]", "sd [mm]", "ΔY [mm]", "Δθ [°]", "left out"]}>
+      {fit.runs.map((run) => (
+        <tr key={run.file}>
+          <th scope="row">{short(run.file)}{[...run.diagnoses, ...run.warnings].map((line) => <small key={line} class="soft note">{line}</small>)}</th>
+          <td>{named(run)}</td>
+          <td>{run.cycles ?? "–"}</td>
+          <td>{millimetres(run.x_m)}</td>
+          <td>{run.x_sd_m === null ? "–" : millimetres(run.x_sd_m)}</td>
+          <td>{millimetres(run.delta_y_m)}</td>
+          <td>{figure(degrees(run.delta_theta_rad), 2)}</td>
+          <td title={run.left_out.map(({ what, reason }) => `${what}: ${reason}`).join("\n")}>{run.left_out.length}</td>
+        </tr>
+      ))}
+    </Table>
+  );
+}
+
+/** The displacement of every cycle that counts, run by run. */
+export function Cycles({ runs }: { runs: readonly Run[] }) {
+  const known = runs.filter((run) => run.each.length > 0);
+  if (known.length === 0) return null;
+  return (
+    <Table title="Cycles" id="cycles" head={["run", "period [s]", "X of each [mm], its start [s] below"]}>
+      {known.map((run) => (
+        <tr key={run.file}>
+          <th scope="row">{short(run.file)}</th>
+          <td>{run.period_s.toFixed(2)}</td>
+          <td class="each">
+            {run.each.map(([start, x]) => <span key={start}>{(x * 1000).toFixed(2)}<small class="soft">{start.toFixed(1)}</small></span>)}
+            {run.left_out.map(({ what, reason }) => <span key={what} class="out" title={reason}>–<small class="soft">{what}</small></span>)}
+          </td>
+        </tr>
+      ))}
+    </Table>
+  );
+}
+
+/** What the servos made of their commands, by the reflectors on the side links: the mean of the runs. */
+export function Servos({ fit }: { fit: FitAnswer }) {
+  if (!fit.servos) return null;
+  const tell = (measured: Measured | null, unit: number, digits: number) =>
+    measured === null ? "–" : `${(measured.value * unit).toFixed(digits)}${measured.error === null ? "" : ` ± ${(measured.error * unit).toFixed(digits)}`}`;
+  return (
+    <Table title="Servos" id="servos" head={["measured joint", "gain", "dead band [°]", "offset [°]", "lag [ms]"]}>
+      {fit.servos.map((servo, k) => (
+        <tr key={k}>
+          <th scope="row">{k === 0 ? "front" : "back"}</th>
+          <td>{tell(servo.gain, 1, 4)}</td>
+          <td>{tell(servo.dead_band_rad, degrees(1), 2)}</td>
+          <td>{tell(servo.offset_rad, degrees(1), 2)}</td>
+          <td>{tell(servo.lag_s, 1000, 1)}</td>
+        </tr>
+      ))}
+    </Table>
+  );
+}
