@@ -9,6 +9,7 @@
 //! - [`table()`]: the table that a robot is given of a gait, its corners rounded.
 //! - [`reach()`]: the largest angle of a gait, with its place, against what the servos allow.
 //! - [`until_wall`]: how many cycles a tank has room for; [`Forecast::displacement_error`]: what a calibration leaves open.
+//! - [`plan()`]: gaits that join strung together to a target, walls respected.
 //! - [`demand`]: torque, power and Reynolds number in a fluid of known viscosity.
 //! - [`forecast()`]: the displacement as designed, as stored, as commanded and as turned, loss by loss, before a gait is sent.
 //!
@@ -31,6 +32,7 @@ pub mod certainty;
 pub mod fluid;
 pub mod losses;
 pub mod path;
+pub mod plan;
 pub mod reach;
 pub mod table;
 pub mod tank;
@@ -39,6 +41,7 @@ pub mod timing;
 pub use certainty::Ends;
 pub use fluid::{Demand, demand};
 pub use losses::{Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast};
+pub use plan::{Errand, Family, Kind, Member, Plan, PlanError, Step, plan};
 pub use reach::{Reach, reach};
 pub use table::table;
 pub use tank::{Meeting, Part, Tank, until_wall};

@@ -120,7 +120,8 @@ pub use robust::{
 pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways, sideways_watched};
 pub use simple_shapes::{BestAmplitude, SimpleShape, best_amplitudes};
 pub use speed::{
-    Fastest, Front, HeadingRule, SpeedAtlas, SpeedError, SpeedProblem, fastest, front,
+    Fastest, Front, HeadingRule, Joined, SpeedAtlas, SpeedError, SpeedProblem, SteerProblem,
+    Steering, fastest, front, steer,
 };
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};
 pub use turning::{Turning, TurningError, TurningProblem, turning};

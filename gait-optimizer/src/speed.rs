@@ -21,6 +21,7 @@ mod samples;
 mod search;
 mod selection;
 mod starts;
+mod steer;
 mod structure;
 #[cfg(test)]
 mod tests;
@@ -38,8 +39,9 @@ use crate::{Certificate, Immobile, Watch};
 pub use error::SpeedError;
 pub use front::{Front, front};
 pub use problem::HeadingRule;
-use problem::Setting;
+use problem::{Goal, Setting};
 use search::Search;
+pub use steer::{Joined, SteerProblem, Steering, steer};
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,6 +129,8 @@ impl SpeedProblem {
             rates: self.rates.map(|rate| rate / fast),
             heading: self.heading,
             period: self.period.map(|period| period * fast),
+            goal: Goal::Distance,
+            anchor: None,
         }
     }
 
@@ -210,7 +214,14 @@ pub(crate) fn certify_speed(
     gait: &AnyGait,
     region: &Region,
 ) -> Certificate {
-    let of = |rule| certificate::certificate(model, region, rule, file, gait);
+    let of = |(heading, period)| {
+        let asked = certificate::Asked {
+            heading,
+            period,
+            ..certificate::Asked::default()
+        };
+        certificate::certificate(model, region, asked, file, gait)
+    };
     let free = of((HeadingRule::Any, false));
     if free.pass() {
         return free;
@@ -228,7 +239,7 @@ pub(crate) fn certify_speed(
     .unwrap_or(free)
 }
 
-fn validate(problem: &SpeedProblem) -> Result<(), SpeedError> {
+pub(crate) fn validate(problem: &SpeedProblem) -> Result<(), SpeedError> {
     for rate in problem.rates {
         if !(rate.is_finite() && rate > 0.0) {
             return Err(SpeedError::Rate { rate });

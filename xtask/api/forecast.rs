@@ -21,6 +21,27 @@ impl Ends {
         correlation: Option<f64>,
     ) -> Result<Self, InvalidSwimmer> {}
 }
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Errand {
+    pub from: Pose<f64>,
+    pub to: Vector2<f64>,
+    pub heading: Option<f64>,
+    pub tank: Option<Tank>,
+    pub margin: f64,
+}
+#[derive(Debug, Clone)]
+pub struct Family {
+    pub gaits: [(AnyGait, f64); 3],
+}
+impl Family {
+    pub fn shape(&self) -> Vector2<f64> {}
+    pub fn reached(
+        &self,
+        model: &Model<f64>,
+        from: &Pose<f64>,
+        steps: &[Step],
+    ) -> Pose<f64> {}
+}
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
     pub played: Played,
@@ -50,6 +71,15 @@ pub enum ForecastError {
     Period { period: f64 },
     Servo { name: &'static str, value: f64, problem: &'static str },
 }
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Kind {
+    Forward,
+    Left,
+    Turn,
+}
+impl Kind {
+    pub const ALL: [Self; 3] = [Self::Forward, Self::Left, Self::Turn];
+}
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Loss {
     pub stage: Stage,
@@ -66,6 +96,16 @@ pub struct Meeting {
     pub part: Part,
     pub at: Vector2<f64>,
 }
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Member {
+    pub kind: Kind,
+    pub backwards: bool,
+    pub scale: f64,
+}
+impl Member {
+    pub fn of(&self, family: &Family) -> Scaled {}
+    pub fn word(&self) -> &'static str {}
+}
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Part {
     BackTip,
@@ -76,6 +116,20 @@ pub enum Part {
 }
 impl Part {
     pub fn word(self) -> &'static str {}
+}
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    pub steps: Vec<Step>,
+    pub duration: f64,
+    pub reached: Pose<f64>,
+    pub off: [f64; 2],
+    pub met: [usize; 2],
+}
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PlanError {
+    Apart { apart: f64 },
+    Outside { what: &'static str, pose: [f64; 3], margin: f64 },
+    NoWay { met: usize, margin: f64 },
 }
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Played {
@@ -122,6 +176,12 @@ impl Stage {
         Self::Played,
     ];
     pub fn word(self) -> &'static str {}
+}
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    pub member: Member,
+    pub cycles: u32,
+    pub period: f64,
 }
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tank {
@@ -173,6 +233,11 @@ pub fn forecast<G: Gait<f64> + ?Sized>(
     gait: &G,
     played: &Played,
 ) -> Result<Forecast, ForecastError> {}
+pub fn plan(
+    model: &Model<f64>,
+    family: &Family,
+    errand: &Errand,
+) -> Result<Plan, PlanError> {}
 pub fn reach<G: Gait<f64> + ?Sized>(gait: &G) -> Reach {}
 pub fn shortest_of_table(
     model: &Model<f64>,
@@ -241,6 +306,16 @@ pub mod path {
         pub fn new(knots: Vec<Vector2<f64>>) -> Self {}
     }
     impl Gait<f64> for TableCurve {}
+}
+pub mod plan {
+    pub use crate::Errand;
+    pub use crate::Family;
+    pub use crate::Kind;
+    pub use crate::Member;
+    pub use crate::Plan;
+    pub use crate::PlanError;
+    pub use crate::Step;
+    pub use crate::plan;
 }
 pub mod reach {
     pub use crate::Reach;

@@ -352,6 +352,18 @@ pub enum InvalidProblem {
     QuarterBound { name: &'static str },
 }
 #[derive(Debug, Clone, PartialEq)]
+pub struct Joined {
+    pub rate: f64,
+    pub unjoined_rate: f64,
+    pub period: f64,
+    pub net: [f64; 3],
+    pub gait: OptimalGait,
+}
+impl Joined {
+    pub fn cost(&self) -> f64 {}
+    pub fn gait_file(&self, swimmer_name: &str, backwards: bool) -> GaitFile {}
+}
+#[derive(Debug, Clone, PartialEq)]
 pub struct LevelCurve {
     pub points: Vec<Vector2<f64>>,
     pub closed: bool,
@@ -538,6 +550,8 @@ pub enum SpeedError {
     Period { period: f64 },
     OfQuarters { bounds: Bounds },
     Corners { corners: usize },
+    Shape { shape: [f64; 2] },
+    NoJoinedGait { kind: &'static str, bounds: Bounds, starts: usize, chains: usize },
     NoGait { bounds: Bounds, starts: usize, chains: usize, uncertified: Option<f64> },
 }
 impl From<Immobile> for SpeedError {}
@@ -572,6 +586,20 @@ pub enum Start {
 pub enum StartCurves {
     Random,
     OffCentre,
+}
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SteerProblem {
+    pub of: SpeedProblem,
+    pub shape: Option<[f64; 2]>,
+}
+#[derive(Debug, Clone, PartialEq)]
+pub struct Steering {
+    pub shape: [f64; 2],
+    pub forward: Joined,
+    pub left: Joined,
+    pub turn: Joined,
+    pub shapes: usize,
+    pub turning_angle: Option<f64>,
 }
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turning {
@@ -785,4 +813,13 @@ pub mod collocation {
 pub mod front {
     pub use crate::Front;
     pub fn front(problem: &SpeedProblem, watch: Watch<'_>) -> Result<Front, SpeedError> {}
+}
+pub mod steer {
+    pub use crate::Joined;
+    pub use crate::SteerProblem;
+    pub use crate::Steering;
+    pub fn steer(
+        problem: &SteerProblem,
+        watch: Watch<'_>,
+    ) -> Result<Steering, SpeedError> {}
 }

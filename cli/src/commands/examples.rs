@@ -3,7 +3,7 @@
 use clap::Command;
 
 /// The words of a command, and what is typed after `swimmer`.
-pub(super) const EXAMPLES: [(&str, &str); 51] = [
+pub(super) const EXAMPLES: [(&str, &str); 53] = [
     ("demo", "demo --swimmer robot -o demo"),
     (
         "simulate",
@@ -28,6 +28,10 @@ pub(super) const EXAMPLES: [(&str, &str); 51] = [
     (
         "optimize speed",
         "optimize speed --swimmer robot --max-rate 60deg --max-angle 2.8 -o fast.gait",
+    ),
+    (
+        "optimize steer",
+        "optimize steer --swimmer robot --playable -o gaits",
     ),
     (
         "atlas",
@@ -55,6 +59,10 @@ pub(super) const EXAMPLES: [(&str, &str); 51] = [
         "sweep submit slurm morphology --shards 64 --cores 4 --submit",
     ),
     ("paper", "paper -o paper"),
+    (
+        "plan",
+        "plan --swimmer robot --playable --gaits gaits --to 0.2,0.1,90deg --tank 1.0x0.6",
+    ),
     ("swimmers", "swimmers robot"),
     ("gaits", "gaits"),
     ("completions", "completions bash"),

@@ -9,6 +9,7 @@ pub(crate) mod height_map;
 pub(crate) mod lab;
 pub(crate) mod optimize;
 pub(crate) mod paper;
+pub(crate) mod plan;
 pub(crate) mod robot;
 pub(crate) mod shell;
 pub(crate) mod simulate;
@@ -63,6 +64,7 @@ pub(crate) enum Command {
     #[command(subcommand)]
     Sweep(sweep::Sweep),
     Paper(paper::Paper),
+    Plan(plan::Plan),
     Robot(robot::Robot),
     Twin(twin::Twin),
     Lab(lab::Lab),
@@ -115,6 +117,7 @@ pub(crate) fn run(command: Command, output: Output) -> Outcome {
         Command::HeightMap(height_map) => height_map.run(output),
         Command::Sweep(sweep) => sweep.run(output),
         Command::Paper(paper) => paper.run(output),
+        Command::Plan(plan) => plan.run(output),
         Command::Atlas(atlas) => atlas.run(output),
         Command::Robot(robot) => robot.run(output),
         Command::Twin(twin) => twin.run(output),

@@ -15,7 +15,7 @@ mod motion;
 mod playing;
 mod port;
 mod port_owner;
-mod preflight;
+pub(super) mod preflight;
 mod servo;
 mod setup;
 mod stop;

@@ -10,11 +10,11 @@ mod legs;
 mod second_order;
 mod switching;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_files::{AnyGait, ArcKind, GaitFile};
 use swimmer_model::{Model, Tolerance, crossing_share, swim};
 
-use super::problem::{HeadingRule, Setting};
+use super::problem::{Goal, HeadingRule, Setting};
 use crate::certificate::{Certificate, Check, SeenBy, again_within};
 use crate::region::Region;
 use legs::{Leg, Legs};
@@ -27,47 +27,80 @@ const FULL: f64 = 1e-6;
 /// A corner this close to a bound rests on it \[rad, or over L\].
 pub(super) const RESTS: f64 = 1e-8;
 
-/// Holds one cycle, timed as it shall run, against the conditions; `period` says whether the period was prescribed. Of the
-/// swimmer with L = 1.
+/// What was asked for.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Asked {
+    pub(crate) heading: HeadingRule,
+    /// Whether the period was prescribed.
+    pub(crate) period: bool,
+    pub(crate) goal: Goal,
+    /// Where gaits join: there the costate may jump any way.
+    pub(crate) anchor: Option<Vector2<f64>>,
+}
+
+impl Asked {
+    /// Whether gaits join at a shape.
+    pub(super) fn joins(&self, phi: &Vector2<f64>) -> bool {
+        self.anchor
+            .is_some_and(|anchor| (anchor - phi).norm() < RESTS)
+    }
+}
+
+/// Holds one cycle, timed as it shall run, against the conditions. Of the swimmer with L = 1.
 pub(crate) fn certificate(
     model: &Model<f64>,
     region: &Region,
-    (heading, period): (HeadingRule, bool),
+    asked: Asked,
     file: &GaitFile,
     gait: &AnyGait,
 ) -> Certificate {
     let mut checks = of_the_curve(model, region, file, gait);
-    let Some(legs) = Legs::new(model, region, file, gait) else {
+    let Some(legs) = Legs::new((model, region), asked.goal, file, gait) else {
         checks.push(Check::at_most("moves_nowhere", 1.0, 0.0));
         return Certificate::new(checks);
     };
     let stroke = swim(model, gait, &Tolerance::default());
-    let [x, y, _] = legs.end;
+    let [x, y, turned] = legs.end;
     let apart = (stroke.displacement.x - x).hypot(stroke.displacement.y - y);
     checks.push(Check::at_most(
         "displacement_stepped_again",
         apart,
-        again_within(legs.distance),
+        again_within(x.hypot(y)),
     ));
-    checks.push(Check::at_most(
-        "net_rotation_rad",
-        stroke.rotation.abs(),
-        1e-8,
-    ));
+    match asked.goal {
+        Goal::Distance => checks.push(Check::at_most(
+            "net_rotation_rad",
+            stroke.rotation.abs(),
+            1e-8,
+        )),
+        Goal::Rotation => checks.push(Check::at_most(
+            "rotation_stepped_again",
+            (stroke.rotation - turned).abs(),
+            again_within(turned),
+        )),
+    }
+    if let Some(anchor) = asked.anchor {
+        let least = file.phi.iter().map(|phi| (phi - anchor).norm());
+        let off = least.fold(f64::INFINITY, f64::min);
+        checks.push(Check::at_most("off_the_joint_shape_rad", off, 1e-9));
+    }
     checks.push(Check::at_most("off_full_rate", legs.off_full_rate(), FULL));
-    if let Some(off) = heading.off(legs.heading()) {
+    let off_heading = asked.heading.off(legs.heading());
+    if let Some(off) = off_heading.filter(|_| asked.goal == Goal::Distance) {
         checks.push(Check::at_most("off_heading_rad", off.abs(), 1e-8));
     }
-    let switching = Switching::new(region, &legs, heading, period);
+    let switching = Switching::new(region, &legs, asked);
     checks.extend(switching.checks(CLOSE));
     let setting = Setting {
         model,
         region,
         rates: legs.rates,
-        heading,
-        period: period.then_some(1.0),
+        heading: asked.heading,
+        period: asked.period.then_some(1.0),
+        goal: asked.goal,
+        anchor: asked.anchor,
     };
-    match second_order::least(&setting, &legs) {
+    match second_order::least(&setting, &legs, asked) {
         // No shift is left that keeps all equations.
         Some(f64::INFINITY) => {}
         Some(least) if least.is_finite() => {

@@ -180,10 +180,10 @@ pub(crate) fn gradient(
     let d = net.displacement;
     let distance = d.norm();
     let period: f64 = times.iter().sum();
-    let unit = d / distance;
+    let unit = d / distance.max(f64::MIN_POSITIVE);
     // ∂(sum)/∂d in the world's frame.
-    let pull =
-        (unit * weights.log_distance + Vector2::new(-unit.y, unit.x) * weights.heading) / distance;
+    let pull = (unit * weights.log_distance + Vector2::new(-unit.y, unit.x) * weights.heading)
+        / distance.max(f64::MIN_POSITIVE);
     let mut gradient = DVector::zeros(layout.size);
     let mut time_after = period;
     for (arc, jet) in jets.iter().enumerate() {

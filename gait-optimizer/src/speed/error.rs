@@ -40,6 +40,29 @@ pub enum SpeedError {
         /// What was given.
         corners: usize,
     },
+    /// A common shape is not well within the bounds.
+    #[error(
+        "gaits cannot join at ({:.4}, {:.4}) rad, which lies not 0.02 rad within the bounds; name another shape, or none", shape[0], shape[1]
+    )]
+    Shape {
+        /// What was given \[rad\].
+        shape: [f64; 2],
+    },
+    /// No gait of a kind to steer by.
+    #[error(
+        "no fastest {kind} gait to steer by under these bounds ({bounds}): {starts} starts led to {chains} certified gaits of this \
+         kind, and none through a common shape; try more starts, wider bounds, or another shape"
+    )]
+    NoJoinedGait {
+        /// Which kind.
+        kind: &'static str,
+        /// The bounds.
+        bounds: Bounds,
+        /// Closed curves that were started from.
+        starts: usize,
+        /// Certified gaits of this kind that need not join.
+        chains: usize,
+    },
     /// None was found and certified.
     #[error(
         "no fastest gait under these bounds ({bounds}): {starts} starts led to {chains} chains of arcs, none of which can be \

@@ -10,7 +10,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Vector2};
 
 use super::arc::{Jet, Shape};
 use super::chain::{self, Layout, Weights};
-use super::problem::{HeadingRule, Setting};
+use super::problem::Setting;
 use super::quadrature::Rule;
 
 /// A polygon and what pushes against it.
@@ -124,35 +124,10 @@ impl<'a> Method<'a> {
         }
     }
 
-    /// Residuals of the equalities, and their slopes.
-    fn equalities(
-        &self,
-        jets: &[Jet],
-        z: &DVector<f64>,
-    ) -> (chain::Net, Vec<f64>, Vec<DVector<f64>>) {
-        let unit = |rotation: f64, heading: f64| Weights {
-            log_distance: 0.0,
-            rotation,
-            heading,
-        };
-        let (net, rotation) = chain::gradient(&self.layout, jets, z, unit(1.0, 0.0));
-        let (mut values, mut slopes) = (vec![net.rotation], vec![rotation]);
-        if let Some(off) = self.setting.heading.off(net.heading()) {
-            values.push(off);
-            slopes.push(chain::gradient(&self.layout, jets, z, unit(0.0, 1.0)).1);
-        }
-        if let Some(period) = self.setting.period {
-            values.push(self.layout.period(z) / period - 1.0);
-            let times = 2 * self.layout.arcs()..3 * self.layout.arcs();
-            slopes.push(DVector::from_fn(self.layout.size, |i, _| {
-                if times.contains(&i) {
-                    1.0 / period
-                } else {
-                    0.0
-                }
-            }));
-        }
-        (net, values, slopes)
+    /// How far the first corner is from where gaits join.
+    fn anchored(&self, z: &DVector<f64>) -> Option<[f64; 2]> {
+        let off = self.layout.corner(z, 0) - self.setting.anchor?;
+        Some([off.x, off.y])
     }
 
     fn merit(&self, z: &DVector<f64>, barrier: f64, penalty: f64) -> f64 {
@@ -165,13 +140,11 @@ impl<'a> Method<'a> {
         }
         let logs: f64 = inequalities.iter().map(|one| one.value.ln()).sum();
         let (_, net) = self.layout.net(self.setting.model, &self.rule, z);
-        let off = self.setting.heading.off(net.heading()).unwrap_or(0.0);
-        let late = self
-            .setting
-            .period
-            .map_or(0.0, |period| self.layout.period(z) / period - 1.0);
-        self.layout.period(z).ln() - net.distance().ln() - barrier * logs
-            + penalty * (net.rotation.abs() + off.abs() + late.abs())
+        let period = self.layout.period(z);
+        let off = self.setting.residuals(&net, period);
+        let anchored = self.anchored(z).into_iter().flatten();
+        let missed: f64 = off.into_iter().chain(anchored).map(f64::abs).sum();
+        period.ln() - self.setting.measure(&net).ln() - barrier * logs + penalty * missed
     }
 
     fn solve(self, z: DVector<f64>, [first, last]: [f64; 2]) -> Option<Polygon> {
@@ -180,10 +153,10 @@ impl<'a> Method<'a> {
             return None;
         }
         let pushes = inequalities.iter().map(|one| first / one.value);
-        let of_heading = usize::from(self.setting.heading != HeadingRule::Any);
+        let anchored = if self.setting.anchor.is_some() { 2 } else { 0 };
         let mut here = Iterate {
             pushes: pushes.collect(),
-            y: vec![0.0; 1 + of_heading + usize::from(self.setting.period.is_some())],
+            y: vec![0.0; self.setting.equality_count() + anchored],
             z,
             barrier: first,
             damping: 0.0,
@@ -215,26 +188,26 @@ impl<'a> Method<'a> {
         let Iterate { z, y, .. } = here;
         let layout = &self.layout;
         let jets = layout.jets(self.setting.model, &self.rule, z);
-        let (net, values, slopes) = self.equalities(&jets, z);
-        if net.distance().is_nan() || net.distance() < 1e-9 {
+        let (net, mut values, mut slopes) = self.setting.equalities(layout, &jets, z);
+        let measure = self.setting.measure(&net);
+        if measure.is_nan() || measure < 1e-9 {
             return None;
         }
-        let weights = Weights {
-            log_distance: -1.0,
-            rotation: y[0],
-            heading: if self.setting.heading == HeadingRule::Any {
-                0.0
-            } else {
-                y[1]
-            },
-        };
+        let weights = self.setting.weights(&net, Some(y));
         let (_, mut gradient) = chain::gradient(layout, &jets, z, weights);
-        let late = match (self.setting.period, y.last()) {
-            (Some(period), Some(y)) => y / period,
-            _ => 0.0,
+        let late = match self.setting.period {
+            Some(period) => y[self.setting.equality_count() - 1] / period,
+            None => 0.0,
         };
         for side in 0..layout.arcs() {
             gradient[layout.time_index(side)] += 1.0 / layout.period(z) + late;
+        }
+        for (joint, off) in self.anchored(z).into_iter().flatten().enumerate() {
+            gradient[joint] += y[values.len()];
+            values.push(off);
+            slopes.push(DVector::from_fn(layout.size, |i, _| {
+                f64::from(u8::from(i == joint))
+            }));
         }
         Some(Look {
             inequalities: limits::inequalities(self.setting, &self.layout, z),
@@ -257,6 +230,10 @@ impl<'a> Method<'a> {
             for other in 2 * arcs..3 * arcs {
                 matrix[(one, other)] -= 1.0 / (period * period);
             }
+        }
+        let of = (&self.layout, look.jets.as_slice());
+        if let Some(slope) = self.setting.of_the_log(&look.net, of, &here.z) {
+            matrix.ger(1.0, &slope, &slope, 1.0);
         }
         let mut right = -&look.gradient;
         for (one, push) in look.inequalities.iter().zip(&here.pushes) {
@@ -363,7 +340,7 @@ impl<'a> Method<'a> {
         Polygon {
             layout: self.layout.clone(),
             pushes: (0..self.layout.arcs()).map(four).collect(),
-            speed: net.distance() / self.layout.period(&here.z),
+            speed: self.setting.measure(&net) / self.layout.period(&here.z),
             z: here.z.clone(),
         }
     }
@@ -395,6 +372,12 @@ fn newton_step(
     let free = factors.solve(right);
     let ways: Vec<DVector<f64>> = slopes.iter().map(|slope| factors.solve(slope)).collect();
     let count = slopes.len();
+    if count == 0 {
+        return free
+            .iter()
+            .all(|value| value.is_finite())
+            .then_some((free, Vec::new()));
+    }
     let schur = DMatrix::from_fn(count, count, |i, j| slopes[i].dot(&ways[j]));
     let rest = DVector::from_fn(count, |i, _| slopes[i].dot(&free) + values[i]);
     let dy = schur.lu().solve(&rest)?;

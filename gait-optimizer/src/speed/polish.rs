@@ -38,7 +38,7 @@ pub(crate) const BENDS: usize = 8;
 pub(crate) fn polish(setting: &Setting, links: &[Link]) -> Option<Polished> {
     let rule = Rule::new(POINTS);
     let (layout, z) = written(setting, links);
-    let equations = equations(links);
+    let equations = equations(setting, links);
     let conditions = Conditions {
         setting,
         layout: &layout,
@@ -78,7 +78,7 @@ pub(crate) fn polish(setting: &Setting, links: &[Link]) -> Option<Polished> {
     }
     Some(Polished {
         links,
-        speed: net.distance() / layout.period(&z),
+        speed: setting.measure(&net) / layout.period(&z),
         layout,
         z,
         net,
@@ -95,7 +95,7 @@ pub(crate) fn second_variation(setting: &Setting, links: &[Link]) -> Option<f64>
         setting,
         layout: &layout,
         rule: &rule,
-        equations: &equations(links),
+        equations: &equations(setting, links),
     };
     let (_, y) = conditions.look(&z, None)?.newton()?;
     Some(conditions.look(&z, Some(&y))?.convexity().0)

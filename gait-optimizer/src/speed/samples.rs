@@ -20,9 +20,7 @@ const TIED: f64 = 1e-6;
 /// The cycle timed at the servos' rates, from the corner farthest along φ₁ = φ₂ (of equals the one of the largest φ₁). With `sign`
 /// −1 the mirrored swimmer's.
 pub(crate) fn cycle(setting: &Setting, polished: &Polished, sign: f64) -> (Cycle, Vec<Arc>) {
-    let Polished {
-        links, layout, z, ..
-    } = polished;
+    let links = &polished.links;
     let n = links.len();
     let corner = |k: usize| links[k].corner * sign;
     let farthest = (0..n).map(|k| corner(k).sum()).fold(f64::MIN, f64::max);
@@ -30,6 +28,20 @@ pub(crate) fn cycle(setting: &Setting, polished: &Polished, sign: f64) -> (Cycle
         .filter(|&k| corner(k).sum() > farthest - TIED)
         .max_by(|&a, &b| corner(a).x.total_cmp(&corner(b).x))
         .unwrap_or(0);
+    cycle_from(setting, polished, sign, first)
+}
+
+/// The same from the corner of this number.
+pub(crate) fn cycle_from(
+    setting: &Setting,
+    polished: &Polished,
+    sign: f64,
+    first: usize,
+) -> (Cycle, Vec<Arc>) {
+    let Polished {
+        links, layout, z, ..
+    } = polished;
+    let n = links.len();
     let period = layout.period(z);
     let mut cycle = Cycle {
         u: Vec::new(),

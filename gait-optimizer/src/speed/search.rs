@@ -239,7 +239,12 @@ pub(super) fn told(
     let certificate = certificate::certificate(
         setting.model,
         setting.region,
-        (problem.heading, problem.period.is_some()),
+        certificate::Asked {
+            heading: problem.heading,
+            period: problem.period.is_some(),
+            goal: setting.goal,
+            anchor: setting.anchor.map(|anchor| anchor * sign),
+        },
         &file,
         &gait,
     );

@@ -33,6 +33,8 @@ pub(crate) struct Link {
     pub(crate) corner: Vector2<f64>,
     /// Bounds that hold the corner, by their place in the region.
     pub(crate) held: Vec<Hold>,
+    /// Whether the corner is where gaits join.
+    pub(crate) anchored: bool,
     pub(crate) motion: Motion,
     /// Seconds.
     pub(crate) time: f64,
@@ -126,13 +128,14 @@ pub(crate) fn arcs(setting: &Setting, polygon: &Polygon) -> Option<Vec<Link>> {
         })
         .collect();
     // Begin where the motion changes.
-    let first = (0..n).find(|&k| sides[k].0 != sides[(k + n - 1) % n].0)?;
+    let anchored = |k: usize| k == 0 && setting.anchor.is_some();
+    let first = (0..n).find(|&k| anchored(k) || sides[k].0 != sides[(k + n - 1) % n].0)?;
     let mut links: Vec<Link> = Vec::new();
     for k in (0..n).map(|k| (first + k) % n) {
         let (motion, time) = sides[k];
         let corner = layout.corner(&polygon.z, k);
         match links.last_mut() {
-            Some(last) if last.motion == motion => {
+            Some(last) if last.motion == motion && !anchored(k) => {
                 last.time += time;
                 last.between.push(corner);
             }
@@ -140,13 +143,18 @@ pub(crate) fn arcs(setting: &Setting, polygon: &Polygon) -> Option<Vec<Link>> {
                 between: Vec::new(),
                 corner,
                 held: held[k].clone(),
+                anchored: anchored(k),
                 motion,
                 time,
                 bends: Vec::new(),
             }),
         }
     }
-    links.retain(|link| link.time > SHORTEST * period);
+    for k in (0..links.len()).rev() {
+        if links[k].time <= SHORTEST * period {
+            remove(&mut links, k);
+        }
+    }
     merge(&mut links);
     cut_corners(&mut links);
     bend(&mut links, FITTED);
@@ -173,6 +181,7 @@ fn cut_corners(links: &mut Vec<Link>) {
             },
         ) = (before.motion, after.motion)
             && one != two
+            && !after.anchored
         {
             let cut = 0.2 * before.time.min(after.time);
             let mut ways = [first; 2];
@@ -196,6 +205,7 @@ fn cut_corners(links: &mut Vec<Link>) {
                 Link {
                     corner: from,
                     held: vec![Hold::On(first_bound, None)],
+                    anchored: false,
                     motion: Motion::Extreme(ways),
                     time: cut,
                     bends: Vec::new(),
@@ -240,12 +250,21 @@ pub(crate) fn bend(links: &mut [Link], most: usize) {
     }
 }
 
+/// Takes an arc out; where gaits join is then the next corner.
+pub(crate) fn remove(links: &mut Vec<Link>, at: usize) {
+    let gone = links.remove(at);
+    let count = links.len();
+    if let Some(next) = links.get_mut(at % count.max(1)) {
+        next.anchored |= gone.anchored;
+    }
+}
+
 /// Joins neighbours of one motion.
 pub(crate) fn merge(links: &mut Vec<Link>) {
     let mut at = 0;
     while links.len() > 2 && at < links.len() {
         let next = (at + 1) % links.len();
-        if links[at].motion == links[next].motion {
+        if links[at].motion == links[next].motion && !links[next].anchored {
             let joined = links.remove(next);
             let last = if next == 0 { links.len() - 1 } else { at };
             links[last].time += joined.time;

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::candidate::mended;
 use super::polish::Polished;
 use super::problem::Setting;
-use super::structure::{Hold, Link, Motion};
+use super::structure::{Hold, Link, Motion, remove};
 use crate::region::Bound;
 
 /// Half of a new arc's first guess, over the period.
@@ -41,6 +41,7 @@ pub(super) fn along_bounds(setting: &Setting, links: &mut Vec<Link>) {
         links.push(short_arc(from, link.held.clone(), motion, 2.0 * short));
         links.push(Link {
             corner: to,
+            anchored: false,
             ..link.clone()
         });
     }
@@ -84,7 +85,11 @@ pub(super) fn without_backwards(links: &mut Vec<Link>) -> bool {
     let on_bound = |k: usize| links[k % count].motion.bound().is_some();
     let touches: Vec<usize> = (0..count)
         .filter(|&k| {
-            links[k].time <= 0.0 && on_bound(k) && !on_bound(k + count - 1) && !on_bound(k + 1)
+            links[k].time <= 0.0
+                && !links[k].anchored
+                && on_bound(k)
+                && !on_bound(k + count - 1)
+                && !on_bound(k + 1)
         })
         .collect();
     for &k in touches.iter().rev() {
@@ -101,7 +106,7 @@ pub(super) fn without_backwards(links: &mut Vec<Link>) -> bool {
     let worst = (0..count).min_by(|&a, &b| links[a].time.total_cmp(&links[b].time));
     match worst {
         Some(worst) if links[worst].time <= 0.0 => {
-            links.remove(worst);
+            remove(links, worst);
             true
         }
         _ => false,
@@ -140,6 +145,9 @@ pub(super) fn bent(setting: &Setting, chain: &Polished) -> Option<Polished> {
 fn with_singular(links: &[Link], corner: usize, short: f64) -> Option<Vec<Link>> {
     let before = (corner + links.len() - 1) % links.len();
     let (old, new) = (links[before].motion, links[corner].motion);
+    if links[corner].anchored {
+        return None;
+    }
     // How long before and after the corner the new arc reaches, and what holds its ends.
     let (back, ahead, held, (pace, way)) = match (old, new) {
         (Motion::Extreme(old), Motion::Extreme(new)) if links[corner].held.is_empty() => {
@@ -183,6 +191,7 @@ fn short_arc(corner: Vector2<f64>, held: Vec<Hold>, motion: Motion, time: f64) -
     Link {
         corner,
         held,
+        anchored: false,
         motion,
         time,
         bends: Vec::new(),

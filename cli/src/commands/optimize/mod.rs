@@ -8,6 +8,7 @@ mod front;
 mod robust;
 mod sideways;
 mod speed;
+pub(crate) mod steer;
 mod timing;
 mod turning;
 
@@ -25,6 +26,7 @@ pub(crate) enum Optimize {
     Turning(turning::Turning),
     Sideways(sideways::Sideways),
     Speed(speed::Speed),
+    Steer(steer::Steer),
 }
 
 impl Optimize {
@@ -37,6 +39,7 @@ impl Optimize {
             Self::Turning(arguments) => arguments.run(output),
             Self::Sideways(arguments) => arguments.run(output),
             Self::Speed(arguments) => arguments.run(output),
+            Self::Steer(arguments) => arguments.run(output),
         }
     }
 
@@ -48,6 +51,8 @@ impl Optimize {
             Self::Turning(arguments) => &arguments.output,
             Self::Sideways(arguments) => &arguments.output,
             Self::Speed(arguments) => &arguments.output,
+            // A folder, which looks after itself.
+            Self::Steer(_) => &None,
         };
         file.as_deref()
     }

@@ -356,7 +356,7 @@ impl fmt::Display for TankAnswer {
     }
 }
 
-fn tank(text: &str) -> Result<Tank, String> {
+pub(crate) fn tank(text: &str) -> Result<Tank, String> {
     let sides = text.split_once(['x', '×']).map(|(length, width)| {
         let number = |text: &str| f64::from_str(text.trim().trim_end_matches('m').trim());
         (number(length), number(width))

@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, ArcKind, GaitArc, GaitFile};
 use swimmer_model::{Gait as _, Model, Panel, Panels, Tolerance};
 
+use super::super::problem::Goal;
 use crate::height_map::legendre::gauss;
 use crate::momentum::Momentum;
 use crate::region::Region;
@@ -16,7 +17,8 @@ pub(crate) struct Node {
     pub(crate) phi: Vector2<f64>,
     pub(crate) rate: Vector2<f64>,
     pub(crate) theta: f64,
-    /// The height for p along d, for a unit of the multiplier of rotation, and for one of the heading.
+    /// The height for p along d, for a unit of the multiplier of rotation, and for one of the heading; of most rotation the
+    /// height for it, and nothing.
     pub(crate) height: [f64; 3],
     /// Gradients of the same.
     pub(crate) slope: [Vector2<f64>; 3],
@@ -55,6 +57,7 @@ pub(crate) struct Legs {
     pub(crate) all: Vec<Leg>,
     /// Pose after the cycle.
     pub(crate) end: [f64; 3],
+    /// |d|, or |Δθ| where that is to be the most.
     pub(crate) distance: f64,
     /// Mean of θ over the period.
     pub(crate) mean_theta: f64,
@@ -69,14 +72,17 @@ const PANELS: usize = 16;
 impl Legs {
     /// None for a cycle that leads nowhere, or whose arcs are none.
     pub(crate) fn new(
-        model: &Model<f64>,
-        region: &Region,
+        (model, region): (&Model<f64>, &Region),
+        goal: Goal,
         file: &GaitFile,
         gait: &AnyGait,
     ) -> Option<Self> {
         let panels: Vec<Panel<f64>> = Panels::new(model, gait, &Tolerance::default()).collect();
         let last = panels.last()?.end_pose();
-        let distance = last.x.hypot(last.y);
+        let distance = match goal {
+            Goal::Distance => last.x.hypot(last.y),
+            Goal::Rotation => last.theta.abs(),
+        };
         if distance.is_nan() || distance < 1e-12 {
             return None;
         }
@@ -96,11 +102,19 @@ impl Legs {
                 let pose = pose_at(&panels, u);
                 let second = model.second_derivatives(&point.phi);
                 let height = |p: Vector2<f64>, c: f64| Momentum { p, c }.height(&second, &pose);
-                let parts = [
-                    height(unit, 0.0),
-                    height(Vector2::zeros(), 1.0),
-                    height(across, -distance * (1.0 - u)),
-                ];
+                let none = || height(Vector2::zeros(), 0.0);
+                let parts = match goal {
+                    Goal::Distance => [
+                        height(unit, 0.0),
+                        height(Vector2::zeros(), 1.0),
+                        height(across, -distance * (1.0 - u)),
+                    ],
+                    Goal::Rotation => [
+                        height(Vector2::zeros(), last.theta.signum()),
+                        none(),
+                        none(),
+                    ],
+                };
                 Node {
                     weight,
                     phi: point.phi,

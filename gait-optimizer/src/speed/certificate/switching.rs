@@ -7,10 +7,10 @@
 use nalgebra::Vector2;
 use swimmer_files::ArcKind;
 
-use super::super::problem::HeadingRule;
+use super::super::problem::{Goal, HeadingRule};
 use super::affine::Affine;
 use super::legs::{Leg, Legs, Node};
-use super::{RESTS, least_squares, on_bound};
+use super::{Asked, RESTS, least_squares, on_bound};
 use crate::certificate::Check;
 use crate::region::{Bound, Region};
 
@@ -33,8 +33,7 @@ pub(super) fn along(region: &Region, node: &Node) -> Option<(usize, Bound)> {
 pub(crate) struct Switching<'a> {
     region: &'a Region,
     legs: &'a Legs,
-    heading: bool,
-    period: bool,
+    asked: Asked,
     /// σ₁ at both ends of each extreme leg.
     ends: Vec<Option<[Affine; 2]>>,
     solution: Vec<f64>,
@@ -43,12 +42,11 @@ pub(crate) struct Switching<'a> {
 }
 
 impl<'a> Switching<'a> {
-    pub(crate) fn new(region: &'a Region, legs: &'a Legs, rule: HeadingRule, period: bool) -> Self {
+    pub(crate) fn new(region: &'a Region, legs: &'a Legs, asked: Asked) -> Self {
         let mut this = Self {
             region,
             legs,
-            heading: rule != HeadingRule::Any,
-            period,
+            asked,
             ends: vec![None; legs.all.len()],
             solution: Vec::new(),
             residual: 0.0,
@@ -80,13 +78,20 @@ impl<'a> Switching<'a> {
         for k in 0..count {
             rows.extend(this.tangential_jump(k));
         }
-        if !this.heading {
+        let rotates = asked.goal == Goal::Rotation;
+        if rotates || asked.heading == HeadingRule::Any {
             rows.push(Affine {
                 weights: vec![(HEADING, 1.0)],
                 rest: 0.0,
             });
         }
-        if !period {
+        if rotates {
+            rows.push(Affine {
+                weights: vec![(ROTATION, 1.0)],
+                rest: 0.0,
+            });
+        }
+        if !asked.period {
             rows.push(Affine {
                 weights: vec![(SPEED, 1.0)],
                 rest: -1.0,
@@ -160,7 +165,10 @@ impl<'a> Switching<'a> {
             .times(leg.ways[0] / self.legs.rates[0]);
         let none = full.times(0.0);
         let mut free = self.normals(&phi);
-        let known = if other.kind == ArcKind::Extreme {
+        let joins = self.asked.joins(&phi);
+        let known = if joins {
+            None
+        } else if other.kind == ArcKind::Extreme {
             match [0, 1].map(|i| (leg.ways[i] - other.ways[i]).abs() > 0.5) {
                 [true, false] => Some(none),
                 [false, true] => Some(full),
@@ -345,7 +353,7 @@ impl<'a> Switching<'a> {
                 -close,
             ));
         }
-        if self.period {
+        if self.asked.period {
             // A longer period never leads less far.
             let further = self.solution.get(SPEED).copied().unwrap_or(f64::NAN);
             checks.push(Check::at_least(

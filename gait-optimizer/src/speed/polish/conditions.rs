@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
-use super::super::chain::{self, Layout, Net, Weights};
-use super::super::problem::{HeadingRule, Setting};
+use super::super::chain::{self, Layout, Net};
+use super::super::problem::Setting;
 use super::super::quadrature::Rule;
 use super::super::structure::{Hold, Link, Motion};
 use crate::region::{Bound, Level};
@@ -20,9 +20,15 @@ pub(super) enum Equation {
         corner: usize,
         hold: Hold,
     },
+    /// One angle of the corner at which gaits join.
+    Anchored {
+        corner: usize,
+        joint: usize,
+        angle: f64,
+    },
 }
 
-pub(super) fn equations(links: &[Link]) -> Vec<Equation> {
+pub(super) fn equations(setting: &Setting, links: &[Link]) -> Vec<Equation> {
     let mut equations = Vec::new();
     for (arc, link) in links.iter().enumerate() {
         match link.motion {
@@ -38,6 +44,15 @@ pub(super) fn equations(links: &[Link]) -> Vec<Equation> {
         }
         for &hold in &link.held {
             equations.push(Equation::Held { corner: arc, hold });
+        }
+        if let Some(anchor) = setting.anchor.filter(|_| link.anchored) {
+            for joint in 0..2 {
+                equations.push(Equation::Anchored {
+                    corner: arc,
+                    joint,
+                    angle: anchor[joint],
+                });
+            }
         }
     }
     equations
@@ -64,8 +79,7 @@ pub(super) struct Look {
 impl Conditions<'_> {
     /// Equations of the whole chain: rotation, and heading and period where they are asked for.
     pub(super) fn global(&self) -> usize {
-        1 + usize::from(self.setting.heading.off(0.0).is_some())
-            + usize::from(self.setting.period.is_some())
+        self.setting.equality_count()
     }
 
     pub(super) fn look(&self, z: &DVector<f64>, y: Option<&DVector<f64>>) -> Option<Look> {
@@ -77,17 +91,14 @@ impl Conditions<'_> {
         } = self;
         let size = layout.size;
         let jets = layout.jets(setting.model, rule, z);
-        let weights = |log_distance, rotation, heading| Weights {
-            log_distance,
-            rotation,
-            heading,
-        };
         let period = layout.period(z);
         let times = 2 * layout.arcs()..3 * layout.arcs();
-        let (net, mut objective) = chain::gradient(layout, &jets, z, weights(-1.0, 0.0, 0.0));
-        if !net.distance().is_finite() || net.distance() < 1e-9 {
+        let (net, equalities, equality_slopes) = setting.equalities(layout, &jets, z);
+        let measure = setting.measure(&net);
+        if !measure.is_finite() || measure < 1e-9 {
             return None;
         }
+        let (_, mut objective) = chain::gradient(layout, &jets, z, setting.weights(&net, None));
         for index in times.clone() {
             objective[index] += 1.0 / period;
         }
@@ -95,33 +106,21 @@ impl Conditions<'_> {
         let count = global + equations.len();
         let mut values = DVector::zeros(count);
         let mut slopes = DMatrix::zeros(count, size);
-        values[0] = net.rotation;
-        let (_, slope) = chain::gradient(layout, &jets, z, weights(0.0, 1.0, 0.0));
-        slopes.set_row(0, &slope.transpose());
-        if let Some(off) = setting.heading.off(net.heading()) {
-            values[1] = off;
-            let (_, slope) = chain::gradient(layout, &jets, z, weights(0.0, 0.0, 1.0));
-            slopes.set_row(1, &slope.transpose());
+        for (row, (value, slope)) in equalities.iter().zip(&equality_slopes).enumerate() {
+            values[row] = *value;
+            slopes.set_row(row, &slope.transpose());
         }
         let multiplier = |row: usize| y.map_or(0.0, |y| y[row]);
-        if let Some(asked) = setting.period {
-            values[global - 1] = period / asked - 1.0;
-            for index in times.clone() {
-                slopes[(global - 1, index)] = 1.0 / asked;
-            }
-        }
-        let heading = if setting.heading == HeadingRule::Any {
-            0.0
-        } else {
-            multiplier(1)
-        };
         let mut hessian = chain::hessian(
             (layout, setting.model, rule),
             &jets,
             z,
-            weights(-1.0, multiplier(0), heading),
+            setting.weights(&net, y.map(DVector::as_slice)),
             true,
         );
+        if let Some(slope) = setting.of_the_log(&net, (layout, &jets), z) {
+            hessian.ger(1.0, &slope, &slope, 1.0);
+        }
         for one in times.clone() {
             for other in times.clone() {
                 hessian[(one, other)] -= 1.0 / (period * period);
@@ -141,6 +140,15 @@ impl Conditions<'_> {
                     slopes[(row, to)] += way;
                     slopes[(row, from)] -= way;
                     slopes[(row, time)] -= rate;
+                }
+                Equation::Anchored {
+                    corner,
+                    joint,
+                    angle,
+                } => {
+                    let at = layout.corner_index(corner) + joint;
+                    values[row] = z[at] - angle;
+                    slopes[(row, at)] = 1.0;
                 }
                 Equation::Held { corner, hold } => {
                     let phi = layout.corner(z, corner);

@@ -1,0 +1,155 @@
+//! `swimmer plan`: gaits of one family strung together to a target.
+
+mod answer;
+mod playlist;
+
+use std::path::PathBuf;
+
+use forecast::{Errand, Family, Tank, plan};
+use swimmer_files::{AnyGait, GaitFile, SwimmerFile};
+use swimmer_model::{Gait as _, Pose};
+
+use self::answer::{Answer, Off};
+use self::playlist::write_playlist;
+use super::optimize::steer::{SteerArguments, named};
+use super::robot::preflight::tank;
+use crate::arguments::{angle, length, load_swimmer};
+use crate::failure::{Failure, Outcome};
+use crate::new_file::may_be_written;
+use crate::output::Output;
+
+/// String the gaits of `optimize steer` together so that the swimmer comes to a target
+///
+/// Poses are those of the middle link with both joints straight: x and y from the tank's centre in metres, the heading from its
+/// length. The way from the straight shape to the one at which the gaits join, and back, belongs to the plan. The plan is the
+/// quickest that was found, of chains of up to three legs; a leg is a number of cycles of one gait, drawn in a little so that the
+/// legs together meet the target.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Plan {
+    #[command(flatten)]
+    steer: SteerArguments,
+    /// Where to go, metres; with a heading or without
+    #[arg(long, value_name = "X,Y[,ANGLE]", value_parser = target, allow_hyphen_values = true)]
+    to: Target,
+    /// Where the swimmer is
+    #[arg(long, value_name = "X,Y[,ANGLE]", value_parser = target, allow_hyphen_values = true, default_value = "0,0,0")]
+    from: Target,
+    /// Stay within the walls of this tank: length x width, m
+    #[arg(long, value_name = "LENGTHxWIDTH", value_parser = tank)]
+    tank: Option<Tank>,
+    /// Come no nearer to a wall than this, m
+    #[arg(long, value_name = "LENGTH_M", value_parser = length, default_value = "0.005")]
+    margin: f64,
+    /// Take the gaits from this folder, which `optimize steer -o` wrote, instead of looking for them
+    #[arg(long, value_name = "DIR", conflicts_with = "shape")]
+    gaits: Option<PathBuf>,
+    /// Write the plan as a playlist, and its gaits beside it
+    #[arg(short, long, value_name = "PLAYLIST")]
+    output: Option<PathBuf>,
+}
+
+/// A place, perhaps with a heading.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Target {
+    x: f64,
+    y: f64,
+    heading: Option<f64>,
+}
+
+fn target(text: &str) -> Result<Target, String> {
+    let bad = || format!("`{text}` is no place: give X,Y or X,Y,ANGLE, as 0.2,-0.1,90deg");
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    let metres = |part: &str| {
+        let number: f64 = part.parse().map_err(|_| bad())?;
+        if number.is_finite() {
+            Ok(number)
+        } else {
+            Err(bad())
+        }
+    };
+    let (x, y, heading) = match parts[..] {
+        [x, y] => (x, y, None),
+        [x, y, heading] => (x, y, Some(angle(heading)?)),
+        _ => return Err(bad()),
+    };
+    Ok(Target {
+        x: metres(x)?,
+        y: metres(y)?,
+        heading,
+    })
+}
+
+impl Plan {
+    pub(crate) fn run(self, output: Output) -> Outcome {
+        if let Some(path) = &self.output {
+            may_be_written(path)?;
+        }
+        let file = load_swimmer(&self.steer.swimmer)?;
+        let model = crate::arguments::model(&file)?;
+        let family = self.family(&file)?;
+        let errand = Errand {
+            from: Pose::new(self.from.x, self.from.y, self.from.heading.unwrap_or(0.0)),
+            to: nalgebra::Vector2::new(self.to.x, self.to.y),
+            heading: self.to.heading,
+            tank: self.tank,
+            margin: self.margin,
+        };
+        let found = plan(&model, &family, &errand).map_err(|error| Failure::tried(&error))?;
+        let off = |share: f64| -> Outcome<Off> {
+            let mut other = file.clone();
+            other.swimmer.chi *= share;
+            let model = crate::arguments::model(&other)?;
+            let reached = family.reached(&model, &errand.from, &found.steps);
+            Ok(Off::between(&found.reached, &reached))
+        };
+        let wrong = [off(0.95)?, off(1.05)?];
+        let gaits = match &self.output {
+            Some(path) => Some(write_playlist(path, &file, &family, &found)?),
+            None => None,
+        };
+        output.answer(&Answer::new(&file.name, &found, wrong, gaits, self.output));
+        Ok(())
+    }
+
+    fn family(&self, file: &SwimmerFile) -> Outcome<Family> {
+        let Some(folder) = &self.gaits else {
+            let steering = self.steer.find(file)?;
+            let gaits = [0, 2, 4].map(|at| {
+                let (_, joined, _) = named(&steering)[at];
+                let curve = AnyGait::from_file(&joined.gait_file(&file.name, false));
+                curve.map(|curve| (curve, joined.period))
+            });
+            let [forward, left, turn] = gaits;
+            let all = [forward, left, turn]
+                .into_iter()
+                .collect::<Result<Vec<_>, _>>();
+            let all = all.map_err(|error| Failure::Tried(error.to_string()))?;
+            return family_of(all);
+        };
+        let rates = self.steer.rates(file)?;
+        let mut all = Vec::new();
+        for name in ["forward", "left", "turn-left"] {
+            let path = folder.join(format!("{name}.gait"));
+            let gait = GaitFile::load(&path)?;
+            let curve = AnyGait::from_file(&gait)
+                .map_err(|error| Failure::BadInput(format!("{}: {error}", path.display())))?;
+            // As fast as the servos turn.
+            let period = (0..curve.pieces())
+                .flat_map(|piece| {
+                    let end = curve.piece_end(piece);
+                    [end - 1e-9, end + 1e-9].map(|u| curve.at(u.rem_euclid(1.0)).rate)
+                })
+                .map(|rate| (rate.x.abs() / rates[0]).max(rate.y.abs() / rates[1]))
+                .fold(0.0, f64::max);
+            all.push((curve, period));
+        }
+        family_of(all)
+    }
+}
+
+fn family_of(gaits: Vec<(AnyGait, f64)>) -> Outcome<Family> {
+    let gaits = gaits
+        .try_into()
+        .map_err(|_| Failure::Tried("a family has three gaits".to_owned()))?;
+    Ok(Family { gaits })
+}

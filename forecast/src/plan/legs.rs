@@ -1,0 +1,254 @@
+//! Chains of legs that meet a target.
+
+use nalgebra::{Matrix3, Vector3};
+use swimmer_model::Pose;
+
+use super::member::{Kind, Member, Nets, SMALLEST, repeated};
+use super::{Errand, Family, Step};
+
+/// Legs of a chain: their scales meet the three coordinates of a target.
+const MOST: usize = 3;
+/// Headings that are tried where any will do.
+const HEADINGS: usize = 24;
+/// Rotations of a leg that Newton's method starts from, and amounts of the others.
+const TURNS: usize = 8;
+/// Amounts that are alike \[cycles\].
+const ALIKE: f64 = 0.05;
+const STEPS: usize = 30;
+/// Cycles of a leg.
+const MOST_CYCLES: f64 = 400.0;
+/// A target is met so closely (m and rad).
+const MET: f64 = 1e-10;
+
+/// An angle in (−π, π].
+pub(super) fn wrapped(angle: f64) -> f64 {
+    let (sin, cos) = angle.sin_cos();
+    sin.atan2(cos)
+}
+
+/// All chains that are found.
+pub(super) fn chains(
+    nets: &Nets,
+    family: &Family,
+    errand: &Errand,
+    way_in: &Pose<f64>,
+) -> Vec<Vec<Step>> {
+    let headings: Vec<f64> = match errand.heading {
+        Some(heading) => vec![heading],
+        None => (0..HEADINGS)
+            .map(|k| std::f64::consts::TAU * k as f64 / HEADINGS as f64)
+            .collect(),
+    };
+    let mut all = Vec::new();
+    for heading in headings {
+        let target = Pose::new(errand.to.x, errand.to.y, heading);
+        // What the legs have to bring, from the common shape to the common shape.
+        let wanted = (errand.from * *way_in).inverse() * (target * *way_in);
+        for word in words() {
+            let search = Search {
+                nets,
+                family,
+                wanted,
+                word,
+            };
+            all.extend(search.chains());
+        }
+    }
+    all
+}
+
+/// All orders of three legs of which no two neighbours are alike.
+fn words() -> Vec<[Kind; MOST]> {
+    let mut words = Vec::new();
+    for one in Kind::ALL {
+        for two in Kind::ALL {
+            for three in Kind::ALL {
+                if one != two && two != three {
+                    words.push([one, two, three]);
+                }
+            }
+        }
+    }
+    words
+}
+
+struct Search<'a> {
+    nets: &'a Nets,
+    family: &'a Family,
+    wanted: Pose<f64>,
+    word: [Kind; MOST],
+}
+
+impl Search<'_> {
+    fn chains(&self) -> Vec<Vec<Step>> {
+        let mut amounts: Vec<Vector3<f64>> = Vec::new();
+        for start in self.starts() {
+            let Some(found) = newton(start, |amounts| self.off(&self.roughly(amounts))) else {
+                continue;
+            };
+            let alike = |other: &Vector3<f64>| (other - found).amax() < ALIKE;
+            if found.amax() < MOST_CYCLES && !amounts.iter().any(alike) {
+                amounts.push(found);
+            }
+        }
+        amounts
+            .iter()
+            .filter_map(|amounts| self.whole(amounts))
+            .collect()
+    }
+
+    fn starts(&self) -> Vec<Vector3<f64>> {
+        let turn = self.full(Kind::Turn).theta;
+        let rotation = wrapped(self.wanted.theta);
+        let tau = std::f64::consts::TAU;
+        let mut starts = Vec::new();
+        for whole in [0.0, 1.0, -1.0] {
+            for k in 0..TURNS {
+                let share = tau * (k as f64 / TURNS as f64 - 0.5);
+                let mut left = rotation + whole * tau;
+                let mut start = Vector3::zeros();
+                let turns = self.word.iter().filter(|kind| **kind == Kind::Turn).count();
+                for (leg, kind) in self.word.iter().enumerate() {
+                    if *kind == Kind::Turn {
+                        let first = turns == 2 && leg == 0;
+                        let part = if first { share } else { left };
+                        start[leg] = part / turn;
+                        left -= part;
+                    } else {
+                        // Either way.
+                        start[leg] = if k % 2 == 0 { 3.0 } else { -3.0 };
+                    }
+                }
+                starts.push(start);
+                if turns < 2 && k > 0 {
+                    break;
+                }
+            }
+        }
+        starts
+    }
+
+    fn full(&self, kind: Kind) -> Pose<f64> {
+        self.nets.of(&Member {
+            kind,
+            backwards: false,
+            scale: 1.0,
+        })
+    }
+
+    /// As if cycles could be cut anywhere: a real number of each.
+    fn roughly(&self, amounts: &Vector3<f64>) -> Pose<f64> {
+        let legs = self.word.iter().zip(amounts.iter());
+        legs.fold(Pose::identity(), |sum, (kind, amount)| {
+            sum * power(&self.full(*kind), *amount)
+        })
+    }
+
+    /// How far a pose is from what is wanted.
+    fn off(&self, pose: &Pose<f64>) -> Vector3<f64> {
+        let off = self.wanted.inverse() * *pose;
+        Vector3::new(off.x, off.y, wrapped(off.theta))
+    }
+
+    /// Whole cycles of members that bring the same; none where there are none.
+    fn whole(&self, amounts: &Vector3<f64>) -> Option<Vec<Step>> {
+        let mut cycles = amounts.map(|amount| (amount.abs() - 1e-9).ceil());
+        for _ in 0..8 {
+            let used = |leg: usize| cycles[leg] > 0.0;
+            let member = |leg: usize, scale: f64| Member {
+                kind: self.word[leg],
+                backwards: amounts[leg] < 0.0,
+                scale,
+            };
+            let scales = Vector3::from_fn(|leg, _| {
+                if used(leg) {
+                    (amounts[leg].abs() / cycles[leg])
+                        .sqrt()
+                        .clamp(2.0 * SMALLEST, 1.0)
+                } else {
+                    1.0
+                }
+            });
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "whole numbers from 0 to 400"
+            )]
+            let count = |leg: usize| cycles[leg] as u32;
+            let found = newton(scales, |scales| {
+                let pose = (0..MOST).fold(Pose::identity(), |sum, leg| {
+                    let scale = scales[leg].clamp(SMALLEST, 1.5);
+                    sum * repeated(&self.nets.of(&member(leg, scale)), count(leg))
+                });
+                self.off(&pose)
+            })?;
+            let beyond = (0..MOST).filter(|&leg| used(leg) && found[leg] > 1.0);
+            let beyond: Vec<usize> = beyond.collect();
+            if beyond.is_empty() {
+                let small = (0..MOST).any(|leg| used(leg) && found[leg] < SMALLEST);
+                let steps = (0..MOST).filter(|&leg| used(leg)).map(|leg| Step {
+                    member: member(leg, found[leg]),
+                    cycles: count(leg),
+                    period: self.family.gaits[self.word[leg] as usize].1 * found[leg],
+                });
+                return (!small).then(|| steps.collect());
+            }
+            for leg in beyond {
+                cycles[leg] += 1.0;
+            }
+        }
+        None
+    }
+}
+
+/// A pose to a real power: along its screw.
+fn power(pose: &Pose<f64>, amount: f64) -> Pose<f64> {
+    let half = 0.5 * pose.theta;
+    // Of the twist whose exponential is the pose.
+    let stretch = if half.abs() < 1e-9 {
+        1.0
+    } else {
+        half / half.tan()
+    };
+    let twist = Vector3::new(
+        stretch * pose.x + half * pose.y,
+        -half * pose.x + stretch * pose.y,
+        pose.theta,
+    );
+    Pose::exp(&(twist * amount))
+}
+
+/// A zero of three functions of three numbers, by damped steps with differences; none where they do not come near one.
+fn newton(start: Vector3<f64>, of: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Option<Vector3<f64>> {
+    const DIFFERENCE: f64 = 1e-6;
+    let mut here = start;
+    let mut off = of(&here);
+    for _ in 0..STEPS {
+        if off.amax() < MET {
+            return Some(here);
+        }
+        let mut slopes = Matrix3::zeros();
+        for k in 0..3 {
+            let (mut up, mut down) = (here, here);
+            up[k] += DIFFERENCE;
+            down[k] -= DIFFERENCE;
+            slopes.set_column(k, &((of(&up) - of(&down)) / (2.0 * DIFFERENCE)));
+        }
+        let inverse = slopes.svd(true, true).pseudo_inverse(1e-9).ok()?;
+        let step = -(inverse * off);
+        let mut length = 1.0;
+        loop {
+            let there = here + step * length;
+            let after = of(&there);
+            if after.norm() < off.norm() {
+                (here, off) = (there, after);
+                break;
+            }
+            length *= 0.5;
+            if length < 1e-3 {
+                return None;
+            }
+        }
+    }
+    (off.amax() < MET).then_some(here)
+}

@@ -1,0 +1,319 @@
+//! Gaits to steer by: the fastest forward, to the left and turning left, all through one common shape at which they join.
+//!
+//! In Stokes flow a gait run backwards undoes itself, so three gaits make six. Each is the fastest of its kind that passes the
+//! shape: there its costate may jump any way, every other condition is that of the fastest gait. Where no chain of
+//! arcs through the shape meets all of them the fastest that was met is told, with the certificate that it fails. The shape is the one at which
+//! the three lose least against the fastest gaits that need not join.
+
+mod shape;
+#[cfg(test)]
+mod tests;
+
+use nalgebra::Vector2;
+use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
+use swimmer_model::{Model, Tolerance, swim};
+
+use super::candidate::{candidate, mended};
+use super::certificate::{Asked, certificate};
+use super::interior::rough_polygon;
+use super::polish::Polished;
+use super::problem::{Goal, HeadingRule, Setting};
+use super::{SpeedError, SpeedProblem, samples, selection, starts, validate, widened};
+use crate::cycle::Cycle;
+use crate::immobile::refuse_immobile;
+use crate::optimal_gait::{Arc, OptimalGait, Solution};
+use crate::parallel::in_parallel;
+use crate::region::Region;
+use crate::{Certificate, Watch};
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SteerProblem {
+    /// Swimmer, bounds, rates, starts and threads; its heading, period and most corners are not asked.
+    pub of: SpeedProblem,
+    /// The common shape \[rad\]; none: the one at which joining costs least of those that are tried.
+    pub shape: Option<[f64; 2]>,
+}
+
+/// A gait that starts and ends at the common shape.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joined {
+    /// |d|/(L T) \[1/s\], or |Δθ|/T \[rad/s\] of the gait that turns.
+    pub rate: f64,
+    /// The same of the fastest gait that need not join.
+    pub unjoined_rate: f64,
+    /// \[s\]
+    pub period: f64,
+    /// What a cycle brings in the frame of the middle link at the common shape: x/L, y/L, θ \[rad\].
+    pub net: [f64; 3],
+    /// The gait from the common shape, timed as it shall run, with its certificate.
+    pub gait: OptimalGait,
+}
+
+impl Joined {
+    /// What joining costs: the share of the rate that the fastest gait has and this one has not.
+    pub fn cost(&self) -> f64 {
+        1.0 - self.rate / self.unjoined_rate
+    }
+
+    /// One cycle as a file, or the same run backwards.
+    pub fn gait_file(&self, swimmer_name: &str, backwards: bool) -> GaitFile {
+        let mut file = self.gait.gait_file(swimmer_name);
+        if backwards {
+            let back = self.gait.cycle.reversed(|phi| *phi);
+            (file.u, file.phi) = (back.u, back.phi);
+            (file.corners, file.arcs) = (back.corners, back.arcs);
+        }
+        file
+    }
+}
+
+/// Gaits to steer by.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Steering {
+    /// Where all of them join \[rad\].
+    pub shape: [f64; 2],
+    /// Along the mean heading; backward is this one run backwards.
+    pub forward: Joined,
+    /// To the left of the mean heading; right is this one run backwards.
+    pub left: Joined,
+    /// To the left; the turn to the right is this one run backwards.
+    pub turn: Joined,
+    /// Common shapes that were tried.
+    pub shapes: usize,
+    /// The largest angle \[rad\] that the gait that turns was given, where it is kept from where the side links come near each
+    /// other.
+    pub turning_angle: Option<f64>,
+}
+
+/// The three kinds, in the order of [`Steering`].
+const KINDS: [(Goal, HeadingRule); 3] = [
+    (Goal::Distance, HeadingRule::Forward),
+    (Goal::Distance, HeadingRule::Sideways),
+    (Goal::Rotation, HeadingRule::Any),
+];
+/// What the kinds are called in errors.
+const NAMES: [&str; 3] = ["forward", "sideways", "turning"];
+
+/// Finds the gaits to steer by, while somebody watches.
+///
+/// # Errors
+/// [`SpeedError`] where the problem makes no sense, or no gait of a kind can be certified.
+pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, SpeedError> {
+    let of = &problem.of;
+    validate(of)?;
+    let model = Model::new(&of.swimmer.of_unit_length())?;
+    refuse_immobile(&model, &of.bounds)?;
+    let region = Region::new(&of.bounds, &of.swimmer.links);
+    let turning_angle = shape::free_of_links(&region, &of.bounds);
+    let turning_bounds = Bounds {
+        max_angle: turning_angle.or(of.bounds.max_angle),
+        ..of.bounds
+    };
+    let turning = Region::new(&turning_bounds, &of.swimmer.links);
+    let fast = of.rates[0].max(of.rates[1]);
+    let setting = |(goal, heading), anchor| Setting {
+        model: &model,
+        region: if goal == Goal::Rotation {
+            &turning
+        } else {
+            &region
+        },
+        rates: of.rates.map(|rate| rate / fast),
+        heading,
+        period: None,
+        goal,
+        anchor,
+    };
+    if let Some(shape) = problem.shape {
+        let margin = -turning.overstepped(&Vector2::from(shape));
+        if margin.is_nan() || margin < shape::MARGIN {
+            return Err(SpeedError::Shape { shape });
+        }
+    }
+    let mut free = Vec::with_capacity(KINDS.len());
+    for (number, kind) in KINDS.into_iter().enumerate() {
+        let setting = setting(kind, None);
+        let starts: Vec<_> = (0..of.starts.max(1))
+            .map(|index| starts::start(setting.region, of.seed, index))
+            .collect();
+        let chains = chains(&setting, &starts, of.threads);
+        if chains.is_empty() {
+            return Err(of_kind(of, number, 0));
+        }
+        free.push(chains);
+        watch(0.5 * (number + 1) as f64 / KINDS.len() as f64);
+    }
+    let joining = shape::Joining {
+        settings: &|kind: usize, anchor| setting(KINDS[kind], Some(anchor)),
+        region: &turning,
+        free: &free,
+        threads: of.threads,
+    };
+    let (anchor, [forward, left, turn], shapes) = match problem.shape {
+        Some(shape) => {
+            let anchor = Vector2::from(shape);
+            let joined = joining
+                .at(anchor)
+                .map_err(|kind| of_kind(of, kind, free[kind].len()))?;
+            (anchor, joined, 1)
+        }
+        None => joining
+            .cheapest(&|share| watch(0.5 + 0.5 * share))
+            .ok_or_else(|| of_kind(of, 0, free[0].len()))?,
+    };
+    let told = |kind: usize, chain: &Polished| {
+        let setting = setting(KINDS[kind], Some(anchor));
+        told(of, &setting, chain, (fast, free[kind][0].speed))
+            .ok_or_else(|| of_kind(of, kind, free[kind].len()))
+    };
+    Ok(Steering {
+        shape: anchor.into(),
+        forward: told(0, &forward)?,
+        left: told(1, &left)?,
+        turn: told(2, &turn)?,
+        shapes,
+        turning_angle,
+    })
+}
+
+fn of_kind(problem: &SpeedProblem, kind: usize, chains: usize) -> SpeedError {
+    SpeedError::NoJoinedGait {
+        kind: NAMES[kind],
+        bounds: problem.bounds,
+        starts: problem.starts,
+        chains,
+    }
+}
+
+/// The chains that starts lead to, fastest first: those whose certificates pass, and where gaits join the others too.
+fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Vec<Polished> {
+    /// Groups of rough polygons that are finished.
+    const GROUPS: usize = 6;
+    let rough = in_parallel(
+        starts.len(),
+        threads,
+        &|_| (),
+        || (),
+        |(), index| rough_polygon(setting, &starts[index]),
+    );
+    let groups = selection::groups(rough.into_iter().flatten().collect());
+    let chosen: Vec<_> = groups
+        .iter()
+        .take(GROUPS)
+        .flat_map(|group| &group.chosen)
+        .collect();
+    let finished = in_parallel(
+        chosen.len(),
+        threads,
+        &|_| (),
+        || (),
+        |(), index| {
+            let chain = candidate(setting, chosen[index])?;
+            certified(setting, &chain).or(setting.anchor.map(|_| chain))
+        },
+    );
+    let mut chains: Vec<Polished> = finished.into_iter().flatten().collect();
+    chains.sort_by(|a, b| b.speed.total_cmp(&a.speed));
+    chains
+}
+
+/// A chain whose certificate passes, perhaps with short singular arcs put in.
+fn certified(setting: &Setting, chain: &Polished) -> Option<Polished> {
+    let passes = |chain: &Polished| {
+        let told = cycle(setting, chain, Bounds::default());
+        told.is_some_and(|told| told.certificate.pass())
+    };
+    if passes(chain) {
+        return Some(chain.clone());
+    }
+    widened::bent(setting, chain).filter(passes)
+}
+
+/// The chain near a neighbour's, whose common shape lies close by.
+fn near(setting: &Setting, neighbour: &Polished) -> Option<Polished> {
+    mended(setting, neighbour.links.clone())
+}
+
+/// A chain's cycle from the common shape, the way that leads forward, left or turns left.
+struct Told {
+    cycle: Cycle,
+    arcs: Vec<Arc>,
+    gait: AnyGait,
+    certificate: Certificate,
+}
+
+fn cycle(setting: &Setting, chain: &Polished, bounds: Bounds) -> Option<Told> {
+    let mut links = chain.links.iter();
+    let first = links.position(|link| link.anchored).unwrap_or(0);
+    let (mut cycle, mut arcs) = samples::cycle_from(setting, chain, 1.0, first);
+    let backward = match (setting.goal, setting.heading) {
+        (Goal::Rotation, _) => chain.net.rotation < 0.0,
+        (Goal::Distance, HeadingRule::Sideways) => chain.net.heading().sin() < 0.0,
+        (Goal::Distance, _) => chain.net.heading().cos() < 0.0,
+    };
+    if backward {
+        (cycle, arcs) = (cycle.reversed(|phi| *phi), samples::reversed(&arcs));
+    }
+    let gait = cycle.gait().ok()?;
+    let file = GaitFile {
+        bounds,
+        arcs: cycle.arcs.clone(),
+        corners: cycle.corners.clone(),
+        u: cycle.u.clone(),
+        phi: cycle.phi.clone(),
+        ..GaitFile::default()
+    };
+    let asked = Asked {
+        heading: setting.heading,
+        goal: setting.goal,
+        anchor: setting.anchor,
+        ..Asked::default()
+    };
+    let certificate = certificate(setting.model, setting.region, asked, &file, &gait);
+    Some(Told {
+        cycle,
+        arcs,
+        gait,
+        certificate,
+    })
+}
+
+/// A joined chain as an answer; `fast` is the faster servo's rate, `unjoined` the speed of the fastest gait that need not join.
+fn told(
+    problem: &SpeedProblem,
+    setting: &Setting,
+    chain: &Polished,
+    (fast, unjoined): (f64, f64),
+) -> Option<Joined> {
+    let Told {
+        cycle,
+        arcs,
+        gait,
+        certificate,
+    } = cycle(setting, chain, problem.bounds)?;
+    let stroke = swim(setting.model, &gait, &Tolerance::default());
+    let net = [
+        stroke.displacement.x,
+        stroke.displacement.y,
+        stroke.rotation,
+    ];
+    Some(Joined {
+        rate: chain.speed * fast,
+        unjoined_rate: unjoined * fast,
+        period: chain.layout.period(&chain.z) / fast,
+        net,
+        gait: OptimalGait::new(Solution {
+            // It is the fastest only of those that join.
+            objective: Objective::Unspecified,
+            swimmer: problem.swimmer,
+            bounds: problem.bounds,
+            symmetric: false,
+            links_cross: cycle.links_cross(setting.model),
+            arcs,
+            cycle,
+            stroke,
+            certificate,
+        }),
+    })
+}

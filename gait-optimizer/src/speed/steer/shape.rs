@@ -1,0 +1,263 @@
+//! At which shape gaits shall join: the one that costs the three of them least.
+
+use nalgebra::Vector2;
+use swimmer_files::Bounds;
+
+use super::super::polish::Polished;
+use super::super::problem::Setting;
+use super::{chains, near};
+use crate::Watch;
+use crate::region::Region;
+
+/// The common shape stays this far within the bounds \[rad, or over L\].
+pub(super) const MARGIN: f64 = 0.02;
+/// Shapes that are looked at along each joint, and those of them that are tried.
+const GRID: usize = 41;
+const TRIED: usize = 6;
+/// Tried shapes are no nearer to each other \[rad\].
+const APART: f64 = 0.3;
+/// The best is moved by these steps as long as that costs less \[rad\].
+const STEPS: [f64; 2] = [0.12, 0.04];
+/// And so many times at most with each of them.
+const MOVES: usize = 6;
+/// Corners of a start.
+const CORNERS: usize = 14;
+/// Free gaits of a kind that a joined one is looked for near.
+const MODELS: usize = 3;
+
+/// The largest |φᵢ| within which the side links cannot come near each other; none where nothing keeps them apart.
+///
+/// Along that curved bound the arcs of a gait that turns change pieces and pace, which the polish does not follow: it turns within
+/// the square beside it.
+pub(super) fn free_of_links(region: &Region, bounds: &Bounds) -> Option<f64> {
+    const LOOKS: usize = 200;
+    bounds.no_overlap.then_some(())?;
+    let clear = |angle: f64| {
+        (0..=LOOKS).all(|k| {
+            let along = angle * (2.0 * k as f64 / LOOKS as f64 - 1.0);
+            [1.0, -1.0].into_iter().all(|side| {
+                region.overstepped(&Vector2::new(side * angle, along)) <= 0.0
+                    && region.overstepped(&Vector2::new(along, side * angle)) <= 0.0
+            })
+        })
+    };
+    let (mut inside, mut outside) = (0.0, region.horizon);
+    for _ in 0..60 {
+        let middle = 0.5 * (inside + outside);
+        if clear(middle) {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    Some(inside - MARGIN)
+}
+
+/// What the search for the common shape knows.
+pub(super) struct Joining<'a, 'm> {
+    pub(super) settings: &'a (dyn Fn(usize, Vector2<f64>) -> Setting<'m> + Sync),
+    pub(super) region: &'a Region,
+    /// Of each kind the gaits that need not join, fastest first.
+    pub(super) free: &'a [Vec<Polished>],
+    pub(super) threads: usize,
+}
+
+type Three = [Polished; 3];
+/// A map of shapes.
+type Image = fn(&Vector2<f64>) -> Vector2<f64>;
+
+/// What is asked of a free gait to guess what joining it costs.
+struct Outlined {
+    /// Over that of the fastest.
+    speed: f64,
+    period: f64,
+    points: Vec<Vector2<f64>>,
+}
+
+impl Joining<'_, '_> {
+    /// The fastest of each kind through a shape.
+    ///
+    /// # Errors
+    /// The kind of which none is found.
+    pub(super) fn at(&self, anchor: Vector2<f64>) -> Result<Three, usize> {
+        let of = |kind: usize| {
+            let setting = (self.settings)(kind, anchor);
+            let mut starts = Vec::new();
+            for model in self.free[kind].iter().take(MODELS) {
+                let outline = outline(model);
+                // A swimmer with equal side links swims as well by these images.
+                let images: [Image; 4] = [
+                    |phi| *phi,
+                    |phi| -phi,
+                    |phi| Vector2::new(phi.y, phi.x),
+                    |phi| Vector2::new(-phi.y, -phi.x),
+                ];
+                for image in images {
+                    let points: Vec<_> = outline.iter().map(image).collect();
+                    starts.push(self.through(anchor, &points));
+                }
+            }
+            chains(&setting, &starts, self.threads)
+                .into_iter()
+                .next()
+                .ok_or(kind)
+        };
+        Ok([of(0)?, of(1)?, of(2)?])
+    }
+
+    /// The shape at which joining costs least of those that are tried, with the gaits, and how many were tried.
+    pub(super) fn cheapest(&self, watch: Watch<'_>) -> Option<(Vector2<f64>, Three, usize)> {
+        let mut tried = 0;
+        let mut best: Option<(Vector2<f64>, Three)> = None;
+        let shapes = self.promising();
+        for (number, shape) in shapes.iter().enumerate() {
+            tried += 1;
+            if let Ok(three) = self.at(*shape)
+                && best
+                    .as_ref()
+                    .is_none_or(|(_, other)| self.cost(&three) < self.cost(other))
+            {
+                best = Some((*shape, three));
+            }
+            watch(0.8 * (number + 1) as f64 / shapes.len() as f64);
+        }
+        let (mut shape, mut three) = best?;
+        for step in STEPS {
+            for _ in 0..MOVES {
+                let ways = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+                let better = ways.into_iter().find_map(|way| {
+                    let there = shape + Vector2::from(way) * step;
+                    tried += 1;
+                    let moved = self.moved(there, &three)?;
+                    (self.cost(&moved) < self.cost(&three) - 1e-4).then_some((there, moved))
+                });
+                let Some(better) = better else { break };
+                (shape, three) = better;
+            }
+        }
+        watch(1.0);
+        Some((shape, three, tried))
+    }
+
+    /// What joining costs all three, as shares of their speeds.
+    fn cost(&self, three: &Three) -> f64 {
+        let costs = three.iter().zip(self.free);
+        costs
+            .map(|(joined, free)| 1.0 - joined.speed / free[0].speed)
+            .sum()
+    }
+
+    /// The three near others whose common shape is close by.
+    fn moved(&self, anchor: Vector2<f64>, three: &Three) -> Option<Three> {
+        if self.region.overstepped(&anchor) > -MARGIN {
+            return None;
+        }
+        let of = |kind: usize| near(&(self.settings)(kind, anchor), &three[kind]);
+        Some([of(0)?, of(1)?, of(2)?])
+    }
+
+    /// Shapes where joining may cost little, best first: a detour to a shape and back costs its time.
+    fn promising(&self) -> Vec<Vector2<f64>> {
+        let outlines: Vec<Vec<Outlined>> = self
+            .free
+            .iter()
+            .map(|chains| {
+                let best = chains[0].speed;
+                let model = |chain: &Polished| {
+                    let period = chain.layout.period(&chain.z);
+                    Outlined {
+                        speed: chain.speed / best,
+                        period,
+                        points: outline(chain),
+                    }
+                };
+                chains.iter().take(MODELS).map(model).collect()
+            })
+            .collect();
+        let farthest = outlines
+            .iter()
+            .flatten()
+            .flat_map(|outlined| &outlined.points);
+        let reach = farthest.fold(0.0, |most: f64, phi| most.max(phi.amax()));
+        let setting = (self.settings)(0, Vector2::zeros());
+        let mut shapes: Vec<(f64, Vector2<f64>)> = Vec::new();
+        for k in 0..GRID * GRID {
+            let place = |k: usize| reach * (2.0 * k as f64 / (GRID - 1) as f64 - 1.0);
+            let phi = Vector2::new(place(k / GRID), place(k % GRID));
+            if self.region.overstepped(&phi) > -MARGIN {
+                continue;
+            }
+            let cost = |models: &Vec<Outlined>| {
+                let of = |outlined: &Outlined| {
+                    let way = outlined
+                        .points
+                        .iter()
+                        .map(|point| setting.time(&(point - phi)));
+                    let detour = 2.0 * way.fold(f64::INFINITY, f64::min);
+                    1.0 - outlined.speed * outlined.period / (outlined.period + detour)
+                };
+                models.iter().map(of).fold(f64::INFINITY, f64::min)
+            };
+            shapes.push((outlines.iter().map(cost).sum(), phi));
+        }
+        shapes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut apart: Vec<Vector2<f64>> = Vec::new();
+        for (_, phi) in shapes {
+            if apart.len() < TRIED && apart.iter().all(|other| (other - phi).amax() > APART) {
+                apart.push(phi);
+            }
+        }
+        apart
+    }
+
+    /// A closed polygon that passes the shape first, well within the bounds.
+    fn through(&self, anchor: Vector2<f64>, points: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
+        let every = points.len() / CORNERS;
+        let mut corners: Vec<Vector2<f64>> = points
+            .iter()
+            .step_by(every.max(1))
+            .take(CORNERS)
+            .copied()
+            .collect();
+        let off = |corner: &Vector2<f64>| (corner - anchor).norm();
+        let nearest = (0..corners.len())
+            .min_by(|&a, &b| off(&corners[a]).total_cmp(&off(&corners[b])))
+            .unwrap_or(0);
+        corners.rotate_left(nearest);
+        for corner in &mut corners {
+            for _ in 0..100 {
+                if self.region.overstepped(corner) < -MARGIN {
+                    break;
+                }
+                *corner *= 0.97;
+            }
+        }
+        if let Some(first) = corners.first_mut() {
+            *first = anchor;
+        }
+        corners
+    }
+}
+
+/// Shapes along a chain, evenly in time.
+fn outline(chain: &Polished) -> Vec<Vector2<f64>> {
+    const POINTS: usize = 10 * CORNERS;
+    let period = chain.layout.period(&chain.z);
+    let mut points = Vec::with_capacity(POINTS);
+    let mut arc = 0;
+    let mut before = 0.0;
+    for k in 0..POINTS {
+        let time = period * k as f64 / POINTS as f64;
+        while arc + 1 < chain.links.len() && time > before + chain.links[arc].time {
+            before += chain.links[arc].time;
+            arc += 1;
+        }
+        let s = ((time - before) / chain.links[arc].time).clamp(0.0, 1.0);
+        let (ends, bends) = (
+            chain.layout.ends(&chain.z, arc),
+            chain.layout.bends(&chain.z, arc),
+        );
+        points.push(chain.layout.shapes[arc].at(&ends, bends, s));
+    }
+    points
+}

@@ -1,0 +1,60 @@
+//! Gaits that join: what joining costs, and where.
+
+use super::*;
+use swimmer_model::{Gait as _, Swimmer};
+
+fn robot(shape: Option<[f64; 2]>) -> SteerProblem {
+    let bounds = Bounds {
+        max_angle: Some(2.8),
+        no_overlap: true,
+        clearance: 0.0025,
+        ..Bounds::default()
+    };
+    SteerProblem {
+        of: SpeedProblem {
+            bounds,
+            threads: 2,
+            starts: 32,
+            ..SpeedProblem::new(Swimmer::robot(), [1.0; 2])
+        },
+        shape,
+    }
+}
+
+#[test]
+fn three_gaits_join_where_they_are_told_to() {
+    let shape = [1.4, 0.56];
+    let steering = steer(&robot(Some(shape)), &|_| ()).unwrap();
+    assert!((Vector2::from(steering.shape) - Vector2::from(shape)).norm() < 1e-12);
+    let gaits = [&steering.forward, &steering.left, &steering.turn];
+    for (joined, most) in gaits.into_iter().zip([0.1, 0.6, 0.1]) {
+        // The same bounds and one condition more: never faster.
+        assert!((-1e-9..most).contains(&joined.cost()), "{}", joined.cost());
+        let certificate = &joined.gait.certificate;
+        for name in [
+            "off_the_joint_shape_rad",
+            "open_rad",
+            "bound_overstepped_rad",
+        ] {
+            assert!(certificate.value(name).unwrap() < 1e-9, "{name}");
+        }
+        assert!(certificate.value("off_full_rate").unwrap() < 1e-6);
+        for backwards in [false, true] {
+            let gait = AnyGait::from_file(&joined.gait_file("robot", backwards)).unwrap();
+            assert!((gait.at(0.0).phi - Vector2::from(shape)).norm() < 1e-9);
+            // Nothing is lost there and back.
+            let model = Model::new(&Swimmer::robot().of_unit_length()).unwrap();
+            let stroke = swim(&model, &gait, &Tolerance::default());
+            let sign = if backwards { -1.0 } else { 1.0 };
+            assert!((stroke.rotation - sign * joined.net[2]).abs() < 1e-9);
+        }
+    }
+    assert!(steering.forward.net[2].abs() < 1e-9 && steering.left.net[2].abs() < 1e-9);
+    assert!(steering.turn.net[2] > 0.05);
+}
+
+#[test]
+fn a_shape_on_a_bound_is_refused() {
+    let error = steer(&robot(Some([2.8, 0.0])), &|_| ()).unwrap_err();
+    assert!(matches!(error, SpeedError::Shape { .. }), "{error}");
+}
