@@ -4,6 +4,7 @@
 //! is known (`systematics.rs`). The verdict (`verdict.rs`) sums up, with its reasons.
 
 mod budget;
+mod document;
 mod explanations;
 mod goodness;
 mod known;
@@ -12,6 +13,10 @@ mod systematics;
 mod verdict;
 
 pub use budget::BudgetLine;
+pub use document::{
+    AssessmentDocument, ExcludedPart, GoodnessPart, HeadlinePart, OutlierPart, RunPart,
+    SystematicsPart,
+};
 pub use explanations::{Explained, Explanation};
 pub use goodness::{Goodness, RunGoodness, SignTest};
 pub use systematics::{Nuisance, Systematics, Unforeseen};

@@ -15,6 +15,13 @@ pub struct Assessment {
     pub budget: Vec<BudgetLine>,
     pub explanations: Vec<Explanation>,
 }
+impl Assessment {
+    pub fn document(
+        &self,
+        found: &CampaignFit,
+        name: impl Fn(&Path) -> String,
+    ) -> AssessmentDocument {}
+}
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
     Open { file: PathBuf, cause: String },
@@ -664,6 +671,19 @@ pub fn weigh_evidence(
 ) -> Result<Evidence, FitError> {}
 pub mod assessment {
     pub use crate::Assessment;
+    #[derive(Debug, Clone, PartialEq, Serialize)]
+    pub struct AssessmentDocument {
+        pub verdict: &'static str,
+        pub reasons: Vec<String>,
+        pub reduced_chi2: Option<f64>,
+        pub intervals_with_systematics: Option<Intervals>,
+        pub headline: HeadlinePart,
+        pub goodness: GoodnessPart,
+        pub systematics: Option<SystematicsPart>,
+        pub budget: Vec<BudgetLine>,
+        pub explanations: Vec<Explanation>,
+        pub excluded: Vec<ExcludedPart>,
+    }
     #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
     pub struct BudgetLine {
         pub name: &'static str,
@@ -673,6 +693,11 @@ pub mod assessment {
         pub chi: f64,
         pub width: Option<f64>,
         pub stated: bool,
+    }
+    #[derive(Debug, Clone, PartialEq, Serialize)]
+    pub struct ExcludedPart {
+        pub file: String,
+        pub reason: String,
     }
     #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
     pub struct Explained {
@@ -695,11 +720,23 @@ pub mod assessment {
         pub signs: Vec<SignTest>,
         pub runs: Vec<RunGoodness>,
     }
+    #[derive(Debug, Clone, PartialEq, Serialize)]
+    pub struct GoodnessPart {
+        pub freedom: usize,
+        pub reduced_chi2_with_systematics: Option<f64>,
+        pub signs: Vec<SignTest>,
+        pub runs: Vec<RunPart>,
+    }
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Headline {
         pub by: &'static str,
         pub estimate: Pair,
         pub intervals: Intervals,
+    }
+    #[derive(Debug, Clone, PartialEq, Serialize)]
+    pub struct HeadlinePart {
+        pub by: &'static str,
+        pub estimate: Pair,
     }
     #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
     pub struct Nuisance {
@@ -710,6 +747,11 @@ pub mod assessment {
         pub found: [f64; 2],
         pub pull: f64,
     }
+    #[derive(Debug, Clone, PartialEq, Serialize)]
+    pub struct OutlierPart {
+        pub file: String,
+        pub quantity: &'static str,
+    }
     #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
     pub struct RunGoodness {
         pub y_over_x: [f64; 2],
@@ -718,6 +760,11 @@ pub mod assessment {
         pub turn_chance: f64,
         pub drift_m_per_s: [f64; 2],
         pub scale: Option<[f64; 2]>,
+    }
+    #[derive(Debug, Clone, PartialEq, Serialize)]
+    pub struct RunPart {
+        pub file: String,
+        pub goodness: RunGoodness,
     }
     #[derive(Debug, Clone, PartialEq, Serialize)]
     pub struct SignTest {
@@ -734,6 +781,13 @@ pub mod assessment {
         pub unforeseen: Vec<Unforeseen>,
         pub outliers: Vec<(usize, &'static str)>,
         pub reduced_chi2: Option<f64>,
+    }
+    #[derive(Debug, Clone, PartialEq, Serialize)]
+    pub struct SystematicsPart {
+        pub estimate: Pair,
+        pub parameters: Vec<Nuisance>,
+        pub unforeseen: Vec<Unforeseen>,
+        pub outliers: Vec<OutlierPart>,
     }
     #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
     pub struct Unforeseen {

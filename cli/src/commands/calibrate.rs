@@ -10,9 +10,9 @@ mod wrong_gait;
 use std::path::{Path, PathBuf};
 
 use calibrate::{
-    CalibrateError, CampaignData, CampaignFit, EvidenceOptions, ExcludedRun, FitError, FitOptions,
-    RunResult, TrackOptions, assess, c_t_form, calibrate_campaign, calibrate_run, load_run,
-    usual_reflectors, weigh_evidence,
+    CalibrateError, CampaignData, CampaignFit, EvidenceOptions, FitError, FitOptions, RunResult,
+    TrackOptions, assess, c_t_form, calibrate_campaign, calibrate_run, load_run, usual_reflectors,
+    weigh_evidence,
 };
 use swimmer_files::{Campaign, GaitSpec, PointName, SwimmerFile};
 
@@ -233,16 +233,11 @@ impl Calibrate {
         stages.next("assessing the fit", ASSESSING);
         let assessed = assess(&fitted.found, evidence.as_ref().ok())?;
         let of_folder = self.file.parent().unwrap_or_else(|| Path::new(""));
-        let name = |run: &ExcludedRun| {
-            let path = run.file.strip_prefix(of_folder).unwrap_or(&run.file);
+        let document = assessed.document(&fitted.found, |file| {
+            let path = file.strip_prefix(of_folder).unwrap_or(file);
             path.display().to_string()
-        };
-        fitted.answer.assessment = Some(AssessmentAnswer::new(
-            &assessed,
-            &fitted.found,
-            &fitted.answer.runs,
-            name,
-        ));
+        });
+        fitted.answer.assessment = Some(AssessmentAnswer(document));
         if let Some(folder) = folder {
             stages.next("writing report and tables", WRITING);
             let weighed = (&evidence?, options);

@@ -80,8 +80,11 @@ for (const [name, launch] of Object.entries(BROWSERS)) test(`a campaign that is 
   assert.ok(report.bootstrap.draws > 0 && report.without_run.length === AMPLITUDES.length && report.ridge.log_ratio.length > 10);
   same(told.evidence, report, Object.keys(report), "evidence");
   same(told.evidence.likelihood, expected.likelihood, ["intervals"], "likelihood");
-  same(told.assessment, expected, ["verdict", "reasons", "reduced_chi2", "budget", "explanations"], "assessment");
-  if (expected.systematics) same(told.assessment.systematics, expected.systematics, ["sphere_radius_m", "chi"], "systematics");
+  const assessed = ["verdict", "reasons", "reduced_chi2", "intervals_with_systematics", "headline", "goodness", "systematics", "budget", "explanations", "excluded"];
+  assert.deepEqual(Object.keys(told.assessment), assessed.filter((key) => key in expected));
+  same(told.assessment, expected, Object.keys(told.assessment), "assessment");
+  const goodness = await tab.evaluate(() => [...document.querySelectorAll("#goodness tbody tr")].map((row) => row.cells[6].textContent));
+  assert.deepEqual(goodness, expected.goodness.runs.map(({ scale }) => (scale ? `${scale[0].toFixed(4)} ± ${scale[1].toFixed(4)}` : "–")));
   assert.equal(told.runs.length, expected.runs.length);
   const ofARun = ["cycles", "x_m", "x_sd_m", "delta_y_m", "delta_y_sd_m", "delta_theta_rad", "delta_theta_sd_rad", "period_s", "diagnoses"];
   told.runs.forEach((run, k) => same(run, expected.runs[k], ofARun, run.file));

@@ -11,7 +11,7 @@ use calibrate::{
 use serde::Deserialize;
 
 use crate::calls::{Call, Lab, Outcome, json, parsed};
-use answers::{AssessmentAnswer, EvidenceAnswer, FitAnswer, Holdings};
+use answers::{EvidenceAnswer, FitAnswer, Holdings};
 use data::Dropped;
 
 /// The calls, by name.
@@ -76,7 +76,7 @@ fn assessment(lab: &mut Lab, bytes: &[u8]) -> Outcome {
     let fitted: &mut Fitted = lab.kept.get(number)?;
     let assessed: Assessment =
         assess(&fitted.found, fitted.evidence.as_ref()).map_err(|why| why.to_string())?;
-    json(&AssessmentAnswer::from(assessed))
+    json(&assessed.document(&fitted.found, |file| file.display().to_string()))
 }
 
 /// Lets go of a fit.

@@ -2,146 +2,27 @@
 
 use std::fmt::Write as _;
 
-use calibrate::assessment::{
-    Assessment, BudgetLine, Explanation, Headline, Nuisance, RunGoodness, SignTest, Unforeseen,
-};
-use calibrate::{CampaignFit, ExcludedRun, Intervals};
+use calibrate::assessment::{AssessmentDocument, RunPart, SystematicsPart};
 use serde::Serialize;
 
-use super::answer::{RunAnswer, with_intervals};
+use super::answer::with_intervals;
 use super::further::{Shown, readable};
 use crate::quantity::{self, Table};
 
 /// What `swimmer calibrate` says of its own answer.
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct AssessmentAnswer {
-    pub(crate) verdict: &'static str,
-    pub(crate) reasons: Vec<String>,
-    /// χ² by the cycles' own scatter over the degrees of freedom; null where cycles tell of none.
-    pub(crate) reduced_chi2: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    intervals_with_systematics: Option<Intervals>,
-    pub(crate) headline: HeadlineAnswer,
-    goodness: GoodnessAnswer,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    systematics: Option<SystematicsAnswer>,
-    budget: Vec<BudgetLine>,
-    explanations: Vec<Explanation>,
-    pub(crate) excluded: Vec<ExcludedAnswer>,
-}
+#[serde(transparent)]
+pub(crate) struct AssessmentAnswer(pub(crate) AssessmentDocument);
 
-/// The recommended answer.
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct HeadlineAnswer {
-    /// `paper` or `systematics`.
-    pub(crate) by: &'static str,
-    pub(crate) sphere_radius_m: f64,
-    pub(crate) chi: f64,
-}
+impl std::ops::Deref for AssessmentAnswer {
+    type Target = AssessmentDocument;
 
-#[derive(Debug, Clone, Serialize)]
-struct GoodnessAnswer {
-    freedom: usize,
-    reduced_chi2_with_systematics: Option<f64>,
-    signs: Vec<SignTest>,
-    runs: Vec<RunGoodnessAnswer>,
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct RunGoodnessAnswer {
-    file: String,
-    #[serde(flatten)]
-    goodness: RunGoodness,
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct SystematicsAnswer {
-    sphere_radius_m: f64,
-    chi: f64,
-    parameters: Vec<Nuisance>,
-    unforeseen: Vec<Unforeseen>,
-    outliers: Vec<OutlierAnswer>,
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct OutlierAnswer {
-    file: String,
-    quantity: &'static str,
-}
-
-/// A run that was not fitted.
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct ExcludedAnswer {
-    pub(crate) file: String,
-    pub(crate) reason: String,
+    fn deref(&self) -> &AssessmentDocument {
+        &self.0
+    }
 }
 
 impl AssessmentAnswer {
-    /// `name` tells a file as the campaign does.
-    pub(super) fn new(
-        assessment: &Assessment,
-        found: &CampaignFit,
-        runs: &[RunAnswer],
-        name: impl Fn(&ExcludedRun) -> String,
-    ) -> Self {
-        let Assessment {
-            goodness,
-            systematics,
-            headline,
-            ..
-        } = assessment;
-        let file = |run: usize| {
-            runs.get(run)
-                .map_or_else(String::new, |run| run.file.clone())
-        };
-        let systematics_answer = systematics.as_ref().map(|systematics| SystematicsAnswer {
-            sphere_radius_m: systematics.estimate.sphere_radius,
-            chi: systematics.estimate.chi,
-            parameters: systematics.nuisances.clone(),
-            unforeseen: systematics.unforeseen.clone(),
-            outliers: systematics
-                .outliers
-                .iter()
-                .map(|(run, quantity)| OutlierAnswer {
-                    file: file(*run),
-                    quantity,
-                })
-                .collect(),
-        });
-        Self {
-            verdict: assessment.verdict.word(),
-            reasons: assessment.reasons.clone(),
-            reduced_chi2: goodness.reduced_chi2,
-            intervals_with_systematics: systematics.as_ref().map(|s| s.intervals),
-            headline: HeadlineAnswer::new(headline),
-            goodness: GoodnessAnswer {
-                freedom: goodness.freedom,
-                reduced_chi2_with_systematics: systematics.as_ref().and_then(|s| s.reduced_chi2),
-                signs: goodness.signs.clone(),
-                runs: goodness
-                    .runs
-                    .iter()
-                    .enumerate()
-                    .map(|(run, goodness)| RunGoodnessAnswer {
-                        file: file(run),
-                        goodness: *goodness,
-                    })
-                    .collect(),
-            },
-            systematics: systematics_answer,
-            budget: assessment.budget.clone(),
-            explanations: assessment.explanations.clone(),
-            excluded: found
-                .excluded
-                .iter()
-                .map(|run| ExcludedAnswer {
-                    file: name(run),
-                    reason: run.reason.clone(),
-                })
-                .collect(),
-        }
-    }
-
     /// The verdict and its reasons, as the terminal shows them.
     pub(super) fn heading(&self) -> String {
         let mut text = format!("\n\n  verdict: {}", self.verdict);
@@ -162,12 +43,8 @@ impl AssessmentAnswer {
     pub(super) fn estimate(&self) -> Option<[String; 2]> {
         let systematics = self.systematics.as_ref()?;
         let intervals = self.intervals_with_systematics.as_ref()?;
-        let SystematicsAnswer {
-            sphere_radius_m,
-            chi,
-            ..
-        } = systematics;
-        Some(with_intervals(*sphere_radius_m, *chi, intervals))
+        let of = systematics.estimate;
+        Some(with_intervals(of.sphere_radius, of.chi, intervals))
     }
 
     /// Its tables: what is known by halves, the budget, explanations, the runs' numbers.
@@ -262,7 +139,7 @@ impl AssessmentAnswer {
                 format!("{chance:.3}")
             }
         };
-        for RunGoodnessAnswer { file, goodness } in &self.goodness.runs {
+        for RunPart { file, goodness } in &self.goodness.runs {
             let [ratio, error] = goodness.y_over_x;
             let [turn, turn_error] = goodness.turn_rad.map(f64::to_degrees);
             let [along, across] = goodness.drift_m_per_s.map(|speed| 1e3 * speed);
@@ -309,16 +186,6 @@ impl AssessmentAnswer {
     }
 }
 
-impl HeadlineAnswer {
-    fn new(headline: &Headline) -> Self {
-        Self {
-            by: headline.by,
-            sphere_radius_m: headline.estimate.sphere_radius,
-            chi: headline.estimate.chi,
-        }
-    }
-}
-
 /// A change as people read it: mm, degrees, or a share in per cent.
 fn change(unit: &str, by: f64) -> String {
     match unit {
@@ -329,7 +196,7 @@ fn change(unit: &str, by: f64) -> String {
     }
 }
 
-fn known(systematics: &SystematicsAnswer) -> Shown {
+fn known(systematics: &SystematicsPart) -> Shown {
     let mut table = Table::new(["known by halves", "known", "±", "found", "±", "pull"]);
     for nuisance in &systematics.parameters {
         let of = |value: f64| readable(nuisance.unit, value);

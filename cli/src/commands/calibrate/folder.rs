@@ -44,7 +44,9 @@ pub(super) fn write(
         || found.swimmer.clone(),
         |assessment| {
             let headline = &assessment.headline;
-            found.start.fitted(headline.sphere_radius_m, headline.chi)
+            found
+                .start
+                .fitted(headline.estimate.sphere_radius, headline.estimate.chi)
         },
     );
     provenance.save_with(&recommended, &draft.join(FITTED))?;

@@ -107,11 +107,45 @@ export interface Measured {
   error: number | null;
 }
 
+/** A value with its standard error. */
+type WithError = [number | null, number | null];
+
+/** What one run says by itself; null where it was not measured. */
+export interface RunGoodness {
+  file: string;
+  y_over_x: WithError;
+  y_chance: number | null;
+  turn_rad: WithError;
+  turn_chance: number | null;
+  drift_m_per_s: WithError;
+  scale: [number, number] | null;
+}
+
+/** What is known by halves: as the files say and as the runs make it, each with its deviation. */
+export interface Nuisance {
+  name: string;
+  unit: string;
+  known: [number, number];
+  stated: boolean;
+  found: [number, number];
+  pull: number;
+}
+
+/** The command's answer under the same keys. */
 export interface AssessmentAnswer {
   verdict: "trust" | "caution" | "do not use";
   reasons: string[];
   reduced_chi2: number | null;
-  systematics: { sphere_radius_m: number; chi: number; intervals: Intervals } | null;
+  /** Left out where the runs are too few. */
+  intervals_with_systematics?: Intervals;
+  headline: { by: "paper" | "systematics" } & Pair;
+  goodness: {
+    freedom: number;
+    reduced_chi2_with_systematics: number | null;
+    signs: { quantity: string; signs: number[]; stretches: number; chance: number }[];
+    runs: RunGoodness[];
+  };
+  systematics?: Pair & { parameters: Nuisance[] };
   budget: { name: string; by: number; unit: string; sphere_radius_m: number; chi: number; width: number | null; stated: boolean }[];
   explanations: { name: string; gain: number; estimate: { sphere_radius_m: number; chi: number } }[];
 }

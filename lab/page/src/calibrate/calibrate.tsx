@@ -7,7 +7,7 @@ import { OpenButton } from "../files/open-button.tsx";
 import type { FitAnswer } from "./answers.ts";
 import { OverAmplitude, Paths, Profiles, Residuals, Ridge, WithoutRun } from "./figures.tsx";
 import { assessment, clear, doing, evidence, fit, open, problem, stop, tracks } from "./model.ts";
-import { Budget, Cycles, Parameters, Runs, Servos, Table } from "./tables.tsx";
+import { Budget, Cycles, Goodness, Known, Parameters, Runs, Servos, Table } from "./tables.tsx";
 
 const openAll = (files: File[]) => void open(files);
 
@@ -44,7 +44,9 @@ function Fitted({ fit }: { fit: FitAnswer }) {
       {known && <Profiles evidence={known} />}
       {known && <WithoutRun evidence={known} paper={fit} />}
       {known && <Residuals evidence={known} />}
+      {told && <Known told={told} />}
       {told && <Budget told={told} />}
+      {told && <Goodness told={told} />}
       <Servos fit={fit} />
       <Runs fit={fit} />
       <Cycles runs={fit.runs} />
@@ -60,6 +62,7 @@ function Verdict() {
     <section class={`card verdict ${told.verdict.replaceAll(" ", "-")}`} aria-label="Verdict">
       <h2>Verdict: {told.verdict}</h2>
       {told.reduced_chi2 !== null && <p class="soft">reduced χ² {told.reduced_chi2.toPrecision(3)}</p>}
+      {told.headline.by === "systematics" && <p>Recommended: the estimate with systematics.</p>}
       {told.reasons.length > 0 ? <ul>{told.reasons.map((reason) => <li key={reason}>{reason}</li>)}</ul> : <p class="soft">Nothing speaks against it.</p>}
     </section>
   );

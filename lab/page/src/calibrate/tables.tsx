@@ -14,11 +14,12 @@ function Head({ of }: { of: readonly string[] }) {
 }
 
 /** A table in a card of its own. */
-export function Table({ title, id, head, children }: { title: string; id: string; head: readonly string[]; children: ComponentChildren }) {
+export function Table({ title, id, head, notes = [], children }: { title: string; id: string; head: readonly string[]; notes?: readonly string[]; children: ComponentChildren }) {
   return (
     <section class="card scroll" aria-label={title}>
       <h2>{title}</h2>
       <table class="readout" id={id}><Head of={head} /><tbody>{children}</tbody></table>
+      {notes.map((note) => <p key={note} class="soft">{note}</p>)}
     </section>
   );
 }
@@ -34,13 +35,13 @@ interface Way {
 /** Both parameters, each way of fitting in a line. */
 export function Parameters({ fit, evidence, assessment }: { fit: FitAnswer; evidence: EvidenceAnswer | null; assessment: AssessmentAnswer | null }) {
   const likelihood = evidence?.likelihood;
-  const wider = assessment ? assessment.systematics : undefined;
+  const wider = assessment ? assessment.systematics ?? null : undefined;
   const bootstrap = evidence ? evidence.bootstrap : undefined;
   const ways: Way[] = [
     { name: "least squares", estimate: fit, intervals: fit.intervals, correlation: fit.correlation },
     { name: "bootstrap", estimate: bootstrap && fit, intervals: bootstrap && bootstrap.intervals },
     { name: "likelihood", estimate: likelihood?.estimate, intervals: likelihood?.intervals, correlation: likelihood?.correlation },
-    { name: "with systematics", estimate: wider, intervals: wider && wider.intervals },
+    { name: "with systematics", estimate: wider, intervals: wider && assessment?.intervals_with_systematics },
   ];
   const cell = (value: number | undefined, range: [number, number] | undefined, tell: (value: number) => string, none: string) =>
     value === undefined || range === undefined ? none : <>{tell(value)}<br /><small class="soft">{`${tell(range[0])} … ${tell(range[1])}`}</small></>;
@@ -73,6 +74,37 @@ export function Parameters({ fit, evidence, assessment }: { fit: FitAnswer; evid
   );
 }
 
+const chanceOf = (value: number | null) => (value === null ? "–" : value < 1e-3 ? "< 0.001" : value.toFixed(3));
+
+/** How well the model explains the runs: what each says by itself, and the signs of what is left. */
+export function Goodness({ told: { goodness, reduced_chi2 } }: { told: AssessmentAnswer }) {
+  const withError = ([value, error]: [number | null, number | null], unit: number, digits: number) =>
+    value === null ? "–" : `${figure(value * unit, digits)}${error === null ? "" : ` ± ${(error * unit).toFixed(digits)}`}`;
+  const chi2 = (value: number | null) => (value === null ? "–" : value.toPrecision(3));
+  return (
+    <Table
+      title="How well the model explains the runs" id="goodness" head={["run", "Y/X", "chance", "net turn [°]", "chance", "drift along, across [mm/s]", "lengths"]}
+      notes={[
+        `reduced χ² by the cycles' own scatter ${chi2(reduced_chi2)} (${goodness.freedom} degrees of freedom), with systematics ${chi2(goodness.reduced_chi2_with_systematics)}`,
+        ...goodness.signs.map(({ quantity, signs, stretches, chance }) =>
+          `signs of simulated − measured ${quantity} from the smallest gait to the largest: ${signs.map((sign) => (sign > 0 ? "+" : "−")).join("")} (${stretches} stretches, chance ${chance.toFixed(2)})`),
+      ]}
+    >
+      {goodness.runs.map((run) => (
+        <tr key={run.file}>
+          <th scope="row">{short(run.file)}</th>
+          <td>{withError(run.y_over_x, 1, 4)}</td>
+          <td>{chanceOf(run.y_chance)}</td>
+          <td>{withError(run.turn_rad, degrees(1), 3)}</td>
+          <td>{chanceOf(run.turn_chance)}</td>
+          <td>{run.drift_m_per_s.map((speed) => (speed === null ? "–" : figure(speed * 1000, 4))).join(", ")}</td>
+          <td>{run.scale === null ? "–" : withError(run.scale, 1, 4)}</td>
+        </tr>
+      ))}
+    </Table>
+  );
+}
+
 /** How far both would move with what is taken for granted, and what would explain the runs better. */
 export function Budget({ told }: { told: AssessmentAnswer }) {
   if (told.budget.length === 0) return null;
@@ -98,6 +130,27 @@ export function Budget({ told }: { told: AssessmentAnswer }) {
         </Table>
       )}
     </>
+  );
+}
+
+/** What is known by halves, and what the runs make of it. */
+export function Known({ told }: { told: AssessmentAnswer }) {
+  if (!told.systematics || told.systematics.parameters.length === 0) return null;
+  const amount = ([value, deviation]: [number, number], unit: string) => {
+    const [per, name, digits] = unit === "m" ? [1000, " mm", 2] : unit === "rad" ? [degrees(1), "°", 2] : unit === "s" ? [1000, " ms", 0] : [1, "", 4];
+    return `${(value * per).toFixed(digits)} ± ${(deviation * per).toFixed(digits)}${name}`;
+  };
+  return (
+    <Table title="What is known by halves" id="known" head={["", "known", "found", "pull"]} notes={["pull: how far the runs alone contradict what is known, in standard deviations"]}>
+      {told.systematics.parameters.map(({ name, unit, known, stated, found, pull }) => (
+        <tr key={name}>
+          <th scope="row">{name}</th>
+          <td>{amount(known, unit)}{stated ? "" : " (usual)"}</td>
+          <td>{amount(found, unit)}</td>
+          <td>{figure(pull, 1)}</td>
+        </tr>
+      ))}
+    </Table>
   );
 }
 

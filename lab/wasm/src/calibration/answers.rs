@@ -1,10 +1,7 @@
 //! The answers, under the keys of `swimmer calibrate --json` and of its evidence, and what only pictures need.
 
-use calibrate::assessment::{BudgetLine, Explanation, Systematics};
 use calibrate::evidence::{CurvePoint, Evidence, EvidenceDocument, Pair};
-use calibrate::{
-    Assessment, CampaignFit, Intervals, MeasuredServo, RunResult, TrackSurvey, c_t_form,
-};
+use calibrate::{CampaignFit, Intervals, MeasuredServo, RunResult, TrackSurvey, c_t_form};
 use serde::Serialize;
 use swimmer_files::{Campaign, GaitSpec};
 
@@ -236,43 +233,6 @@ impl<'a> EvidenceAnswer<'a> {
             draws: draws.iter().step_by(every).copied().collect(),
             start_curve: evidence.start_curve.iter().map(Into::into).collect(),
             fitted_curve: evidence.fitted_curve.iter().map(Into::into).collect(),
-        }
-    }
-}
-
-/// What to make of the fit.
-#[derive(Serialize)]
-pub(super) struct AssessmentAnswer {
-    verdict: &'static str,
-    reasons: Vec<String>,
-    reduced_chi2: Option<f64>,
-    /// Null where the runs are too few for it.
-    systematics: Option<EstimateAnswer>,
-    budget: Vec<BudgetLine>,
-    explanations: Vec<Explanation>,
-}
-
-#[derive(Serialize)]
-struct EstimateAnswer {
-    sphere_radius_m: f64,
-    chi: f64,
-    intervals: Intervals,
-}
-
-impl From<Assessment> for AssessmentAnswer {
-    fn from(assessed: Assessment) -> Self {
-        let estimate = |found: &Systematics| EstimateAnswer {
-            sphere_radius_m: found.estimate.sphere_radius,
-            chi: found.estimate.chi,
-            intervals: found.intervals,
-        };
-        Self {
-            verdict: assessed.verdict.word(),
-            reasons: assessed.reasons,
-            reduced_chi2: assessed.goodness.reduced_chi2,
-            systematics: assessed.systematics.as_ref().map(estimate),
-            budget: assessed.budget,
-            explanations: assessed.explanations,
         }
     }
 }
