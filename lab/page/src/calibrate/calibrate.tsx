@@ -44,8 +44,8 @@ function Fitted({ fit }: { fit: FitAnswer }) {
       {known && <Profiles evidence={known} />}
       {known && <WithoutRun evidence={known} paper={fit} />}
       {known && <Residuals evidence={known} />}
-      {told && <Known told={told} />}
       {told && <Budget told={told} />}
+      {told && <Known told={told} />}
       {told && <Goodness told={told} />}
       <Servos fit={fit} />
       <Runs fit={fit} />

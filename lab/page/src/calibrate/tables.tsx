@@ -138,7 +138,7 @@ export function Known({ told }: { told: AssessmentAnswer }) {
   if (!told.systematics || told.systematics.parameters.length === 0) return null;
   const amount = ([value, deviation]: [number, number], unit: string) => {
     const [per, name, digits] = unit === "m" ? [1000, " mm", 2] : unit === "rad" ? [degrees(1), "°", 2] : unit === "s" ? [1000, " ms", 0] : [1, "", 4];
-    return `${(value * per).toFixed(digits)} ± ${(deviation * per).toFixed(digits)}${name}`;
+    return `${figure(value * per, digits)} ± ${(deviation * per).toFixed(digits)}${name}`;
   };
   return (
     <Table title="What is known by halves" id="known" head={["", "known", "found", "pull"]} notes={["pull: how far the runs alone contradict what is known, in standard deviations"]}>
