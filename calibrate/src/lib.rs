@@ -15,7 +15,8 @@
 //!
 //! ```
 //! use std::fmt::Write;
-//! use calibrate::{CampaignData, EvidenceOptions, FitOptions, Further, advise, assess, calibrate_campaign, fit_further, predict, weigh_evidence};
+//! use calibrate::{CampaignData, EvidenceOptions, FitOptions, Further, advise, amplitude_by_sway, assess, calibrate_campaign, fit_further};
+//! use calibrate::{other_gaits, predict, weigh_evidence};
 //! use swimmer_files::{AnyGait, Campaign, SwimmerFile};
 //!
 //! let truth = SwimmerFile::preset("robot").unwrap();
@@ -38,6 +39,14 @@
 //! let found = calibrate_campaign(&campaign, &data, FitOptions::default())?;
 //! assert!((found.fit.chi / truth.swimmer.chi - 1.0).abs() < 1e-3);
 //! assert!((found.fit.sphere_radius / truth.swimmer.sphere_radius - 1.0).abs() < 1e-3);
+//!
+//! // Each run swam the gait that it says; the same sway, said to be of 44°, would be told.
+//! assert!(other_gaits(&campaign, &found.runs, &found.swimmer).is_empty());
+//! campaign.runs[0].gait = swimmer_files::GaitSpec::Circle { amplitude: 44_f64.to_radians(), clockwise: false };
+//! let other = other_gaits(&campaign, &found.runs, &found.swimmer)[0];
+//! assert!((other.sways_like_rad.to_degrees() - 40.0).abs() < 0.1, "{other}");
+//! let (_, factor) = amplitude_by_sway(&found.runs[0], &campaign.runs[0].gait, 30.0, &truth).unwrap();
+//! assert!((factor - 40.0 / 44.0).abs() < 1e-3);
 //!
 //! let evidence = weigh_evidence(&found, EvidenceOptions { draws: 50, seed: 1 })?;
 //! let assessment = assess(&found, Some(&evidence))?;
@@ -70,6 +79,7 @@ mod quantities;
 mod run;
 mod sides;
 pub mod tracks;
+mod wrong_gait;
 
 pub use advice::{Advice, Candidate, advise};
 pub use assessment::{Assessment, Verdict, assess};
@@ -95,3 +105,4 @@ pub use tracks::{
     PointKind, PointPresence, TrackError, TrackFile, TrackFormat, TrackOptions, TrackPoint,
     TrackProblem, TrackSurvey, TrackWarning, Unit, read_tracks, read_tracks_with, survey_tracks,
 };
+pub use wrong_gait::{OtherGait, amplitude_by_sway, other_gaits};

@@ -295,6 +295,13 @@ impl Origin {
     pub fn word(self) -> &'static str {}
 }
 #[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OtherGait {
+    pub index: usize,
+    pub sways_like_rad: f64,
+    pub said_rad: f64,
+}
+impl fmt::Display for OtherGait {}
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Periodicity {
     pub period_s: f64,
     pub share: f64,
@@ -604,6 +611,12 @@ impl Verdict {
 }
 impl fmt::Display for Verdict {}
 pub fn advise(campaign: &Campaign, found: &CampaignFit) -> Result<Advice, FitError> {}
+pub fn amplitude_by_sway(
+    run: &RunResult,
+    gait: &GaitSpec,
+    period_s: f64,
+    swimmer: &SwimmerFile,
+) -> Option<(f64, f64)> {}
 pub fn assess(
     found: &CampaignFit,
     evidence: Option<&Evidence>,
@@ -638,6 +651,11 @@ pub fn load_tracks(
     file: &Path,
     options: &TrackOptions,
 ) -> Result<TrackFile, CalibrateError> {}
+pub fn other_gaits(
+    campaign: &Campaign,
+    runs: &[RunResult],
+    swimmer: &SwimmerFile,
+) -> Vec<OtherGait> {}
 pub fn poses(
     track: &TrackFile,
     reflectors: &Reflectors,

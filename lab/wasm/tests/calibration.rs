@@ -68,6 +68,26 @@ fn a_campaign_is_fitted_as_by_the_library() {
 }
 
 #[test]
+fn a_gait_of_another_size_is_told() {
+    let ours = SwimmerFile::preset("robot").unwrap().to_toml();
+    let text = campaign("ours.toml").replace("circle:40deg", "circle:46deg");
+    let files = packed(&[("ours.toml", &ours), ("campaign.toml", &text)]);
+    let told = asked(&mut Lab::default(), "calibrate", &files).unwrap();
+    let warnings = told["warnings"].as_array().unwrap();
+    let said = |warning: &Value| {
+        warning
+            .as_str()
+            .unwrap()
+            .contains("not of 46.000°, beside the other runs")
+    };
+    assert_eq!(
+        warnings.iter().filter(|warning| said(warning)).count(),
+        1,
+        "{warnings:?}"
+    );
+}
+
+#[test]
 fn what_was_not_dropped_is_named() {
     let mut lab = Lab::default();
     let files = packed(&[("campaign.toml", &campaign("ours.toml"))]);

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use calibrate::{RunResult, predict};
+use calibrate::{RunResult, amplitude_by_sway, other_gaits, predict};
 use link_protocol::{Direction, Message, StateName};
 use swimmer_files::{
     AnyGait, Campaign, GaitSpec, LinkFrame, SwimmerFile, hash_of, plays, read_link_log,
@@ -13,14 +13,9 @@ use swimmer_model::Gait as _;
 
 use crate::quantity;
 
-/// An amplitude that fits the sway less well than this belongs to another gait, as a share: among runs whose common factor is
-/// known, and of a single run of a swimmer that is only taken to be this one.
-const OFF_AMONG_OTHERS: f64 = 0.06;
+/// An amplitude that fits the sway less well than this belongs to another gait, as a share: of a single run of a swimmer that is
+/// only taken to be this one.
 const OFF_ALONE: f64 = 0.1;
-/// From so many runs on they have a common factor: that of the servos' gain, and of what the model does not know.
-const ENOUGH_RUNS: usize = 3;
-/// Corrections of the amplitude.
-const CORRECTIONS: usize = 3;
 /// A joint that was told to be further off than this was told another gait, rad: dead bands and rounding are far smaller.
 const OFF_LOG: f64 = 0.035;
 
@@ -45,33 +40,12 @@ pub(super) fn of_campaign(
                 .map(|why| format!("{}: {why}", folder(&run.track).display())),
         );
     }
-    let factors: Vec<(usize, f64, f64)> = runs
-        .iter()
-        .filter_map(|run| {
-            let told = campaign.runs.get(run.index)?;
-            let amplitude = amplitude(&told.gait)?;
-            Some((
-                run.index,
-                amplitude,
-                factor(run, &told.gait, told.period_s, swimmer)?,
-            ))
-        })
-        .collect();
-    if factors.len() < ENOUGH_RUNS {
-        return said;
-    }
-    let common = median(factors.iter().map(|(.., factor)| *factor).collect());
-    for (index, amplitude, factor) in factors {
-        let off = factor / common - 1.0;
-        if off.abs() > OFF_AMONG_OTHERS {
-            said.push(format!(
-                "{}: it sways like a gait of {}, not of {}, beside the other runs: correct its `gait`, or leave it out (`exclude = \"why\"`)",
-                name(index),
-                quantity::angle(amplitude * factor / common),
-                quantity::angle(amplitude)
-            ));
-        }
-    }
+    let unlike = other_gaits(campaign, runs, swimmer);
+    said.extend(
+        unlike
+            .iter()
+            .map(|other| format!("{}: {other}", name(other.index))),
+    );
     said
 }
 
@@ -96,7 +70,7 @@ pub(super) fn of_single(
             quantity::length(foretold.x_m)
         ));
     }
-    if let (Some(amplitude), Some(factor)) = (amplitude(gait), factor(run, gait, period_s, swimmer))
+    if let Some((amplitude, factor)) = amplitude_by_sway(run, gait, period_s, swimmer)
         && (factor - 1.0).abs() > OFF_ALONE
     {
         said.push(format!(
@@ -107,41 +81,6 @@ pub(super) fn of_single(
         ));
     }
     said
-}
-
-fn amplitude(gait: &GaitSpec) -> Option<f64> {
-    match gait {
-        GaitSpec::Circle { amplitude, .. } | GaitSpec::Square { amplitude, .. } => Some(*amplitude),
-        GaitSpec::File { .. } => None,
-    }
-}
-
-/// The amplitude whose sway and yaw come nearest to those of the run, over the one that it is said to have had.
-fn factor(run: &RunResult, gait: &GaitSpec, period_s: f64, swimmer: &SwimmerFile) -> Option<f64> {
-    let told = amplitude(gait)?;
-    let measured = [run.cycles.delta_y.mean, run.cycles.delta_theta.mean];
-    let mut factor = 1.0;
-    for _ in 0..CORRECTIONS {
-        let shape = match gait {
-            GaitSpec::Circle { clockwise, .. } => {
-                AnyGait::circle(told * factor).reversed_if(*clockwise)
-            }
-            GaitSpec::Square { clockwise, .. } => {
-                AnyGait::square(told * factor).reversed_if(*clockwise)
-            }
-            GaitSpec::File { .. } => return None,
-        };
-        let foretold = predict(swimmer, &shape, period_s).ok()?;
-        let [sway, yaw] = [
-            measured[0] / foretold.delta_y_m,
-            measured[1] / foretold.delta_theta_rad,
-        ];
-        factor *= (sway * yaw).sqrt();
-        if !(factor.is_finite() && factor > 0.05 && factor < 20.0) {
-            return None;
-        }
-    }
-    Some(factor)
 }
 
 /// The middle one.

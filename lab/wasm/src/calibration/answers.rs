@@ -1,7 +1,9 @@
 //! The answers, under the keys of `swimmer calibrate --json` and of its evidence, and what only pictures need.
 
 use calibrate::evidence::{CurvePoint, Evidence, EvidenceDocument, Pair};
-use calibrate::{CampaignFit, Intervals, MeasuredServo, RunResult, TrackSurvey, c_t_form};
+use calibrate::{
+    CampaignFit, Intervals, MeasuredServo, RunResult, TrackSurvey, c_t_form, other_gaits,
+};
 use serde::Serialize;
 use swimmer_files::{Campaign, GaitSpec};
 
@@ -178,7 +180,14 @@ impl FitAnswer {
                     reason: run.reason.clone(),
                 })
                 .collect(),
-            warnings: fit.warnings.iter().map(ToString::to_string).collect(),
+            warnings: other_gaits(campaign, &found.runs, &found.swimmer)
+                .iter()
+                .map(|other| {
+                    let track = &campaign.runs[other.index].track;
+                    format!("{}: {other}", track.display())
+                })
+                .chain(fit.warnings.iter().map(ToString::to_string))
+                .collect(),
             swimmer: found.swimmer.to_toml(),
         }
     }

@@ -1,0 +1,112 @@
+//! Whether each run swam the gait that it is said to have swum, by how far it swayed and yawed.
+
+use std::fmt;
+
+use swimmer_files::{AnyGait, Campaign, GaitSpec, SwimmerFile};
+
+use crate::median::median;
+use crate::{RunResult, predict};
+
+/// An amplitude that fits the sway less well than this belongs to another gait, as a share, among runs whose common factor is
+/// known.
+const OFF_AMONG_OTHERS: f64 = 0.06;
+/// From so many runs on they have a common factor: that of the servos' gain, and of what the model does not know.
+const ENOUGH_RUNS: usize = 3;
+/// Corrections of the amplitude.
+const CORRECTIONS: usize = 3;
+
+/// A run that sways like another gait than its campaign says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OtherGait {
+    /// The run's place in the campaign.
+    pub index: usize,
+    /// The amplitude that it sways like \[rad\].
+    pub sways_like_rad: f64,
+    /// The amplitude that the campaign says \[rad\].
+    pub said_rad: f64,
+}
+
+impl fmt::Display for OtherGait {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "it sways like a gait of {:.3}°, not of {:.3}°, beside the other runs: correct its `gait`, or leave it out (`exclude = \"why\"`)",
+            self.sways_like_rad.to_degrees(),
+            self.said_rad.to_degrees()
+        )
+    }
+}
+
+/// The runs of a campaign whose sway and yaw are those of another amplitude, beside what is common to all runs.
+pub fn other_gaits(
+    campaign: &Campaign,
+    runs: &[RunResult],
+    swimmer: &SwimmerFile,
+) -> Vec<OtherGait> {
+    let factors: Vec<(usize, f64, f64)> = runs
+        .iter()
+        .filter_map(|run| {
+            let told = campaign.runs.get(run.index)?;
+            let (amplitude, factor) = amplitude_by_sway(run, &told.gait, told.period_s, swimmer)?;
+            Some((run.index, amplitude, factor))
+        })
+        .collect();
+    if factors.len() < ENOUGH_RUNS {
+        return Vec::new();
+    }
+    let Some(common) = median(factors.iter().map(|(.., factor)| *factor)) else {
+        return Vec::new();
+    };
+    let off = |factor: f64| factor / common - 1.0;
+    let unlike = factors
+        .into_iter()
+        .filter(|(.., factor)| off(*factor).abs() > OFF_AMONG_OTHERS);
+    unlike
+        .map(|(index, said_rad, factor)| OtherGait {
+            index,
+            sways_like_rad: said_rad * factor / common,
+            said_rad,
+        })
+        .collect()
+}
+
+fn amplitude(gait: &GaitSpec) -> Option<f64> {
+    match gait {
+        GaitSpec::Circle { amplitude, .. } | GaitSpec::Square { amplitude, .. } => Some(*amplitude),
+        GaitSpec::File { .. } => None,
+    }
+}
+
+/// The amplitude \[rad\] that a circle or square is said to have had, and the factor to the one whose sway and yaw come nearest to
+/// those of the run. None for another gait, or where no amplitude does.
+pub fn amplitude_by_sway(
+    run: &RunResult,
+    gait: &GaitSpec,
+    period_s: f64,
+    swimmer: &SwimmerFile,
+) -> Option<(f64, f64)> {
+    let told = amplitude(gait)?;
+    let measured = [run.cycles.delta_y.mean, run.cycles.delta_theta.mean];
+    let mut factor = 1.0;
+    for _ in 0..CORRECTIONS {
+        let shape = match gait {
+            GaitSpec::Circle { clockwise, .. } => {
+                AnyGait::circle(told * factor).reversed_if(*clockwise)
+            }
+            GaitSpec::Square { clockwise, .. } => {
+                AnyGait::square(told * factor).reversed_if(*clockwise)
+            }
+            GaitSpec::File { .. } => return None,
+        };
+        let foretold = predict(swimmer, &shape, period_s).ok()?;
+        let [sway, yaw] = [
+            measured[0] / foretold.delta_y_m,
+            measured[1] / foretold.delta_theta_rad,
+        ];
+        factor *= (sway * yaw).sqrt();
+        if !(factor.is_finite() && factor > 0.05 && factor < 20.0) {
+            return None;
+        }
+    }
+    Some((told, factor))
+}
