@@ -317,7 +317,7 @@ impl<'a> Search<'a> {
                     .legs()
                     .iter()
                     .find(|leg| leg.motion == Motion::Singular)?;
-                let place = self.place(family, p)?.state;
+                let place = self.place(family, p, FINE)?.state;
                 ((shape(&left.from) - shape(&place)).norm() < 1e-6).then_some(whole)?
             }
         };
@@ -366,7 +366,7 @@ impl<'a> Search<'a> {
     /// The quarter that becomes singular at place p of a family, with its `y_f`. None where the singular control would leave
     /// the region, or no `y_f` makes the height vanish.
     fn shoot(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<(Quarter, f64)> {
-        let place = self.place(family, p)?;
+        let place = self.place(family, p, control)?;
         let final_y = family.final_y(self.model, &place, p)?;
         let Place { state, motion } = place;
         let (phi, pose) = (shape(&state), [state[2], state[3], state[4]]);
@@ -407,8 +407,10 @@ impl<'a> Search<'a> {
         quarter.fate == Fate::Ended && quarter.touched == touches && !quarter.ends_in_a_spike()
     }
 
-    fn place(&self, family: &StartFamily, p: f64) -> Option<Place> {
-        family.place(self.extremal(0.0), p)
+    /// A place, one step of tolerance closer than what is followed from there.
+    fn place(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<Place> {
+        let coarse = control.tolerance > MIDDLING.tolerance;
+        family.place(self.extremal(0.0), p, if coarse { MIDDLING } else { FINE })
     }
 
     pub(super) fn extremal(&self, final_y: f64) -> Extremal<'a> {

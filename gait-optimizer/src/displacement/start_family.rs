@@ -12,7 +12,7 @@ use super::height::Extremal;
 use super::search::{FINE, lasting};
 use crate::momentum::{Flow, Motion, State, Track, shape};
 use crate::region::{Bound, Piece, Region};
-use crate::runge_kutta::{Point, advance};
+use crate::runge_kutta::{Point, StepControl, advance};
 
 /// A line of places.
 #[derive(Debug, Clone, PartialEq)]
@@ -212,7 +212,12 @@ impl StartFamily {
     }
 
     /// The state at a place; `extremal` only carries the model. None outside the family.
-    pub(crate) fn place(&self, extremal: Extremal<'_>, p: f64) -> Option<Place> {
+    pub(crate) fn place(
+        &self,
+        extremal: Extremal<'_>,
+        p: f64,
+        control: StepControl,
+    ) -> Option<Place> {
         match self {
             Self::StartLine { .. } => Some(Place {
                 state: [p, p, 0.0, 0.0, 0.0, 0.0],
@@ -229,7 +234,7 @@ impl StartFamily {
                     motion,
                 };
                 let start = Point::new(&drive, stretch.from);
-                let state = advance(&drive, start, p - stretch.span[0], FINE)?.z;
+                let state = advance(&drive, start, p - stretch.span[0], control)?.z;
                 Some(Place { state, motion })
             }
             Self::EndLine { stretches, turn } => Some(Place {
