@@ -189,7 +189,7 @@ pub fn plan(model: &Model<f64>, family: &Family, errand: &Errand) -> Result<Plan
     let mut left = legs::chains(&nets, family, errand, &way_in);
     let met = left.len();
     left.sort_by(|a, b| duration(a).total_cmp(&duration(b)));
-    left.retain(|steps| room.leaves(model, family, &begun, &nets, steps));
+    left.retain(|steps| room.leaves(family, &begun, &nets, steps));
     let Some(steps) = left.first() else {
         return Err(PlanError::NoWay {
             met,
@@ -197,16 +197,29 @@ pub fn plan(model: &Model<f64>, family: &Family, errand: &Errand) -> Result<Plan
         });
     };
     let reached = family.reached(model, &errand.from, steps);
-    let off_heading = errand
-        .heading
-        .map_or(0.0, |heading| legs::wrapped(reached.theta - heading).abs());
+    let heading = errand.heading.unwrap_or(reached.theta);
     Ok(Plan {
         duration: duration(steps),
-        off: [(reached.position() - errand.to).norm(), off_heading],
+        off: distance(&reached, &Pose::new(errand.to.x, errand.to.y, heading)),
         reached,
         met: [met, left.len()],
         steps: steps.clone(),
     })
+}
+
+/// How far two poses are apart \[m\], and by what angle \[rad\].
+fn distance(one: &Pose<f64>, other: &Pose<f64>) -> [f64; 2] {
+    [
+        (one.position() - other.position()).norm(),
+        legs::wrapped(one.theta - other.theta).abs(),
+    ]
+}
+
+impl Plan {
+    /// How far a pose is from where the plan leads \[m\], and by what angle \[rad\].
+    pub fn apart_from(&self, pose: &Pose<f64>) -> [f64; 2] {
+        distance(&self.reached, pose)
+    }
 }
 
 fn duration(steps: &[Step]) -> f64 {

@@ -125,6 +125,9 @@ pub struct Plan {
     pub off: [f64; 2],
     pub met: [usize; 2],
 }
+impl Plan {
+    pub fn apart_from(&self, pose: &Pose<f64>) -> [f64; 2] {}
+}
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlanError {
     Apart { apart: f64 },

@@ -100,7 +100,7 @@ impl Plan {
             other.swimmer.chi *= share;
             let model = crate::arguments::model(&other)?;
             let reached = family.reached(&model, &errand.from, &found.steps);
-            Ok(Off::between(&found.reached, &reached))
+            Ok(Off::new(found.apart_from(&reached)))
         };
         let wrong = [off(0.95)?, off(1.05)?];
         let gaits = match &self.output {

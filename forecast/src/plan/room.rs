@@ -44,7 +44,6 @@ impl<'a> Room<'a> {
     /// Whether all of a plan does, from this pose at the common shape.
     pub(super) fn leaves(
         &self,
-        model: &Model<f64>,
         family: &Family,
         begun: &Pose<f64>,
         nets: &Nets,
@@ -56,7 +55,7 @@ impl<'a> Room<'a> {
             let net = nets.of(&step.member);
             let mut cycle: Vec<(Pose<f64>, Vector2<f64>)> = Vec::with_capacity(LOOKS + 1);
             trajectory(
-                model,
+                self.model,
                 &step.member.of(family),
                 &tolerance(),
                 LOOKS,
@@ -64,7 +63,7 @@ impl<'a> Room<'a> {
                     cycle.push((point.pose, point.phi));
                 },
             );
-            let swimmer = model.swimmer();
+            let swimmer = self.model.swimmer();
             let sway = cycle.iter().map(|(pose, _)| pose.position().norm());
             let reach = sway.fold(0.0, f64::max)
                 + swimmer.total_length().max(swimmer.sphere_radius)

@@ -11,11 +11,12 @@ mod second_order;
 mod switching;
 
 use nalgebra::{DMatrix, DVector, Vector2};
-use swimmer_files::{AnyGait, ArcKind, GaitFile};
+use swimmer_files::{AnyGait, ArcKind, Bounds, GaitFile};
 use swimmer_model::{Model, Tolerance, crossing_share, swim};
 
 use super::problem::{Goal, HeadingRule, Setting};
 use crate::certificate::{Certificate, Check, SeenBy, again_within};
+use crate::cycle::Cycle;
 use crate::region::Region;
 use legs::{Leg, Legs};
 use switching::Switching;
@@ -44,6 +45,26 @@ impl Asked {
         self.anchor
             .is_some_and(|anchor| (anchor - phi).norm() < RESTS)
     }
+}
+
+/// A cycle as a gait, held against the conditions; none where its samples make no gait.
+pub(super) fn of_cycle(
+    setting: &Setting,
+    asked: Asked,
+    bounds: Bounds,
+    cycle: &Cycle,
+) -> Option<(AnyGait, Certificate)> {
+    let gait = cycle.gait().ok()?;
+    let file = GaitFile {
+        bounds,
+        arcs: cycle.arcs.clone(),
+        corners: cycle.corners.clone(),
+        u: cycle.u.clone(),
+        phi: cycle.phi.clone(),
+        ..GaitFile::default()
+    };
+    let certificate = certificate(setting.model, setting.region, asked, &file, &gait);
+    Some((gait, certificate))
 }
 
 /// Holds one cycle, timed as it shall run, against the conditions. Of the swimmer with L = 1.

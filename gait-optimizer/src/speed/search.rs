@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use nalgebra::Vector2;
-use swimmer_files::{GaitFile, Objective};
+use swimmer_files::Objective;
 use swimmer_model::{Tolerance, swim};
 
 use super::candidate;
-use super::certificate;
+use super::certificate::{Asked, of_cycle};
 use super::interior::Polygon;
 use super::polish::Polished;
 use super::problem::Setting;
@@ -226,28 +226,13 @@ pub(super) fn told(
     if backward {
         (cycle, arcs) = (cycle.reversed(|phi| *phi), samples::reversed(&arcs));
     }
-    let gait = cycle.gait().ok()?;
-    let stroke = swim(setting.model, &gait, &Tolerance::default());
-    let file = GaitFile {
-        bounds: problem.bounds,
-        arcs: cycle.arcs.clone(),
-        corners: cycle.corners.clone(),
-        u: cycle.u.clone(),
-        phi: cycle.phi.clone(),
-        ..GaitFile::default()
+    let asked = Asked {
+        heading: problem.heading,
+        period: problem.period.is_some(),
+        ..Asked::default()
     };
-    let certificate = certificate::certificate(
-        setting.model,
-        setting.region,
-        certificate::Asked {
-            heading: problem.heading,
-            period: problem.period.is_some(),
-            goal: setting.goal,
-            anchor: setting.anchor.map(|anchor| anchor * sign),
-        },
-        &file,
-        &gait,
-    );
+    let (gait, certificate) = of_cycle(setting, asked, problem.bounds, &cycle)?;
+    let stroke = swim(setting.model, &gait, &Tolerance::default());
     let distance = chain.net.distance();
     let period = chain.layout.period(&chain.z);
     Some(Fastest {

@@ -14,7 +14,7 @@ use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{Model, Tolerance, swim};
 
 use super::candidate::{candidate, mended};
-use super::certificate::{Asked, certificate};
+use super::certificate::{Asked, of_cycle};
 use super::interior::rough_polygon;
 use super::polish::Polished;
 use super::problem::{Goal, HeadingRule, Setting};
@@ -58,13 +58,8 @@ impl Joined {
 
     /// One cycle as a file, or the same run backwards.
     pub fn gait_file(&self, swimmer_name: &str, backwards: bool) -> GaitFile {
-        let mut file = self.gait.gait_file(swimmer_name);
-        if backwards {
-            let back = self.gait.cycle.reversed(|phi| *phi);
-            (file.u, file.phi) = (back.u, back.phi);
-            (file.corners, file.arcs) = (back.corners, back.arcs);
-        }
-        file
+        let file = self.gait.gait_file(swimmer_name);
+        if backwards { file.reversed() } else { file }
     }
 }
 
@@ -255,22 +250,13 @@ fn cycle(setting: &Setting, chain: &Polished, bounds: Bounds) -> Option<Told> {
     if backward {
         (cycle, arcs) = (cycle.reversed(|phi| *phi), samples::reversed(&arcs));
     }
-    let gait = cycle.gait().ok()?;
-    let file = GaitFile {
-        bounds,
-        arcs: cycle.arcs.clone(),
-        corners: cycle.corners.clone(),
-        u: cycle.u.clone(),
-        phi: cycle.phi.clone(),
-        ..GaitFile::default()
-    };
     let asked = Asked {
         heading: setting.heading,
         goal: setting.goal,
         anchor: setting.anchor,
         ..Asked::default()
     };
-    let certificate = certificate(setting.model, setting.region, asked, &file, &gait);
+    let (gait, certificate) = of_cycle(setting, asked, bounds, &cycle)?;
     Some(Told {
         cycle,
         arcs,

@@ -7,6 +7,7 @@ use std::time::Instant;
 use gait_optimizer::{Joined, SpeedProblem, SteerProblem, Steering, steer};
 use serde::Serialize;
 use swimmer_files::SwimmerFile;
+use swimmer_model::Pose;
 
 use super::answer::Evidence;
 use crate::arguments::{joint_angle, load_swimmer, rate};
@@ -165,18 +166,13 @@ impl Answer {
         let of = |(name, joined, backwards): (&'static str, &Joined, bool)| {
             let turns = name.starts_with("turn");
             let [x, y, theta] = joined.net;
-            let (sin, cos) = theta.sin_cos();
-            // Backwards: the inverse pose.
-            let [x, y, rotation] = if backwards {
-                [-cos * x - sin * y, sin * x - cos * y, -theta]
-            } else {
-                [x, y, theta]
-            };
+            let there = Pose::new(x, y, theta);
+            let net = if backwards { there.inverse() } else { there };
             GaitAnswer {
                 name,
-                x_m: x * length,
-                y_m: y * length,
-                rotation_rad: rotation,
+                x_m: net.x * length,
+                y_m: net.y * length,
+                rotation_rad: net.theta,
                 period_s: joined.period,
                 speed_over_length_per_s: (!turns).then_some(joined.rate),
                 rotation_rad_per_s: turns.then_some(joined.rate),

@@ -4,7 +4,6 @@ use std::fmt;
 use std::path::PathBuf;
 
 use serde::Serialize;
-use swimmer_model::Pose;
 
 use crate::quantity::{self, Rows};
 
@@ -16,11 +15,10 @@ pub(super) struct Off {
 }
 
 impl Off {
-    pub(super) fn between(one: &Pose<f64>, other: &Pose<f64>) -> Self {
-        let (sin, cos) = (one.theta - other.theta).sin_cos();
+    pub(super) fn new([distance_m, angle_rad]: [f64; 2]) -> Self {
         Self {
-            distance_m: (one.position() - other.position()).norm(),
-            angle_rad: sin.atan2(cos).abs(),
+            distance_m,
+            angle_rad,
         }
     }
 }
