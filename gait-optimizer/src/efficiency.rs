@@ -5,7 +5,6 @@
 //! makes the gait with its certificate).
 
 mod bounded;
-mod by_collocation;
 mod chain;
 mod error;
 mod fourier;
@@ -13,19 +12,18 @@ mod near;
 
 use std::fmt;
 
-use swimmer_files::Bounds;
+use swimmer_files::{AnyGait, Bounds};
 use swimmer_model::{Model, Swimmer};
 
 use crate::OptimalGait;
 use crate::certificate::{crossings, simple_and_turning_once};
 use crate::extremal::gait::{Order, gait};
-use crate::extremal::{Extremal, Unpolished, Walls};
+use crate::extremal::{Extremal, Unpolished, Walls, polish};
 use crate::immobile::refuse_immobile;
 use crate::problem::{GaitClass, InvalidProblem, validated};
 pub use bounded::Reached;
-use by_collocation::by_collocation;
-use chain::Found;
 pub(crate) use chain::starts;
+use chain::{Found, same_gait};
 pub use error::EfficiencyError;
 pub use near::EfficiencySeed;
 
@@ -39,7 +37,8 @@ pub enum Branch {
 }
 
 impl Branch {
-    fn sign(self) -> f64 {
+    /// Sign of X.
+    pub fn sign(self) -> f64 {
         match self {
             Self::Small => 1.0,
             Self::Large => -1.0,
@@ -82,8 +81,6 @@ pub enum Method {
     Auto,
     /// Fourier series alone, up to the order at which they have settled.
     Fourier,
-    /// Fourier series of order 3, then direct collocation.
-    Collocation,
     /// Fourier series of low order.
     Shooting,
 }
@@ -94,7 +91,6 @@ impl Method {
         match self {
             Self::Auto => "auto",
             Self::Fourier => "fourier",
-            Self::Collocation => "collocation",
             Self::Shooting => "shooting",
         }
     }
@@ -133,7 +129,11 @@ impl EfficiencyProblem {
         }
     }
 
-    fn validated(&self) -> Result<Model<f64>, InvalidProblem> {
+    /// The model of the problem's swimmer with L = 1.
+    ///
+    /// # Errors
+    /// [`InvalidProblem`]: what is wrong with the problem.
+    pub fn validated(&self) -> Result<Model<f64>, InvalidProblem> {
         validated(&self.swimmer, &self.bounds, GaitClass::Symmetric)
     }
 }
@@ -145,8 +145,8 @@ pub struct EfficiencyFigures {
     pub residual: f64,
     /// (max − min)/mean of the power along the extremal.
     pub power_variation: f64,
-    /// What led to the guess that was shot from.
-    pub method: Method,
+    /// What led to the guess that was shot from: [`Method::word`], or the name of the method that a [`Direct`] gait is from.
+    pub method: &'static str,
     /// ξ of the curve that was shot from, where it is the result of a direct method of its own.
     pub direct_efficiency: Option<f64>,
 }
@@ -161,7 +161,11 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Efficiency
     let mut best: Option<(OptimalGait, Extremal)> = None;
     let mut refused: Option<EfficiencyError> = None;
     for start in starts(&model, problem.branch)? {
-        match optimum(problem, &model, start) {
+        let led_to = match problem.method {
+            Method::Fourier => chain::by_fourier(&model, problem.branch, start),
+            Method::Auto | Method::Shooting => chain::by_shooting(&model, problem.branch, start),
+        };
+        match led_to.and_then(|found| accepted(problem, &model, found)) {
             Ok(found) => {
                 if best
                     .as_ref()
@@ -181,11 +185,7 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Efficiency
         }
     }
     match (best, refused) {
-        (Some((free, _)), _) if keeps_bounds(problem, &free) => Ok(OptimalGait {
-            bounds: problem.bounds,
-            ..free
-        }),
-        (Some((free, extremal)), _) => bounded::bounded(problem, &model, &free, extremal),
+        (Some(free), _) => within_bounds(problem, &model, free),
         (None, Some(error)) => Err(error),
         (None, None) => Err(EfficiencyError::NoStart {
             branch: problem.branch,
@@ -194,24 +194,82 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Efficiency
     }
 }
 
-/// The free optimum that one start leads to, certified.
-fn optimum(
+/// A free gait with the paper's two symmetries, from φ₁ = φ₂ > 0 counter-clockwise, that a direct method found by itself.
+#[derive(Debug, Clone, Copy)]
+pub struct Direct<'a> {
+    /// The method's name.
+    pub method: &'static str,
+    /// The gait.
+    pub gait: &'a AnyGait,
+    /// The method's own ξ.
+    pub efficiency: f64,
+}
+
+/// As [`efficiency()`], with a gait of another method to start from, where that one is: it is shot, certified and, where the problem
+/// has bounds, followed as they tighten.
+///
+/// ```
+/// use gait_optimizer::{Branch, Direct, EfficiencyProblem, efficiency, efficiency_from};
+/// use swimmer_files::AnyGait;
+/// use swimmer_model::{Model, Swimmer, Tolerance, swim};
+///
+/// let problem = EfficiencyProblem::new(Swimmer::purcell(), Branch::Small);
+/// let circle = AnyGait::circle(1.2);
+/// let swum = swim(&Model::new(&problem.swimmer).unwrap(), &circle, &Tolerance::default());
+/// let direct = Direct { method: "circle", gait: &circle, efficiency: swum.efficiency_constant_power() };
+/// let found = efficiency_from(&problem, &direct).unwrap();
+/// assert!((found.efficiency - efficiency(&problem).unwrap().efficiency).abs() < 1e-12);
+/// ```
+///
+/// # Errors
+/// As [`efficiency()`]; [`EfficiencyError::NotConverged`] where no optimum lies near the gait.
+pub fn efficiency_from(
+    problem: &EfficiencyProblem,
+    direct: &Direct<'_>,
+) -> Result<OptimalGait, EfficiencyError> {
+    let model = problem.validated()?;
+    refuse_immobile(&model, &problem.bounds)?;
+    let everywhere = Walls::new(&Bounds::default(), &problem.swimmer.links);
+    let extremal = polish(&model, &everywhere, direct.gait, true)
+        .ok()
+        .and_then(|found| same_gait(&model, found, direct.efficiency, problem.branch.sign()))
+        .ok_or(EfficiencyError::NotConverged {
+            branch: problem.branch,
+            order: 0,
+            efficiency: direct.efficiency,
+        })?;
+    let found = Found {
+        extremal,
+        order: 0,
+        method: direct.method,
+        direct_efficiency: Some(direct.efficiency),
+    };
+    let free = accepted(problem, &model, found)?;
+    within_bounds(problem, &model, free)
+}
+
+/// A free optimum under the problem's bounds.
+fn within_bounds(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
-    start: [f64; 2],
+    (free, extremal): (OptimalGait, Extremal),
+) -> Result<OptimalGait, EfficiencyError> {
+    if keeps_bounds(problem, &free) {
+        return Ok(OptimalGait {
+            bounds: problem.bounds,
+            ..free
+        });
+    }
+    bounded::bounded(problem, model, &free, extremal)
+}
+
+/// A free extremal as a gait of the branch, certified.
+fn accepted(
+    problem: &EfficiencyProblem,
+    model: &Model<f64>,
+    found: Found,
 ) -> Result<(OptimalGait, Extremal), EfficiencyError> {
     let branch = problem.branch;
-    let found = match problem.method {
-        Method::Fourier => chain::by_fourier(model, branch, start)?,
-        Method::Collocation => by_collocation(model, branch, start)?,
-        Method::Shooting => chain::by_shooting(model, branch, start)?,
-        Method::Auto => match chain::by_shooting(model, branch, start) {
-            Err(error @ EfficiencyError::NotConverged { .. }) => {
-                by_collocation(model, branch, start).map_err(|_| error)?
-            }
-            other => other?,
-        },
-    };
     let mut gait = finished(problem, model, &found, &Bounds::default()).map_err(|_| {
         EfficiencyError::NotConverged {
             branch,

@@ -20,7 +20,7 @@
 //! | `closed_curve` | displacement, rotation and cost of any closed curve, with exact first and second derivatives |
 //! | `loops` | closed loops of singular arcs and bounds, without any symmetry |
 //! | `sideways` | the gait of most displacement across the heading at its start |
-//! | `region` | the bounds: straight ones of the joint angles, and the curved one that keeps the side links apart |
+//! | [`region`] | the bounds: straight ones of the joint angles, and the curved one that keeps the side links apart |
 //! | `arcs` | an arc of most displacement, integrated until an event ends it; of quarters and of closed curves |
 //! | `displacement::flow` | what follows an arc of a quarter, and where quarters end |
 //! | `displacement::start_family` | where singular arcs may begin: φ₁ = φ₂, and chains of bounds from there |
@@ -31,7 +31,6 @@
 //! | `turning` | the simple closed gait that turns most: round a region of the curvature |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
 //! | `certificate` | checks, and those that any closed curve can be asked |
-//! | [`collocation`] | efficiency gaits by Radau collocation, with a structured Newton method and mesh refinement |
 //! | `certify` | the same conditions asked of any closed curve, from its samples alone |
 //! | [`closed_forms`] | formulas of the paper's appendix, mended |
 //! | `simple_shapes` | circles and squares over their amplitude |
@@ -69,7 +68,6 @@ mod certificate;
 mod certify;
 mod closed_curve;
 pub mod closed_forms;
-pub mod collocation;
 mod continuation;
 mod cycle;
 mod displacement;
@@ -82,7 +80,7 @@ mod momentum;
 mod optimal_gait;
 mod parallel;
 mod problem;
-mod region;
+pub mod region;
 mod robust;
 mod runge_kutta;
 mod sideways;
@@ -104,8 +102,8 @@ pub use displacement::{
     DisplacementError, DisplacementProblem, Fates, Heading, displacement, displacement_near,
 };
 pub use efficiency::{
-    Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, EfficiencySeed, Method, Reached,
-    efficiency,
+    Branch, Direct, EfficiencyError, EfficiencyFigures, EfficiencyProblem, EfficiencySeed, Method,
+    Reached, efficiency, efficiency_from,
 };
 pub use extremal::{Polish, Unpolished, Unsolved, polish_efficiency};
 pub use height_map::{

@@ -12,19 +12,24 @@ use nalgebra::{Matrix2, Vector2};
 use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Links;
 
-pub(crate) use clearance::{Clearance, Level, Piece};
+pub(crate) use clearance::Piece;
+pub use clearance::{Clearance, Level};
 
 /// A straight bound: `normal · Φ ≤ offset`, with a unit normal that points out.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Edge {
-    pub(crate) normal: Vector2<f64>,
-    pub(crate) offset: f64,
-    pub(crate) kind: ArcKind,
+pub struct Edge {
+    /// Unit normal, out of the region.
+    pub normal: Vector2<f64>,
+    /// Distance from the straight shape \[rad\].
+    pub offset: f64,
+    /// What an arc along it is called.
+    pub kind: ArcKind,
 }
 
 /// One bound of a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Bound {
+pub enum Bound {
+    /// One of the angles, or both alike.
     Straight(Edge),
     /// Both zones where the side links are too near or cross, φ₁, φ₂ > 0 and φ₁, φ₂ < 0.
     Clearance(Clearance),
@@ -32,7 +37,7 @@ pub(crate) enum Bound {
 
 /// Where all bounds hold. Convex but for the clearance.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Region {
+pub struct Region {
     edges: Vec<Edge>,
     clearance: Option<Clearance>,
     /// Beyond this |Φ| the search does not look \[rad\]; farther than any corner where a bound binds.
@@ -58,7 +63,7 @@ impl Edge {
 
 impl Bound {
     /// What an arc along it is called.
-    pub(crate) fn kind(&self) -> ArcKind {
+    pub fn kind(&self) -> ArcKind {
         match self {
             Self::Straight(edge) => edge.kind,
             Self::Clearance(_) => ArcKind::Clearance,
@@ -74,7 +79,7 @@ impl Bound {
     }
 
     /// How far inside a shape is; negative outside. In rad for an edge, a length over L for the clearance.
-    pub(crate) fn margin(&self, phi: &Vector2<f64>) -> f64 {
+    pub fn margin(&self, phi: &Vector2<f64>) -> f64 {
         match self {
             Self::Straight(edge) => edge.margin(phi),
             Self::Clearance(clearance) => clearance.margin(phi),
@@ -82,7 +87,7 @@ impl Bound {
     }
 
     /// The margin with its first and second derivatives.
-    pub(crate) fn level(&self, phi: &Vector2<f64>) -> Level {
+    pub fn level(&self, phi: &Vector2<f64>) -> Level {
         match self {
             Self::Straight(edge) => Level {
                 value: edge.margin(phi),
@@ -90,6 +95,24 @@ impl Bound {
                 hessian: Matrix2::zeros(),
             },
             Self::Clearance(clearance) => clearance.deciding_level(phi),
+        }
+    }
+
+    /// The same for what sees the bound from inside only, smooth there up to the bound: where links may touch, the distance of
+    /// the tips is a cone round the corner of the bound that Newton's method cannot see past. Side links cross if and only if
+    /// both tips are beyond the other link's line, and the higher one is a smooth margin up to the corner.
+    pub fn smooth_level(&self, phi: &Vector2<f64>) -> Level {
+        match self {
+            Self::Clearance(clearance) if clearance.has_corner() => {
+                let [front, back] =
+                    [Piece::FrontTip, Piece::BackTip].map(|piece| clearance.level(piece, phi));
+                if front.value > back.value {
+                    front
+                } else {
+                    back
+                }
+            }
+            bound => bound.level(phi),
         }
     }
 
@@ -146,7 +169,7 @@ impl Region {
     pub(crate) const HORIZON: f64 = std::f64::consts::TAU;
 
     /// The region for a swimmer with these links \[m\]; the clearance is measured over their total length.
-    pub(crate) fn new(bounds: &Bounds, links: &Links<f64>) -> Self {
+    pub fn new(bounds: &Bounds, links: &Links<f64>) -> Self {
         let length = links.middle + links.front + links.back;
         let links = Links {
             middle: links.middle / length,
@@ -210,7 +233,7 @@ impl Region {
     }
 
     /// All bounds: the straight ones, then the curved one. Its index is the place in this order.
-    pub(crate) fn bounds(&self) -> impl Iterator<Item = Bound> + '_ {
+    pub fn bounds(&self) -> impl Iterator<Item = Bound> + '_ {
         let straight = self.edges.iter().map(|edge| Bound::Straight(*edge));
         straight.chain(self.clearance.map(Bound::Clearance))
     }

@@ -78,6 +78,9 @@ pub enum Branch {
     Small,
     Large,
 }
+impl Branch {
+    pub fn sign(self) -> f64 {}
+}
 impl fmt::Display for Branch {}
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {}
@@ -153,6 +156,12 @@ pub struct Convergence {
     pub inner_change: f64,
     pub change: f64,
 }
+#[derive(Debug, Clone, Copy)]
+pub struct Direct<'a> {
+    pub method: &'static str,
+    pub gait: &'a AnyGait,
+    pub efficiency: f64,
+}
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DisplacementError {
     Problem(InvalidProblem),
@@ -193,7 +202,6 @@ pub enum EfficiencyError {
     },
     CrossesItself { branch: Branch, order: usize, efficiency: f64, crossings: usize },
     NotConverged { branch: Branch, order: usize, efficiency: f64 },
-    NotCollocated { branch: Branch, reason: String },
     OtherBranch {
         branch: Branch,
         efficiency: f64,
@@ -211,7 +219,7 @@ impl EfficiencyError {
 pub struct EfficiencyFigures {
     pub residual: f64,
     pub power_variation: f64,
-    pub method: Method,
+    pub method: &'static str,
     pub direct_efficiency: Option<f64>,
 }
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -224,6 +232,7 @@ pub struct EfficiencyProblem {
 }
 impl EfficiencyProblem {
     pub fn new(swimmer: Swimmer<f64>, branch: Branch) -> Self {}
+    pub fn validated(&self) -> Result<Model<f64>, InvalidProblem> {}
 }
 #[derive(Debug, Clone)]
 pub struct EfficiencySeed {}
@@ -378,7 +387,6 @@ pub struct ManyFirstDerivatives {
 pub enum Method {
     Auto,
     Fourier,
-    Collocation,
     Shooting,
 }
 impl Method {
@@ -698,6 +706,10 @@ pub fn displacement_near(
     neighbour: &OptimalGait,
 ) -> Option<OptimalGait> {}
 pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, EfficiencyError> {}
+pub fn efficiency_from(
+    problem: &EfficiencyProblem,
+    direct: &Direct<'_>,
+) -> Result<OptimalGait, EfficiencyError> {}
 pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {}
 pub fn polish_efficiency<G: Gait<f64> + ?Sized>(
     polish_for: &Polish,
@@ -725,94 +737,42 @@ pub mod closed_forms {
     pub fn along_the_point_symmetric_shapes(swimmer: &Swimmer<f64>, phi: f64) -> f64 {}
     pub fn along_the_symmetric_shapes(swimmer: &Swimmer<f64>, phi: f64) -> f64 {}
 }
-pub mod collocation {
-    #[derive(Debug, Clone, Copy, PartialEq)]
-    pub struct BoundArc {
-        pub kind: ArcKind,
-        pub normal: [f64; 2],
-        pub from: f64,
-        pub to: f64,
-    }
-    #[derive(Debug, Clone, PartialEq, Error)]
-    pub enum CollocationError {
-        Asymmetric { front: f64, back: f64 },
-        Problem { name: &'static str, value: f64, problem: &'static str },
-        Guess { problem: &'static str },
-        WrongWay { x: f64, wanted: f64 },
-        Stalled { iterations: usize, efficiency: f64 },
-        NotIntegrated { efficiency: f64 },
-        Spurious { efficiency: f64, again: f64, points: usize },
-        NotResolved { points: usize, error: f64, uneven_power: f64, tolerance: f64 },
-    }
-    #[derive(Debug, Clone, Copy, PartialEq)]
-    pub struct CollocationNode {
-        pub t: f64,
-        pub state: [f64; 5],
-        pub control: [f64; 2],
-        pub costate: [f64; 5],
-        pub bound_force: [f64; 2],
-        pub y: f64,
-    }
-    #[derive(Debug, Clone, Copy)]
-    pub struct CollocationProblem<'a> {
-        pub model: &'a Model<f64>,
-        pub bounds: Bounds,
-        pub sign: f64,
-        pub elements: usize,
-        pub degree: usize,
-        pub tolerance: f64,
-    }
-    impl<'a> CollocationProblem<'a> {
-        pub fn new(model: &'a Model<f64>, sign: f64) -> Self {}
-        #[must_use]
-        pub fn with_max_angle(mut self, max_angle: f64) -> Self {}
-    }
-    #[derive(Debug, Clone)]
-    pub struct CollocationSolution {
-        pub nodes: Vec<CollocationNode>,
-        pub bound_arcs: Vec<BoundArc>,
-        pub final_x: f64,
-        pub final_energy: f64,
-        pub efficiency: f64,
-        pub efficiency_again: f64,
-        pub turning_number: f64,
-        pub rounds: Vec<MeshRound>,
-        pub last_step: f64,
-    }
-    impl CollocationSolution {
-        pub fn phi(&self, t: f64) -> Vector2<f64> {}
-        pub fn guess(&self) -> Result<QuarterGuess, CollocationError> {}
-        pub fn iterations(&self) -> usize {}
-        pub fn error(&self) -> f64 {}
-    }
-    #[derive(Debug, Clone, Copy, PartialEq)]
-    pub struct MeshRound {
-        pub elements: usize,
-        pub nodes: usize,
-        pub error: f64,
-        pub uneven_power: f64,
-        pub overstepped: f64,
-        pub efficiency: f64,
-        pub iterations: usize,
-    }
-    #[derive(Debug, Clone, PartialEq)]
-    pub struct QuarterGuess {}
-    impl QuarterGuess {
-        pub fn from_samples(
-            samples: &[(f64, [f64; 2])],
-        ) -> Result<Self, CollocationError> {}
-        pub fn from_gait<G: Gait<f64>>(gait: &G) -> Result<Self, CollocationError> {}
-        pub fn circle(amplitude: f64) -> Result<Self, CollocationError> {}
-        pub fn fourier(coefficients: &[[f64; 2]]) -> Result<Self, CollocationError> {}
-    }
-    pub fn solve(
-        problem: &CollocationProblem<'_>,
-        guess: &QuarterGuess,
-    ) -> Result<CollocationSolution, CollocationError> {}
-}
 pub mod front {
     pub use crate::Front;
     pub fn front(problem: &SpeedProblem, watch: Watch<'_>) -> Result<Front, SpeedError> {}
+}
+pub mod region {
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub enum Bound {
+        Straight(Edge),
+        Clearance(Clearance),
+    }
+    impl Bound {
+        pub fn kind(&self) -> ArcKind {}
+        pub fn margin(&self, phi: &Vector2<f64>) -> f64 {}
+        pub fn level(&self, phi: &Vector2<f64>) -> Level {}
+        pub fn smooth_level(&self, phi: &Vector2<f64>) -> Level {}
+    }
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Clearance {}
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct Edge {
+        pub normal: Vector2<f64>,
+        pub offset: f64,
+        pub kind: ArcKind,
+    }
+    #[derive(Debug, Clone, Copy)]
+    pub struct Level {
+        pub value: f64,
+        pub gradient: Vector2<f64>,
+        pub hessian: Matrix2<f64>,
+    }
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Region {}
+    impl Region {
+        pub fn new(bounds: &Bounds, links: &Links<f64>) -> Self {}
+        pub fn bounds(&self) -> impl Iterator<Item = Bound> + '_ {}
+    }
 }
 pub mod steer {
     pub use crate::Joined;

@@ -32,10 +32,11 @@ pub(crate) fn check() -> Outcome {
 }
 
 /// Crates that others may build on.
-const LIBRARIES: [&str; 11] = [
+const LIBRARIES: [&str; 12] = [
     "swimmer-model",
     "swimmer-files",
     "gait-optimizer",
+    "collocation",
     "forecast",
     "sweep",
     "calibrate",

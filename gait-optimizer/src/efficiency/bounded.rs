@@ -94,7 +94,7 @@ pub(super) fn bounded(
     let found = Found {
         extremal,
         order: 0,
-        method: Method::Shooting,
+        method: Method::Shooting.word(),
         direct_efficiency: None,
     };
     let gait =

@@ -18,13 +18,13 @@ pub(crate) struct Found {
     /// Order of the Fourier series that it grew from.
     pub(crate) order: usize,
     /// What led to the guess that was shot from.
-    pub(crate) method: Method,
+    pub(crate) method: &'static str,
     /// ξ of the curve that a direct method found by itself.
     pub(crate) direct_efficiency: Option<f64>,
 }
 
 /// Joint angles beyond this are not followed \[rad\].
-pub(crate) const FARTHEST: f64 = 9.0;
+const FARTHEST: f64 = 9.0;
 /// Weight of constant speed in the Fourier objective: enough to make the Hessian regular.
 const GAUGE: f64 = 0.01;
 /// Orders that lead to shooting, the nodes of the quarter's grid, the gain that a climb stops at, and the numbers of pieces
@@ -53,7 +53,7 @@ const ORDERS: [(usize, usize, f64); 10] = [
     (32, 128, 1e-15),
 ];
 /// Pieces that a settled series is shot in.
-pub(crate) const SETTLED_PIECES: usize = 8;
+const SETTLED_PIECES: usize = 8;
 /// The extremal may be better than the gait of the direct method by this factor. It cannot be worse, but for the error of the
 /// direct method's quadrature: else it is another extremal.
 const SAME_GAIT: std::ops::Range<f64> = 1.0 - 1e-5..1.05;
@@ -89,7 +89,7 @@ pub(crate) fn by_shooting(
                 let found = Found {
                     extremal,
                     order,
-                    method: Method::Shooting,
+                    method: Method::Shooting.word(),
                     direct_efficiency: None,
                 };
                 if is_maximum {
@@ -142,7 +142,7 @@ pub(crate) fn by_fourier(
             return Ok(Found {
                 extremal,
                 order,
-                method: Method::Fourier,
+                method: Method::Fourier.word(),
                 direct_efficiency: Some(maximum.value.efficiency()),
             });
         }
@@ -151,7 +151,7 @@ pub(crate) fn by_fourier(
     Err(not_converged(branch, last.as_ref()))
 }
 
-pub(crate) fn not_converged(branch: Branch, last: Option<&(usize, Maximum)>) -> EfficiencyError {
+fn not_converged(branch: Branch, last: Option<&(usize, Maximum)>) -> EfficiencyError {
     EfficiencyError::NotConverged {
         branch,
         order: last.map_or(0, |(order, _)| *order),
@@ -160,7 +160,7 @@ pub(crate) fn not_converged(branch: Branch, last: Option<&(usize, Maximum)>) -> 
 }
 
 /// Fourier gaits of rising order, each started from the one below.
-pub(crate) struct Ladder<'a> {
+struct Ladder<'a> {
     model: &'a Model<f64>,
     branch: Branch,
     amplitude: f64,
@@ -169,7 +169,7 @@ pub(crate) struct Ladder<'a> {
 }
 
 impl<'a> Ladder<'a> {
-    pub(crate) fn new(model: &'a Model<f64>, branch: Branch, start: [f64; 2]) -> Self {
+    fn new(model: &'a Model<f64>, branch: Branch, start: [f64; 2]) -> Self {
         Self {
             model,
             branch,
@@ -179,7 +179,7 @@ impl<'a> Ladder<'a> {
         }
     }
 
-    pub(crate) fn climb_to(
+    fn climb_to(
         &mut self,
         order: usize,
         nodes: usize,

@@ -86,14 +86,6 @@ pub enum EfficiencyError {
         /// Its efficiency.
         efficiency: f64,
     },
-    /// Collocation failed.
-    #[error("no {branch} gait by collocation: {reason}")]
-    NotCollocated {
-        /// Which gait.
-        branch: Branch,
-        /// What it says.
-        reason: String,
-    },
     /// What shooting converged to is another gait than the one that was asked for.
     #[error(
         "there is no {branch} gait here: what was found starts at {start_angle:.3} rad with X/L = {displacement_over_length:.6}, \
@@ -130,7 +122,7 @@ impl EfficiencyError {
     pub(super) fn distance(&self) -> u8 {
         match self {
             Self::NotCertified { .. } => 4,
-            Self::NotConverged { .. } | Self::NotCollocated { .. } => 3,
+            Self::NotConverged { .. } => 3,
             Self::CrossesItself { .. } => 2,
             Self::RunsAway { .. } => 1,
             _ => 0,

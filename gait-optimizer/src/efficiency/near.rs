@@ -61,7 +61,7 @@ impl EfficiencySeed {
         };
         let found = Found {
             extremal: extremal.ok()?,
-            method: Method::Shooting,
+            method: Method::Shooting.word(),
             order: 0,
             direct_efficiency: None,
         };

@@ -142,45 +142,8 @@ impl Trajectory {
     }
 }
 
-/// A shape of a doubly symmetric quarter with its pose, the first one at the origin.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Posed {
-    pub(crate) phi: Vector2<f64>,
-    /// Of any length: only its direction counts.
-    pub(crate) rate: Vector2<f64>,
-    pub(crate) theta: f64,
-    pub(crate) y: f64,
-}
-
-/// A free quarter from φ₁ = φ₂ to φ₁ = −φ₂ as a chain: `points` at equal steps of its power length, both ends included, and
-/// the `x` that it gains. None where that is nothing.
-pub(crate) fn quarter(points: &[Posed], power_length: f64, x: f64) -> Option<Chain> {
-    let p = power_length / x;
-    let (end, starts) = points.split_last()?;
-    if !(p.is_finite() && power_length > 0.0) {
-        return None;
-    }
-    let mut psi = 0.75 * std::f64::consts::PI;
-    let states = starts.iter().map(|point| {
-        let raw: f64 = point.rate.y.atan2(point.rate.x) - psi;
-        psi += raw - (raw / std::f64::consts::TAU).round() * std::f64::consts::TAU;
-        let (sin, cos) = point.theta.sin_cos();
-        // No momentum of rotation at the end: the gait is a mirror image of itself there.
-        let turning = p * (point.y - end.y);
-        [point.phi.x, point.phi.y, psi, p * cos, -p * sin, turning]
-    });
-    Some(Chain {
-        states: states.collect(),
-        arcs: vec![Stretch {
-            motion: Motion::Free,
-            entry: Entry::Smooth,
-            pieces: starts.len(),
-            length: power_length,
-        }],
-    })
-}
-
-/// The chain of so many pieces along a `curve` over s ∈ (0, π/2); none where that cannot be integrated.
+/// The chain of so many pieces along a `curve` over s ∈ (0, π/2), a free quarter from φ₁ = φ₂ to φ₁ = −φ₂; none where that cannot
+/// be integrated or goes nowhere.
 pub(crate) fn quarter_of_curve(
     model: &Model<f64>,
     curve: &impl Fn(f64) -> (Vector2<f64>, Vector2<f64>),
@@ -213,22 +176,39 @@ pub(crate) fn quarter_of_curve(
             body.z,
         ]
     };
-    let posed = |z: &[f64; 4]| {
-        let (phi, rate) = curve(z[0]);
-        Posed {
-            phi,
-            rate,
-            theta: z[3],
-            y: z[2],
-        }
-    };
     let mut here = Point::new(&rates, [0.0; 4]);
-    let mut points = vec![posed(&here.z)];
+    let mut points = vec![here.z];
     for _ in 0..pieces {
         here = advance(&rates, here, total / pieces as f64, CONTROL)?;
-        points.push(posed(&here.z));
+        points.push(here.z);
     }
-    quarter(&points, total, here.z[1])
+    let [_, x, end_y, _] = points.pop()?;
+    let p = total / x;
+    if !(p.is_finite() && total > 0.0) {
+        return None;
+    }
+    let mut psi = 0.75 * std::f64::consts::PI;
+    let states = points.iter().map(|&[s, _, y, theta]| {
+        let (phi, rate) = curve(s);
+        psi += wrapped(rate.y.atan2(rate.x) - psi);
+        let (sin, cos) = theta.sin_cos();
+        // No momentum of rotation at the end: the gait is a mirror image of itself there.
+        [phi.x, phi.y, psi, p * cos, -p * sin, p * (y - end_y)]
+    });
+    Some(Chain {
+        states: states.collect(),
+        arcs: vec![Stretch {
+            motion: Motion::Free,
+            entry: Entry::Smooth,
+            pieces,
+            length: total,
+        }],
+    })
+}
+
+/// An angle less its whole turns.
+fn wrapped(angle: f64) -> f64 {
+    angle - (angle / std::f64::consts::TAU).round() * std::f64::consts::TAU
 }
 
 /// Directions of motion, each within half a turn of the one before. A rate of zero keeps the direction.
@@ -238,10 +218,7 @@ fn directions(rates: &[Vector2<f64>]) -> Vec<f64> {
     for rate in rates {
         let raw = rate.y.atan2(rate.x);
         let psi = match last {
-            Some(before) if rate.norm() > 0.0 => {
-                let turns: f64 = (raw - before) / std::f64::consts::TAU;
-                raw - turns.round() * std::f64::consts::TAU
-            }
+            Some(before) if rate.norm() > 0.0 => before + wrapped(raw - before),
             Some(before) => before,
             None => raw,
         };

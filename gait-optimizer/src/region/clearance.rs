@@ -33,15 +33,18 @@ pub(crate) enum Piece {
 
 /// The margin with its first and second derivatives in Φ.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Level {
-    pub(crate) value: f64,
-    pub(crate) gradient: Vector2<f64>,
-    pub(crate) hessian: Matrix2<f64>,
+pub struct Level {
+    /// The margin, in rad or over L; positive inside.
+    pub value: f64,
+    /// ∂/∂Φ.
+    pub gradient: Vector2<f64>,
+    /// ∂²/∂Φ².
+    pub hessian: Matrix2<f64>,
 }
 
 /// The bound. Lengths are in the unit of the links that it was made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Clearance {
+pub struct Clearance {
     links: Links<f64>,
     distance: f64,
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
+use collocation::CollocationError;
 use gait_optimizer::{
     Branch, EfficiencyError, EfficiencyProblem, Method, OptimalGait, efficiency, robust_efficiency,
 };
@@ -32,7 +33,7 @@ pub(crate) struct Efficiency {
     /// Which optimum: small has X > 0, large has X < 0 and a start angle above 2 rad
     #[arg(long, value_name = "GAIT", default_value = "small")]
     gait: Which,
-    /// What leads to the polish: Fourier series alone, or collocation or multiple shooting from a Fourier gait of low order
+    /// What leads to the polish: Fourier series alone, collocation from a circle, or multiple shooting from a Fourier gait of low order
     #[arg(long, value_name = "METHOD", default_value = "auto")]
     method: How,
     #[command(flatten)]
@@ -101,15 +102,17 @@ impl Efficiency {
         }
         let problem = EfficiencyProblem {
             method: match self.method {
-                How::Auto => Method::Auto,
+                How::Auto | How::Collocation => Method::Auto,
                 How::Fourier => Method::Fourier,
-                How::Collocation => Method::Collocation,
                 How::Shooting => Method::Shooting,
             },
             bounds,
             ..EfficiencyProblem::new(file.swimmer, branch)
         };
-        let gait = efficiency(&problem)?;
+        let gait = match self.method {
+            How::Collocation => collocation::efficiency(&problem)?,
+            How::Auto | How::Fourier | How::Shooting => efficiency(&problem)?,
+        };
         let seconds = begun.elapsed().as_secs_f64();
         let better = than_efficiency(&problem, &self.swimmer, &gait);
         say_if_beyond(&file, &gait);
@@ -173,7 +176,7 @@ impl Found {
             quarter: gait.into(),
             residual: figures.map(|figures| figures.residual),
             power_variation: figures.map(|figures| figures.power_variation),
-            method: figures.map(|figures| figures.method.word()),
+            method: figures.map(|figures| figures.method),
             direct_efficiency: figures.and_then(|figures| figures.direct_efficiency),
             better,
             closing: Closing::new(gait, timing, seconds, file),
@@ -227,6 +230,15 @@ impl From<EfficiencyError> for Failure {
             Self::bad_input(&error)
         } else {
             Self::tried_with_details(&error, error.details())
+        }
+    }
+}
+
+impl From<CollocationError> for Failure {
+    fn from(error: CollocationError) -> Self {
+        match error {
+            CollocationError::Polish(error) => error.into(),
+            other => Self::tried(&other),
         }
     }
 }

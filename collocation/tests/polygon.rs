@@ -4,7 +4,7 @@
 //! midpoint rule, so that time, polynomials, states and barrier do not occur. Exact gradient, dense Newton steps with the
 //! nodes at a bound held there, and Richardson's extrapolation over two numbers of nodes.
 
-use gait_optimizer::collocation::{CollocationProblem, CollocationSolution, QuarterGuess, solve};
+use collocation::{CollocationProblem, CollocationSolution, QuarterGuess, solve};
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_model::{Model, Swimmer};
 

@@ -102,16 +102,4 @@ impl Element {
             .map(|(value, &share)| value * (share / self.length))
             .sum()
     }
-
-    /// The joint rate at a time, from the rates at the nodes.
-    pub(crate) fn rate_between(&self, rates: &[Vector2<f64>], t: f64) -> Vector2<f64> {
-        let mut shares = NO_SHARES;
-        self.rule
-            .rate_shares((t - self.start) / self.length, &mut shares);
-        rates[self.points()]
-            .iter()
-            .zip(&shares)
-            .map(|(value, &share)| value * share)
-            .sum()
-    }
 }

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::Newton;
-use crate::collocation::elimination::Solutions;
+use crate::elimination::Solutions;
 
 /// A Newton step.
 #[derive(Debug)]

@@ -1,6 +1,6 @@
 //! Bounded efficiency gaits: by arcs of the maximum principle and by direct collocation, which share no equations but A and W.
 
-use gait_optimizer::collocation::{CollocationProblem, QuarterGuess, solve};
+use collocation::{CollocationProblem, QuarterGuess, solve};
 use gait_optimizer::{
     ArcKind, Bounds, Branch, EfficiencyError, EfficiencyProblem, OptimalGait, efficiency,
 };

@@ -1,9 +1,11 @@
-//! Gaits of most Lighthill efficiency by direct collocation (paper, section V, where GPOPS-II does this).
+//! Gaits of most Lighthill efficiency by direct collocation (paper, section V, where GPOPS-II does this): the second method, which
+//! shares with the optimiser only A and W and where the bounds are. [`efficiency()`] has a gait polished and certified;
+//! [`solve`] is collocation alone, with bounds as well.
 //!
 //! The problem on a quarter gait, t = 0 … 1: states z = (φ₁, φ₂, x, θ, E), control u = Φ̇, from φ₁ = φ₂ to φ₁ = −φ₂, make
 //! `x_f²/E_f` greatest, |φᵢ| ≤ `φ_max`. It is discretised by Legendre–Gauss–Radau collocation of any degree on any mesh
 //! (`radau`, `mesh`), and the mesh is refined until the states, integrated again with the interpolated control, agree
-//! (`again`).
+//! (`reintegration`).
 //!
 //! # Why a solver of our own
 //!
@@ -16,6 +18,7 @@
 //! Rust, are under the EPL and bring a second linear algebra.
 
 mod block;
+mod efficiency;
 mod elimination;
 mod error;
 mod guess;
@@ -30,6 +33,7 @@ mod solution;
 mod tests;
 mod walls;
 
+pub use efficiency::efficiency;
 pub use error::CollocationError;
 use guess::Fit;
 pub use guess::QuarterGuess;
@@ -76,9 +80,9 @@ const AGAIN_BARRIER: f64 = 1e-9;
 /// A point whose multiplier wants it this near to a wall \[rad\] is put there.
 const NEAR_WALL: f64 = 1e-5;
 /// Share of the largest multiplier of a bound above which it counts as active.
-pub(crate) const ACTIVE: f64 = 1e-3;
+const ACTIVE: f64 = 1e-3;
 /// Multiplier density below which no bound is active, in an objective of order one.
-pub(crate) const ACTIVE_AT_ALL: f64 = 1e-6;
+const ACTIVE_AT_ALL: f64 = 1e-6;
 /// Without a bound no angle may leave two turns.
 const HORIZON: f64 = 2.0 * std::f64::consts::TAU;
 
@@ -178,6 +182,18 @@ fn lighthill_of(model: &Model<f64>, x: f64, energy: f64) -> f64 {
 /// # Errors
 /// [`CollocationError`]: what is wrong with the problem or the guess, where the iteration stopped, or that the mesh could
 /// not be made fine enough. A gait that does not survive its own re-integration is never returned.
+///
+/// ```
+/// use collocation::{CollocationProblem, QuarterGuess, solve};
+/// use swimmer_model::{Model, Swimmer};
+///
+/// let model = Model::new(&Swimmer::purcell()).unwrap();
+/// let found = solve(&CollocationProblem::new(&model, 1.0), &QuarterGuess::circle(1.3)?)?;
+/// assert!((found.efficiency - 0.012364154624).abs() < 1e-10);
+/// let within = CollocationProblem::new(&model, 1.0).with_max_angle(1.2);
+/// assert!(solve(&within, &found.guess()?)?.efficiency < found.efficiency);
+/// # Ok::<(), collocation::CollocationError>(())
+/// ```
 pub fn solve(
     problem: &CollocationProblem<'_>,
     guess: &QuarterGuess,
@@ -204,11 +220,7 @@ fn refined(
     loop {
         let newton = Newton::new(problem.model, &mesh, walls, problem.sign, HORIZON, phi);
         let optimum = newton.run(barrier)?;
-        let again = reintegration::again(problem.model, &mesh, walls, &optimum.path).ok_or(
-            CollocationError::NotIntegrated {
-                efficiency: lighthill(problem.model, &optimum.path),
-            },
-        )?;
+        let again = reintegration::again(problem.model, &mesh, walls, &optimum.path);
         rounds.push(MeshRound {
             elements: mesh.elements.len(),
             nodes: mesh.len(),

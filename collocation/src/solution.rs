@@ -1,7 +1,7 @@
 //! What direct collocation returns: the quarter gait with its costates, its active bounds, and what it was checked against.
 
 use nalgebra::Vector2;
-use swimmer_files::ArcKind;
+use swimmer_files::{AnyGait, ArcKind};
 
 use super::mesh::Mesh;
 use super::newton::Optimum;
@@ -9,6 +9,9 @@ use super::reintegration::Reintegration;
 use super::walls::Wall;
 use super::{ACTIVE, ACTIVE_AT_ALL, CollocationProblem, lighthill, lighthill_of};
 use super::{CollocationError, QuarterGuess};
+
+/// Samples of a quarter as a gait.
+const SAMPLES: usize = 256;
 
 /// One point of the solution. The costates are those of the paper's section V, for J = `x_f²/E_f` made greatest, by the
 /// covector mapping from the multipliers of the discretised equations.
@@ -112,6 +115,32 @@ impl CollocationSolution {
         QuarterGuess::from_samples(&samples)
     }
 
+    /// The whole cycle, by the paper's two symmetries, smooth throughout: of a solution that keeps off the corners of its bounds.
+    ///
+    /// # Errors
+    /// [`CollocationError::Guess`]: its samples make no closed curve; never for a solution that this crate made.
+    pub fn gait(&self) -> Result<AnyGait, CollocationError> {
+        let quarter: Vec<_> = (0..=SAMPLES)
+            .map(|i| self.phi(i as f64 / SAMPLES as f64))
+            .collect();
+        // On φ₁ = −φ₂ the way back is the way there, mirrored; the second half is the first turned by half a turn.
+        let mirrored = quarter.iter().rev().map(|phi| -Vector2::new(phi.y, phi.x));
+        let half: Vec<_> = quarter.iter().copied().chain(mirrored.skip(1)).collect();
+        let other = half.iter().skip(1).map(|phi| -phi);
+        let phi: Vec<_> = half
+            .iter()
+            .copied()
+            .chain(other)
+            .take(4 * SAMPLES)
+            .collect();
+        let u: Vec<_> = (0..phi.len())
+            .map(|i| i as f64 / phi.len() as f64)
+            .collect();
+        AnyGait::from_samples(&u, &phi, &[]).map_err(|_| CollocationError::Guess {
+            problem: "its samples make no closed curve",
+        })
+    }
+
     /// Newton steps on all meshes together.
     pub fn iterations(&self) -> usize {
         self.rounds.iter().map(|round| round.iterations).sum()
@@ -138,7 +167,7 @@ pub(crate) fn finish(
         last_step,
         ..
     } = optimum;
-    let along = path.distance_and_energy(mesh);
+    let along = path.travelled(mesh);
     let (x, energy) = (path.final_x, path.final_energy);
     // J = exp(−objective): its costates are those of the objective times −J.
     let merit = x * x / energy;
@@ -158,7 +187,7 @@ pub(crate) fn finish(
             }
             CollocationNode {
                 t: mesh.times[point],
-                state: [phi.x, phi.y, along[point].0, node.theta, along[point].1],
+                state: [phi.x, phi.y, along[point][0], node.theta, along[point][2]],
                 control: node.rate.into(),
                 costate: [of_phi.x, of_phi.y, of_x, of_theta, of_energy],
                 bound_force: force.into(),

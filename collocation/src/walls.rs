@@ -1,10 +1,9 @@
 //! What keeps a node inside: margins c(Φ) ≥ 0 with their derivatives, and the logarithmic barrier on them.
 
+use gait_optimizer::region::{Bound, Level, Region};
 use nalgebra::{Matrix2, Vector2};
 use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Links;
-
-use crate::region::{Bound, Clearance, Level, Piece, Region};
 
 /// A bound at every point of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,18 +27,12 @@ impl Wall {
     }
 
     pub(crate) fn value(&self, phi: &Vector2<f64>) -> f64 {
-        match &self.0 {
-            Bound::Clearance(clearance) if clearance.has_corner() => touching(clearance, phi).value,
-            bound => bound.margin(phi),
-        }
+        self.0.smooth_level(phi).value
     }
 
     /// c, its gradient and its second derivatives at a shape.
     pub(crate) fn margin(&self, phi: &Vector2<f64>) -> Level {
-        match &self.0 {
-            Bound::Clearance(clearance) if clearance.has_corner() => touching(clearance, phi),
-            bound => bound.level(phi),
-        }
+        self.0.smooth_level(phi)
     }
 
     /// Moves a shape, near enough, to where its margin is `wanted`.
@@ -52,17 +45,6 @@ impl Wall {
             }
             *phi += step;
         }
-    }
-}
-
-/// Where links may touch, the distance of the tips is a cone round the corner that Newton's method cannot see past. Side
-/// links cross if and only if both tips are beyond the other link's line; the higher one is a smooth margin up to the corner.
-fn touching(clearance: &Clearance, phi: &Vector2<f64>) -> Level {
-    let [front, back] = [Piece::FrontTip, Piece::BackTip].map(|piece| clearance.level(piece, phi));
-    if front.value > back.value {
-        front
-    } else {
-        back
     }
 }
 

@@ -110,22 +110,21 @@ impl Path {
         (x > 0.0 && energy > 0.0 && value.is_finite()).then_some(value)
     }
 
-    /// x and E at every point.
-    pub(crate) fn distance_and_energy(&self, mesh: &Mesh) -> Vec<(f64, f64)> {
-        let mut all = vec![(0.0, 0.0); self.phi.len()];
+    /// x, y and E at every point.
+    pub(crate) fn travelled(&self, mesh: &Mesh) -> Vec<[f64; 3]> {
+        let mut all = vec![[0.0; 3]; self.phi.len()];
         for element in &mesh.elements {
             let nodes = &self.nodes[element.first + 1..];
-            let before = all[element.first];
             for j in 1..=element.rule.degree {
-                let (mut x, mut energy) = (0.0, 0.0);
+                let mut here = all[element.first];
                 for (share, node) in element.rule.integral(j).iter().zip(nodes) {
-                    x += share * node.velocity().x;
-                    energy += share * node.power_spent();
+                    let velocity = node.velocity();
+                    let rates = [velocity.x, velocity.y, node.power_spent()];
+                    for (sum, rate) in here.iter_mut().zip(rates) {
+                        *sum += element.length * share * rate;
+                    }
                 }
-                all[element.first + j] = (
-                    before.0 + element.length * x,
-                    before.1 + element.length * energy,
-                );
+                all[element.first + j] = here;
             }
         }
         all

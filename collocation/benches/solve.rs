@@ -1,7 +1,7 @@
 //! How long direct collocation takes: one solve on a fixed mesh, its own re-integration included, and with refinement.
 
+use collocation::{CollocationProblem, QuarterGuess, solve};
 use criterion::{Criterion, criterion_group, criterion_main};
-use gait_optimizer::collocation::{CollocationProblem, QuarterGuess, solve};
 use swimmer_model::{Model, Swimmer};
 
 /// The optimal gaits of third order, rounded: what a Fourier search hands on.

@@ -1,5 +1,6 @@
 //! Why there is no collocated gait.
 
+use gait_optimizer::{Branch, EfficiencyError, InvalidProblem};
 use thiserror::Error;
 
 /// Why a collocation was given up.
@@ -57,14 +58,17 @@ pub enum CollocationError {
         /// Lighthill's efficiency there.
         efficiency: f64,
     },
-    /// The integrator could not follow the collocated control.
+    /// No circle of any size is locally best on the branch.
     #[error(
-        "the control that direct collocation found, ξ = {efficiency:.3e}, could not be integrated again; use more elements"
+        "direct collocation has no start: no circle is a locally best gait with the {branch} gait's sign of X"
     )]
-    NotIntegrated {
-        /// Lighthill's efficiency as collocated.
-        efficiency: f64,
+    NoStart {
+        /// Which gait.
+        branch: Branch,
     },
+    /// The collocated gait could not be polished, or is not the gait that was asked for.
+    #[error(transparent)]
+    Polish(#[from] EfficiencyError),
     /// An optimum of the discretisation alone: its control swims otherwise.
     #[error(
         "direct collocation found ξ = {efficiency:.3e} on {points} points, but its control makes {again:.3e} when integrated \
@@ -93,4 +97,10 @@ pub enum CollocationError {
         /// What was asked for.
         tolerance: f64,
     },
+}
+
+impl From<InvalidProblem> for CollocationError {
+    fn from(error: InvalidProblem) -> Self {
+        Self::Polish(error.into())
+    }
 }

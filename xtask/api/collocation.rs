@@ -1,0 +1,87 @@
+// What `collocation` offers, without bodies and documentation: written by `cargo xtask api`, not by hand, and never compiled.
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoundArc {
+    pub kind: ArcKind,
+    pub normal: [f64; 2],
+    pub from: f64,
+    pub to: f64,
+}
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum CollocationError {
+    Asymmetric { front: f64, back: f64 },
+    Problem { name: &'static str, value: f64, problem: &'static str },
+    Guess { problem: &'static str },
+    WrongWay { x: f64, wanted: f64 },
+    Stalled { iterations: usize, efficiency: f64 },
+    NoStart { branch: Branch },
+    Polish(EfficiencyError),
+    Spurious { efficiency: f64, again: f64, points: usize },
+    NotResolved { points: usize, error: f64, uneven_power: f64, tolerance: f64 },
+}
+impl From<InvalidProblem> for CollocationError {}
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CollocationNode {
+    pub t: f64,
+    pub state: [f64; 5],
+    pub control: [f64; 2],
+    pub costate: [f64; 5],
+    pub bound_force: [f64; 2],
+    pub y: f64,
+}
+#[derive(Debug, Clone, Copy)]
+pub struct CollocationProblem<'a> {
+    pub model: &'a Model<f64>,
+    pub bounds: Bounds,
+    pub sign: f64,
+    pub elements: usize,
+    pub degree: usize,
+    pub tolerance: f64,
+}
+impl<'a> CollocationProblem<'a> {
+    pub fn new(model: &'a Model<f64>, sign: f64) -> Self {}
+    #[must_use]
+    pub fn with_max_angle(mut self, max_angle: f64) -> Self {}
+}
+#[derive(Debug, Clone)]
+pub struct CollocationSolution {
+    pub nodes: Vec<CollocationNode>,
+    pub bound_arcs: Vec<BoundArc>,
+    pub final_x: f64,
+    pub final_energy: f64,
+    pub efficiency: f64,
+    pub efficiency_again: f64,
+    pub turning_number: f64,
+    pub rounds: Vec<MeshRound>,
+    pub last_step: f64,
+}
+impl CollocationSolution {
+    pub fn phi(&self, t: f64) -> Vector2<f64> {}
+    pub fn guess(&self) -> Result<QuarterGuess, CollocationError> {}
+    pub fn gait(&self) -> Result<AnyGait, CollocationError> {}
+    pub fn iterations(&self) -> usize {}
+    pub fn error(&self) -> f64 {}
+}
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshRound {
+    pub elements: usize,
+    pub nodes: usize,
+    pub error: f64,
+    pub uneven_power: f64,
+    pub overstepped: f64,
+    pub efficiency: f64,
+    pub iterations: usize,
+}
+#[derive(Debug, Clone, PartialEq)]
+pub struct QuarterGuess {}
+impl QuarterGuess {
+    pub fn from_samples(samples: &[(f64, [f64; 2])]) -> Result<Self, CollocationError> {}
+    pub fn from_gait<G: Gait<f64>>(gait: &G) -> Result<Self, CollocationError> {}
+    pub fn circle(amplitude: f64) -> Result<Self, CollocationError> {}
+    pub fn fourier(coefficients: &[[f64; 2]]) -> Result<Self, CollocationError> {}
+}
+pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, CollocationError> {}
+pub fn solve(
+    problem: &CollocationProblem<'_>,
+    guess: &QuarterGuess,
+) -> Result<CollocationSolution, CollocationError> {}
