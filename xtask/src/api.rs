@@ -32,7 +32,7 @@ pub(crate) fn check() -> Outcome {
 }
 
 /// Crates that others may build on.
-const LIBRARIES: [&str; 12] = [
+const LIBRARIES: [&str; 13] = [
     "swimmer-model",
     "swimmer-files",
     "gait-optimizer",
@@ -45,6 +45,7 @@ const LIBRARIES: [&str; 12] = [
     "host-link",
     "twin",
     "emulator",
+    "validation",
 ];
 
 /// Where the lists stand.

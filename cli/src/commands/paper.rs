@@ -5,11 +5,12 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 use swimmer_files::write_atomically;
+use validation::{Row, Study, rows};
 
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
-use crate::paper::{Row, Study, deviation, figures, number, page, printed, rows};
+use crate::paper::{deviation, figures, number, page, printed};
 use crate::progress::Progress;
 use crate::quantity::Table;
 use crate::raster::png;
@@ -40,7 +41,8 @@ impl Paper {
     pub(crate) fn run(self, output: Output) -> Outcome {
         let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
         let progress = Progress::of_a_whole("computing the paper's gaits");
-        let study = Study::new(&|share| progress.at_share(share))?;
+        let study =
+            Study::new(&|share| progress.at_share(share)).map_err(|why| Failure::tried(&why))?;
         progress.doing("drawing");
         let rows = rows(&study);
         let mut written = None;

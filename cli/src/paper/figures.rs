@@ -11,7 +11,6 @@ use plotters::style::RGBColor;
 use swimmer_files::AnyGait;
 use swimmer_model::{Gait as _, Stroke};
 
-use super::study::{Simple, Study, UPPER};
 use crate::commands::height_map::picture;
 use crate::failure::Outcome;
 use crate::report::calibration::field;
@@ -19,6 +18,7 @@ use crate::report::chart::{
     BOUND, Chart, INK, MEASURED, PREDICTED, Point, SINGULAR, SLENDER, Series,
 };
 use crate::report::style::ZERO_CURVE;
+use validation::{Simple, Study, UPPER};
 
 /// One figure.
 #[derive(Debug)]

@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use super::{Figure, Printed, Row};
+use validation::{Printed, Row};
+
+use super::Figure;
 use crate::failure::Outcome;
 use crate::report::{escaped, minus};
 

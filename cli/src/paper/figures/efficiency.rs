@@ -5,8 +5,8 @@ use swimmer_files::AnyGait;
 use swimmer_model::Stroke;
 
 use super::{Figure, SQUARE, WIDE, drawn, samples};
-use crate::paper::study::{Lighthill, Simple};
 use crate::report::chart::{INK, MEASURED, PREDICTED, SLENDER};
+use validation::{Lighthill, Simple};
 
 /// ξ of circles and squares at constant power, with the Lighthill gaits as marks.
 pub(super) fn efficiency_over_amplitude(

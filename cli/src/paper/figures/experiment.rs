@@ -4,8 +4,8 @@ use swimmer_files::AnyGait;
 use swimmer_model::{Model, Pose, Tolerance, TrajectoryPoint, trajectory};
 
 use super::{Figure, LOW, WIDE};
-use crate::paper::study::Study;
 use crate::report::chart::{INK, Point, SLENDER};
+use validation::Study;
 
 /// The experiment of the paper's figure: amplitude, period in seconds, cycles drawn.
 const EXPERIMENT: (f64, f64, u32) = (70.0, 30.0, 5);

@@ -11,7 +11,7 @@ use super::study::Study;
 /// What the paper says.
 #[derive(Debug, Clone, Copy, Serialize)]
 #[serde(untagged)]
-pub(crate) enum Printed {
+pub enum Printed {
     /// A number.
     Number(f64),
     /// A range or a bound, in words.
@@ -20,21 +20,25 @@ pub(crate) enum Printed {
 
 /// One number.
 #[derive(Debug, Clone, Serialize)]
-pub(crate) struct Row {
-    pub(crate) id: &'static str,
-    pub(crate) quantity: &'static str,
-    pub(crate) paper: Printed,
-    pub(crate) ours: f64,
+pub struct Row {
+    /// How the row is called.
+    pub id: &'static str,
+    /// What is compared, with its unit.
+    pub quantity: &'static str,
+    /// The paper's number.
+    pub paper: Printed,
+    /// The number computed.
+    pub ours: f64,
     /// Relative to the paper's number; to the nearest end of its range; absolute where it is zero.
-    pub(crate) deviation: f64,
+    pub deviation: f64,
     /// None where the paper's number cannot be reproduced.
-    pub(crate) pass: Option<bool>,
+    pub pass: Option<bool>,
     /// What the paper leaves open, where it does.
     #[serde(skip_serializing_if = "str::is_empty")]
-    pub(crate) note: &'static str,
+    pub note: &'static str,
 }
 
-/// Ratios are printed to two or three digits: this is what the issue grants them.
+/// Ratios are printed to two or three digits.
 const RATIO: f64 = 0.01;
 /// The paper rounds its rough figures freely.
 const ROUGH: f64 = 0.05;
@@ -140,7 +144,7 @@ impl Row {
 }
 
 /// All rows, in the order of the paper.
-pub(crate) fn rows(study: &Study) -> Vec<Row> {
+pub fn rows(study: &Study) -> Vec<Row> {
     let mut rows = displacement::robot_data(study);
     rows.extend(displacement::experiments(study));
     rows.extend(displacement::simple_displacement(study));

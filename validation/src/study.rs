@@ -2,56 +2,86 @@
 
 use gait_optimizer::{
     BestAmplitude, Bounds, Branch, DisplacementError, DisplacementProblem, EfficiencyProblem,
-    HeightMap, Objective, OptimalGait, SimpleShape, best_amplitudes, displacement, efficiency,
+    HeightMap, HeightMapError, Objective, OptimalGait, SimpleShape, best_amplitudes, displacement,
+    efficiency,
 };
-use swimmer_model::{Model, Stroke, Swimmer};
+use swimmer_model::{InvalidSwimmer, Model, Stroke, Swimmer};
 
-use crate::failure::{Failure, Outcome};
+/// Why a study could not be made.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum StudyError {
+    /// A gait that the paper shows was not found.
+    #[error("{gait} was not found: {reason}")]
+    NoGait {
+        /// Which one.
+        gait: String,
+        /// Why.
+        reason: String,
+    },
+    /// A swimmer of the paper makes no model.
+    #[error(transparent)]
+    Swimmer(#[from] InvalidSwimmer),
+    /// A height map was not made.
+    #[error(transparent)]
+    HeightMap(#[from] HeightMapError),
+}
 
-/// The paper's upper bound on the joints, rad.
-pub(crate) const UPPER: f64 = 2.8;
+/// The paper's upper bound on the joints \[rad\].
+pub const UPPER: f64 = 2.8;
 /// Its lower one.
 const LOWER: f64 = 1.5;
-/// The largest amplitude of its figures, rad.
-pub(crate) const LARGEST: f64 = 4.5;
+/// The largest amplitude of its figures \[rad\].
+pub const LARGEST: f64 = 4.5;
 
 /// One swimmer's circles and squares.
 #[derive(Debug)]
-pub(crate) struct Simple {
+pub struct Simple {
     /// Best amplitudes for |X|: circles, squares.
-    pub(crate) displacement: [Vec<BestAmplitude>; 2],
+    pub displacement: [Vec<BestAmplitude>; 2],
     /// Best amplitudes for ξ: circles, squares.
-    pub(crate) efficiency: [Vec<BestAmplitude>; 2],
-    /// Amplitude and stroke, evenly spaced: circles, squares.
-    pub(crate) curves: [Vec<(f64, Stroke<f64>)>; 2],
+    pub efficiency: [Vec<BestAmplitude>; 2],
+    /// Amplitude \[rad\] and stroke, evenly spaced: circles, squares.
+    pub curves: [Vec<(f64, Stroke<f64>)>; 2],
 }
 
 /// The free Lighthill gaits of one swimmer.
 #[derive(Debug)]
-pub(crate) struct Lighthill {
-    pub(crate) small: OptimalGait,
-    pub(crate) large: OptimalGait,
+pub struct Lighthill {
+    /// X > 0.
+    pub small: OptimalGait,
+    /// X < 0.
+    pub large: OptimalGait,
 }
 
 /// Everything that the paper shows, computed.
 #[derive(Debug)]
-pub(crate) struct Study {
-    pub(crate) purcell: Model<f64>,
-    pub(crate) robot: Model<f64>,
-    pub(crate) slender: Model<f64>,
-    pub(crate) purcell_simple: Simple,
-    pub(crate) robot_simple: Simple,
-    pub(crate) slender_simple: Simple,
+pub struct Study {
+    /// Purcell's swimmer.
+    pub purcell: Model<f64>,
+    /// The robot with its head.
+    pub robot: Model<f64>,
+    /// The robot as slender links.
+    pub slender: Model<f64>,
+    /// Circles and squares.
+    pub purcell_simple: Simple,
+    /// Circles and squares.
+    pub robot_simple: Simple,
+    /// Circles and squares.
+    pub slender_simple: Simple,
     /// Purcell's swimmer without bounds, the gait that the paper builds on.
-    pub(crate) purcell_displacement: OptimalGait,
+    pub purcell_displacement: OptimalGait,
     /// Gaits (b), (c), (d) of the robot.
-    pub(crate) robot_displacement: [OptimalGait; 3],
+    pub robot_displacement: [OptimalGait; 3],
     /// Whether the robot has an optimum without bounds.
-    pub(crate) robot_unbounded: bool,
-    pub(crate) purcell_lighthill: Lighthill,
-    pub(crate) robot_lighthill: Lighthill,
-    pub(crate) robot_map: HeightMap,
-    pub(crate) purcell_map: HeightMap,
+    pub robot_unbounded: bool,
+    /// Gaits of most efficiency.
+    pub purcell_lighthill: Lighthill,
+    /// Gaits of most efficiency.
+    pub robot_lighthill: Lighthill,
+    /// Within the paper's bound.
+    pub robot_map: HeightMap,
+    /// Within 2.5 rad.
+    pub purcell_map: HeightMap,
 }
 
 /// Steps that are told while a study is made.
@@ -61,16 +91,18 @@ impl Study {
     /// Computes everything; `watch` is told the share that is done.
     ///
     /// # Errors
-    /// [`Failure::Tried`] names the gait that could not be found.
-    pub(crate) fn new(watch: &dyn Fn(f64)) -> Outcome<Self> {
+    /// [`StudyError`] names the gait that could not be found.
+    pub fn new(watch: &dyn Fn(f64)) -> Result<Self, StudyError> {
         let [purcell, robot, slender] = [
             Swimmer::purcell(),
             Swimmer::robot(),
             Swimmer::robot_slender(),
         ];
-        let model = |swimmer| Model::new(swimmer).map_err(|why| Failure::tried(&why));
-        let (purcell_model, robot_model, slender_model) =
-            (model(&purcell)?, model(&robot)?, model(&slender)?);
+        let (purcell_model, robot_model, slender_model) = (
+            Model::new(&purcell)?,
+            Model::new(&robot)?,
+            Model::new(&slender)?,
+        );
         let bounded = |min_angle, sector| DisplacementProblem {
             bounds: Bounds {
                 max_angle: Some(UPPER),
@@ -90,9 +122,6 @@ impl Study {
             Ok(_) => true,
             Err(DisplacementError::NoUnboundedOptimum { .. }) => false,
             Err(other) => return found(Err(other), "the robot's gait without bounds"),
-        };
-        let map = |swimmer: &Swimmer<f64>, width| {
-            HeightMap::new(swimmer, width).map_err(|why| Failure::tried(&why))
         };
         let mut done = 0.0;
         let mut step = || {
@@ -115,9 +144,9 @@ impl Study {
         let purcell_lighthill = lighthill(&purcell, "Purcell's swimmer")?;
         let robot_lighthill = lighthill(&robot, "the robot")?;
         step();
-        let robot_map = map(&robot, UPPER)?;
+        let robot_map = HeightMap::new(&robot, UPPER)?;
         step();
-        let purcell_map = map(&purcell, 2.5)?;
+        let purcell_map = HeightMap::new(&purcell, 2.5)?;
         Ok(Self {
             purcell_simple,
             robot_simple,
@@ -139,8 +168,11 @@ impl Study {
     }
 }
 
-fn found<T, E: std::error::Error>(outcome: Result<T, E>, what: &str) -> Outcome<T> {
-    outcome.map_err(|why| Failure::Tried(format!("{what} was not found: {why}")))
+fn found<T, E: std::error::Error>(outcome: Result<T, E>, gait: &str) -> Result<T, StudyError> {
+    outcome.map_err(|why| StudyError::NoGait {
+        gait: gait.to_owned(),
+        reason: why.to_string(),
+    })
 }
 
 impl Simple {
@@ -166,7 +198,7 @@ impl Simple {
 }
 
 impl Lighthill {
-    fn of(swimmer: &Swimmer<f64>, name: &str) -> Outcome<Self> {
+    fn of(swimmer: &Swimmer<f64>, name: &str) -> Result<Self, StudyError> {
         let gait = |branch: Branch| {
             found(
                 efficiency(&EfficiencyProblem::new(*swimmer, branch)),

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use swimmer_model::{Model, Swimmer};
 
 use super::{RATIO, Row, failed_checks, first, second, value_of};
-use crate::paper::study::{Lighthill, Simple, Study};
+use crate::study::{Lighthill, Simple, Study};
 
 /// Section V.A: circles and squares again, for the efficiency.
 pub(super) fn simple_efficiency(study: &Study) -> Vec<Row> {

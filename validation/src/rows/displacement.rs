@@ -8,7 +8,7 @@ use swimmer_files::AnyGait;
 use swimmer_model::{Fourier, Harmonic, Links, Model, Tolerance, swim};
 
 use super::{RATIO, ROUGH, Row, failed_checks, first, second};
-use crate::paper::study::{Simple, Study};
+use crate::study::{Simple, Study};
 
 /// Section II.B: what is said of the robot.
 pub(super) fn robot_data(study: &Study) -> Vec<Row> {
