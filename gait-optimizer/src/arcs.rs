@@ -179,7 +179,9 @@ impl<C: EndCondition> Tracer<'_, C> {
     ) -> (State, f64) {
         let at = |length| Some(exact_step(&self.flow, here, length));
         let value = |at: &Point<6>| self.value(event, at);
-        let Some((there, length)) = locate([guess, longest], at, value) else {
+        let Some((there, length)) =
+            locate([guess, longest], 0.01 * self.control.tolerance, at, value)
+        else {
             return (here.z, 0.0);
         };
         let mut z = there.z;

@@ -66,18 +66,13 @@ impl Momentum {
     /// `Ḟ = A u₁ + B u₂` are minus this gradient over λ₃.)
     pub(crate) fn height(&self, second: &SecondDerivatives<f64>, pose: &[f64; 3]) -> Height {
         let mu = self.at(pose);
-        let curvature = second.first.curvature();
         let [along1, along2] = second.d_curvature();
-        // μ̇ of the coadjoint equation for the motion that one joint brings.
-        let slope = |along: &Vector3<f64>, joint: usize| {
-            let body = second.first.connection.column(joint);
-            let push = Vector3::new(mu.y * body.z, -mu.x * body.z, mu.x * body.y - mu.y * body.x);
-            mu.dot(along) + push.dot(&curvature)
-        };
-        Height {
-            value: mu.dot(&curvature),
-            gradient: Vector2::new(slope(&along1, 0), slope(&along2, 1)),
-        }
+        height(
+            &mu,
+            &second.first.connection,
+            &second.first.curvature(),
+            [mu.dot(&along1), mu.dot(&along2)],
+        )
     }
 
     /// Height, connection and power matrix at a shape, from one look at the model.
@@ -87,9 +82,29 @@ impl Momentum {
         phi: &Vector2<f64>,
         pose: &[f64; 3],
     ) -> (Height, Matrix3x2<f64>, Matrix2<f64>) {
-        let second = model.second_derivatives(phi);
-        let height = self.height(&second, pose);
-        (height, second.first.connection, second.first.power)
+        let mu = self.at(pose);
+        let there = model.weighed_curvature(phi, &mu);
+        let height = height(&mu, &there.connection, &there.curvature, there.slope.into());
+        (height, there.connection, there.power)
+    }
+}
+
+/// The height of μ, from what the curvature's slopes with μ held are.
+fn height(
+    mu: &Vector3<f64>,
+    connection: &Matrix3x2<f64>,
+    curvature: &Vector3<f64>,
+    [held1, held2]: [f64; 2],
+) -> Height {
+    // μ̇ of the coadjoint equation for the motion that one joint brings.
+    let slope = |held: f64, joint: usize| {
+        let body = connection.column(joint);
+        let push = Vector3::new(mu.y * body.z, -mu.x * body.z, mu.x * body.y - mu.y * body.x);
+        held + push.dot(curvature)
+    };
+    Height {
+        value: mu.dot(curvature),
+        gradient: Vector2::new(slope(held1, 0), slope(held2, 1)),
     }
 }
 

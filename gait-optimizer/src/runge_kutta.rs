@@ -76,7 +76,7 @@ pub(crate) fn controlled_step<const N: usize>(
         let (end, error) = trial(system, start, length, control.tolerance);
         // A step whose stages left the domain of definition counts as one that is much too long.
         let factor = if end.is_finite() && error.is_finite() {
-            (0.9 * error.max(1e-16).powf(-0.125)).clamp(0.2, 6.0)
+            (0.9 / error.max(1e-16).sqrt().sqrt().sqrt()).clamp(0.2, 6.0)
         } else {
             0.2
         };
@@ -137,11 +137,12 @@ pub(crate) fn advance<const N: usize>(
 }
 
 /// Where a value that is above zero at the start falls through zero: the point there and the length up to it. Newton's method
-/// from a `guess`, kept between the start and the `longest` length.
+/// from a `guess`, kept between the start and the `longest` length, until its next step would be shorter than `tolerance`.
 ///
 /// `at` follows the system over a length; `value` is the value with its slope over the length. None where `at` fails.
 pub(crate) fn locate<const N: usize>(
     [guess, longest]: [f64; 2],
+    tolerance: f64,
     at: impl Fn(f64) -> Option<Point<N>>,
     value: impl Fn(&Point<N>) -> (f64, f64),
 ) -> Option<(Point<N>, f64)> {
@@ -161,14 +162,22 @@ pub(crate) fn locate<const N: usize>(
         } else {
             0.5 * (low + high)
         };
-        if here == 0.0 || (next - length).abs() < 1e-15 {
+        let step = (next - length).abs();
+        if here == 0.0 || step < tolerance {
             break;
         }
         length = next;
         there = at(length)?;
+        // What is left after a step of Newton's is about its square.
+        if next == newton && SQUARED * step * step < tolerance {
+            break;
+        }
     }
     Some((there, length))
 }
+
+/// How much larger than its square what a step of Newton's leaves is allowed to be.
+const SQUARED: f64 = 100.0;
 
 /// The end of a step and its error over the tolerance.
 fn trial<const N: usize>(

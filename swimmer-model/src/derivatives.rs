@@ -1,7 +1,7 @@
 //! What the exact derivatives of A and W are handed out in, and the connection's curvature made from them.
 
 use crate::Scalar;
-use nalgebra::{Matrix2, Matrix3x2, Vector3};
+use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
 
 /// A, W and their first derivatives at one shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,22 @@ pub struct SecondDerivatives<T> {
     pub d2_power: [Matrix2<T>; 3],
 }
 
+/// A, W and the connection's curvature F at one shape, with how the part of F along a covector changes: all that an arc of most
+/// displacement asks of a shape, at much less than the price of every second derivative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WeighedCurvature<T> {
+    /// A(Φ), rows (x, y, θ).
+    pub connection: Matrix3x2<T>,
+    /// W(Φ)/μ.
+    pub power: Matrix2<T>,
+    /// F(Φ), as of [`FirstDerivatives::curvature`].
+    pub curvature: Vector3<T>,
+    /// The covector times ∂F/∂φ₁ and ∂F/∂φ₂.
+    pub slope: Vector2<T>,
+}
+
 /// Bracket of two body velocities in se(2), the matrix commutator: (ω₁ J v₂ − ω₂ J v₁, 0) with J = (0 −1; 1 0).
+#[inline(always)]
 fn bracket<T: Scalar>(a: &Vector3<T>, b: &Vector3<T>) -> Vector3<T> {
     Vector3::new(b.z * a.y - a.z * b.y, a.z * b.x - b.z * a.x, T::zero())
 }
@@ -46,6 +61,7 @@ impl<T: Scalar> FirstDerivatives<T> {
     /// assert!(f.x > 0.0 && f.y.abs() < 1e-15 && f.z.abs() < 1e-15);
     /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
     /// ```
+    #[inline]
     pub fn curvature(&self) -> Vector3<T> {
         let [d1, d2] = &self.d_connection;
         let (a1, a2) = (
@@ -54,21 +70,23 @@ impl<T: Scalar> FirstDerivatives<T> {
         );
         d1.column(1) - d2.column(0) + bracket(&a1, &a2)
     }
+
+    /// The derivative of \[A₁, A₂\] along an angle.
+    #[inline(always)]
+    pub(crate) fn d_bracket(&self, angle: usize) -> Vector3<T> {
+        let column = |matrix: &Matrix3x2<T>, k: usize| matrix.column(k).into_owned();
+        let (a, d) = (&self.connection, &self.d_connection[angle]);
+        bracket(&column(d, 0), &column(a, 1)) + bracket(&column(a, 0), &column(d, 1))
+    }
 }
 
 impl<T: Scalar> SecondDerivatives<T> {
     /// Derivatives of [`FirstDerivatives::curvature`] with respect to φ₁ and φ₂.
     pub fn d_curvature(&self) -> [Vector3<T>; 2] {
         let [d11, d12, d22] = &self.d2_connection;
-        let a: [Vector3<T>; 2] =
-            core::array::from_fn(|k| self.first.connection.column(k).into_owned());
-        let of_bracket = |i: usize| {
-            let d = &self.first.d_connection[i];
-            bracket(&d.column(0).into_owned(), &a[1]) + bracket(&a[0], &d.column(1).into_owned())
-        };
         [
-            d11.column(1) - d12.column(0) + of_bracket(0),
-            d12.column(1) - d22.column(0) + of_bracket(1),
+            d11.column(1) - d12.column(0) + self.first.d_bracket(0),
+            d12.column(1) - d22.column(0) + self.first.d_bracket(1),
         ]
     }
 }

@@ -53,7 +53,7 @@ mod scalar;
 pub mod stroke;
 mod swimmer;
 
-pub use derivatives::{FirstDerivatives, SecondDerivatives};
+pub use derivatives::{FirstDerivatives, SecondDerivatives, WeighedCurvature};
 pub use drag::TangentialDrag;
 pub use force::LinkForce;
 pub use gait::{

@@ -4,7 +4,9 @@
 //! −(M ξ + N Φ̇); they vanish, so ξ = A Φ̇ with A = −M⁻¹N, and the power is Φ̇ᵀ W Φ̇ with W = U + NᵀA.
 
 use crate::resistance::{Blocks, Factors3, SideLink, Symmetric3, Terms};
-use crate::{FirstDerivatives, InvalidSwimmer, Scalar, SecondDerivatives, Swimmer};
+use crate::{
+    FirstDerivatives, InvalidSwimmer, Scalar, SecondDerivatives, Swimmer, WeighedCurvature,
+};
 use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
 
 /// A swimmer made ready to compute with: resistance coefficients over μ, worked out once.
@@ -148,6 +150,45 @@ impl<T: Scalar> Model<T> {
                 connection([force22[0] + bent2[0], force22[1] + bent2[1]]),
             ],
             d2_power: [power11 + curved1, power12, power22 + curved2],
+        }
+    }
+
+    /// A, W, the connection's curvature F, and the derivatives of `covector` · F with the covector held.
+    ///
+    /// ```
+    /// use nalgebra::{Vector2, Vector3};
+    /// use swimmer_model::{Model, Swimmer};
+    ///
+    /// let model = Model::new(&Swimmer::<f64>::purcell())?;
+    /// let (phi, along) = (Vector2::new(0.5, -0.3), Vector3::new(1.0, 0.2, -0.1));
+    /// let weighed = model.weighed_curvature(&phi, &along);
+    /// let d_curvature = model.second_derivatives(&phi).d_curvature();
+    /// assert!((weighed.slope.x - along.dot(&d_curvature[0])).abs() < 1e-15);
+    /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+    /// ```
+    pub fn weighed_curvature(
+        &self,
+        phi: &Vector2<T>,
+        covector: &Vector3<T>,
+    ) -> WeighedCurvature<T> {
+        let balance = self.balance(turns(phi));
+        let (first, slopes) = self.first(&balance);
+        let (bent1, _) = second_order(&self.slope(&balance.terms, 0, 2), 0, &balance.a);
+        let (bent2, _) = second_order(&self.slope(&balance.terms, 1, 2), 1, &balance.a);
+        // M is symmetric: the covector may be balanced in place of the force of each second derivative.
+        let by_force = balance.factors.balance(covector);
+        let crossed = |i: usize, j: usize| slopes.crossed(i, j).0;
+        let force12 = crossed(0, 1);
+        let force1 = crossed(0, 0)[1] + bent1[1] - force12[0];
+        let force2 = force12[1] - crossed(1, 1)[0] - bent2[0];
+        WeighedCurvature {
+            connection: first.connection,
+            power: first.power,
+            curvature: first.curvature(),
+            slope: Vector2::new(
+                by_force.dot(&force1) + covector.dot(&first.d_bracket(0)),
+                by_force.dot(&force2) + covector.dot(&first.d_bracket(1)),
+            ),
         }
     }
 

@@ -51,7 +51,7 @@ pub trait Scalar: nalgebra::Scalar + Copy + PartialOrd + NumAssign + Neg<Output 
 }
 
 macro_rules! through_libm {
-    ($t:ty, $sincos:ident, $sqrt:ident, $ln:ident, $atan2:ident, $floor:ident) => {
+    ($t:ty, $sincos:ident, $sqrt:path, $ln:ident, $atan2:ident, $floor:ident) => {
         impl Scalar for $t {
             const EPSILON: Self = <$t>::EPSILON;
 
@@ -70,7 +70,7 @@ macro_rules! through_libm {
             }
             #[inline]
             fn sqrt(self) -> Self {
-                libm::$sqrt(self)
+                $sqrt(self)
             }
             #[inline]
             fn ln(self) -> Self {
@@ -91,5 +91,18 @@ macro_rules! through_libm {
         }
     };
 }
-through_libm!(f32, sincosf, sqrtf, logf, atan2f, floorf);
+through_libm!(f32, sincosf, libm::sqrtf, logf, atan2f, floorf);
 through_libm!(f64, sincos, sqrt, log, atan2, floor);
+
+/// The root rounded to the nearest, which is one and the same wherever it is taken. In a browser by the machine's instruction,
+/// which `libm` asks for on other machines only.
+#[inline]
+fn sqrt(value: f64) -> f64 {
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    {
+        use core::arch::wasm32::{f64x2_extract_lane, f64x2_splat, f64x2_sqrt};
+        f64x2_extract_lane::<0>(f64x2_sqrt(f64x2_splat(value)))
+    }
+    #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
+    libm::sqrt(value)
+}

@@ -46,6 +46,14 @@ pub(super) fn first_event<E: Copy>(
 /// Where the cubic with these values and slopes at both ends first falls through zero.
 fn falls(value: [f64; 2], slope: [f64; 2], length: f64) -> Option<f64> {
     const SCAN_POINTS: u32 = 8;
+    // The cubic keeps within the hull of its control values.
+    let inner = [
+        value[0] + length * slope[0] / 3.0,
+        value[1] - length * slope[1] / 3.0,
+    ];
+    if value.iter().chain(&inner).all(|control| *control >= 0.0) {
+        return None;
+    }
     let cubic = |s: f64| {
         let rest = 1.0 - s;
         let (off0, off1) = (

@@ -147,14 +147,15 @@ impl QuarterTrace {
             let from = trace.phi.len() - 1;
             let step = leg.length / intervals as f64;
             let mut before = None;
+            let mut point = Point::new(&equations, here);
             for interval in 0..intervals {
                 let push = trace
                     .evidence
                     .evaluate(&equations, region, &here, last.to[2]);
                 trace.evidence.vary(before, push, step);
                 before = push;
-                let point = Point::new(&equations, here);
-                here = advance(&equations, point, leg_length / intervals as f64, CONTROL)?.z;
+                point = advance(&equations, point, leg_length / intervals as f64, CONTROL)?;
+                here = point.z;
                 let along = leg.from[5] - first.from[5]
                     + leg_length * (interval + 1) as f64 / intervals as f64;
                 trace.phi.push(shape(&here));

@@ -146,7 +146,7 @@ impl LoopTrace {
         let side = if from.z[0] < from.z[1] { -1.0 } else { 1.0 };
         let off = |at: &Point<6>| (side * (at.z[0] - at.z[1]), side * (at.rate[0] - at.rate[1]));
         let at = |length| advance(system, *from, length, CONTROL);
-        locate([0.5 * step, step], at, off).map(|(there, _)| there.z)
+        locate([0.5 * step, step], 1e-15, at, off).map(|(there, _)| there.z)
     }
 
     /// The arcs of the first quarter: all there is to say of a loop with the paper's two symmetries.

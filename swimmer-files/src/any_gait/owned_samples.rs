@@ -38,20 +38,22 @@ impl OwnedSamples {
         let sampled = Sampled::new(u, phi, corners)?;
         let ends = u.iter().skip(1).copied().chain([1.0]);
         let next = phi.iter().cycle().skip(1);
-        let intervals = u
-            .iter()
-            .zip(ends)
+        let slopes: Vec<_> = (0..u.len()).map(|knot| sampled.slopes(knot)).collect();
+        let next_slopes = slopes.iter().cycle().skip(1);
+        let intervals = ends
             .zip(phi.iter().zip(next))
+            .zip(slopes.iter().zip(next_slopes))
             .enumerate()
-            .map(|(index, ((&start_u, end_u), (&start, &end)))| Interval {
-                end_u,
-                start,
-                end,
-                start_slope: sampled.at(start_u).rate,
-                // The slope on the left of the next knot: the last number of this interval is as near as it gets.
-                end_slope: sampled.at(end_u.next_down()).rate,
-                corner_at_end: sampled.corner_at_end(index),
-            })
+            .map(
+                |(index, ((end_u, (&start, &end)), ([_, after], [before, _])))| Interval {
+                    end_u,
+                    start,
+                    end,
+                    start_slope: *after,
+                    end_slope: *before,
+                    corner_at_end: sampled.corner_at_end(index),
+                },
+            )
             .collect();
         Ok(Self {
             u: u.to_vec(),

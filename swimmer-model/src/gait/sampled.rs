@@ -164,6 +164,18 @@ impl<'a, T: Scalar> Sampled<'a, T> {
         self.u.len()
     }
 
+    /// dΦ/du at a knot, from before it and from after it: the same but at a corner.
+    pub fn slopes(&self, knot: usize) -> [Vector2<T>; 2] {
+        let knot = knot.cast_signed();
+        let after = self.slope(knot, 1);
+        let before = if self.is_corner(knot) {
+            self.slope(knot, -1)
+        } else {
+            after
+        };
+        [before, after]
+    }
+
     /// u of a knot counted on through any number of cycles, forwards and backwards.
     fn unrolled_u(&self, knot: isize) -> T {
         let (cycle, i) = self.split(knot);

@@ -1,7 +1,7 @@
 //! How much of a cycle a real swimmer could not follow because its links would cross.
 
 use super::extremes::zero;
-use super::legendre::{N, NODES, Series};
+use super::legendre::{N, Rule, Series};
 use crate::crossing::flatness;
 use crate::{Gait, Links, Scalar};
 use nalgebra::Vector2;
@@ -38,19 +38,66 @@ pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
     links: &Links<T>,
     gait: &G,
 ) -> CrossingShare<T> {
+    let mut crossing = T::zero();
+    let folds = stretches(links, gait, |from, to, crosses| {
+        if crosses {
+            crossing += to - from;
+        }
+    });
+    let (mut length, mut crossing_length) = (T::zero(), T::zero());
+    // Lengths cost more than looks, and most gaits have nothing to share.
+    if crossing > T::zero() {
+        stretches(links, gait, |from, to, crosses| {
+            let stretch = arc_length(gait, from, to);
+            length += stretch;
+            if crosses {
+                crossing_length += stretch;
+            }
+        });
+    }
+    let of_length = if length > T::zero() {
+        crossing_length / length
+    } else {
+        T::zero()
+    };
+    CrossingShare {
+        of_cycle: crossing,
+        of_length,
+        folds,
+    }
+}
+
+/// What is seen of a gait at one place.
+struct Look<T> {
+    phi: Vector2<T>,
+    /// How far the side links overlap.
+    overlap: T,
+    /// [`flatness`] of the flatter one.
+    flat: T,
+}
+
+/// Visits all stretches of a cycle, from u to u and whether links cross there; says whether a side link is ever folded flat.
+fn stretches<T: Scalar, G: Gait<T> + ?Sized>(
+    links: &Links<T>,
+    gait: &G,
+    mut visit: impl FnMut(T, T, bool),
+) -> bool {
     let touch = links.middle * T::from_f64(TOUCH);
-    let overlap = |u: T| links.overlap(&gait.at(u).phi) - touch;
-    let flat = |u: T| {
+    let look = |u: T| {
         let phi = gait.at(u).phi;
-        flatness(phi.x).max(flatness(phi.y))
+        Look {
+            overlap: links.overlap(&phi) - touch,
+            flat: flatness(phi.x).max(flatness(phi.y)),
+            phi,
+        }
     };
     // A link that only sweeps through |φ| = π lies there for no time: it must lie there still a little further on.
-    let lies = |from: T, towards: T| {
-        flat(from) >= T::zero() && flat(from + (towards - from) * T::from_f64(0.01)) >= T::zero()
+    let lies = |at: &Look<T>, from: T, towards: T| {
+        at.flat >= T::zero() && look(from + (towards - from) * T::from_f64(0.01)).flat >= T::zero()
     };
     let mut folds = false;
-    let (mut u, mut crossing, mut length, mut crossing_length) =
-        (T::zero(), T::zero(), T::zero(), T::zero());
+    let mut u = T::zero();
+    let mut here = look(u);
     let pieces = gait.pieces().max(1);
     for piece in 0..pieces {
         let end = if piece + 1 == pieces {
@@ -68,52 +115,48 @@ pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
             } else {
                 end
             };
-            let folded = lies(u, next) || lies(next, u);
-            let level = |u: T| {
+            let there = look(next);
+            let folded = lies(&here, u, next) || lies(&there, next, u);
+            let level = |at: &Look<T>| {
                 if folded {
-                    overlap(u).max(links.middle * flat(u))
+                    at.overlap.max(links.middle * at.flat)
                 } else {
-                    overlap(u)
+                    at.overlap
                 }
             };
-            let (here, there) = (level(u) > T::zero(), level(next) > T::zero());
-            folds |= fold_between(&gait.at(u).phi, &gait.at(next).phi);
-            let border = if here == there {
-                next
+            let crosses = [&here, &there].map(|at| level(at) > T::zero());
+            folds |= there.folds_after(&here);
+            if crosses[0] == crosses[1] {
+                visit(u, next, crosses[0]);
             } else {
-                zero(u, next, level)
-            };
-            for (from, to, crosses) in [(u, border, here), (border, next, there)] {
-                let stretch = arc_length(gait, from, to);
-                length += stretch;
-                if crosses {
-                    crossing += to - from;
-                    crossing_length += stretch;
-                }
+                let border = zero(u, next, |u| level(&look(u)));
+                visit(u, border, crosses[0]);
+                visit(border, next, crosses[1]);
             }
-            u = next;
+            (u, here) = (next, there);
         }
     }
-    let of_length = if length > T::zero() {
-        crossing_length / length
-    } else {
-        T::zero()
-    };
-    CrossingShare {
-        of_cycle: crossing,
-        of_length,
-        folds,
+    folds
+}
+
+impl<T: Scalar> Look<T> {
+    /// Whether a side link is folded flat here, at the look before, or on the short way between them.
+    fn folds_after(&self, before: &Self) -> bool {
+        // Flatness has this value where no side link points backwards.
+        let forwards = -T::one();
+        before.flat >= T::zero()
+            || self.flat >= T::zero()
+            || (before.flat > forwards
+                && self.flat > forwards
+                && fold_between(&before.phi, &self.phi))
     }
 }
 
-/// Whether a side link is folded flat at one of two shapes, or on the short way between them.
+/// Whether a side link passes through |φ| = π on the short way between two shapes.
 fn fold_between<T: Scalar>(from: &Vector2<T>, to: &Vector2<T>) -> bool {
     let through = |from: T, to: T| {
         let ((sin, cos), (next_sin, next_cos)) = (from.sin_cos(), to.sin_cos());
-        let behind = cos < T::zero() && next_cos < T::zero();
-        behind && sin * next_sin < T::zero()
-            || flatness(from) >= T::zero()
-            || flatness(to) >= T::zero()
+        cos < T::zero() && next_cos < T::zero() && sin * next_sin < T::zero()
     };
     through(from.x, to.x) || through(from.y, to.y)
 }
@@ -121,10 +164,9 @@ fn fold_between<T: Scalar>(from: &Vector2<T>, to: &Vector2<T>) -> bool {
 /// ∫|Φ′| du.
 fn arc_length<T: Scalar, G: Gait<T> + ?Sized>(gait: &G, from: T, to: T) -> T {
     let half = (to - from) * T::from_f64(0.5);
-    if half <= T::zero() {
-        return T::zero();
-    }
-    let speeds: [T; N] =
-        core::array::from_fn(|j| gait.at(from + half * T::from_f64(1.0 + NODES[j])).speed());
+    let speeds: [T; N] = core::array::from_fn(|j| {
+        let place = from + half * T::from_f64(1.0 + Rule::<N>::NODES[j]);
+        gait.at(place).speed()
+    });
     half * Series::through(&speeds).whole_integral()
 }

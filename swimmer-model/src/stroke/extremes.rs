@@ -3,7 +3,7 @@
 //! Within a panel the rate is a polynomial. Its zeros are bracketed between nodes; where it only dips towards zero, the
 //! bottom of the dip is located first, so that a pair of close zeros is not missed.
 
-use super::legendre::{N, NODES, Series};
+use super::legendre::{N, Rule, Series};
 use crate::Scalar;
 
 /// Smallest and largest value met so far.
@@ -32,12 +32,17 @@ impl<T: Scalar> Range<T> {
 
     /// Includes all values of start + half_width · ∫ rate ds on a panel.
     pub(super) fn extend(&mut self, start: T, half_width: T, rate: &Series<T>) {
-        let value = |s: T| start + half_width * rate.integral(s);
         self.include(start);
         self.include(start + half_width * rate.whole_integral());
+        if rate.keeps_its_sign() {
+            return;
+        }
+        let value = |s: T| start + half_width * rate.integral(s);
         let place = |i: usize| match i {
             0 => -T::one(),
-            i => NODES.get(i - 1).map_or(T::one(), |&s| T::from_f64(s)),
+            i => Rule::<N>::NODES
+                .get(i - 1)
+                .map_or(T::one(), |&s| T::from_f64(s)),
         };
         let mut left = place(0);
         for i in 1..=N + 1 {

@@ -2,13 +2,21 @@
 
 use crate::Scalar;
 
-/// Nodes of a panel. A rule of N nodes integrates polynomials of degree 2N − 1 exactly.
+/// Most nodes of a panel. A rule of N nodes integrates polynomials of degree 2N − 1 exactly.
 pub(super) const N: usize = 12;
 
-/// The positive roots of P₁₂ to six digits; Newton's method does the rest when the crate is compiled.
-const ROOTS: [f64; N / 2] = [
+/// A rule of M nodes, M even and at most [`N`].
+pub(super) struct Rule<const M: usize>;
+
+/// The positive roots of P₈ and P₁₂ to six digits; Newton's method does the rest when the crate is compiled.
+const ROOTS_8: [f64; 4] = [0.183_435, 0.525_532, 0.796_666, 0.960_290];
+const ROOTS_12: [f64; 6] = [
     0.125_233, 0.367_831, 0.587_318, 0.769_903, 0.904_117, 0.981_561,
 ];
+
+const fn near_root(nodes: usize, i: usize) -> f64 {
+    if nodes == 8 { ROOTS_8[i] } else { ROOTS_12[i] }
+}
 
 /// P₀(x) … P_N(x).
 const fn legendre(x: f64) -> [f64; N + 1] {
@@ -23,85 +31,98 @@ const fn legendre(x: f64) -> [f64; N + 1] {
     p
 }
 
-/// P′_N(x).
-const fn slope(x: f64) -> f64 {
+/// P′_M(x).
+const fn slope(m: usize, x: f64) -> f64 {
     let p = legendre(x);
-    N as f64 * (p[N - 1] - x * p[N]) / (1.0 - x * x)
+    m as f64 * (p[m - 1] - x * p[m]) / (1.0 - x * x)
 }
 
-/// Nodes on [−1, 1], increasing.
-pub(super) const NODES: [f64; N] = {
-    let mut nodes = [0.0; N];
-    let mut i = 0;
-    while i < N / 2 {
-        let mut x = ROOTS[i];
-        let mut step = 0;
-        while step < 4 {
-            x -= legendre(x)[N] / slope(x);
-            step += 1;
+impl<const M: usize> Rule<M> {
+    /// Nodes on [−1, 1], increasing.
+    pub(super) const NODES: [f64; M] = {
+        let mut nodes = [0.0; M];
+        let mut i = 0;
+        while i < M / 2 {
+            let mut x = near_root(M, i);
+            let mut step = 0;
+            while step < 4 {
+                x -= legendre(x)[M] / slope(M, x);
+                step += 1;
+            }
+            nodes[M / 2 + i] = x;
+            nodes[M / 2 - 1 - i] = -x;
+            i += 1;
         }
-        nodes[N / 2 + i] = x;
-        nodes[N / 2 - 1 - i] = -x;
-        i += 1;
-    }
-    nodes
-};
+        nodes
+    };
 
-/// Row k turns values at the nodes into the coefficient of P_k.
-const PROJECT: [[f64; N]; N] = {
-    let mut rows = [[0.0; N]; N];
-    let mut j = 0;
-    while j < N {
-        let x = NODES[j];
-        let p = legendre(x);
-        let weight = 2.0 / ((1.0 - x * x) * slope(x) * slope(x));
-        let mut k = 0;
-        while k < N {
-            rows[k][j] = (k as f64 + 0.5) * weight * p[k];
-            k += 1;
+    /// Row k turns values at the nodes into the coefficient of P_k.
+    const PROJECT: [[f64; M]; M] = {
+        let mut rows = [[0.0; M]; M];
+        let mut j = 0;
+        while j < M {
+            let x = Self::NODES[j];
+            let p = legendre(x);
+            let weight = 2.0 / ((1.0 - x * x) * slope(M, x) * slope(M, x));
+            let mut k = 0;
+            while k < M {
+                rows[k][j] = (k as f64 + 0.5) * weight * p[k];
+                k += 1;
+            }
+            j += 1;
         }
-        j += 1;
-    }
-    rows
-};
+        rows
+    };
 
-/// Row j holds the integrals of P₀ … P_{N−1} from −1 to node j.
-const INTEGRATE: [[f64; N]; N] = {
-    let mut rows = [[0.0; N]; N];
-    let mut j = 0;
-    while j < N {
-        let p = legendre(NODES[j]);
-        rows[j][0] = NODES[j] + 1.0;
-        let mut k = 1;
-        while k < N {
-            rows[j][k] = (p[k + 1] - p[k - 1]) / (2.0 * k as f64 + 1.0);
-            k += 1;
+    /// Row j holds the integrals of P₀ … P_{M−1} from −1 to node j.
+    const INTEGRATE: [[f64; M]; M] = {
+        let mut rows = [[0.0; M]; M];
+        let mut j = 0;
+        while j < M {
+            let p = legendre(Self::NODES[j]);
+            rows[j][0] = Self::NODES[j] + 1.0;
+            let mut k = 1;
+            while k < M {
+                rows[j][k] = (p[k + 1] - p[k - 1]) / (2.0 * k as f64 + 1.0);
+                k += 1;
+            }
+            j += 1;
         }
-        j += 1;
-    }
-    rows
-};
+        rows
+    };
+}
 
-/// A polynomial of degree N − 1 on [−1, 1] by its Legendre coefficients.
+/// A polynomial of degree N − 1 or less on [−1, 1] by its Legendre coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Series<T>([T; N]);
 
 impl<T: Scalar> Series<T> {
-    /// The polynomial that takes these values at the nodes.
+    /// The polynomial that takes these values at a rule's nodes.
     #[inline]
-    pub(super) fn through(values: &[T; N]) -> Self {
-        Self(core::array::from_fn(|k| dot(&PROJECT[k], values)))
+    pub(super) fn through<const M: usize>(values: &[T; M]) -> Self {
+        let mut coefficients = [T::zero(); N];
+        for (coefficient, row) in coefficients.iter_mut().zip(&Rule::<M>::PROJECT) {
+            *coefficient = dot(row, values);
+        }
+        Self(coefficients)
     }
 
-    /// Its integrals from −1 to each node.
+    /// Its integrals from −1 to each node of the rule that it was drawn by.
     #[inline]
-    pub(super) fn integrals_at_nodes(&self) -> [T; N] {
-        core::array::from_fn(|j| dot(&INTEGRATE[j], &self.0))
+    pub(super) fn integrals_at_nodes<const M: usize>(&self) -> [T; M] {
+        core::array::from_fn(|j| dot(&Rule::<M>::INTEGRATE[j], &self.0))
     }
 
-    /// Size of the last two coefficients: how well the polynomial resolves what it was drawn through.
-    pub(super) fn tail(&self) -> T {
-        self.0[N - 1].abs().max(self.0[N - 2].abs())
+    /// Size of the last two coefficients of a rule: how well the polynomial resolves what it was drawn through.
+    pub(super) fn tail<const M: usize>(&self) -> T {
+        self.0[M - 1].abs().max(self.0[M - 2].abs())
+    }
+
+    /// Whether it has the same sign all over [−1, 1] for certain.
+    pub(super) fn keeps_its_sign(&self) -> bool {
+        let [mean, rest @ ..] = &self.0;
+        let rest = rest.iter().fold(T::zero(), |sum, c| sum + c.abs());
+        mean.abs() > rest
     }
 
     /// Integral over [−1, 1].
@@ -139,7 +160,7 @@ impl<T: Scalar> Series<T> {
 }
 
 #[inline]
-fn dot<T: Scalar>(row: &[f64; N], values: &[T; N]) -> T {
+fn dot<T: Scalar>(row: &[f64], values: &[T]) -> T {
     row.iter()
         .zip(values)
         .fold(T::zero(), |sum, (&a, &b)| sum + T::from_f64(a) * b)

@@ -2,7 +2,7 @@
 
 use super::Tolerance;
 use super::extremes::Range;
-use super::legendre::{N, NODES, Series};
+use super::legendre::{N, Rule, Series};
 use crate::{Gait, Model, Pose, Scalar};
 use nalgebra::Vector3;
 
@@ -19,7 +19,8 @@ pub struct Panel<T> {
 }
 
 impl<T: Scalar> Panel<T> {
-    fn new<G: Gait<T> + ?Sized>(
+    /// By the rule of M nodes.
+    fn new<const M: usize, G: Gait<T> + ?Sized>(
         model: &Model<T>,
         gait: &G,
         start: T,
@@ -27,10 +28,10 @@ impl<T: Scalar> Panel<T> {
         pose: Pose<T>,
     ) -> Self {
         let half_width = width * T::from_f64(0.5);
-        let mut body = [Vector3::zeros(); N];
-        let (mut turning, mut power) = ([T::zero(); N], [T::zero(); N]);
-        for j in 0..N {
-            let point = gait.at(start + half_width * T::from_f64(1.0 + NODES[j]));
+        let mut body = [Vector3::zeros(); M];
+        let (mut turning, mut power) = ([T::zero(); M], [T::zero(); M]);
+        for j in 0..M {
+            let point = gait.at(start + half_width * T::from_f64(1.0 + Rule::<M>::NODES[j]));
             let (a, w) = model.connection_and_power(&point.phi);
             let rate = point.rate;
             body[j] = a * rate;
@@ -42,9 +43,9 @@ impl<T: Scalar> Panel<T> {
                 .max(T::zero());
         }
         let turning = Series::through(&turning);
-        let turned = turning.integrals_at_nodes();
-        let (mut x, mut y) = ([T::zero(); N], [T::zero(); N]);
-        for j in 0..N {
+        let turned: [T; M] = turning.integrals_at_nodes();
+        let (mut x, mut y) = ([T::zero(); M], [T::zero(); M]);
+        for j in 0..M {
             let (sin, cos) = (pose.theta + half_width * turned[j]).sin_cos();
             x[j] = cos * body[j].x - sin * body[j].y;
             y[j] = sin * body[j].x + cos * body[j].y;
@@ -133,16 +134,16 @@ impl<T: Scalar> Panel<T> {
         s.max(-one).min(one)
     }
 
-    /// Error estimate of the dense output over what is allowed: at most 1 is good enough.
+    /// Error estimate of the dense output over what is allowed, for a panel by the rule of M nodes: at most 1 is good enough.
     ///
-    /// What is left out of a rate is about as large as its last coefficients; its integral is N times smaller.
-    fn excess(&self, scale: &Scale<T>) -> T {
-        let [x, y, theta] = self.rates.map(|r| r.tail());
+    /// What is left out of a rate is about as large as its last coefficients; its integral is M times smaller.
+    fn excess<const M: usize>(&self, scale: &Scale<T>) -> T {
+        let [x, y, theta] = self.rates.map(|r| r.tail::<M>());
         let motion = (x.max(y) / scale.length).max(theta) / scale.size;
-        let energy = self.power.tail() / scale.power;
+        let energy = self.power.tail::<M>() / scale.power;
         // Where a gait nearly stands still √P has nearly a kink, and no such gain.
-        let power_length = self.root_power.tail() / scale.power.sqrt();
-        let integral = (motion.max(energy) / T::from_f64(N as f64)).max(power_length);
+        let power_length = self.root_power.tail::<M>() / scale.power.sqrt();
+        let integral = (motion.max(energy) / T::from_f64(M as f64)).max(power_length);
         integral * self.half_width / scale.tolerance
     }
 }
@@ -192,6 +193,12 @@ pub struct Panels<'a, T, G: ?Sized> {
 
 /// Points at which a gait's largest rate is looked for.
 const RATE_SAMPLES: usize = 32;
+
+/// Nodes of a panel where pieces are narrow.
+const FEW: usize = 8;
+
+/// A gait of so many pieces has narrow ones: samples.
+const NARROW_PIECES: usize = 64;
 
 /// No panel is wider than this, so that no symmetry of a gait can fool the error estimate.
 const WIDEST: f64 = 0.25;
@@ -259,6 +266,20 @@ impl<'a, T: Scalar, G: Gait<T> + ?Sized> Panels<'a, T, G> {
         None
     }
 
+    /// A panel with its excess, by fewer nodes where these will do.
+    fn panel(&self, start: T, width: T) -> (Panel<T>, T) {
+        if self.gait.pieces() >= NARROW_PIECES {
+            let few = Panel::new::<FEW, G>(self.model, self.gait, start, width, self.pose);
+            let excess = few.excess::<FEW>(&self.scale);
+            if excess <= T::one() {
+                return (few, excess);
+            }
+        }
+        let panel = Panel::new::<N, G>(self.model, self.gait, start, width, self.pose);
+        let excess = panel.excess::<N>(&self.scale);
+        (panel, excess)
+    }
+
     /// u at which part `index` of the piece begins.
     fn part(&self, index: u32) -> T {
         let (start, end) = self.piece;
@@ -282,8 +303,7 @@ impl<T: Scalar, G: Gait<T> + ?Sized> Iterator for Panels<'_, T, G> {
         loop {
             let start = self.part(self.index);
             let width = self.part(self.index + 1) - start;
-            let panel = Panel::new(self.model, self.gait, start, width, self.pose);
-            let excess = panel.excess(&self.scale);
+            let (panel, excess) = self.panel(start, width);
             if excess > T::one() && width > narrowest && self.halvings > 0 {
                 (self.level, self.index) = (self.level + 1, 2 * self.index);
                 self.halvings -= 1;
