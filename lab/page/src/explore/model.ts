@@ -97,19 +97,18 @@ for (const slot of [0, 1] as const) {
   });
   // What follows a hand comes first, and nothing else of a gait that the hand has left behind.
   const latest = new Latest(async (text: string) => {
-    const about = JSON.parse(text) as object;
     const overtaken = () => question.peek() !== text;
     try {
       const before = swum.peek()[slot];
       if (before) {
-        const net = await quick.json<Net>("net", about);
+        const net = await quick.json<Net>("net", text);
         swum.value = at(swum.peek(), slot, { ...before, ...net });
       }
       if (overtaken()) return;
-      const bytes = await quick.bytes("motion", { ...about, intervals: INTERVALS });
+      const bytes = await quick.bytes("motion", { ...JSON.parse(text), intervals: INTERVALS });
       motions.value = at(motions.peek(), slot, new Float64Array(bytes));
       if (overtaken() && before) return;
-      const whole = await quick.json<Swum>("simulate", about);
+      const whole = await quick.json<Swum>("simulate", text);
       swum.value = at(swum.peek(), slot, whole);
     } catch (error) {
       told(error);
@@ -131,7 +130,7 @@ for (const slot of [0, 1] as const) {
     return afterFirst(swimmer.value) && gait && JSON.stringify({ swimmer: swimmer.value?.toml, gait, length_m, width_m });
   });
   const latestTank = new Latest(async (text: string) => {
-    const told = await slow.json<TankAnswer>("tank", JSON.parse(text)).catch(() => null);
+    const told = await slow.json<TankAnswer>("tank", text).catch(() => null);
     tank.value = at(tank.peek(), slot, told);
   });
   effect(() => {
@@ -152,7 +151,7 @@ const certifyAsked = computed(() => {
 });
 const latestEvidence = new Latest(async (text: string) => {
   try {
-    evidence.value = { of: text, told: await slow.json<Evidence>("certify", JSON.parse(text)) };
+    evidence.value = { of: text, told: await slow.json<Evidence>("certify", text) };
   } catch {
     evidence.value = null;
   }
@@ -221,7 +220,7 @@ const latestOptima = new Latest(async (_: number) => {
     const late = setTimeout(() => (overdue.value = true), PATIENCE_MS);
     const counting = setInterval(() => (searching.value = { what, seconds: (searching.peek()?.seconds ?? 0) + 1 }), 1000);
     const found = await search
-      .json<FoundAnswer>("optimize", JSON.parse(of))
+      .json<FoundAnswer>("optimize", of)
       .then((told) => ({ of, told }), (error: Error) => ({ of, reason: error.message }));
     clearTimeout(late);
     clearInterval(counting);
@@ -234,7 +233,7 @@ const latestOptima = new Latest(async (_: number) => {
 });
 let warm = false;
 /** After what is shown, these bounds: a search along a bound has code of its own. */
-const WARM_BOUNDS = [2, 2.4];
+const WARM_BOUNDS = [2, 2.4, 1.8, 2.1, 2.5];
 /** Browsers compile with care only what has run for a while: so the first searches are not those that a reader waits for. What they
  * find of the swimmer that is shown is kept; whoever asks meanwhile waits for one of them at most. */
 async function warmUp(): Promise<void> {
@@ -242,7 +241,7 @@ async function warmUp(): Promise<void> {
   warm = true;
   for (const what of ["displacement", "efficiency-small"] as const) {
     const of = optimumAsked(what);
-    const told = await search.json<FoundAnswer>("optimize", JSON.parse(of)).catch(() => null);
+    const told = await search.json<FoundAnswer>("optimize", of).catch(() => null);
     if (told && !optima.peek().has(what)) optima.value = new Map(optima.peek()).set(what, { of, told });
     for (const max_angle of WARM_BOUNDS) await search.ask("optimize", { ...JSON.parse(of), bounds: { max_angle } }).catch(() => null);
   }

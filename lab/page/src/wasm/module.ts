@@ -29,10 +29,11 @@ export class Module {
     return new Module(exports as unknown as Exports);
   }
 
-  /** Performs a call by name; `question` is bytes as they are, or anything that JSON holds. Throws its reason in one sentence. */
+  /** Performs a call by name; `question` is bytes or a JSON text as they are, or anything that JSON holds. Throws its reason in one
+   * sentence. */
   call(name: string, question: unknown): Answer {
     const called = this.#encoder.encode(name);
-    const asked = question instanceof Uint8Array ? question : this.#encoder.encode(JSON.stringify(question));
+    const asked = question instanceof Uint8Array ? question : this.#encoder.encode(typeof question === "string" ? question : JSON.stringify(question));
     const length = called.length + asked.length;
     const place = this.#exports.lab_input(length);
     const room = new Uint8Array(this.#exports.memory.buffer, place, length);
