@@ -68,5 +68,9 @@ function Plot({ title, series }: (typeof PLOTS)[number]) {
     const column = (at: number, factor: number) => Array.from({ length: INTERVALS + 1 }, (_, k) => (motion[k * STRIDE + at] ?? 0) * factor);
     plot.current?.setData([column(0, shown.value.period), ...series.map(({ column: at, factor }) => column(at, factor))]);
   }, [motion, shown.value.period, dark.value, second]);
-  return <div ref={place} />;
+  return (
+    <figure aria-label={`${title} over the cycle`}>
+      <div ref={place} />
+    </figure>
+  );
 }

@@ -74,7 +74,6 @@ export function drawSwim(
   if (there.length === 0) return;
   const view = frame(there, cycles, width, height);
   const screen = ([x, y]: [number, number]): [number, number] => [(x - view.left) * view.scale, (view.top - y) * view.scale];
-  scaleBar(context, view.scale, height, colours);
   motions.forEach((motion, slot) => {
     if (!motion) return;
     const colour = colours.bodies[slot === 1 ? 1 : 0];
@@ -82,6 +81,7 @@ export function drawSwim(
     body(context, motion, time, screen, colour, size.sphere * view.scale);
     if (size.forces) forces(context, motion, time, screen, colours.force, there, view.scale);
   });
+  scaleBar(context, view.scale, height, colours);
 }
 
 type Screen = (point: [number, number]) => [number, number];
@@ -178,9 +178,12 @@ function arrow(context: CanvasRenderingContext2D, [x, y]: [number, number], [tx,
   context.stroke();
 }
 
+/** On paper of its own: an arrow that reaches there passes under it. */
 function scaleBar(context: CanvasRenderingContext2D, scale: number, height: number, colours: Ink): void {
   const power = 10 ** Math.floor(Math.log10(90 / scale));
   const long = ([5, 2, 1].find((digit) => digit * power * scale <= 110) ?? 1) * power;
+  context.fillStyle = colours.paper;
+  context.fillRect(6, height - 34, long * scale + 12, 28);
   context.strokeStyle = context.fillStyle = colours.soft;
   context.lineWidth = 1.5;
   context.beginPath();
