@@ -31,6 +31,7 @@
 pub mod certainty;
 pub mod fluid;
 pub mod losses;
+pub mod net_motion;
 pub mod path;
 pub mod plan;
 pub mod reach;
@@ -41,6 +42,7 @@ pub mod timing;
 pub use certainty::Ends;
 pub use fluid::{Demand, demand};
 pub use losses::{Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast};
+pub use net_motion::NetMotion;
 pub use plan::{Errand, Family, Kind, Member, Plan, PlanError, Step, plan};
 pub use reach::{Reach, reach};
 pub use table::table;

@@ -2,6 +2,7 @@
 
 mod closed_curve;
 
+use serde::ser::{Serialize, SerializeStruct, Serializer};
 use swimmer_model::Stroke;
 
 use crate::cycle::{Cycle, QuarterTrace};
@@ -9,7 +10,7 @@ use crate::region::Region;
 pub(crate) use closed_curve::{crossings, simple_and_turning_once, turning_number};
 
 /// One condition.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Check {
     /// Which condition.
     pub name: &'static str,
@@ -20,7 +21,9 @@ pub struct Check {
     /// Whether it holds.
     pub pass: bool,
     /// How much of a failed condition's value the samples leave open; 0 where it holds or was found by a solver.
+    #[serde(skip)]
     pub uncertainty: f64,
+    #[serde(skip)]
     pub(crate) seen_by: SeenBy,
 }
 
@@ -100,6 +103,17 @@ impl Check {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     checks: Vec<Check>,
+}
+
+/// As every answer tells it: whether all holds, the verdict's word, the conditions.
+impl Serialize for Certificate {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut told = serializer.serialize_struct("Certificate", 3)?;
+        told.serialize_field("pass", &self.pass())?;
+        told.serialize_field("verdict", self.verdict().word())?;
+        told.serialize_field("checks", &self.checks)?;
+        told.end()
+    }
 }
 
 impl Certificate {

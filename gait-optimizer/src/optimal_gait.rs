@@ -9,7 +9,7 @@ use crate::EfficiencyFigures;
 use crate::cycle::Cycle;
 
 /// One arc of a gait.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Arc {
     /// What it runs along.
     pub kind: ArcKind,

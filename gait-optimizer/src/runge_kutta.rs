@@ -157,11 +157,8 @@ pub(crate) fn locate<const N: usize>(
             high = length;
         }
         let newton = length - here / slope;
-        let next = if newton > low && newton < high {
-            newton
-        } else {
-            0.5 * (low + high)
-        };
+        let within = newton > low && newton < high;
+        let next = if within { newton } else { 0.5 * (low + high) };
         let step = (next - length).abs();
         if here == 0.0 || step < tolerance {
             break;
@@ -169,7 +166,7 @@ pub(crate) fn locate<const N: usize>(
         length = next;
         there = at(length)?;
         // What is left after a step of Newton's is about its square.
-        if next == newton && SQUARED * step * step < tolerance {
+        if within && SQUARED * step * step < tolerance {
             break;
         }
     }

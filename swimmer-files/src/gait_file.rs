@@ -151,6 +151,12 @@ impl Objective {
     }
 }
 
+impl serde::Serialize for ArcKind {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.word())
+    }
+}
+
 impl ArcKind {
     const ALL: [Self; 7] = [
         Self::Singular,

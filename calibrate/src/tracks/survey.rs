@@ -1,30 +1,39 @@
 //! What a tracking file holds, without its places.
 
+use std::fmt::Display;
+
+use serde::{Serialize, Serializer};
+
 use super::{PointKind, TrackFile, TrackFormat, TrackWarning, Unit};
 
-/// What a tracking file holds.
-#[derive(Debug, Clone, PartialEq)]
+/// What a tracking file holds, under the keys of answers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrackSurvey {
     /// Its format.
+    #[serde(serialize_with = "in_words")]
     pub format: TrackFormat,
-    /// Rows a second, as in [`TrackFile::rate_hz`].
+    /// Rows a second, as in [`TrackFile::rate_hz`]; answers have null where a single frame tells no rate.
+    #[serde(serialize_with = "where_known")]
     pub rate_hz: f64,
     /// The unit of length in the file.
+    #[serde(serialize_with = "in_words")]
     pub unit: Unit,
     /// Rows with data.
     pub frames: usize,
     /// Its points, in the order of the file.
     pub points: Vec<PointPresence>,
     /// What the reader noticed.
+    #[serde(serialize_with = "each_in_words")]
     pub warnings: Vec<TrackWarning>,
 }
 
 /// A point, and in which rows it is.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PointPresence {
     /// Its name, as in the file.
     pub name: String,
     /// What it is.
+    #[serde(serialize_with = "in_words")]
     pub kind: PointKind,
     /// Its ID in the file; empty where the file has none.
     pub id: String,
@@ -34,6 +43,21 @@ pub struct PointPresence {
     pub gaps: usize,
     /// The longest of them.
     pub longest_gap: usize,
+}
+
+fn in_words<S: Serializer>(value: &impl Display, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(value)
+}
+
+fn each_in_words<S: Serializer>(values: &[impl Display], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(values.iter().map(ToString::to_string))
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+fn where_known<S: Serializer>(rate_hz: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    Some(*rate_hz)
+        .filter(|rate| *rate > 0.0)
+        .serialize(serializer)
 }
 
 impl TrackSurvey {

@@ -10,7 +10,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use gait_optimizer::{Atlas as Found, AtlasError, AtlasProblem, Objective, Optimum, atlas_watched};
+use gait_optimizer::{
+    Arc, Atlas as Found, AtlasError, AtlasProblem, Certificate, Objective, Optimum, atlas_watched,
+};
 use serde::Serialize;
 
 use swimmer_files::SwimmerFile;
@@ -25,7 +27,7 @@ use crate::progress::Progress;
 use crate::quantity;
 use crate::threads;
 
-use super::optimize::answer::{Arc, Evidence, Figures, arcs};
+use super::optimize::answer::Figures;
 use kept::{drawn_in, saved};
 use speed::AtRate;
 
@@ -211,7 +213,7 @@ struct Line {
     /// Of gaits for efficiency.
     #[serde(flatten)]
     figures: Option<Figures>,
-    certificate: Evidence,
+    certificate: Certificate,
     simple: bool,
     symmetric: bool,
     found: usize,
@@ -267,12 +269,12 @@ impl Line {
             rotation_rad: gait.rotation,
             start_angle_rad: gait.start_angle,
             end_angle_rad: gait.end_angle,
-            arcs: arcs(gait),
+            arcs: gait.arcs.clone(),
             links_cross: gait.links_cross,
             figures: Figures::of(gait, "shooting_residual", |gait| {
                 gait.certificate.value("power_variation")
             }),
-            certificate: (&gait.certificate).into(),
+            certificate: gait.certificate.clone(),
             simple: optimum.simple,
             symmetric: gait.symmetric,
             found: optimum.found,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use gait_optimizer::{CertifyError, Objective, Verdict, certify};
+use gait_optimizer::{Certificate, CertifyError, Objective, Verdict, certify};
 use serde::Serialize;
 use swimmer_files::{AnyGait, Bounds, GaitFile, GaitSpec};
 
@@ -12,8 +12,6 @@ use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::own_robot::{PERIOD_S, say_if_beyond};
 use crate::quantity;
-
-use super::optimize::answer::Evidence;
 
 /// Hold a gait against the necessary conditions of an optimum, each with its number and tolerance
 ///
@@ -65,14 +63,12 @@ impl Certify {
             swimmer.name,
             quantity::gait(&self.gait)
         );
-        output.answer(&Answer {
-            title,
-            evidence: (&certificate).into(),
-        });
         let checks = certificate.checks();
         let failed = checks.iter().filter(|check| !check.pass).count();
         let of = checks.len();
-        match certificate.verdict() {
+        let verdict = certificate.verdict();
+        output.answer(&Answer { title, certificate });
+        match verdict {
             Verdict::Pass => Ok(()),
             Verdict::Fail => Err(Failure::Answered(format!(
                 "the gait is no certified optimum: {failed} of {of} conditions do not hold"
@@ -117,13 +113,14 @@ struct Answer {
     #[serde(skip)]
     title: String,
     #[serde(flatten)]
-    evidence: Evidence,
+    certificate: Certificate,
 }
 
 impl fmt::Display for Answer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let checks = self.certificate.checks();
         let mut table = quantity::Table::new(["condition", "number", "", "tolerance", ""]);
-        for check in &self.evidence.checks {
+        for check in checks {
             let sign = if check.name.ends_with("_least") {
                 "≥"
             } else {
@@ -137,16 +134,11 @@ impl fmt::Display for Answer {
                 if check.pass { "holds" } else { "FAILS" }.to_owned(),
             ]);
         }
-        let failed = self
-            .evidence
-            .checks
-            .iter()
-            .filter(|check| !check.pass)
-            .count();
-        let of = self.evidence.checks.len();
-        let verdict = match (failed, self.evidence.verdict) {
+        let failed = checks.iter().filter(|check| !check.pass).count();
+        let of = checks.len();
+        let verdict = match (failed, self.certificate.verdict()) {
             (0, _) => format!("all {of} conditions hold"),
-            (_, "undecided") => {
+            (_, Verdict::Undecided) => {
                 format!("undecided from these samples: {failed} of {of} conditions do not hold")
             }
             _ => format!("{failed} of {of} conditions fail"),

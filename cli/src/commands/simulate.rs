@@ -5,6 +5,7 @@ pub(crate) mod played;
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
+use forecast::NetMotion;
 use serde::Serialize;
 use swimmer_files::{AnyGait, GaitSpec, write_atomically};
 use swimmer_model::{CrossingShare, Model, Pose, Tolerance, crossing_share, swim, trajectory};
@@ -51,15 +52,8 @@ struct Swum {
     crossing: CrossingShare<f64>,
     /// Share of the cycle in which links cross.
     links_cross: f64,
-    displacement_over_length: f64,
-    displacement_m: f64,
-    lateral_over_length: f64,
-    rotation_rad: f64,
-    delta_y_over_length: f64,
-    delta_theta_rad: f64,
-    /// As parametrised.
-    efficiency: f64,
-    efficiency_constant_power: f64,
+    #[serde(flatten)]
+    net: NetMotion,
     /// What the robot will make of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     played: Option<played::PlayedAnswer>,
@@ -76,30 +70,31 @@ struct Swum {
 
 impl fmt::Display for Swum {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let net = &self.net;
         let mut rows = Rows::default();
         rows.row(
             "displacement X",
             format!(
                 "{}   X/L = {:.10}",
-                quantity::length(self.displacement_m),
-                self.displacement_over_length
+                quantity::length(net.displacement_m),
+                net.displacement_over_length
             ),
         )
         .row(
             "lateral",
             format!(
                 "Y/L = {:.10}",
-                (self.lateral_over_length * 1e10).round() / 1e10 + 0.0
+                (net.lateral_over_length * 1e10).round() / 1e10 + 0.0
             ),
         )
-        .row("rotation", quantity::angle(self.rotation_rad))
-        .row("sway ΔY", format!("ΔY/L = {:.8}", self.delta_y_over_length))
-        .row("yaw Δθ", quantity::angle(self.delta_theta_rad))
+        .row("rotation", quantity::angle(net.rotation_rad))
+        .row("sway ΔY", format!("ΔY/L = {:.8}", net.delta_y_over_length))
+        .row("yaw Δθ", quantity::angle(net.delta_theta_rad))
         .row(
             "efficiency ξ",
             format!(
                 "{:.8} as parametrised, {:.8} at constant power",
-                self.efficiency, self.efficiency_constant_power
+                net.efficiency, net.efficiency_constant_power
             ),
         )
         .row("links cross", quantity::crossing_or_folding(&self.crossing));
@@ -132,19 +127,11 @@ impl Simulate {
         let model = model(&file)?;
         let crossing = crossing_share(&file.swimmer.links, &gait);
         let stroke = swim(&model, &gait, &Tolerance::default());
-        let over_length = stroke.displacement_over_length();
         let swum = Swum {
             title: format!("{}, {}", file.name, quantity::gait(&self.gait)),
             links_cross: crossing.of_cycle,
             crossing,
-            displacement_over_length: over_length.x,
-            displacement_m: stroke.displacement.x,
-            lateral_over_length: over_length.y,
-            rotation_rad: stroke.rotation,
-            delta_y_over_length: stroke.delta_y / stroke.total_length,
-            delta_theta_rad: stroke.delta_theta,
-            efficiency: stroke.efficiency(),
-            efficiency_constant_power: stroke.efficiency_constant_power(),
+            net: (&stroke).into(),
             played: self.playing.forecast(&file, &model, &gait)?,
             fluid: InFluid::new(&file, &model, &gait, self.playing.period),
             trajectory: self.trajectory.clone(),
@@ -159,7 +146,7 @@ impl Simulate {
         }
         if let (Some(path), Some(kind)) = (&self.picture, kind) {
             let cycles = if kind == Kind::Gif { 1 } else { self.cycles };
-            let over_length = number(swum.displacement_over_length, 4);
+            let over_length = number(swum.net.displacement_over_length, 4);
             let title = format!("{}: X/L = {over_length} a cycle", swum.title);
             let swimming = Swimming::in_the_model(title, &model, &gait, cycles);
             match kind {

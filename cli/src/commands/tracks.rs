@@ -21,53 +21,39 @@ pub(crate) struct Tracks {
 }
 
 #[derive(Debug, Serialize)]
-struct Holdings {
+struct Answer {
     #[serde(skip)]
     file: String,
-    format: String,
-    /// Null where a single frame tells no rate.
-    rate_hz: Option<f64>,
-    unit: String,
-    frames: usize,
-    points: Vec<Point>,
-    warnings: Vec<String>,
+    #[serde(flatten)]
+    survey: TrackSurvey,
 }
 
-#[derive(Debug, Serialize)]
-struct Point {
-    name: String,
-    kind: String,
-    id: String,
-    /// Frames in which it was seen.
-    present: usize,
-    gaps: usize,
-    /// Frames of its longest gap.
-    longest_gap: usize,
-}
-
-impl fmt::Display for Holdings {
+impl fmt::Display for Answer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let survey = &self.survey;
+        let rate = if survey.rate_hz > 0.0 {
+            format!("{} Hz", survey.rate_hz)
+        } else {
+            "unknown".to_owned()
+        };
         let mut rows = Rows::default();
-        rows.row("format", &self.format)
-            .row(
-                "rate",
-                self.rate_hz
-                    .map_or_else(|| "unknown".to_owned(), |rate| format!("{rate} Hz")),
-            )
-            .row("unit", &self.unit)
-            .row("frames", self.frames.to_string());
+        rows.row("format", survey.format.to_string())
+            .row("rate", rate)
+            .row("unit", survey.unit.to_string())
+            .row("frames", survey.frames.to_string());
         let mut table = Table::new(["point", "kind", "present", "gaps", "longest gap"]);
-        for point in &self.points {
+        for point in &survey.points {
             table.line([
                 point.name.clone(),
-                point.kind.clone(),
+                point.kind.to_string(),
                 point.present.to_string(),
                 point.gaps.to_string(),
                 point.longest_gap.to_string(),
             ]);
         }
         write!(f, "{}\n{rows}\n\n{table}", self.file)?;
-        self.warnings
+        survey
+            .warnings
             .iter()
             .try_for_each(|warning| write!(f, "\n  note: {warning}"))
     }
@@ -77,33 +63,11 @@ impl Tracks {
     /// Reads the file and answers.
     pub(crate) fn run(self, output: Output) -> Outcome {
         let survey = survey_file(&self.file, &self.recording.options())?;
-        output.answer(&Holdings::new(self.file.display().to_string(), survey));
+        output.answer(&Answer {
+            file: self.file.display().to_string(),
+            survey,
+        });
         Ok(())
-    }
-}
-
-impl Holdings {
-    fn new(file: String, survey: TrackSurvey) -> Self {
-        Self {
-            file,
-            format: survey.format.to_string(),
-            rate_hz: Some(survey.rate_hz).filter(|rate| *rate > 0.0),
-            unit: survey.unit.to_string(),
-            frames: survey.frames,
-            points: survey
-                .points
-                .into_iter()
-                .map(|point| Point {
-                    name: point.name,
-                    kind: point.kind.to_string(),
-                    id: point.id,
-                    present: point.present,
-                    gaps: point.gaps,
-                    longest_gap: point.longest_gap,
-                })
-                .collect(),
-            warnings: survey.warnings.iter().map(ToString::to_string).collect(),
-        }
     }
 }
 

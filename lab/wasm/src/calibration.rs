@@ -11,7 +11,7 @@ use calibrate::{
 use serde::Deserialize;
 
 use crate::calls::{Call, Lab, Outcome, json, parsed};
-use answers::{EvidenceAnswer, FitAnswer, Holdings};
+use answers::{EvidenceAnswer, FitAnswer};
 use data::Dropped;
 
 /// The calls, by name.
@@ -40,7 +40,7 @@ fn tracks(_: &mut Lab, bytes: &[u8]) -> Outcome {
     let (name, file) = dropped.only()?;
     let survey = survey_tracks(file, name.as_ref(), &TrackOptions::default())
         .map_err(|why| why.to_string())?;
-    json(&Holdings::from(survey))
+    json(&survey)
 }
 
 /// Fits the campaign among dropped files, and keeps the fit under the number in the answer.

@@ -5,13 +5,12 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use forecast::shortest_period;
-use gait_optimizer::{Fastest, OptimalGait, Optimum, SpeedAtlas, SpeedProblem};
+use gait_optimizer::{Arc, Certificate, Fastest, OptimalGait, Optimum, SpeedAtlas, SpeedProblem};
 use serde::Serialize;
 use swimmer_files::SwimmerFile;
 
 use super::Atlas;
 use super::kept::{drawn_in, saved};
-use crate::commands::optimize::answer::{Arc, Evidence, arcs};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
@@ -118,7 +117,7 @@ struct Line {
     arcs: Vec<Arc>,
     corners: Vec<f64>,
     links_cross: f64,
-    certificate: Evidence,
+    certificate: Certificate,
     found: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     gait: Option<PathBuf>,
@@ -148,10 +147,10 @@ impl Line {
             displacement_over_length: fastest.distance_over_length,
             period_s: fastest.period,
             heading_rad: fastest.heading,
-            arcs: arcs(gait),
+            arcs: gait.arcs.clone(),
             corners: gait.corners().to_vec(),
             links_cross: gait.links_cross,
-            certificate: (&gait.certificate).into(),
+            certificate: gait.certificate.clone(),
             found: fastest.found,
             gait: None,
         }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use gait_optimizer::{Certificate, Method, Objective, OptimalGait};
+use gait_optimizer::{Arc, Certificate, Method, Objective, OptimalGait};
 use serde::Serialize;
 use swimmer_files::{AnyGait, SwimmerFile};
 
@@ -10,58 +10,6 @@ use super::timing::TimingAnswer;
 use crate::failure::{Failure, Outcome};
 use crate::own_robot::PERIOD_S;
 use crate::quantity::{self, Rows};
-
-/// One arc of a gait.
-#[derive(Debug, Serialize)]
-pub(crate) struct Arc {
-    kind: &'static str,
-    from: [f64; 2],
-    to: [f64; 2],
-}
-
-impl From<&gait_optimizer::Arc> for Arc {
-    fn from(arc: &gait_optimizer::Arc) -> Self {
-        Self {
-            kind: arc.kind.word(),
-            from: arc.from,
-            to: arc.to,
-        }
-    }
-}
-
-/// The necessary conditions, each with its number.
-#[derive(Debug, Serialize)]
-pub(crate) struct Evidence {
-    pass: bool,
-    /// `pass`, `fail`, or `undecided` where the samples may be the reason of all that fails.
-    pub(crate) verdict: &'static str,
-    pub(crate) checks: Vec<Check>,
-}
-
-/// One condition.
-#[derive(Debug, Serialize)]
-pub(crate) struct Check {
-    pub(crate) name: &'static str,
-    pub(crate) value: f64,
-    pub(crate) tolerance: f64,
-    pub(crate) pass: bool,
-}
-
-impl From<&Certificate> for Evidence {
-    fn from(certificate: &Certificate) -> Self {
-        let check = |check: &gait_optimizer::Check| Check {
-            name: check.name,
-            value: check.value,
-            tolerance: check.tolerance,
-            pass: check.pass,
-        };
-        Self {
-            pass: certificate.pass(),
-            verdict: certificate.verdict().word(),
-            checks: certificate.checks().iter().map(check).collect(),
-        }
-    }
-}
 
 /// What every answer of a gait with the paper's symmetries tells of its quarter.
 #[derive(Debug, Serialize)]
@@ -81,7 +29,7 @@ impl From<&OptimalGait> for Quarter {
             displacement_m: gait.displacement,
             start_angle_rad: gait.start_angle,
             end_angle_rad: gait.end_angle,
-            arcs: arcs(gait),
+            arcs: gait.arcs.clone(),
         }
     }
 }
@@ -122,7 +70,7 @@ pub(crate) struct Closing {
     /// Under the servos' limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     timing: Option<TimingAnswer>,
-    certificate: Evidence,
+    certificate: Certificate,
     /// From the parsed swimmer to the certified gait.
     seconds: f64,
     /// The gait file that was written.
@@ -140,7 +88,7 @@ impl Closing {
         Self {
             links_cross: gait.links_cross,
             timing,
-            certificate: (&gait.certificate).into(),
+            certificate: gait.certificate.clone(),
             seconds,
             gait: file,
         }
@@ -152,8 +100,8 @@ impl Closing {
             timing.rows(rows);
         }
         rows.row("links cross", quantity::crossing(self.links_cross));
-        let checks = self.certificate.checks.len();
-        let verdict = if self.certificate.pass {
+        let checks = self.certificate.checks().len();
+        let verdict = if self.certificate.pass() {
             "hold"
         } else {
             "do not all hold"
@@ -213,18 +161,13 @@ pub(super) fn unfolded(gait: &OptimalGait) -> Outcome {
     )))
 }
 
-/// The arcs that an answer names.
-pub(crate) fn arcs(gait: &OptimalGait) -> Vec<Arc> {
-    gait.arcs.iter().map(Arc::from).collect()
-}
-
 /// Arcs in order, each with its ends.
 pub(crate) fn arc_rows(rows: &mut Rows, arcs: &[Arc]) {
     for arc in arcs {
         let shape =
             |[one, two]: [f64; 2]| format!("({}, {})", quantity::angle(one), quantity::angle(two));
         rows.row(
-            format!("{} arc", arc.kind),
+            format!("{} arc", arc.kind.word()),
             format!("{} to {}", shape(arc.from), shape(arc.to)),
         );
     }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use gait_optimizer::{Sideways as Found, SidewaysError, SidewaysProblem, sideways_watched};
+use gait_optimizer::{Arc, Sideways as Found, SidewaysError, SidewaysProblem, sideways_watched};
 use serde::Serialize;
 
 use crate::arguments::load_swimmer;
@@ -15,7 +15,7 @@ use crate::progress::Progress;
 use crate::quantity::{self, Rows};
 use crate::threads;
 
-use super::answer::{Arc, Closing, arcs, say_if_beyond, unfolded};
+use super::answer::{Closing, say_if_beyond, unfolded};
 
 /// Find the simple closed gait of most displacement across the heading at its first sample, without net rotation
 ///
@@ -88,7 +88,7 @@ impl Answer {
             bridged_supremum_rad: None,
             rotation_rad: gait.rotation,
             loops: found.loops,
-            arcs: arcs(gait),
+            arcs: gait.arcs.clone(),
             closing: Closing::new(gait, None, seconds, file),
         }
     }

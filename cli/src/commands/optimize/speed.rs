@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use gait_optimizer::{Fastest, HeadingRule, SpeedError, SpeedProblem, front};
+use gait_optimizer::{Arc, Fastest, HeadingRule, SpeedError, SpeedProblem, front};
 use serde::Serialize;
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 
@@ -15,7 +15,7 @@ use crate::output::Output;
 use crate::progress::Progress;
 use crate::quantity::{self, Rows};
 
-use super::answer::{Arc, Closing, arc_rows, arcs, unfolded};
+use super::answer::{Closing, arc_rows, unfolded};
 use super::front::{FrontAnswer, FrontFile};
 use crate::new_file::may_be_written;
 use crate::own_robot::{PlayedSpeed, servo_rates};
@@ -174,7 +174,7 @@ impl Answer {
             period_s: found.period,
             heading_rad: found.heading,
             rotation_rad: gait.rotation,
-            arcs: arcs(gait),
+            arcs: gait.arcs.clone(),
             corners: gait.corners().to_vec(),
             max_corners: SpeedProblem::MAX_CORNERS,
             starts: SpeedProblem::STARTS,

@@ -4,12 +4,11 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use gait_optimizer::{Joined, SpeedProblem, SteerProblem, Steering, steer};
+use gait_optimizer::{Certificate, Joined, SpeedProblem, SteerProblem, Steering, steer};
 use serde::Serialize;
 use swimmer_files::SwimmerFile;
 use swimmer_model::Pose;
 
-use super::answer::Evidence;
 use crate::arguments::{joint_angle, load_swimmer, rate};
 use crate::bounds::WholeBounds;
 use crate::failure::{Failure, Outcome};
@@ -141,7 +140,7 @@ struct GaitAnswer {
     rotation_rad_per_s: Option<f64>,
     /// Share of the fastest gait's speed that joining takes.
     joining_costs: f64,
-    certificate: Evidence,
+    certificate: Certificate,
     #[serde(skip_serializing_if = "Option::is_none")]
     gait: Option<PathBuf>,
 }
@@ -177,7 +176,7 @@ impl Answer {
                 speed_over_length_per_s: (!turns).then_some(joined.rate),
                 rotation_rad_per_s: turns.then_some(joined.rate),
                 joining_costs: joined.cost(),
-                certificate: (&joined.gait.certificate).into(),
+                certificate: joined.gait.certificate.clone(),
                 gait: folder.map(|folder| folder.join(format!("{name}.gait"))),
             }
         };
@@ -198,15 +197,15 @@ impl fmt::Display for Answer {
         for gait in &self.gaits {
             let fails = gait
                 .certificate
-                .checks
+                .checks()
                 .iter()
                 .filter(|check| !check.pass)
                 .count();
             let certificate = match fails {
-                0 => format!("{} conditions hold", gait.certificate.checks.len()),
+                0 => format!("{} conditions hold", gait.certificate.checks().len()),
                 _ => format!(
                     "{fails} of {} conditions fail",
-                    gait.certificate.checks.len()
+                    gait.certificate.checks().len()
                 ),
             };
             rows.row(

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use gait_optimizer::{Turning as Found, TurningError, TurningProblem, turning};
+use gait_optimizer::{Arc, Turning as Found, TurningError, TurningProblem, turning};
 use serde::Serialize;
 use swimmer_files::Bounds;
 
@@ -14,7 +14,7 @@ use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::{self, Rows};
 
-use super::answer::{Arc, Closing, arc_rows, arcs, say_if_beyond, unfolded};
+use super::answer::{Closing, arc_rows, say_if_beyond, unfolded};
 
 /// Find the simple closed gait that turns the swimmer most per cycle, with its certificate
 ///
@@ -81,7 +81,7 @@ impl Answer {
             regions: found.regions,
             displacement_over_length: gait.displacement_over_length,
             lateral_over_length: gait.lateral_over_length,
-            arcs: arcs(gait),
+            arcs: gait.arcs.clone(),
             closing: Closing::new(gait, None, seconds, file),
         }
     }

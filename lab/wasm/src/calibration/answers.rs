@@ -1,52 +1,9 @@
 //! The answers, under the keys of `swimmer calibrate --json` and of its evidence, and what only pictures need.
 
 use calibrate::evidence::{CurvePoint, Evidence, EvidenceDocument, Pair};
-use calibrate::{
-    CampaignFit, Intervals, MeasuredServo, RunResult, TrackSurvey, c_t_form, other_gaits,
-};
+use calibrate::{CampaignFit, Intervals, MeasuredServo, RunResult, c_t_form, other_gaits};
 use serde::Serialize;
 use swimmer_files::{Campaign, GaitSpec};
-
-/// What a tracking file holds.
-#[derive(Serialize)]
-pub(super) struct Holdings {
-    format: String,
-    rate_hz: Option<f64>,
-    unit: String,
-    frames: usize,
-    points: Vec<Point>,
-    warnings: Vec<String>,
-}
-
-#[derive(Serialize)]
-struct Point {
-    name: String,
-    present: usize,
-    gaps: usize,
-    longest_gap: usize,
-}
-
-impl From<TrackSurvey> for Holdings {
-    fn from(survey: TrackSurvey) -> Self {
-        Self {
-            format: survey.format.to_string(),
-            rate_hz: Some(survey.rate_hz).filter(|rate| *rate > 0.0),
-            unit: survey.unit.to_string(),
-            frames: survey.frames,
-            points: survey
-                .points
-                .into_iter()
-                .map(|point| Point {
-                    name: point.name,
-                    present: point.present,
-                    gaps: point.gaps,
-                    longest_gap: point.longest_gap,
-                })
-                .collect(),
-            warnings: survey.warnings.iter().map(ToString::to_string).collect(),
-        }
-    }
-}
 
 /// The fit.
 #[derive(Serialize)]

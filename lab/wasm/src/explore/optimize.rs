@@ -1,13 +1,13 @@
 //! `optimize`: the optimiser's gaits by the names of the commands, each with its certificate and its file.
 
 use gait_optimizer::{
-    Bounds, Branch, DisplacementProblem, EfficiencyProblem, OptimalGait, SidewaysProblem,
-    SpeedProblem, TurningProblem, displacement, efficiency, fastest, sideways, turning,
+    Arc, Bounds, Branch, Certificate, DisplacementProblem, EfficiencyProblem, OptimalGait,
+    SidewaysProblem, SpeedProblem, TurningProblem, displacement, efficiency, fastest, sideways,
+    turning,
 };
 use serde::{Deserialize, Serialize};
 
 use super::bounds::BoundsAsked;
-use super::certify::Evidence;
 use crate::calls::{Lab, Outcome, json, parsed};
 use crate::input::SwimmerText;
 
@@ -43,9 +43,9 @@ struct Found {
     efficiency: f64,
     start_angle_rad: f64,
     end_angle_rad: f64,
-    arcs: Vec<ArcAnswer>,
+    arcs: Vec<Arc>,
     links_cross: f64,
-    certificate: Evidence,
+    certificate: Certificate,
     /// Of the fastest.
     period_s: Option<f64>,
     speed_over_length_per_s: Option<f64>,
@@ -53,13 +53,6 @@ struct Found {
     bridged_supremum_rad: Option<f64>,
     /// The gait file.
     gait: String,
-}
-
-#[derive(Serialize)]
-struct ArcAnswer {
-    kind: &'static str,
-    from: [f64; 2],
-    to: [f64; 2],
 }
 
 /// Finds an optimum.
@@ -130,11 +123,6 @@ pub(super) fn optimize(_: &mut Lab, bytes: &[u8]) -> Outcome {
 
 impl Found {
     fn new(gait: &OptimalGait, name: &str) -> Self {
-        let arc = |arc: &gait_optimizer::Arc| ArcAnswer {
-            kind: arc.kind.word(),
-            from: arc.from,
-            to: arc.to,
-        };
         Self {
             displacement_over_length: gait.displacement_over_length,
             displacement_m: gait.displacement,
@@ -143,9 +131,9 @@ impl Found {
             efficiency: gait.efficiency,
             start_angle_rad: gait.start_angle,
             end_angle_rad: gait.end_angle,
-            arcs: gait.arcs.iter().map(arc).collect(),
+            arcs: gait.arcs.clone(),
             links_cross: gait.links_cross,
-            certificate: (&gait.certificate).into(),
+            certificate: gait.certificate.clone(),
             period_s: None,
             speed_over_length_per_s: None,
             bridged_supremum_rad: None,

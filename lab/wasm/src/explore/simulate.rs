@@ -1,6 +1,6 @@
 //! `net`, `simulate`, `gait-file` and `tank`: what one cycle brings, the file that says so anywhere, and how many cycles there is room for.
 
-use forecast::{Tank, shortest_period, until_wall};
+use forecast::{NetMotion, Tank, shortest_period, until_wall};
 use serde::{Deserialize, Serialize};
 use swimmer_files::{AnyGait, Objective};
 use swimmer_model::{Gait, Model, Pose, Tolerance, crossing_share, swim};
@@ -22,17 +22,11 @@ const fn one_second() -> f64 {
     1.0
 }
 
-/// What follows a hand: the net motion, under the keys of `swimmer simulate --json`.
+/// What follows a hand.
 #[derive(Serialize)]
 struct Net {
-    displacement_over_length: f64,
-    displacement_m: f64,
-    lateral_over_length: f64,
-    rotation_rad: f64,
-    delta_y_over_length: f64,
-    delta_theta_rad: f64,
-    efficiency: f64,
-    efficiency_constant_power: f64,
+    #[serde(flatten)]
+    motion: NetMotion,
     /// In the period asked for.
     speed_m_per_s: f64,
     speed_over_length_per_s: f64,
@@ -58,17 +52,9 @@ const LOOKS: usize = 1920;
 impl Net {
     fn of(model: &Model<f64>, gait: &AnyGait, period: f64) -> Self {
         let stroke = swim(model, gait, &Tolerance::default());
-        let over_length = stroke.displacement_over_length();
         let speed = stroke.displacement.norm() / period;
         Self {
-            displacement_over_length: over_length.x,
-            displacement_m: stroke.displacement.x,
-            lateral_over_length: over_length.y,
-            rotation_rad: stroke.rotation,
-            delta_y_over_length: stroke.delta_y / stroke.total_length,
-            delta_theta_rad: stroke.delta_theta,
-            efficiency: stroke.efficiency(),
-            efficiency_constant_power: stroke.efficiency_constant_power(),
+            motion: (&stroke).into(),
             speed_m_per_s: speed,
             speed_over_length_per_s: speed / stroke.total_length,
         }
