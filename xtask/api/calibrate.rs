@@ -331,7 +331,7 @@ impl PointKind {
     pub fn is_measured(self) -> bool {}
 }
 impl fmt::Display for PointKind {}
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PointPresence {
     pub name: String,
     pub kind: PointKind,
@@ -558,7 +558,7 @@ pub enum TrackProblem {
     LooksLikeRotation,
     NoData,
 }
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TrackSurvey {
     pub format: TrackFormat,
     pub rate_hz: f64,

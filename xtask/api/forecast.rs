@@ -106,6 +106,18 @@ impl Member {
     pub fn of(&self, family: &Family) -> Scaled {}
     pub fn word(&self) -> &'static str {}
 }
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NetMotion {
+    pub displacement_over_length: f64,
+    pub displacement_m: f64,
+    pub lateral_over_length: f64,
+    pub rotation_rad: f64,
+    pub delta_y_over_length: f64,
+    pub delta_theta_rad: f64,
+    pub efficiency: f64,
+    pub efficiency_constant_power: f64,
+}
+impl From<&Stroke<f64>> for NetMotion {}
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Part {
     BackTip,
@@ -294,6 +306,9 @@ pub mod losses {
     pub use crate::Stage;
     pub use crate::Verdict;
     pub use crate::forecast;
+}
+pub mod net_motion {
+    pub use crate::NetMotion;
 }
 pub mod path {
     #[derive(Debug, Clone, PartialEq)]

@@ -4,7 +4,7 @@ pub use swimmer_files::ArcKind;
 pub use swimmer_files::Bounds;
 pub use swimmer_files::GaitArc;
 pub use swimmer_files::Objective;
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Arc {
     pub kind: ArcKind,
     pub from: [f64; 2],
@@ -84,6 +84,7 @@ impl Branch {
 impl fmt::Display for Branch {}
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {}
+impl Serialize for Certificate {}
 impl Certificate {
     pub fn checks(&self) -> &[Check] {}
     pub fn value(&self, name: &str) -> Option<f64> {}
@@ -98,7 +99,7 @@ pub enum CertifyError {
     TooFew { samples: usize },
     NoObjective,
 }
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Check {
     pub name: &'static str,
     pub value: f64,

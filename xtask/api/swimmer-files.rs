@@ -30,6 +30,7 @@ pub enum ArcKind {
     Regular,
     Extreme,
 }
+impl serde::Serialize for ArcKind {}
 impl ArcKind {
     pub fn word(self) -> &'static str {}
 }

@@ -126,6 +126,11 @@ impl<T: Scalar> Model<T> {
     ) -> (Matrix3x2<T>, Matrix2<T>) {}
     pub fn first_derivatives_at(&self, turns: [(T, T); 2]) -> FirstDerivatives<T> {}
     pub fn second_derivatives_at(&self, turns: [(T, T); 2]) -> SecondDerivatives<T> {}
+    pub fn weighed_curvature(
+        &self,
+        phi: &Vector2<T>,
+        covector: &Vector3<T>,
+    ) -> WeighedCurvature<T> {}
 }
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Panel<T> {}
@@ -179,6 +184,7 @@ impl<'a, T: Scalar> Sampled<'a, T> {
         corners: &'a [usize],
     ) -> Result<Self, InvalidSamples> {}
     pub fn knots(&self) -> usize {}
+    pub fn slopes(&self, knot: usize) -> [Vector2<T>; 2] {}
 }
 impl<T: Scalar> Gait<T> for Sampled<'_, T> {}
 pub trait Scalar: nalgebra::Scalar + Copy + PartialOrd + NumAssign + Neg<Output = Self> {
@@ -283,6 +289,13 @@ pub struct TrajectoryPoint<T> {
     pub phi: Vector2<T>,
     pub pose: Pose<T>,
     pub energy: T,
+}
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WeighedCurvature<T> {
+    pub connection: Matrix3x2<T>,
+    pub power: Matrix2<T>,
+    pub curvature: Vector3<T>,
+    pub slope: Vector2<T>,
 }
 pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
     links: &Links<T>,
