@@ -20,12 +20,12 @@ mod plane;
 mod rest;
 mod warning;
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::fmt;
 
 use nalgebra::{Vector2, Vector3};
 use swimmer_files::{PointName, Reflectors};
-use swimmer_model::{Pose, Swimmer};
+use swimmer_model::{Pose, Swimmer, wrapped_angle};
 
 use crate::TrackFile;
 use assembly::Assembly;
@@ -355,13 +355,8 @@ fn pose_of(
 ) -> Pose<f64> {
     let (at_front, at_back) = (Vector2::from(at_front), Vector2::from(at_back));
     let angle = |v: Vector2<f64>| v.y.atan2(v.x);
-    let theta = wrapped(angle(front - back) - angle(at_front - at_back));
+    let theta = wrapped_angle(angle(front - back) - angle(at_front - at_back));
     let middle = (front + back) / 2.0;
     let turned = Pose::new(0.0, 0.0, theta).transform(&((at_front + at_back) / 2.0));
     Pose::new(middle.x - turned.x, middle.y - turned.y, theta)
-}
-
-/// An angle in \[−π, π).
-pub(crate) fn wrapped(angle: f64) -> f64 {
-    (angle + PI).rem_euclid(TAU) - PI
 }

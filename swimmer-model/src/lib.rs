@@ -62,7 +62,7 @@ pub use gait::{
 };
 pub use heading::{FullFirstDerivatives, FullSecondDerivatives};
 pub use model::Model;
-pub use pose::Pose;
+pub use pose::{Pose, wrapped_angle};
 pub use scalar::Scalar;
 pub use stroke::{
     CrossingShare, Panel, Panels, Stroke, Tolerance, TrajectoryPoint, crossing_share, swim,

@@ -23,6 +23,20 @@ pub struct Pose<T> {
     pub theta: T,
 }
 
+/// The same angle \[rad\] within half a turn of 0.
+///
+/// ```
+/// use std::f64::consts::{PI, TAU};
+///
+/// assert_eq!(swimmer_model::wrapped_angle(3.0), 3.0);
+/// assert!((swimmer_model::wrapped_angle(PI + 0.5) - (0.5 - PI)).abs() < 1e-15);
+/// assert!((swimmer_model::wrapped_angle(-3.0 * TAU - 0.25) + 0.25).abs() < 1e-14);
+/// ```
+pub fn wrapped_angle(angle: f64) -> f64 {
+    let turn = core::f64::consts::TAU;
+    angle - turn * libm::round(angle / turn)
+}
+
 impl<T: Scalar> Pose<T> {
     /// A pose from its coordinates.
     pub fn new(x: T, y: T, theta: T) -> Self {

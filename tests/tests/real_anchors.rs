@@ -8,6 +8,7 @@ use std::path::Path;
 use calibrate::{PointKind, PoseOptions, PoseTrack, TrackFile, TrackPoint, poses, read_tracks};
 use nalgebra::Vector3;
 use swimmer_files::{PointName, Reflector, Reflectors};
+use swimmer_model::wrapped_angle;
 
 fn text(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -164,11 +165,6 @@ fn body_motion(text: &str) -> Vec<(f64, f64, f64, f64)> {
     out
 }
 
-fn wrapped(angle: f64) -> f64 {
-    use std::f64::consts::{PI, TAU};
-    (angle + PI).rem_euclid(TAU) - PI
-}
-
 /// B and C: the heading by two markers follows the body's, in the sense that the map (x, y) = (Z, X) gives and no other; the
 /// body itself is the worse instrument.
 #[test]
@@ -199,8 +195,8 @@ fn anchors_b_and_c_two_markers_tell_the_heading_better_than_the_body() {
         for sample in track.seen() {
             let there = body.iter().find(|b| (b.0 - sample.time_s).abs() < 1e-9);
             if let Some((_, heading, ..)) = there {
-                same.push(wrapped(sample.pose.theta - heading));
-                other.push(wrapped(-sample.pose.theta - heading));
+                same.push(wrapped_angle(sample.pose.theta - heading));
+                other.push(wrapped_angle(-sample.pose.theta - heading));
             }
         }
         let deviation = |angles: &[f64]| {
@@ -208,7 +204,7 @@ fn anchors_b_and_c_two_markers_tell_the_heading_better_than_the_body() {
                 .iter()
                 .fold((0.0, 0.0), |(s, c), a| (s + a.sin(), c + a.cos()));
             let mean = f64::atan2(sin, cos);
-            let squares: f64 = angles.iter().map(|a| wrapped(a - mean).powi(2)).sum();
+            let squares: f64 = angles.iter().map(|a| wrapped_angle(a - mean).powi(2)).sum();
             (squares / angles.len() as f64).sqrt().to_degrees()
         };
         // Where markers are near each other, a fraction of a millimetre is a degree.
@@ -237,7 +233,7 @@ fn anchors_b_and_c_two_markers_tell_the_heading_better_than_the_body() {
     let tilt = body.iter().map(|b| b.2).fold(0.0, f64::max).to_degrees();
     let yaw_off = body
         .iter()
-        .filter(|(_, heading, _, yaw)| wrapped(yaw - heading).abs() > 1_f64.to_radians())
+        .filter(|(_, heading, _, yaw)| wrapped_angle(yaw - heading).abs() > 1_f64.to_radians())
         .count();
     println!("the body tilts by {tilt:.0} deg, its yaw is off in {yaw_off} frames");
     assert!((131.5..132.5).contains(&tilt), "{tilt}");

@@ -4,7 +4,9 @@
 use nalgebra::Vector2;
 use swimmer_files::{PointName, Reflector, Reflectors};
 
-use crate::poses::{Origin, PoseSample, PoseTrack, is_called, wrapped};
+use swimmer_model::wrapped_angle;
+
+use crate::poses::{Origin, PoseSample, PoseTrack, is_called};
 use crate::tracks::TrackFile;
 
 /// How far a point may be from the reflector's distance to the joint, as a share of it.
@@ -93,7 +95,7 @@ impl Side<'_> {
             return None;
         }
         let outwards = from.y.atan2(from.x) - across.atan2(along);
-        Some(wrapped(if self.end > 0.0 {
+        Some(wrapped_angle(if self.end > 0.0 {
             outwards - pose.theta
         } else {
             pose.theta + std::f64::consts::PI - outwards
@@ -115,7 +117,7 @@ fn next(
         return Some(first.1);
     };
     let reach = STEP.max(SPEED * (time - then));
-    let off = |(_, other): &&(usize, f64)| wrapped(other - angle).abs();
+    let off = |(_, other): &&(usize, f64)| wrapped_angle(other - angle).abs();
     let nearest = seen.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
     // Over a long gap everything is near: the name decides.
     let found = if reach > 1.0 {
@@ -123,7 +125,7 @@ fn next(
     } else {
         nearest
     };
-    (off(&found) < reach).then(|| angle + wrapped(found.1 - angle))
+    (off(&found) < reach).then(|| angle + wrapped_angle(found.1 - angle))
 }
 
 fn row_at(track: &TrackFile, time_s: f64) -> Option<usize> {

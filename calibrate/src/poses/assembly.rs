@@ -2,11 +2,11 @@
 
 use nalgebra::Vector2;
 use swimmer_files::Reflectors;
-use swimmer_model::Pose;
+use swimmer_model::{Pose, wrapped_angle};
 
 use super::fill::{Bridge, Seen, TAIL};
 use super::follow::Followed;
-use super::{Origin, Plane, PoseSample, pose_of, wrapped};
+use super::{Origin, Plane, PoseSample, pose_of};
 use crate::TrackFile;
 
 /// Poses in time from what was seen, and from cubics over gaps.
@@ -23,7 +23,7 @@ impl Assembly<'_> {
         let mut samples: Vec<PoseSample> = Vec::with_capacity(seen.len());
         let mut push = |time_s: f64, mut pose: Pose<f64>, origin: Origin| {
             if let Some(last) = samples.last() {
-                pose.theta = last.pose.theta + wrapped(pose.theta - last.pose.theta);
+                pose.theta = last.pose.theta + wrapped_angle(pose.theta - last.pose.theta);
             }
             samples.push(PoseSample {
                 time_s,

@@ -69,7 +69,7 @@ pub(super) fn jumps(samples: &[PoseSample], distance_m: f64, rate_hz: f64) -> Ve
                 before_s: a.time_s,
                 after_s: b.time_s,
                 moved_m: (b.pose.position() - a.pose.position()).norm(),
-                turned_rad: super::wrapped(b.pose.theta - a.pose.theta),
+                turned_rad: swimmer_model::wrapped_angle(b.pose.theta - a.pose.theta),
             });
         }
     }

@@ -3,9 +3,8 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use nalgebra::Vector2;
 use swimmer_files::Objective;
-use swimmer_model::{Tolerance, swim};
+use swimmer_model::{Tolerance, swim, wrapped_angle};
 
 use super::candidate;
 use super::certificate::{Asked, of_cycle};
@@ -216,10 +215,10 @@ pub(super) fn told(
     fast: f64,
 ) -> Option<Fastest> {
     // Run the way that leads forward, and of two mirror images the one that leads to the left.
-    let ahead = remainder(chain.net.heading());
+    let ahead = wrapped_angle(chain.net.heading());
     let backward = ahead.cos() < -1e-9 || (ahead.cos() < 1e-9 && ahead < 0.0);
     let half_turn = if backward { std::f64::consts::PI } else { 0.0 };
-    let forward = remainder(ahead + half_turn);
+    let forward = wrapped_angle(ahead + half_turn);
     let sign = if forward < -1e-9 { -1.0 } else { 1.0 };
     let heading = sign * forward;
     let (mut cycle, mut arcs) = samples::cycle(setting, chain, sign);
@@ -256,10 +255,4 @@ pub(super) fn told(
             certificate,
         }),
     })
-}
-
-/// An angle in (−π, π].
-fn remainder(angle: f64) -> f64 {
-    let direction = Vector2::new(angle.cos(), angle.sin());
-    direction.y.atan2(direction.x)
 }
