@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use arbitrary::Arbitrary;
 use gait_player::GaitTable;
 use link_protocol::{
-    Arm, Begin, Chunk, Configuration, Joint, Key, MAX_SIGNED_CHUNK, Play, Request, ServoSettings,
+    Arm, Begin, Chunk, Configuration, Follow, Joint, Key, MAX_SIGNED_CHUNK, Play, Request, ServoSettings,
     TangentialDrag,
 };
 
@@ -63,6 +63,11 @@ pub enum Ask {
     },
     Commit {
         upload: u16,
+    },
+    Follow {
+        upload: u16,
+        cycles: u8,
+        tenths: u8,
     },
     Trim {
         back: bool,
@@ -144,6 +149,15 @@ impl Ask {
             Self::Commit { upload } => Request::Commit {
                 upload: number(upload),
             },
+            Self::Follow {
+                upload,
+                cycles,
+                tenths,
+            } => Request::Follow(Follow {
+                upload: number(upload),
+                cycles: cycles.into(),
+                period_us: u32::from(tenths) * 100_000,
+            }),
             Self::Trim { back, trim } => Request::Trim {
                 joint: joint(back),
                 trim,

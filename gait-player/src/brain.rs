@@ -76,7 +76,7 @@ use session::Session;
 use settings::Settings;
 use state::{Progress, State};
 use swimmer_model::{Model, Swimmer};
-use tables::{Swap, Tables};
+use tables::Tables;
 use work::Work;
 
 /// The brain. About 7 kB; no heap. A clone goes on by itself from the same state: whoever replays a log tries with it what

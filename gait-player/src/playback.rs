@@ -114,3 +114,65 @@ impl Playback<'_> {
         point(servos, until);
     }
 }
+
+/// One of several tables that are played one after the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlayedLeg<'a> {
+    /// The robot's table.
+    pub table: &'a GaitTable,
+    /// Cycles.
+    pub cycles: u32,
+    /// Duration of a cycle, µs.
+    pub period_us: u32,
+}
+
+/// Visits the set-points, one a tick, from the first of the soft start to the one at which the joints are straight again, of
+/// tables that follow each other without a pause ([`link_protocol::Request::Follow`]).
+pub fn setpoints(legs: &[PlayedLeg<'_>], limits: &Limits, mut visit: impl FnMut([f32; 2])) {
+    let (Some(first), Some(last)) = (legs.first(), legs.last()) else {
+        return;
+    };
+    let tick = u64::from(TICK_US);
+    let ramp = Ramp::soft(NEUTRAL, first.table.knot_angles(0), false, limits);
+    for at in (0..u64::from(ramp.duration_us())).step_by(TICK_US as usize) {
+        visit(ramp.at(at));
+    }
+    // What is left of a tick at the end of a leg belongs to the next one.
+    let mut over = 0;
+    for leg in legs {
+        let period = u64::from(leg.period_us.max(1));
+        let end = period * u64::from(leg.cycles);
+        while over < end {
+            let phase = leg.table.phase((over % period) as u32, leg.period_us);
+            visit(leg.table.at(phase).angles);
+            over += tick;
+        }
+        over -= end;
+    }
+    let ramp = Ramp::to_neutral(last.table.knot_angles(0), limits);
+    for at in (0..=u64::from(ramp.duration_us())).step_by(TICK_US as usize) {
+        visit(ramp.at(at));
+    }
+}
+
+impl Playback<'_> {
+    /// Visits the path that servos at rest at neutral take through these set-points, one a tick, from its start to its end.
+    pub fn through(
+        &self,
+        setpoints: impl IntoIterator<Item = [f32; 2]>,
+        mut visit: impl FnMut(PlayedPoint),
+    ) {
+        let tick = u64::from(TICK_US);
+        let mut servos = [ServoPlant::new(0.0); 2];
+        let mut now = 0;
+        for setpoint in setpoints {
+            self.visit_tick(
+                &mut servos,
+                self.command(setpoint),
+                (now, now + tick),
+                &mut visit,
+            );
+            now += tick;
+        }
+    }
+}

@@ -3,8 +3,10 @@
 
 pub mod finish;
 mod requests;
+pub mod sequence;
 
 pub use finish::time_left;
+pub use sequence::{Leg, Sequence, SequenceProgress};
 
 use std::ops::ControlFlow;
 use std::time::Duration;

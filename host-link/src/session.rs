@@ -204,6 +204,28 @@ impl Session {
     /// Sends a gait table of at most 2048 bytes to slot `slot`. Ends in [`Event::Uploaded`] or [`Event::Failed`], by
     /// `deadline` (a time of the host's clock) at the latest. An upload under way fails.
     pub fn upload(&mut self, now: Duration, slot: u8, table: &[u8], deadline: Duration) -> Ticket {
+        self.send_table(now, slot, table, None, deadline)
+    }
+
+    /// The same for a table that shall not become active, but follow the play under way, for so many cycles of so many µs.
+    pub fn upload_follower(
+        &mut self,
+        now: Duration,
+        table: &[u8],
+        (cycles, period_us): (u32, u32),
+        deadline: Duration,
+    ) -> Ticket {
+        self.send_table(now, 0, table, Some((cycles, period_us)), deadline)
+    }
+
+    fn send_table(
+        &mut self,
+        now: Duration,
+        slot: u8,
+        table: &[u8],
+        follows: Option<(u32, u32)>,
+        deadline: Duration,
+    ) -> Ticket {
         let ticket = self.ticket();
         let doing = "uploading the gait";
         let len = match u16::try_from(table.len()) {
@@ -235,6 +257,7 @@ impl Session {
         self.upload = Some(Upload {
             ticket,
             begin,
+            follows,
             table: table.to_vec(),
             started: now,
             deadline,

@@ -70,7 +70,7 @@ pub use hello::{
 pub use message::{BodyError, Message};
 pub use refusal::{CrossingPlace, Refusal};
 pub use reply::{BenchStatus, Counters, Reply, Status, TableInfo};
-pub use request::{Arm, Begin, Chunk, Play, Request};
+pub use request::{Arm, Begin, Chunk, Follow, Play, Request};
 pub use seal::{Binding, Key, Seal, encode_signed};
 pub use telemetry::{Flags, Heartbeat, Ping, Pong, Pose, StateName, StopCause, Telemetry};
 

@@ -132,6 +132,13 @@ pub enum Refusal {
     NeedsPresence,
     /// No fresh keep-alive was heard just now: this came late, or the link was only just opened. Ask again.
     NotFresh,
+    /// The table does not start where the one that it is to follow does.
+    NotJoined {
+        /// Which joint.
+        joint: Joint,
+        /// From the playing table's first knot to this one's, 1e-4 rad.
+        step: i32,
+    },
 }
 
 impl Refusal {
@@ -167,6 +174,7 @@ impl Refusal {
             Self::WrongKey => 26,
             Self::NeedsPresence => 27,
             Self::NotFresh => 28,
+            Self::NotJoined { .. } => 29,
         }
     }
 }
@@ -324,6 +332,11 @@ impl core::fmt::Display for Refusal {
             Self::NotFresh => write!(
                 f,
                 "it has heard nothing fresh from here: the link is slower than a second, or was only just opened; try again, nearer to it"
+            ),
+            Self::NotJoined { joint, step } => write!(
+                f,
+                "{joint:?} joint would jump {:.4} rad to the gait that follows: gaits that follow each other start at one shape",
+                rad(step)
             ),
         }
     }

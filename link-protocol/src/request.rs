@@ -87,6 +87,10 @@ pub enum Request {
     /// Leaves the firmware for the chip's boot loader, which takes a new one over USB; only while Stopped, with presence. The
     /// answer comes before.
     EnterBootLoader,
+    /// Checks an upload as [`Request::Commit`] does, and plays it once the last cycle of the play under way is done (of a play
+    /// without end: the present one), without a pause. Both tables start at the same knot. Answered by
+    /// [`crate::Reply::Table`] when it waits.
+    Follow(Follow),
 }
 
 impl Request {
@@ -97,7 +101,10 @@ impl Request {
 
     /// It turns pulses on or sets joints in motion: it takes a host whose keep-alives are fresh.
     pub fn is_powering(&self) -> bool {
-        matches!(self, Self::Arm(_) | Self::Play(_) | Self::Resume)
+        matches!(
+            self,
+            Self::Arm(_) | Self::Play(_) | Self::Resume | Self::Follow(_)
+        )
     }
 }
 
@@ -139,4 +146,15 @@ pub struct Play {
     pub period_us: u32,
     /// Plays on to its end when the link falls silent; needs a number of cycles.
     pub detached: bool,
+}
+
+/// What follows the play under way; it plays on detached where that one does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Follow {
+    /// Sequence number of the upload's [`Request::Begin`].
+    pub upload: u16,
+    /// Number of cycles; 0 plays until told otherwise.
+    pub cycles: u32,
+    /// Duration of a cycle, µs.
+    pub period_us: u32,
 }

@@ -12,6 +12,8 @@ const GOLDEN: &str = include_str!("golden/v1.txt");
 /// What came since: appended variants, and frames signed with a real key.
 const APPENDED: &str = include_str!("golden/v1-appended.txt");
 const GOLDEN_2: &str = include_str!("golden/v2.txt");
+/// What came since: appended variants.
+const APPENDED_2: &str = include_str!("golden/v2-appended.txt");
 /// Greetings, stops and their answer, in frames of any version.
 const FOR_EVER: &str = include_str!("golden/for-ever.txt");
 
@@ -107,7 +109,7 @@ fn what_was_appended_is_frozen_too() {
 #[test]
 fn version_2_is_frozen() {
     let mut now = String::new();
-    for (name, message) in samples::messages() {
+    for (name, message) in samples::version_2_frozen() {
         let _ = writeln!(now, "{name}: {}", hex(&samples::frame(2, &message)));
     }
     let binding = Binding {
@@ -116,7 +118,7 @@ fn version_2_is_frozen() {
         host_nonce: 0x1234_5678,
     };
     let seal = Seal::new(&samples::KEY, binding);
-    for (name, message) in samples::messages() {
+    for (name, message) in samples::version_2_frozen() {
         let mut out = [0; link_protocol::MAX_ENCODED];
         if [
             "heartbeat",
@@ -137,10 +139,25 @@ fn version_2_is_frozen() {
         }
     }
     let _ = writeln!(now, "schema key: {}", hex(&SCHEMA_KEY));
+    // The last line is the structure as it was when this was frozen.
+    let (frozen, _) = GOLDEN_2.trim_end().rsplit_once('\n').unwrap();
+    assert!(
+        now.trim_end() == frozen,
+        "the bytes of version 2 changed; they are now\n{now}"
+    );
+}
+
+/// Lines are appended here, and only the last one changes.
+#[test]
+fn what_was_appended_to_version_2_is_frozen_too() {
+    let mut now = String::new();
+    for (name, message) in samples::version_2_appended() {
+        let _ = writeln!(now, "{name}: {}", hex(&samples::frame(2, &message)));
+    }
     let _ = writeln!(now, "structure of all messages: {}", hex(&SCHEMA_NOW));
     assert!(
-        now == GOLDEN_2,
-        "the bytes of version 2 changed; they are now\n{now}"
+        now == APPENDED_2,
+        "the bytes of what was appended to version 2 changed; they are now\n{now}"
     );
 }
 

@@ -9,7 +9,7 @@ use crate::route::Route;
 use crate::servo::ServoMap;
 use crate::table::check::Checker;
 use link_protocol::{
-    Arm, BenchStatus, Configuration, Joint, Play, PulseRange, Refusal, Reply, Request,
+    Arm, BenchStatus, Configuration, Follow, Joint, Play, PulseRange, Refusal, Reply, Request,
     ServoSettings,
 };
 
@@ -52,7 +52,8 @@ impl Brain {
             }
             // Handled before the order of requests.
             Request::Chunk(_) => Err(Refusal::NoUpload),
-            Request::Commit { upload } => self.commit(asked, *upload),
+            Request::Commit { upload } => self.commit(asked, *upload, None),
+            Request::Follow(follow) => self.follow(asked, *follow),
             Request::Arm(arm) => self.arm(*arm),
             Request::Play(play) => self.play(asked, *play),
             Request::Pause { detached } => self.pause(now_us, *detached),
@@ -207,7 +208,25 @@ impl Brain {
         DONE
     }
 
-    fn commit(&mut self, asked: Asked, upload: u16) -> Outcome {
+    /// The upload as what follows the play under way.
+    fn follow(&mut self, asked: Asked, follow: Follow) -> Outcome {
+        let Some(under_way) = self.state.play() else {
+            return Err(Refusal::WrongState(self.state.name()));
+        };
+        let play = Play {
+            cycles: follow.cycles,
+            period_us: follow.period_us,
+            detached: under_way.request.detached,
+        };
+        check_play(&play).map_err(|refusal| match refusal {
+            // The period's place among the fields of this request.
+            Refusal::BadValue { .. } => Refusal::BadValue { field: 2 },
+            refusal => refusal,
+        })?;
+        self.commit(asked, follow.upload, Some(play))
+    }
+
+    fn commit(&mut self, asked: Asked, upload: u16, follow: Option<Play>) -> Outcome {
         self.only_idle()?;
         if let Err(refusal) = self.tables.complete(upload) {
             if matches!(refusal, Refusal::CrcMismatch { .. }) {
@@ -218,6 +237,7 @@ impl Brain {
         self.work = Work::Commit {
             reply_to: asked,
             checker: Checker::new(),
+            follow,
         };
         LATER
     }
@@ -263,12 +283,7 @@ impl Brain {
             }
         }
         self.only_idle()?;
-        if play.period_us < crate::TICK_US {
-            return Err(Refusal::BadValue { field: 1 });
-        }
-        if play.detached && play.cycles == 0 {
-            return Err(Refusal::DetachedEndless);
-        }
+        check_play(&play)?;
         if self.tables.active().is_none() {
             return Err(Refusal::NoTable);
         }
@@ -315,4 +330,15 @@ impl Brain {
             state => Err(Refusal::WrongState(state.name())),
         }
     }
+}
+
+/// A period that is one, and an end where nobody would end it.
+fn check_play(play: &Play) -> Result<(), Refusal> {
+    if play.period_us < crate::TICK_US {
+        return Err(Refusal::BadValue { field: 1 });
+    }
+    if play.detached && play.cycles == 0 {
+        return Err(Refusal::DetachedEndless);
+    }
+    Ok(())
 }

@@ -2,10 +2,11 @@
 
 use super::Brain;
 use super::state::{Progress, State};
+use super::tables::{Swap, SwapWay};
 use super::work::Work;
 use crate::TICK_US;
 use crate::ramp::{NEUTRAL, Ramp};
-use link_protocol::{Refusal, Reply, StopCause};
+use link_protocol::{Play, Refusal, Reply, StopCause};
 
 /// Pulses stay on so long at neutral.
 const SETTLE_US: u64 = 500_000;
@@ -141,6 +142,18 @@ impl Brain {
             return self.commanded;
         };
         let end = table.knot_angles(0);
+        let swap = self.tables.swap();
+        let cycle_done = now.cycles_done() > before.cycles_done();
+        if let Some(Swap {
+            facts,
+            way: SwapWay::Follow(next),
+        }) = swap
+            && (now.finished() || now.request.cycles == 0 && cycle_done)
+        {
+            self.tables.activate_staging(facts);
+            self.persist.table_changed();
+            return self.begin_follower(now, next);
+        }
         if now.finished() {
             now.elapsed_us = now.period_us() * u64::from(now.request.cycles);
             self.last_play = Some(now);
@@ -152,17 +165,20 @@ impl Brain {
             self.cause = StopCause::Finished;
             return end;
         }
-        if let Some(swap) = self.tables.swap()
-            && now.cycles_done() > before.cycles_done()
+        if let Some(Swap {
+            facts,
+            way: SwapWay::Ramp { via_neutral },
+        }) = swap
+            && cycle_done
         {
-            self.tables.activate_staging(swap.facts);
+            self.tables.activate_staging(facts);
             self.persist.table_changed();
             let first = self
                 .tables
                 .active()
                 .map_or(NEUTRAL, |table| table.knot_angles(0));
             // From where the way was checked, which is where this cycle ends.
-            let ramp = Ramp::soft(end, first, swap.via_neutral, &self.limits);
+            let ramp = Ramp::soft(end, first, via_neutral, &self.limits);
             now.elapsed_us = now.period_us() * now.cycles_done();
             self.last_play = Some(now);
             self.state = State::Starting {
@@ -177,5 +193,27 @@ impl Brain {
             .angles;
         self.last_play = Some(now);
         angles
+    }
+
+    /// The first set-point of the table that follows: both start at one knot, so the play goes on within this very tick.
+    fn begin_follower(&mut self, done: Progress, next: Play) -> [f32; 2] {
+        let cycles = match done.request.cycles {
+            0 => done.cycles_done(),
+            cycles => u64::from(cycles),
+        };
+        let play = Progress {
+            request: next,
+            elapsed_us: done.elapsed_us.saturating_sub(done.period_us() * cycles),
+        };
+        self.state = State::Playing {
+            since: self.tick,
+            play,
+        };
+        self.last_play = Some(play);
+        self.tables.active().map_or(NEUTRAL, |table| {
+            table
+                .at(table.phase(play.in_cycle_us(), next.period_us))
+                .angles
+        })
     }
 }

@@ -3,7 +3,7 @@
 use crate::GaitTable;
 use crate::table::check::{Checker, Facts};
 use crate::table::{KNOT_BYTES, MIN_KNOTS};
-use link_protocol::{Begin, Chunk, MAX_TABLE, Refusal, TableInfo};
+use link_protocol::{Begin, Chunk, MAX_TABLE, Play, Refusal, TableInfo};
 
 /// The tables and the upload.
 #[derive(Clone)]
@@ -37,7 +37,16 @@ struct Upload {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Swap {
     pub(crate) facts: Facts,
-    pub(crate) via_neutral: bool,
+    pub(crate) way: SwapWay,
+}
+
+/// How the play goes over to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum SwapWay {
+    /// At the end of the present cycle, by a ramp; the play goes on as it was asked for.
+    Ramp { via_neutral: bool },
+    /// At the end of the last cycle, at once, as the play that was asked to follow.
+    Follow(Play),
 }
 
 impl Tables {

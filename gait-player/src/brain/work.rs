@@ -1,12 +1,13 @@
 //! Work that takes longer than a tick may: checking a table or a way. It is done in pieces, and the request that asked
 //! for it is answered at its end.
 
+use super::Brain;
 use super::requests::Asked;
-use super::{Brain, Swap};
+use super::tables::{Swap, SwapWay};
 use crate::ramp::Ramp;
 use crate::route::{Decision, Route};
 use crate::table::check::{CLEARANCE_WORK, Checker, Facts};
-use link_protocol::{CrossingPlace, Play, Refusal, Reply};
+use link_protocol::{CrossingPlace, Joint, Play, Refusal, Reply};
 
 use super::state::{Progress, State};
 
@@ -23,8 +24,12 @@ const LOOK_WORK: u32 = CLEARANCE_WORK;
 pub(crate) enum Work {
     /// Nothing.
     Idle,
-    /// A commit's table.
-    Commit { reply_to: Asked, checker: Checker },
+    /// A commit's table, and the play that it is to be where it follows another.
+    Commit {
+        reply_to: Asked,
+        checker: Checker,
+        follow: Option<Play>,
+    },
     /// A commit's way from the first knot of the playing table to that of the new one.
     Swap {
         reply_to: Asked,
@@ -53,9 +58,17 @@ impl Brain {
             Work::Commit {
                 reply_to,
                 mut checker,
-            } => match checker.advance(self.tables.staging(), &links, left) {
-                None => self.work = Work::Commit { reply_to, checker },
-                Some(facts) => self.table_checked(reply_to, facts),
+                follow,
+            } => match (checker.advance(self.tables.staging(), &links, left), follow) {
+                (None, _) => {
+                    self.work = Work::Commit {
+                        reply_to,
+                        checker,
+                        follow,
+                    }
+                }
+                (Some(facts), None) => self.table_checked(reply_to, facts),
+                (Some(facts), Some(play)) => self.follower_checked(reply_to, facts, play),
             },
             Work::Swap {
                 reply_to,
@@ -117,6 +130,35 @@ impl Brain {
         }
     }
 
+    /// A table that follows waits for the last cycle to end, if there still is one.
+    fn follower_checked(&mut self, reply_to: Asked, facts: Facts, play: Play) {
+        let allowed = facts
+            .allow(&self.limits)
+            .and_then(|()| facts.allow_period(&self.limits, play.period_us))
+            .and_then(|()| match (self.state.play(), self.tables.active()) {
+                (Some(_), Some(active)) => joins(active.knot(0), self.tables.staging().knot(0)),
+                _ => Err(Refusal::WrongState(self.state.name())),
+            });
+        match allowed {
+            Ok(()) => self.wait_for_swap(reply_to, facts, SwapWay::Follow(play)),
+            Err(refusal) => {
+                self.tables.abandon();
+                self.finish(reply_to, Reply::Refused(refusal));
+            }
+        }
+    }
+
+    fn wait_for_swap(&mut self, reply_to: Asked, facts: Facts, way: SwapWay) {
+        self.tables.wait_for_swap(Swap { facts, way });
+        let info = link_protocol::TableInfo {
+            knots: self.tables.staging().knots() as u16,
+            crc32: self.tables.staging().crc32(),
+            stored: false,
+            min_period_us: facts.min_period_us(&self.limits),
+        };
+        self.finish(reply_to, Reply::Table(Some(info)));
+    }
+
     fn swap_decided(&mut self, reply_to: Asked, facts: Facts, decision: Decision) {
         if self.state.play().is_none() {
             return self.activate(reply_to, facts);
@@ -128,14 +170,7 @@ impl Brain {
             }
             decision => {
                 let via_neutral = decision == Decision::ViaNeutral;
-                self.tables.wait_for_swap(Swap { facts, via_neutral });
-                let info = link_protocol::TableInfo {
-                    knots: self.tables.staging().knots() as u16,
-                    crc32: self.tables.staging().crc32(),
-                    stored: false,
-                    min_period_us: facts.min_period_us(&self.limits),
-                };
-                self.finish(reply_to, Reply::Table(Some(info)));
+                self.wait_for_swap(reply_to, facts, SwapWay::Ramp { via_neutral });
             }
         }
     }
@@ -199,6 +234,17 @@ impl Brain {
             route: Some(route),
         };
     }
+}
+
+/// Two tables start at the same knot.
+fn joins(active: [i16; 2], next: [i16; 2]) -> Result<(), Refusal> {
+    for joint in [Joint::Front, Joint::Back] {
+        let step = i32::from(next[joint.index()]) - i32::from(active[joint.index()]);
+        if step != 0 {
+            return Err(Refusal::NotJoined { joint, step });
+        }
+    }
+    Ok(())
 }
 
 fn on_the_way(shape: [f32; 2]) -> Refusal {

@@ -213,9 +213,7 @@ impl Session {
             upload.due = false;
             let request = match upload.phase {
                 UploadPhase::Begin => Request::Begin(upload.begin),
-                UploadPhase::Chunks | UploadPhase::Commit => Request::Commit {
-                    upload: upload.number,
-                },
+                UploadPhase::Chunks | UploadPhase::Commit => upload.last_request(),
             };
             self.put_under_way(Owner::Upload, request, now);
         } else if let Some((ticket, request)) = self.queue.pop_front() {

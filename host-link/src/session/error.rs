@@ -191,6 +191,17 @@ pub enum LinkError {
         /// What else holds.
         flags: Flags,
     },
+    /// A table of a sequence was not there when the play before it ended.
+    #[error(
+        "the robot came to rest after {played} of {legs} gaits of the playlist: the table of the next was not there when the last \
+         cycle ended; the link is too slow for so short a step, so give it more cycles, or bring the robot nearer"
+    )]
+    OutOfStep {
+        /// Legs that were played.
+        played: usize,
+        /// Legs of the sequence.
+        legs: usize,
+    },
     /// The robot did it, but its storage did not take it.
     #[error(
         "while {doing}: done, but the robot could not store it, so it is gone when the power is cut: look at its status and try again"

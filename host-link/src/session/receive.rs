@@ -310,16 +310,22 @@ impl Session {
                 upload.window = window;
                 self.chunks_or_commit();
             }
-            (Request::Commit { .. }, Reply::Table(Some(table))) => {
+            (Request::Commit { .. } | Request::Follow(_), Reply::Table(Some(table))) => {
                 let ticket = upload.ticket;
                 self.upload = None;
                 self.events.push_back(Event::Uploaded { ticket, table });
             }
-            (Request::Commit { .. }, Reply::Refused(Refusal::Incomplete { .. })) => {
+            (
+                Request::Commit { .. } | Request::Follow(_),
+                Reply::Refused(Refusal::Incomplete { .. }),
+            ) => {
                 upload.window = window;
                 self.chunks_or_commit();
             }
-            (Request::Commit { .. }, Reply::Refused(refusal @ Refusal::NoUpload)) => {
+            (
+                Request::Commit { .. } | Request::Follow(_),
+                Reply::Refused(refusal @ Refusal::NoUpload),
+            ) => {
                 self.renew_upload(LinkError::Refused { doing, refusal });
             }
             (_, Reply::Refused(refusal)) => self.end_upload(LinkError::Refused { doing, refusal }),

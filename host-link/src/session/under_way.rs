@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use link_protocol::{Begin, HelloReply, Request};
+use link_protocol::{Begin, Follow, HelloReply, Request};
 
 use super::Ticket;
 use super::upload::{UploadPhase, Window};
@@ -52,6 +52,8 @@ pub(super) struct Pending {
 pub(super) struct Upload {
     pub(super) ticket: Ticket,
     pub(super) begin: Begin,
+    /// It is to follow the play under way, for so many cycles of so many µs; else it becomes the active table.
+    pub(super) follows: Option<(u32, u32)>,
     pub(super) table: Vec<u8>,
     pub(super) started: Duration,
     pub(super) deadline: Duration,
@@ -65,6 +67,21 @@ pub(super) struct Upload {
     pub(super) renewed: u32,
 }
 
+impl Upload {
+    /// What asks for the check once all pieces are there.
+    pub(super) fn last_request(&self) -> Request {
+        let upload = self.number;
+        match self.follows {
+            None => Request::Commit { upload },
+            Some((cycles, period_us)) => Request::Follow(Follow {
+                upload,
+                cycles,
+                period_us,
+            }),
+        }
+    }
+}
+
 /// What a request does, to complete "while …".
 pub(super) fn describe(request: &Request) -> &'static str {
     match request {
@@ -75,7 +92,9 @@ pub(super) fn describe(request: &Request) -> &'static str {
         Request::Servo(_) => "asking for a servo's settings",
         Request::SetServo { .. } => "setting up a servo",
         Request::Trim { .. } => "trimming a servo",
-        Request::Begin(_) | Request::Chunk(_) | Request::Commit { .. } => "uploading the gait",
+        Request::Begin(_) | Request::Chunk(_) | Request::Commit { .. } | Request::Follow(_) => {
+            "uploading the gait"
+        }
         Request::Arm(_) => "arming",
         Request::Play(_) => "starting to play",
         Request::Pause { .. } => "pausing",

@@ -326,9 +326,37 @@ fn replies() -> std::vec::Vec<(&'static str, Reply)> {
 
 /// Every message with a name.
 pub(crate) fn messages() -> std::vec::Vec<(&'static str, Message)> {
+    let mut all = version_2_frozen();
+    all.extend(version_2_appended());
+    all
+}
+
+/// Those of version 2 as it was when it was frozen, with those of version 1.
+pub(crate) fn version_2_frozen() -> std::vec::Vec<(&'static str, Message)> {
     let mut all = version_1();
     all.extend(version_2());
     all
+}
+
+/// What was appended to version 2 since.
+pub(crate) fn version_2_appended() -> std::vec::Vec<(&'static str, Message)> {
+    vec![
+        (
+            "request/follow",
+            Message::Request(Request::Follow(Follow {
+                upload: 7,
+                cycles: 11,
+                period_us: 3_840_000,
+            })),
+        ),
+        (
+            "refused/not joined",
+            Message::Reply(Reply::Refused(Refusal::NotJoined {
+                joint: Joint::Back,
+                step: -127,
+            })),
+        ),
+    ]
 }
 
 /// Those of version 1.

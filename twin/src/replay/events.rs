@@ -251,6 +251,7 @@ fn moves(request: &Request) -> bool {
         | Request::SetPulseRange { .. }
         | Request::Trim { .. }
         | Request::Commit { .. }
+        | Request::Follow(_)
         | Request::ClearEStop
         | Request::Arm(_)
         | Request::Play(_)

@@ -118,6 +118,11 @@ pub(super) fn requests() -> Vec<Request> {
         },
         Request::ClearEStop,
         Request::EnterBootLoader,
+        Request::Follow(Follow {
+            upload: 0,
+            cycles: 2,
+            period_us: 1_000_000,
+        }),
     ]
 }
 

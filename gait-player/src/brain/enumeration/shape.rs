@@ -5,6 +5,7 @@ use crate::TICK_US;
 use crate::Transport;
 use crate::brain::settings::Settings;
 use crate::brain::state::State;
+use crate::brain::tables::SwapWay;
 use crate::brain::work::Work;
 
 /// In which respect worlds are told apart that are the same otherwise: in one at a time, for with all at once there are too
@@ -118,7 +119,10 @@ impl World {
             ),
             work: match brain.work {
                 Work::Idle => 0,
-                Work::Commit { .. } => 1,
+                Work::Commit { follow: None, .. } => 1,
+                Work::Commit {
+                    follow: Some(_), ..
+                } => 4,
                 Work::Swap { .. } => 2,
                 Work::Play { .. } => 3,
             },
@@ -128,7 +132,10 @@ impl World {
                 complete: brain.tables.complete(self.upload).is_ok(),
             }),
             tables: (
-                brain.tables.swap().is_some(),
+                brain
+                    .tables
+                    .swap()
+                    .map(|swap| matches!(swap.way, SwapWay::Follow(_))),
                 brain
                     .tables
                     .active()
@@ -163,7 +170,7 @@ pub(super) struct Shape {
     resets: (bool, Option<bool>, bool, bool),
     work: u8,
     upload: Option<Upload>,
-    tables: (bool, Option<bool>),
+    tables: (Option<bool>, Option<bool>),
     unsaved: (bool, bool),
 }
 

@@ -213,11 +213,16 @@ impl World {
         match &mut request {
             Request::Chunk(chunk) => chunk.upload = self.upload,
             Request::Commit { upload } => *upload = self.upload,
+            Request::Follow(follow) => follow.upload = self.upload,
             Request::Begin(begin) => (self.upload, self.begun) = (sequence, begin.crc32),
             _ => {}
         }
         let arms = matches!(request, Request::Arm(_));
-        let moves = arms || matches!(request, Request::Play(_) | Request::Resume);
+        let moves = arms
+            || matches!(
+                request,
+                Request::Play(_) | Request::Resume | Request::Follow(_)
+            );
         let frame = self.signed(session, sequence, &Message::Request(request));
         let done = self.receive(&frame);
         if session == self.brain.session.number() && sequence == self.sequence {
