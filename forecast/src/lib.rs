@@ -34,6 +34,7 @@ pub mod losses;
 pub mod net_motion;
 pub mod path;
 pub mod plan;
+pub mod playlist;
 pub mod reach;
 pub mod table;
 pub mod tank;
@@ -43,10 +44,11 @@ pub use certainty::Ends;
 pub use fluid::{Demand, demand};
 pub use losses::{Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast};
 pub use net_motion::NetMotion;
-pub use plan::{Errand, Family, Kind, Member, Plan, PlanError, Step, plan};
+pub use plan::{Errand, Family, Kind, Member, Plan, PlanError, Scaled, Step, plan};
+pub use playlist::{PlaylistTable, Repeated};
 pub use reach::{Reach, reach};
 pub use table::table;
-pub use tank::{Meeting, Part, Tank, until_wall};
+pub use tank::{Meeting, Part, Tank, meets_wall, until_wall};
 pub use timing::{
     Timing, TimingError, shortest_of_table, shortest_period, timing, timing_of_table,
 };

@@ -21,6 +21,7 @@ use swimmer_model::{Gait, Model, Tolerance, swim};
 use crate::path::Polyline;
 use crate::reach::{Reach, reach};
 pub use gap::Gap;
+pub(crate) use stages::facts;
 
 /// The servos that shall play a gait.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,7 +63,7 @@ impl Servos {
         self.file.max_angle
     }
 
-    fn map(&self) -> ServoMap {
+    pub(crate) fn map(&self) -> ServoMap {
         ServoMap {
             centre_ns: (self.file.centre_us * 1000.0).round() as u32,
             slope_rad_per_us: self.file.slope_rad_per_us as f32,
@@ -70,7 +71,7 @@ impl Servos {
         }
     }
 
-    fn limits(&self) -> Limits {
+    pub(crate) fn limits(&self) -> Limits {
         Limits {
             max_angle: self.file.max_angle as f32,
             max_rate: self.file.max_rate as f32,
@@ -78,7 +79,7 @@ impl Servos {
         }
     }
 
-    fn plant(&self) -> PlantParameters {
+    pub(crate) fn plant(&self) -> PlantParameters {
         PlantParameters {
             max_rate: self.file.max_rate,
             dead_band: self.file.dead_band,

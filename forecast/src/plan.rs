@@ -4,24 +4,33 @@
 //! drawn towards the common shape by a scale of at most 1, with the servos as fast as before, and its own net pose, swum anew.
 //! A leg is a number of cycles of one member, forwards or backwards; three legs have three scales, which meet a target's three
 //! coordinates exactly. Which legs, in which order and how many cycles is searched for; walls are respected.
+//!
+//! The robot's tables cut corners, its servos have a dead band, and the ways from and to the straight shape are ramps. So a chain
+//! is played, with the robot's own arithmetic, and aimed as far beside the target as it misses it by, until it is met.
 
+mod aim;
 mod legs;
 mod member;
 mod room;
 
 use nalgebra::Vector2;
 use swimmer_files::AnyGait;
-use swimmer_model::{Model, Pose, Tolerance, swim};
+use swimmer_model::{Model, Pose, wrapped_angle};
 
+use crate::losses::Servos;
 use crate::path::Polyline;
+use crate::playlist::{leads_to, step_period};
 use crate::tank::Tank;
-pub use member::{Kind, Member};
+use aim::{Aim, Hit};
+pub use member::{Kind, Member, Scaled};
 
 /// The gaits that a plan is made of.
 #[derive(Debug, Clone)]
 pub struct Family {
     /// One of each kind, all from one common shape: forward, left, turning left; with the seconds that a cycle takes.
     pub gaits: [(AnyGait, f64); 3],
+    /// All of them seen in a mirror along the body, φ ↦ −φ: left is right then, and the common shape bends the other way.
+    pub mirrored: bool,
 }
 
 /// What is asked for. Poses are those of the middle link with all joints straight, from the tank's centre: the way from there to
@@ -38,6 +47,8 @@ pub struct Errand {
     pub tank: Option<Tank>,
     /// No part of it comes nearer to a wall than this \[m\].
     pub margin: f64,
+    /// What the plan is played by.
+    pub servos: Servos,
 }
 
 /// So many cycles of one member.
@@ -47,8 +58,20 @@ pub struct Step {
     pub member: Member,
     /// Cycles.
     pub cycles: u32,
-    /// Seconds of a cycle.
+    /// Seconds of a cycle, as it is played.
     pub period: f64,
+}
+
+impl Step {
+    /// At the servos' full rate.
+    fn new(family: &Family, servos: &Servos, member: Member, cycles: u32) -> Self {
+        let (_, period) = &family.gaits[member.kind as usize];
+        Self {
+            member,
+            cycles,
+            period: step_period(period * member.scale, servos.file.max_rate),
+        }
+    }
 }
 
 /// A plan.
@@ -56,10 +79,14 @@ pub struct Step {
 pub struct Plan {
     /// In order.
     pub steps: Vec<Step>,
+    /// Of the gaits in a mirror.
+    pub mirrored: bool,
     /// \[s\], without the ways from and to the straight shape.
     pub duration: f64,
-    /// Where the model ends up, the joints straight again.
+    /// Where the swimmer ends up, the joints straight again.
     pub reached: Pose<f64>,
+    /// The way of the joints as the servos take it, from straight to straight.
+    pub way: Polyline,
     /// How far that is from the target \[m\], and by what angle \[rad\].
     pub off: [f64; 2],
     /// Chains of legs that meet the target, and those of them that the walls leave.
@@ -91,6 +118,14 @@ pub enum PlanError {
         /// \[m\]
         margin: f64,
     },
+    /// The robot would not play it.
+    #[error("the robot would refuse the {gait} gait of the plan: {reason}")]
+    Refused {
+        /// Which gait.
+        gait: &'static str,
+        /// The robot's words.
+        reason: String,
+    },
     /// No chain of legs.
     #[error(
         "no way found: {met} chains of at most three legs meet the target, and each comes within {margin} m of a wall; name a target \
@@ -107,33 +142,26 @@ pub enum PlanError {
 impl Family {
     /// The common shape \[rad\].
     pub fn shape(&self) -> Vector2<f64> {
-        swimmer_model::Gait::at(&self.gaits[0].0, 0.0).phi
+        swimmer_model::Gait::at(&self.gaits[0].0, 0.0).phi * self.sign()
+    }
+
+    fn sign(&self) -> f64 {
+        if self.mirrored { -1.0 } else { 1.0 }
+    }
+
+    /// The same gaits in a mirror.
+    #[must_use]
+    pub fn mirror(&self) -> Self {
+        Self {
+            gaits: self.gaits.clone(),
+            mirrored: !self.mirrored,
+        }
     }
 
     /// What going from the straight shape to the common one brings.
     fn way_in(&self, model: &Model<f64>) -> Pose<f64> {
-        net(model, &Polyline::new([Vector2::zeros(), self.shape()]))
+        leads_to(model, &Polyline::new([Vector2::zeros(), self.shape()]))
     }
-
-    /// Where these steps lead, swum anew: each member as a gait of its own.
-    pub fn reached(&self, model: &Model<f64>, from: &Pose<f64>, steps: &[Step]) -> Pose<f64> {
-        let way_in = self.way_in(model);
-        let mut pose = *from * way_in;
-        for step in steps {
-            let cycle = net(model, &step.member.of(self));
-            pose = pose * member::repeated(&cycle, step.cycles);
-        }
-        pose * way_in.inverse()
-    }
-}
-
-fn net<G: swimmer_model::Gait<f64>>(model: &Model<f64>, gait: &G) -> Pose<f64> {
-    let stroke = swim(model, gait, &Tolerance::default());
-    Pose::new(
-        stroke.displacement.x,
-        stroke.displacement.y,
-        stroke.rotation,
-    )
 }
 
 /// The quickest plan that is found.
@@ -142,23 +170,24 @@ fn net<G: swimmer_model::Gait<f64>>(model: &Model<f64>, gait: &G) -> Pose<f64> {
 /// [`PlanError`].
 ///
 /// ```
-/// use forecast::{Errand, Family, PlanError, plan};
+/// use forecast::{Errand, Family, PlanError, Servos, plan};
 /// use nalgebra::Vector2;
-/// use swimmer_files::AnyGait;
+/// use swimmer_files::{AnyGait, ServoFile};
 /// use swimmer_model::{Model, Pose, Swimmer};
 ///
 /// let model = Model::new(&Swimmer::robot()).unwrap();
 /// // Circles of three sizes start at three shapes: they do not join.
 /// let gaits = [0.8, 1.0, 1.2].map(|amplitude| (AnyGait::circle(amplitude), 10.0));
 /// let to = Vector2::new(0.2, 0.1);
-/// let errand = Errand { from: Pose::identity(), to, heading: None, tank: None, margin: 0.005 };
-/// let refused = plan(&model, &Family { gaits }, &errand).unwrap_err();
+/// let servos = Servos::on_the_robot(ServoFile::default());
+/// let errand = Errand { from: Pose::identity(), to, heading: None, tank: None, margin: 0.005, servos };
+/// let refused = plan(&model, &Family { gaits, mirrored: false }, &errand).unwrap_err();
 /// assert!(matches!(refused, PlanError::Apart { apart } if (apart - 0.4).abs() < 1e-12));
 /// ```
 pub fn plan(model: &Model<f64>, family: &Family, errand: &Errand) -> Result<Plan, PlanError> {
     let shape = family.shape();
     let apart = family.gaits.iter().map(|(gait, _)| {
-        let end = |u: f64| (swimmer_model::Gait::at(gait, u).phi - shape).norm();
+        let end = |u: f64| (swimmer_model::Gait::at(gait, u).phi * family.sign() - shape).norm();
         end(0.0).max(end(1.0))
     });
     let apart = apart.fold(0.0, f64::max);
@@ -183,39 +212,119 @@ pub fn plan(model: &Model<f64>, family: &Family, errand: &Errand) -> Result<Plan
             Pose::new(errand.to.x, errand.to.y, heading),
         )?;
     }
+    // Beside a wall the swimmer may have room to bend away from it only.
+    let plans =
+        [family.clone(), family.mirror()].map(|family| of_family(model, &family, errand, &room));
+    let [one, other] = plans;
+    match (one?, other?) {
+        ((Some(one), met), (Some(other), met_too)) => {
+            let quicker = if other.duration < one.duration {
+                other
+            } else {
+                one
+            };
+            Ok(quicker.of(added(met, met_too)))
+        }
+        ((Some(plan), met), (None, met_too)) | ((None, met), (Some(plan), met_too)) => {
+            Ok(plan.of(added(met, met_too)))
+        }
+        ((None, met), (None, met_too)) => Err(PlanError::NoWay {
+            met: met[0] + met_too[0],
+            margin: errand.margin,
+        }),
+    }
+}
+
+/// Beside a wall there may be no room for large cycles: so many times as many smaller ones are tried.
+const SMALLER: [u32; 5] = [1, 2, 4, 8, 16];
+
+fn added(one: [usize; 2], other: [usize; 2]) -> [usize; 2] {
+    [one[0] + other[0], one[1] + other[1]]
+}
+
+/// The quickest plan with these gaits, where there is one; and how many chains meet the target, and stay within the walls.
+fn of_family(
+    model: &Model<f64>,
+    family: &Family,
+    errand: &Errand,
+    room: &room::Room<'_>,
+) -> Result<(Option<Plan>, [usize; 2]), PlanError> {
     let nets = member::Nets::new(model, family);
     let way_in = family.way_in(model);
     let begun = errand.from * way_in;
-    let mut left = legs::chains(&nets, family, errand, &way_in);
-    let met = left.len();
-    left.sort_by(|a, b| duration(a).total_cmp(&duration(b)));
-    left.retain(|steps| room.leaves(family, &begun, &nets, steps));
-    let Some(steps) = left.first() else {
-        return Err(PlanError::NoWay {
-            met,
-            margin: errand.margin,
-        });
+    let chains = legs::chains(&nets, family, errand, &way_in);
+    let aim = Aim {
+        model,
+        family,
+        errand,
+        nets: &nets,
+        way_in,
     };
-    let reached = family.reached(model, &errand.from, steps);
-    let heading = errand.heading.unwrap_or(reached.theta);
-    Ok(Plan {
-        duration: duration(steps),
-        off: distance(&reached, &Pose::new(errand.to.x, errand.to.y, heading)),
-        reached,
-        met: [met, left.len()],
-        steps: steps.clone(),
-    })
+    let mut found = [chains.len(), 0];
+    for smaller in SMALLER {
+        let more = |steps: &Vec<Step>| legs::smaller(&nets, family, &errand.servos, steps, smaller);
+        let mut left: Vec<_> = chains.iter().filter_map(more).collect();
+        left.sort_by(|a, b| duration(a).total_cmp(&duration(b)));
+        left.retain(|steps| room.leaves(family, &begun, &nets, steps));
+        found[1] += left.len();
+        for steps in &left {
+            let Some(hit) = aim.hit(&begun, steps)? else {
+                continue;
+            };
+            if room.leaves_played(&errand.from, &hit.way) {
+                return Ok((Some(Plan::new(errand, family, hit, found)), found));
+            }
+        }
+    }
+    Ok((None, found))
 }
 
 /// How far two poses are apart \[m\], and by what angle \[rad\].
 fn distance(one: &Pose<f64>, other: &Pose<f64>) -> [f64; 2] {
     [
         (one.position() - other.position()).norm(),
-        legs::wrapped(one.theta - other.theta).abs(),
+        wrapped_angle(one.theta - other.theta).abs(),
     ]
 }
 
 impl Plan {
+    fn new(errand: &Errand, family: &Family, hit: Hit, met: [usize; 2]) -> Self {
+        let heading = errand.heading.unwrap_or(hit.reached.theta);
+        Self {
+            duration: duration(&hit.steps),
+            off: distance(&hit.reached, &Pose::new(errand.to.x, errand.to.y, heading)),
+            reached: hit.reached,
+            steps: hit.steps,
+            mirrored: family.mirrored,
+            way: hit.way,
+            met,
+        }
+    }
+
+    fn of(self, met: [usize; 2]) -> Self {
+        Self { met, ..self }
+    }
+
+    /// One cycle of each step, in order.
+    pub fn gaits(&self, family: &Family) -> Vec<Scaled> {
+        let family = Family {
+            mirrored: self.mirrored,
+            ..family.clone()
+        };
+        let steps = self.steps.iter();
+        steps.map(|step| step.member.of(&family)).collect()
+    }
+
+    /// What a step is called: `forward`, `backward`, `left`, `right`, `turn-left`, `turn-right`.
+    pub fn word(&self, step: &Step) -> &'static str {
+        step.member.word(self.mirrored)
+    }
+
+    /// Where another swimmer gets with it.
+    pub fn reached_by(&self, model: &Model<f64>, from: &Pose<f64>) -> Pose<f64> {
+        *from * leads_to(model, &self.way)
+    }
+
     /// How far a pose is from where the plan leads \[m\], and by what angle \[rad\].
     pub fn apart_from(&self, pose: &Pose<f64>) -> [f64; 2] {
         distance(&self.reached, pose)

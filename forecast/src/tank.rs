@@ -1,9 +1,10 @@
 //! How far a swimmer comes before it meets a wall of its tank.
 
 use nalgebra::Vector2;
-use swimmer_model::{Gait, Model, Pose, trajectory};
+use swimmer_model::{Gait, Model, Pose, Swimmer, trajectory};
 
 use crate::losses::tolerance;
+use crate::path::Polyline;
 
 /// A rectangular tank, inner measures.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,23 +104,12 @@ pub fn until_wall<G: Gait<f64> + ?Sized>(
         if !far_from_walls {
             for (u, pose, phi) in &cycle {
                 let pose = began * *pose;
-                let [back_tip, back, front, front_tip] = swimmer.links.outline(phi);
-                let parts = [
-                    (Part::BackTip, back_tip, 0.0),
-                    (Part::FrontTip, front_tip, 0.0),
-                    (Part::Sphere, Vector2::zeros(), swimmer.sphere_radius),
-                    (Part::BackJoint, back, 0.0),
-                    (Part::FrontJoint, front, 0.0),
-                ];
-                for (part, point, radius) in parts {
-                    let at = pose.transform(&point);
-                    if at.x.abs() + radius >= half_length || at.y.abs() + radius >= half_width {
-                        return Some(Meeting {
-                            cycles: f64::from(number) + u,
-                            part,
-                            at,
-                        });
-                    }
+                if let Some((part, at)) = touching(swimmer, tank, &pose, phi) {
+                    return Some(Meeting {
+                        cycles: f64::from(number) + u,
+                        part,
+                        at,
+                    });
                 }
             }
         }
@@ -133,11 +123,56 @@ pub fn until_wall<G: Gait<f64> + ?Sized>(
     None
 }
 
+/// Where a swimmer meets a wall that goes a way of the joints once, from a pose of its middle link; the cycles are the share of the
+/// way. It is looked at wherever the way bends.
+pub fn meets_wall(
+    model: &Model<f64>,
+    way: &Polyline,
+    tank: &Tank,
+    start: &Pose<f64>,
+) -> Option<Meeting> {
+    let mut met = None;
+    trajectory(model, way, &tolerance(), way.pieces(), |point| {
+        if met.is_none() {
+            let touching = touching(model.swimmer(), tank, &(*start * point.pose), &point.phi);
+            met = touching.map(|(part, at)| Meeting {
+                cycles: point.u,
+                part,
+                at,
+            });
+        }
+    });
+    met
+}
+
+/// The part of the body that is beyond a wall, and where.
+fn touching(
+    swimmer: &Swimmer<f64>,
+    tank: &Tank,
+    pose: &Pose<f64>,
+    phi: &Vector2<f64>,
+) -> Option<(Part, Vector2<f64>)> {
+    let [back_tip, back, front, front_tip] = swimmer.links.outline(phi);
+    let parts = [
+        (Part::BackTip, back_tip, 0.0),
+        (Part::FrontTip, front_tip, 0.0),
+        (Part::Sphere, Vector2::zeros(), swimmer.sphere_radius),
+        (Part::BackJoint, back, 0.0),
+        (Part::FrontJoint, front, 0.0),
+    ];
+    parts.into_iter().find_map(|(part, point, radius)| {
+        let at = pose.transform(&point);
+        let beyond =
+            at.x.abs() + radius >= 0.5 * tank.length || at.y.abs() + radius >= 0.5 * tank.width;
+        beyond.then_some((part, at))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use swimmer_files::AnyGait;
-    use swimmer_model::{Swimmer, Tolerance, swim};
+    use swimmer_model::{Tolerance, swim};
 
     fn robot() -> Model<f64> {
         Model::new(&Swimmer::robot()).unwrap()

@@ -1,18 +1,23 @@
-//! Plans to random targets, swum again by an integrator of this test's own that shares the local connection alone.
+//! Plans to random targets, as the servos play them, swum again by an integrator of this test's own that shares the local
+//! connection alone. (`tests/tests/playlist.rs` plays them on the twin.)
 
 use std::sync::OnceLock;
 
-use forecast::{Errand, Family, PlanError, Tank, plan};
+use forecast::{Errand, Family, PlanError, Servos, Tank, plan};
 use gait_optimizer::{Bounds, SpeedProblem, SteerProblem, steer};
 use nalgebra::{Vector2, Vector3};
-use swimmer_files::AnyGait;
-use swimmer_model::{Gait, Model, Pose, Swimmer};
+use swimmer_files::{AnyGait, ServoFile};
+use swimmer_model::{Model, Pose, Swimmer};
 
 const TANK: Tank = Tank {
     length: 1.0,
     width: 0.6,
 };
 const MARGIN: f64 = 0.005;
+
+fn servos() -> Servos {
+    Servos::on_the_robot(ServoFile::default())
+}
 
 fn robot() -> &'static (Model<f64>, Family) {
     static ROBOT: OnceLock<(Model<f64>, Family)> = OnceLock::new();
@@ -41,23 +46,21 @@ fn found() -> (Model<f64>, Family) {
         let gait = AnyGait::from_file(&joined.gait_file("robot", false)).unwrap();
         (gait, joined.period)
     });
-    (Model::new(&swimmer).unwrap(), Family { gaits })
+    (
+        Model::new(&swimmer).unwrap(),
+        Family {
+            gaits,
+            mirrored: false,
+        },
+    )
 }
 
-/// Of each piece.
-const STEPS: u32 = 4;
-
-/// Classical Runge–Kutta along straight or smooth pieces of shapes.
-fn swum(model: &Model<f64>, mut pose: Vector3<f64>, gait: &impl Gait<f64>) -> Vector3<f64> {
-    let mut from = 0.0;
-    for piece in 0..gait.pieces() {
-        let to = gait.piece_end(piece);
-        let steps = if gait.pieces() > 1 { STEPS } else { 400 };
-        let h = (to - from) / f64::from(steps);
+/// Classical Runge–Kutta along straight ways of the joints.
+fn swum(model: &Model<f64>, mut pose: Vector3<f64>, way: &[Vector2<f64>]) -> Vector3<f64> {
+    for pair in way.windows(2) {
+        let turn = pair[1] - pair[0];
         let slope = |u: f64, pose: &Vector3<f64>| {
-            // Not across a corner.
-            let point = gait.at(u.clamp(from + 1e-12, to - 1e-12));
-            let body = model.local_connection(&point.phi) * point.rate;
+            let body = model.local_connection(&(pair[0] + turn * u)) * turn;
             let (sin, cos) = pose.z.sin_cos();
             Vector3::new(
                 cos * body.x - sin * body.y,
@@ -65,31 +68,13 @@ fn swum(model: &Model<f64>, mut pose: Vector3<f64>, gait: &impl Gait<f64>) -> Ve
                 body.z,
             )
         };
-        let mut u = from;
-        for _ in 0..steps {
-            let k1 = slope(u, &pose);
-            let k2 = slope(u + 0.5 * h, &(pose + k1 * (0.5 * h)));
-            let k3 = slope(u + 0.5 * h, &(pose + k2 * (0.5 * h)));
-            let k4 = slope(u + h, &(pose + k3 * h));
-            pose += (k1 + 2.0 * k2 + 2.0 * k3 + k4) * (h / 6.0);
-            u += h;
-        }
-        from = to;
+        let k1 = slope(0.0, &pose);
+        let k2 = slope(0.5, &(pose + k1 * 0.5));
+        let k3 = slope(0.5, &(pose + k2 * 0.5));
+        let k4 = slope(1.0, &(pose + k3));
+        pose += (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0;
     }
     pose
-}
-
-/// Straight lines from the straight shape to the common one and back.
-struct Line([Vector2<f64>; 2]);
-
-impl Gait<f64> for Line {
-    fn at(&self, u: f64) -> swimmer_model::GaitPoint<f64> {
-        let [from, to] = self.0;
-        swimmer_model::GaitPoint {
-            phi: from + (to - from) * u,
-            rate: to - from,
-        }
-    }
 }
 
 /// Numbers in [0, 1) from a seed (`SplitMix64`).
@@ -118,7 +103,6 @@ fn fifty_random_targets_are_reached() {
 
 fn reached_all(targets: u32) {
     let (model, family) = robot();
-    let shape = family.shape();
     let mut random = Random(1);
     let (mut reached, mut refused, mut no_way) = (0, 0, 0);
     let (mut worst_m, mut worst_rad, mut longest): (f64, f64, f64) = (0.0, 0.0, 0.0);
@@ -139,6 +123,7 @@ fn reached_all(targets: u32) {
             heading: Some(heading),
             tank: Some(TANK),
             margin: MARGIN,
+            servos: servos(),
         };
         let found = match plan(model, family, &errand) {
             Ok(found) => found,
@@ -149,14 +134,7 @@ fn reached_all(targets: u32) {
             }
             Err(error) => panic!("{error}"),
         };
-        let mut pose = swum(model, Vector3::zeros(), &Line([Vector2::zeros(), shape]));
-        for step in &found.steps {
-            let gait = step.member.of(family);
-            for _ in 0..step.cycles {
-                pose = swum(model, pose, &gait);
-            }
-        }
-        pose = swum(model, pose, &Line([shape, Vector2::zeros()]));
+        let pose = swum(model, Vector3::zeros(), found.way.vertices());
         let (sin, cos) = (pose.z - heading).sin_cos();
         worst_m = worst_m.max((Vector2::new(pose.x, pose.y) - to).norm());
         worst_rad = worst_rad.max(sin.atan2(cos).abs());
@@ -165,7 +143,7 @@ fn reached_all(targets: u32) {
             let mut other = *model.swimmer();
             other.chi *= share;
             let other = Model::new(&other).unwrap();
-            let there = family.reached(&other, &errand.from, &found.steps);
+            let there = found.reached_by(&other, &errand.from);
             let (sin, cos) = (there.theta - found.reached.theta).sin_cos();
             off_by_chi[0] = off_by_chi[0].max((there.position() - found.reached.position()).norm());
             off_by_chi[1] = off_by_chi[1].max(sin.atan2(cos).abs());
@@ -176,7 +154,7 @@ fn reached_all(targets: u32) {
         "{reached} reached, {no_way} without a way, {refused} draws without room; worst {worst_m:.1e} m {worst_rad:.1e} rad, \
          longest {longest:.0} s; off by {off_by_chi:?} where chi is 5 % wrong"
     );
-    assert!(worst_m < 1e-6 && worst_rad < 1e-6, "{worst_m} {worst_rad}");
+    assert!(worst_m < 5e-4 && worst_rad < 5e-3, "{worst_m} {worst_rad}");
     assert_eq!(no_way, 0);
 }
 
@@ -189,6 +167,7 @@ fn a_target_outside_is_refused() {
         heading: None,
         tank: Some(TANK),
         margin: MARGIN,
+        servos: servos(),
     };
     let error = plan(model, family, &errand).unwrap_err();
     assert!(

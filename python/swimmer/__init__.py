@@ -13,7 +13,7 @@ Lengths are in metres, angles in radians; `70deg` is understood where a number i
 """
 
 from . import optimize, sweep
-from ._commands import atlas, calibrate, certify, height_map, simulate, tracks
+from ._commands import atlas, calibrate, certify, height_map, plan, simulate, tracks
 from ._run import Doubt
 from ._swimmer import BadInput, Error, Failed, Gait, Swimmer
 from .results import Atlas, Calibration, HeightMap, OptimalGait, Result, Simulation
@@ -36,6 +36,7 @@ __all__ = [
     "certify",
     "height_map",
     "optimize",
+    "plan",
     "simulate",
     "sweep",
     "tracks",

@@ -217,3 +217,51 @@ def tracks(
     with Run("tracks", os.fspath(file)) as run:
         run.options({"scale": scale, "rate": rate, "axes": axes, "likelihood": likelihood})
         return Result(run.document())
+
+
+def plan(
+    swimmer: Swimmer | Text,
+    *,
+    to: Sequence[float] | str,
+    from_: Sequence[float] | str | None = None,
+    tank: Sequence[float] | str | None = None,
+    margin: float | None = None,
+    gaits: Text | None = None,
+    shape: Sequence[float] | str | None = None,
+    max_rate: Angle | Sequence[Angle] | None = None,
+    max_angle: Angle | None = None,
+    no_overlap: bool = False,
+    clearance: float | None = None,
+    playable: bool = False,
+    output: Text | None = None,
+) -> Result:
+    """Strings the gaits of `optimize.steer` together to a target: `steps`, `duration_s`, `reached`, `off_m`, …
+
+    `to` and `from_` are (x, y) or (x, y, heading), `tank` is (length, width), all in metres and radians. `gaits` is a folder that
+    `optimize.steer` wrote; `output` a new playlist, which `swimmer robot play --playlist` plays.
+    """
+    with Run("plan") as run:
+        run.swimmer(swimmer)
+        run.options(
+            {
+                "to": _joined(to, ","),
+                "from_": _joined(from_, ","),
+                "tank": _joined(tank, "x"),
+                "margin": margin,
+                "gaits": gaits,
+                "shape": _joined(shape, ","),
+                "max_rate": max_rate,
+                "max_angle": max_angle,
+                "no_overlap": no_overlap,
+                "clearance": clearance,
+                "playable": playable,
+                "output": output,
+            }
+        )
+        return Result(run.document())
+
+
+def _joined(numbers: Sequence[float] | str | None, by: str) -> str | None:
+    if numbers is None or isinstance(numbers, str):
+        return numbers
+    return by.join(repr(float(number)) for number in numbers)

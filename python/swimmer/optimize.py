@@ -8,7 +8,7 @@ from ._run import Run, Text
 from ._swimmer import Gait, Swimmer
 from .results import OptimalGait, Result
 
-__all__ = ["displacement", "efficiency", "sideways", "speed", "turning"]
+__all__ = ["displacement", "efficiency", "sideways", "speed", "steer", "turning"]
 
 Angle: TypeAlias = float | str
 """Radians, or a text with its unit: `70deg`."""
@@ -97,6 +97,37 @@ def speed(
     `front` is a new file (.svg or .csv): displacement of a cycle against speed, over the period.
     """
     return _optimal("speed", swimmer, locals())
+
+
+def steer(
+    swimmer: Swimmer | Text,
+    *,
+    max_rate: Angle | Sequence[Angle] | None = None,
+    max_angle: Angle | None = None,
+    no_overlap: bool = False,
+    clearance: float | None = None,
+    playable: bool = False,
+    shape: Sequence[float] | str | None = None,
+    output: Text | None = None,
+) -> Result:
+    """The fastest gaits forward, to either side and round that join at one shape: `shape_rad`, `gaits`, …
+
+    `output` is a new folder for their files, which `plan` takes.
+    """
+    with Run("optimize", "steer") as run:
+        run.swimmer(swimmer)
+        run.options(
+            {
+                "max_rate": max_rate,
+                "max_angle": max_angle,
+                "no_overlap": no_overlap,
+                "clearance": clearance,
+                "playable": playable,
+                "shape": shape if shape is None or isinstance(shape, str) else ",".join(map(repr, map(float, shape))),
+                "output": output,
+            }
+        )
+        return Result(run.document())
 
 
 def _optimal(objective: str, swimmer: Swimmer | Text, told: dict[str, object]) -> OptimalGait:

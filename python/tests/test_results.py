@@ -116,6 +116,8 @@ def test_files_of_ours_are_named_shortly(robot: sw.Swimmer, purcell: sw.Swimmer)
         (sw.optimize.turning, ["optimize", "turning"], {"output"}),
         (sw.optimize.sideways, ["optimize", "sideways"], {"output"}),
         (sw.optimize.speed, ["optimize", "speed"], {"output"}),
+        (sw.optimize.steer, ["optimize", "steer"], set()),
+        (sw.plan, ["plan"], set()),
         (sw.sweep.plan, ["sweep", "plan"], set()),
         (sw.sweep.run, ["sweep", "run"], set()),
         (sw.sweep.merge, ["sweep", "merge"], set()),

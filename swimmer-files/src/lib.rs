@@ -42,6 +42,7 @@ mod hash;
 mod key;
 mod link_log;
 mod place;
+mod playlist;
 mod provenance;
 mod swimmer_file;
 mod toml_text;
@@ -62,5 +63,6 @@ pub use link_log::{
     LinkFrame, LinkLog, LinkLogError, LinkLogWriter, Play, link_log_bytes, plays, read_link_log,
 };
 pub use place::FileError;
+pub use playlist::{Playlist, PlaylistStep};
 pub use provenance::{InputHash, Provenance, hash_of};
 pub use swimmer_file::{Fluid, ServoFile, SwimmerFile};

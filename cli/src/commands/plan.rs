@@ -5,7 +5,7 @@ mod playlist;
 
 use std::path::PathBuf;
 
-use forecast::{Errand, Family, Tank, plan};
+use forecast::{Errand, Family, Servos, Tank, plan};
 use swimmer_files::{AnyGait, GaitFile, SwimmerFile};
 use swimmer_model::{Gait as _, Pose};
 
@@ -23,7 +23,9 @@ use crate::output::Output;
 /// Poses are those of the middle link with both joints straight: x and y from the tank's centre in metres, the heading from its
 /// length. The way from the straight shape to the one at which the gaits join, and back, belongs to the plan. The plan is the
 /// quickest that was found, of chains of up to three legs; a leg is a number of cycles of one gait, drawn in a little so that the
-/// legs together meet the target.
+/// legs together meet the target as the robot plays it: soft start, tables, servos with their dead band.
+///
+/// `swimmer robot play --playlist` plays what -o writes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Plan {
     #[command(flatten)]
@@ -93,13 +95,14 @@ impl Plan {
             heading: self.to.heading,
             tank: self.tank,
             margin: self.margin,
+            servos: Servos::on_the_robot(file.servo.unwrap_or_default()),
         };
         let found = plan(&model, &family, &errand).map_err(|error| Failure::tried(&error))?;
         let off = |share: f64| -> Outcome<Off> {
             let mut other = file.clone();
             other.swimmer.chi *= share;
             let model = crate::arguments::model(&other)?;
-            let reached = family.reached(&model, &errand.from, &found.steps);
+            let reached = found.reached_by(&model, &errand.from);
             Ok(Off::new(found.apart_from(&reached)))
         };
         let wrong = [off(0.95)?, off(1.05)?];
@@ -151,5 +154,8 @@ fn family_of(gaits: Vec<(AnyGait, f64)>) -> Outcome<Family> {
     let gaits = gaits
         .try_into()
         .map_err(|_| Failure::Tried("a family has three gaits".to_owned()))?;
-    Ok(Family { gaits })
+    Ok(Family {
+        gaits,
+        mirrored: false,
+    })
 }

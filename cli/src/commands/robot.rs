@@ -13,6 +13,7 @@ mod lent;
 mod log;
 mod motion;
 mod playing;
+mod playlist;
 mod port;
 mod port_owner;
 pub(super) mod preflight;
@@ -141,6 +142,11 @@ struct Play {
     /// Upload this gait first
     #[arg(long, value_name = "GAIT", value_parser = gait)]
     gait: Option<GaitSpec>,
+    /// Play the gaits of this playlist, which `swimmer plan -o` writes, one after the other without a pause
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["gait", "cycles", "period", "detach", "at_most", "attach"])]
+    playlist: Option<PathBuf>,
+    #[command(flatten)]
+    room: preflight::Room,
     #[command(flatten)]
     owner: Owner,
     /// End after so many cycles; left out, the robot plays until Ctrl-C

@@ -9,7 +9,7 @@
 use gait_player::playback::Playback;
 use gait_player::servo::ServoMap;
 use gait_player::servo::plant::PlantParameters;
-use gait_player::table::check::Checker;
+use gait_player::table::check::{Checker, Facts};
 use gait_player::{GaitTable, Limits};
 use nalgebra::Vector2;
 use swimmer_model::{Gait, Links, Model, Panels, Stroke};
@@ -101,10 +101,7 @@ impl Ways {
     /// What the robot's own checks say.
     pub(super) fn verdict(&self, links: &Links<f64>, played: &Played) -> Verdict {
         let limits = played.servos.limits();
-        let mut checker = Checker::new();
-        // One call may do all the work; the loop is bounded all the same.
-        let facts =
-            (0..4).find_map(|_| checker.advance(&self.table, &gap::single(links), u32::MAX));
+        let facts = facts(&self.table, links);
         let Some(facts) = facts else {
             return Verdict {
                 refused: Some("the check of the table did not end".to_owned()),
@@ -119,6 +116,13 @@ impl Ways {
             min_period: f64::from(facts.min_period_us(&limits)) * 1e-6,
         }
     }
+}
+
+/// What the robot's own check finds of a table.
+pub(crate) fn facts(table: &GaitTable, links: &Links<f64>) -> Option<Facts> {
+    let mut checker = Checker::new();
+    // One call may do all the work; the loop is bounded all the same.
+    (0..4).find_map(|_| checker.advance(table, &gap::single(links), u32::MAX))
 }
 
 /// ΔY and Δθ of a chain without its first and last piece, which only change the frame: at the corners of the path, a tick

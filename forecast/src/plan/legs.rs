@@ -1,7 +1,9 @@
 //! Chains of legs that meet a target.
 
 use nalgebra::{Matrix3, Vector3};
-use swimmer_model::Pose;
+use swimmer_model::{Pose, wrapped_angle};
+
+use crate::losses::Servos;
 
 use super::member::{Kind, Member, Nets, SMALLEST, repeated};
 use super::{Errand, Family, Step};
@@ -19,12 +21,6 @@ const STEPS: usize = 30;
 const MOST_CYCLES: f64 = 400.0;
 /// A target is met so closely (m and rad).
 const MET: f64 = 1e-10;
-
-/// An angle in (−π, π].
-pub(super) fn wrapped(angle: f64) -> f64 {
-    let (sin, cos) = angle.sin_cos();
-    sin.atan2(cos)
-}
 
 /// All chains that are found.
 pub(super) fn chains(
@@ -48,6 +44,7 @@ pub(super) fn chains(
             let search = Search {
                 nets,
                 family,
+                servos: &errand.servos,
                 wanted,
                 word,
             };
@@ -75,6 +72,7 @@ fn words() -> Vec<[Kind; MOST]> {
 struct Search<'a> {
     nets: &'a Nets,
     family: &'a Family,
+    servos: &'a Servos,
     wanted: Pose<f64>,
     word: [Kind; MOST],
 }
@@ -83,7 +81,9 @@ impl Search<'_> {
     fn chains(&self) -> Vec<Vec<Step>> {
         let mut amounts: Vec<Vector3<f64>> = Vec::new();
         for start in self.starts() {
-            let Some(found) = newton(start, |amounts| self.off(&self.roughly(amounts))) else {
+            let Some(found) = newton(start, |amounts| {
+                off(&(self.wanted.inverse() * self.roughly(amounts)))
+            }) else {
                 continue;
             };
             let alike = |other: &Vector3<f64>| (other - found).amax() < ALIKE;
@@ -99,7 +99,7 @@ impl Search<'_> {
 
     fn starts(&self) -> Vec<Vector3<f64>> {
         let turn = self.full(Kind::Turn).theta;
-        let rotation = wrapped(self.wanted.theta);
+        let rotation = wrapped_angle(self.wanted.theta);
         let tau = std::f64::consts::TAU;
         let mut starts = Vec::new();
         for whole in [0.0, 1.0, -1.0] {
@@ -144,61 +144,105 @@ impl Search<'_> {
         })
     }
 
-    /// How far a pose is from what is wanted.
-    fn off(&self, pose: &Pose<f64>) -> Vector3<f64> {
-        let off = self.wanted.inverse() * *pose;
-        Vector3::new(off.x, off.y, wrapped(off.theta))
-    }
-
     /// Whole cycles of members that bring the same; none where there are none.
     fn whole(&self, amounts: &Vector3<f64>) -> Option<Vec<Step>> {
-        let mut cycles = amounts.map(|amount| (amount.abs() - 1e-9).ceil());
-        for _ in 0..8 {
-            let used = |leg: usize| cycles[leg] > 0.0;
-            let member = |leg: usize, scale: f64| Member {
-                kind: self.word[leg],
-                backwards: amounts[leg] < 0.0,
+        let legs = self.word.iter().zip(amounts.iter());
+        let legs = legs.filter(|(_, amount)| amount.abs() > 1e-9);
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole numbers from 1 to 400"
+        )]
+        let steps = legs.map(|(kind, amount)| {
+            let cycles = (amount.abs() - 1e-9).ceil().max(1.0);
+            // A small cycle brings as much as the area that it goes round.
+            let scale = (amount.abs() / cycles).sqrt().clamp(2.0 * SMALLEST, 1.0);
+            let member = Member {
+                kind: *kind,
+                backwards: *amount < 0.0,
                 scale,
             };
-            let scales = Vector3::from_fn(|leg, _| {
-                if used(leg) {
-                    (amounts[leg].abs() / cycles[leg])
-                        .sqrt()
-                        .clamp(2.0 * SMALLEST, 1.0)
-                } else {
-                    1.0
-                }
-            });
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "whole numbers from 0 to 400"
-            )]
-            let count = |leg: usize| cycles[leg] as u32;
-            let found = newton(scales, |scales| {
-                let pose = (0..MOST).fold(Pose::identity(), |sum, leg| {
-                    let scale = scales[leg].clamp(SMALLEST, 1.5);
-                    sum * repeated(&self.nets.of(&member(leg, scale)), count(leg))
-                });
-                self.off(&pose)
-            })?;
-            let beyond = (0..MOST).filter(|&leg| used(leg) && found[leg] > 1.0);
-            let beyond: Vec<usize> = beyond.collect();
-            if beyond.is_empty() {
-                let small = (0..MOST).any(|leg| used(leg) && found[leg] < SMALLEST);
-                let steps = (0..MOST).filter(|&leg| used(leg)).map(|leg| Step {
-                    member: member(leg, found[leg]),
-                    cycles: count(leg),
-                    period: self.family.gaits[self.word[leg] as usize].1 * found[leg],
-                });
-                return (!small).then(|| steps.collect());
-            }
-            for leg in beyond {
-                cycles[leg] += 1.0;
-            }
-        }
-        None
+            Step::new(self.family, self.servos, member, cycles as u32)
+        });
+        let steps: Vec<Step> = steps.collect();
+        settled(self.nets, self.family, self.servos, &self.wanted, &steps)
     }
+}
+
+/// These steps with scales that bring what is wanted, and with more cycles where a scale would be above 1; none where there
+/// are none.
+pub(super) fn settled(
+    nets: &Nets,
+    family: &Family,
+    servos: &Servos,
+    wanted: &Pose<f64>,
+    steps: &[Step],
+) -> Option<Vec<Step>> {
+    let mut steps = steps.to_vec();
+    let inverse = wanted.inverse();
+    for _ in 0..8 {
+        let start = Vector3::from_fn(|leg, _| steps.get(leg).map_or(1.0, |step| step.member.scale));
+        let found = newton(start, |scales| {
+            let legs = steps.iter().zip(scales.iter());
+            let pose = legs.fold(Pose::identity(), |sum, (step, scale)| {
+                let member = Member {
+                    scale: scale.clamp(SMALLEST, 1.5),
+                    ..step.member
+                };
+                sum * repeated(&nets.of(&member), step.cycles)
+            });
+            off(&(inverse * pose))
+        })?;
+        let mut beyond = false;
+        for (step, &scale) in steps.iter_mut().zip(found.iter()) {
+            if scale < SMALLEST {
+                return None;
+            }
+            let more = u32::from(scale > 1.0);
+            beyond |= more > 0;
+            let shared = f64::from(step.cycles) / f64::from(step.cycles + more);
+            let member = Member {
+                scale: scale * shared.sqrt(),
+                ..step.member
+            };
+            *step = Step::new(family, servos, member, step.cycles + more);
+        }
+        if !beyond {
+            return Some(steps);
+        }
+    }
+    None
+}
+
+/// A chain that brings the same by so many times as many cycles, each that much smaller; none where there is none.
+pub(super) fn smaller(
+    nets: &Nets,
+    family: &Family,
+    servos: &Servos,
+    steps: &[Step],
+    times: u32,
+) -> Option<Vec<Step>> {
+    if times == 1 {
+        return Some(steps.to_vec());
+    }
+    let brought = steps.iter().fold(Pose::identity(), |sum, step| {
+        sum * repeated(&nets.of(&step.member), step.cycles)
+    });
+    let smaller = steps.iter().map(|step| {
+        let scale = step.member.scale / f64::from(times).sqrt();
+        let member = Member {
+            scale: scale.max(SMALLEST),
+            ..step.member
+        };
+        Step::new(family, servos, member, step.cycles * times)
+    });
+    let smaller: Vec<Step> = smaller.collect();
+    settled(nets, family, servos, &brought, &smaller)
+}
+
+/// A pose near the identity as three numbers.
+fn off(pose: &Pose<f64>) -> Vector3<f64> {
+    Vector3::new(pose.x, pose.y, wrapped_angle(pose.theta))
 }
 
 /// A pose to a real power: along its screw.

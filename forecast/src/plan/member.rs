@@ -4,7 +4,8 @@ use nalgebra::Vector2;
 use swimmer_files::AnyGait;
 use swimmer_model::{Gait, GaitPoint, Model, Pose};
 
-use super::{Family, net};
+use super::Family;
+use crate::playlist::leads_to;
 
 /// A kind of gait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -37,6 +38,7 @@ pub struct Member {
 #[derive(Debug, Clone)]
 pub struct Scaled {
     gait: AnyGait,
+    sign: f64,
     about: Vector2<f64>,
     scale: f64,
 }
@@ -47,14 +49,18 @@ impl Member {
         let (gait, _) = &family.gaits[self.kind as usize];
         Scaled {
             gait: gait.clone().reversed_if(self.backwards),
+            sign: family.sign(),
             about: family.shape(),
             scale: self.scale,
         }
     }
 
-    /// In words: `forward`, `backward`, `left`, `right`, `turn-left`, `turn-right`.
-    pub fn word(&self) -> &'static str {
-        match (self.kind, self.backwards) {
+    /// In words; in a mirror left is right.
+    pub(super) fn word(&self, mirrored: bool) -> &'static str {
+        match (
+            self.kind,
+            self.backwards != (mirrored && self.kind != Kind::Forward),
+        ) {
             (Kind::Forward, false) => "forward",
             (Kind::Forward, true) => "backward",
             (Kind::Left, false) => "left",
@@ -69,8 +75,8 @@ impl Gait<f64> for Scaled {
     fn at(&self, u: f64) -> GaitPoint<f64> {
         let point = self.gait.at(u);
         GaitPoint {
-            phi: self.about + (point.phi - self.about) * self.scale,
-            rate: point.rate * self.scale,
+            phi: self.about + (point.phi * self.sign - self.about) * self.scale,
+            rate: point.rate * (self.sign * self.scale),
         }
     }
 
@@ -114,7 +120,7 @@ impl Nets {
                     backwards: false,
                     scale,
                 };
-                let pose = net(model, &member.of(family));
+                let pose = leads_to(model, &member.of(family));
                 [pose.x, pose.y, pose.theta]
             };
             scales.iter().map(at).collect()

@@ -1,11 +1,12 @@
 //! Whether a plan stays within its tank.
 
 use nalgebra::Vector2;
-use swimmer_model::{Model, Pose, trajectory};
+use swimmer_model::{Gait as _, Model, Pose, trajectory};
 
 use super::member::Nets;
 use super::{Errand, Family, Step};
 use crate::losses::tolerance;
+use crate::path::Polyline;
 use crate::tank::Tank;
 
 /// Looks at the body a cycle.
@@ -78,5 +79,17 @@ impl<'a> Room<'a> {
             }
         }
         true
+    }
+
+    /// Whether the way that the servos take does, from the straight shape at this pose.
+    pub(super) fn leaves_played(&self, from: &Pose<f64>, way: &Polyline) -> bool {
+        if self.tank.is_none() {
+            return true;
+        }
+        let mut inside = true;
+        trajectory(self.model, way, &tolerance(), way.pieces(), |point| {
+            inside = inside && self.fits(&(*from * point.pose), &point.phi);
+        });
+        inside
     }
 }

@@ -73,7 +73,7 @@ impl Answer {
             gait: gaits
                 .get(at)
                 .cloned()
-                .unwrap_or_else(|| step.member.word().to_owned()),
+                .unwrap_or_else(|| plan.word(step).to_owned()),
             cycles: step.cycles,
             period_s: step.period,
             scale: step.member.scale,

@@ -1,17 +1,16 @@
-//! The playlist: which gaits to play, how often and how fast, with the gait files beside it.
+//! The playlist of a plan: which gaits to play, how often and how fast, with the gait files beside it.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
-use forecast::{Family, Plan};
-use swimmer_files::{Bounds, GaitFile, SwimmerFile, SwimmerHash, write_atomically};
+use forecast::{Family, Plan, Scaled};
+use swimmer_files::{
+    AnyGait, Bounds, GaitFile, GaitSpec, Playlist, PlaylistStep, SwimmerFile, SwimmerHash,
+};
 use swimmer_model::Gait as _;
 
 use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
 
-/// The format version that is written.
-const VERSION: u32 = 1;
 /// Samples of a gait between two corners.
 const BETWEEN: usize = 48;
 
@@ -28,32 +27,36 @@ pub(super) fn write_playlist(
         .ok_or_else(|| {
             Failure::BadInput(format!("{} names no file; give -o a name", path.display()))
         })?;
-    let mut text = format!(
-        "# A playlist: gaits that start and end at one shape, to be played one after the other.\n\
-         # Each step plays `cycles` cycles of `period_s` seconds of a gait file beside this one.\n\
-         format = \"swimmer playlist\"\nversion = {VERSION}\nswimmer = {:?}\n",
-        file.name
-    );
     let mut names = Vec::with_capacity(plan.steps.len());
-    for (number, step) in plan.steps.iter().enumerate() {
-        let name = format!("{stem}-{}-{}.gait", number + 1, step.member.word());
+    let mut steps = Vec::with_capacity(plan.steps.len());
+    for (number, (step, cycle)) in plan.steps.iter().zip(plan.gaits(family)).enumerate() {
+        let name = format!("{stem}-{}-{}.gait", number + 1, plan.word(step));
         let beside = path.with_file_name(&name);
         may_be_written(&beside)?;
-        sampled(file, family, step).save(&beside)?;
-        let _ = write!(
-            text,
-            "\n[[step]]\ngait = {name:?}\ncycles = {}\nperiod_s = {:?}\n",
-            step.cycles, step.period
-        );
+        let gait = sampled(file, &cycle);
+        gait.save(&beside)?;
+        steps.push(PlaylistStep {
+            gait: GaitSpec::File {
+                path: name.clone().into(),
+                reversed: false,
+            },
+            curve: AnyGait::from_file(&gait).map_err(|error| Failure::Tried(error.to_string()))?,
+            made_for: None,
+            cycles: step.cycles,
+            period: step.period,
+        });
         names.push(name);
     }
-    write_atomically(path, text.as_bytes())?;
+    let playlist = Playlist {
+        swimmer: Some(file.name.clone()),
+        steps,
+    };
+    playlist.save(path)?;
     Ok(names)
 }
 
 /// A member's cycle, with its corners.
-fn sampled(file: &SwimmerFile, family: &Family, step: &forecast::Step) -> GaitFile {
-    let gait = step.member.of(family);
+fn sampled(file: &SwimmerFile, gait: &Scaled) -> GaitFile {
     let mut ends: Vec<f64> = (0..gait.pieces())
         .filter(|&piece| gait.corner_at_end(piece))
         .map(|piece| gait.piece_end(piece))

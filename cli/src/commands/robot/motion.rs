@@ -13,6 +13,7 @@ use serde::Serialize;
 use super::access::{Access, BEAT, Line, Met};
 use super::answers::{Done, PAUSED_DETACHED, cause, is_under_way, state};
 use super::playing::{self, Playing};
+use super::playlist;
 use super::port::{AnyPort, Pace};
 use super::port_owner::Ask;
 use super::upload::BeforePlay;
@@ -96,6 +97,16 @@ pub(super) fn play(access: &Access, play: &Play, output: Output) -> Outcome {
         attach(&mut line, &interrupt, output)?;
         return line.close();
     }
+    play.room.check()?;
+    if play.room.tank.is_some() && play.playlist.is_none() {
+        return Err(Failure::BadInput(
+            "--tank looks ahead along a playlist: name one by --playlist; `swimmer robot upload --tank` foretells a gait"
+                .to_owned(),
+        ));
+    }
+    if let Some(path) = &play.playlist {
+        return playlist::play(access, play, path, &interrupt, output);
+    }
     let pace = if play.cycles.is_some() && !play.detach {
         Pace::AsFastAsPossible
     } else {
@@ -162,7 +173,7 @@ fn in_minutes(seconds: f64) -> String {
 }
 
 /// A play that goes on detached is left alone: another begins only when it has ended or was stopped.
-fn nothing_under_way(status: &Status) -> Outcome {
+pub(super) fn nothing_under_way(status: &Status) -> Outcome {
     if !is_under_way(status.state) {
         return Ok(());
     }
@@ -310,7 +321,7 @@ fn wait(line: &mut Line, interrupt: &Interrupt, output: Output) -> Outcome {
 
 /// The same play once the robot has ramped to neutral and takes whatever is asked next, or as it was told where the link does
 /// not last that long.
-fn ready(line: &mut Line, over: Status) -> Status {
+pub(super) fn ready(line: &mut Line, over: Status) -> Status {
     let mut waited = Duration::ZERO;
     let mut now = over;
     while !is_off(now.state) && waited < TO_REST {
@@ -328,7 +339,10 @@ fn ready(line: &mut Line, over: Status) -> Status {
 }
 
 /// Passes a result on; a failure stops the robot first, as far as the link still allows.
-fn stopped_on_failure<T>(robot: &mut Robot<AnyPort>, result: Result<T, LinkError>) -> Outcome<T> {
+pub(super) fn stopped_on_failure<T>(
+    robot: &mut Robot<AnyPort>,
+    result: Result<T, LinkError>,
+) -> Outcome<T> {
     // One that has stopped by itself need not be told; it may be one that hears nothing.
     if result
         .as_ref()

@@ -28,9 +28,16 @@ pub(super) struct Arguments {
     /// Foretell with this fit's error (of swimmer calibrate: fit.json, or its --json)
     #[arg(long, value_name = "FIT.json")]
     fit: Option<PathBuf>,
+    #[command(flatten)]
+    room: Room,
+}
+
+/// The tank, and where in it the swimmer starts.
+#[derive(Debug, clap::Args)]
+pub(super) struct Room {
     /// Foretell when the swimmer meets a wall of this tank: length x width, m
     #[arg(long, value_name = "LENGTHxWIDTH", value_parser = tank)]
-    tank: Option<Tank>,
+    pub(super) tank: Option<Tank>,
     /// Where in the tank it starts: from its centre along length and width, m
     #[arg(long, value_name = "X,Y", value_parser = place, requires = "tank", allow_hyphen_values = true, default_value = "0,0")]
     start: Place,
@@ -45,9 +52,9 @@ struct Place(Vector2<f64>);
 
 /// The swimmer that shall play, and its servos.
 pub(super) struct Player {
-    name: String,
-    swimmer: Swimmer<f64>,
-    servos: Servos,
+    pub(super) name: String,
+    pub(super) swimmer: Swimmer<f64>,
+    pub(super) servos: Servos,
     /// No swimmer file tells of the servos: theirs are the values of a good one.
     assumed: bool,
 }
@@ -170,7 +177,7 @@ struct TankAnswer {
     at_m: Option<[f64; 2]>,
 }
 
-impl Arguments {
+impl Room {
     /// Whether what was asked makes sense at all, before any robot is met.
     ///
     /// # Errors
@@ -189,6 +196,22 @@ impl Arguments {
              put --start inside",
             start.x, start.y
         )))
+    }
+
+    /// Where it starts.
+    pub(super) fn start(&self) -> Pose<f64> {
+        let Place(start) = self.start;
+        Pose::new(start.x, start.y, self.heading)
+    }
+}
+
+impl Arguments {
+    /// Whether what was asked makes sense at all, before any robot is met.
+    ///
+    /// # Errors
+    /// [`Failure::BadInput`] for a start outside the tank.
+    pub(super) fn check(&self) -> Outcome {
+        self.room.check()
     }
 
     /// What is foretold of a gait.
@@ -228,15 +251,12 @@ impl Arguments {
             })
             .transpose()
             .map_err(|error| Failure::bad_input(&error))?;
-        let meeting = |tank: &Tank| {
-            let Place(start) = self.start;
-            let start = Pose::new(start.x, start.y, self.heading);
-            until_wall(&model, &told.way, tank, &start)
-        };
+        let meeting = |tank: &Tank| until_wall(&model, &told.way, tank, &self.room.start());
         Ok(Preflight {
             displacement_error_m: error,
             level: fit.map(|fit| fit.level),
             tank: self
+                .room
                 .tank
                 .as_ref()
                 .map(|tank| TankAnswer::new(tank, meeting(tank), self.period)),

@@ -188,9 +188,10 @@ struct Prepared {
     made_for: Option<MadeFor>,
 }
 
-struct MadeFor {
-    name: String,
-    hash: SwimmerHash,
+/// Whose a gait file says that it is.
+pub(super) struct MadeFor {
+    pub(super) name: String,
+    pub(super) hash: SwimmerHash,
 }
 
 impl Prepared {
@@ -222,27 +223,38 @@ impl Prepared {
         })
     }
 
+    fn check_swimmer(&self, configuration: &Configuration, named: Option<&SwimmerFile>) -> Outcome {
+        match &self.made_for {
+            Some(made_for) => made_for.check(&self.name, configuration, named),
+            None => Ok(()),
+        }
+    }
+}
+
+impl MadeFor {
     /// Whether the robot is the swimmer that the gait was made for, as far as its configuration tells.
     ///
     /// The robot knows its body in single precision, the gait file names the swimmer by a fingerprint: so the swimmer that
     /// both may mean is looked for among the presets and the one that the operator names.
-    fn check_swimmer(&self, configuration: &Configuration, named: Option<&SwimmerFile>) -> Outcome {
-        let Some(made_for) = &self.made_for else {
-            return Ok(());
-        };
+    pub(super) fn check(
+        &self,
+        gait: &str,
+        configuration: &Configuration,
+        named: Option<&SwimmerFile>,
+    ) -> Outcome {
         let presets = SwimmerFile::PRESETS
             .iter()
             .filter_map(|name| SwimmerFile::preset(name));
-        let known = presets.chain(named.cloned()).any(|file| {
-            file.hash() == made_for.hash && is_configured_as(configuration, &file.swimmer)
-        });
+        let known = presets
+            .chain(named.cloned())
+            .any(|file| file.hash() == self.hash && is_configured_as(configuration, &file.swimmer));
         if known {
             return Ok(());
         }
         Err(Failure::Tried(format!(
-            "the gait {} was made for `{}`, and nothing shows that this robot is that swimmer; name its file with --swimmer \
+            "the gait {gait} was made for `{}`, and nothing shows that this robot is that swimmer; name its file with --swimmer \
              and send it with `swimmer robot configure`, or upload anyway with --force",
-            self.name, made_for.name
+            self.name
         )))
     }
 }
@@ -253,12 +265,24 @@ pub(crate) fn table_of(gait: &AnyGait) -> Result<GaitTable, gait_player::table::
 }
 
 fn send(line: &mut Line, gait: &Prepared, interrupt: &Interrupt) -> Outcome<TableInfo> {
-    let bytes = gait.table.bytes();
+    send_table(line, &gait.name, &gait.table, interrupt)
+}
+
+/// Uploads a table, which becomes the active one.
+///
+/// # Errors
+/// The link's, and the robot's refusal.
+pub(super) fn send_table(
+    line: &mut Line,
+    name: &str,
+    table: &GaitTable,
+    interrupt: &Interrupt,
+) -> Outcome<TableInfo> {
+    let bytes = table.bytes();
     let progress = Progress::of_bytes(bytes.len() as u64);
     let time = line.robot.expected_upload(bytes.len());
     progress.doing(format!(
-        "uploading {}, about {:.1} s",
-        gait.name,
+        "uploading {name}, about {:.1} s",
         time.as_secs_f64()
     ));
     loop {

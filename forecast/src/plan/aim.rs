@@ -1,0 +1,120 @@
+//! Aiming: a chain of legs, as the robot plays it, to its target.
+
+use swimmer_model::{Model, Pose};
+
+use super::legs::settled;
+use super::member::{Nets, Scaled};
+use super::{Errand, Family, PlanError, Step, distance};
+use crate::path::Polyline;
+use crate::playlist::{PlaylistTable, Repeated, leads_to, played, refused, tables};
+
+/// Shots at a target.
+const SHOTS: usize = 12;
+/// A target is hit so closely that aiming better is not worth it \[m, rad\]: the table's units leave as much open.
+const GOOD: [f64; 2] = [2e-5, 2e-4];
+/// The best shot counts where it comes this near \[m, rad\].
+const ACCEPTED: [f64; 2] = [5e-4, 5e-3];
+
+pub(super) struct Aim<'a> {
+    pub(super) model: &'a Model<f64>,
+    pub(super) family: &'a Family,
+    pub(super) errand: &'a Errand,
+    pub(super) nets: &'a Nets,
+    pub(super) way_in: Pose<f64>,
+}
+
+/// A chain that gets there.
+pub(super) struct Hit {
+    pub(super) steps: Vec<Step>,
+    pub(super) reached: Pose<f64>,
+    pub(super) way: Polyline,
+    off: [f64; 2],
+}
+
+impl Aim<'_> {
+    /// A chain, played, and aimed until it hits; none where it does not. `begun`: the pose at the common shape.
+    pub(super) fn hit(&self, begun: &Pose<f64>, steps: &[Step]) -> Result<Option<Hit>, PlanError> {
+        // Where any heading will do, the one that the chain was made for.
+        let of_model = steps.iter().fold(*begun, |pose, step| {
+            pose * super::member::repeated(&self.nets.of(&step.member), step.cycles)
+        });
+        let heading = (of_model * self.way_in.inverse()).theta;
+        let target = Pose::new(
+            self.errand.to.x,
+            self.errand.to.y,
+            self.errand.heading.unwrap_or(heading),
+        );
+        let mut aimed_at = target;
+        let mut best: Option<Hit> = None;
+        let mut steps = steps.to_vec();
+        for _ in 0..SHOTS {
+            let shot = self.play(&target, &steps)?;
+            // What is played ends this far from where the model ends that was aimed.
+            let missed_by = aimed_at.inverse() * shot.reached;
+            aimed_at = target * missed_by.inverse();
+            let good = shot.off[0] < GOOD[0] && shot.off[1] < GOOD[1];
+            if best
+                .as_ref()
+                .is_none_or(|best| shot.badness() < best.badness())
+            {
+                best = Some(shot);
+            }
+            if good {
+                break;
+            }
+            let wanted = begun.inverse() * (aimed_at * self.way_in);
+            match settled(self.nets, self.family, &self.errand.servos, &wanted, &steps) {
+                Some(settled) => steps = settled,
+                None => break,
+            }
+        }
+        Ok(best.filter(|best| best.off[0] < ACCEPTED[0] && best.off[1] < ACCEPTED[1]))
+    }
+
+    fn play(&self, target: &Pose<f64>, steps: &[Step]) -> Result<Hit, PlanError> {
+        let tables = self.tables(steps)?;
+        let way = played(&tables, &self.errand.servos);
+        let reached = self.errand.from * leads_to(self.model, &way);
+        Ok(Hit {
+            steps: steps.to_vec(),
+            off: distance(&reached, target),
+            reached,
+            way,
+        })
+    }
+
+    fn tables(&self, steps: &[Step]) -> Result<Vec<PlaylistTable>, PlanError> {
+        let word = |step: usize| {
+            steps
+                .get(step)
+                .map_or("last", |step| step.member.word(self.family.mirrored))
+        };
+        let played: Vec<Repeated<Scaled>> = steps
+            .iter()
+            .map(|step| Repeated {
+                gait: step.member.of(self.family),
+                cycles: step.cycles,
+                period: step.period,
+            })
+            .collect();
+        let tables = tables(&played).map_err(|error| PlanError::Refused {
+            gait: word(0),
+            reason: error.to_string(),
+        })?;
+        let links = &self.model.swimmer().links;
+        match refused(&tables, &self.errand.servos, links) {
+            Some((step, reason)) => Err(PlanError::Refused {
+                gait: word(step),
+                reason,
+            }),
+            None => Ok(tables),
+        }
+    }
+}
+
+impl Hit {
+    /// Metres and the tenth of a radian count alike.
+    fn badness(&self) -> f64 {
+        self.off[0] + 0.1 * self.off[1]
+    }
+}

@@ -1,0 +1,338 @@
+//! The tables that a robot is given of a playlist, and the path that its servos take through all of them.
+//!
+//! Gaits of a playlist start and end at one shape. There each has a corner, which a table would round, each in its own way; so
+//! the joints stand at that shape for eight intervals of the table, and every table has it as its first knot, to the last
+//! digit. The robot has room for two tables and checks the next while one plays: a table that would be over before that is done
+//! takes in cycles of what follows.
+
+use gait_player::GaitTable;
+use gait_player::TICK_US;
+use gait_player::playback::{Playback, PlayedLeg, setpoints};
+use gait_player::table::MAX_KNOTS;
+use gait_player::table::TableError;
+use nalgebra::Vector2;
+use swimmer_model::{Gait, GaitPoint, Links, Model, Pose, Tolerance, swim};
+
+use crate::losses::Servos;
+use crate::path::Polyline;
+
+/// Share of a cycle at its start, and again at its end, in which the joints stand.
+const STAND: f64 = 4.0 / MAX_KNOTS as f64;
+/// A table lasts so long \[s\] where another follows it: sending and checking that one takes five at the robot's own speed.
+pub const SHORTEST_S: f64 = 6.0;
+
+/// Cycles of one gait: a step of a playlist.
+#[derive(Debug, Clone)]
+pub struct Repeated<G> {
+    /// One cycle; all of a playlist start and end at one shape.
+    pub gait: G,
+    /// Cycles, at least one.
+    pub cycles: u32,
+    /// Duration of a cycle \[s\], the standing at its ends included.
+    pub period: f64,
+}
+
+/// A table of a playlist, played for some cycles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaylistTable {
+    /// The table.
+    pub table: GaitTable,
+    /// Cycles.
+    pub cycles: u32,
+    /// Duration of a cycle \[µs\].
+    pub period_us: u32,
+    /// The step that its first cycle belongs to, from 0.
+    pub step: usize,
+}
+
+impl PlaylistTable {
+    /// Duration of all its cycles \[s\].
+    pub fn duration(&self) -> f64 {
+        f64::from(self.cycles) * f64::from(self.period_us) * 1e-6
+    }
+}
+
+/// What rounding to the table's units may add to the change of an angle over an interval, by the cubic's weights \[rad\].
+const ROUNDING: f64 = 1.3e-4;
+/// How far a rounded corner swings beyond the rates, and how far beyond its limit the robot lets a rate be.
+const SWING: f64 = 1.0013 / 1.005;
+
+/// The shortest period of a step \[s\] of which the servos can play the gait in `shortest`: with the standing, and with the time
+/// that the table's rounding takes of servos of at most `max_rate` \[rad/s\]; in whole ticks, so that every cycle has the same
+/// set-points.
+///
+/// ```
+/// // The servos need 2.75 s; 1/64 of the period is spent standing.
+/// let period = forecast::playlist::step_period(2.75, 3.5);
+/// assert!((period - 2.82).abs() < 1e-9, "{period}");
+/// ```
+pub fn step_period(shortest: f64, max_rate: f64) -> f64 {
+    let tick = f64::from(TICK_US) * 1e-6;
+    let standing = shortest / (1.0 - 2.0 * STAND);
+    let rounded = standing * SWING + ROUNDING * MAX_KNOTS as f64 / max_rate;
+    (standing.max(rounded) / tick - 1e-9).ceil() * tick
+}
+
+/// The tables of a playlist, in order.
+///
+/// # Errors
+/// [`TableError`]: an angle that does not fit.
+///
+/// ```
+/// use forecast::playlist::{Repeated, tables};
+/// use swimmer_files::AnyGait;
+///
+/// let step = |cycles| Repeated { gait: AnyGait::circle(1.0), cycles, period: 4.0 };
+/// let sent = tables(&[step(10), step(1), step(3)]).unwrap();
+/// // A single cycle would be over too soon: one of the next step goes with it.
+/// let told: Vec<_> = sent.iter().map(|table| (table.cycles, table.period_us)).collect();
+/// assert_eq!(told, [(10, 4_000_000), (1, 8_000_000), (2, 4_000_000)]);
+/// assert_eq!(sent[0].table.knot(0), sent[1].table.knot(0));
+/// ```
+pub fn tables<G: Gait<f64>>(steps: &[Repeated<G>]) -> Result<Vec<PlaylistTable>, TableError> {
+    let mut tables = Vec::new();
+    let shape = steps
+        .first()
+        .map_or_else(Vector2::zeros, |step| step.gait.at(0.0).phi);
+    // What is too short to be a table of its own.
+    let mut open: Vec<Part<'_, G>> = Vec::new();
+    for (number, step) in steps.iter().enumerate() {
+        let mut left = step.cycles;
+        let missing = SHORTEST_S - duration(&open);
+        if !open.is_empty() {
+            let taken = cycles_in(missing, step.period).min(left);
+            open.push(Part {
+                step,
+                number,
+                cycles: taken,
+            });
+            left -= taken;
+            if duration(&open) >= SHORTEST_S {
+                tables.push(table_of(shape, &open, 1)?);
+                open.clear();
+            }
+        }
+        let whole = Part {
+            step,
+            number,
+            cycles: 1,
+        };
+        let last = number + 1 == steps.len();
+        if left > 0 && (last || f64::from(left) * step.period >= SHORTEST_S) {
+            tables.push(table_of(shape, &[whole], left)?);
+        } else if left > 0 {
+            open.push(Part {
+                cycles: left,
+                ..whole
+            });
+        }
+    }
+    if !open.is_empty() {
+        tables.push(table_of(shape, &open, 1)?);
+    }
+    Ok(tables)
+}
+
+/// Whole cycles that last at least so long, at least one.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "saturates"
+)]
+fn cycles_in(seconds: f64, period: f64) -> u32 {
+    ((seconds / period).ceil() as u32).max(1)
+}
+
+/// Cycles of one step in a table.
+#[derive(Debug)]
+struct Part<'a, G> {
+    step: &'a Repeated<G>,
+    number: usize,
+    cycles: u32,
+}
+
+impl<G> Clone for Part<'_, G> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<G> Copy for Part<'_, G> {}
+
+impl<G> Part<'_, G> {
+    fn duration(&self) -> f64 {
+        f64::from(self.cycles) * self.step.period
+    }
+}
+
+fn duration<G>(parts: &[Part<'_, G>]) -> f64 {
+    parts.iter().map(Part::duration).sum()
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "saturates"
+)]
+fn table_of<G: Gait<f64>>(
+    shape: Vector2<f64>,
+    parts: &[Part<'_, G>],
+    cycles: u32,
+) -> Result<PlaylistTable, TableError> {
+    let whole = duration(parts);
+    let mut ends = Vec::new();
+    let mut time = 0.0;
+    for part in parts {
+        for _ in 0..part.cycles {
+            let start = time;
+            time += part.step.period;
+            ends.push((start / whole, time / whole, &part.step.gait));
+        }
+    }
+    Ok(PlaylistTable {
+        table: crate::table(
+            &Strung {
+                shape,
+                cycles: ends,
+            },
+            MAX_KNOTS,
+        )?,
+        cycles,
+        period_us: (whole * 1e6).round() as u32,
+        step: parts.first().map_or(0, |part| part.number),
+    })
+}
+
+/// Cycles one after the other, each with its share of the time, the joints standing at both ends of the whole.
+struct Strung<'a, G> {
+    /// Where all start and end; they may name it with other last digits.
+    shape: Vector2<f64>,
+    cycles: Vec<(f64, f64, &'a G)>,
+}
+
+impl<G: Gait<f64>> Strung<'_, G> {
+    /// The share of the moving time that has gone by.
+    fn moved(u: f64) -> f64 {
+        ((u - STAND) / (1.0 - 2.0 * STAND)).clamp(0.0, 1.0)
+    }
+
+    /// The piece of this number between those of standing: its cycle and its number there.
+    fn piece(&self, mut i: usize) -> Option<(f64, f64, &G, usize)> {
+        for (start, end, gait) in &self.cycles {
+            if i < gait.pieces() {
+                return Some((*start, *end, gait, i));
+            }
+            i -= gait.pieces();
+        }
+        None
+    }
+}
+
+impl<G: Gait<f64>> Gait<f64> for Strung<'_, G> {
+    fn at(&self, u: f64) -> GaitPoint<f64> {
+        let moved = Self::moved(u - u.floor());
+        if moved <= 0.0 || moved >= 1.0 {
+            return GaitPoint {
+                phi: self.shape,
+                rate: Vector2::zeros(),
+            };
+        }
+        let held = self
+            .cycles
+            .iter()
+            .find(|(_, end, _)| moved < *end)
+            .or(self.cycles.last());
+        let Some((start, end, gait)) = held else {
+            return GaitPoint {
+                phi: self.shape,
+                rate: Vector2::zeros(),
+            };
+        };
+        let point = gait.at(((moved - start) / (end - start)).clamp(0.0, 1.0));
+        GaitPoint {
+            rate: point.rate / ((end - start) * (1.0 - 2.0 * STAND)),
+            ..point
+        }
+    }
+
+    fn pieces(&self) -> usize {
+        let moving: usize = self.cycles.iter().map(|(_, _, gait)| gait.pieces()).sum();
+        moving + 2
+    }
+
+    fn piece_end(&self, i: usize) -> f64 {
+        match (i, i.checked_sub(1).and_then(|i| self.piece(i))) {
+            (0, _) => STAND,
+            (_, Some((start, end, gait, piece))) => {
+                let moved = start + (end - start) * gait.piece_end(piece);
+                STAND + moved * (1.0 - 2.0 * STAND)
+            }
+            (_, None) => 1.0,
+        }
+    }
+
+    fn corner_at_end(&self, i: usize) -> bool {
+        match (i, i.checked_sub(1).and_then(|i| self.piece(i))) {
+            (0, _) => true,
+            (_, Some((_, _, gait, piece))) => {
+                piece + 1 == gait.pieces() || gait.corner_at_end(piece)
+            }
+            (_, None) => false,
+        }
+    }
+}
+
+/// The path that the servos' joints take from straight through all tables to straight again: the robot's own set-points through
+/// the servo's own arithmetic.
+pub fn played(tables: &[PlaylistTable], servos: &Servos) -> Polyline {
+    let legs: Vec<PlayedLeg<'_>> = tables
+        .iter()
+        .map(|table| PlayedLeg {
+            table: &table.table,
+            cycles: table.cycles,
+            period_us: table.period_us,
+        })
+        .collect();
+    let mut commanded = Vec::new();
+    setpoints(&legs, &servos.limits(), |setpoint| commanded.push(setpoint));
+    let mut vertices = vec![Vector2::zeros()];
+    if let Some(first) = legs.first() {
+        let playback = Playback {
+            table: first.table,
+            period_us: first.period_us,
+            maps: [servos.map(); 2],
+            limits: servos.limits(),
+            plant: servos.plant(),
+        };
+        playback.through(commanded, |point| vertices.push(point.angles.into()));
+    }
+    Polyline::new(vertices)
+}
+
+/// Where a way of the joints leads, in the frame of the middle link at its start.
+pub fn leads_to<G: Gait<f64> + ?Sized>(model: &Model<f64>, way: &G) -> Pose<f64> {
+    let stroke = swim(model, way, &Tolerance::default());
+    Pose::new(
+        stroke.displacement.x,
+        stroke.displacement.y,
+        stroke.rotation,
+    )
+}
+
+/// Why a robot would refuse a table of a playlist; none where it plays all of them. With the step that the table begins with.
+pub fn refused(
+    tables: &[PlaylistTable],
+    servos: &Servos,
+    links: &Links<f64>,
+) -> Option<(usize, String)> {
+    let limits = servos.limits();
+    tables.iter().find_map(|sent| {
+        let facts = crate::losses::facts(&sent.table, links)?;
+        let allowed = facts
+            .allow(&limits)
+            .and_then(|()| facts.allow_period(&limits, sent.period_us));
+        allowed
+            .err()
+            .map(|refusal| (sent.step, refusal.to_string()))
+    })
+}
