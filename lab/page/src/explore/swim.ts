@@ -178,12 +178,14 @@ function arrow(context: CanvasRenderingContext2D, [x, y]: [number, number], [tx,
   context.stroke();
 }
 
-/** On paper of its own: an arrow that reaches there passes under it. */
+/** On thin paper of its own: what reaches there passes under it. */
 function scaleBar(context: CanvasRenderingContext2D, scale: number, height: number, colours: Ink): void {
   const power = 10 ** Math.floor(Math.log10(90 / scale));
   const long = ([5, 2, 1].find((digit) => digit * power * scale <= 110) ?? 1) * power;
+  context.globalAlpha = 0.7;
   context.fillStyle = colours.paper;
   context.fillRect(6, height - 34, long * scale + 12, 28);
+  context.globalAlpha = 1;
   context.strokeStyle = context.fillStyle = colours.soft;
   context.lineWidth = 1.5;
   context.beginPath();
