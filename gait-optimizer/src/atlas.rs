@@ -126,7 +126,8 @@ pub struct Atlas {
     pub left: usize,
     /// Starts that ended on a curve whose polish failed, or whose certificate does.
     pub uncertified: usize,
-    /// The best of these, as its curve of low order has it: |d| over L, or ξ. It is no gait that anybody proved.
+    /// The best of these, as its curve of low order has it, or of the known gaits that are optimal only among gaits of their
+    /// symmetry: |d| over L, or ξ. It is no gait that anybody proved to be optimal.
     pub best_uncertified: Option<f64>,
 }
 

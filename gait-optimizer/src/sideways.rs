@@ -8,7 +8,8 @@
 //! has it on a bound – where the heading is stationary along it, or in a corner of the bounds.
 //!
 //! A bridge – a way out to a start with the heading square to d and back along itself – costs nothing, so the supremum over
-//! all curves is the largest |d| wherever a bridge can turn that far ([`Sideways::bridged_supremum_over_length`]). As with
+//! all curves is the largest |d| wherever a bridge can turn that far ([`Sideways::bridged_supremum_over_length`]), where there is a
+//! largest one: gaits that touch their own image carry farther than any loop, and are no maximum. As with
 //! the gait that turns most, bridges do not count here: the start is a point of the loop itself. What is compared are the
 //! loops of most displacement, each with its best start, and the loops that are stationary with a start on a straight bound.
 
@@ -29,7 +30,11 @@ use crate::loops::LoopTrace;
 use crate::optimal_gait::Solution;
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
-use crate::{Arc, AtlasProblem, OptimalGait, Watch, atlas_watched};
+use crate::{
+    Arc, AtlasProblem, DisplacementError, DisplacementProblem, Heading, OptimalGait, Watch,
+    atlas_watched, displacement,
+};
+use square::turned;
 
 /// What to steer, and how.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,11 +71,39 @@ pub struct Sideways {
     pub gait: OptimalGait,
     /// Y over L: net displacement across the heading at the first sample, to the left.
     pub lateral_over_length: f64,
-    /// The largest |d| over L of the loops found: what a bridge to a start with its heading square to d would come near to.
-    pub bridged_supremum_over_length: f64,
+    /// The largest |d| over L: what a bridge to a start with its heading square to d would come near to. None where a gait is known
+    /// that carries farther than every optimum, and so no largest one.
+    pub bridged_supremum_over_length: Option<f64>,
+    /// Y over L of a known gait that moves farther across than this one and is no optimum of its class: it touches its own image.
+    pub outdone_over_length: Option<f64>,
     /// Loops that were found, of which this is the best.
     pub loops: usize,
 }
+
+impl Sideways {
+    /// Of the displacement against the cycle's mean heading at constant power \[rad\], in (−π, π\]: the same from whatever first
+    /// sample. None where the gait cannot be swum.
+    pub fn heading(&self) -> Option<f64> {
+        let model = Model::new(&self.gait.swimmer.of_unit_length()).ok()?;
+        let gait = self.gait.gait().ok()?;
+        let mut headings = 0.0;
+        trajectory(&model, &gait, &Tolerance::new(1e-11), LOOKS, |point| {
+            // The trapezoidal rule: both ends have the same heading.
+            if point.u > 0.0 {
+                headings += point.pose.theta;
+            }
+        });
+        let [x, y] = [
+            self.gait.displacement_over_length,
+            self.gait.lateral_over_length,
+        ];
+        let off = y.atan2(x) - headings / LOOKS as f64;
+        Some(off.sin().atan2(off.cos()))
+    }
+}
+
+/// Instants that headings are looked at.
+const LOOKS: usize = 2048;
 
 /// The simple closed loop of most displacement across the heading at its first sample, without net rotation: the best of
 /// those that are found and certified. Random starts know no front and back, so a swimmer whose side links differ is looked
@@ -133,7 +166,8 @@ pub fn sideways_watched(
         (Ok(ours), Some(theirs)) => {
             let bridged = ours
                 .bridged_supremum_over_length
-                .max(theirs.bridged_supremum_over_length);
+                .zip(theirs.bridged_supremum_over_length)
+                .map(|(ours, theirs)| ours.max(theirs));
             let loops = ours.loops + theirs.loops;
             let best = if theirs.lateral_over_length > ours.lateral_over_length {
                 theirs
@@ -171,6 +205,7 @@ fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sid
     Some(Sideways {
         lateral_over_length: lateral,
         bridged_supremum_over_length: found.bridged_supremum_over_length,
+        outdone_over_length: found.outdone_over_length,
         loops: found.loops,
         gait: OptimalGait::new(Solution {
             objective: Objective::Sideways,
@@ -224,18 +259,32 @@ fn sampled_as_asked(
     let region = Region::new(&problem.bounds, &problem.swimmer.links);
     let mut found: Vec<Sideways> = Vec::new();
     for optimum in &loops.optima {
-        found.extend(square::turned(problem, &model, &optimum.gait));
+        found.extend(turned(problem, &model, &optimum.gait));
     }
     for candidate in on_bound::candidates(&model, &region, problem.samples) {
         found.extend(finished(problem, &model, &region, candidate));
     }
-    let bridged = loops.optima.first().map(|best| best.distance_over_length);
+    let farthest = loops.optima.first().map(|best| best.distance_over_length);
+    let touching = touching(problem);
     let count = found.len();
+    let across = |found: &Sideways| found.lateral_over_length;
     found
         .into_iter()
-        .max_by(|a, b| a.lateral_over_length.total_cmp(&b.lateral_over_length))
+        .max_by(|a, b| across(a).total_cmp(&across(b)))
         .map(|best| Sideways {
-            bridged_supremum_over_length: bridged.unwrap_or(0.0).max(best.lateral_over_length),
+            bridged_supremum_over_length: farthest
+                .map(|farthest| farthest.max(across(&best)))
+                .filter(|farthest| {
+                    let beyond = touching.iter().map(|(_, known)| *known);
+                    let beyond = beyond.chain(loops.best_uncertified);
+                    beyond.fold(0.0, f64::max) <= farthest + 1e-9
+                }),
+            outdone_over_length: touching
+                .iter()
+                .filter_map(|(gait, _)| turned(problem, &model, gait.as_ref()?))
+                .map(|found| across(&found))
+                .filter(|known| *known > across(&best) + 1e-9)
+                .reduce(f64::max),
             gait: if best.gait.lateral_over_length < 0.0 {
                 best.gait.mirrored()
             } else {
@@ -248,6 +297,36 @@ fn sampled_as_asked(
             bounds: problem.bounds,
             loops: loops.optima.len(),
         })
+}
+
+/// The gaits of most displacement with the paper's symmetries, which may touch their own images, and how far over L gaits are known
+/// to carry of which they are the best certified ones. Empty where the side links differ.
+fn touching(problem: &SidewaysProblem) -> Vec<(Option<OptimalGait>, f64)> {
+    let asked = |heading| {
+        displacement(&DisplacementProblem {
+            bounds: problem.bounds,
+            heading: Some(heading),
+            ..DisplacementProblem::new(problem.swimmer)
+        })
+    };
+    let known = |answer| match answer {
+        Ok(gait) => {
+            let OptimalGait {
+                displacement_over_length: d,
+                outdone_over_length: outdone,
+                ..
+            } = gait;
+            Some((Some(gait), d.abs().max(outdone.unwrap_or(0.0).abs())))
+        }
+        Err(DisplacementError::NoOptimum {
+            outdone: Some(far), ..
+        }) => Some((None, far.abs())),
+        Err(_) => None,
+    };
+    [Heading::Forwards, Heading::Backwards]
+        .into_iter()
+        .filter_map(|heading| known(asked(heading)))
+        .collect()
 }
 
 /// A traced loop as a gait, where its certificate holds.
@@ -297,7 +376,8 @@ fn settled(
     }
     Some(Sideways {
         lateral_over_length: lateral,
-        bridged_supremum_over_length: lateral,
+        bridged_supremum_over_length: Some(lateral),
+        outdone_over_length: None,
         loops: 1,
         gait: OptimalGait::new(Solution {
             objective: Objective::Sideways,
@@ -317,7 +397,7 @@ fn settled(
 fn better_start(model: &Model<f64>, cycle: &Cycle, d: &Vector2<f64>) -> Option<f64> {
     let gait = cycle.gait().ok()?;
     let mut best = 0.0_f64;
-    trajectory(model, &gait, &Tolerance::new(1e-11), 2048, |point| {
+    trajectory(model, &gait, &Tolerance::new(1e-11), LOOKS, |point| {
         let (sin, cos) = point.pose.theta.sin_cos();
         best = best.max((d.y * cos - d.x * sin).abs());
     });

@@ -65,8 +65,8 @@ pub struct Turning {
     pub regions: usize,
 }
 
-/// Directions in which the border is looked at.
-const DIRECTIONS: usize = 1440;
+/// From point to point of the border \[rad\].
+const SPACING: f64 = 0.012;
 /// Steps along zero-level curves, in a half width of the region.
 const STEPS: f64 = 240.0;
 
@@ -91,7 +91,7 @@ pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
         bounds.max_angle = Some(std::f64::consts::PI);
     }
     let region = Region::new(&bounds, &problem.swimmer.links);
-    let border = Border::new(&region, DIRECTIONS).ok_or(TurningError::Border)?;
+    let border = Border::new(&region, SPACING).ok_or(TurningError::Border)?;
     let reach = border.reach();
     let level = Level(|phi: &Vector2<f64>| curvature(&model, phi));
     let domain = Domain {
@@ -164,7 +164,7 @@ fn no_gait(pieces: &[Piece]) -> TurningError {
 /// The pieces in order from where the curve first meets φ₁ = φ₂ > 0; from where they are where it does not.
 fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     round: &Round,
-    border: &Border<'_>,
+    border: &Border,
     level: &Level<F>,
 ) -> Vec<Piece> {
     let off = |phi: &Vector2<f64>| phi.x - phi.y;
@@ -186,8 +186,7 @@ fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
                 level.between(&diagonal(middle - step), &diagonal(middle + step))
             } else {
                 border
-                    .at(std::f64::consts::FRAC_PI_4)
-                    .map(|point| point.phi)
+                    .on_diagonal()
                     .filter(|phi| (phi - diagonal(middle)).norm() < step)
             };
             if let Some(met) = met

@@ -28,19 +28,17 @@ pub struct Errand {
     pub heading: Option<f64>,
     pub tank: Option<Tank>,
     pub margin: f64,
+    pub servos: Servos,
 }
 #[derive(Debug, Clone)]
 pub struct Family {
     pub gaits: [(AnyGait, f64); 3],
+    pub mirrored: bool,
 }
 impl Family {
     pub fn shape(&self) -> Vector2<f64> {}
-    pub fn reached(
-        &self,
-        model: &Model<f64>,
-        from: &Pose<f64>,
-        steps: &[Step],
-    ) -> Pose<f64> {}
+    #[must_use]
+    pub fn mirror(&self) -> Self {}
 }
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
@@ -104,7 +102,6 @@ pub struct Member {
 }
 impl Member {
     pub fn of(&self, family: &Family) -> Scaled {}
-    pub fn word(&self) -> &'static str {}
 }
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NetMotion {
@@ -132,18 +129,24 @@ impl Part {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     pub steps: Vec<Step>,
+    pub mirrored: bool,
     pub duration: f64,
     pub reached: Pose<f64>,
+    pub way: Polyline,
     pub off: [f64; 2],
     pub met: [usize; 2],
 }
 impl Plan {
+    pub fn gaits(&self, family: &Family) -> Vec<Scaled> {}
+    pub fn word(&self, step: &Step) -> &'static str {}
+    pub fn reached_by(&self, model: &Model<f64>, from: &Pose<f64>) -> Pose<f64> {}
     pub fn apart_from(&self, pose: &Pose<f64>) -> [f64; 2] {}
 }
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlanError {
     Apart { apart: f64 },
     Outside { what: &'static str, pose: [f64; 3], margin: f64 },
+    Refused { gait: &'static str, reason: String },
     NoWay { met: usize, margin: f64 },
 }
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -152,12 +155,31 @@ pub struct Played {
     pub period: f64,
     pub knots: usize,
 }
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaylistTable {
+    pub table: GaitTable,
+    pub cycles: u32,
+    pub period_us: u32,
+    pub step: usize,
+}
+impl PlaylistTable {
+    pub fn duration(&self) -> f64 {}
+}
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
     pub u: f64,
     pub joint: usize,
     pub angle: f64,
 }
+#[derive(Debug, Clone)]
+pub struct Repeated<G> {
+    pub gait: G,
+    pub cycles: u32,
+    pub period: f64,
+}
+#[derive(Debug, Clone)]
+pub struct Scaled {}
+impl Gait<f64> for Scaled {}
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Servos {
     pub file: ServoFile,
@@ -248,6 +270,12 @@ pub fn forecast<G: Gait<f64> + ?Sized>(
     gait: &G,
     played: &Played,
 ) -> Result<Forecast, ForecastError> {}
+pub fn meets_wall(
+    model: &Model<f64>,
+    way: &Polyline,
+    tank: &Tank,
+    start: &Pose<f64>,
+) -> Option<Meeting> {}
 pub fn plan(
     model: &Model<f64>,
     family: &Family,
@@ -332,8 +360,25 @@ pub mod plan {
     pub use crate::Member;
     pub use crate::Plan;
     pub use crate::PlanError;
+    pub use crate::Scaled;
     pub use crate::Step;
     pub use crate::plan;
+}
+pub mod playlist {
+    pub use crate::PlaylistTable;
+    pub use crate::Repeated;
+    pub const SHORTEST_S: f64 = 6.0;
+    pub fn leads_to<G: Gait<f64> + ?Sized>(model: &Model<f64>, way: &G) -> Pose<f64> {}
+    pub fn played(tables: &[PlaylistTable], servos: &Servos) -> Polyline {}
+    pub fn refused(
+        tables: &[PlaylistTable],
+        servos: &Servos,
+        links: &Links<f64>,
+    ) -> Option<(usize, String)> {}
+    pub fn step_period(shortest: f64, max_rate: f64) -> f64 {}
+    pub fn tables<G: Gait<f64>>(
+        steps: &[Repeated<G>],
+    ) -> Result<Vec<PlaylistTable>, TableError> {}
 }
 pub mod reach {
     pub use crate::Reach;
@@ -346,6 +391,7 @@ pub mod tank {
     pub use crate::Meeting;
     pub use crate::Part;
     pub use crate::Tank;
+    pub use crate::meets_wall;
     pub use crate::until_wall;
 }
 pub mod timing {

@@ -516,8 +516,12 @@ impl Row {
 pub struct Sideways {
     pub gait: OptimalGait,
     pub lateral_over_length: f64,
-    pub bridged_supremum_over_length: f64,
+    pub bridged_supremum_over_length: Option<f64>,
+    pub outdone_over_length: Option<f64>,
     pub loops: usize,
+}
+impl Sideways {
+    pub fn heading(&self) -> Option<f64> {}
 }
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SidewaysError {

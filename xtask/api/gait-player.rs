@@ -188,12 +188,30 @@ pub mod playback {
         pub fn cycle(&self, cycle: u32, mut visit: impl FnMut(PlayedPoint)) {}
         pub fn command(&self, setpoint: [f32; 2]) -> [f64; 2] {}
     }
+    impl Playback<'_> {
+        pub fn through(
+            &self,
+            setpoints: impl IntoIterator<Item = [f32; 2]>,
+            mut visit: impl FnMut(PlayedPoint),
+        ) {}
+    }
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct PlayedLeg<'a> {
+        pub table: &'a GaitTable,
+        pub cycles: u32,
+        pub period_us: u32,
+    }
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct PlayedPoint {
         pub time_s: f64,
         pub angles: [f64; 2],
         pub command: [f64; 2],
     }
+    pub fn setpoints(
+        legs: &[PlayedLeg<'_>],
+        limits: &Limits,
+        mut visit: impl FnMut([f32; 2]),
+    ) {}
 }
 pub mod ramp {
     pub const NEUTRAL: [f32; 2] = [0.0; 2];

@@ -47,6 +47,7 @@ pub enum LinkError {
         cycles: u32,
         flags: Flags,
     },
+    OutOfStep { played: usize, legs: usize },
     NotStored { doing: &'static str },
     Interrupted { doing: &'static str },
 }
@@ -136,6 +137,9 @@ impl<P: Port> Robot<P> {
     pub fn crash_message(&mut self) -> Result<String, LinkError> {}
     pub fn table(&mut self) -> Result<Option<TableInfo>, LinkError> {}
     pub fn set_key(&mut self, key: Option<Key>) -> Result<(), LinkError> {}
+}
+impl<P: Port> Robot<P> {
+    pub fn expected_upload_while_playing(&self, bytes: usize) -> Duration {}
 }
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StoppedBy {
@@ -443,14 +447,40 @@ pub mod port {
     pub fn serial_ports() -> Vec<ListedPort> {}
 }
 pub mod robot {
+    #[derive(Debug, Clone, PartialEq, Eq)]
+    pub struct Leg {
+        pub table: Vec<u8>,
+        pub cycles: u32,
+        pub period: Duration,
+    }
     pub type Observer = Box<dyn FnMut(&Telemetry, Duration) + Send>;
     pub use crate::Robot;
+    #[derive(Debug)]
+    pub struct Sequence {}
+    impl Sequence {
+        pub fn playing_first(legs: Vec<Leg>) -> Self {}
+        pub fn go_on<P: Port>(
+            &mut self,
+            robot: &mut Robot<P>,
+            mut watch: impl FnMut(SequenceProgress<'_>) -> ControlFlow<()>,
+        ) -> Result<Option<Status>, LinkError> {}
+    }
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct SequenceProgress<'a> {
+        pub leg: usize,
+        pub telemetry: Option<&'a Telemetry>,
+    }
     pub use crate::StoppedBy;
     pub fn time_left(status: &Status) -> Option<Duration> {}
     pub mod finish {
         pub fn at_rest(state: StateName, cause: StopCause) -> bool {}
         pub fn finished(status: Status) -> Result<Status, LinkError> {}
         pub use crate::robot::time_left;
+    }
+    pub mod sequence {
+        pub use crate::robot::Leg;
+        pub use crate::robot::Sequence;
+        pub use crate::robot::SequenceProgress;
     }
 }
 pub mod session {
@@ -517,6 +547,13 @@ pub mod session {
             now: Duration,
             slot: u8,
             table: &[u8],
+            deadline: Duration,
+        ) -> Ticket {}
+        pub fn upload_follower(
+            &mut self,
+            now: Duration,
+            table: &[u8],
+            (cycles, period_us): (u32, u32),
             deadline: Duration,
         ) -> Ticket {}
         pub fn set_key(&mut self, key: Option<Key>) {}

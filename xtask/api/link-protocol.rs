@@ -135,6 +135,12 @@ impl Flags {
     #[must_use]
     pub fn with(self, other: Self, condition: bool) -> Self {}
 }
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Follow {
+    pub upload: u16,
+    pub cycles: u32,
+    pub period_us: u32,
+}
 pub const HEADER: usize = 6;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
@@ -308,6 +314,7 @@ pub enum Refusal {
     WrongKey,
     NeedsPresence,
     NotFresh,
+    NotJoined { joint: Joint, step: i32 },
 }
 impl Refusal {
     pub fn number(&self) -> u8 {}
@@ -356,6 +363,7 @@ pub enum Request {
     SetPulseRange { joint: Joint, range: PulseRange },
     ClearEStop,
     EnterBootLoader,
+    Follow(Follow),
 }
 impl Request {
     pub fn is_stop(&self) -> bool {}

@@ -244,6 +244,26 @@ pub struct Play {
     pub unsteady: Vec<f64>,
 }
 #[derive(Debug, Clone, PartialEq)]
+pub struct Playlist {
+    pub swimmer: Option<String>,
+    pub steps: Vec<PlaylistStep>,
+}
+impl Playlist {
+    pub fn load(path: &Path) -> Result<Self, FileError> {}
+    pub fn parse(text: &str, path: &Path) -> Result<Self, FileError> {}
+    pub fn to_text(&self) -> String {}
+    pub fn save(&self, path: &Path) -> Result<(), FileError> {}
+    pub fn duration(&self) -> f64 {}
+}
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaylistStep {
+    pub gait: GaitSpec,
+    pub curve: AnyGait,
+    pub made_for: Option<(Option<String>, SwimmerHash)>,
+    pub cycles: u32,
+    pub period: f64,
+}
+#[derive(Debug, Clone, PartialEq)]
 pub enum PointName {
     Named(String),
     Columns(String, String),

@@ -313,6 +313,7 @@ pub fn trajectory<T: Scalar, G: Gait<T> + ?Sized>(
     intervals: usize,
     mut visit: impl FnMut(TrajectoryPoint<T>),
 ) {}
+pub fn wrapped_angle(angle: f64) -> f64 {}
 pub mod gait {
     pub use crate::Circle;
     pub use crate::Fourier;

@@ -157,6 +157,12 @@ pub(super) fn run<S: MultiStart>(
         let values = [atlas.best_uncertified, value];
         atlas.best_uncertified = values.into_iter().flatten().reduce(f64::max);
     }
+    // A known gait of these bounds that is a saddle among all curves is not listed; how far it carries is told.
+    let saddles = known
+        .iter()
+        .filter(|known| known.bounds == problem.bounds && !kept(known));
+    let values = saddles.map(S::value).chain(atlas.best_uncertified);
+    atlas.best_uncertified = values.reduce(f64::max);
     gaits.extend(known.into_iter().filter(kept).map(|known| (known, 1)));
     atlas.optima = distinct::<S>(&gaits, symmetries);
     let found: usize = atlas.optima.iter().map(|optimum| optimum.found).sum();

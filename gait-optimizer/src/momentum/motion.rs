@@ -76,6 +76,23 @@ impl Track {
         self.left(phi) * self.way
     }
 
+    /// A shape on the piece, or on its curve beyond its end, near this one.
+    pub(crate) fn onto(&self, phi: &Vector2<f64>) -> Vector2<f64> {
+        const STEPS: usize = 8;
+        let (Bound::Clearance(clearance), Some(piece)) = (&self.bound, self.piece) else {
+            return self.bound.onto(phi);
+        };
+        let mut here = *phi;
+        for _ in 0..STEPS {
+            let level = clearance.level(piece, &here);
+            here -= level.gradient * (level.value / level.gradient.norm_squared());
+            if level.value.abs() < 1e-15 {
+                break;
+            }
+        }
+        here
+    }
+
     /// Unit normal that points into the region.
     pub(crate) fn inwards(&self, phi: &Vector2<f64>) -> Vector2<f64> {
         let along = self.left(phi);

@@ -97,7 +97,7 @@ fn along_at(model: &Model<f64>, gait: &impl Gait<f64>, u: f64, d: (f64, f64)) ->
 }
 
 /// The cycle from another start, which becomes a sample.
-fn shifted(gait: &OptimalGait, any: &impl Gait<f64>, by: f64) -> Option<Cycle> {
+pub(super) fn shifted(gait: &OptimalGait, any: &impl Gait<f64>, by: f64) -> Option<Cycle> {
     const CLOSE: f64 = 1e-6;
     // A sample that is all but there already is the start.
     let by = gait

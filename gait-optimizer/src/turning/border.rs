@@ -1,83 +1,68 @@
-//! The border of what the bounds allow, seen from the straight shape: one point in every direction.
+//! The border of what the bounds allow round the straight shape, walked counter-clockwise, bound after bound.
 //!
-//! The straight shape keeps every bound, and from it each ray meets the border first at one place. Corners are the
-//! directions where another bound, or another piece of the curved one, takes over.
+//! Corners are where another bound, or another piece of the curved one, takes over.
 
 use nalgebra::Vector2;
-use swimmer_files::ArcKind;
 
-use crate::region::{Bound, Piece, Region};
+use crate::momentum::Track;
+use crate::region::{Bound, Region};
 
-/// A point of the border.
+/// A point of the border with the bound that it lies on, the region on the left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BorderPoint {
-    /// Its direction from Φ = 0 \[rad\], 0 to 2π.
-    pub(super) direction: f64,
     pub(super) phi: Vector2<f64>,
-    pub(super) bound: Bounding,
-}
-
-/// What bounds in a direction.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Bounding {
-    index: usize,
-    piece: Option<Piece>,
-    pub(super) kind: ArcKind,
+    pub(super) track: Track,
 }
 
 /// The border of a region.
 #[derive(Debug)]
-pub(super) struct Border<'a> {
-    region: &'a Region,
-    /// Between directions \[rad\].
-    spacing: f64,
+pub(super) struct Border {
     /// Counter-clockwise; where the bound changes, two points stand at the corner, one of each.
     pub(super) points: Vec<BorderPoint>,
 }
 
-/// Neighbouring points farther apart than a tenth of a radian plus this many times the turn between them tell of a jump:
-/// the border hides behind itself there.
-const JUMP: f64 = 8.0;
-/// Neighbours farther apart than this many of the spacing get points between them.
-const WIDEST_GAP: f64 = 2.0;
-/// Nor do neighbours on a curved bound that leave the middle between them this far off their chord, in its length: a fiftieth
-/// of a radian apart. Round the tips the bound is as sharp as the clearance is small.
-const MOST_BULGE: f64 = 0.0025;
-/// Neighbours nearer than this are left as they are \[rad\].
-const NARROWEST_GAP: f64 = 1e-4;
+/// A curved bound turns by no more than this from point to point \[rad\].
+const TURN: f64 = 0.02;
+/// Points of a curved bound nearer to each other than this are left as they are \[rad\].
+const NARROWEST: f64 = 1e-4;
+/// A border of more points than this does not come round.
+const MOST_POINTS: usize = 100_000;
+/// A bound takes over where it is overstepped by more than this, in rad or over L.
+const BEYOND: f64 = 1e-13;
+/// A piece that ends within this step has ended \[rad\].
+const AT_END: f64 = 1e-11;
+/// Which piece of another bound takes over is seen this far beyond the end \[rad\].
+const AHEAD: f64 = 1e-5;
+/// Halvings that place a corner.
+const HALVINGS: usize = 60;
 
-impl<'a> Border<'a> {
-    /// The border in `count` directions and all corners. None where it is not bounded in every direction, or hides behind
-    /// itself.
-    pub(super) fn new(region: &'a Region, count: usize) -> Option<Self> {
-        let mut border = Self {
-            region,
-            spacing: std::f64::consts::TAU / count as f64,
-            points: Vec::with_capacity(count + 16),
+impl Border {
+    /// The border, with points no farther apart than `spacing` \[rad\]. None where the region has no bound on φ₁, or the walk does
+    /// not come round.
+    pub(super) fn new(region: &Region, spacing: f64) -> Option<Self> {
+        let bounds: Vec<Bound> = region.bounds().collect();
+        // Where φ₂ = 0 no other link is near, and only the bound on φ₁ binds.
+        let (first, edge) = region
+            .edges()
+            .iter()
+            .enumerate()
+            .find(|(_, edge)| edge.normal.x > 0.5)?;
+        let start = Vector2::new(edge.offset, 0.0);
+        let mut here = BorderPoint {
+            phi: start,
+            track: Track::new(region, first, &start, 1.0)?,
         };
-        let step = border.spacing;
-        // Not at a corner of the square nor on an axis of symmetry.
-        let mut before = border.at(step / 3.0)?;
-        border.points.push(before);
-        for k in 1..=count {
-            let direction = step * (k as f64 + 1.0 / 3.0);
-            let next = border.at(direction)?;
-            border.corners_between(&before, &next, 0);
-            let last = border.points.last().copied().unwrap_or(before);
-            border.fill_between(&last, &next, 0);
-            if k < count {
-                border.points.push(next);
+        let mut points = vec![here];
+        while points.len() < MOST_POINTS {
+            let next = next(region, &bounds, &here, spacing)?;
+            let home = here.track.index == first && here.phi.y < 0.0 && next.phi.y >= 0.0;
+            if home && next.track == here.track {
+                return Some(Self { points });
             }
-            before = next;
+            points.push(next);
+            here = next;
         }
-        let jumps = border.points.windows(2).any(|pair| match pair {
-            [a, b] => {
-                let turn = (b.direction - a.direction).abs();
-                (b.phi - a.phi).norm() > 0.1 + JUMP * turn
-            }
-            _ => false,
-        });
-        (!jumps).then_some(border)
+        None
     }
 
     /// The largest |φᵢ| on the border.
@@ -88,123 +73,91 @@ impl<'a> Border<'a> {
             .fold(0.0, f64::max)
     }
 
-    /// The border in one direction.
-    pub(super) fn at(&self, direction: f64) -> Option<BorderPoint> {
-        let (sin, cos) = direction.sin_cos();
-        let ray = Vector2::new(cos, sin);
-        let mut nearest: Option<(f64, usize)> = None;
-        for (index, bound) in self.region.bounds().enumerate() {
-            let way = match bound {
-                Bound::Straight(edge) => {
-                    let along = edge.normal.dot(&ray);
-                    (along > 0.0).then(|| edge.offset / along)
-                }
-                Bound::Clearance(_) => {
-                    let limit = nearest.map_or(f64::INFINITY, |(way, _)| way);
-                    first_met(&bound, &ray, limit)
-                }
-            };
-            if let Some(way) = way
-                && nearest.is_none_or(|(nearest, _)| way < nearest)
-            {
-                nearest = Some((way, index));
-            }
+    /// The place between two neighbours, from one (0) to the other (1).
+    pub(super) fn between(from: &BorderPoint, to: &BorderPoint, share: f64) -> Vector2<f64> {
+        let phi = from.phi.lerp(&to.phi, share);
+        if from.track == to.track {
+            from.track.onto(&phi)
+        } else {
+            phi
         }
-        let (way, index) = nearest?;
-        let phi = ray * way;
-        let bound = self.region.bound(index)?;
-        Some(BorderPoint {
-            direction,
-            phi,
-            bound: Bounding {
-                index,
-                piece: bound.piece(&phi),
-                kind: bound.kind(),
-            },
-        })
     }
 
-    /// Adds points where two with the same bound are far apart: the border runs away from the straight shape.
-    fn fill_between(&mut self, before: &BorderPoint, after: &BorderPoint, depth: usize) {
-        let chord = after.phi - before.phi;
-        let apart = chord.norm();
-        let near = apart < WIDEST_GAP * self.spacing * after.phi.norm();
-        let straight = before.bound.kind != ArcKind::Clearance;
-        if depth > 14 || apart < NARROWEST_GAP || (near && straight) {
-            return;
-        }
-        let Some(middle) = self.at(f64::midpoint(before.direction, after.direction)) else {
-            return;
-        };
-        if middle.bound != before.bound || middle.bound != after.bound {
-            return;
-        }
-        let bulge = (middle.phi - before.phi).perp(&chord).abs() / apart;
-        if near && bulge < MOST_BULGE * apart {
-            return;
-        }
-        self.fill_between(before, &middle, depth + 1);
-        self.points.push(middle);
-        self.fill_between(&middle, after, depth + 1);
-    }
-
-    /// Adds the corners between two points with different bounds, by bisection; there may be two close together.
-    fn corners_between(&mut self, before: &BorderPoint, after: &BorderPoint, depth: usize) {
-        if before.bound == after.bound || depth > 4 {
-            return;
-        }
-        let (mut low, mut high) = (*before, *after);
-        for _ in 0..60 {
-            let Some(middle) = self.at(f64::midpoint(low.direction, high.direction)) else {
-                return;
-            };
-            if middle.direction <= low.direction || middle.direction >= high.direction {
-                break;
-            }
-            if middle.bound == before.bound {
+    /// Where the border crosses φ₁ = φ₂ > 0.
+    pub(super) fn on_diagonal(&self) -> Option<Vector2<f64>> {
+        let off = |phi: &Vector2<f64>| phi.x - phi.y;
+        let (before, after) = self
+            .points
+            .iter()
+            .zip(self.points.iter().cycle().skip(1))
+            .find(|(a, b)| off(&a.phi) > 0.0 && off(&b.phi) <= 0.0 && a.phi.sum() > 0.0)?;
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(low, high);
+            if off(&Self::between(before, after, middle)) > 0.0 {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        let corner = low.phi;
-        self.fill_between(before, &low, 0);
-        self.points.push(low);
-        self.points.push(BorderPoint {
-            phi: corner,
-            bound: high.bound,
-            ..high
-        });
-        self.corners_between(&high, after, depth + 1);
+        Some(Self::between(before, after, high))
     }
 }
 
-/// How far along a ray a curved bound is first met, before `limit`. The margin is a distance between links over their
-/// total length, so it changes by at most √2 per radian: steps of half the margin cannot jump over the bound.
-fn first_met(bound: &Bound, ray: &Vector2<f64>, limit: f64) -> Option<f64> {
-    let (mut last, mut way) = (0.0, 0.0);
-    for _ in 0..100_000 {
-        let margin = bound.margin(&(ray * way));
-        if margin <= 0.0 {
-            break;
-        }
-        if way >= limit {
-            return None;
-        }
-        last = way;
-        way = (way + (0.5 * margin).max(1e-7)).min(limit);
+/// What ends a piece.
+enum End {
+    /// The bound's next piece.
+    Piece,
+    /// Another bound, by its place.
+    Bound(usize),
+}
+
+/// The next point, `spacing` ahead or nearer: on the same piece, or at its end the first point of what takes over.
+fn next(
+    region: &Region,
+    bounds: &[Bound],
+    here: &BorderPoint,
+    spacing: f64,
+) -> Option<BorderPoint> {
+    let track = here.track;
+    let along = track.direction(&here.phi);
+    let ahead = |step: f64| track.onto(&(here.phi + along * step));
+    let mut step = spacing;
+    while step > NARROWEST && along.dot(&track.direction(&ahead(step))) < TURN.cos() {
+        step *= 0.5;
     }
-    let (mut low, mut high) = (last, way);
-    if bound.margin(&(ray * high)) > 0.0 {
-        return None;
+    let end = |step: f64| {
+        let phi = ahead(step);
+        if track.piece_end(&phi).is_some_and(|(left, _)| left < 0.0) {
+            return Some(End::Piece);
+        }
+        let mut others = bounds.iter().enumerate();
+        others
+            .find(|(index, bound)| *index != track.index && bound.margin(&phi) < -BEYOND)
+            .map(|(index, _)| End::Bound(index))
+    };
+    if end(step).is_none() {
+        let phi = ahead(step);
+        return Some(BorderPoint { phi, track });
     }
-    for _ in 0..60 {
+    let (mut low, mut high) = (0.0, step);
+    for _ in 0..HALVINGS {
         let middle = f64::midpoint(low, high);
-        if bound.margin(&(ray * middle)) > 0.0 {
+        if end(middle).is_none() {
             low = middle;
         } else {
             high = middle;
         }
     }
-    (low < limit).then_some(low)
+    let phi = here.phi;
+    if low > AT_END {
+        let phi = ahead(low);
+        return Some(BorderPoint { phi, track });
+    }
+    // It ends here.
+    let track = match end(high)? {
+        End::Piece => track.next_piece()?,
+        End::Bound(index) => Track::new(region, index, &ahead(high + AHEAD), 1.0)?,
+    };
+    Some(BorderPoint { phi, track })
 }

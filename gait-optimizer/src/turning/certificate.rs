@@ -101,7 +101,8 @@ pub(super) fn certificate<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
 
 /// ∬ F_θ over what the gait encloses, from the curvature alone: ∮ G dφ₂ with ∂G/∂φ₁ = F_θ.
 fn enclosed(model: &Model<f64>, gait: &AnyGait, cycle: &Cycle) -> f64 {
-    let (outer, outer_weights) = gauss(2);
+    // The gait is a cubic between its samples, its rate a parabola: exact but for the potential beyond the second degree.
+    let (outer, outer_weights) = gauss(3);
     let (inner, inner_weights) = gauss(24);
     let middle = cycle.phi.iter().map(|phi| phi.x).sum::<f64>() / cycle.phi.len().max(1) as f64;
     let potential = |phi: &Vector2<f64>| -> f64 {

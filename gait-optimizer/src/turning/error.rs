@@ -8,9 +8,9 @@ pub enum TurningError {
     /// It makes no sense.
     #[error(transparent)]
     Problem(#[from] InvalidProblem),
-    /// The border of the region cannot be seen from the straight shape.
+    /// The border of the region does not come round.
     #[error(
-        "the shapes that these bounds allow are hidden from the straight shape in part; give a tighter upper bound"
+        "the border of the shapes that these bounds allow could not be followed round the straight shape; give a tighter upper bound"
     )]
     Border,
     /// A region of the curvature could not be gone round.

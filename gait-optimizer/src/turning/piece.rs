@@ -3,7 +3,8 @@
 use nalgebra::Vector2;
 use swimmer_files::ArcKind;
 
-use super::border::{BorderPoint, Bounding};
+use super::border::BorderPoint;
+use crate::momentum::Track;
 
 /// One arc of a walk.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,22 +34,22 @@ pub(super) fn close_up(points: &mut Vec<Vector2<f64>>, end: Vector2<f64>, gap: f
     points.push(end);
 }
 
-/// A stretch of the border, cut where its bound changes; `bound` is that at its beginning.
+/// A stretch of the border, cut where its bound changes; `track` is that at its beginning.
 pub(super) fn pieces_of(
     begin: Vector2<f64>,
-    bound: Bounding,
+    track: Track,
     border: &[BorderPoint],
     end: Vector2<f64>,
     gap: f64,
 ) -> Vec<Piece> {
     let mut pieces: Vec<Piece> = Vec::new();
     let mut points = vec![begin];
-    let mut bound = bound;
+    let mut track = track;
     for point in border {
-        if bound != point.bound {
+        if track != point.track {
             // Both points of a corner stand at one place: it ends one piece and begins the next.
-            ended(&mut pieces, bound.kind, &mut points, point.phi, gap);
-            bound = point.bound;
+            ended(&mut pieces, track.bound.kind(), &mut points, point.phi, gap);
+            track = point.track;
         } else if points
             .last()
             .is_none_or(|last| (last - point.phi).norm() >= gap)
@@ -56,7 +57,7 @@ pub(super) fn pieces_of(
             points.push(point.phi);
         }
     }
-    ended(&mut pieces, bound.kind, &mut points, end, gap);
+    ended(&mut pieces, track.bound.kind(), &mut points, end, gap);
     pieces
 }
 

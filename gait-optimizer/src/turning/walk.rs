@@ -13,7 +13,7 @@ use crate::region::Region;
 /// What the walks go by.
 pub(super) struct Domain<'a, F> {
     pub(super) region: &'a Region,
-    pub(super) border: &'a Border<'a>,
+    pub(super) border: &'a Border,
     pub(super) level: &'a Level<F>,
     pub(super) step: f64,
 }
@@ -165,25 +165,19 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
             });
         }
         let (a, b) = (points.get(last)?, points.get(next)?);
-        let mut low = a.direction;
-        // Across direction 0 the next one is a turn ahead.
-        let mut high = if b.direction < low {
-            b.direction + std::f64::consts::TAU
-        } else {
-            b.direction
-        };
+        let (mut low, mut high) = (0.0, 1.0);
         let mut phi = a.phi;
         for _ in 0..70 {
-            let point = self.border.at(f64::midpoint(low, high))?;
-            phi = point.phi;
+            let middle = f64::midpoint(low, high);
+            phi = Border::between(a, b, middle);
             let value = self.value(&phi);
             if value.abs() < 1e-16 {
                 break;
             }
             if (value > 0.0) == leaves {
-                low = point.direction;
+                low = middle;
             } else {
-                high = point.direction;
+                high = middle;
             }
         }
         Some(Crossing {
@@ -333,9 +327,9 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
             i = (i + 1) % count;
             ahead.push(*points.get(i).ok_or(none)?);
         }
-        // The stretch that ends at the crossing is bounded as the point before it.
-        let bound = points.get(begin.after).ok_or(none)?.bound;
-        let pieces = pieces_of(begin.phi, bound, &ahead, end.phi, 0.3 * self.step);
+        // What ends at the crossing runs along the bound of the point before it.
+        let track = points.get(begin.after).ok_or(none)?.track;
+        let pieces = pieces_of(begin.phi, track, &ahead, end.phi, 0.3 * self.step);
         Ok((pieces, to))
     }
 
@@ -351,7 +345,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
         let Some(first) = points.first() else {
             return Vec::new();
         };
-        pieces_of(first.phi, first.bound, points, first.phi, 0.3 * self.step)
+        pieces_of(first.phi, first.track, points, first.phi, 0.3 * self.step)
     }
 
     /// A walk that never meets the border.

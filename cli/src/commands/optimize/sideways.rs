@@ -65,11 +65,16 @@ struct Answer {
     lateral_over_length: f64,
     /// Along it.
     displacement_over_length: f64,
-    /// What bridges to another start, which do not count, would come near to.
-    bridged_supremum_over_length: f64,
+    /// What bridges to another start, which do not count, would come near to; null where nobody knows how far gaits carry.
+    bridged_supremum_over_length: Option<f64>,
+    /// Y over L of a known gait that moves farther across and is no optimum.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outdone_over_length: Option<f64>,
     /// Null: these gaits do not rotate, and what bridges would bring is the length above.
     bridged_supremum_rad: Option<f64>,
     rotation_rad: f64,
+    /// Of the displacement against the mean heading.
+    heading_rad: Option<f64>,
     /// Loops found, of which this is the best certified one.
     loops: usize,
     arcs: Vec<Arc>,
@@ -85,8 +90,10 @@ impl Answer {
             lateral_over_length: found.lateral_over_length,
             displacement_over_length: gait.displacement_over_length,
             bridged_supremum_over_length: found.bridged_supremum_over_length,
+            outdone_over_length: found.outdone_over_length,
             bridged_supremum_rad: None,
             rotation_rad: gait.rotation,
+            heading_rad: found.heading(),
             loops: found.loops,
             arcs: gait.arcs.clone(),
             closing: Closing::new(gait, None, seconds, file),
@@ -108,9 +115,21 @@ impl fmt::Display for Answer {
         )
         .row(
             "with bridges",
-            format!("up to |Y|/L = {:.9}", self.bridged_supremum_over_length),
+            self.bridged_supremum_over_length.map_or_else(
+                || "nobody knows how far: gaits that are no optima carry farther than every loop found".to_owned(),
+                |supremum| format!("up to |Y|/L = {supremum:.9}"),
+            ),
         )
-        .row("net rotation", quantity::angle(self.rotation_rad))
+        .row("net rotation", quantity::angle(self.rotation_rad));
+        if let Some(farther) = self.outdone_over_length {
+            rows.row(
+                "outdone",
+                format!(
+                    "|Y|/L = {farther:.9} by a gait that touches its own image, which is no optimum"
+                ),
+            );
+        }
+        rows
         .row("arcs", self.arcs.len().to_string())
         .row(
             "best of",
