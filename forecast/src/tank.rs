@@ -125,6 +125,20 @@ pub fn until_wall<G: Gait<f64> + ?Sized>(
 
 /// Where a swimmer meets a wall that goes a way of the joints once, from a pose of its middle link; the cycles are the share of the
 /// way. It is looked at wherever the way bends.
+///
+/// ```
+/// use forecast::{Part, Tank, meets_wall, path::Polyline};
+/// use nalgebra::Vector2;
+/// use swimmer_model::{Model, Pose, Swimmer};
+///
+/// let model = Model::new(&Swimmer::robot()).unwrap();
+/// let tank = Tank { length: 1.0, width: 0.6 };
+/// let bent = Polyline::new([Vector2::zeros(), Vector2::new(1.5, -1.5)]);
+/// assert!(meets_wall(&model, &bent, &tank, &Pose::new(0.0, 0.0, 0.0)).is_none());
+/// // Straight along a wall there is room, but not to bend.
+/// let meeting = meets_wall(&model, &bent, &tank, &Pose::new(0.0, 0.195, 0.0)).unwrap();
+/// assert!(meeting.part == Part::BackTip && meeting.at.y > 0.3 && meeting.cycles > 0.0);
+/// ```
 pub fn meets_wall(
     model: &Model<f64>,
     way: &Polyline,
