@@ -6,8 +6,8 @@ use std::sync::LazyLock;
 use arbitrary::Arbitrary;
 use gait_player::GaitTable;
 use link_protocol::{
-    Arm, Begin, Chunk, Configuration, Follow, Joint, Key, MAX_SIGNED_CHUNK, Play, Request, ServoSettings,
-    TangentialDrag,
+    Arm, Begin, Chunk, Configuration, Follow, Joint, Key, MAX_SIGNED_CHUNK, Play, Request,
+    ServoSettings, TangentialDrag,
 };
 
 /// Tables that a story may upload: circles of 0.4 to 2.8 rad with few knots, so that one is soon across.

@@ -1,0 +1,51 @@
+//! `robot play --playlist` on the simulated robot: gaits that join, one after the other.
+
+use crate::binary::typed;
+use serde_json::Value;
+
+fn playlist(steps: &[(&str, u32, f64)]) -> tempfile::TempDir {
+    let mut text = "format = \"swimmer playlist\"\nversion = 1\nswimmer = \"robot\"\n".to_owned();
+    for (gait, cycles, period) in steps {
+        text += &format!("[[step]]\ngait = \"{gait}\"\ncycles = {cycles}\nperiod_s = {period:?}\n");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("list.toml"), text).unwrap();
+    folder
+}
+
+const PLAY: &str = "robot play --playlist list.toml --swimmer robot --port twin --json";
+
+/// As far as the cycles carry in the model, but for what servos and ticks take.
+#[test]
+fn a_playlist_is_played_to_its_end() {
+    let folder = playlist(&[("circle:0.7", 3, 6.0), ("circle:0.7", 2, 9.0)]);
+    let played = typed(folder.path(), PLAY).with_status(0).json();
+    assert_eq!(played["state"], "stopped");
+    assert_eq!(played["cause"], "finished");
+    assert_eq!(played["steps"], 2);
+    let once = typed(
+        folder.path(),
+        "simulate --swimmer robot --gait circle:0.7 --json",
+    )
+    .with_status(0)
+    .json();
+    let number = |value: &Value| value.as_f64().unwrap();
+    let whole = 5.0 * number(&once["displacement_m"]);
+    let foretold = number(&played["foretold"]["x_m"]);
+    assert!((foretold / whole - 1.0).abs() < 0.05, "{foretold} {whole}");
+    assert!(number(&played["foretold"]["rotation_rad"]).abs() < 1e-3);
+    let seconds = number(&played["duration_s"]);
+    assert!((seconds - 36.0).abs() < 1e-9, "{seconds}");
+}
+
+/// Gaits that do not join, and one that the servos cannot follow, are refused before anything moves.
+#[test]
+fn what_cannot_be_played_is_refused_first() {
+    let folder = playlist(&[("circle:0.7", 3, 6.0), ("circle:0.9", 2, 9.0)]);
+    let refused = typed(folder.path(), PLAY).with_status(2).json();
+    let error = refused["error"].to_string();
+    assert!(error.contains("step 2"), "{error}");
+    let folder = playlist(&[("circle:0.7", 3, 6.0), ("circle:0.7", 2, 0.5)]);
+    let refused = typed(folder.path(), PLAY).json();
+    assert!(refused["error"].is_string(), "{refused}");
+}
