@@ -286,8 +286,7 @@ fn cycle(pieces: &[Piece], model: &Model<f64>) -> Option<Cycle> {
     })
 }
 
-/// Whether the last side of a closed curve goes on into the first: their turn is no more than the neighbours' turns
-/// explain.
+/// Whether the last side of a closed curve goes on into the first: it bends there no more than the neighbours' bends explain.
 fn begins_smoothly(phi: &[Vector2<f64>]) -> bool {
     let count = phi.len();
     let side = |i: usize| match (phi.get(i), phi.get(i + 1)) {
@@ -297,9 +296,16 @@ fn begins_smoothly(phi: &[Vector2<f64>]) -> bool {
     if count < 8 {
         return false;
     }
+    let bend = |before: Vector2<f64>, after: Vector2<f64>| {
+        before.perp(&after).atan2(before.dot(&after)).abs() / (before.norm() + after.norm())
+    };
     let (last, first) = (side(count - 2), side(0));
-    last.perp(&first).atan2(last.dot(&first)).abs() < 0.1
+    let beside = bend(side(count - 3), last).max(bend(first, side(1)));
+    bend(last, first) < 3.0 * beside + SHARP
 }
+
+/// A curve that bends this much more than beside has a corner \[1/rad\].
+const SHARP: f64 = 0.05;
 
 /// Fractions of the period for the same knots such that the power is constant: proportional to ∫√(Φ′ᵀWΦ′).
 fn at_constant_power(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Option<Vec<f64>> {

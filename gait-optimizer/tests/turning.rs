@@ -7,7 +7,7 @@ use gait_optimizer::{
 };
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, GaitFile};
-use swimmer_model::{Links, Model, Swimmer, TangentialDrag, Tolerance, swim};
+use swimmer_model::{Gait as _, Links, Model, Swimmer, TangentialDrag, Tolerance, swim};
 
 fn within(max_angle: f64) -> Bounds {
     Bounds {
@@ -251,4 +251,42 @@ fn all_kinds_of_swimmers_get_a_gait_or_a_reason() {
     }
     println!("{gaits} of {count}");
     assert!(gaits >= count * 9 / 10, "{gaits} of {count}");
+}
+
+/// A gait that starts in a corner, however blunt, is as long as one sampled more closely: the corner is no bend.
+#[test]
+fn a_blunt_corner_at_the_start_is_a_corner() {
+    let swimmer = Swimmer {
+        links: Links {
+            middle: 0.05,
+            front: 0.14,
+            back: 0.14,
+        },
+        chi: 2.5,
+        tangential_drag: TangentialDrag::OverViscosity(1.38),
+        sphere_radius: 0.02,
+    };
+    let bounds = Bounds {
+        max_angle: Some(2.0),
+        no_overlap: true,
+        ..Bounds::default()
+    };
+    let found = turning(&TurningProblem { swimmer, bounds }).unwrap();
+    assert!(
+        found.gait.corners().contains(&0.0),
+        "{:?}",
+        found.gait.corners()
+    );
+    // Between the samples, too, the tips are where the links touch: their height over the other link is zero.
+    let gait = found.gait.gait().unwrap();
+    let heights = (1..190)
+        .map(|k| gait.at(1e-4 * f64::from(k)).phi)
+        .map(|phi| {
+            let both: f64 = 0.14 * (phi.x + phi.y).sin();
+            (0.05 * phi.y.sin() + both)
+                .max(0.05 * phi.x.sin() + both)
+                .abs()
+        });
+    let off = heights.fold(0.0, f64::max);
+    assert!(off < 1e-8, "{off:.1e}");
 }
