@@ -210,13 +210,12 @@ pub struct Direct<'a> {
 ///
 /// ```
 /// use gait_optimizer::{Branch, Direct, EfficiencyProblem, efficiency, efficiency_from};
-/// use swimmer_files::AnyGait;
-/// use swimmer_model::{Model, Swimmer, Tolerance, swim};
+/// use swimmer_model::Swimmer;
 ///
-/// let problem = EfficiencyProblem::new(Swimmer::purcell(), Branch::Small);
-/// let circle = AnyGait::circle(1.2);
-/// let swum = swim(&Model::new(&problem.swimmer).unwrap(), &circle, &Tolerance::default());
-/// let direct = Direct { method: "circle", gait: &circle, efficiency: swum.efficiency_constant_power() };
+/// let mut problem = EfficiencyProblem::new(Swimmer::purcell(), Branch::Small);
+/// let near = efficiency(&problem).unwrap();
+/// problem.swimmer.chi = 2.01;
+/// let direct = Direct { method: "another swimmer's", gait: &near.gait().unwrap(), efficiency: near.efficiency };
 /// let found = efficiency_from(&problem, &direct).unwrap();
 /// assert!((found.efficiency - efficiency(&problem).unwrap().efficiency).abs() < 1e-12);
 /// ```

@@ -296,12 +296,15 @@ fn begins_smoothly(phi: &[Vector2<f64>]) -> bool {
     if count < 8 {
         return false;
     }
+    let turn = |before: Vector2<f64>, after: Vector2<f64>| {
+        before.perp(&after).atan2(before.dot(&after)).abs()
+    };
     let bend = |before: Vector2<f64>, after: Vector2<f64>| {
-        before.perp(&after).atan2(before.dot(&after)).abs() / (before.norm() + after.norm())
+        turn(before, after) / (before.norm() + after.norm())
     };
     let (last, first) = (side(count - 2), side(0));
     let beside = bend(side(count - 3), last).max(bend(first, side(1)));
-    bend(last, first) < 3.0 * beside + SHARP
+    turn(last, first) < 0.1 && bend(last, first) < 3.0 * beside + SHARP
 }
 
 /// A curve that bends this much more than beside has a corner \[1/rad\].
