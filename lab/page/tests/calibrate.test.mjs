@@ -82,7 +82,11 @@ for (const [name, launch] of Object.entries(BROWSERS)) test(`a campaign that is 
   same(told.evidence.likelihood, expected.likelihood, ["intervals"], "likelihood");
   const assessed = ["verdict", "reasons", "reduced_chi2", "intervals_with_systematics", "headline", "goodness", "systematics", "budget", "explanations", "excluded"];
   assert.deepEqual(Object.keys(told.assessment), assessed.filter((key) => key in expected));
-  same(told.assessment, expected, Object.keys(told.assessment), "assessment");
+  const { explanations, ...determined } = told.assessment;
+  same(determined, expected, Object.keys(determined), "assessment");
+  // These tracks leave nothing to explain: what each explanation would take is rounding, and even its sign is open.
+  const words = ({ name, parameters }) => [name, ...parameters.map((each) => each.name)];
+  assert.deepEqual((explanations ?? []).map(words), (expected.explanations ?? []).map(words));
   const goodness = await tab.evaluate(() => [...document.querySelectorAll("#goodness tbody tr")].map((row) => row.cells[6].textContent));
   assert.deepEqual(goodness, expected.goodness.runs.map(({ scale }) => (scale ? `${scale[0].toFixed(4)} ± ${scale[1].toFixed(4)}` : "–")));
   assert.equal(told.runs.length, expected.runs.length);
