@@ -6,7 +6,9 @@ use serde_json::Value;
 fn playlist(steps: &[(&str, u32, f64)]) -> tempfile::TempDir {
     let mut text = "format = \"swimmer playlist\"\nversion = 1\nswimmer = \"robot\"\n".to_owned();
     for (gait, cycles, period) in steps {
-        text += &format!("[[step]]\ngait = \"{gait}\"\ncycles = {cycles}\nperiod_s = {period:?}\n");
+        let step =
+            format!("[[step]]\ngait = \"{gait}\"\ncycles = {cycles}\nperiod_s = {period:?}\n");
+        text.push_str(&step);
     }
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("list.toml"), text).unwrap();
