@@ -27,7 +27,7 @@
 //! | `efficiency` | the small and the large Lighthill gait: Fourier series, then `extremal`, bounds followed |
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs, second-order test |
 //! | `cycle` | from a quarter to the full cycle, at constant power |
-//! | `speed` | the fastest gait of servos with a rate limit |
+//! | `speed` | the fastest gait of servos with a limit on rate, power or both |
 //! | `turning` | the simple closed gait that turns most: round a region of the curvature |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
 //! | `certificate` | checks, and those that any closed curve can be asked |
@@ -118,8 +118,8 @@ pub use robust::{
 pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways, sideways_watched};
 pub use simple_shapes::{BestAmplitude, SimpleShape, best_amplitudes};
 pub use speed::{
-    Fastest, Front, HeadingRule, Joined, SpeedAtlas, SpeedError, SpeedProblem, SteerProblem,
-    Steering, fastest, front, steer,
+    Fastest, Front, HeadingRule, Joined, Limit, Limited, PowerError, PowerProblem, SpeedAtlas,
+    SpeedError, SpeedProblem, SteerProblem, Steering, fastest, fastest_on_power, front, steer,
 };
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};
 pub use turning::{Turning, TurningError, TurningProblem, turning};

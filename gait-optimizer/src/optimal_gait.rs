@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, ArcKind, Bounds, GaitArc, GaitFile, Objective, SwimmerHash};
-use swimmer_model::{InvalidSamples, Stroke, Swimmer};
+use swimmer_model::{InvalidSamples, Model, Stroke, Swimmer, Tolerance, trajectory, wrapped_angle};
 
 use crate::Certificate;
 use crate::EfficiencyFigures;
@@ -104,6 +104,26 @@ impl OptimalGait {
             extremals: None,
             cycle,
         }
+    }
+
+    /// Of the displacement against the cycle's mean heading, timed as the samples are \[rad\], in (−π, π\]: the same from whatever
+    /// first sample. None where the gait cannot be swum.
+    pub fn heading(&self) -> Option<f64> {
+        const LOOKS: usize = 2048;
+        let model = Model::new(&self.swimmer.of_unit_length()).ok()?;
+        let gait = self.gait().ok()?;
+        let mut headings = 0.0;
+        trajectory(&model, &gait, &Tolerance::new(1e-11), LOOKS, |point| {
+            // The trapezoidal rule: both ends have the same heading.
+            if point.u > 0.0 {
+                headings += point.pose.theta;
+            }
+        });
+        let off = self
+            .lateral_over_length
+            .atan2(self.displacement_over_length)
+            - headings / LOOKS as f64;
+        Some(wrapped_angle(off))
     }
 
     /// The gait of the mirrored swimmer, Φ → −Φ: as far across, to the other side; as much rotation, the other way.

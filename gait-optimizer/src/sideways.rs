@@ -80,28 +80,6 @@ pub struct Sideways {
     pub loops: usize,
 }
 
-impl Sideways {
-    /// Of the displacement against the cycle's mean heading at constant power \[rad\], in (−π, π\]: the same from whatever first
-    /// sample. None where the gait cannot be swum.
-    pub fn heading(&self) -> Option<f64> {
-        let model = Model::new(&self.gait.swimmer.of_unit_length()).ok()?;
-        let gait = self.gait.gait().ok()?;
-        let mut headings = 0.0;
-        trajectory(&model, &gait, &Tolerance::new(1e-11), LOOKS, |point| {
-            // The trapezoidal rule: both ends have the same heading.
-            if point.u > 0.0 {
-                headings += point.pose.theta;
-            }
-        });
-        let [x, y] = [
-            self.gait.displacement_over_length,
-            self.gait.lateral_over_length,
-        ];
-        let off = y.atan2(x) - headings / LOOKS as f64;
-        Some(off.sin().atan2(off.cos()))
-    }
-}
-
 /// Instants that headings are looked at.
 const LOOKS: usize = 2048;
 

@@ -15,6 +15,7 @@ mod error;
 mod front;
 mod interior;
 mod polish;
+mod power;
 mod problem;
 mod quadrature;
 mod samples;
@@ -38,6 +39,7 @@ use crate::{Certificate, Immobile, Watch};
 
 pub use error::SpeedError;
 pub use front::{Front, front};
+pub use power::{Limit, Limited, PowerError, PowerProblem, fastest_on_power};
 pub use problem::HeadingRule;
 use problem::{Goal, Setting};
 use search::Search;

@@ -379,6 +379,24 @@ pub struct LevelCurve {
     pub closed: bool,
     pub residual: f64,
 }
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limit {
+    Power,
+    Rate,
+}
+impl Limit {
+    pub fn word(self) -> &'static str {}
+}
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limited {
+    pub limit: Limit,
+    pub speed_over_length: f64,
+    pub distance_over_length: f64,
+    pub period: f64,
+    pub peak_power_over_viscosity: f64,
+    pub peak_rates: [f64; 2],
+    pub gait: OptimalGait,
+}
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ManyFirstDerivatives {
     pub values: ConnectionsAndPowers,
@@ -415,6 +433,7 @@ pub struct OptimalGait {
     pub extremals: Option<usize>,
 }
 impl OptimalGait {
+    pub fn heading(&self) -> Option<f64> {}
     pub fn u(&self) -> &[f64] {}
     pub fn phi(&self) -> &[Vector2<f64>] {}
     pub fn corners(&self) -> &[f64] {}
@@ -473,6 +492,22 @@ pub struct Polish {
 impl Polish {
     pub fn new(swimmer: Swimmer<f64>) -> Self {}
 }
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PowerError {
+    Power { power: f64 },
+    Atlas(AtlasError),
+    Speed(SpeedError),
+    NoGait { bounds: Bounds },
+    BothBind { least: f64, most: f64 },
+}
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PowerProblem {
+    pub swimmer: Swimmer<f64>,
+    pub bounds: Bounds,
+    pub power_over_viscosity: f64,
+    pub rates: Option<[f64; 2]>,
+    pub threads: usize,
+}
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reached {
     pub max_angle: f64,
@@ -519,9 +554,6 @@ pub struct Sideways {
     pub bridged_supremum_over_length: Option<f64>,
     pub outdone_over_length: Option<f64>,
     pub loops: usize,
-}
-impl Sideways {
-    pub fn heading(&self) -> Option<f64> {}
 }
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SidewaysError {
@@ -716,6 +748,10 @@ pub fn efficiency_from(
     direct: &Direct<'_>,
 ) -> Result<OptimalGait, EfficiencyError> {}
 pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {}
+pub fn fastest_on_power(
+    problem: &PowerProblem,
+    watch: Watch<'_>,
+) -> Result<Limited, PowerError> {}
 pub fn polish_efficiency<G: Gait<f64> + ?Sized>(
     polish_for: &Polish,
     gait: &G,

@@ -33,7 +33,7 @@ fn the_robot_moves_sideways_without_turning() {
     assert!((across - found.lateral_over_length).abs() < 1e-9);
     assert!(stroke.rotation.abs() < 1e-8);
     // Told against the mean heading, the first sample does not matter.
-    let heading = found.heading().unwrap();
+    let heading = found.gait.heading().unwrap();
     let cycle = super::square::shifted(&found.gait, &found.gait.gait().unwrap(), 0.3).unwrap();
     let later = Sideways {
         gait: OptimalGait::new(Solution {
@@ -51,7 +51,7 @@ fn the_robot_moves_sideways_without_turning() {
         }),
         ..found
     };
-    let off = later.heading().unwrap() - heading;
+    let off = later.gait.heading().unwrap() - heading;
     assert!(off.abs() < 1e-6, "{heading} and {off:.1e}");
 }
 

@@ -93,7 +93,7 @@ impl Answer {
             outdone_over_length: found.outdone_over_length,
             bridged_supremum_rad: None,
             rotation_rad: gait.rotation,
-            heading_rad: found.heading(),
+            heading_rad: found.gait.heading(),
             loops: found.loops,
             arcs: gait.arcs.clone(),
             closing: Closing::new(gait, None, seconds, file),

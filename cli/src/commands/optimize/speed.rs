@@ -8,7 +8,7 @@ use gait_optimizer::{Arc, Fastest, HeadingRule, SpeedError, SpeedProblem, front}
 use serde::Serialize;
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 
-use crate::arguments::{load_swimmer, rate, seconds};
+use crate::arguments::{load_swimmer, rate, seconds, watts};
 use crate::bounds::WholeBounds;
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
@@ -17,12 +17,16 @@ use crate::quantity::{self, Rows};
 
 use super::answer::{Closing, arc_rows, unfolded};
 use super::front::{FrontAnswer, FrontFile};
+use super::power::on_power;
 use crate::new_file::may_be_written;
 use crate::own_robot::{PlayedSpeed, servo_rates};
 use crate::threads;
 
 /// Find the fastest gait: most net displacement per unit of time, without net rotation, with servos that turn no faster than a
 /// given rate
+///
+/// With --power instead: with servos that give no more than so many watts, which is the most efficient gait at constant power; with
+/// both, where one of them alone limits the gait.
 ///
 /// Fastest means the best of all cycles of at most 16 corners: a chain of unlike cycles may always beat each of them, and a
 /// longer cycle that was met and is better by more than 1e-6 is told. The gait is timed as it shall run, with its corners where
@@ -33,8 +37,11 @@ pub(crate) struct Speed {
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
     /// No servo turns faster than this angle a second; a second one is that of joint 2
-    #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2, required_unless_present = "playable")]
+    #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2, required_unless_present_any = ["playable", "power"])]
     max_rate: Vec<f64>,
+    /// The servos together give no more than this many watts; the swimmer file names its fluid
+    #[arg(long, value_name = "WATTS", value_parser = watts, conflicts_with_all = ["heading", "period", "front"])]
+    power: Option<f64>,
     /// Which way the gait shall lead, against the mean heading of its cycle
     #[arg(long, value_name = "HEADING", value_enum, default_value = "any")]
     heading: Heading,
@@ -69,6 +76,11 @@ impl Speed {
             may_be_written(&front.path)?;
         }
         let file = load_swimmer(&self.swimmer)?;
+        if let Some(power) = self.power {
+            let rates = servo_rates(&self.max_rate, self.bounds.playable(), &file);
+            let limits = (power, rates);
+            return on_power(&file, self.bounds.of(&file), limits, self.output, output);
+        }
         let Some(rates) = servo_rates(&self.max_rate, self.bounds.playable(), &file) else {
             return Err(Failure::BadInput(
                 "give --max-rate or --playable".to_owned(),
