@@ -67,7 +67,6 @@ pub(crate) fn page(report: &Report) -> Outcome<String> {
             bound(report)
         ),
     );
-    html.push_str("<div class=stack>");
     figure(
         &mut html,
         &figures::prediction(report)?,
@@ -76,7 +75,7 @@ pub(crate) fn page(report: &Report) -> Outcome<String> {
          with the servos’ rate limit and dead band",
     );
     files(&mut html, report);
-    html.push_str("</div></section>");
+    html.push_str("</section>");
     runs(&mut html, report);
     html.push_str(END);
     Ok(html)
