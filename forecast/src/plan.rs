@@ -1,9 +1,11 @@
 //! Gaits of one family strung together to a target.
 //!
 //! All gaits start and end at one common shape, so what a chain of them brings is a product of poses. Each has a family: the gait
-//! drawn towards the common shape by a scale of at most 1, with the servos as fast as before, and its own net pose, swum anew.
-//! A leg is a number of cycles of one member, forwards or backwards; three legs have three scales, which meet a target's three
-//! coordinates exactly. Which legs, in which order and how many cycles is searched for; walls are respected.
+//! drawn towards the common shape by a scale of at most 1, with the servos as fast as before, and its own net pose, swum anew as
+//! the servos play it. A leg is a number of cycles of one member, forwards or backwards; three legs have three scales, which meet a
+//! target's three coordinates exactly. Beside a wall, where such legs have no room, ways out are looked for with the cycles that
+//! have, from the start and (every gait can be undone) from the target; three legs lead from one to the other. The search takes the
+//! quickest chain that it finds; walls are respected.
 //!
 //! The robot's tables cut corners, its servos have a dead band, and the ways from and to the straight shape are ramps. So a chain
 //! is played, with the robot's own arithmetic, and aimed as far beside the target as it misses it by, until it is met.
@@ -12,6 +14,8 @@ mod aim;
 mod legs;
 mod member;
 mod room;
+mod search;
+mod way_out;
 
 use nalgebra::Vector2;
 use swimmer_files::AnyGait;
@@ -19,9 +23,13 @@ use swimmer_model::{Model, Pose, wrapped_angle};
 
 use crate::losses::Servos;
 use crate::path::Polyline;
-use crate::playlist::{leads_to, step_period};
+use crate::playlist::{Repeated, leads_to, step_period};
 use crate::tank::Tank;
-use aim::{Aim, Hit};
+use aim::Hit;
+use member::Nets;
+use room::{Room, Sweeps};
+use search::{Seen, quickest};
+
 pub use member::{Kind, Member, Scaled};
 
 /// The gaits that a plan is made of.
@@ -71,6 +79,24 @@ impl Step {
             cycles,
             period: step_period(period * member.scale, servos.file.max_rate),
         }
+    }
+
+    /// As it is played.
+    fn repeated(&self, family: &Family) -> Repeated<Scaled> {
+        Repeated {
+            gait: self.member.of(family),
+            cycles: self.cycles,
+            period: self.period,
+        }
+    }
+
+    /// The same cycles run backwards.
+    fn undone(&self) -> Self {
+        let member = Member {
+            backwards: !self.member.backwards,
+            ..self.member
+        };
+        Self { member, ..*self }
     }
 }
 
@@ -126,14 +152,34 @@ pub enum PlanError {
         /// The robot's words.
         reason: String,
     },
+    /// It does where it is straight, and not where it is bent as the gaits begin and end.
+    #[error(
+        "{what}, ({:.4}, {:.4}) m, heading {:.1}°, the swimmer has no room to be bent to ({:.1}°, {:.1}°), where these gaits join, \
+         nor to the other side: it comes within {margin} m of a wall; gaits that join at the straight shape always \
+         have room there (`swimmer optimize steer --shape 0,0`)", pose[0], pose[1], pose[2].to_degrees(), shape[0].to_degrees(),
+         shape[1].to_degrees()
+    )]
+    Bent {
+        /// The start, or the target.
+        what: &'static str,
+        /// x, y \[m\], θ \[rad\].
+        pose: [f64; 3],
+        /// The common shape \[rad\].
+        shape: [f64; 2],
+        /// \[m\]
+        margin: f64,
+    },
     /// No chain of legs.
     #[error(
-        "no way found: {met} chains of at most three legs meet the target, and each comes within {margin} m of a wall; name a target \
-         farther from the walls, another heading, or a larger --tank"
+        "no way found: {met} chains of legs meet the target, {within} of them within walls in the model, and none stays {margin} m \
+         from the walls as the servos play it; name a target farther from the walls, another heading, a smaller --margin or a larger \
+         --tank"
     )]
     NoWay {
         /// That meet the target.
         met: usize,
+        /// Of them those that the walls leave in the model.
+        within: usize,
         /// \[m\]
         margin: f64,
     },
@@ -194,89 +240,72 @@ pub fn plan(model: &Model<f64>, family: &Family, errand: &Errand) -> Result<Plan
     if apart > 1e-6 {
         return Err(PlanError::Apart { apart });
     }
-    let room = room::Room::new(model, errand);
-    let straight = |what, pose: Pose<f64>| {
-        if room.fits(&pose, &Vector2::zeros()) {
-            return Ok(());
-        }
-        Err(PlanError::Outside {
-            what,
-            pose: [pose.x, pose.y, pose.theta],
-            margin: errand.margin,
-        })
-    };
-    straight("at the start", errand.from)?;
-    if let Some(heading) = errand.heading {
-        straight(
-            "at the target",
-            Pose::new(errand.to.x, errand.to.y, heading),
-        )?;
-    }
+    let room = Room::new(model, errand, errand.margin);
+    has_room(model, &room, family, errand)?;
+    let nets = Nets::new(model, family, &errand.servos).map_err(|error| PlanError::Refused {
+        gait: "fastest",
+        reason: error.to_string(),
+    })?;
     // Beside a wall the swimmer may have room to bend away from it only.
-    let plans =
-        [family.clone(), family.mirror()].map(|family| of_family(model, &family, errand, &room));
-    let [one, other] = plans;
-    match (one?, other?) {
-        ((Some(one), met), (Some(other), met_too)) => {
-            let quicker = if other.duration < one.duration {
-                other
-            } else {
-                one
-            };
-            Ok(quicker.of(added(met, met_too)))
+    let images = [(family.clone(), &nets), (family.mirror(), &nets.mirror())];
+    let mut seen = Seen::default();
+    for spare in SPARE {
+        let roomy = Room::new(model, errand, errand.margin + spare);
+        let mut found = None;
+        for (family, nets) in &images {
+            let sweeps = Sweeps::new(&roomy, nets, family);
+            found = quickest(model, errand, &room, &sweeps, found, &mut seen);
         }
-        ((Some(plan), met), (None, met_too)) | ((None, met), (Some(plan), met_too)) => {
-            Ok(plan.of(added(met, met_too)))
+        if let Some(found) = found {
+            return Ok(Plan {
+                met: seen.met,
+                ..found
+            });
         }
-        ((None, met), (None, met_too)) => Err(PlanError::NoWay {
-            met: met[0] + met_too[0],
-            margin: errand.margin,
-        }),
     }
+    Err(seen.refused.unwrap_or(PlanError::NoWay {
+        met: seen.met[0],
+        within: seen.met[1],
+        margin: errand.margin,
+    }))
 }
 
-/// Beside a wall there may be no room for large cycles: so many times as many smaller ones are tried.
-const SMALLER: [u32; 5] = [1, 2, 4, 8, 16];
+/// Room that a plan leaves beyond the margin \[m\] where it can: within their dead band servos rest beside the ideal path.
+const SPARE: [f64; 2] = [0.001, 0.0];
 
-fn added(one: [usize; 2], other: [usize; 2]) -> [usize; 2] {
-    [one[0] + other[0], one[1] + other[1]]
-}
-
-/// The quickest plan with these gaits, where there is one; and how many chains meet the target, and stay within the walls.
-fn of_family(
+/// Whether there is room at the start and, where its heading is given, at the target: straight, and bent to one side at least.
+fn has_room(
     model: &Model<f64>,
+    room: &Room<'_>,
     family: &Family,
     errand: &Errand,
-    room: &room::Room<'_>,
-) -> Result<(Option<Plan>, [usize; 2]), PlanError> {
-    let nets = member::Nets::new(model, family);
-    let way_in = family.way_in(model);
-    let begun = errand.from * way_in;
-    let chains = legs::chains(&nets, family, errand, &way_in);
-    let aim = Aim {
-        model,
-        family,
-        errand,
-        nets: &nets,
-        way_in,
-    };
-    let mut found = [chains.len(), 0];
-    for smaller in SMALLER {
-        let more = |steps: &Vec<Step>| legs::smaller(&nets, family, &errand.servos, steps, smaller);
-        let mut left: Vec<_> = chains.iter().filter_map(more).collect();
-        left.sort_by(|a, b| duration(a).total_cmp(&duration(b)));
-        left.retain(|steps| room.leaves(family, &begun, &nets, steps));
-        found[1] += left.len();
-        for steps in &left {
-            let Some(hit) = aim.hit(&begun, steps)? else {
-                continue;
-            };
-            if room.leaves_played(&errand.from, &hit.way) {
-                return Ok((Some(Plan::new(errand, family, hit, found)), found));
-            }
+) -> Result<(), PlanError> {
+    let to = errand
+        .heading
+        .map(|heading| Pose::new(errand.to.x, errand.to.y, heading));
+    let shape = family.shape();
+    for (what, pose) in [("at the start", Some(errand.from)), ("at the target", to)] {
+        let Some(pose) = pose else { continue };
+        let told = [pose.x, pose.y, pose.theta];
+        let margin = errand.margin;
+        if !room.fits(&pose, &Vector2::zeros()) {
+            return Err(PlanError::Outside {
+                what,
+                pose: told,
+                margin,
+            });
+        }
+        let bent = |family: &Family| room.fits(&(pose * family.way_in(model)), &family.shape());
+        if !bent(family) && !bent(&family.mirror()) {
+            return Err(PlanError::Bent {
+                what,
+                pose: told,
+                shape: shape.into(),
+                margin,
+            });
         }
     }
-    Ok((None, found))
+    Ok(())
 }
 
 /// How far two poses are apart \[m\], and by what angle \[rad\].
@@ -288,7 +317,7 @@ fn distance(one: &Pose<f64>, other: &Pose<f64>) -> [f64; 2] {
 }
 
 impl Plan {
-    fn new(errand: &Errand, family: &Family, hit: Hit, met: [usize; 2]) -> Self {
+    fn new(errand: &Errand, family: &Family, hit: Hit) -> Self {
         let heading = errand.heading.unwrap_or(hit.reached.theta);
         Self {
             duration: duration(&hit.steps),
@@ -297,12 +326,8 @@ impl Plan {
             steps: hit.steps,
             mirrored: family.mirrored,
             way: hit.way,
-            met,
+            met: [0, 0],
         }
-    }
-
-    fn of(self, met: [usize; 2]) -> Self {
-        Self { met, ..self }
     }
 
     /// One cycle of each step, in order.

@@ -63,33 +63,52 @@ fn watched(swimmer: Swimmer<f64>, seed: u64) -> VirtualPort<Watched> {
     VirtualPort::new(device, WireSpeed::robot())
 }
 
-fn robot() -> &'static (Model<f64>, Family) {
-    static ROBOT: OnceLock<(Model<f64>, Family)> = OnceLock::new();
+/// Gaits that join where joining costs least, and gaits that join at the straight shape, for where there is no room to bend.
+fn robot() -> &'static (Model<f64>, [Family; 2]) {
+    static ROBOT: OnceLock<(Model<f64>, [Family; 2])> = OnceLock::new();
     ROBOT.get_or_init(|| {
-        let swimmer = Swimmer::robot();
-        let bounds = Bounds {
-            max_angle: Some(2.8),
-            no_overlap: true,
-            clearance: 0.0025,
-            ..Bounds::default()
-        };
-        let problem = SteerProblem {
-            of: SpeedProblem {
-                bounds,
-                threads: 2,
-                starts: 32,
-                ..SpeedProblem::new(swimmer, [3.5; 2])
-            },
-            shape: Some([1.4, 0.56]),
-        };
-        let steering = steer(&problem, &|_| ()).unwrap();
-        let gaits = [&steering.forward, &steering.left, &steering.turn].map(|joined| {
-            let gait = AnyGait::from_file(&joined.gait_file("robot", false)).unwrap();
-            (gait, joined.period)
-        });
-        let mirrored = false;
-        (Model::new(&swimmer).unwrap(), Family { gaits, mirrored })
+        let model = Model::new(&Swimmer::robot()).unwrap();
+        (model, [[1.4, 0.56], [0.0, 0.0]].map(joined_at))
     })
+}
+
+fn joined_at(shape: [f64; 2]) -> Family {
+    let bounds = Bounds {
+        max_angle: Some(2.8),
+        no_overlap: true,
+        clearance: 0.0025,
+        ..Bounds::default()
+    };
+    let problem = SteerProblem {
+        of: SpeedProblem {
+            bounds,
+            threads: 2,
+            ..SpeedProblem::new(Swimmer::robot(), [3.5; 2])
+        },
+        shape: Some(shape),
+    };
+    let steering = steer(&problem, &|_| ()).unwrap();
+    let gaits = [&steering.forward, &steering.left, &steering.turn].map(|joined| {
+        let gait = AnyGait::from_file(&joined.gait_file("robot", false)).unwrap();
+        (gait, joined.period)
+    });
+    let mirrored = false;
+    Family { gaits, mirrored }
+}
+
+/// With the first gaits where they have room to bend, else with those that join straight.
+fn planned<'a>(
+    model: &Model<f64>,
+    [bent, straight]: &'a [Family; 2],
+    errand: &Errand,
+) -> Result<(&'a Family, forecast::Plan), PlanError> {
+    match plan(model, bent, errand) {
+        Ok(found) => Ok((bent, found)),
+        Err(PlanError::Bent { .. } | PlanError::NoWay { .. }) => {
+            plan(model, straight, errand).map(|found| (straight, found))
+        }
+        Err(error) => Err(error),
+    }
 }
 
 fn errand(to: Vector2<f64>, heading: f64) -> Errand {
@@ -232,31 +251,31 @@ fn larger(of: &mut [f64; 2], than: [f64; 2]) {
 
 #[test]
 fn random_targets_are_reached_on_the_twin() {
-    reached_all(4, 1, 0);
+    reached_all(4, 1);
 }
 
 #[test]
 #[ignore = "soak: minutes"]
 fn fifty_random_targets_are_reached_on_the_twin() {
-    // Three lie beside walls that the bent swimmer only just clears, and no chain of three legs stays within.
-    reached_all(50, 1, 3);
+    reached_all(50, 1);
 }
 
 /// Targets where the swimmer fits into the tank, at rest and in the shape that it comes with.
-fn reached_all(targets: usize, seed: u64, without: usize) {
-    let (model, family) = robot();
+fn reached_all(targets: usize, seed: u64) {
+    let (model, families) = robot();
     let mut random = Random(seed);
     let (mut off, mut beside, mut foretold) = ([0.0; 2], [0.0; 2], [0.0; 2]);
     let mut wrong = [[0.0; 2]; 2];
     let (mut no_way, mut refused, mut reached, mut most_tables) = (Vec::new(), 0, 0, 0);
+    let mut straight = 0;
     while reached + no_way.len() < targets {
         let to = Vector2::new(random.next() - 0.5, 0.6 * (random.next() - 0.5));
         let heading = std::f64::consts::TAU * (random.next() - 0.5);
-        if !has_room(model, family, &Pose::new(to.x, to.y, heading)) {
+        if !has_room(model, &families[0], &Pose::new(to.x, to.y, heading)) {
             refused += 1;
             continue;
         }
-        let found = match plan(model, family, &errand(to, heading)) {
+        let (family, found) = match planned(model, families, &errand(to, heading)) {
             Ok(found) => found,
             Err(PlanError::Outside { .. }) => {
                 refused += 1;
@@ -268,6 +287,7 @@ fn reached_all(targets: usize, seed: u64, without: usize) {
             }
             Err(error) => panic!("{error}"),
         };
+        straight += usize::from(family.shape().norm() < 1e-9);
         let tables = tables_of(family, &found);
         most_tables = most_tables.max(tables.len());
         let target = Pose::new(to.x, to.y, heading);
@@ -287,7 +307,7 @@ fn reached_all(targets: usize, seed: u64, without: usize) {
         reached += 1;
     }
     println!(
-        "{reached} targets reached on the twin, {} without a plan, {refused} draws where the swimmer does not fit; at most \
+        "{reached} targets reached on the twin, {straight} of them by gaits that join straight, {} without a plan, {refused} draws where the swimmer does not fit; at most \
          {most_tables} tables\n  worst: {:.4} mm and {:.4}° off the target, {:.1e} mm and {:.1e}° off the plan's word, {:.1e} mm \
          and {:.1e}° off the witness\n  χ 5 % lower than planned with: up to {:.1} mm and {:.2}° off; 5 % higher: {:.1} mm and {:.2}°",
         no_way.len(),
@@ -313,13 +333,13 @@ fn reached_all(targets: usize, seed: u64, without: usize) {
     // The plan plays the robot's own arithmetic, and the witness sees the same pulses.
     assert!(foretold[0] < 0.01 && foretold[1] < 0.01, "{foretold:?}");
     assert!(beside[0] < 0.1 && beside[1] < 0.1, "{beside:?}");
-    assert!(no_way.len() <= without, "{no_way:?}");
+    assert!(no_way.is_empty(), "{no_way:?}");
 }
 
 /// A bad link changes when tables come, never what is played.
 #[test]
 fn a_bad_link_changes_nothing() {
-    let (model, family) = robot();
+    let (model, [family, _]) = robot();
     let found = plan(model, family, &errand(Vector2::new(0.2, 0.1), 1.5)).unwrap();
     let tables = tables_of(family, &found);
     let (clean, _) = swum_by(*model.swimmer(), &tables, 3);

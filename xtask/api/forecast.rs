@@ -147,7 +147,8 @@ pub enum PlanError {
     Apart { apart: f64 },
     Outside { what: &'static str, pose: [f64; 3], margin: f64 },
     Refused { gait: &'static str, reason: String },
-    NoWay { met: usize, margin: f64 },
+    Bent { what: &'static str, pose: [f64; 3], shape: [f64; 2], margin: f64 },
+    NoWay { met: usize, within: usize, margin: f64 },
 }
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Played {

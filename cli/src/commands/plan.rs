@@ -5,7 +5,7 @@ mod playlist;
 
 use std::path::PathBuf;
 
-use forecast::{Errand, Family, Servos, Tank, plan};
+use forecast::{Errand, Family, PlanError, Servos, Tank, plan};
 use swimmer_files::{AnyGait, GaitFile, SwimmerFile};
 use swimmer_model::{Gait as _, Pose};
 
@@ -22,8 +22,10 @@ use crate::output::Output;
 ///
 /// Poses are those of the middle link with both joints straight: x and y from the tank's centre in metres, the heading from its
 /// length. The way from the straight shape to the one at which the gaits join, and back, belongs to the plan. The plan is the
-/// quickest that was found, of chains of up to three legs; a leg is a number of cycles of one gait, drawn in a little so that the
-/// legs together meet the target as the robot plays it: soft start, tables, servos with their dead band.
+/// quickest that was found, of chains of three legs and, beside walls, of ways out to where there is room for them; a leg is a
+/// number of cycles of one gait, drawn in a little so that the legs together meet the target as the robot plays it: soft start,
+/// tables, servos with their dead band. Where no plan is found with the gaits whose joining costs least, because the swimmer has no
+/// room to bend, gaits are looked for that join at the straight shape.
 ///
 /// `swimmer robot play --playlist` plays what -o writes.
 #[derive(Debug, clap::Args)]
@@ -88,7 +90,7 @@ impl Plan {
         }
         let file = load_swimmer(&self.steer.swimmer)?;
         let model = crate::arguments::model(&file)?;
-        let family = self.family(&file)?;
+        let mut family = self.family(&file)?;
         let errand = Errand {
             from: Pose::new(self.from.x, self.from.y, self.from.heading.unwrap_or(0.0)),
             to: nalgebra::Vector2::new(self.to.x, self.to.y),
@@ -97,7 +99,18 @@ impl Plan {
             margin: self.margin,
             servos: Servos::on_the_robot(file.servo.unwrap_or_default()),
         };
-        let found = plan(&model, &family, &errand).map_err(|error| Failure::tried(&error))?;
+        let mut found = plan(&model, &family, &errand);
+        let no_room = matches!(found, Err(PlanError::Bent { .. } | PlanError::NoWay { .. }));
+        if no_room && self.gaits.is_none() && self.steer.shape.is_none() {
+            // Beside a wall the straight swimmer may fit where the bent one does not.
+            let straight = SteerArguments {
+                shape: Some([0.0; 2]),
+                ..self.steer.clone()
+            };
+            family = joined(&straight, &file)?;
+            found = plan(&model, &family, &errand);
+        }
+        let found = found.map_err(|error| Failure::tried(&error))?;
         let off = |share: f64| -> Outcome<Off> {
             let mut other = file.clone();
             other.swimmer.chi *= share;
@@ -116,18 +129,7 @@ impl Plan {
 
     fn family(&self, file: &SwimmerFile) -> Outcome<Family> {
         let Some(folder) = &self.gaits else {
-            let steering = self.steer.find(file)?;
-            let gaits = [0, 2, 4].map(|at| {
-                let (_, joined, _) = named(&steering)[at];
-                let curve = AnyGait::from_file(&joined.gait_file(&file.name, false));
-                curve.map(|curve| (curve, joined.period))
-            });
-            let [forward, left, turn] = gaits;
-            let all = [forward, left, turn]
-                .into_iter()
-                .collect::<Result<Vec<_>, _>>();
-            let all = all.map_err(|error| Failure::Tried(error.to_string()))?;
-            return family_of(all);
+            return joined(&self.steer, file);
         };
         let rates = self.steer.rates(file)?;
         let mut all = Vec::new();
@@ -148,6 +150,18 @@ impl Plan {
         }
         family_of(all)
     }
+}
+
+/// The gaits that are found.
+fn joined(steer: &SteerArguments, file: &SwimmerFile) -> Outcome<Family> {
+    let steering = steer.find(file)?;
+    let gaits = [0, 2, 4].map(|at| {
+        let (_, joined, _) = named(&steering)[at];
+        let curve = AnyGait::from_file(&joined.gait_file(&file.name, false));
+        curve.map(|curve| (curve, joined.period))
+    });
+    let all = gaits.into_iter().collect::<Result<Vec<_>, _>>();
+    family_of(all.map_err(|error| Failure::Tried(error.to_string()))?)
 }
 
 fn family_of(gaits: Vec<(AnyGait, f64)>) -> Outcome<Family> {

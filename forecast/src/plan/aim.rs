@@ -3,10 +3,10 @@
 use swimmer_model::{Model, Pose};
 
 use super::legs::settled;
-use super::member::{Nets, Scaled};
+use super::member::Nets;
 use super::{Errand, Family, PlanError, Step, distance};
 use crate::path::Polyline;
-use crate::playlist::{PlaylistTable, Repeated, leads_to, played, refused, tables};
+use crate::playlist::{PlaylistTable, leads_to, played, refused, tables};
 
 /// Shots at a target.
 const SHOTS: usize = 12;
@@ -63,10 +63,18 @@ impl Aim<'_> {
                 break;
             }
             let wanted = begun.inverse() * (aimed_at * self.way_in);
-            match settled(self.nets, self.family, &self.errand.servos, &wanted, &steps) {
-                Some(settled) => steps = settled,
-                None => break,
+            let servos = &self.errand.servos;
+            let Some(mut next) = settled(self.nets, self.family, servos, &wanted, &steps, 1.0)
+            else {
+                break;
+            };
+            // What is played jumps where the period does, by a tick: it does so once.
+            for (next, before) in next.iter_mut().zip(&steps) {
+                if next.cycles == before.cycles {
+                    next.period = next.period.max(before.period);
+                }
             }
+            steps = next;
         }
         Ok(best.filter(|best| best.off[0] < ACCEPTED[0] && best.off[1] < ACCEPTED[1]))
     }
@@ -89,13 +97,9 @@ impl Aim<'_> {
                 .get(step)
                 .map_or("last", |step| step.member.word(self.family.mirrored))
         };
-        let played: Vec<Repeated<Scaled>> = steps
+        let played: Vec<_> = steps
             .iter()
-            .map(|step| Repeated {
-                gait: step.member.of(self.family),
-                cycles: step.cycles,
-                period: step.period,
-            })
+            .map(|step| step.repeated(self.family))
             .collect();
         let tables = tables(&played).map_err(|error| PlanError::Refused {
             gait: word(0),

@@ -1,57 +1,43 @@
 //! Chains of legs that meet a target.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DVector, Matrix3xX, Vector3};
 use swimmer_model::{Pose, wrapped_angle};
 
 use crate::losses::Servos;
 
 use super::member::{Kind, Member, Nets, SMALLEST, repeated};
-use super::{Errand, Family, Step};
+use super::{Family, Step};
 
 /// Legs of a chain: their scales meet the three coordinates of a target.
 const MOST: usize = 3;
-/// Headings that are tried where any will do.
-const HEADINGS: usize = 24;
 /// Rotations of a leg that Newton's method starts from, and amounts of the others.
 const TURNS: usize = 8;
 /// Amounts that are alike \[cycles\].
 const ALIKE: f64 = 0.05;
 const STEPS: usize = 30;
+/// Scales of a chain that is to be aimed yet.
+pub(super) const LARGEST: f64 = 0.985;
 /// Cycles of a leg.
 const MOST_CYCLES: f64 = 400.0;
 /// A target is met so closely (m and rad).
 const MET: f64 = 1e-10;
 
-/// All chains that are found.
+/// All chains that are found to bring what is wanted, from the common shape to the common shape.
 pub(super) fn chains(
     nets: &Nets,
     family: &Family,
-    errand: &Errand,
-    way_in: &Pose<f64>,
+    servos: &Servos,
+    wanted: &Pose<f64>,
 ) -> Vec<Vec<Step>> {
-    let headings: Vec<f64> = match errand.heading {
-        Some(heading) => vec![heading],
-        None => (0..HEADINGS)
-            .map(|k| std::f64::consts::TAU * k as f64 / HEADINGS as f64)
-            .collect(),
+    let of = |word| Search {
+        nets,
+        family,
+        servos,
+        wanted: *wanted,
+        word,
     };
-    let mut all = Vec::new();
-    for heading in headings {
-        let target = Pose::new(errand.to.x, errand.to.y, heading);
-        // What the legs have to bring, from the common shape to the common shape.
-        let wanted = (errand.from * *way_in).inverse() * (target * *way_in);
-        for word in words() {
-            let search = Search {
-                nets,
-                family,
-                servos: &errand.servos,
-                wanted,
-                word,
-            };
-            all.extend(search.chains());
-        }
-    }
-    all
+    let words = words().into_iter();
+    words.flat_map(|word| of(word).chains()).collect()
 }
 
 /// All orders of three legs of which no two neighbours are alike.
@@ -79,14 +65,14 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn chains(&self) -> Vec<Vec<Step>> {
-        let mut amounts: Vec<Vector3<f64>> = Vec::new();
+        let mut amounts: Vec<DVector<f64>> = Vec::new();
         for start in self.starts() {
             let Some(found) = newton(start, |amounts| {
                 off(&(self.wanted.inverse() * self.roughly(amounts)))
             }) else {
                 continue;
             };
-            let alike = |other: &Vector3<f64>| (other - found).amax() < ALIKE;
+            let alike = |other: &DVector<f64>| (other - &found).amax() < ALIKE;
             if found.amax() < MOST_CYCLES && !amounts.iter().any(alike) {
                 amounts.push(found);
             }
@@ -97,7 +83,7 @@ impl Search<'_> {
             .collect()
     }
 
-    fn starts(&self) -> Vec<Vector3<f64>> {
+    fn starts(&self) -> Vec<DVector<f64>> {
         let turn = self.full(Kind::Turn).theta;
         let rotation = wrapped_angle(self.wanted.theta);
         let tau = std::f64::consts::TAU;
@@ -106,7 +92,7 @@ impl Search<'_> {
             for k in 0..TURNS {
                 let share = tau * (k as f64 / TURNS as f64 - 0.5);
                 let mut left = rotation + whole * tau;
-                let mut start = Vector3::zeros();
+                let mut start = DVector::zeros(MOST);
                 let turns = self.word.iter().filter(|kind| **kind == Kind::Turn).count();
                 for (leg, kind) in self.word.iter().enumerate() {
                     if *kind == Kind::Turn {
@@ -137,7 +123,7 @@ impl Search<'_> {
     }
 
     /// As if cycles could be cut anywhere: a real number of each.
-    fn roughly(&self, amounts: &Vector3<f64>) -> Pose<f64> {
+    fn roughly(&self, amounts: &DVector<f64>) -> Pose<f64> {
         let legs = self.word.iter().zip(amounts.iter());
         legs.fold(Pose::identity(), |sum, (kind, amount)| {
             sum * power(&self.full(*kind), *amount)
@@ -145,7 +131,7 @@ impl Search<'_> {
     }
 
     /// Whole cycles of members that bring the same; none where there are none.
-    fn whole(&self, amounts: &Vector3<f64>) -> Option<Vec<Step>> {
+    fn whole(&self, amounts: &DVector<f64>) -> Option<Vec<Step>> {
         let legs = self.word.iter().zip(amounts.iter());
         let legs = legs.filter(|(_, amount)| amount.abs() > 1e-9);
         #[allow(
@@ -155,8 +141,7 @@ impl Search<'_> {
         )]
         let steps = legs.map(|(kind, amount)| {
             let cycles = (amount.abs() - 1e-9).ceil().max(1.0);
-            // A small cycle brings as much as the area that it goes round.
-            let scale = (amount.abs() / cycles).sqrt().clamp(2.0 * SMALLEST, 1.0);
+            let scale = self.nets.scale(*kind, amount.abs() / cycles);
             let member = Member {
                 kind: *kind,
                 backwards: *amount < 0.0,
@@ -165,23 +150,31 @@ impl Search<'_> {
             Step::new(self.family, self.servos, member, cycles as u32)
         });
         let steps: Vec<Step> = steps.collect();
-        settled(self.nets, self.family, self.servos, &self.wanted, &steps)
+        settled(
+            self.nets,
+            self.family,
+            self.servos,
+            &self.wanted,
+            &steps,
+            LARGEST,
+        )
     }
 }
 
 /// These steps with scales that bring what is wanted, and with more cycles where a scale would be above 1; none where there
-/// are none.
+/// are none. Of all that do those nearest to the steps' own; none larger than `largest`.
 pub(super) fn settled(
     nets: &Nets,
     family: &Family,
     servos: &Servos,
     wanted: &Pose<f64>,
     steps: &[Step],
+    largest: f64,
 ) -> Option<Vec<Step>> {
     let mut steps = steps.to_vec();
     let inverse = wanted.inverse();
     for _ in 0..8 {
-        let start = Vector3::from_fn(|leg, _| steps.get(leg).map_or(1.0, |step| step.member.scale));
+        let start = DVector::from_iterator(steps.len(), steps.iter().map(|step| step.member.scale));
         let found = newton(start, |scales| {
             let legs = steps.iter().zip(scales.iter());
             let pose = legs.fold(Pose::identity(), |sum, (step, scale)| {
@@ -198,14 +191,15 @@ pub(super) fn settled(
             if scale < SMALLEST {
                 return None;
             }
-            let more = u32::from(scale > 1.0);
-            beyond |= more > 0;
-            let shared = f64::from(step.cycles) / f64::from(step.cycles + more);
             let member = Member {
-                scale: scale * shared.sqrt(),
+                scale: scale.min(1.0),
                 ..step.member
             };
-            *step = Step::new(family, servos, member, step.cycles + more);
+            *step = Step::new(family, servos, member, step.cycles);
+            if scale > largest {
+                beyond = true;
+                *step = with_cycles(nets, family, servos, step, step.cycles + 1);
+            }
         }
         if !beyond {
             return Some(steps);
@@ -214,30 +208,20 @@ pub(super) fn settled(
     None
 }
 
-/// A chain that brings the same by so many times as many cycles, each that much smaller; none where there is none.
-pub(super) fn smaller(
+/// A leg of so many cycles that brings about the same.
+pub(super) fn with_cycles(
     nets: &Nets,
     family: &Family,
     servos: &Servos,
-    steps: &[Step],
-    times: u32,
-) -> Option<Vec<Step>> {
-    if times == 1 {
-        return Some(steps.to_vec());
-    }
-    let brought = steps.iter().fold(Pose::identity(), |sum, step| {
-        sum * repeated(&nets.of(&step.member), step.cycles)
-    });
-    let smaller = steps.iter().map(|step| {
-        let scale = step.member.scale / f64::from(times).sqrt();
-        let member = Member {
-            scale: scale.max(SMALLEST),
-            ..step.member
-        };
-        Step::new(family, servos, member, step.cycles * times)
-    });
-    let smaller: Vec<Step> = smaller.collect();
-    settled(nets, family, servos, &brought, &smaller)
+    leg: &Step,
+    cycles: u32,
+) -> Step {
+    let share = nets.share(&leg.member) * f64::from(leg.cycles) / f64::from(cycles);
+    let member = Member {
+        scale: nets.scale(leg.member.kind, share),
+        ..leg.member
+    };
+    Step::new(family, servos, member, cycles)
 }
 
 /// A pose near the identity as three numbers.
@@ -262,8 +246,9 @@ fn power(pose: &Pose<f64>, amount: f64) -> Pose<f64> {
     Pose::exp(&(twist * amount))
 }
 
-/// A zero of three functions of three numbers, by damped steps with differences; none where they do not come near one.
-fn newton(start: Vector3<f64>, of: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Option<Vector3<f64>> {
+/// A zero of three functions near `start`, by damped steps with differences; none where they do not come near one. Of the steps
+/// that lead to a zero of the linear functions each is the shortest.
+fn newton(start: DVector<f64>, of: impl Fn(&DVector<f64>) -> Vector3<f64>) -> Option<DVector<f64>> {
     const DIFFERENCE: f64 = 1e-6;
     let mut here = start;
     let mut off = of(&here);
@@ -271,18 +256,17 @@ fn newton(start: Vector3<f64>, of: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Op
         if off.amax() < MET {
             return Some(here);
         }
-        let mut slopes = Matrix3::zeros();
-        for k in 0..3 {
-            let (mut up, mut down) = (here, here);
+        let mut slopes = Matrix3xX::zeros(here.len());
+        for k in 0..here.len() {
+            let (mut up, mut down) = (here.clone(), here.clone());
             up[k] += DIFFERENCE;
             down[k] -= DIFFERENCE;
             slopes.set_column(k, &((of(&up) - of(&down)) / (2.0 * DIFFERENCE)));
         }
-        let inverse = slopes.svd(true, true).pseudo_inverse(1e-9).ok()?;
-        let step = -(inverse * off);
+        let step = -(slopes.pseudo_inverse(1e-9).ok()? * off);
         let mut length = 1.0;
         loop {
-            let there = here + step * length;
+            let there = &here + &step * length;
             let after = of(&there);
             if after.norm() < off.norm() {
                 (here, off) = (there, after);

@@ -1,11 +1,13 @@
 //! Members of a family: a gait drawn towards the common shape, and what a cycle of it brings.
 
+use gait_player::table::TableError;
 use nalgebra::Vector2;
 use swimmer_files::AnyGait;
-use swimmer_model::{Gait, GaitPoint, Model, Pose};
+use swimmer_model::{Gait, GaitPoint, Model, Pose, wrapped_angle};
 
-use super::Family;
-use crate::playlist::leads_to;
+use super::{Family, Step};
+use crate::losses::Servos;
+use crate::playlist::{leads_to, played, tables};
 
 /// A kind of gait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -93,8 +95,8 @@ impl Gait<f64> for Scaled {
     }
 }
 
-/// Net poses of all members, between scales by the polynomial through those at Chebyshev points: they depend on the scale
-/// analytically.
+/// Net poses of all members as the servos play them, between scales by the polynomial through those at Chebyshev points: what a
+/// gait brings depends on its scale analytically, and what tables and dead bands take of it hardly less smoothly.
 #[derive(Debug)]
 pub(super) struct Nets {
     scales: Vec<f64>,
@@ -107,12 +109,19 @@ const POINTS: usize = 20;
 pub(super) const SMALLEST: f64 = 0.03;
 
 impl Nets {
-    pub(super) fn new(model: &Model<f64>, family: &Family) -> Self {
+    /// # Errors
+    /// [`TableError`]: an angle that does not fit.
+    pub(super) fn new(
+        model: &Model<f64>,
+        family: &Family,
+        servos: &Servos,
+    ) -> Result<Self, TableError> {
         let scale = |k: usize| {
             let angle = std::f64::consts::PI * k as f64 / (POINTS - 1) as f64;
             0.5 * (1.0 + SMALLEST) + 0.5 * (1.0 - SMALLEST) * angle.cos()
         };
         let scales: Vec<f64> = (0..POINTS).map(scale).collect();
+        let way_in = family.way_in(model);
         let of = |kind: Kind| {
             let at = |&scale: &f64| {
                 let member = Member {
@@ -120,14 +129,86 @@ impl Nets {
                     backwards: false,
                     scale,
                 };
-                let pose = leads_to(model, &member.of(family));
-                [pose.x, pose.y, pose.theta]
+                let after = |cycles| {
+                    let step = Step::new(family, servos, member, cycles);
+                    let tables = tables(&[step.repeated(family)])?;
+                    Ok(leads_to(model, &played(&tables, servos)) * way_in)
+                };
+                // The first cycle takes up the dead band: what a second one adds.
+                let pose = after(1)?.inverse() * after(2)?;
+                Ok([pose.x, pose.y, pose.theta])
             };
-            scales.iter().map(at).collect()
+            scales.iter().map(at).collect::<Result<Vec<_>, _>>()
         };
-        Self {
-            poses: Kind::ALL.map(of),
+        Ok(Self {
+            poses: [of(Kind::Forward)?, of(Kind::Left)?, of(Kind::Turn)?],
             scales,
+        })
+    }
+
+    /// The same in a mirror along the body.
+    #[must_use]
+    pub(super) fn mirror(&self) -> Self {
+        let poses = self.poses.each_ref().map(|poses| {
+            let poses = poses.iter();
+            poses.map(|[x, y, theta]| [*x, -y, -theta]).collect()
+        });
+        Self {
+            scales: self.scales.clone(),
+            poses,
+        }
+    }
+
+    /// What is wanted takes about this long at least \[s\].
+    pub(super) fn least(&self, family: &Family, wanted: &Pose<f64>) -> f64 {
+        let (mut speed, mut rate) = (0.0_f64, 0.0_f64);
+        for (kind, (_, period)) in Kind::ALL.into_iter().zip(&family.gaits) {
+            let net = self.of(&Member {
+                kind,
+                backwards: false,
+                scale: 1.0,
+            });
+            speed = speed.max(net.position().norm() / period);
+            rate = rate.max(net.theta.abs() / period);
+        }
+        let turned = wrapped_angle(wanted.theta).abs() / rate;
+        turned.max(wanted.position().norm() / speed)
+    }
+
+    /// The scale at which a cycle brings this share of what it does at full size, along what that is.
+    pub(super) fn scale(&self, kind: Kind, share: f64) -> f64 {
+        let (mut below, mut above) = (SMALLEST, 1.0);
+        for _ in 0..24 {
+            let middle = 0.5 * (below + above);
+            let member = Member {
+                kind,
+                backwards: false,
+                scale: middle,
+            };
+            if self.share(&member) < share {
+                below = middle;
+            } else {
+                above = middle;
+            }
+        }
+        above
+    }
+
+    /// The share of what a cycle brings at full size that one of this member does, along what that is.
+    pub(super) fn share(&self, member: &Member) -> f64 {
+        let of = |scale| {
+            self.of(&Member {
+                backwards: false,
+                scale,
+                ..*member
+            })
+        };
+        let (full, here) = (of(1.0), of(member.scale));
+        match member.kind {
+            Kind::Turn => here.theta / full.theta,
+            Kind::Forward | Kind::Left => {
+                here.position().dot(&full.position()) / full.position().norm_squared()
+            }
         }
     }
 

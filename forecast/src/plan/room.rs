@@ -1,16 +1,21 @@
 //! Whether a plan stays within its tank.
 
+use std::cell::OnceCell;
+
 use nalgebra::Vector2;
 use swimmer_model::{Gait as _, Model, Pose, trajectory};
 
-use super::member::Nets;
-use super::{Errand, Family, Step};
+use super::legs::LARGEST;
+use super::member::{Member, Nets, SMALLEST};
+use super::{Errand, Family};
 use crate::losses::tolerance;
 use crate::path::Polyline;
 use crate::tank::Tank;
 
 /// Looks at the body a cycle.
 const LOOKS: usize = 72;
+/// Cycles are looked at in sizes, each so many times smaller than the one before.
+const RATIO: f64 = 0.9;
 
 /// The walls, and who swims between them.
 pub(super) struct Room<'a> {
@@ -20,65 +25,36 @@ pub(super) struct Room<'a> {
 }
 
 impl<'a> Room<'a> {
-    pub(super) fn new(model: &'a Model<f64>, errand: &Errand) -> Self {
+    pub(super) fn new(model: &'a Model<f64>, errand: &Errand, margin: f64) -> Self {
         Self {
             model,
             tank: errand.tank,
-            margin: errand.margin,
+            margin,
         }
     }
 
     /// Whether the body in this shape and pose stays clear of the walls.
     pub(super) fn fits(&self, pose: &Pose<f64>, phi: &Vector2<f64>) -> bool {
-        let Some(tank) = &self.tank else { return true };
-        let swimmer = self.model.swimmer();
-        let inside = |point: &Vector2<f64>, radius: f64| {
-            let at = pose.transform(point);
-            at.x.abs() + radius + self.margin <= 0.5 * tank.length
-                && at.y.abs() + radius + self.margin <= 0.5 * tank.width
-        };
-        let links = swimmer.links.outline(phi);
-        links.iter().all(|point| inside(point, 0.0))
-            && inside(&Vector2::zeros(), swimmer.sphere_radius)
+        self.holds(
+            pose,
+            &self.model.swimmer().links.outline(phi),
+            &[Vector2::zeros()],
+        )
     }
 
-    /// Whether all of a plan does, from this pose at the common shape.
-    pub(super) fn leaves(
-        &self,
-        family: &Family,
-        begun: &Pose<f64>,
-        nets: &Nets,
-        steps: &[Step],
-    ) -> bool {
+    /// Whether links through these points, and spheres around those, do.
+    fn holds(&self, pose: &Pose<f64>, links: &[Vector2<f64>], spheres: &[Vector2<f64>]) -> bool {
         let Some(tank) = &self.tank else { return true };
-        let mut pose = *begun;
-        for step in steps {
-            let net = nets.of(&step.member);
-            let mut cycle: Vec<(Pose<f64>, Vector2<f64>)> = Vec::with_capacity(LOOKS + 1);
-            trajectory(
-                self.model,
-                &step.member.of(family),
-                &tolerance(),
-                LOOKS,
-                |point| {
-                    cycle.push((point.pose, point.phi));
-                },
-            );
-            let swimmer = self.model.swimmer();
-            let sway = cycle.iter().map(|(pose, _)| pose.position().norm());
-            let reach = sway.fold(0.0, f64::max)
-                + swimmer.total_length().max(swimmer.sphere_radius)
-                + self.margin;
-            for _ in 0..step.cycles {
-                let far = pose.x.abs() + reach < 0.5 * tank.length
-                    && pose.y.abs() + reach < 0.5 * tank.width;
-                if !far && !cycle.iter().all(|(at, phi)| self.fits(&(pose * *at), phi)) {
-                    return false;
-                }
-                pose = pose * net;
-            }
-        }
-        true
+        let (sin, cos) = pose.theta.sin_cos();
+        let inside = |points: &[Vector2<f64>], radius: f64| {
+            let far = 0.5 * tank.length - self.margin - radius;
+            let wide = 0.5 * tank.width - self.margin - radius;
+            points.iter().all(|point| {
+                (pose.x + cos * point.x - sin * point.y).abs() <= far
+                    && (pose.y + sin * point.x + cos * point.y).abs() <= wide
+            })
+        };
+        inside(links, 0.0) && inside(spheres, self.model.swimmer().sphere_radius)
     }
 
     /// Whether the way that the servos take does, from the straight shape at this pose.
@@ -92,4 +68,113 @@ impl<'a> Room<'a> {
         });
         inside
     }
+}
+
+/// What cycles of a family sweep over.
+pub(super) struct Sweeps<'a> {
+    pub(super) room: &'a Room<'a>,
+    pub(super) nets: &'a Nets,
+    pub(super) family: &'a Family,
+    /// Kind by kind and size by size.
+    swept: [Vec<OnceCell<Swept>>; 3],
+}
+
+/// Where the body gets during a cycle, in the frame of its start. A tank is convex: corners of convex hulls are enough.
+struct Swept {
+    links: Vec<Vector2<f64>>,
+    /// Of its centre.
+    sphere: Vec<Vector2<f64>>,
+}
+
+impl Swept {
+    fn new(model: &Model<f64>, family: &Family, member: &Member) -> Self {
+        let (mut links, mut sphere) = (Vec::new(), Vec::new());
+        trajectory(model, &member.of(family), &tolerance(), LOOKS, |point| {
+            let outline = model.swimmer().links.outline(&point.phi);
+            links.extend(outline.map(|end| point.pose.transform(&end)));
+            sphere.push(point.pose.position());
+        });
+        Self {
+            links: hull(links),
+            sphere: hull(sphere),
+        }
+    }
+}
+
+impl<'a> Sweeps<'a> {
+    pub(super) fn new(room: &'a Room<'a>, nets: &'a Nets, family: &'a Family) -> Self {
+        let cells = || sizes().map(|_| OnceCell::new()).collect();
+        Self {
+            room,
+            nets,
+            family,
+            swept: [cells(), cells(), cells()],
+        }
+    }
+
+    /// Where so many cycles lead from this pose; none where they meet a wall. A cycle needs no more room than one of the next
+    /// larger size that is looked at.
+    pub(super) fn after(
+        &self,
+        pose: &Pose<f64>,
+        member: &Member,
+        cycles: u32,
+    ) -> Option<Pose<f64>> {
+        let number = sizes().take_while(|size| *size >= member.scale).count();
+        let all = &self.swept[member.kind as usize];
+        let cell = all.get(number.saturating_sub(1))?;
+        let swept = cell.get_or_init(|| {
+            // Up to the full size.
+            let power = i32::try_from(number.saturating_sub(1)).unwrap_or(0);
+            let scale = if power == 0 {
+                1.0
+            } else {
+                LARGEST * RATIO.powi(power)
+            };
+            let member = Member {
+                backwards: false,
+                scale,
+                ..*member
+            };
+            Swept::new(self.room.model, self.family, &member)
+        });
+        let net = self.nets.of(member);
+        let mut pose = *pose;
+        for _ in 0..cycles {
+            let next = pose * net;
+            // Run backwards it sweeps over what it does forwards from its end.
+            let start = if member.backwards { &next } else { &pose };
+            if !self.room.holds(start, &swept.links, &swept.sphere) {
+                return None;
+            }
+            pose = next;
+        }
+        Some(pose)
+    }
+}
+
+/// The sizes that are looked at, from the largest.
+pub(super) fn sizes() -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(LARGEST), |size| Some(size * RATIO))
+        .take_while(|size| *size > SMALLEST)
+}
+
+/// Corners of the convex hull (Andrew's monotone chain).
+fn hull(mut points: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let half = |points: &mut dyn Iterator<Item = &Vector2<f64>>| {
+        let mut corners: Vec<Vector2<f64>> = Vec::new();
+        for point in points {
+            while let [.., one, two] = corners[..]
+                && (two - one).perp(&(point - two)) <= 0.0
+            {
+                corners.pop();
+            }
+            corners.push(*point);
+        }
+        corners
+    };
+    let mut corners = half(&mut points.iter());
+    corners.extend(half(&mut points.iter().rev()));
+    corners
 }

@@ -33,7 +33,7 @@ pub(crate) struct Steer {
 }
 
 /// What decides which gaits are found.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub(crate) struct SteerArguments {
     /// purcell, robot, robot-slender or a swimmer file
     #[arg(long, value_name = "SWIMMER")]
@@ -45,7 +45,7 @@ pub(crate) struct SteerArguments {
     bounds: WholeBounds,
     /// The shape at which the gaits shall join: φ₁ and φ₂
     #[arg(long, value_name = "ANGLE,ANGLE", value_parser = shape, allow_hyphen_values = true)]
-    shape: Option<[f64; 2]>,
+    pub(crate) shape: Option<[f64; 2]>,
 }
 
 fn shape(text: &str) -> Result<[f64; 2], String> {

@@ -1,0 +1,140 @@
+//! The search: chains of three legs between ways out of both ends.
+
+use swimmer_model::{Model, Pose};
+
+use super::aim::Aim;
+use super::legs::{LARGEST, chains, settled, with_cycles};
+use super::room::{Room, Sweeps};
+use super::way_out::{Way, ways_out};
+use super::{Errand, Plan, PlanError, Step, duration};
+use crate::losses::Servos;
+
+/// Where there is no room for the cycles of a leg, so many times as many smaller ones are tried.
+const SMALLER: [u32; 5] = [1, 2, 4, 8, 16];
+/// Pairs of ways out that are tried.
+const PAIRS: usize = 60;
+/// Chains between such a pair that are aimed.
+const AIMED: usize = 4;
+/// A plan whose duration is more than this share of a known one's is not worth its further legs.
+const WORTH: f64 = 0.98;
+/// Headings that are tried where any will do.
+const HEADINGS: usize = 24;
+
+/// What a search has seen.
+#[derive(Debug, Default)]
+pub(super) struct Seen {
+    /// Chains of legs that meet the target, and those of them that the walls leave.
+    pub(super) met: [usize; 2],
+    /// Why the robot would not play the first of those that it would not.
+    pub(super) refused: Option<PlanError>,
+}
+
+/// The quickest plan with these gaits, where there is one that is quicker than a known one: else that one.
+pub(super) fn quickest(
+    model: &Model<f64>,
+    errand: &Errand,
+    room: &Room<'_>,
+    sweeps: &Sweeps<'_>,
+    known: Option<Plan>,
+    seen: &mut Seen,
+) -> Option<Plan> {
+    let (family, nets, servos) = (sweeps.family, sweeps.nets, &errand.servos);
+    let way_in = family.way_in(model);
+    let begun = errand.from * way_in;
+    let aim = Aim {
+        model,
+        family,
+        errand,
+        nets,
+        way_in,
+    };
+    let outward = ways_out(sweeps, servos, &begun);
+    let inward = ends(errand).into_iter().filter(|end| {
+        let fits = |pose: &Pose<f64>| room.fits(pose, &nalgebra::Vector2::zeros());
+        fits(end) && room.fits(&(*end * way_in), &family.shape())
+    });
+    let inward: Vec<Way> = inward
+        .flat_map(|end| ways_out(sweeps, servos, &(end * way_in)))
+        .collect();
+    let mut pairs: Vec<_> = inward
+        .iter()
+        .flat_map(|inward| outward.iter().map(move |outward| (outward, inward)))
+        .collect();
+    let ways = |(one, other): &(&Way, &Way)| one.duration + other.duration;
+    pairs.sort_by(|a, b| ways(a).total_cmp(&ways(b)));
+    let mut best = known;
+    for (outward, inward) in pairs.into_iter().take(PAIRS) {
+        let ways = outward.duration + inward.duration;
+        let most = best
+            .as_ref()
+            .map_or(f64::INFINITY, |best| best.duration * WORTH);
+        let wanted = outward.there.inverse() * inward.there;
+        if ways + nets.least(family, &wanted) > most {
+            continue;
+        }
+        let between = chains(nets, family, servos, &wanted);
+        seen.met[0] += between.len();
+        let mut left: Vec<_> = between
+            .iter()
+            .filter_map(|legs| fitted(sweeps, servos, &outward.there, &wanted, legs))
+            .collect();
+        seen.met[1] += left.len();
+        left.sort_by(|a, b| duration(a).total_cmp(&duration(b)));
+        left.retain(|legs| ways + duration(legs) < most);
+        for legs in left.iter().take(AIMED) {
+            let back = inward.steps.iter().rev().map(Step::undone);
+            let out = outward.steps.iter().chain(legs).copied();
+            let steps: Vec<Step> = out.chain(back).collect();
+            let hit = match aim.hit(&begun, &steps) {
+                Ok(Some(hit)) => hit,
+                Ok(None) => continue,
+                Err(error) => {
+                    seen.refused.get_or_insert(error);
+                    continue;
+                }
+            };
+            if room.leaves_played(&errand.from, &hit.way) {
+                best = Some(Plan::new(errand, family, hit));
+                break;
+            }
+        }
+    }
+    best
+}
+
+/// Poses that the errand may end in.
+pub(super) fn ends(errand: &Errand) -> Vec<Pose<f64>> {
+    let any = (0..HEADINGS).map(|k| std::f64::consts::TAU * k as f64 / HEADINGS as f64);
+    let headings = errand
+        .heading
+        .map_or_else(|| any.collect(), |one| vec![one]);
+    let end = |heading| Pose::new(errand.to.x, errand.to.y, heading);
+    headings.into_iter().map(end).collect()
+}
+
+/// Legs that leave the walls alone, from this pose on, and bring what is wanted: each with the largest cycles that have room.
+fn fitted(
+    sweeps: &Sweeps<'_>,
+    servos: &Servos,
+    begun: &Pose<f64>,
+    wanted: &Pose<f64>,
+    legs: &[Step],
+) -> Option<Vec<Step>> {
+    let (family, nets) = (sweeps.family, sweeps.nets);
+    let mut pose = *begun;
+    let mut chosen = Vec::with_capacity(legs.len());
+    for leg in legs {
+        let (leg, there) = SMALLER.iter().find_map(|&times| {
+            let leg = with_cycles(nets, family, servos, leg, leg.cycles * times);
+            Some((leg, sweeps.after(&pose, &leg.member, leg.cycles)?))
+        })?;
+        chosen.push(leg);
+        pose = there;
+    }
+    let settled = settled(nets, family, servos, wanted, &chosen, LARGEST)?;
+    let mut pose = *begun;
+    for leg in &settled {
+        pose = sweeps.after(&pose, &leg.member, leg.cycles)?;
+    }
+    Some(settled)
+}

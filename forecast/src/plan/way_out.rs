@@ -1,0 +1,142 @@
+//! Ways out: from a pose beside a wall, where only small cycles have room, to where larger ones have.
+//!
+//! Every gait can be run backwards, so a way out of a target is a way into it. The tree of quickest ways (Dijkstra's) is grown,
+//! with the largest cycles that have room at each pose; the quickest way to every region of poses is told.
+
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashSet};
+
+use swimmer_model::Pose;
+
+use super::Step;
+use super::legs::LARGEST;
+use super::member::{Kind, Member};
+use super::room::{Sweeps, sizes};
+use crate::losses::Servos;
+
+/// Poses are alike within \[m, rad\].
+const ALIKE: [f64; 2] = [0.005, 0.05];
+/// Poses that are looked at.
+const MOST: usize = 4000;
+/// Ways out that are told lead so far apart \[m, rad\].
+const APART: [f64; 2] = [0.04, 0.4];
+/// Ways out that are told.
+const WAYS: usize = 24;
+
+/// A way out.
+#[derive(Debug, Clone)]
+pub(super) struct Way {
+    pub(super) steps: Vec<Step>,
+    pub(super) there: Pose<f64>,
+    pub(super) duration: f64,
+}
+
+struct Node {
+    pose: Pose<f64>,
+    /// The node before, and the step from there.
+    from: Option<(usize, Step)>,
+    duration: f64,
+}
+
+/// The ways out from this pose at the common shape, the shortest first: the first stays.
+pub(super) fn ways_out(sweeps: &Sweeps<'_>, servos: &Servos, begun: &Pose<f64>) -> Vec<Way> {
+    let mut nodes = vec![Node {
+        pose: *begun,
+        from: None,
+        duration: 0.0,
+    }];
+    let mut open = BinaryHeap::from([Reverse((Time(0.0), 0))]);
+    let mut seen = HashSet::new();
+    let mut ways = Vec::new();
+    let mut told = HashSet::new();
+    while let Some(Reverse((Time(time), at))) = open.pop() {
+        let pose = nodes[at].pose;
+        if !seen.insert(cell(&pose, ALIKE)) {
+            continue;
+        }
+        let mut room = 0.0;
+        for kind in Kind::ALL {
+            for backwards in [false, true] {
+                let of = |scale| Member {
+                    kind,
+                    backwards,
+                    scale,
+                };
+                let fitting = sizes().find_map(|size| {
+                    let there = sweeps.after(&pose, &of(size), 1)?;
+                    Some((of(size), there))
+                });
+                let Some((member, mut there)) = fitting else {
+                    continue;
+                };
+                room += member.scale;
+                let mut cycles = 1;
+                loop {
+                    let step = Step::new(sweeps.family, servos, member, cycles);
+                    let duration = time + f64::from(cycles) * step.period;
+                    if !seen.contains(&cell(&there, ALIKE)) {
+                        open.push(Reverse((Time(duration), nodes.len())));
+                        nodes.push(Node {
+                            pose: there,
+                            from: Some((at, step)),
+                            duration,
+                        });
+                    }
+                    let Some(further) = sweeps.after(&there, &member, cycles) else {
+                        break;
+                    };
+                    (there, cycles) = (further, 2 * cycles);
+                    if cycles > 64 {
+                        break;
+                    }
+                }
+            }
+        }
+        if told.insert(cell(&pose, APART)) {
+            ways.push(way(&nodes, at));
+        }
+        if seen.len() > MOST || ways.len() == WAYS || at == 0 && room > 5.99 * LARGEST {
+            break;
+        }
+    }
+    ways
+}
+
+fn way(nodes: &[Node], to: usize) -> Way {
+    let mut steps = Vec::new();
+    let mut at = to;
+    while let Some((before, step)) = nodes[at].from {
+        steps.push(step);
+        at = before;
+    }
+    steps.reverse();
+    Way {
+        steps,
+        there: nodes[to].pose,
+        duration: nodes[to].duration,
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "saturates")]
+fn cell(pose: &Pose<f64>, size: [f64; 2]) -> [i64; 3] {
+    let heading = swimmer_model::wrapped_angle(pose.theta);
+    [pose.x / size[0], pose.y / size[0], heading / size[1]].map(|share| share.round() as i64)
+}
+
+/// A duration \[s\], in order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Time(f64);
+
+impl Eq for Time {}
+
+impl PartialOrd for Time {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Time {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
