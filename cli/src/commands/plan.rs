@@ -103,10 +103,8 @@ impl Plan {
         let no_room = matches!(found, Err(PlanError::Bent { .. } | PlanError::NoWay { .. }));
         if no_room && self.gaits.is_none() && self.steer.shape.is_none() {
             // Beside a wall the straight swimmer may fit where the bent one does not.
-            let straight = SteerArguments {
-                shape: Some([0.0; 2]),
-                ..self.steer.clone()
-            };
+            let mut straight = self.steer.clone();
+            straight.shape = Some([0.0; 2]);
             family = joined(&straight, &file)?;
             found = plan(&model, &family, &errand);
         }
