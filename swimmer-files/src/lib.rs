@@ -10,7 +10,7 @@
 //! | gait on the command line or in a campaign | [`GaitSpec`], [`AnyGait`] |
 //! | gait file (plain text) | [`GaitFile`], [`GaitArc`], [`ArcKind`], [`Bounds`], [`Objective`] |
 //! | campaign file (TOML) | [`Campaign`], [`CampaignRun`], [`Reflectors`], [`TrackSettings`], [`RunTiming`], [`Axes`] |
-//! | link log (MCAP) | [`LinkLogWriter`], [`LinkFrame`], [`read_link_log`], [`plays`] |
+//! | link log (MCAP) | [`LinkLogWriter`], [`LinkFrame`], [`read_link_log`], [`parse_link_log`], [`plays`] |
 //!
 //! ```
 //! use swimmer_files::{AnyGait, GaitFile, GaitSpec, SwimmerFile};
@@ -60,7 +60,8 @@ pub use gait_spec::{GaitSpec, GaitSpecError};
 pub use hash::SwimmerHash;
 pub use key::parse_key;
 pub use link_log::{
-    LinkFrame, LinkLog, LinkLogError, LinkLogWriter, Play, link_log_bytes, plays, read_link_log,
+    LinkFrame, LinkLog, LinkLogError, LinkLogWriter, Play, link_log_bytes, parse_link_log, plays,
+    read_link_log,
 };
 pub use place::FileError;
 pub use playlist::{Playlist, PlaylistStep};

@@ -12,13 +12,14 @@ mod container;
 mod frame;
 mod plays;
 mod read;
+mod records;
 mod write;
 
 use std::path::{Path, PathBuf};
 
 pub use frame::LinkFrame;
 pub use plays::{Play, plays};
-pub use read::{LinkLog, read_link_log};
+pub use read::{LinkLog, parse_link_log, read_link_log};
 pub use write::LinkLogWriter;
 
 use crate::FileError;
@@ -86,36 +87,7 @@ impl LinkLogError {
     fn container(path: &Path, error: &mcap::McapError) -> Self {
         Self::Container {
             path: path.to_path_buf(),
-            problem: first_line(&error.to_string()),
+            problem: error.to_string(),
         }
     }
-}
-
-/// The first line that says something, in plain text: a record that cannot be parsed is told with frames, colours and where in
-/// the library's own source it happened.
-fn first_line(text: &str) -> String {
-    let mut plain = String::new();
-    let mut rest = text.chars();
-    while let Some(letter) = rest.next() {
-        if letter == '\u{1b}' {
-            // An escape sequence ends with its first letter.
-            rest.by_ref().find(char::is_ascii_alphabetic);
-        } else {
-            plain.push(letter);
-        }
-    }
-    plain
-        .lines()
-        .map(|line| line.trim_matches(|letter: char| letter.is_whitespace() || is_frame(letter)))
-        .find(|line| !line.is_empty() && *line != "Error" && *line != "Backtrace")
-        .map_or("it is damaged", |line| {
-            let line = line.strip_prefix("0: ").unwrap_or(line);
-            line.strip_prefix("Error: ").unwrap_or(line)
-        })
-        .to_owned()
-}
-
-/// Lines, corners and ends of lines that frames are drawn with.
-fn is_frame(letter: char) -> bool {
-    ('\u{2500}'..='\u{257f}').contains(&letter)
 }

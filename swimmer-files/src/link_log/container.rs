@@ -18,12 +18,6 @@ const TELEMETRY_SCHEMA: &str = include_str!("telemetry.json");
 const TELEMETRY_SCHEMA_NAME: &str = "swimmer.Telemetry";
 const TELEMETRY_TOPIC: &str = "/robot/telemetry";
 
-/// Fast enough for a robot's log to be written as it happens.
-#[cfg(feature = "lz4")]
-const COMPRESSION: Option<mcap::Compression> = Some(mcap::Compression::Lz4);
-#[cfg(not(feature = "lz4"))]
-const COMPRESSION: Option<mcap::Compression> = None;
-
 /// A chunk holds the frames of so long, ns of the host's clock.
 const CHUNK_NS: u64 = 500_000_000;
 
@@ -41,7 +35,7 @@ impl<W: Write + Seek> Container<W> {
     /// Writes the head.
     pub(super) fn begin(sink: W) -> McapResult<Self> {
         let mut writer = WriteOptions::new()
-            .compression(COMPRESSION)
+            .compression(None)
             // A chunk is written when it is whole, instead of piece by piece with its length at the end.
             .disable_seeking(true)
             .profile("")

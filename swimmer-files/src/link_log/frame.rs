@@ -1,6 +1,9 @@
 //! One frame of the link log, and its JSON.
 
+use std::borrow::Cow;
+
 use link_protocol::{Decoder, Direction, Message, Received, Telemetry};
+use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 /// One frame as it crossed the wire.
@@ -56,29 +59,25 @@ impl LinkFrame {
     }
 
     pub(super) fn from_json(direction: Direction, data: &[u8]) -> Result<Self, String> {
-        let value: Value =
-            serde_json::from_slice(data).map_err(|error| format!("not JSON: {error}"))?;
-        let field = |name: &str| value.get(name).ok_or_else(|| format!("no field `{name}`"));
-        // Earlier logs say null where nothing is known.
-        let robot_time = value.get("robot_time_us").unwrap_or(&Value::Null);
+        let told: Told =
+            serde_json::from_slice(data).map_err(|error| format!("no frame: {error}"))?;
         Ok(Self {
             direction,
-            host_time_ns: field("host_time_ns")?
-                .as_u64()
-                .ok_or("`host_time_ns` is not a whole number of nanoseconds")?,
-            robot_time_us: match robot_time {
-                Value::Null => None,
-                time => Some(
-                    time.as_u64()
-                        .ok_or("`robot_time_us` is neither null nor whole microseconds")?,
-                ),
-            },
-            bytes: field("raw_hex")?
-                .as_str()
-                .and_then(bytes_of)
-                .ok_or("`raw_hex` is not pairs of hexadecimal digits")?,
+            host_time_ns: told.host_time_ns,
+            robot_time_us: told.robot_time_us,
+            bytes: bytes_of(&told.raw_hex).ok_or("`raw_hex` is not pairs of hexadecimal digits")?,
         })
     }
+}
+
+/// What is read back of a frame's JSON; the rest is for people.
+#[derive(Deserialize)]
+struct Told<'a> {
+    host_time_ns: u64,
+    /// Earlier logs say null where nothing is known.
+    robot_time_us: Option<u64>,
+    #[serde(borrow)]
+    raw_hex: Cow<'a, str>,
 }
 
 /// Header and message for people to read. Telemetry has a topic of its own.

@@ -1,17 +1,14 @@
-//! Reads a link log record by record, with a bound on each record's size: a damaged length must not become an allocation.
+//! Reads a link log record by record, also one that was cut off.
 
-use std::collections::HashMap;
 use std::path::Path;
 
-use mcap::records::Record;
-use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use link_protocol::Direction;
+use mcap::MAGIC;
 
 use super::frame::direction_of;
+use super::records::{CHANNEL, CHUNK, FOOTER, MESSAGE, Records, channel, message, of_chunk};
 use super::{LinkFrame, LinkLogError};
 use crate::FileError;
-
-/// Larger than any chunk that a writer makes by default, small enough to allocate.
-const LARGEST_RECORD: usize = 64 << 20;
 
 /// What a link log holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,7 +28,24 @@ pub fn read_link_log(path: &Path) -> Result<LinkLog, LinkLogError> {
         path: path.to_path_buf(),
         source,
     })?;
-    if !bytes.starts_with(mcap::MAGIC) {
+    parse_link_log(&bytes, path)
+}
+
+/// The same of a log's bytes; `path` is for messages.
+///
+/// # Errors
+/// As [`read_link_log`].
+///
+/// ```
+/// use swimmer_files::{link_log_bytes, parse_link_log};
+///
+/// let bytes = link_log_bytes(&[])?;
+/// assert!(parse_link_log(&bytes, "link.mcap".as_ref())?.ended);
+/// assert!(!parse_link_log(&bytes[..20], "link.mcap".as_ref())?.ended);
+/// # Ok::<(), swimmer_files::LinkLogError>(())
+/// ```
+pub fn parse_link_log(bytes: &[u8], path: &Path) -> Result<LinkLog, LinkLogError> {
+    let Some(records) = bytes.strip_prefix(MAGIC) else {
         return Err(LinkLogError::NoLinkLog {
             path: path.to_path_buf(),
             what: if bytes.is_empty() {
@@ -40,51 +54,75 @@ pub fn read_link_log(path: &Path) -> Result<LinkLog, LinkLogError> {
                 "is another kind of file"
             },
         });
-    }
-    let container = |error| LinkLogError::container(path, &error);
-    let options = LinearReaderOptions::default().with_record_length_limit(LARGEST_RECORD);
-    let mut reader = LinearReader::new_with_options(options);
-    let mut rest = bytes.as_slice();
-    let mut directions = HashMap::new();
-    let mut frames = Vec::new();
-    let mut ended = true;
-    while let Some(event) = reader.next_event() {
-        let event = match event {
-            // Nothing is wrong but that there is no more.
-            Err(_) if !ended => break,
-            event => event.map_err(container)?,
-        };
-        let (opcode, data) = match event {
-            LinearReadEvent::ReadRequest(wanted) => {
-                ended &= !rest.is_empty() || wanted == 0;
-                let (piece, after) = rest.split_at(wanted.min(rest.len()));
-                reader.insert(piece.len()).copy_from_slice(piece);
-                reader.notify_read(piece.len());
-                rest = after;
-                continue;
+    };
+    let mut reading = Reading {
+        path,
+        topics: Vec::new(),
+        frames: Vec::new(),
+    };
+    let mut records = Records(records);
+    let ended = loop {
+        match records.next() {
+            Some((FOOTER, _)) => break records.0.starts_with(MAGIC),
+            Some((CHUNK, chunk)) => {
+                let chunk = of_chunk(chunk).map_err(|problem| reading.damaged(problem))?;
+                for (opcode, record) in Records(&chunk) {
+                    reading.take(opcode, record)?;
+                }
             }
-            LinearReadEvent::Record { data, opcode } => (opcode, data),
-        };
-        match mcap::parse_record(opcode, data).map_err(container)? {
-            Record::Channel(channel) => {
-                // Another program's topic in the same file is passed over.
-                directions.insert(channel.id, direction_of(&channel.topic));
+            Some((opcode, record)) => reading.take(opcode, record)?,
+            None => break false,
+        }
+    };
+    Ok(LinkLog {
+        frames: reading.frames,
+        ended,
+    })
+}
+
+/// What was read so far.
+struct Reading<'a> {
+    path: &'a Path,
+    /// Channels that hold frames; another program's topics in the same file are passed over.
+    topics: Vec<(u16, Direction)>,
+    frames: Vec<LinkFrame>,
+}
+
+impl Reading<'_> {
+    fn take(&mut self, opcode: u8, record: &[u8]) -> Result<(), LinkLogError> {
+        let damaged = |what: &str| format!("{what} is damaged");
+        match opcode {
+            CHANNEL => {
+                let (number, topic) =
+                    channel(record).ok_or_else(|| self.damaged(damaged("a channel")))?;
+                if let Some(direction) = direction_of(topic) {
+                    self.topics.push((number, direction));
+                }
             }
-            Record::Message { header, data } => {
-                let Some(&Some(direction)) = directions.get(&header.channel_id) else {
-                    continue;
+            MESSAGE => {
+                let (number, json) =
+                    message(record).ok_or_else(|| self.damaged(damaged("a message")))?;
+                let Some((_, direction)) = self.topics.iter().find(|(known, _)| *known == number)
+                else {
+                    return Ok(());
                 };
-                let frame = LinkFrame::from_json(direction, &data).map_err(|problem| {
-                    LinkLogError::Message {
-                        path: path.to_path_buf(),
-                        index: frames.len(),
+                let frame = LinkFrame::from_json(*direction, json);
+                self.frames
+                    .push(frame.map_err(|problem| LinkLogError::Message {
+                        path: self.path.to_path_buf(),
+                        index: self.frames.len(),
                         problem,
-                    }
-                })?;
-                frames.push(frame);
+                    })?);
             }
             _ => {}
         }
+        Ok(())
     }
-    Ok(LinkLog { frames, ended })
+
+    fn damaged(&self, problem: String) -> LinkLogError {
+        LinkLogError::Container {
+            path: self.path.to_path_buf(),
+            problem,
+        }
+    }
 }

@@ -1,0 +1,89 @@
+//! The records of an MCAP file as far as a link log has them: an opcode, a length, the record; chunks hold records in turn, plain,
+//! or compressed by LZ4 as older logs are. The library that writes them reads every record that the format knows; here it would
+//! be a twentieth of the lab page's module.
+
+use std::io::Read as _;
+
+use lz4_flex::frame::FrameDecoder;
+
+/// Ends a file.
+pub(super) const FOOTER: u8 = 0x02;
+pub(super) const CHANNEL: u8 = 0x04;
+pub(super) const MESSAGE: u8 = 0x05;
+pub(super) const CHUNK: u8 = 0x06;
+
+/// Larger than any chunk that a writer makes by default, small enough to allocate: a damaged length must not become an allocation.
+const LARGEST_CHUNK: u64 = 64 << 20;
+
+/// Opcodes and records, as long as they are whole; what is left are bytes of none.
+pub(super) struct Records<'a>(pub(super) &'a [u8]);
+
+impl<'a> Iterator for Records<'a> {
+    type Item = (u8, &'a [u8]);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let (opcode, mut rest) = self.0.split_first()?;
+        let record = field::<8>(&mut rest)?;
+        self.0 = rest;
+        Some((*opcode, record))
+    }
+}
+
+/// What follows its own length of so many bytes.
+fn field<'a, const LENGTH: usize>(bytes: &mut &'a [u8]) -> Option<&'a [u8]> {
+    let (length, rest) = bytes.split_first_chunk::<LENGTH>()?;
+    let mut number = [0; 8];
+    number.get_mut(..LENGTH)?.copy_from_slice(length);
+    let (field, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(number)).ok()?)?;
+    *bytes = rest;
+    Some(field)
+}
+
+/// A channel's number and topic.
+pub(super) fn channel(record: &[u8]) -> Option<(u16, &str)> {
+    let (number, rest) = record.split_first_chunk::<2>()?;
+    // Behind the number of its schema.
+    let topic = field::<4>(&mut rest.get(2..)?)?;
+    Some((u16::from_le_bytes(*number), str::from_utf8(topic).ok()?))
+}
+
+/// A message's channel and what it says, behind a sequence number and two times.
+pub(super) fn message(record: &[u8]) -> Option<(u16, &[u8])> {
+    let (number, rest) = record.split_first_chunk::<2>()?;
+    Some((u16::from_le_bytes(*number), rest.get(4 + 8 + 8..)?))
+}
+
+/// The records of a chunk.
+///
+/// # Errors
+/// What keeps them from being read.
+pub(super) fn of_chunk(record: &[u8]) -> Result<std::borrow::Cow<'_, [u8]>, String> {
+    let parts = || -> Option<(u64, &[u8], &[u8])> {
+        // Behind two times.
+        let (length, rest) = record.get(16..)?.split_first_chunk::<8>()?;
+        // Behind a checksum.
+        let mut rest = rest.get(4..)?;
+        let compression = field::<4>(&mut rest)?;
+        Some((
+            u64::from_le_bytes(*length),
+            compression,
+            field::<8>(&mut rest)?,
+        ))
+    };
+    let (length, compression, records) = parts().ok_or("a chunk is damaged")?;
+    match compression {
+        b"" => Ok(records.into()),
+        b"lz4" => {
+            let mut plain = Vec::new();
+            let decoded = FrameDecoder::new(records)
+                .take(length.min(LARGEST_CHUNK))
+                .read_to_end(&mut plain);
+            decoded.map_err(|why| format!("a chunk is damaged: {why}"))?;
+            Ok(plain.into())
+        }
+        other => Err(format!(
+            "a chunk is compressed by {}, which is not read; let `mcap compress --compression lz4` write it anew",
+            String::from_utf8_lossy(other)
+        )),
+    }
+}
