@@ -49,6 +49,7 @@ mod timeline;
 mod tracker;
 mod trc;
 mod unit;
+mod utf16;
 mod vicon;
 mod warning;
 mod wide;

@@ -2,8 +2,7 @@
 
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 
-#[cfg(not(target_family = "wasm"))]
-use encoding_rs::{Encoding, UTF_16BE, UTF_16LE};
+use super::utf16::Utf16;
 
 /// Bytes by which a file's encoding is told.
 const PREFIX: usize = 4096;
@@ -26,74 +25,55 @@ pub(super) fn open<'s>(mut bytes: impl Read + 's) -> io::Result<Source<'s>> {
         .by_ref()
         .take(PREFIX as u64)
         .read_to_end(&mut prefix)?;
-    if let Some(order) = utf16(&prefix) {
-        return decoded(order, prefix, bytes);
-    }
-    if let Some(name) = binary_format(&prefix) {
+    let utf16 = utf16(&prefix);
+    if utf16.is_none()
+        && let Some(name) = binary_format(&prefix)
+    {
         return Ok(Source::Binary(name));
     }
-    let mark = if prefix.starts_with(b"\xEF\xBB\xBF") {
-        3
-    } else {
-        0
-    };
+    let (unit, mark) = utf16.map_or_else(
+        || {
+            (
+                None,
+                if prefix.starts_with(b"\xEF\xBB\xBF") {
+                    3
+                } else {
+                    0
+                },
+            )
+        },
+        |(unit, mark)| (Some(unit), mark),
+    );
     prefix.drain(..mark);
     let whole = Cursor::new(prefix).chain(bytes);
-    Ok(Source::Text(Box::new(BufReader::with_capacity(
-        BUFFER, whole,
-    ))))
+    Ok(Source::Text(match unit {
+        None => Box::new(BufReader::with_capacity(BUFFER, whole)),
+        Some(unit) => Box::new(BufReader::with_capacity(BUFFER, Utf16::new(whole, unit))),
+    }))
 }
 
-/// Which byte of a UTF-16 unit comes first, and whether a mark says so.
-#[derive(Clone, Copy)]
-enum Utf16 {
-    Marked,
-    Little,
-    Big,
-}
+/// How the two bytes of a UTF-16 unit make it.
+type Unit = fn([u8; 2]) -> u16;
 
-fn utf16(prefix: &[u8]) -> Option<Utf16> {
-    if prefix.starts_with(b"\xFF\xFE") || prefix.starts_with(b"\xFE\xFF") {
-        Some(Utf16::Marked)
+/// UTF-16, by its mark or without, and how long the mark is.
+fn utf16(prefix: &[u8]) -> Option<(Unit, usize)> {
+    if prefix.starts_with(b"\xFF\xFE") {
+        Some((u16::from_le_bytes, 2))
+    } else if prefix.starts_with(b"\xFE\xFF") {
+        Some((u16::from_be_bytes, 2))
     } else {
-        utf16_without_mark(prefix)
+        Some((utf16_without_mark(prefix)?, 0))
     }
-}
-
-/// UTF-16 as text.
-#[cfg(not(target_family = "wasm"))]
-#[expect(clippy::unnecessary_wraps, reason = "in a browser it fails")]
-fn decoded<'s>(order: Utf16, prefix: Vec<u8>, bytes: impl Read + 's) -> io::Result<Source<'s>> {
-    let encoding: Option<&'static Encoding> = match order {
-        Utf16::Marked => None,
-        Utf16::Little => Some(UTF_16LE),
-        Utf16::Big => Some(UTF_16BE),
-    };
-    let decoded = encoding_rs_io::DecodeReaderBytesBuilder::new()
-        .encoding(encoding)
-        .strip_bom(true)
-        .build(Cursor::new(prefix).chain(bytes));
-    Ok(Source::Text(Box::new(BufReader::with_capacity(
-        BUFFER, decoded,
-    ))))
-}
-
-/// A page in a browser has no decoder of its own here.
-#[cfg(target_family = "wasm")]
-fn decoded<'s>(_: Utf16, _: Vec<u8>, _: impl Read + 's) -> io::Result<Source<'s>> {
-    Err(io::Error::other(
-        "it is UTF-16, which the page does not read; save it as UTF-8",
-    ))
 }
 
 /// UTF-16 whose mark was lost: every other byte of the beginning is zero.
-fn utf16_without_mark(prefix: &[u8]) -> Option<Utf16> {
+fn utf16_without_mark(prefix: &[u8]) -> Option<Unit> {
     let (pairs, _) = prefix.get(..64).unwrap_or(prefix).as_chunks::<2>();
     let all = |test: fn(&[u8; 2]) -> bool| pairs.len() >= 4 && pairs.iter().all(test);
     if all(|[low, high]| *low != 0 && *high == 0) {
-        Some(Utf16::Little)
+        Some(u16::from_le_bytes)
     } else if all(|[high, low]| *low != 0 && *high == 0) {
-        Some(Utf16::Big)
+        Some(u16::from_be_bytes)
     } else {
         None
     }
