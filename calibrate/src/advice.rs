@@ -3,6 +3,7 @@
 //! intervals would become (Fisher's information).
 
 use nalgebra::{DMatrix, Matrix2, Vector2};
+use serde::{Serialize, Serializer};
 use swimmer_files::{AnyGait, Campaign, GaitSpec};
 use swimmer_model::{Gait as _, Model, Swimmer};
 
@@ -20,31 +21,33 @@ const STEP_DEG: u32 = 5;
 /// Points of a gait at which the links are looked at.
 const POINTS: usize = 360;
 
-/// One gait that could be measured next.
-#[derive(Debug, Clone, PartialEq)]
+/// One gait that could be measured next. Serialised with the keys of `swimmer calibrate --json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Candidate {
     /// The gait.
+    #[serde(serialize_with = "readable")]
     pub gait: GaitSpec,
     /// Width of the interval of r_s with one run of it more, over the width now.
+    #[serde(rename = "sphere_radius_width")]
     pub sphere_radius: f64,
     /// The same of χ.
+    #[serde(rename = "chi_width")]
     pub chi: f64,
-}
-
-impl Candidate {
     /// Geometric mean of both: what the candidates are ranked by.
-    pub fn both(&self) -> f64 {
-        (self.sphere_radius * self.chi).sqrt()
-    }
+    pub both: f64,
 }
 
-/// Gaits by how much one run of each would narrow the intervals.
-#[derive(Debug, Clone, PartialEq)]
+fn readable<S: Serializer>(gait: &GaitSpec, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&gait.readable())
+}
+
+/// Gaits by how much one run of each would narrow the intervals. Serialised with the keys of `swimmer calibrate --json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Advice {
-    /// The most telling first.
-    pub candidates: Vec<Candidate>,
     /// One cycle \[s\], as most runs had it.
     pub period_s: f64,
+    /// The most telling first.
+    pub candidates: Vec<Candidate>,
 }
 
 /// Ranks circles and squares of 20° to 110°, as far as the servos reach and the links do not meet, and the campaign's own gaits.
@@ -71,6 +74,7 @@ pub fn advise(campaign: &Campaign, found: &CampaignFit) -> Result<Advice, FitErr
             gait,
             sphere_radius,
             chi,
+            both: (sphere_radius * chi).sqrt(),
         })
     };
     let mut candidates: Vec<Candidate> = Vec::new();
@@ -101,10 +105,10 @@ pub fn advise(campaign: &Campaign, found: &CampaignFit) -> Result<Advice, FitErr
             candidates.extend(weigh(named.gait.clone(), &run.played.gait));
         }
     }
-    candidates.sort_by(|a, b| a.both().total_cmp(&b.both()));
+    candidates.sort_by(|a, b| a.both.total_cmp(&b.both));
     Ok(Advice {
-        candidates,
         period_s,
+        candidates,
     })
 }
 

@@ -1,13 +1,16 @@
 //! What a campaign names, read: the one place of this crate that opens files.
 
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use swimmer_files::{
-    AnyGait, Campaign, PointName, Reflectors, RunTiming, TrackSettings, plays, read_link_log,
+    AnyGait, Campaign, CampaignRun, GaitFile, PointName, Reflectors, TrackSettings, parse_link_log,
 };
 
 use crate::cycles::Timing;
 use crate::error::CalibrateError;
+use crate::link_log::Logged;
 use crate::tracks::{TrackFile, TrackOptions, TrackSurvey, read_tracks_with, survey_tracks};
 
 /// One run, read.
@@ -47,76 +50,148 @@ pub struct CampaignData {
     pub runs: Vec<RunData>,
     /// The gaits of those whose results are told, likewise.
     pub told: Vec<AnyGait>,
+    /// What link logs say otherwise than the campaign, each with its run's file.
+    pub doubts: Vec<String>,
 }
 
 impl CampaignData {
-    /// Reads tracks and gait files: the one place of this crate that opens files, and only those that the campaign names.
+    /// Reads tracks, gait files and link logs: the one place of this crate that opens files, and only those that the campaign names.
     ///
     /// # Errors
     /// [`CalibrateError`] for the first file that cannot be read.
     pub fn load(campaign: &Campaign) -> Result<Self, CalibrateError> {
-        let common = track_options(&campaign.reflectors, &campaign.tracks);
-        let read = |run: &swimmer_files::CampaignRun| {
-            let mut options = common.clone();
-            if let Some(PointName::Columns(x, y)) = &run.front {
-                options.pairs.push([x.clone(), y.clone()]);
-            }
-            Ok(RunData {
-                track: load_tracks(&run.track, &options)?,
-                file: run.track.clone(),
-                gait: run.gait.load()?,
-                gait_name: run.gait.to_string(),
-                period_s: run.period_s,
-                front: run.front.clone(),
-                timing: timing(&run.timing)?,
-            })
+        Self::load_by(campaign, opened)
+    }
+
+    /// The same where no file system is at hand (a page in a browser): `open` gives what a file holds, or says why not and what to do.
+    ///
+    /// # Errors
+    /// As [`CampaignData::load`].
+    ///
+    /// ```
+    /// use calibrate::CampaignData;
+    /// use swimmer_files::Campaign;
+    ///
+    /// let text = "swimmer = \"robot\"\n[reflectors]\nfront = { point = \"a\", at = [0.03, 0.0] }\n\
+    ///             back = { point = \"b\", at = [-0.03, 0.0] }\n[[run]]\ntrack = \"run.csv\"\ngait = \"circle:1\"\nperiod_s = 9.0\n";
+    /// let campaign = Campaign::parse(text, "campaign.toml".as_ref())?;
+    /// let seen = |_: &std::path::Path| Ok("t,a_x,a_y,b_x,b_y\n0.0,1.0,0.0,0.94,0.0\n0.1,1.0,0.0,0.94,0.0\n".as_bytes());
+    /// assert_eq!(CampaignData::load_by(&campaign, seen).unwrap().runs[0].track.frames(), 2);
+    /// # Ok::<(), swimmer_files::FileError>(())
+    /// ```
+    pub fn load_by<R: Read>(
+        campaign: &Campaign,
+        open: impl Fn(&Path) -> io::Result<R>,
+    ) -> Result<Self, CalibrateError> {
+        let mut files = Files {
+            common: track_options(&campaign.reflectors, &campaign.tracks),
+            open,
+            logs: Vec::new(),
         };
-        let included = || campaign.included().map(|index| &campaign.runs[index]);
-        Ok(Self {
-            runs: included()
-                .filter(|run| run.told.is_none())
-                .map(read)
-                .collect::<Result<_, CalibrateError>>()?,
-            told: included()
-                .filter(|run| run.told.is_some())
-                .map(|run| Ok(run.gait.load()?))
-                .collect::<Result<_, CalibrateError>>()?,
-        })
+        let mut data = Self::default();
+        for run in campaign.included().map(|index| &campaign.runs[index]) {
+            if run.told.is_some() {
+                data.told.push(files.gait(run)?);
+            } else {
+                let (run, doubts) = files.run(run)?;
+                data.runs.push(run);
+                data.doubts.extend(doubts);
+            }
+        }
+        Ok(data)
     }
 }
 
-/// Reads the link log, if there is one, and finds the run's play in it.
-fn timing(told: &RunTiming) -> Result<Timing, CalibrateError> {
-    let Some(log) = &told.log else {
-        return Ok(Timing {
-            cycle_start_s: told.cycle_start_s,
-            ..Timing::default()
-        });
-    };
-    let mut plays = plays(&read_link_log(log)?.frames);
-    let index = match (told.play, plays.len()) {
-        (Some(number), count) if number <= count => number - 1,
-        (None, 1) => 0,
-        (number, count) => {
-            let periods: Vec<String> = plays
-                .iter()
-                .map(|play| format!("{} cycles of {} s", play.cycle_starts.len(), play.period_s))
-                .collect();
-            let asked = number.map_or(String::new(), |number| format!(", and no number {number}"));
-            return Err(CalibrateError::Play {
-                log: log.clone(),
-                problem: format!(
-                    "the log holds {count} plays ({}){asked}; say by `play = 1`, 2, … which one this run was",
-                    periods.join(", ")
-                ),
-            });
+/// What a campaign names, one file after the other.
+struct Files<O> {
+    /// Of all tracks.
+    common: TrackOptions,
+    open: O,
+    /// Several runs may have been plays of one log.
+    logs: Vec<(PathBuf, Logged)>,
+}
+
+impl<R: Read, O: Fn(&Path) -> io::Result<R>> Files<O> {
+    fn open(&self, file: &Path) -> Result<R, CalibrateError> {
+        (self.open)(file).map_err(|cause| unreadable(file, &cause))
+    }
+
+    fn run(&mut self, run: &CampaignRun) -> Result<(RunData, Vec<String>), CalibrateError> {
+        let gait = self.gait(run)?;
+        let (timing, doubts) = self.timing(run, &gait)?;
+        let mut options = self.common.clone();
+        if let Some(PointName::Columns(x, y)) = &run.front {
+            options.pairs.push([x.clone(), y.clone()]);
         }
+        let data = RunData {
+            track: read_tracks_with(self.open(&run.track)?, &run.track, &options)?,
+            file: run.track.clone(),
+            gait,
+            gait_name: run.gait.to_string(),
+            period_s: run.period_s,
+            front: run.front.clone(),
+            timing,
+        };
+        Ok((data, doubts))
+    }
+
+    fn gait(&self, run: &CampaignRun) -> Result<AnyGait, CalibrateError> {
+        run.gait.load_by(|path| {
+            let mut text = String::new();
+            let read = self.open(path)?.read_to_string(&mut text);
+            read.map_err(|cause| unreadable(path, &cause))?;
+            Ok(GaitFile::parse(&text, path)?)
+        })
+    }
+
+    /// When the run's cycles began, as far as that is told, and what its link log says otherwise.
+    fn timing(
+        &mut self,
+        run: &CampaignRun,
+        gait: &AnyGait,
+    ) -> Result<(Timing, Vec<String>), CalibrateError> {
+        let Some(path) = &run.timing.log else {
+            let timing = Timing {
+                cycle_start_s: run.timing.cycle_start_s,
+                ..Timing::default()
+            };
+            return Ok((timing, Vec::new()));
+        };
+        let known = self.logs.iter().position(|(known, _)| known == path);
+        let known = known.unwrap_or(self.logs.len());
+        if known == self.logs.len() {
+            let mut bytes = Vec::new();
+            let read = self.open(path)?.read_to_end(&mut bytes);
+            read.map_err(|cause| unreadable(path, &cause))?;
+            let log = parse_link_log(&bytes, path)?.into();
+            self.logs.push((path.clone(), log));
+        }
+        let (_, log) = &self.logs[known];
+        let timing = log.timing(path, run)?;
+        let doubts = timing.play.as_ref().map(|play| log.doubts(play, run, gait));
+        let name = run.track.file_name().unwrap_or(run.track.as_os_str());
+        let named = |doubt| format!("{}: {doubt}", name.display());
+        let doubts = doubts.into_iter().flatten().map(named).collect();
+        Ok((timing, doubts))
+    }
+}
+
+fn unreadable(file: &Path, cause: &io::Error) -> CalibrateError {
+    CalibrateError::Open {
+        file: file.to_owned(),
+        cause: cause.to_string(),
+    }
+}
+
+/// A file of this machine.
+fn opened(file: &Path) -> io::Result<File> {
+    let next = |cause: io::Error| {
+        io::Error::new(
+            cause.kind(),
+            format!("{cause}; check the path and its permissions"),
+        )
     };
-    Ok(Timing {
-        cycle_start_s: told.cycle_start_s,
-        play: Some(plays.swap_remove(index)),
-        clock_offset_s: told.clock_offset_s,
-    })
+    File::open(file).map_err(next)
 }
 
 /// What reflectors and settings of a campaign say about its tracks.
@@ -165,11 +240,8 @@ pub fn survey_file(file: &Path, options: &TrackOptions) -> Result<TrackSurvey, C
     Ok(survey_tracks(open(file)?, file, options)?)
 }
 
-fn open(file: &Path) -> Result<std::fs::File, CalibrateError> {
-    std::fs::File::open(file).map_err(|cause| CalibrateError::Open {
-        file: file.to_owned(),
-        cause: cause.to_string(),
-    })
+fn open(file: &Path) -> Result<File, CalibrateError> {
+    opened(file).map_err(|cause| unreadable(file, &cause))
 }
 
 /// Reads one tracking file for [`calibrate_run`](crate::calibrate_run); as [`CampaignData::load`], an edge to the file system.

@@ -13,12 +13,12 @@ use crate::tracks::TrackError;
 /// Why there is no calibration.
 #[derive(Debug, thiserror::Error)]
 pub enum CalibrateError {
-    /// A tracking file cannot be opened.
-    #[error("cannot read {}: {cause}; check the path and its permissions", file.display())]
+    /// A tracking file or a link log cannot be opened.
+    #[error("cannot read {}: {cause}", file.display())]
     Open {
         /// The file.
         file: PathBuf,
-        /// The system's reason.
+        /// Why, and what to do about it.
         cause: String,
     },
     /// A tracking file is broken, or in a format that is not read.

@@ -71,6 +71,7 @@ pub mod fit;
 mod golden;
 pub mod joints;
 mod least_squares;
+mod link_log;
 mod median;
 pub mod nuisance;
 pub mod poses;

@@ -4,6 +4,7 @@
 
 pub(crate) mod scan;
 
+use serde::{Serialize, Serializer};
 use swimmer_files::SwimmerFile;
 
 use crate::error::FitError;
@@ -34,6 +35,42 @@ pub enum Further {
 }
 
 impl Further {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::TangentialDrag,
+        Self::JointOffsets,
+        Self::DeadBand,
+        Self::MarkerOffset,
+        Self::Gain,
+        Self::Gains,
+        Self::Scale,
+    ];
+
+    /// How it is asked for: the words of `swimmer calibrate --fit-also`.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::TangentialDrag => "ct",
+            Self::JointOffsets => "offsets",
+            Self::DeadBand => "deadband",
+            Self::MarkerOffset => "marker",
+            Self::Gain => "gain",
+            Self::Gains => "gains",
+            Self::Scale => "scale",
+        }
+    }
+
+    /// The one that is asked for by this word.
+    ///
+    /// ```
+    /// use calibrate::Further;
+    ///
+    /// assert_eq!(Further::of_word("deadband"), Some(Further::DeadBand));
+    /// assert!(Further::ALL.iter().all(|further| Further::of_word(further.word()) == Some(*further)));
+    /// ```
+    pub fn of_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|further| further.word() == word)
+    }
+
     fn parameters(self) -> &'static [Parameter] {
         match self {
             Self::TangentialDrag => &[Parameter::TangentialDrag],
@@ -48,7 +85,7 @@ impl Further {
 }
 
 /// A parameter with its interval.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FittedParameter {
     /// What it is.
     pub name: &'static str,
@@ -132,8 +169,14 @@ impl std::fmt::Display for FurtherWarning {
     }
 }
 
-/// r_s, χ and further parameters, by likelihood.
-#[derive(Debug, Clone, PartialEq)]
+impl Serialize for FurtherWarning {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// r_s, χ and further parameters, by likelihood. Serialised with the keys of `swimmer calibrate --json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FurtherFit {
     /// r_s \[m\], χ, then the others.
     pub parameters: Vec<FittedParameter>,
@@ -146,6 +189,7 @@ pub struct FurtherFit {
     /// By how much the log-likelihood grows over that of r_s and χ alone.
     pub log_likelihood_gain: f64,
     /// The swimmer with all that it can hold: r_s, χ, c_t/μ, dead band.
+    #[serde(skip)]
     pub swimmer: SwimmerFile,
     /// What to know about it.
     pub warnings: Vec<FurtherWarning>,

@@ -57,10 +57,10 @@ fn advice_that_is_followed_narrows_the_intervals() {
         assert!(large < &(0.85 * small), "{large} {small}");
     }
     let came = (large[0] * large[1] / small[0] / small[1]).sqrt();
-    let foretold = circle(110.0).both() / circle(20.0).both();
+    let foretold = circle(110.0).both / circle(20.0).both;
     assert!((came / foretold - 1.0).abs() < 0.2, "{came} {foretold}");
     // Best first, and nothing that cannot be played: beyond 105° this robot's side links meet in a square's corners.
-    let ranks: Vec<f64> = advice.candidates.iter().map(Candidate::both).collect();
+    let ranks: Vec<f64> = advice.candidates.iter().map(|c| c.both).collect();
     assert!(ranks.is_sorted());
     let square = |c: &Candidate| match c.gait {
         GaitSpec::Square { amplitude, .. } => Some(amplitude.to_degrees()),

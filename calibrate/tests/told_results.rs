@@ -103,7 +103,7 @@ fn told_results_fit_as_the_tracks_did() {
     let mixed = load(&format!("{}{rest}", &text[..cut]));
     let mut told = CampaignData {
         runs: data.runs[..3].to_vec(),
-        told: Vec::new(),
+        ..CampaignData::default()
     };
     told.told = mixed.runs[4..]
         .iter()

@@ -158,7 +158,9 @@ pub(crate) fn load_gait(spec: &GaitSpec) -> Outcome<AnyGait> {
 
 /// The same for this swimmer; says so where the file names another.
 pub(crate) fn load_gait_for(swimmer: &SwimmerFile, spec: &GaitSpec) -> Outcome<AnyGait> {
-    Ok(spec.load_showing(|file| say_if_for_another(swimmer, file, spec))?)
+    Ok(spec.load_by(|path| {
+        GaitFile::load(path).inspect(|file| say_if_for_another(swimmer, file, spec))
+    })?)
 }
 
 /// Says so where a gait file was made for another swimmer.

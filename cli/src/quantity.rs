@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use swimmer_files::GaitSpec;
 use swimmer_model::CrossingShare;
 
 /// A length in metres, printed in millimetres below one metre.
@@ -23,30 +22,6 @@ pub(crate) fn decimals([low, high]: [f64; 2]) -> usize {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between 0 and 9
     let decimals = (1.0 - width.log10().floor()).clamp(0.0, 9.0) as usize;
     decimals
-}
-
-/// A gait as people name it: a round number of degrees is said so.
-pub(crate) fn gait(gait: &GaitSpec) -> String {
-    let (word, amplitude, clockwise) = match gait {
-        GaitSpec::Circle {
-            amplitude,
-            clockwise,
-        } => ("circle", *amplitude, *clockwise),
-        GaitSpec::Square {
-            amplitude,
-            clockwise,
-        } => ("square", *amplitude, *clockwise),
-        GaitSpec::File { .. } => return gait.to_string(),
-    };
-    let tenths = (amplitude.to_degrees() * 10.0).round();
-    if ((tenths / 10.0).to_radians() - amplitude).abs() > 1e-12 {
-        return gait.to_string();
-    }
-    format!(
-        "{word}:{}deg{}",
-        tenths / 10.0,
-        if clockwise { ":cw" } else { "" }
-    )
 }
 
 /// An angle in radians, printed in degrees.

@@ -40,7 +40,7 @@ impl Gait {
     fn of_spec(spec: &GaitSpec) -> PyResult<Self> {
         let mut file = None;
         let curve = spec
-            .load_showing(|seen| file = Some(seen.clone()))
+            .load_by(|path| GaitFile::load(path).inspect(|seen| file = Some(seen.clone())))
             .map_err(|error| of_file(&error))?;
         let reversed = matches!(spec, GaitSpec::File { reversed: true, .. });
         Ok(match file {

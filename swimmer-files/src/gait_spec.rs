@@ -171,19 +171,63 @@ impl GaitSpec {
         }
     }
 
+    /// As people name it: a round number of degrees is said so.
+    ///
+    /// ```
+    /// use swimmer_files::GaitSpec;
+    ///
+    /// let gait = GaitSpec::Circle { amplitude: 70_f64.to_radians(), clockwise: true };
+    /// assert_eq!(gait.readable(), "circle:70deg:cw");
+    /// ```
+    pub fn readable(&self) -> String {
+        let (word, amplitude, clockwise) = match self {
+            Self::Circle {
+                amplitude,
+                clockwise,
+            } => ("circle", *amplitude, *clockwise),
+            Self::Square {
+                amplitude,
+                clockwise,
+            } => ("square", *amplitude, *clockwise),
+            Self::File { .. } => return self.to_string(),
+        };
+        let tenths = (amplitude.to_degrees() * 10.0).round();
+        if ((tenths / 10.0).to_radians() - amplitude).abs() > 1e-12 {
+            return self.to_string();
+        }
+        format!(
+            "{word}:{}deg{}",
+            tenths / 10.0,
+            if clockwise { ":cw" } else { "" }
+        )
+    }
+
     /// The gait, ready to swim; reads the file where it is one.
     ///
     /// # Errors
     /// [`FileError`] when the gait file cannot be read or is wrong.
     pub fn load(&self) -> Result<AnyGait, FileError> {
-        self.load_showing(|_| {})
+        self.load_by(GaitFile::load)
     }
 
-    /// The same; where it is a file, `seen` sees what it says.
+    /// The same; where it is a file, `read` reads it.
     ///
     /// # Errors
     /// As [`load`](Self::load).
-    pub fn load_showing(&self, seen: impl FnOnce(&GaitFile)) -> Result<AnyGait, FileError> {
+    ///
+    /// ```
+    /// use swimmer_files::{AnyGait, FileError, GaitFile, GaitSpec};
+    /// use swimmer_model::Gait;
+    ///
+    /// let spec: GaitSpec = "best.gait".parse().unwrap();
+    /// let gait = spec.load_by(|_| Ok::<_, FileError>(GaitFile::sampled(&AnyGait::circle(1.0), 90)))?;
+    /// assert!((gait.at(0.5).phi + gait.at(0.0).phi).norm() < 1e-6);
+    /// # Ok::<(), FileError>(())
+    /// ```
+    pub fn load_by<E: From<FileError>>(
+        &self,
+        read: impl FnOnce(&Path) -> Result<GaitFile, E>,
+    ) -> Result<AnyGait, E> {
         Ok(match self {
             Self::Circle {
                 amplitude,
@@ -194,8 +238,7 @@ impl GaitSpec {
                 clockwise,
             } => AnyGait::square(*amplitude).reversed_if(*clockwise),
             Self::File { path, reversed } => {
-                let file = GaitFile::load(path)?;
-                seen(&file);
+                let file = read(path)?;
                 AnyGait::from_file(&file)
                     .map_err(|invalid| FileError::at(path, 1, 1, invalid.to_string()))?
                     .reversed_if(*reversed)

@@ -1,9 +1,9 @@
 // What `calibrate` offers, without bodies and documentation: written by `cargo xtask api`, not by hand, and never compiled.
 
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Advice {
-    pub candidates: Vec<Candidate>,
     pub period_s: f64,
+    pub candidates: Vec<Candidate>,
 }
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assessment {
@@ -42,9 +42,14 @@ impl From<InvalidSwimmer> for CalibrateError {}
 pub struct CampaignData {
     pub runs: Vec<RunData>,
     pub told: Vec<AnyGait>,
+    pub doubts: Vec<String>,
 }
 impl CampaignData {
     pub fn load(campaign: &Campaign) -> Result<Self, CalibrateError> {}
+    pub fn load_by<R: Read>(
+        campaign: &Campaign,
+        open: impl Fn(&Path) -> io::Result<R>,
+    ) -> Result<Self, CalibrateError> {}
 }
 #[derive(Debug, Clone)]
 pub struct CampaignFit {
@@ -58,14 +63,12 @@ pub struct CampaignFit {
 impl CampaignFit {
     pub fn servos(&self) -> Option<[MeasuredServo; 2]> {}
 }
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Candidate {
     pub gait: GaitSpec,
     pub sphere_radius: f64,
     pub chi: f64,
-}
-impl Candidate {
-    pub fn both(&self) -> f64 {}
+    pub both: f64,
 }
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cycle {
@@ -228,7 +231,20 @@ pub enum Further {
     Gains,
     Scale,
 }
-#[derive(Debug, Clone, PartialEq)]
+impl Further {
+    pub const ALL: [Self; 7] = [
+        Self::TangentialDrag,
+        Self::JointOffsets,
+        Self::DeadBand,
+        Self::MarkerOffset,
+        Self::Gain,
+        Self::Gains,
+        Self::Scale,
+    ];
+    pub const fn word(self) -> &'static str {}
+    pub fn of_word(word: &str) -> Option<Self> {}
+}
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FurtherFit {
     pub parameters: Vec<FittedParameter>,
     pub level: f64,
@@ -933,7 +949,7 @@ pub mod joints {
     pub fn combined(values: &[Measured]) -> Option<Measured> {}
 }
 pub mod nuisance {
-    #[derive(Debug, Clone, PartialEq)]
+    #[derive(Debug, Clone, PartialEq, Serialize)]
     pub struct FittedParameter {
         pub name: &'static str,
         pub unit: &'static str,
@@ -953,6 +969,7 @@ pub mod nuisance {
         NoBetter { gain: f64, parameters: usize },
     }
     impl std::fmt::Display for FurtherWarning {}
+    impl Serialize for FurtherWarning {}
     pub use crate::fit_further;
 }
 pub mod poses {

@@ -157,11 +157,12 @@ impl fmt::Display for GaitSpec {}
 impl GaitSpec {
     #[must_use]
     pub fn from_folder(self, folder: &Path) -> Self {}
+    pub fn readable(&self) -> String {}
     pub fn load(&self) -> Result<AnyGait, FileError> {}
-    pub fn load_showing(
+    pub fn load_by<E: From<FileError>>(
         &self,
-        seen: impl FnOnce(&GaitFile),
-    ) -> Result<AnyGait, FileError> {}
+        read: impl FnOnce(&Path) -> Result<GaitFile, E>,
+    ) -> Result<AnyGait, E> {}
 }
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GaitSpecError {
@@ -242,6 +243,7 @@ pub struct Play {
     pub ended_s: f64,
     pub cycle_starts: Vec<f64>,
     pub unsteady: Vec<f64>,
+    pub told: Vec<(f64, [f64; 2])>,
 }
 #[derive(Debug, Clone, PartialEq)]
 pub struct Playlist {
@@ -380,6 +382,7 @@ pub fn link_log_bytes(frames: &[LinkFrame]) -> Result<Vec<u8>, LinkLogError> {}
 pub fn parse_angle(text: &str) -> Result<f64, AngleError> {}
 pub fn parse_joint_angle(text: &str) -> Result<f64, AngleError> {}
 pub fn parse_key(text: &str) -> Result<Key, String> {}
+pub fn parse_link_log(bytes: &[u8], path: &Path) -> Result<LinkLog, LinkLogError> {}
 pub fn read_link_log(path: &Path) -> Result<LinkLog, LinkLogError> {}
 pub fn stream_atomically(
     path: &Path,

@@ -226,7 +226,14 @@ impl Lab {
         campaign.swimmer = self.known();
         let runs = (0..self.runs.len()).map(|index| self.run(index)).collect();
         let told = Vec::new();
-        (campaign, CampaignData { runs, told })
+        (
+            campaign,
+            CampaignData {
+                runs,
+                told,
+                ..CampaignData::default()
+            },
+        )
     }
 
     /// A run, read from its table.

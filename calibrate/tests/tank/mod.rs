@@ -370,7 +370,7 @@ pub(crate) fn campaign(
         campaign,
         calibrate::CampaignData {
             runs,
-            told: Vec::new(),
+            ..calibrate::CampaignData::default()
         },
     )
 }

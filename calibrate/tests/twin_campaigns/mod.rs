@@ -158,7 +158,7 @@ impl Laboratory {
             campaign,
             CampaignData {
                 runs,
-                told: Vec::new(),
+                ..CampaignData::default()
             },
         )
     }

@@ -134,6 +134,7 @@ pub(crate) fn fit_campaign(path: &Path, level: f64) -> Outcome<FittedCampaign> {
         warnings: of_runs
             .chain(wrong_gait::of_campaign(
                 &campaign,
+                &data,
                 &found.runs,
                 &found.swimmer,
             ))
@@ -216,10 +217,9 @@ impl Calibrate {
         ]);
         stages.next("reading the tracks, fitting r_s and χ", FITTING);
         let mut fitted = fit_campaign(&self.file, self.level)?;
-        let (answer, further) = self
+        fitted.answer.beyond = self
             .beyond
             .answer(&fitted.campaign, &fitted.found, &mut stages)?;
-        fitted.answer.beyond = answer;
         let options = EvidenceOptions::default();
         stages.next("weighing the evidence", WEIGHING);
         let evidence = weigh_evidence(&fitted.found, options);
@@ -243,7 +243,6 @@ impl Calibrate {
             let weighed = (&evidence?, options);
             folder::write(
                 &fitted,
-                further.as_ref(),
                 assessed.systematics.as_ref(),
                 weighed,
                 &self.file,

@@ -45,7 +45,7 @@ impl Certify {
         if objective == Objective::Unspecified {
             return Err(Failure::BadInput(format!(
                 "{} does not tell what it shall be optimal for; add --objective displacement, efficiency, turning, sideways or speed",
-                quantity::gait(&self.gait)
+                self.gait.readable()
             )));
         }
         if let Ok(curve) = AnyGait::from_file(&file) {
@@ -61,7 +61,7 @@ impl Certify {
         let title = format!(
             "{}, {}, most {objective}, {bounds}",
             swimmer.name,
-            quantity::gait(&self.gait)
+            self.gait.readable()
         );
         let checks = certificate.checks();
         let failed = checks.iter().filter(|check| !check.pass).count();

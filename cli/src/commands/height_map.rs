@@ -95,7 +95,7 @@ impl HeightMap {
         let gaits = self
             .gaits
             .iter()
-            .map(|spec| Ok((quantity::gait(spec), load_gait_for(&file, spec)?)))
+            .map(|spec| Ok((spec.readable(), load_gait_for(&file, spec)?)))
             .collect::<Outcome<Vec<_>>>()?;
         for (_, gait) in &gaits {
             say_if_beyond(&file, gait, PERIOD_S);

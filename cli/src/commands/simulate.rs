@@ -128,7 +128,7 @@ impl Simulate {
         let crossing = crossing_share(&file.swimmer.links, &gait);
         let stroke = swim(&model, &gait, &Tolerance::default());
         let swum = Swum {
-            title: format!("{}, {}", file.name, quantity::gait(&self.gait)),
+            title: format!("{}, {}", file.name, self.gait.readable()),
             links_cross: crossing.of_cycle,
             crossing,
             net: (&stroke).into(),

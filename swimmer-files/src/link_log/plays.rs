@@ -22,6 +22,8 @@ pub struct Play {
     pub cycle_starts: Vec<f64>,
     /// When those began that did not \[s of the robot's clock\].
     pub unsteady: Vec<f64>,
+    /// What its joints were told while it played: the fraction of the cycle, and both angles \[rad\].
+    pub told: Vec<(f64, [f64; 2])>,
 }
 
 /// How far a steady cycle's telemetry may lie off its line \[s\]: two ticks.
@@ -93,6 +95,7 @@ fn play(told: &[Telemetry], period_s: f64) -> Option<Play> {
             unsteady.extend(origins.clone().next());
         }
     }
+    let playing = told.iter().filter(|t| t.state == StateName::Playing);
     let progress = f64::from(first.phase) / 65_536.0 + f64::from(first.cycle);
     Some(Play {
         period_s,
@@ -100,5 +103,11 @@ fn play(told: &[Telemetry], period_s: f64) -> Option<Play> {
         ended_s: seconds(last),
         cycle_starts: starts,
         unsteady,
+        told: playing
+            .map(|t| {
+                let angles = t.setpoint.map(|angle| f64::from(angle) * 1e-4);
+                (f64::from(t.phase) / 65_536.0, angles)
+            })
+            .collect(),
     })
 }

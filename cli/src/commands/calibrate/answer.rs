@@ -322,7 +322,7 @@ impl RunAnswer {
         };
         Self {
             file: relative(&run.file).display().to_string(),
-            gait: quantity::gait(&gait),
+            gait: gait.readable(),
             cycles: cycles.count(),
             x_m: cycles.x.mean,
             x_sd_m: cycles.x.sd,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use calibrate::assessment::Systematics;
 use calibrate::{Evidence, EvidenceOptions};
-use swimmer_files::{Campaign, Provenance, SwimmerFile, write_atomically};
+use swimmer_files::{Campaign, Provenance, write_atomically};
 
 use super::FittedCampaign;
 use crate::failure::Outcome;
@@ -18,13 +18,12 @@ const FIT: &str = "fit.json";
 const EVIDENCE: &str = "evidence.json";
 const REPORT: &str = "report.html";
 
-/// Fills the folder; `further` is the swimmer with all that was fitted also.
+/// Fills the folder.
 ///
 /// # Errors
 /// As hashing the inputs and writing.
 pub(super) fn write(
     fitted: &FittedCampaign,
-    further: Option<&SwimmerFile>,
     systematics: Option<&Systematics>,
     (evidence, options): (&Evidence, EvidenceOptions),
     file: &Path,
@@ -67,8 +66,8 @@ pub(super) fn write(
             "likelihood, profiles, ridge, bootstrap, fits without each run",
         ),
     ];
-    if let Some(further) = further {
-        provenance.save_with(further, &draft.join(FITTED_FURTHER))?;
+    if let Some(further) = &answer.beyond.further {
+        provenance.save_with(&further.swimmer, &draft.join(FITTED_FURTHER))?;
         files.insert(
             1,
             (FITTED_FURTHER, "the same with all that was fitted also"),

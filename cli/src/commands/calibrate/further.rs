@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use calibrate::nuisance::FittedParameter;
 use calibrate::{Advice, CampaignFit, Further, FurtherFit, advise, fit_further};
+use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use serde::Serialize;
-use swimmer_files::{Campaign, SwimmerFile};
+use swimmer_files::Campaign;
 
 use crate::failure::Outcome;
 use crate::progress::Stages;
@@ -18,8 +18,8 @@ pub(super) struct BeyondFit {
     /// Fit more than r_s and χ: gain (what the servos turn over what they are told; gains: each servo's), ct (c_t/μ), offsets (of
     /// both joints), deadband (of the servos), marker (where the reflectors' middle sits on the link), scale (of the cameras).
     /// Warns where the runs cannot tell them apart
-    #[arg(long, value_name = "WHAT,…", value_delimiter = ',')]
-    fit_also: Vec<Also>,
+    #[arg(long, value_name = "WHAT,…", value_delimiter = ',', value_parser = PossibleValuesParser::new(Further::ALL.map(Further::word)).try_map(|word| further(&word)))]
+    fit_also: Vec<Further>,
     /// Rank what to measure next by how much one run of it would narrow the intervals
     #[arg(long)]
     advise: bool,
@@ -29,29 +29,8 @@ pub(super) struct BeyondFit {
 const FITTING: f64 = 1.6;
 const ADVISING: f64 = 0.9;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Also {
-    Ct,
-    Offsets,
-    Deadband,
-    Marker,
-    Gain,
-    Gains,
-    Scale,
-}
-
-impl From<Also> for Further {
-    fn from(also: Also) -> Self {
-        match also {
-            Also::Ct => Self::TangentialDrag,
-            Also::Offsets => Self::JointOffsets,
-            Also::Deadband => Self::DeadBand,
-            Also::Marker => Self::MarkerOffset,
-            Also::Gain => Self::Gain,
-            Also::Gains => Self::Gains,
-            Also::Scale => Self::Scale,
-        }
-    }
+fn further(word: &str) -> Result<Further, String> {
+    Further::of_word(word).ok_or_else(|| format!("there is no `{word}`"))
 }
 
 impl BeyondFit {
@@ -74,31 +53,23 @@ impl BeyondFit {
         further + if self.advise { ADVISING } else { 0.0 }
     }
 
-    /// Computes what was asked, and the swimmer with all further parameters that its file can hold.
+    /// Computes what was asked.
     pub(super) fn answer(
         &self,
         campaign: &Campaign,
         found: &CampaignFit,
         stages: &mut Stages,
-    ) -> Outcome<(FurtherAnswers, Option<SwimmerFile>)> {
-        let wanted: Vec<Further> = self.fit_also.iter().map(|also| (*also).into()).collect();
-        let further = if wanted.is_empty() {
-            None
-        } else {
+    ) -> Outcome<FurtherAnswers> {
+        let mut answers = FurtherAnswers::default();
+        if !self.fit_also.is_empty() {
             stages.next("fitting more parameters", FITTING);
-            Some(fit_further(found, &wanted)?)
-        };
-        let advice = if self.advise {
+            answers.further = Some(fit_further(found, &self.fit_also)?);
+        }
+        if self.advise {
             stages.next("weighing what to measure next", ADVISING);
-            Some(advise(campaign, found)?)
-        } else {
-            None
-        };
-        let answer = FurtherAnswers {
-            further: further.as_ref().map(FurtherAnswer::new),
-            advice: advice.as_ref().map(AdviceAnswer::new),
-        };
-        Ok((answer, further.map(|further| further.swimmer)))
+            answers.advice = Some(advise(campaign, found)?);
+        }
+        Ok(answers)
     }
 }
 
@@ -106,81 +77,9 @@ impl BeyondFit {
 #[derive(Debug, Clone, Default, Serialize)]
 pub(crate) struct FurtherAnswers {
     #[serde(skip_serializing_if = "Option::is_none")]
-    further: Option<FurtherAnswer>,
+    pub(super) further: Option<FurtherFit>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    advice: Option<AdviceAnswer>,
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct FurtherAnswer {
-    parameters: Vec<ParameterAnswer>,
-    level: f64,
-    correlations: Vec<Vec<f64>>,
-    condition: f64,
-    log_likelihood_gain: f64,
-    warnings: Vec<String>,
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct ParameterAnswer {
-    name: &'static str,
-    /// m, rad, or nothing.
-    unit: &'static str,
-    before: f64,
-    value: f64,
-    interval: [f64; 2],
-    bounds: [f64; 2],
-}
-
-#[derive(Debug, Clone, Serialize)]
-struct AdviceAnswer {
-    period_s: f64,
-    candidates: Vec<CandidateAnswer>,
-}
-
-/// Widths with one run of it more, over the widths now.
-#[derive(Debug, Clone, Serialize)]
-struct CandidateAnswer {
-    gait: String,
-    sphere_radius_width: f64,
-    chi_width: f64,
-    both: f64,
-}
-
-impl FurtherAnswer {
-    fn new(fit: &FurtherFit) -> Self {
-        let parameter = |p: &FittedParameter| ParameterAnswer {
-            name: p.name,
-            unit: p.unit,
-            before: p.before,
-            value: p.value,
-            interval: p.interval,
-            bounds: p.bounds,
-        };
-        Self {
-            parameters: fit.parameters.iter().map(parameter).collect(),
-            level: fit.level,
-            correlations: fit.correlations.clone(),
-            condition: fit.condition,
-            log_likelihood_gain: fit.log_likelihood_gain,
-            warnings: fit.warnings.iter().map(ToString::to_string).collect(),
-        }
-    }
-}
-
-impl AdviceAnswer {
-    fn new(advice: &Advice) -> Self {
-        let candidates = advice.candidates.iter().map(|candidate| CandidateAnswer {
-            gait: quantity::gait(&candidate.gait),
-            sphere_radius_width: candidate.sphere_radius,
-            chi_width: candidate.chi,
-            both: candidate.both(),
-        });
-        Self {
-            period_s: advice.period_s,
-            candidates: candidates.collect(),
-        }
-    }
+    advice: Option<Advice>,
 }
 
 /// One answer as people read it, in the terminal and on the page.
@@ -192,8 +91,8 @@ pub(crate) struct Shown {
 
 impl FurtherAnswers {
     pub(crate) fn shown(&self) -> Vec<Shown> {
-        let further = self.further.as_ref().map(FurtherAnswer::shown);
-        let advice = self.advice.as_ref().map(AdviceAnswer::shown);
+        let further = self.further.as_ref().map(of_fit);
+        let advice = self.advice.as_ref().map(of_advice);
         further.into_iter().chain(advice).collect()
     }
 }
@@ -216,55 +115,51 @@ pub(super) fn readable(unit: &str, value: f64) -> String {
     }
 }
 
-impl FurtherAnswer {
-    fn shown(&self) -> Shown {
-        let mut table = Table::new(["by likelihood", "before", "fitted", "from", "to"]);
-        for p in &self.parameters {
-            let [from, to] = p.interval.map(|end| readable(p.unit, end));
-            let (before, value) = (readable(p.unit, p.before), readable(p.unit, p.value));
-            table.line([p.name.to_owned(), before, value, from, to]);
-        }
-        let mut notes = vec![format!(
-            "intervals of {:.0} %; log-likelihood {:+.1} over r_s and chi alone",
-            self.level * 100.0,
-            self.log_likelihood_gain
-        )];
-        notes.extend(
-            self.warnings
-                .iter()
-                .map(|warning| format!("note: {warning}")),
-        );
-        Shown {
-            title: "What else may be off",
-            table,
-            notes,
-        }
+fn of_fit(fit: &FurtherFit) -> Shown {
+    let mut table = Table::new(["by likelihood", "before", "fitted", "from", "to"]);
+    for p in &fit.parameters {
+        let [from, to] = p.interval.map(|end| readable(p.unit, end));
+        let (before, value) = (readable(p.unit, p.before), readable(p.unit, p.value));
+        table.line([p.name.to_owned(), before, value, from, to]);
+    }
+    let mut notes = vec![format!(
+        "intervals of {:.0} %; log-likelihood {:+.1} over r_s and chi alone",
+        fit.level * 100.0,
+        fit.log_likelihood_gain
+    )];
+    notes.extend(
+        fit.warnings
+            .iter()
+            .map(|warning| format!("note: {warning}")),
+    );
+    Shown {
+        title: "What else may be off",
+        table,
+        notes,
     }
 }
 
 /// Lines of advice that people read; JSON has all.
 const SHOWN: usize = 8;
 
-impl AdviceAnswer {
-    fn shown(&self) -> Shown {
-        let mut table = Table::new(["measure next", "interval of r_s", "of χ", "both"]);
-        let percent = |width: f64| format!("{:+.1} %", 100.0 * (width - 1.0));
-        for candidate in self.candidates.iter().take(SHOWN) {
-            table.line([
-                candidate.gait.clone(),
-                percent(candidate.sphere_radius_width),
-                percent(candidate.chi_width),
-                percent(candidate.both),
-            ]);
-        }
-        let notes = vec![format!(
-            "one run more with a cycle of {} s, and as many cycles and errors as the others",
-            self.period_s
-        )];
-        Shown {
-            title: "What to measure next",
-            table,
-            notes,
-        }
+fn of_advice(advice: &Advice) -> Shown {
+    let mut table = Table::new(["measure next", "interval of r_s", "of χ", "both"]);
+    let percent = |width: f64| format!("{:+.1} %", 100.0 * (width - 1.0));
+    for candidate in advice.candidates.iter().take(SHOWN) {
+        table.line([
+            candidate.gait.readable(),
+            percent(candidate.sphere_radius),
+            percent(candidate.chi),
+            percent(candidate.both),
+        ]);
+    }
+    let notes = vec![format!(
+        "one run more with a cycle of {} s, and as many cycles and errors as the others",
+        advice.period_s
+    )];
+    Shown {
+        title: "What to measure next",
+        table,
+        notes,
     }
 }

@@ -8,7 +8,6 @@ use twin::Tank;
 use super::{BEST, BEST_TRACK, CAMPAIGN, FITTED, Finished, LAB, LINK_LOG, START};
 use crate::commands::calibrate::RunAnswer;
 use crate::failure::{Failure, Outcome};
-use crate::quantity;
 use crate::report::swimming::{Moment, Swimming};
 use crate::report::{GaitPicture, MeasuredCircle, ModelCircle, Parameter, Report, Track};
 
@@ -64,7 +63,7 @@ pub(super) fn report(round: &Finished, lab: Option<String>) -> Outcome<Report> {
         circles: measured(round),
         fitted_curve: curve(round, &round.fitted)?,
         start_curve: curve(round, &round.start)?,
-        track: track(quantity::gait(shown_gait), shown)?,
+        track: track(shown_gait.readable(), shown)?,
         gait: gait(round)?,
         swimming: swimming(round, &swum)?,
         swum,

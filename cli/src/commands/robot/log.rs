@@ -167,7 +167,7 @@ pub(super) fn replay_log(arguments: &Replay, output: Output) -> Outcome {
             table_of(&load_gait(gait)?).map_err(|error| {
                 Failure::BadInput(format!(
                     "the gait {} makes no table for the robot: {error}",
-                    quantity::gait(gait)
+                    gait.readable()
                 ))
             })
         })

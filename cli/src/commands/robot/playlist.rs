@@ -102,7 +102,7 @@ pub(super) fn play(
         duration(playlist.duration())
     ));
     if let Some(first) = tables.first() {
-        let name = quantity::gait(&playlist.steps[0].gait);
+        let name = playlist.steps[0].gait.readable();
         send_table(&mut line, &name, &first.table, interrupt)?;
     }
     let status = through(&mut line, &tables, interrupt)?;
@@ -147,7 +147,7 @@ fn made_for_it(
                 name: name.clone().unwrap_or_else(|| "another swimmer".into()),
                 hash: *hash,
             };
-            made_for.check(&quantity::gait(&step.gait), configuration, named)?;
+            made_for.check(&step.gait.readable(), configuration, named)?;
         }
     }
     Ok(())

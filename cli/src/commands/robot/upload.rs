@@ -21,7 +21,6 @@ use crate::failure::{Failure, Outcome};
 use crate::interrupt::Interrupt;
 use crate::output::{Output, aside};
 use crate::progress::Progress;
-use crate::quantity;
 
 /// An upload over a link that loses frames may take this long.
 const PATIENCE: Duration = Duration::from_mins(2);
@@ -212,11 +211,11 @@ impl Prepared {
         let table = table_of(&gait).map_err(|error| {
             Failure::BadInput(format!(
                 "the gait {} makes no table for the robot: {error}",
-                quantity::gait(spec)
+                spec.readable()
             ))
         })?;
         Ok(Self {
-            name: quantity::gait(spec),
+            name: spec.readable(),
             gait,
             table,
             made_for,

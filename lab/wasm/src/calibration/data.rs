@@ -1,10 +1,11 @@
 //! Dropped files as the campaign wants them: nothing is looked for anywhere else.
 
+use std::io;
 use std::path::Path;
 
-use calibrate::{CampaignData, RunData, Timing, read_tracks_with, track_options};
+use calibrate::CampaignData;
 use serde::Deserialize;
-use swimmer_files::{AnyGait, Campaign, CampaignRun, GaitFile, GaitSpec, PointName};
+use swimmer_files::Campaign;
 
 use crate::calls::parsed;
 
@@ -45,23 +46,13 @@ impl<'a> Dropped<'a> {
     }
 
     /// By its name; folders are not dropped, so that only the last part counts.
-    fn find(&self, path: &Path) -> Result<&'a [u8], String> {
+    fn find(&self, path: &Path) -> Result<&'a [u8], &'static str> {
         let wanted = path.file_name();
-        let found = self
-            .0
-            .iter()
-            .find(|(name, _)| Path::new(name).file_name() == wanted);
-        found.map(|(_, file)| *file).ok_or_else(|| {
-            format!(
-                "the campaign names {}, which was not dropped; drop it with the others",
-                path.display()
-            )
-        })
-    }
-
-    fn text(&self, path: &Path) -> Result<String, String> {
-        String::from_utf8(self.find(path)?.to_vec())
-            .map_err(|why| format!("reading {}: {why}", path.display()))
+        let mut files = self.0.iter();
+        let found = files.find(|(name, _)| Path::new(name).file_name() == wanted);
+        let (_, file) =
+            found.ok_or("the campaign names it, and it was not dropped; drop it with the others")?;
+        Ok(file)
     }
 
     /// The campaign file: the TOML file with runs.
@@ -75,60 +66,14 @@ impl<'a> Dropped<'a> {
             })
             .ok_or("none of the files is a campaign (a .toml file with [[run]])")?;
         let path = Path::new(name);
-        Campaign::parse_with(&self.text(path)?, path, |file| self.text(file).ok())
+        let text = |file: &Path| Some(String::from_utf8_lossy(self.find(file).ok()?).into_owned());
+        Campaign::parse_with(&text(path).unwrap_or_default(), path, text)
             .map_err(|why| why.to_string())
     }
 
     /// What [`CampaignData::load`] reads, of these files.
     pub(super) fn data(&self, campaign: &Campaign) -> Result<CampaignData, String> {
-        let common = track_options(&campaign.reflectors, &campaign.tracks);
-        let mut data = CampaignData::default();
-        for run in campaign.included().map(|index| &campaign.runs[index]) {
-            let gait = self.gait(&run.gait)?;
-            if run.told.is_some() {
-                data.told.push(gait);
-                continue;
-            }
-            let mut options = common.clone();
-            if let Some(PointName::Columns(x, y)) = &run.front {
-                options.pairs.push([x.clone(), y.clone()]);
-            }
-            data.runs.push(RunData {
-                track: read_tracks_with(self.find(&run.track)?, &run.track, &options)
-                    .map_err(|why| why.to_string())?,
-                file: run.track.clone(),
-                gait,
-                gait_name: run.gait.to_string(),
-                period_s: run.period_s,
-                front: run.front.clone(),
-                timing: timing(run)?,
-            });
-        }
-        Ok(data)
-    }
-
-    fn gait(&self, spec: &GaitSpec) -> Result<AnyGait, String> {
-        let GaitSpec::File { path, reversed } = spec else {
-            return spec.load().map_err(|why| why.to_string());
-        };
-        let file = GaitFile::parse(&self.text(path)?, path).map_err(|why| why.to_string())?;
-        let gait = AnyGait::from_file(&file).map_err(|why| format!("{}: {why}", path.display()))?;
-        Ok(gait.reversed_if(*reversed))
-    }
-}
-
-/// Link logs are read by the command: they come compressed.
-fn timing(run: &CampaignRun) -> Result<Timing, String> {
-    match &run.timing.log {
-        Some(log) => Err(format!(
-            "{} times its cycles by the link log {}, which the page does not read: use `swimmer calibrate`",
-            run.track.display(),
-            log.display()
-        )),
-        None => Ok(Timing {
-            cycle_start_s: run.timing.cycle_start_s,
-            clock_offset_s: run.timing.clock_offset_s,
-            ..Timing::default()
-        }),
+        let open = |path: &Path| self.find(path).map_err(io::Error::other);
+        CampaignData::load_by(campaign, open).map_err(|why| why.to_string())
     }
 }
