@@ -128,7 +128,14 @@ fn module(toolchain: &Toolchain, name: &str, level: &str) -> Outcome<PathBuf> {
     run(
         tool("wasm-opt")
             .args(FEATURES)
-            .args(["-Oz", "--merge-similar-functions", "--strip-debug", "-o"])
+            // The second time finds what the first and the merging left.
+            .args([
+                "--strip-debug",
+                "-Oz",
+                "--merge-similar-functions",
+                "-Oz",
+                "-o",
+            ])
             .args([&small, &built]),
         "mend what wasm-opt names above",
     )?;

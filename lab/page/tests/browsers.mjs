@@ -132,10 +132,10 @@ export class Tab {
 
   /** Drops files onto the page. */
   async drop(...paths) {
-    const files = paths.map((path) => ({ name: path.split("/").pop(), text: readFileSync(path, "utf8") }));
+    const files = paths.map((path) => ({ name: path.split("/").pop(), base64: readFileSync(path, "base64") }));
     await this.evaluate((files) => {
       const data = new DataTransfer();
-      for (const { name, text } of files) data.items.add(new File([text], name));
+      for (const { name, base64 } of files) data.items.add(new File([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))], name));
       for (const type of ["dragover", "drop"]) {
         window.dispatchEvent(new DragEvent(type, { dataTransfer: data, bubbles: true, cancelable: true }));
       }

@@ -107,6 +107,23 @@ export interface Measured {
   error: number | null;
 }
 
+/** What was fitted also: the command's `further`, and the swimmer's file with all that it can hold of it. */
+export interface FurtherAnswer {
+  parameters: { name: string; unit: string; before: number; value: number; interval: [number, number]; bounds: [number, number] }[];
+  level: number;
+  correlations: number[][];
+  condition: number;
+  log_likelihood_gain: number;
+  warnings: string[];
+  swimmer: string;
+}
+
+/** What to measure next, the most telling first: the command's `advice`. Widths with one run of it more, over those now. */
+export interface AdviceAnswer {
+  period_s: number;
+  candidates: { gait: string; sphere_radius_width: number; chi_width: number; both: number }[];
+}
+
 /** A value with its standard error. */
 type WithError = [number | null, number | null];
 

@@ -6,7 +6,8 @@ import { useDrop } from "../files/drop.ts";
 import { OpenButton } from "../files/open-button.tsx";
 import type { FitAnswer } from "./answers.ts";
 import { OverAmplitude, Paths, Profiles, Residuals, Ridge, WithoutRun } from "./figures.tsx";
-import { assessment, clear, doing, evidence, fit, open, problem, stop, tracks } from "./model.ts";
+import { Advice, Further } from "./further.tsx";
+import { advice, assessment, clear, doing, evidence, fit, further, open, problem, stop, tracks } from "./model.ts";
 import { Budget, Cycles, Goodness, Known, Parameters, Runs, Servos, Table } from "./tables.tsx";
 
 const openAll = (files: File[]) => void open(files);
@@ -17,11 +18,11 @@ export function Calibrate() {
   return (
     <div id="calibrate" aria-busy={busy !== null}>
       <div class="toolbar">
-        <OpenButton id="open-campaign" name="Open…" accept=".toml,.csv,.txt,.tsv,.json,.trc,.gait" open={openAll} />
+        <OpenButton id="open-campaign" name="Open…" accept=".toml,.csv,.txt,.tsv,.json,.trc,.gait,.mcap" open={openAll} />
         <button onClick={clear} disabled={tracks.value.length === 0 && !fit.value}>Clear</button>
         <button disabled={!fit.value} onClick={() => fit.value && download("fitted-swimmer.toml", fit.value.swimmer, "application/toml")}>Save fitted swimmer</button>
         {busy && <button onClick={stop}>Stop</button>}
-        <span class="soft" role="status">{busy ? `${busy.what} …${busy.seconds ? ` ${busy.seconds} s` : ""}` : tracks.value.length === 0 ? "Drop a campaign file with its tracking files, or tracking files alone." : ""}</span>
+        <span class="soft" role="status">{busy ? `${busy.what} …${busy.seconds ? ` ${busy.seconds} s` : ""}` : tracks.value.length === 0 ? "Drop a campaign file with all that it names, or tracking files alone." : ""}</span>
         {problem.value && <span class="error" role="alert">{problem}</span>}
       </div>
       {fit.value && <Fitted fit={fit.value} />}
@@ -36,7 +37,7 @@ function Fitted({ fit }: { fit: FitAnswer }) {
     <div class="calibrate">
       <div class="column">
         <Parameters fit={fit} evidence={known} assessment={told} />
-        <output hidden id="fit-exact">{JSON.stringify({ ...fit, runs: fit.runs.map((run) => ({ ...run, path: [] })), evidence: known, assessment: told })}</output>
+        <output hidden id="fit-exact">{JSON.stringify({ ...fit, runs: fit.runs.map((run) => ({ ...run, path: [] })), evidence: known, assessment: told, further: further.value, advice: advice.value })}</output>
         <Verdict />
       </div>
       <OverAmplitude runs={fit.runs} evidence={known} />
@@ -46,6 +47,8 @@ function Fitted({ fit }: { fit: FitAnswer }) {
       {known && <Residuals evidence={known} />}
       {told && <Budget told={told} />}
       {told && <Known told={told} />}
+      <Further />
+      {advice.value && <Advice of={advice.value} />}
       {told && <Goodness told={told} />}
       <Servos fit={fit} />
       <Runs fit={fit} />

@@ -1,8 +1,8 @@
 // Dropped files to a fit, step by step; each step is shown when it is there.
 
 import { signal } from "@preact/signals";
-import { Lab } from "../wasm/lab.ts";
-import type { AssessmentAnswer, EvidenceAnswer, FitAnswer, Holdings } from "./answers.ts";
+import { Lab, Latest } from "../wasm/lab.ts";
+import type { AdviceAnswer, AssessmentAnswer, EvidenceAnswer, FitAnswer, FurtherAnswer, Holdings } from "./answers.ts";
 
 const lab = new Lab("calibrate");
 
@@ -10,6 +10,11 @@ export const tracks = signal<readonly { name: string; holds: Holdings }[]>([]);
 export const fit = signal<FitAnswer | null>(null);
 export const evidence = signal<EvidenceAnswer | null>(null);
 export const assessment = signal<AssessmentAnswer | null>(null);
+export const advice = signal<AdviceAnswer | null>(null);
+/** The words of `--fit-also` that are chosen, and what came of them: a fit, or the reason why there is none. */
+export const also = signal<readonly string[]>([]);
+export const further = signal<FurtherAnswer | null>(null);
+export const noFurther = signal("");
 /** What is computed now, and for how many seconds. */
 export const doing = signal<{ what: string; seconds: number } | null>(null);
 export const problem = signal("");
@@ -38,29 +43,61 @@ function packed(files: readonly (readonly [string, Uint8Array])[]): Uint8Array {
   return bytes;
 }
 
+const reason = (error: unknown) => (error instanceof Error ? error.message : String(error));
+
+/** While a campaign is fitted, what is fitted also waits for its end. */
+let opening = false;
+
 /** Adds files to what is there; with a campaign among them, fits. */
 export async function open(files: readonly File[]): Promise<void> {
   problem.value = "";
+  opening = true;
+  begin("reading the files");
   for (const file of files) dropped.set(file.name, new Uint8Array(await file.arrayBuffer()));
   try {
     await survey();
     const isCampaign = ([name, bytes]: [string, Uint8Array]) => name.endsWith(".toml") && new TextDecoder().decode(bytes).includes("[[run]]");
     if ([...dropped].some(isCampaign)) await calibrate();
   } catch (error) {
-    problem.value = error instanceof Error ? error.message : String(error);
+    problem.value = reason(error);
+  }
+  opening = false;
+  doing.value = null;
+  if (also.value.length > 0) fitting.give(also.value);
+}
+
+/** Chooses a word of `--fit-also`, or lets it go. */
+export function choose(word: string): void {
+  also.value = also.value.includes(word) ? also.value.filter((other) => other !== word) : [...also.value, word];
+  if (!opening) fitting.give(also.value);
+}
+
+const fitting = new Latest<readonly string[]>(async (words) => {
+  [further.value, noFurther.value] = [null, ""];
+  if (!fit.value || words.length === 0) return;
+  begin("fitting more parameters");
+  try {
+    further.value = await lab.json<FurtherAnswer>("calibrate further", { number: fit.value.number, also: words });
+  } catch (error) {
+    noFurther.value = reason(error);
   }
   doing.value = null;
-}
+});
 
 export function clear(): void {
   dropped = new Map();
-  [tracks.value, fit.value, evidence.value, assessment.value, problem.value] = [[], null, null, null, ""];
+  [tracks.value, problem.value] = [[], ""];
+  forget();
+}
+
+function forget(): void {
+  [fit.value, evidence.value, assessment.value, advice.value, further.value, noFurther.value] = [null, null, null, null, null, ""];
 }
 
 async function survey(): Promise<void> {
   const known = new Set(tracks.value.map(({ name }) => name));
   for (const [name, bytes] of dropped) {
-    if (/\.(toml|txt|gait)$/.test(name) || known.has(name)) continue;
+    if (/\.(toml|txt|gait|mcap)$/.test(name) || known.has(name)) continue;
     begin(`reading ${name}`);
     const holds = await lab.json<Holdings>("tracks", packed([[name, bytes]]));
     tracks.value = [...tracks.value, { name, holds }];
@@ -69,7 +106,7 @@ async function survey(): Promise<void> {
 
 async function calibrate(): Promise<void> {
   if (fit.value) await lab.json("calibrate close", { number: fit.value.number });
-  [fit.value, evidence.value, assessment.value] = [null, null, null];
+  forget();
   begin("fitting rₛ and χ");
   const fitted = await lab.json<FitAnswer>("calibrate", packed([...dropped]));
   fit.value = fitted;
@@ -78,4 +115,6 @@ async function calibrate(): Promise<void> {
   evidence.value = await lab.json<EvidenceAnswer>("calibrate evidence", { number });
   begin("assessing the fit");
   assessment.value = await lab.json<AssessmentAnswer>("calibrate assessment", { number });
+  begin("weighing what to measure next");
+  advice.value = await lab.json<AdviceAnswer>("calibrate advice", { number });
 }

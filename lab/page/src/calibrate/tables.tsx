@@ -9,7 +9,7 @@ import { named, short } from "./figures.tsx";
 const millimetres = (metres: number) => figure(metres * 1000, 2);
 const chiOf = (value: number) => figure(value, 3);
 
-function Head({ of }: { of: readonly string[] }) {
+export function Head({ of }: { of: readonly string[] }) {
   return <thead><tr>{of.map((name) => <th key={name} scope="col">{name}</th>)}</tr></thead>;
 }
 

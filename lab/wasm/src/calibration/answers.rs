@@ -1,7 +1,10 @@
 //! The answers, under the keys of `swimmer calibrate --json` and of its evidence, and what only pictures need.
 
 use calibrate::evidence::{CurvePoint, Evidence, EvidenceDocument, Pair};
-use calibrate::{CampaignFit, Intervals, MeasuredServo, RunResult, c_t_form, other_gaits};
+use calibrate::{
+    CampaignData, CampaignFit, FurtherFit, Intervals, MeasuredServo, RunResult, c_t_form,
+    other_gaits,
+};
 use serde::Serialize;
 use swimmer_files::{Campaign, GaitSpec};
 
@@ -113,7 +116,7 @@ impl Run {
 }
 
 impl FitAnswer {
-    pub(super) fn new(found: &CampaignFit, campaign: &Campaign) -> Self {
+    pub(super) fn new(found: &CampaignFit, campaign: &Campaign, data: &CampaignData) -> Self {
         let fit = &found.fit;
         Self {
             number: 0,
@@ -137,12 +140,15 @@ impl FitAnswer {
                     reason: run.reason.clone(),
                 })
                 .collect(),
-            warnings: other_gaits(campaign, &found.runs, &found.swimmer)
-                .iter()
-                .map(|other| {
-                    let track = &campaign.runs[other.index].track;
-                    format!("{}: {other}", track.display())
-                })
+            warnings: (data.doubts.iter().cloned())
+                .chain(
+                    other_gaits(campaign, &found.runs, &found.swimmer)
+                        .iter()
+                        .map(|other| {
+                            let track = &campaign.runs[other.index].track;
+                            format!("{}: {other}", track.display())
+                        }),
+                )
                 .chain(fit.warnings.iter().map(ToString::to_string))
                 .collect(),
             swimmer: found.swimmer.to_toml(),
@@ -151,6 +157,24 @@ impl FitAnswer {
 
     pub(super) fn numbered(self, number: u32) -> Self {
         Self { number, ..self }
+    }
+}
+
+/// What was fitted also: as `further` of the command.
+#[derive(Serialize)]
+pub(super) struct FurtherAnswer<'a> {
+    #[serde(flatten)]
+    fit: &'a FurtherFit,
+    /// The swimmer's file with all that it can hold of it.
+    swimmer: String,
+}
+
+impl<'a> FurtherAnswer<'a> {
+    pub(super) fn new(fit: &'a FurtherFit) -> Self {
+        Self {
+            fit,
+            swimmer: fit.swimmer.to_toml(),
+        }
     }
 }
 

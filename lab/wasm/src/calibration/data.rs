@@ -50,8 +50,8 @@ impl<'a> Dropped<'a> {
         let wanted = path.file_name();
         let mut files = self.0.iter();
         let found = files.find(|(name, _)| Path::new(name).file_name() == wanted);
-        let (_, file) =
-            found.ok_or("the campaign names it, and it was not dropped; drop it with the others")?;
+        let (_, file) = found
+            .ok_or("the campaign names it, and it was not dropped; drop it with the others")?;
         Ok(file)
     }
 
