@@ -181,7 +181,7 @@ fn of_kind(problem: &SpeedProblem, kind: usize, chains: usize) -> SpeedError {
     }
 }
 
-/// The chains that starts lead to, fastest first: those whose certificates pass, and where gaits join the others too.
+/// The chains that starts lead to, fastest first: those whose certificates pass, and where gaits join the others too that are gaits.
 fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Vec<Polished> {
     /// Groups of rough polygons that are finished.
     const GROUPS: usize = 6;
@@ -205,7 +205,10 @@ fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Ve
         || (),
         |(), index| {
             let chain = candidate(setting, chosen[index])?;
-            certified(setting, &chain).or(setting.anchor.map(|_| chain))
+            certified(setting, &chain).or_else(|| {
+                let joins = setting.anchor.is_some() && is_gait(setting, &chain);
+                joins.then_some(chain)
+            })
         },
     );
     let mut chains: Vec<Polished> = finished.into_iter().flatten().collect();
@@ -225,9 +228,30 @@ fn certified(setting: &Setting, chain: &Polished) -> Option<Polished> {
     widened::bent(setting, chain).filter(passes)
 }
 
+/// Whether all holds that makes a chain a gait of its kind within its bounds and rates, optimal or not.
+fn is_gait(setting: &Setting, chain: &Polished) -> bool {
+    const OF_A_GAIT: [&str; 9] = [
+        "open_rad",
+        "bound_overstepped_rad",
+        "side_link_on_middle_link",
+        "displacement_stepped_again",
+        "net_rotation_rad",
+        "rotation_stepped_again",
+        "off_the_joint_shape_rad",
+        "off_full_rate",
+        "off_heading_rad",
+    ];
+    cycle(setting, chain, Bounds::default()).is_some_and(|told| {
+        let checks = told.certificate.checks().iter();
+        checks
+            .filter(|check| OF_A_GAIT.contains(&check.name))
+            .all(|check| check.pass)
+    })
+}
+
 /// The chain near a neighbour's, whose common shape lies close by.
 fn near(setting: &Setting, neighbour: &Polished) -> Option<Polished> {
-    mended(setting, neighbour.links.clone())
+    mended(setting, neighbour.links.clone()).filter(|chain| is_gait(setting, chain))
 }
 
 /// A chain's cycle from the common shape, the way that leads forward, left or turns left.

@@ -53,6 +53,32 @@ fn three_gaits_join_where_they_are_told_to() {
     assert!(steering.turn.net[2] > 0.05);
 }
 
+/// Certified or not, what is told can be played: no joint jumps, and none is faster than it can. Where a start leads to a chain that
+/// does, it is no gait; with few starts there may be no other.
+#[test]
+fn gaits_that_join_straight_keep_their_rates() {
+    let of_starts = |starts| {
+        let mut problem = robot(Some([0.0; 2]));
+        problem.of.starts = starts;
+        steer(&problem, &|_| ())
+    };
+    let few = of_starts(32);
+    assert!(
+        few.is_ok() || matches!(few, Err(SpeedError::NoJoinedGait { .. })),
+        "{few:?}"
+    );
+    let many = of_starts(SpeedProblem::STARTS).unwrap();
+    for steering in [Some(many), few.ok()].iter().flatten() {
+        for joined in [&steering.forward, &steering.left, &steering.turn] {
+            let (u, phi) = (joined.gait.u(), joined.gait.phi());
+            for (u, phi) in u.windows(2).zip(phi.windows(2)) {
+                let rate = (phi[1] - phi[0]).amax() / ((u[1] - u[0]) * joined.period);
+                assert!(rate < 1.0 + 1e-4, "{rate} at {}", u[0]);
+            }
+        }
+    }
+}
+
 #[test]
 fn a_shape_on_a_bound_is_refused() {
     let error = steer(&robot(Some([2.8, 0.0])), &|_| ()).unwrap_err();

@@ -52,6 +52,8 @@ let opening = false;
 export async function open(files: readonly File[]): Promise<void> {
   problem.value = "";
   opening = true;
+  // What was fitted of the files before is fitted anew at the end.
+  [further.value, noFurther.value] = [null, ""];
   begin("reading the files");
   for (const file of files) dropped.set(file.name, new Uint8Array(await file.arrayBuffer()));
   try {
