@@ -25,7 +25,8 @@ setInterval(() => {
 const begin = (what: string) => (doing.value = { what, seconds: 0 });
 
 /** Ends what is computed; what is there already stays. */
-export const stop = () => lab.stop("stopped; drop a file or open one to begin again");
+export const stop = () => lab.stop(STOPPED);
+const STOPPED = "stopped; drop a file or open one to begin again";
 
 let dropped = new Map<string, Uint8Array>();
 
@@ -114,7 +115,13 @@ async function calibrate(): Promise<void> {
   fit.value = fitted;
   const { number } = fitted;
   begin("weighing the evidence: likelihood, bootstrap, fits without each run");
-  evidence.value = await lab.json<EvidenceAnswer>("calibrate evidence", { number });
+  try {
+    evidence.value = await lab.json<EvidenceAnswer>("calibrate evidence", { number });
+  } catch (error) {
+    // A fit can be assessed without.
+    if (reason(error) === STOPPED) throw error;
+    fit.value = { ...fitted, warnings: [...fitted.warnings, `no estimate by likelihood: ${reason(error)}`] };
+  }
   begin("assessing the fit");
   assessment.value = await lab.json<AssessmentAnswer>("calibrate assessment", { number });
   begin("weighing what to measure next");
