@@ -72,17 +72,20 @@ export async function open(files: readonly File[]): Promise<void> {
 /** Chooses a word of `--fit-also`, or lets it go. */
 export function choose(word: string): void {
   also.value = also.value.includes(word) ? also.value.filter((other) => other !== word) : [...also.value, word];
+  [further.value, noFurther.value] = [null, ""];
   if (!opening) fitting.give(also.value);
 }
 
 const fitting = new Latest<readonly string[]>(async (words) => {
-  [further.value, noFurther.value] = [null, ""];
   if (!fit.value || words.length === 0) return;
   begin("fitting more parameters");
+  // Of what is chosen no more, nothing is shown.
+  const isChosen = () => also.value === words;
   try {
-    further.value = await lab.json<FurtherAnswer>("calibrate further", { number: fit.value.number, also: words });
+    const answer = await lab.json<FurtherAnswer>("calibrate further", { number: fit.value.number, also: words });
+    if (isChosen()) further.value = answer;
   } catch (error) {
-    noFurther.value = reason(error);
+    if (isChosen()) noFurther.value = reason(error);
   }
   doing.value = null;
 });
