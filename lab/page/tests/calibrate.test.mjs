@@ -183,8 +183,6 @@ for (const [name, launch] of Object.entries(BROWSERS)) test(`what else is fitted
     assert.ok(rows.length > 5, `${id}: ${rows.length} lines`);
     for (const row of rows) assert.ok(lines.includes(row), `${id}: "${row}" is in the page and not in\n${stdout}`);
   }
-  const { text } = await tab.saved(() => tab.evaluate(() => document.querySelector('[aria-label="What else may be off"] button').click()));
-  assert.match(text, /dead_band/);
   if (name === "chromium") {
     await tab.page.screenshot({ path: join(SCREENSHOTS, "calibrate-further-light.png"), fullPage: true });
     await tab.page.emulateMedia({ colorScheme: "dark" });
@@ -199,6 +197,10 @@ for (const [name, launch] of Object.entries(BROWSERS)) test(`what else is fitted
   await tab.until(() => document.querySelector("#further") !== null, undefined, "the same again");
   assert.deepEqual(await fitAlso(tab), { further: null, reason: null });
   assert.equal(await tab.text("#further"), null);
+  // At the end: Firefox shows a download in a panel of its own, which takes the keys.
+  await fitAlso(tab, "deadband");
+  const { text } = await tab.saved(() => tab.evaluate(() => document.querySelector('[aria-label="What else may be off"] button').click()));
+  assert.match(text, /dead_band/);
   assert.deepEqual(tab.said, []);
   await tab.close();
 });
