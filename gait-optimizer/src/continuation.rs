@@ -8,10 +8,10 @@
 //! |---|---|
 //! | `parameter` | what changes |
 //! | `follow` | step control, and the search for the places of events |
-//! | `kept` | a gait on the way, and how far it is from another one |
+//! | `branch_point` | a gait on the way, and how far it is from another one |
 //! | `efficiency` | the next gait by shooting from the last one's arcs; folds proven by the extremal beyond |
 //! | `displacement` | the next gait as the nearest of all that the search finds |
-//! | `meeting` | two branches side by side |
+//! | `branch_crossing` | two branches side by side |
 
 mod branch_crossing;
 mod branch_point;

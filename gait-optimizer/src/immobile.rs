@@ -82,10 +82,7 @@ mod tests {
     use swimmer_model::Swimmer;
 
     fn of(swimmer: Swimmer<f64>, max_angle: f64) -> f64 {
-        let bounds = Bounds {
-            max_angle: Some(max_angle),
-            ..Bounds::default()
-        };
+        let bounds = Bounds::within(max_angle);
         contrast(&Model::new(&swimmer.of_unit_length()).unwrap(), &bounds)
     }
 

@@ -57,6 +57,11 @@ pub struct Bounds {
     pub no_overlap: bool,
     pub clearance: f64,
 }
+impl Bounds {
+    pub fn within(max_angle: f64) -> Self {}
+    #[must_use]
+    pub fn apart(self, clearance: f64) -> Self {}
+}
 impl fmt::Display for Bounds {}
 #[derive(Debug, Clone, PartialEq)]
 pub struct Campaign {

@@ -8,10 +8,7 @@ use crate::certify::around;
 
 fn problem(swimmer: Swimmer<f64>) -> AtlasProblem {
     AtlasProblem {
-        bounds: Bounds {
-            max_angle: Some(2.8),
-            ..Bounds::default()
-        },
+        bounds: Bounds::within(2.8),
         starts: 16,
         ..AtlasProblem::new(swimmer, Objective::Displacement)
     }
@@ -33,11 +30,7 @@ fn the_best_displacement_of_the_robot_is_the_papers_gait_b() {
 #[test]
 fn without_symmetry_the_robot_swims_more_efficiently_within_its_bounds() {
     let found = atlas(&AtlasProblem {
-        bounds: Bounds {
-            max_angle: Some(2.8),
-            no_overlap: true,
-            ..Bounds::default()
-        },
+        bounds: Bounds::within(2.8).apart(0.0),
         starts: 24,
         ..AtlasProblem::new(Swimmer::robot(), Objective::Efficiency)
     })
@@ -60,10 +53,7 @@ fn without_symmetry_the_robot_swims_more_efficiently_within_its_bounds() {
 /// What the quarter solver certifies is in the atlas too, even where the polish of its coarse curve fails.
 #[test]
 fn no_certified_gait_is_lost() {
-    let bounds = Bounds {
-        max_angle: Some(3.5),
-        ..Bounds::default()
-    };
+    let bounds = Bounds::within(3.5);
     let swimmer = Swimmer::purcell();
     let known = crate::displacement(&crate::DisplacementProblem {
         bounds,
@@ -104,10 +94,7 @@ fn swimmer(middle: f64, chi: f64) -> Swimmer<f64> {
 /// out of the symmetry gains is told by the adaptive integrator, too.
 #[test]
 fn what_is_best_of_its_symmetry_only_is_not_listed() {
-    let bounds = Bounds {
-        max_angle: Some(2.895),
-        ..Bounds::default()
-    };
+    let bounds = Bounds::within(2.895);
     let swimmer = swimmer(0.302, 1.8425);
     let known = crate::displacement(&crate::DisplacementProblem {
         bounds,
@@ -159,11 +146,7 @@ fn corners(gait: &OptimalGait, among: &[f64]) -> Vec<usize> {
 #[test]
 fn the_search_goes_on_from_a_saddle() {
     let found = atlas(&AtlasProblem {
-        bounds: Bounds {
-            max_angle: Some(2.864),
-            no_overlap: true,
-            ..Bounds::default()
-        },
+        bounds: Bounds::within(2.864).apart(0.0),
         starts: 4,
         order: 4,
         ..problem(Swimmer {
@@ -200,10 +183,7 @@ fn senseless_problems_are_refused() {
     };
     let quarter = InvalidProblem::QuarterBound { name: "sector" };
     assert_eq!(with(sector), Err(quarter.into()));
-    let max = Bounds {
-        max_angle: Some(-1.0),
-        ..Bounds::default()
-    };
+    let max = Bounds::within(-1.0);
     assert!(matches!(
         with(max),
         Err(AtlasError::Problem(InvalidProblem::Bound { .. }))

@@ -11,10 +11,7 @@ const FARTHEST: Start = Start::Displacement {
 };
 
 fn within(max_angle: f64) -> Bounds {
-    Bounds {
-        max_angle: Some(max_angle),
-        ..Bounds::default()
-    }
+    Bounds::within(max_angle)
 }
 
 /// The only event for which a figure can be worked out.

@@ -17,6 +17,32 @@ pub struct Bounds {
     pub clearance: f64,
 }
 
+impl Bounds {
+    /// Both joints within `max_angle` \[rad\], and nothing else.
+    ///
+    /// ```
+    /// use swimmer_files::Bounds;
+    ///
+    /// assert_eq!(Bounds::within(2.8).apart(0.005).to_string(), "joints within 2.8 rad, side links 0.005 m apart");
+    /// ```
+    pub fn within(max_angle: f64) -> Self {
+        Self {
+            max_angle: Some(max_angle),
+            ..Self::default()
+        }
+    }
+
+    /// The same with side links that never cross, their centre lines at least `clearance` \[m\] apart; 0 lets them touch.
+    #[must_use]
+    pub fn apart(self, clearance: f64) -> Self {
+        Self {
+            no_overlap: true,
+            clearance,
+            ..self
+        }
+    }
+}
+
 impl fmt::Display for Bounds {
     /// For people: "joints within 2.8 rad, links 0.005 m apart"; "no bounds".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
