@@ -30,7 +30,7 @@ mod walk;
 
 use nalgebra::{DMatrix, Vector2};
 use swimmer_files::{AnyGait, ArcKind, Bounds, GaitArc, Objective};
-use swimmer_model::{Gait as _, Model, Swimmer};
+use swimmer_model::{Gait as _, Model, Stroke, Swimmer};
 
 pub use error::TurningError;
 
@@ -42,8 +42,8 @@ use crate::optimal_gait::{Arc, Solution};
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
 use border::Border;
-use piece::{Piece, Round};
-use walk::{Domain, TraceError, curvature};
+use piece::{Piece, close_up};
+use walk::{Domain, curvature};
 
 /// Whose gait, and within what.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,6 +67,8 @@ pub struct Turning {
 
 /// From point to point of the border \[rad\].
 const SPACING: f64 = 0.012;
+/// Vertices nearer than this to where the cycle begins give way \[rad\].
+const CROWDED: f64 = 1e-3;
 /// Steps along zero-level curves, in a half width of the region.
 const STEPS: f64 = 240.0;
 
@@ -79,7 +81,7 @@ const STEPS: f64 = 240.0;
 /// use gait_optimizer::{Bounds, TurningProblem, turning};
 /// use swimmer_model::Swimmer;
 ///
-/// let bounds = Bounds { max_angle: Some(1.2), ..Bounds::default() };
+/// let bounds = Bounds::within(1.2);
 /// let found = turning(&TurningProblem { swimmer: Swimmer::purcell(), bounds })?;
 /// assert!(found.gait.certificate.pass() && found.gait.rotation.abs() <= found.bridged_supremum.abs() + 1e-9);
 /// # Ok::<(), gait_optimizer::TurningError>(())
@@ -110,26 +112,24 @@ pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
     });
     let rounds = domain.rounds(&search, seeds)?;
     let mut bridged_supremum = 0.0;
-    let mut best: Option<(f64, Vec<Piece>)> = None;
+    let mut best: Option<Loop> = None;
     for round in &rounds {
         let pieces = begun_on_diagonal(round, &border, &level);
-        let Some(rotation) = cycle(&pieces, &model)
-            .and_then(|cycle| cycle.swum(&model))
-            .map(|stroke| stroke.rotation)
-        else {
-            return Err(no_gait(&pieces));
-        };
+        let found = Loop::new(&pieces, &model).ok_or_else(|| no_gait(&pieces))?;
+        let rotation = found.stroke.rotation;
         bridged_supremum += rotation;
         let outside = certificate::area(&pieces) > 0.0;
-        if outside && best.as_ref().is_none_or(|(most, _)| rotation > *most) {
-            best = Some((rotation, pieces));
+        if outside
+            && best
+                .as_ref()
+                .is_none_or(|most| rotation > most.stroke.rotation)
+        {
+            best = Some(found);
         }
     }
-    let Some((_, pieces)) = best else {
-        return Err(TurningError::NoRegion);
-    };
-    let gait = certified(problem, bounds, &model, &region, &level, &pieces)
-        .ok_or_else(|| no_gait(&pieces))?;
+    let gait = best
+        .ok_or(TurningError::NoRegion)?
+        .certified(problem, bounds, &model, &domain);
     if !gait.certificate.pass() {
         return Err(TurningError::NotCertified {
             rotation: gait.rotation,
@@ -143,33 +143,22 @@ pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
     })
 }
 
-impl From<TraceError> for TurningError {
-    fn from(lost: TraceError) -> Self {
-        Self::Lost {
-            near: lost.near.into(),
-            what: lost.what,
-        }
-    }
-}
-
 /// An edge whose points make no closed gait: too small, or closed only nearly.
 fn no_gait(pieces: &[Piece]) -> TurningError {
     let first = pieces.first().and_then(|piece| piece.points.first());
-    TurningError::Lost {
-        near: first.map_or([f64::NAN; 2], |phi| (*phi).into()),
-        what: "it is too small",
-    }
+    let nowhere = Vector2::repeat(f64::NAN);
+    TurningError::lost(first.copied().unwrap_or(nowhere), "it is too small")
 }
 
 /// The pieces in order from where the curve first meets φ₁ = φ₂ > 0; from where they are where it does not.
 fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
-    round: &Round,
+    round: &[Piece],
     border: &Border,
     level: &Level<F>,
 ) -> Vec<Piece> {
     let off = |phi: &Vector2<f64>| phi.x - phi.y;
     let mut first: Option<(usize, usize, Vector2<f64>)> = None;
-    for (number, piece) in round.pieces.iter().enumerate() {
+    for (number, piece) in round.iter().enumerate() {
         for (at, (a, b)) in piece
             .points
             .iter()
@@ -197,32 +186,19 @@ fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
         }
     }
     let Some((number, at, met)) = first else {
-        return round.pieces.clone();
+        return round.to_vec();
     };
-    let mut pieces = round.pieces.clone();
+    let mut pieces = round.to_vec();
     pieces.rotate_left(number);
     let Some(cut) = pieces.first().cloned() else {
         return pieces;
     };
     let (before, after) = cut.points.split_at(at + 1);
-    // Vertices that would crowd the cut give way, but for the piece's own ends.
-    let crowded = |phi: &Vector2<f64>| (phi - met).norm() < 1e-3;
-    let mut head = vec![met];
-    let kept = after.len().saturating_sub(1);
-    head.extend(
-        after
-            .iter()
-            .enumerate()
-            .filter(|(i, phi)| *i == kept || !crowded(phi))
-            .map(|(_, phi)| *phi),
-    );
-    let mut tail: Vec<Vector2<f64>> = before
-        .iter()
-        .enumerate()
-        .filter(|(i, phi)| *i == 0 || !crowded(phi))
-        .map(|(_, phi)| *phi)
-        .collect();
-    tail.push(met);
+    let (mut tail, mut head) = (before.to_vec(), after.to_vec());
+    close_up(&mut tail, met, CROWDED);
+    head.reverse();
+    close_up(&mut head, met, CROWDED);
+    head.reverse();
     if let Some(first) = pieces.first_mut() {
         first.points = head;
     }
@@ -334,37 +310,58 @@ fn at_constant_power(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Option<Ve
     Some(fractions)
 }
 
-fn certified<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
-    problem: &TurningProblem,
-    bounds: Bounds,
-    model: &Model<f64>,
-    region: &Region,
-    level: &Level<F>,
-    pieces: &[Piece],
-) -> Option<OptimalGait> {
-    let cycle = cycle(pieces, model)?;
-    let stroke = cycle.swum(model)?;
-    let certificate = certificate::certificate(model, region, level, pieces, &cycle, &stroke)?;
-    let arcs = pieces
-        .iter()
-        .filter_map(|piece| {
-            Some(Arc {
-                kind: piece.kind,
-                from: (*piece.points.first()?).into(),
-                to: (*piece.points.last()?).into(),
-            })
+/// A loop round a region, swum.
+struct Loop {
+    pieces: Vec<Piece>,
+    cycle: Cycle,
+    gait: AnyGait,
+    stroke: Stroke<f64>,
+}
+
+impl Loop {
+    /// None where the pieces make no gait.
+    fn new(pieces: &[Piece], model: &Model<f64>) -> Option<Self> {
+        let cycle = cycle(pieces, model)?;
+        Some(Self {
+            pieces: pieces.to_vec(),
+            gait: cycle.gait().ok()?,
+            stroke: cycle.swum(model)?,
+            cycle,
         })
-        .collect();
-    let links_cross = cycle.links_cross(model);
-    Some(OptimalGait::new(Solution {
-        objective: Objective::Turning,
-        swimmer: problem.swimmer,
-        bounds,
-        symmetric: false,
-        arcs,
-        cycle,
-        stroke,
-        links_cross,
-        certificate,
-    }))
+    }
+
+    fn certified<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
+        self,
+        problem: &TurningProblem,
+        bounds: Bounds,
+        model: &Model<f64>,
+        domain: &Domain<'_, F>,
+    ) -> OptimalGait {
+        let certificate = certificate::certificate(model, domain, &self);
+        let ends = |piece: &Piece| {
+            piece
+                .points
+                .first()
+                .copied()
+                .zip(piece.points.last().copied())
+        };
+        let arc = |piece: &Piece| {
+            ends(piece).map(|(from, to)| Arc {
+                kind: piece.kind,
+                from: from.into(),
+                to: to.into(),
+            })
+        };
+        OptimalGait::new(Solution {
+            objective: Objective::Turning,
+            swimmer: problem.swimmer,
+            bounds,
+            symmetric: false,
+            arcs: self.pieces.iter().filter_map(arc).collect(),
+            links_cross: self.cycle.links_cross(model),
+            cycle: self.cycle,
+            stroke: self.stroke,
+            certificate,
+        })
+    }
 }

@@ -9,21 +9,6 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::{Gait as _, Links, Model, Swimmer, TangentialDrag, Tolerance, swim};
 
-fn within(max_angle: f64) -> Bounds {
-    Bounds {
-        max_angle: Some(max_angle),
-        ..Bounds::default()
-    }
-}
-
-fn apart(max_angle: f64, clearance: f64) -> Bounds {
-    Bounds {
-        no_overlap: true,
-        clearance,
-        ..within(max_angle)
-    }
-}
-
 fn uneven() -> Swimmer<f64> {
     Swimmer {
         links: Links {
@@ -49,11 +34,20 @@ fn purcell_and_robot() {
         let have = turning.gait.rotation;
         assert!((have - rotation).abs() < 1e-9, "{have} {rotation}");
     };
-    close(&found(Swimmer::purcell(), within(2.0)), 0.590_238_913_2);
-    close(&found(Swimmer::purcell(), within(2.8)), 1.479_779_773_5);
-    close(&found(Swimmer::robot(), within(2.8)), 0.396_738_842_3);
+    close(
+        &found(Swimmer::purcell(), Bounds::within(2.0)),
+        0.590_238_913_2,
+    );
+    close(
+        &found(Swimmer::purcell(), Bounds::within(2.8)),
+        1.479_779_773_5,
+    );
+    close(
+        &found(Swimmer::robot(), Bounds::within(2.8)),
+        0.396_738_842_3,
+    );
     // Where links must not cross, the region round φ₁ = φ₂ loses its core, and the one round the straight shape wins.
-    let playable = found(Swimmer::robot(), apart(2.8, 0.0));
+    let playable = found(Swimmer::robot(), Bounds::within(2.8).apart(0.0));
     close(&playable, 0.254_612_354_9);
     assert!(playable.gait.links_cross.abs() < 1e-12);
     assert!(
@@ -69,10 +63,10 @@ fn purcell_and_robot() {
 #[test]
 fn the_supremum_by_brute_force() {
     for (swimmer, bounds) in [
-        (Swimmer::purcell(), within(2.3)),
-        (Swimmer::robot(), within(2.8)),
-        (Swimmer::robot(), apart(2.8, 0.0)),
-        (uneven(), within(2.5)),
+        (Swimmer::purcell(), Bounds::within(2.3)),
+        (Swimmer::robot(), Bounds::within(2.8)),
+        (Swimmer::robot(), Bounds::within(2.8).apart(0.0)),
+        (uneven(), Bounds::within(2.5)),
     ] {
         let turning = found(swimmer, bounds);
         let model = Model::new(&swimmer).unwrap();
@@ -105,9 +99,9 @@ fn the_supremum_by_brute_force() {
 #[test]
 fn the_gait_file_swims_the_same_and_is_certified_from_its_samples() {
     for (swimmer, bounds) in [
-        (Swimmer::robot(), apart(2.8, 0.005)),
-        (Swimmer::purcell(), within(2.0)),
-        (uneven(), within(2.4)),
+        (Swimmer::robot(), Bounds::within(2.8).apart(0.005)),
+        (Swimmer::purcell(), Bounds::within(2.0)),
+        (uneven(), Bounds::within(2.4)),
     ] {
         let turning = found(swimmer, bounds);
         let text = turning.gait.gait_file("one").to_text();
@@ -135,7 +129,7 @@ fn the_gait_file_swims_the_same_and_is_certified_from_its_samples() {
 #[test]
 fn without_a_bound_joints_stay_within_a_half_turn() {
     let turning = found(Swimmer::robot(), Bounds::default());
-    assert_eq!(turning.gait.bounds, within(std::f64::consts::PI));
+    assert_eq!(turning.gait.bounds, Bounds::within(std::f64::consts::PI));
     assert!(
         turning
             .gait
@@ -156,24 +150,24 @@ fn nonsense_is_refused() {
     };
     for value in [0.0, -1.0, f64::NAN, 7.0, f64::INFINITY] {
         assert!(matches!(
-            refused(within(value)),
+            refused(Bounds::within(value)),
             TurningError::Problem(InvalidProblem::Bound { .. })
         ));
     }
     for value in [-0.1, f64::NAN, 0.08, f64::INFINITY] {
         assert!(matches!(
-            refused(apart(2.0, value)),
+            refused(Bounds::within(2.0).apart(value)),
             TurningError::Problem(InvalidProblem::Clearance { .. })
         ));
     }
     for bounds in [
         Bounds {
             min_angle: Some(1.0),
-            ..within(2.0)
+            ..Bounds::within(2.0)
         },
         Bounds {
             sector: true,
-            ..within(2.0)
+            ..Bounds::within(2.0)
         },
     ] {
         assert!(matches!(
@@ -187,7 +181,7 @@ fn nonsense_is_refused() {
     };
     let problem = TurningProblem {
         swimmer: broken,
-        bounds: within(2.0),
+        bounds: Bounds::within(2.0),
     };
     assert!(matches!(
         turning(&problem),
@@ -234,9 +228,9 @@ fn all_kinds_of_swimmers_get_a_gait_or_a_reason() {
         };
         let max_angle = between(7, 1.8, 3.0);
         let bounds = match k % 3 {
-            0 => within(max_angle),
-            1 => apart(max_angle, 0.0),
-            _ => apart(max_angle, 0.05),
+            0 => Bounds::within(max_angle),
+            1 => Bounds::within(max_angle).apart(0.0),
+            _ => Bounds::within(max_angle).apart(0.05),
         };
         match turning(&TurningProblem { swimmer, bounds }) {
             Ok(turning) => {
@@ -266,11 +260,7 @@ fn a_blunt_corner_at_the_start_is_a_corner() {
         tangential_drag: TangentialDrag::OverViscosity(1.38),
         sphere_radius: 0.02,
     };
-    let bounds = Bounds {
-        max_angle: Some(2.0),
-        no_overlap: true,
-        ..Bounds::default()
-    };
+    let bounds = Bounds::within(2.0).apart(0.0);
     let found = turning(&TurningProblem { swimmer, bounds }).unwrap();
     assert!(
         found.gait.corners().contains(&0.0),
@@ -289,4 +279,26 @@ fn a_blunt_corner_at_the_start_is_a_corner() {
         });
     let off = heights.fold(0.0, f64::max);
     assert!(off < 1e-8, "{off:.1e}");
+}
+
+/// Where rounding puts the corner of the links' clearance on φ₁ = φ₂ does not decide where the cycle begins: all that depends on it
+/// is that of the smooth bound, whose clearance goes to zero.
+#[test]
+fn a_cycle_that_meets_the_diagonal_begins_there() {
+    for swimmer in [Swimmer::robot_slender(), Swimmer::purcell()] {
+        for max in [2.0, 2.4, 2.8] {
+            let begun = |bounds| {
+                let gait = found(swimmer, bounds).gait;
+                let [one, two] = gait.arcs[0].from;
+                assert!((one - two).abs() < 1e-9, "{bounds}: {one} {two}");
+                gait.displacement_over_length
+            };
+            begun(Bounds::within(max));
+            let (corner, smooth) = (
+                begun(Bounds::within(max).apart(0.0)),
+                begun(Bounds::within(max).apart(1e-6)),
+            );
+            assert!((corner - smooth).abs() < 1e-4, "{max}: {corner} {smooth}");
+        }
+    }
 }

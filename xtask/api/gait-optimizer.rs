@@ -660,7 +660,6 @@ pub enum TurningError {
     NoRegion,
     NotCertified { rotation: f64, failed: String },
 }
-impl From<TraceError> for TurningError {}
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TurningProblem {
     pub swimmer: Swimmer<f64>,

@@ -2,14 +2,14 @@
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, ArcKind};
-use swimmer_model::{Gait as _, Model, Stroke, Tolerance, swim};
+use swimmer_model::{Fourier, Gait as _, Harmonic, Model, Tolerance, swim};
 
+use super::Loop;
 use super::piece::Piece;
+use super::walk::Domain;
 use crate::certificate::{Certificate, Check, simple_and_turning_once};
 use crate::cycle::Cycle;
-use crate::height_map::Level;
 use crate::height_map::legendre::gauss;
-use crate::region::Region;
 
 /// Slopes are asked for farther than this from the ends of a free arc \[rad\]: where zero-level curves cross, they vanish.
 const FROM_ENDS: f64 = 0.02;
@@ -26,36 +26,38 @@ pub(super) fn area(pieces: &[Piece]) -> f64 {
     0.5 * twice
 }
 
-/// All conditions. None where the cycle makes no gait.
+/// All conditions.
 pub(super) fn certificate<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     model: &Model<f64>,
-    region: &Region,
-    level: &Level<F>,
-    pieces: &[Piece],
-    cycle: &Cycle,
-    stroke: &Stroke<f64>,
-) -> Option<Certificate> {
-    let gait = cycle.gait().ok()?;
+    domain: &Domain<'_, F>,
+    found: &Loop,
+) -> Certificate {
+    let Loop {
+        pieces,
+        cycle,
+        gait,
+        stroke,
+    } = found;
     let mut checks = Vec::new();
     let (mut free, mut slope, mut on_bound) = (0.0_f64, f64::INFINITY, f64::INFINITY);
     for piece in pieces {
-        let (first, last) = (piece.points.first()?, piece.points.last()?);
+        let ends = [piece.points.first(), piece.points.last()];
         for (i, phi) in piece.points.iter().enumerate() {
-            let (value, gradient) = level.at(phi);
-            if piece.kind == ArcKind::Singular {
-                free = free.max(value.abs());
-                let from_ends = (phi - first).norm().min((phi - last).norm());
-                if let (Some(before), Some(after)) = (
-                    i.checked_sub(1).and_then(|i| piece.points.get(i)),
-                    piece.points.get(i + 1),
-                ) && from_ends > FROM_ENDS
-                {
-                    let along = after - before;
-                    let left = Vector2::new(-along.y, along.x) / along.norm();
-                    slope = slope.min(gradient.dot(&left));
-                }
-            } else {
+            let (value, gradient) = domain.level.at(phi);
+            if piece.kind != ArcKind::Singular {
                 on_bound = on_bound.min(value);
+                continue;
+            }
+            free = free.max(value.abs());
+            let near_end = |end: &Vector2<f64>| (phi - end).norm() <= FROM_ENDS;
+            if ends.into_iter().flatten().any(near_end) {
+                continue;
+            }
+            let before = i.checked_sub(1).and_then(|i| piece.points.get(i));
+            if let Some((before, after)) = before.zip(piece.points.get(i + 1)) {
+                let along = after - before;
+                let left = Vector2::new(-along.y, along.x) / along.norm();
+                slope = slope.min(gradient.dot(&left));
             }
         }
     }
@@ -80,11 +82,11 @@ pub(super) fn certificate<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     let overstepped = cycle
         .phi
         .iter()
-        .map(|phi| region.overstepped(phi))
+        .map(|phi| domain.region.overstepped(phi))
         .fold(f64::NEG_INFINITY, f64::max);
     checks.push(Check::at_most("bound_overstepped_rad", overstepped, 1e-10));
     checks.extend(simple_and_turning_once(&cycle.phi, &cycle.phi));
-    let enclosed = enclosed(model, &gait, cycle);
+    let enclosed = enclosed(model, gait, cycle);
     checks.push(Check::at_most(
         "rotation_off_area_integral_rad",
         (enclosed - stroke.rotation).abs(),
@@ -96,7 +98,7 @@ pub(super) fn certificate<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
         best_circle(model, &cycle.phi) - stroke.rotation,
         0.0,
     ));
-    Some(Certificate::new(checks))
+    Certificate::new(checks)
 }
 
 /// ∬ F_θ over what the gait encloses, from the curvature alone: ∮ G dφ₂ with ∂G/∂φ₁ = F_θ.
@@ -149,26 +151,17 @@ fn best_circle(model: &Model<f64>, curve: &[Vector2<f64>]) -> f64 {
                 .iter()
                 .map(|phi| (phi - centre).norm())
                 .fold(f64::INFINITY, f64::min);
-            let turned = circle(&centre, 0.999 * radius)
-                .map(|gait| swim(model, &gait, &Tolerance::new(1e-9)).rotation);
-            best = best.max(turned.unwrap_or(f64::NEG_INFINITY));
+            let circle = Fourier {
+                mean: centre,
+                harmonics: [Harmonic {
+                    cos: Vector2::new(0.999 * radius, 0.0),
+                    sin: Vector2::new(0.0, 0.999 * radius),
+                }],
+            };
+            best = best.max(swim(model, &circle, &Tolerance::new(1e-9)).rotation);
         }
     }
     best
-}
-
-fn circle(centre: &Vector2<f64>, radius: f64) -> Option<AnyGait> {
-    let u: Vec<f64> = (0..=96).map(|k| f64::from(k) / 96.0).collect();
-    let mut phi: Vec<Vector2<f64>> = u
-        .iter()
-        .map(|u| {
-            let (sin, cos) = (u * std::f64::consts::TAU).sin_cos();
-            centre + Vector2::new(cos, sin) * radius
-        })
-        .collect();
-    let first = *phi.first()?;
-    *phi.last_mut()? = first;
-    AnyGait::from_samples(&u, &phi, &[]).ok()
 }
 
 /// Whether a point lies inside a closed polygon.

@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::walk::{Domain, TraceError};
+use super::error::TurningError;
+use super::walk::Domain;
 use crate::height_map::OnCurve;
 
 impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
@@ -11,7 +12,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
         &self,
         node: Vector2<f64>,
         ahead: Vector2<f64>,
-    ) -> Result<OnCurve, TraceError> {
+    ) -> Result<OnCurve, TurningError> {
         let mut step = self.step;
         for _ in 0..6 {
             let guess = node + ahead * step;
@@ -22,7 +23,10 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
             }
             step *= 0.5;
         }
-        Err(TraceError::at(node, "zero-level curves cross too flatly"))
+        Err(TurningError::lost(
+            node,
+            "zero-level curves cross too flatly",
+        ))
     }
 
     /// The crossing of two zero-level curves between two points of one, and the direction to its left on the other.

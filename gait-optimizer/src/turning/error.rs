@@ -1,5 +1,7 @@
 //! Why there is no turning gait to return.
 
+use nalgebra::Vector2;
+
 use crate::InvalidProblem;
 
 /// Why there is no turning gait to return.
@@ -36,4 +38,14 @@ pub enum TurningError {
         /// The checks that it fails, with their values.
         failed: String,
     },
+}
+
+impl TurningError {
+    /// Where a walk lost its way, and why.
+    pub(super) fn lost(near: Vector2<f64>, what: &'static str) -> Self {
+        Self::Lost {
+            near: near.into(),
+            what,
+        }
+    }
 }

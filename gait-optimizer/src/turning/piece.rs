@@ -13,12 +13,6 @@ pub(super) struct Piece {
     pub(super) points: Vec<Vector2<f64>>,
 }
 
-/// A closed curve with a region of positive curvature on its left; each piece begins where the one before ends.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Round {
-    pub(super) pieces: Vec<Piece>,
-}
-
 pub(super) fn singular(points: Vec<Vector2<f64>>) -> Piece {
     Piece {
         kind: ArcKind::Singular,

@@ -6,7 +6,8 @@ use swimmer_files::ArcKind;
 use swimmer_model::Model;
 
 use super::border::Border;
-use super::piece::{Piece, Round, close_up, pieces_of, singular};
+use super::error::TurningError;
+use super::piece::{Piece, close_up, pieces_of, singular};
 use crate::height_map::{Level, LevelSearch, OnCurve, passes};
 use crate::region::Region;
 
@@ -28,19 +29,6 @@ struct Crossing {
     leaves: bool,
 }
 
-/// Where a walk lost its way, and why.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct TraceError {
-    pub(super) near: Vector2<f64>,
-    pub(super) what: &'static str,
-}
-
-impl TraceError {
-    pub(super) fn at(near: Vector2<f64>, what: &'static str) -> Self {
-        Self { near, what }
-    }
-}
-
 /// Curvatures this small count as zero.
 const ZERO: f64 = 1e-13;
 /// A curve ends at a crossing if it comes this near \[rad\].
@@ -56,35 +44,38 @@ pub(super) fn curvature(model: &Model<f64>, phi: &Vector2<f64>) -> (f64, Vector2
 }
 
 impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
-    /// All walks, or where one loses its way.
+    /// All walks, or where one loses its way: closed curves with a region of positive curvature on the left, each piece begins where
+    /// the one before ends.
     pub(super) fn rounds(
         &self,
         search: &LevelSearch,
         seeds: Vec<Vector2<f64>>,
-    ) -> Result<Vec<Round>, TraceError> {
-        let crossings = self.crossings().ok_or(TraceError::at(
-            Vector2::zeros(),
-            "the curvature vanishes all along the bounds",
-        ))?;
-        let mut rounds = Vec::new();
+    ) -> Result<Vec<Vec<Piece>>, TurningError> {
+        let crossings = self.crossings().ok_or_else(|| {
+            TurningError::lost(
+                Vector2::zeros(),
+                "the curvature vanishes all along the bounds",
+            )
+        })?;
+        let mut rounds: Vec<Vec<Piece>> = Vec::new();
         let mut unused: Vec<usize> = (0..crossings.len())
             .filter(|&i| crossings.get(i).is_some_and(|crossing| crossing.leaves))
             .collect();
         while let Some(&first) = unused.first() {
-            let mut round = Round { pieces: Vec::new() };
+            let mut round = Vec::new();
             let mut at = first;
             loop {
                 unused.retain(|&crossing| crossing != at);
                 let (inland, arrived) = self.across(&crossings, at)?;
-                round.pieces.extend(inland);
+                round.extend(inland);
                 let (along, left) = self.along_border(&crossings, arrived)?;
-                round.pieces.extend(along);
+                round.extend(along);
                 at = left;
                 if at == first {
                     break;
                 }
                 if !unused.contains(&at) {
-                    return Err(TraceError::at(
+                    return Err(TurningError::lost(
                         crossings
                             .get(at)
                             .map_or(Vector2::zeros(), |crossing| crossing.phi),
@@ -95,26 +86,19 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
             rounds.push(round);
         }
         if crossings.is_empty() && self.border_is_positive() {
-            rounds.push(Round {
-                pieces: self.whole_border(),
-            });
+            rounds.push(self.whole_border());
         }
         // What the walks from the border did not meet is closed.
         let mut seeds = seeds;
         seeds.retain(|seed| self.region.overstepped(seed) < -1e-7);
         while !seeds.is_empty() {
             seeds.retain(|seed| {
-                !rounds.iter().any(|round: &Round| {
-                    round.pieces.iter().any(|piece| {
-                        piece.kind == ArcKind::Singular
-                            && passes(&piece.points, seed, search.close())
-                    })
+                !rounds.iter().flatten().any(|piece| {
+                    piece.kind == ArcKind::Singular && passes(&piece.points, seed, search.close())
                 })
             });
             let Some(seed) = seeds.pop() else { break };
-            rounds.push(Round {
-                pieces: self.inland_round(&seed)?,
-            });
+            rounds.push(self.inland_round(&seed)?);
         }
         Ok(rounds)
     }
@@ -192,22 +176,21 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
         &self,
         crossings: &[Crossing],
         from: usize,
-    ) -> Result<(Vec<Piece>, usize), TraceError> {
-        let none = TraceError::at(Vector2::zeros(), "there is no such crossing");
-        let crossing = crossings.get(from).ok_or(none)?;
+    ) -> Result<(Vec<Piece>, usize), TurningError> {
+        let none = || TurningError::lost(Vector2::zeros(), "there is no such crossing");
+        let crossing = crossings.get(from).ok_or_else(none)?;
         let begin = self
             .level
             .corrected(&crossing.phi, None, 1e-6)
-            .ok_or(TraceError::at(
-                crossing.phi,
-                "zero-level curves cross on the bound",
-            ))?;
+            .ok_or_else(|| {
+                TurningError::lost(crossing.phi, "zero-level curves cross on the bound")
+            })?;
         let begin = OnCurve {
             phi: crossing.phi,
             ..positive_left(begin)
         };
         let (mut pieces, end) = self.inland(begin, None)?;
-        let end = end.ok_or(none)?;
+        let end = end.ok_or_else(none)?;
         let arrived = (0..crossings.len())
             .filter_map(|i| {
                 let crossing = crossings.get(i)?;
@@ -215,10 +198,10 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
             })
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .filter(|&(_, gap)| gap < ARRIVED)
-            .ok_or(TraceError::at(end, "a zero-level curve touches the bound"))?
+            .ok_or_else(|| TurningError::lost(end, "a zero-level curve touches the bound"))?
             .0;
-        let met = crossings.get(arrived).ok_or(none)?.phi;
-        let last = pieces.last_mut().ok_or(none)?;
+        let met = crossings.get(arrived).ok_or_else(none)?.phi;
+        let last = pieces.last_mut().ok_or_else(none)?;
         close_up(&mut last.points, met, 0.3 * self.step);
         Ok((pieces, arrived))
     }
@@ -229,7 +212,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
         &self,
         begin: OnCurve,
         home: Option<Vector2<f64>>,
-    ) -> Result<(Vec<Piece>, Option<Vector2<f64>>), TraceError> {
+    ) -> Result<(Vec<Piece>, Option<Vector2<f64>>), TurningError> {
         let mut pieces = Vec::new();
         let mut points = vec![begin.phi];
         let (mut here, mut step) = (begin, self.step);
@@ -250,7 +233,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
                 if step > 1e-8 * self.step {
                     Ok(0.5 * step)
                 } else {
-                    Err(TraceError::at(here.phi, what))
+                    Err(TurningError::lost(here.phi, what))
                 }
             };
             let Some(next) = self.level.stepped(&here, step) else {
@@ -259,8 +242,9 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
             };
             walked += 1;
             if self.region.overstepped(&next.phi) > 1e-12 {
-                let stuck = TraceError::at(here.phi, "a zero-level curve runs along the bound");
-                let end = self.leaving(&here, step).ok_or(stuck)?;
+                let end = self.leaving(&here, step).ok_or_else(|| {
+                    TurningError::lost(here.phi, "a zero-level curve runs along the bound")
+                })?;
                 pieces.push(singular(points));
                 return Ok((pieces, Some(end)));
             }
@@ -280,7 +264,10 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
             points.push(here.phi);
             step = (1.5 * step).min(self.step);
         }
-        Err(TraceError::at(here.phi, "a zero-level curve does not end"))
+        Err(TurningError::lost(
+            here.phi,
+            "a zero-level curve does not end",
+        ))
     }
 
     /// Where a step leaves the region.
@@ -306,17 +293,17 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
         &self,
         crossings: &[Crossing],
         from: usize,
-    ) -> Result<(Vec<Piece>, usize), TraceError> {
-        let none = TraceError::at(Vector2::zeros(), "there is no such crossing");
+    ) -> Result<(Vec<Piece>, usize), TurningError> {
+        let none = || TurningError::lost(Vector2::zeros(), "there is no such crossing");
         let points = &self.border.points;
         let count = points.len();
         let to = (from + 1) % crossings.len();
         let (begin, end) = (
-            crossings.get(from).ok_or(none)?,
-            crossings.get(to).ok_or(none)?,
+            crossings.get(from).ok_or_else(none)?,
+            crossings.get(to).ok_or_else(none)?,
         );
         if !end.leaves {
-            return Err(TraceError::at(
+            return Err(TurningError::lost(
                 end.phi,
                 "the curvature changes sign twice at one place of the bound",
             ));
@@ -325,10 +312,10 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
         let mut i = begin.after;
         while i != end.after && ahead.len() <= count {
             i = (i + 1) % count;
-            ahead.push(*points.get(i).ok_or(none)?);
+            ahead.push(*points.get(i).ok_or_else(none)?);
         }
         // What ends at the crossing runs along the bound of the point before it.
-        let track = points.get(begin.after).ok_or(none)?.track;
+        let track = points.get(begin.after).ok_or_else(none)?.track;
         let pieces = pieces_of(begin.phi, track, &ahead, end.phi, 0.3 * self.step);
         Ok((pieces, to))
     }
@@ -349,13 +336,16 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
     }
 
     /// A walk that never meets the border.
-    fn inland_round(&self, seed: &Vector2<f64>) -> Result<Vec<Piece>, TraceError> {
+    fn inland_round(&self, seed: &Vector2<f64>) -> Result<Vec<Piece>, TurningError> {
         let begin = self.level.corrected(seed, None, 1e-6);
-        let begin = begin.ok_or(TraceError::at(*seed, "zero-level curves branch"))?;
+        let begin = begin.ok_or_else(|| TurningError::lost(*seed, "zero-level curves branch"))?;
         let begin = positive_left(begin);
         match self.inland(begin, Some(begin.phi))? {
             (pieces, None) => Ok(pieces),
-            (_, Some(end)) => Err(TraceError::at(end, "a zero-level curve grazes the bound")),
+            (_, Some(end)) => Err(TurningError::lost(
+                end,
+                "a zero-level curve grazes the bound",
+            )),
         }
     }
 }
