@@ -313,7 +313,7 @@ impl<'a> Subject<'a> {
         ))];
         // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
         let quarter = gait.u.partition_point(|&u| u <= 0.25 + 1e-12);
-        let simple = if self.limits.has_diagonals() {
+        let simple = if self.limits.region.has_diagonals() {
             gait.phi.get(..quarter).unwrap_or_default()
         } else {
             &gait.phi
@@ -336,7 +336,7 @@ impl<'a> Subject<'a> {
         let overstepped =
             overstepped.map(|by| Check::at_most("bound_overstepped_rad", by, TOUCHING));
         checks.extend(overstepped.map(at_samples));
-        if self.limits.may_not_fold() {
+        if self.limits.bounds.no_overlap {
             let crosses = crossing_share(&self.model.swimmer().links, curve);
             let folds = if crosses.folds { 1.0 } else { 0.0 };
             checks.push(at_samples(Check::at_most(
@@ -381,6 +381,11 @@ fn worse(a: f64, b: f64) -> f64 {
     } else {
         a.max(b)
     }
+}
+
+/// The smaller, and NaN rather than either.
+fn lesser(a: f64, b: f64) -> f64 {
+    -worse(-a, -b)
 }
 
 /// Which intervals between knots lie on a bound, for a gait that does not tell.

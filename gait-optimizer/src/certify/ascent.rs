@@ -37,10 +37,7 @@ pub(crate) fn around(model: &Model<f64>, gait: &OptimalGait) -> Option<Around> {
     let limits = Limits::new(&gait.bounds, &gait.swimmer.links);
     let subject = Subject::new(model, &file, limits);
     let ascents = Neighbours {
-        grid: &subject.grid,
-        path: &subject.path,
-        coarse: &subject.coarse,
-        seconds: subject.seconds(),
+        subject: &subject,
         gain: Gain::Displacement,
         rotation: subject.weak_momentum(Gain::Displacement)?.c,
         symmetric: false,

@@ -30,22 +30,30 @@ pub(super) struct Node {
     /// Fraction of the period.
     pub(super) u: f64,
     pub(super) along: Along,
-    /// First node of the stencil.
-    low: usize,
-    slope: Weights,
-    bend: Weights,
-    coarse_low: usize,
-    coarse_slope: Weights,
-    coarse_bend: Weights,
+    /// Slope and bend by each [`Degree`].
+    slope_and_bend: [[Rule; 2]; 2],
+    /// The integral from the node before by each degree; none for the first of a piece.
+    integral: Option<[Rule; 2]>,
 }
 
-/// The stretch from a node to the next within a piece.
-#[derive(Debug, Clone)]
-struct Interval {
+/// What a polynomial through neighbouring nodes makes of values there.
+#[derive(Debug, Clone, Copy)]
+struct Rule {
+    /// The node of the first weight.
     low: usize,
     weights: Weights,
-    coarse_low: usize,
-    coarse: Weights,
+}
+
+impl Rule {
+    /// What it makes of the values at the nodes, added to a sum.
+    fn added<T>(&self, sum: T, values: &[T]) -> T
+    where
+        T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
+    {
+        let values = values.get(self.low..).unwrap_or_default();
+        let terms = self.weights.iter().zip(values);
+        terms.fold(sum, |sum, (&weight, &value)| sum + value * weight)
+    }
 }
 
 /// Nodes, pieces and rules of a sampled cycle.
@@ -53,11 +61,9 @@ struct Interval {
 pub(super) struct Grid {
     pub(super) nodes: Vec<Node>,
     pub(super) pieces: Vec<Piece>,
-    /// For each node but the first of a piece: the interval that ends there.
-    intervals: Vec<Option<Interval>>,
 }
 
-/// Which of the two polynomials.
+/// Which of the two polynomials; the place of its rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Degree {
     Fine,
@@ -85,7 +91,6 @@ impl Grid {
         let mut grid = Self {
             nodes: Vec::with_capacity(last + 2 * cut.len()),
             pieces: Vec::with_capacity(cut.len()),
-            intervals: Vec::with_capacity(last + 2 * cut.len()),
         };
         let mut shapes = Vec::with_capacity(last + 2 * cut.len());
         for pair in cut.windows(2) {
@@ -101,33 +106,30 @@ impl Grid {
 
     fn append(&mut self, u: &[f64], along: Along) {
         let (first, count) = (self.nodes.len(), u.len());
-        let places = |(low, width): (usize, usize)| u.get(low..low + width).unwrap_or_default();
+        let windows = |from: usize, to: usize| {
+            [stencil::around, stencil::coarsely_around].map(|window| window(from, to, count))
+        };
+        let places = |low: usize, width: usize| u.get(low..low + width).unwrap_or_default();
         for (i, &at) in u.iter().enumerate() {
-            let fine = stencil::around(i, i, count);
-            let coarse = stencil::coarsely_around(i, i, count);
-            let [_, slope, bend] = stencil::derivatives(places(fine), at);
-            let [_, coarse_slope, coarse_bend] = stencil::derivatives(places(coarse), at);
+            let rule = |low: usize, weights: Weights| Rule {
+                low: first + low,
+                weights,
+            };
+            let slope_and_bend = windows(i, i).map(|(low, width)| {
+                let [_, slope, bend] = stencil::derivatives(places(low, width), at);
+                [slope, bend].map(|weights| rule(low, weights))
+            });
+            let integral = i.checked_sub(1).map(|before| {
+                let from = u.get(before).copied().unwrap_or(at);
+                windows(before, i)
+                    .map(|(low, width)| rule(low, stencil::integral(places(low, width), from, at)))
+            });
             self.nodes.push(Node {
                 u: at,
                 along,
-                low: first + fine.0,
-                slope,
-                bend,
-                coarse_low: first + coarse.0,
-                coarse_slope,
-                coarse_bend,
+                slope_and_bend,
+                integral,
             });
-            self.intervals.push(i.checked_sub(1).map(|before| {
-                let from = u.get(before).copied().unwrap_or(at);
-                let fine = stencil::around(before, i, count);
-                let coarse = stencil::coarsely_around(before, i, count);
-                Interval {
-                    low: first + fine.0,
-                    weights: stencil::integral(places(fine), from, at),
-                    coarse_low: first + coarse.0,
-                    coarse: stencil::integral(places(coarse), from, at),
-                }
-            }));
         }
         self.pieces.push(Piece {
             nodes: first..=first + count - 1,
@@ -137,20 +139,24 @@ impl Grid {
 
     /// Slope dΦ/du at every node.
     pub(super) fn slopes(&self, shapes: &[Vector2<f64>], degree: Degree) -> Vec<Vector2<f64>> {
-        let slope = |node: &Node| match degree {
-            Degree::Fine => weigh(&node.slope, shapes, node.low),
-            Degree::Coarse => weigh(&node.coarse_slope, shapes, node.coarse_low),
-        };
-        self.nodes.iter().map(slope).collect()
+        let rules = self
+            .nodes
+            .iter()
+            .map(|node| node.slope_and_bend[degree as usize][0]);
+        rules
+            .map(|rule| rule.added(Vector2::zeros(), shapes))
+            .collect()
     }
 
     /// Bend d²Φ/du² at every node.
     pub(super) fn bends(&self, shapes: &[Vector2<f64>], degree: Degree) -> Vec<Vector2<f64>> {
-        let bend = |node: &Node| match degree {
-            Degree::Fine => weigh(&node.bend, shapes, node.low),
-            Degree::Coarse => weigh(&node.coarse_bend, shapes, node.coarse_low),
-        };
-        self.nodes.iter().map(bend).collect()
+        let rules = self
+            .nodes
+            .iter()
+            .map(|node| node.slope_and_bend[degree as usize][1]);
+        rules
+            .map(|rule| rule.added(Vector2::zeros(), shapes))
+            .collect()
     }
 
     /// Integral from u = 0 to every node of what has these values at the nodes.
@@ -160,14 +166,9 @@ impl Grid {
     {
         let mut sum = zero;
         let mut sums = Vec::with_capacity(values.len());
-        for interval in &self.intervals {
-            if let Some(interval) = interval {
-                let (weights, low) = interval.by(degree);
-                let values = values.get(low..).unwrap_or_default();
-                sum = weights
-                    .iter()
-                    .zip(values)
-                    .fold(sum, |sum, (&weight, &value)| sum + value * weight);
+        for node in &self.nodes {
+            if let Some(rules) = &node.integral {
+                sum = rules[degree as usize].added(sum, values);
             }
             sums.push(sum);
         }
@@ -177,8 +178,8 @@ impl Grid {
     /// What each node counts for in an integral round the whole cycle.
     pub(super) fn weights(&self, degree: Degree) -> Vec<f64> {
         let mut sums = vec![0.0; self.nodes.len()];
-        for interval in self.intervals.iter().flatten() {
-            let (weights, low) = interval.by(degree);
+        for rules in self.nodes.iter().filter_map(|node| node.integral.as_ref()) {
+            let Rule { low, weights } = rules[degree as usize];
             for (sum, weight) in sums.iter_mut().skip(low).zip(weights) {
                 *sum += weight;
             }
@@ -188,19 +189,19 @@ impl Grid {
 
     /// The node before this one, where it belongs to the same piece.
     pub(super) fn before(&self, node: usize) -> Option<usize> {
-        self.intervals.get(node)?.as_ref()?;
+        self.nodes.get(node)?.integral.as_ref()?;
         node.checked_sub(1)
     }
 
     /// First and last node of the stencil for the stretch that ends at this node.
     pub(super) fn stencil(&self, node: usize) -> Option<RangeInclusive<usize>> {
-        let interval = self.intervals.get(node)?.as_ref()?;
+        let [Rule { low, .. }, _] = *self.nodes.get(node)?.integral.as_ref()?;
         let piece = self
             .pieces
             .iter()
             .find(|piece| piece.nodes.contains(&node))?;
-        let high = (interval.low + stencil::MOST - 1).min(*piece.nodes.end());
-        Some(interval.low..=high)
+        let high = (low + stencil::MOST - 1).min(*piece.nodes.end());
+        Some(low..=high)
     }
 
     /// Fractions of the period at these nodes.
@@ -220,26 +221,6 @@ impl Grid {
         let values = values.get(stencil).unwrap_or_default();
         weights.iter().zip(values).map(|(w, v)| w * v).sum()
     }
-}
-
-impl Interval {
-    /// Weights, and the node of the first.
-    fn by(&self, degree: Degree) -> (&Weights, usize) {
-        match degree {
-            Degree::Fine => (&self.weights, self.low),
-            Degree::Coarse => (&self.coarse, self.coarse_low),
-        }
-    }
-}
-
-fn weigh(weights: &Weights, values: &[Vector2<f64>], low: usize) -> Vector2<f64> {
-    let values = values.get(low..).unwrap_or_default();
-    weights
-        .iter()
-        .zip(values)
-        .fold(Vector2::zeros(), |sum, (&weight, value)| {
-            sum + value * weight
-        })
 }
 
 /// The knot at u.

@@ -12,10 +12,8 @@ use crate::region::Region;
 /// The bounds of a gait.
 #[derive(Debug, Clone)]
 pub(super) struct Limits {
-    region: Region,
-    need_quarters: bool,
-    /// Whether links may touch but not cross: then a side link may not lie folded on the middle one, |φ| = π.
-    may_not_fold: bool,
+    pub(super) bounds: Bounds,
+    pub(super) region: Region,
 }
 
 /// One bound at one shape.
@@ -33,25 +31,14 @@ impl Limits {
     /// The links are those of the swimmer \[m\].
     pub(super) fn new(bounds: &Bounds, links: &Links<f64>) -> Self {
         Self {
+            bounds: *bounds,
             region: Region::new(bounds, links),
-            need_quarters: bounds.min_angle.is_some() || bounds.sector,
-            may_not_fold: bounds.no_overlap,
         }
     }
 
     /// Whether the bounds are told of a quarter, so that they mean something for gaits with the paper's symmetries only.
     pub(super) fn need_quarters(&self) -> bool {
-        self.need_quarters
-    }
-
-    /// Whether a side link may not lie folded on the middle one.
-    pub(super) fn may_not_fold(&self) -> bool {
-        self.may_not_fold
-    }
-
-    /// Whether a quarter may run along the symmetry lines.
-    pub(super) fn has_diagonals(&self) -> bool {
-        self.region.has_diagonals()
+        self.bounds.min_angle.is_some() || self.bounds.sector
     }
 
     /// All bounds at a shape in one quarter of the cycle (0 to 3), always in the same order.
@@ -96,10 +83,7 @@ mod tests {
     /// Gaits may start in the corner of the forbidden shapes, where the distance of the tips is zero, and so is its slope.
     #[test]
     fn the_shape_with_tip_on_tip_lies_on_the_bound() {
-        let bounds = Bounds {
-            no_overlap: true,
-            ..Bounds::default()
-        };
+        let bounds = Bounds::default().apart(0.0);
         for tenths in 3..20 {
             let middle = 0.1 * f64::from(tenths);
             let links = Links {

@@ -5,11 +5,9 @@
 //! leads up.
 
 use nalgebra::{DMatrix, DVector, Vector2};
-use swimmer_model::SecondDerivatives;
 
 use super::Subject;
-use super::grid::{Along, Degree, Grid};
-use super::path::Path;
+use super::grid::{Along, Degree};
 use super::variation::{Push, Variation};
 use crate::certificate::Check;
 
@@ -28,12 +26,7 @@ pub(super) enum Gain {
 
 /// A curve and what it is optimal for.
 pub(super) struct Neighbours<'a> {
-    pub(super) grid: &'a Grid,
-    pub(super) path: &'a Path,
-    /// The same by the coarser polynomials.
-    pub(super) coarse: &'a Path,
-    /// The model's derivatives at its shapes.
-    pub(super) seconds: &'a [SecondDerivatives<f64>],
+    pub(super) subject: &'a Subject<'a>,
     pub(super) gain: Gain,
     /// Multiplier of rotation, in the units of the gain.
     pub(super) rotation: f64,
@@ -74,10 +67,7 @@ impl Subject<'_> {
     pub(super) fn ascents(&self, gain: Gain, rotation: f64) -> Vec<Check> {
         let of = |symmetric: bool| {
             let neighbours = Neighbours {
-                grid: &self.grid,
-                path: &self.path,
-                coarse: &self.coarse,
-                seconds: self.seconds(),
+                subject: self,
                 gain,
                 rotation,
                 symmetric,
@@ -99,7 +89,8 @@ impl Subject<'_> {
 impl Neighbours<'_> {
     /// Which directions lead up; none where the curve cannot be pushed.
     pub(super) fn ascents(&self) -> Option<Ascents> {
-        let slopes: Vec<_> = self.path.places.iter().map(|place| place.rate).collect();
+        let slopes = self.subject.path.places.iter();
+        let slopes: Vec<_> = slopes.map(|place| place.rate).collect();
         let waves = self.waves(&slopes);
         let size = waves.len();
         if size == 0 {
@@ -152,14 +143,17 @@ impl Neighbours<'_> {
         degree: Degree,
     ) -> Option<(DMatrix<f64>, f64)> {
         let size = waves.len();
+        let Subject {
+            grid, path, coarse, ..
+        } = self.subject;
         let path = match degree {
-            Degree::Fine => self.path,
-            Degree::Coarse => self.coarse,
+            Degree::Fine => path,
+            Degree::Coarse => coarse,
         };
         let gain = (self.gain, self.rotation);
-        let variation = Variation::new(self.grid, path, self.seconds, degree, gain);
+        let variation = Variation::new(grid, path, self.subject.seconds(), degree, gain);
         let push = |wave: &Vec<Vector2<f64>>| Push {
-            slopes: self.grid.slopes(wave, degree),
+            slopes: grid.slopes(wave, degree),
             by: wave.clone(),
         };
         let pushes: Vec<Push> = waves.iter().map(push).collect();
@@ -206,7 +200,7 @@ impl Neighbours<'_> {
                     Vector2::zeros()
                 }
             };
-            let nodes = self.grid.nodes.iter();
+            let nodes = self.subject.grid.nodes.iter();
             nodes
                 .zip(slopes.iter().zip(&windows))
                 .map(push)
@@ -220,7 +214,7 @@ impl Neighbours<'_> {
 
     /// 1 on a curve that is free and smooth all round; else a half wave over each free stretch and 0 on bounds.
     fn windows(&self, slopes: &[Vector2<f64>]) -> Vec<f64> {
-        let pieces = &self.grid.pieces;
+        let pieces = &self.subject.grid.pieces;
         let smooth_after = |i: usize| {
             let (piece, next) = (&pieces[i], &pieces[(i + 1) % pieces.len()]);
             let (Some(a), Some(b)) = (
@@ -233,11 +227,11 @@ impl Neighbours<'_> {
                 && next.along == Along::Free
                 && a.perp(b).atan2(a.dot(b)).abs() < super::SMOOTH
         };
-        let mut windows = vec![0.0; self.grid.nodes.len()];
+        let mut windows = vec![0.0; self.subject.grid.nodes.len()];
         let Some(first) = (0..pieces.len()).find(|&i| !smooth_after(i)) else {
-            return vec![1.0; self.grid.nodes.len()];
+            return vec![1.0; self.subject.grid.nodes.len()];
         };
-        let u = |node: usize| self.grid.nodes.get(node).map_or(0.0, |node| node.u);
+        let u = |node: usize| self.subject.grid.nodes.get(node).map_or(0.0, |node| node.u);
         let width = |i: usize| u(*pieces[i].nodes.end()) - u(*pieces[i].nodes.start());
         let order: Vec<usize> = (1..=pieces.len())
             .map(|k| (first + k) % pieces.len())

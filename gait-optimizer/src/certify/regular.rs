@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 use super::grid::Along;
 use super::neighbours::Gain;
 use super::path::Path;
-use super::{Degree, Openness, Subject, worse};
+use super::{Degree, Openness, Subject, lesser, worse};
 use crate::certificate::Check;
 use crate::momentum::Momentum;
 
@@ -169,13 +169,7 @@ impl Subject<'_> {
             .zip(&coarse)
             .map(|(a, b)| (a - b).abs())
             .fold(0.0, f64::max);
-        let least = fine.into_iter().reduce(|a, b| {
-            if a.is_nan() || b.is_nan() {
-                f64::NAN
-            } else {
-                a.min(b)
-            }
-        })?;
+        let least = fine.into_iter().reduce(lesser)?;
         Some(Check::at_least(
             "bound_multiplier_least",
             least,

@@ -9,7 +9,7 @@ use swimmer_files::Objective;
 
 use super::grid::Along;
 use super::neighbours::Gain;
-use super::{Degree, Openness, Subject, worse};
+use super::{Degree, Openness, Subject, lesser, worse};
 use crate::certificate::Check;
 use crate::momentum::Momentum;
 
@@ -172,13 +172,7 @@ impl Subject<'_> {
             .enumerate()
             .filter(|(node, _)| self.along(*node) == Along::Bound)
             .map(|at| multiplier(at).unwrap_or(f64::NAN))
-            .reduce(|a, b| {
-                if a.is_nan() || b.is_nan() {
-                    f64::NAN
-                } else {
-                    a.min(b)
-                }
-            });
+            .reduce(lesser);
         let tolerance = 1e-9 + 4.0 * open.pose;
         least
             .map(|least| Check::at_least("bound_multiplier_least", least, -tolerance))
