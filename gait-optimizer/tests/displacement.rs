@@ -282,10 +282,7 @@ fn a_grid_of_swimmers_and_bounds() {
                     let best = best_simple_displacement(&Case {
                         name: name.clone(),
                         swimmer,
-                        bounds: Bounds {
-                            max_angle: Some(max_angle),
-                            ..Bounds::default()
-                        },
+                        bounds: Bounds::within(max_angle),
                     });
                     forwards += usize::from(best > 0.0);
                     match displacement(&DisplacementProblem::new(swimmer).with_max_angle(max_angle))
@@ -318,11 +315,10 @@ fn a_grid_of_swimmers_and_bounds() {
     assert!(below.is_empty(), "of {forwards}:\n{}", below.join("\n"));
 }
 
-/// The gaits (c) and (d), from the same search: their ratios to (b) are the paper's 1.55, 2.04 and 1.31.
+/// The gaits (c) and (d), from the same search. (That their ratios are the paper's is a row of `validation`.)
 #[test]
 fn lower_bound_and_sector() {
     let within = DisplacementProblem::new(Swimmer::robot()).with_max_angle(2.8);
-    let b = optimum(&within);
     let mut problem = within;
     problem.bounds.min_angle = Some(1.5);
     let c = optimum(&problem);
@@ -340,11 +336,6 @@ fn lower_bound_and_sector() {
     problem.bounds.sector = true;
     let d = optimum(&problem);
     assert!(kinds(&d).contains(&ArcKind::Diagonal), "{:?}", d.arcs);
-    let ratio =
-        |a: &OptimalGait, b: &OptimalGait| a.displacement_over_length / b.displacement_over_length;
-    assert!((ratio(&c, &b) + 1.55).abs() < 0.0155, "{}", ratio(&c, &b));
-    assert!((ratio(&d, &b) + 2.04).abs() < 0.0204, "{}", ratio(&d, &b));
-    assert!((ratio(&d, &c) - 1.31).abs() < 0.0131, "{}", ratio(&d, &c));
 }
 
 /// What is left of the gaits (b), (c) and (d) when links may not cross: (b) is untouched, (c) and (d) run along the bound.

@@ -59,51 +59,6 @@ fn the_papers_own_method_agrees() {
     }
 }
 
-/// The paper's 1.46, 1.20, 1.45 and 1.90. Squares are compared at constant power.
-#[test]
-fn the_papers_ratios() {
-    for (swimmer, large_over_small, large_over_square) in [
-        (Swimmer::purcell(), 1.46, 1.203),
-        (Swimmer::robot(), 1.45, 1.90),
-    ] {
-        let small = optimum(swimmer, Branch::Small);
-        let large = optimum(swimmer, Branch::Large);
-        let ratio = large.efficiency / small.efficiency;
-        assert!((ratio / large_over_small - 1.0).abs() < 0.01, "{ratio}");
-        let ratio = large.efficiency / best_large_square(&swimmer);
-        assert!((ratio / large_over_square - 1.0).abs() < 0.01, "{ratio}");
-    }
-}
-
-/// Efficiency at constant power of the best square with X < 0, by golden section between 2.5 and 4 rad.
-fn best_large_square(swimmer: &Swimmer<f64>) -> f64 {
-    let model = Model::new(swimmer).unwrap();
-    let worth = |amplitude: f64| {
-        let stroke = swim(&model, &AnyGait::square(amplitude), &Tolerance::new(1e-10));
-        if stroke.displacement.x < 0.0 {
-            stroke.efficiency_constant_power()
-        } else {
-            0.0
-        }
-    };
-    let scan: Vec<f64> = (0..=60).map(|i| 2.0 + f64::from(i) / 20.0).collect();
-    let best = scan
-        .iter()
-        .copied()
-        .max_by(|a, b| worth(*a).total_cmp(&worth(*b)))
-        .unwrap();
-    let (mut low, mut high) = (best - 0.05, best + 0.05);
-    for _ in 0..30 {
-        let (one, two) = (low + 0.382 * (high - low), low + 0.618 * (high - low));
-        if worth(one) > worth(two) {
-            high = two;
-        } else {
-            low = one;
-        }
-    }
-    worth(0.5 * (low + high))
-}
-
 /// Fourier series of an order where they have converged, before and after the polish, against multiple shooting from order 4.
 #[test]
 fn both_methods_find_the_same_gaits() {
