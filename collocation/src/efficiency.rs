@@ -28,27 +28,21 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Collocatio
     let model = problem.validated()?;
     let branch = problem.branch;
     let circles = best_amplitudes(&model, SimpleShape::Circle, Objective::Efficiency, LARGEST);
-    let found = circles
+    circles
         .iter()
         .filter(|circle| circle.displacement_over_length * branch.sign() > 0.0)
         .map(|circle| {
             let guess = QuarterGuess::circle(circle.amplitude)?;
             let solution = solve(&CollocationProblem::new(&model, branch.sign()), &guess)?;
             polished(problem, &solution)
-        });
-    // The best one, else the first error.
-    let mut best: Option<Result<OptimalGait, CollocationError>> = None;
-    for next in found {
-        let better = match (&best, &next) {
-            (None, _) | (Some(Err(_)), Ok(_)) => true,
-            (Some(Ok(best)), Ok(next)) => next.efficiency > best.efficiency,
-            (Some(_), Err(_)) => false,
-        };
-        if better {
-            best = Some(next);
-        }
-    }
-    best.unwrap_or(Err(CollocationError::NoStart { branch }))
+        })
+        // The best one, else the first error.
+        .reduce(|best, next| match (&best, &next) {
+            (Err(_), Ok(_)) => next,
+            (Ok(gait), Ok(other)) if other.efficiency > gait.efficiency => next,
+            _ => best,
+        })
+        .unwrap_or(Err(CollocationError::NoStart { branch }))
 }
 
 fn polished(

@@ -72,7 +72,7 @@ pub enum CollocationError {
     /// An optimum of the discretisation alone: its control swims otherwise.
     #[error(
         "direct collocation found ξ = {efficiency:.3e} on {points} points, but its control makes {again:.3e} when integrated \
-         again: a spurious optimum of a coarse mesh; start nearer to the wanted gait or from more elements"
+         again: a spurious optimum of a coarse mesh; start nearer to the wanted gait or take more elements"
     )]
     Spurious {
         /// Lighthill's efficiency as collocated.
@@ -81,21 +81,6 @@ pub enum CollocationError {
         again: f64,
         /// Points of the mesh.
         points: usize,
-    },
-    /// The mesh was refined as far as it may be.
-    #[error(
-        "direct collocation is still off by {error:.1e} (power uneven by {uneven_power:.1e}) on {points} points, against a \
-         tolerance of {tolerance:.1e}; ask for less, or start from a smoother guess"
-    )]
-    NotResolved {
-        /// Points of the last mesh.
-        points: usize,
-        /// Largest error of an element.
-        error: f64,
-        /// Largest relative unevenness of the power.
-        uneven_power: f64,
-        /// What was asked for.
-        tolerance: f64,
     },
 }
 

@@ -1,28 +1,26 @@
 //! Where the iteration starts: a quarter gait at constant power, from any curve.
 
-use nalgebra::Vector2;
-use swimmer_model::{Circle, Gait, Model, SymmetricFourier};
+use gait_optimizer::region::Bound;
+use nalgebra::{Matrix2xX, Vector2};
+use swimmer_model::{Circle, Gait, Model};
 
 use super::CollocationError;
 use super::mesh::Mesh;
-use super::walls::Wall;
 
-/// A quarter gait to start from: samples of time and joint angles. The times are only an order; the gait is timed anew at
-/// constant power.
+/// A quarter gait to start from: joint angles in order of time. The gait is timed anew at constant power.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuarterGuess {
-    samples: Vec<(f64, Vector2<f64>)>,
+    shapes: Matrix2xX<f64>,
 }
 
 /// Samples of a quarter that is given as a function.
 const SAMPLES: usize = 512;
-/// Share of the room inside the walls that a guess is shrunk to.
+/// Share of the room inside the bounds that a guess is shrunk to.
 const INSIDE: f64 = 0.98;
-/// How far inside the walls a sample is clipped, in rad, or over L between links.
+/// How far inside the bounds a sample is clipped, in rad, or over L between links.
 const CLIPPED: f64 = 0.01;
-const OUTSIDE: &str = "it does not fit inside the bounds";
 
-/// How a guess is brought inside the walls.
+/// How a guess is brought inside the bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Fit {
     /// All of it smaller.
@@ -53,14 +51,13 @@ impl QuarterGuess {
         if samples.windows(2).any(|pair| pair[1].0 <= pair[0].0) {
             return refuse("its times do not grow");
         }
-        let times = samples.iter().map(|&(t, _)| t);
-        let mut shapes: Vec<_> = samples.iter().map(|&(_, phi)| phi.into()).collect();
-        on_symmetry_lines(&mut shapes);
-        if shapes.windows(2).all(|pair| pair[1] == pair[0]) {
+        let shapes: Vec<_> = samples.iter().map(|&(_, phi)| Vector2::from(phi)).collect();
+        let mut shapes = Matrix2xX::from_columns(&shapes);
+        bind_ends(&mut shapes);
+        if shapes.column_iter().all(|phi| phi == shapes.column(0)) {
             return refuse("it does not move");
         }
-        let samples = times.zip(shapes).collect();
-        Ok(Self { samples })
+        Ok(Self { shapes })
     }
 
     /// The first quarter of a gait that starts on φ₁ = φ₂ > 0 and runs counter-clockwise.
@@ -86,154 +83,98 @@ impl QuarterGuess {
         Self::from_gait(&Circle { amplitude })
     }
 
-    /// The paper's symmetric Fourier gait (Appendix C), pairs \[Aₙ, Bₙ\] \[rad\].
-    ///
-    /// # Errors
-    /// As [`Self::from_samples`].
-    pub fn fourier(coefficients: &[[f64; 2]]) -> Result<Self, CollocationError> {
-        Self::from_gait(&SymmetricFourier { coefficients })
-    }
-
-    /// The shapes at the points of a mesh, timed at constant power and brought inside the walls.
+    /// The shapes at the points of a mesh, timed at constant power and brought inside the bounds.
     pub(crate) fn on(
         &self,
         model: &Model<f64>,
         mesh: &Mesh,
-        walls: &[Wall],
+        walls: &[Bound],
         fit: Fit,
-    ) -> Result<Vec<Vector2<f64>>, CollocationError> {
-        let scaled = match fit {
-            Fit::Shrunk => {
-                let size = self.shrunk(walls)?;
-                self.samples.iter().map(|(_, phi)| phi * size).collect()
-            }
-            Fit::Clipped => self.clipped(walls)?,
+    ) -> Result<Matrix2xX<f64>, CollocationError> {
+        let shapes = match fit {
+            _ if is_inside(walls, &(&self.shapes / INSIDE)) => self.shapes.clone(),
+            Fit::Shrunk => self.shrunk(walls),
+            Fit::Clipped => self.clipped(walls),
         };
         let mut times = vec![0.0];
-        for pair in scaled.windows(2) {
-            let step = pair[1] - pair[0];
-            let power = model.power_matrix(&((pair[0] + pair[1]) * 0.5));
-            let before = times.last().copied().unwrap_or(0.0);
-            times.push(before + step.dot(&(power * step)).max(0.0).sqrt());
+        let mut total = 0.0;
+        for i in 1..shapes.ncols() {
+            let step = shapes.column(i) - shapes.column(i - 1);
+            let power = model.power_matrix(&((shapes.column(i) + shapes.column(i - 1)) * 0.5));
+            total += step.dot(&(power * step)).max(0.0).sqrt();
+            times.push(total);
         }
-        let total = times.last().copied().unwrap_or(0.0);
+        let refuse = |problem| Err(CollocationError::Guess { problem });
         if !(total > 0.0 && total.is_finite()) {
-            return Err(CollocationError::Guess {
-                problem: "it spends no power",
-            });
+            return refuse("it spends no power");
         }
-        for time in &mut times {
-            *time /= total;
+        let last = times.len() - 1;
+        let mut on_mesh = Matrix2xX::zeros(mesh.len());
+        for (mut phi, t) in on_mesh.column_iter_mut().zip(&mesh.times) {
+            let after = times
+                .partition_point(|time| *time <= t * total)
+                .clamp(1, last);
+            let share = (t * total - times[after - 1])
+                / (times[after] - times[after - 1]).max(f64::MIN_POSITIVE);
+            phi.copy_from(
+                &shapes
+                    .column(after - 1)
+                    .lerp(&shapes.column(after), share.clamp(0.0, 1.0)),
+            );
         }
-        let shapes: Vec<_> = mesh
-            .times
-            .iter()
-            .map(|&t| interpolated(&times, &scaled, t))
-            .collect();
-        // Between samples at a corner of the walls a cubic may stray outside.
-        if shapes
-            .iter()
-            .all(|phi| walls.iter().all(|wall| wall.value(phi) > 0.0))
-        {
-            Ok(shapes)
+        if is_inside(walls, &on_mesh) {
+            Ok(on_mesh)
         } else {
-            Err(CollocationError::Guess { problem: OUTSIDE })
+            refuse("it does not fit inside the bounds")
         }
     }
 
-    /// Each sample by itself, moved inside the walls.
-    fn clipped(&self, walls: &[Wall]) -> Result<Vec<Vector2<f64>>, CollocationError> {
-        let mut samples: Vec<_> = self.samples.iter().map(|(_, phi)| *phi).collect();
-        for _ in 0..4 {
-            for phi in &mut samples {
+    /// Each sample by itself, moved inside the bounds, near enough.
+    fn clipped(&self, walls: &[Bound]) -> Matrix2xX<f64> {
+        let mut shapes = self.shapes.clone();
+        for _ in 0..12 {
+            for mut column in shapes.column_iter_mut() {
                 for wall in walls {
-                    if wall.value(phi) < 0.5 * CLIPPED {
-                        wall.draw(phi, CLIPPED);
+                    let level = wall.smooth_level(&column.clone_owned());
+                    let missing = (CLIPPED - level.value) / level.gradient.norm_squared();
+                    if missing > 0.0 && missing.is_finite() {
+                        column += level.gradient * missing;
                     }
                 }
             }
-            on_symmetry_lines(&mut samples);
+            bind_ends(&mut shapes);
         }
-        let inside = samples
-            .iter()
-            .all(|phi| walls.iter().all(|wall| wall.value(phi) > 0.0));
-        inside
-            .then_some(samples)
-            .ok_or(CollocationError::Guess { problem: OUTSIDE })
+        shapes
     }
 
-    /// Whether it needs no change to fit.
-    pub(crate) fn lies_inside(&self, walls: &[Wall]) -> bool {
-        self.inside(walls, 1.0 / INSIDE)
-    }
-
-    fn inside(&self, walls: &[Wall], size: f64) -> bool {
-        self.samples
-            .iter()
-            .all(|(_, phi)| walls.iter().all(|wall| wall.value(&(phi * size)) > 0.0))
-    }
-
-    /// The factor that brings all samples inside the walls: 1 where they are.
-    fn shrunk(&self, walls: &[Wall]) -> Result<f64, CollocationError> {
-        if self.lies_inside(walls) {
-            return Ok(1.0);
-        }
-        let (mut low, mut high) = (0.0, 1.0 / INSIDE);
+    /// Brought inside the bounds as a whole.
+    fn shrunk(&self, walls: &[Bound]) -> Matrix2xX<f64> {
+        let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
-            if self.inside(walls, middle) {
+            if is_inside(walls, &(&self.shapes * middle)) {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        if low > 0.0 {
-            Ok(INSIDE * low)
-        } else {
-            Err(CollocationError::Guess { problem: OUTSIDE })
-        }
+        &self.shapes * (INSIDE * low)
     }
+}
+
+fn is_inside(walls: &[Bound], shapes: &Matrix2xX<f64>) -> bool {
+    shapes.column_iter().all(|phi| {
+        walls
+            .iter()
+            .all(|wall| wall.smooth_level(&phi.into_owned()).value > 0.0)
+    })
 }
 
 /// Moves the first shape to φ₁ = φ₂ and the last to φ₁ = −φ₂.
-fn on_symmetry_lines(shapes: &mut [Vector2<f64>]) {
-    if let Some(first) = shapes.first_mut() {
-        first.fill(0.5 * (first.x + first.y));
-    }
-    if let Some(last) = shapes.last_mut() {
-        let half = 0.5 * (last.y - last.x);
-        *last = Vector2::new(-half, half);
-    }
-}
-
-/// Cubic interpolation with the slopes of the parabolas through neighbours.
-fn interpolated(times: &[f64], values: &[Vector2<f64>], t: f64) -> Vector2<f64> {
-    let last = times.len() - 1;
-    let after = times.partition_point(|&time| time <= t).clamp(1, last);
-    let before = after - 1;
-    let width = times[after] - times[before];
-    if width <= 0.0 {
-        return values[before];
-    }
-    let chord = |i: usize| {
-        let width = times[i + 1] - times[i];
-        if width > 0.0 {
-            (values[i + 1] - values[i]) / width
-        } else {
-            Vector2::zeros()
-        }
-    };
-    let slope = |i: usize| {
-        if i == 0 || i == last {
-            return chord(i.min(last - 1));
-        }
-        let (left, right) = (times[i] - times[i - 1], times[i + 1] - times[i]);
-        (chord(i - 1) * right + chord(i) * left) / (left + right).max(f64::MIN_POSITIVE)
-    };
-    let s = (t - times[before]) / width;
-    let (a, b) = (values[before], values[after]);
-    let (da, db) = (slope(before) * width, slope(after) * width);
-    let r = 1.0 - s;
-    a * (r * r * (1.0 + 2.0 * s)) + b * (s * s * (1.0 + 2.0 * r)) + da * (r * r * s)
-        - db * (s * s * r)
+pub(crate) fn bind_ends(shapes: &mut Matrix2xX<f64>) {
+    let last = shapes.ncols() - 1;
+    let (first, end) = (shapes.column(0).mean(), shapes.column(last));
+    let half = 0.5 * (end.y - end.x);
+    shapes.set_column(0, &Vector2::new(first, first));
+    shapes.set_column(last, &Vector2::new(-half, half));
 }

@@ -1,146 +1,121 @@
 //! The primal–dual interior-point iteration on the shapes.
 //!
-//! Iterates stay strictly inside the walls and on the state equations, so the barrier function itself is the merit function
-//! and a Newton step with a positive definite matrix always descends.
+//! Iterates stay strictly inside the walls and on the state equations, so the barrier function itself is the merit function. A
+//! step solves Newton's equation by conjugate gradients, which ask for the Hessian along one direction at a time (the
+//! gradient's difference along it) and notice where it is not convex. What makes the equation stiff is known: the energy of
+//! the steps from point to point and the walls. Preconditioned with these two (`preconditioner`), a few dozen products do.
 
-mod step;
+mod preconditioner;
 
-use nalgebra::Vector2;
+use gait_optimizer::region::Bound;
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix2xX};
 use swimmer_model::Model;
 
-use super::CollocationError;
-use super::block::{Block, Prices};
-use super::elimination::{factor, solve};
+use super::guess::bind_ends;
 use super::mesh::Mesh;
 use super::path::Path;
-use super::walls::{Wall, wall_term};
-use step::Step;
+use super::{CollocationError, HORIZON, lighthill};
+use preconditioner::Preconditioner;
 
 /// Where the barrier begins and ends; both count against an objective, ln E − 2 ln x, of order one.
-pub(crate) const FIRST_BARRIER: f64 = 1e-3;
-pub(crate) const LAST_BARRIER: f64 = 1e-12;
+const FIRST_BARRIER: f64 = 1e-3;
+const LAST_BARRIER: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 200;
-/// Steps below this \[rad\] end the iteration; convergence is quadratic there.
+const MOST_PRODUCTS: usize = 200;
+/// Share of the residual that is left of Newton's equation.
+const INEXACT: f64 = 1e-6;
+/// Steps below this \[rad\] end the iteration.
 const SMALL_STEP: f64 = 1e-8;
 /// Longest step of any angle \[rad\], so that the iteration stays with the gait it was started from.
 const LONG_STEP: f64 = 0.4;
+/// Changes of the shapes over which the gradient's difference is taken \[rad\].
+const DIFFERENCE: f64 = 1e-6;
 
 /// One discretised problem.
 #[derive(Debug)]
 pub(crate) struct Newton<'a> {
     pub(crate) model: &'a Model<f64>,
     pub(crate) mesh: &'a Mesh,
-    pub(crate) walls: &'a [Wall],
+    pub(crate) walls: &'a [Bound],
     /// Of the wanted x.
     pub(crate) sign: f64,
-    /// No angle leaves this \[rad\].
-    pub(crate) horizon: f64,
-    blocks: Vec<Block>,
-    /// Quadrature weight of each point; its walls count that much.
-    weights: Vec<f64>,
     path: Path,
-    trial: Path,
-    /// Multiplier density of each wall at each point.
-    multipliers: Vec<f64>,
-    lambda_theta: Vec<f64>,
+    /// Multiplier density of each wall (rows) at each point (columns).
+    multipliers: DMatrix<f64>,
 }
 
 /// What the iteration ended with.
 #[derive(Debug)]
 pub(crate) struct Optimum {
     pub(crate) path: Path,
-    pub(crate) multipliers: Vec<f64>,
+    pub(crate) multipliers: DMatrix<f64>,
     /// Costate of θ at each node for `x_f` alone; the first entry is at t = 0.
-    pub(crate) lambda_theta: Vec<f64>,
+    pub(crate) lambda_theta: DVector<f64>,
     pub(crate) iterations: usize,
-    /// Largest last step \[rad\].
-    pub(crate) last_step: f64,
+}
+
+/// A step towards the optimum of the barrier problem.
+#[derive(Debug)]
+struct Step {
+    /// Change of the shape at every point.
+    shapes: Matrix2xX<f64>,
+    /// Derivative of the barrier function along it; negative.
+    slope: f64,
+    /// Whether the Hessian was positive along all that was tried.
+    convex: bool,
 }
 
 impl<'a> Newton<'a> {
     pub(crate) fn new(
         model: &'a Model<f64>,
         mesh: &'a Mesh,
-        walls: &'a [Wall],
+        walls: &'a [Bound],
         sign: f64,
-        horizon: f64,
-        phi: Vec<Vector2<f64>>,
+        phi: Matrix2xX<f64>,
     ) -> Self {
-        let path = Path::new(model, mesh, phi);
-        let mut weights = vec![0.0; mesh.len()];
-        for element in &mesh.elements {
-            for (weight, share) in weights[element.first + 1..]
-                .iter_mut()
-                .zip(element.rule.weights())
-            {
-                *weight = element.length * share;
-            }
-        }
-        // The first point is no node; it counts as much as the last one, which is as near to an end.
-        weights[0] = weights.last().copied().unwrap_or(1.0);
-        Self {
+        let mut newton = Self {
             model,
             mesh,
             walls,
             sign,
-            horizon,
-            blocks: mesh
-                .elements
-                .iter()
-                .map(|element| Block::new(element.rule.degree))
-                .collect(),
-            weights,
-            trial: path.clone(),
-            multipliers: vec![0.0; walls.len() * mesh.len()],
-            lambda_theta: vec![0.0; mesh.len()],
-            path,
-        }
+            path: Path::new(model, mesh, phi),
+            multipliers: DMatrix::zeros(walls.len(), mesh.len()),
+        };
+        newton.center(FIRST_BARRIER);
+        newton
     }
 
-    /// Iterates to an optimum, the barrier beginning at `barrier`.
-    pub(crate) fn run(mut self, barrier: f64) -> Result<Optimum, CollocationError> {
-        let mut barrier = if self.walls.is_empty() { 0.0 } else { barrier };
-        self.reset_multipliers(barrier);
-        let mut here = self
-            .merit(&self.path, barrier)
-            .ok_or(CollocationError::WrongWay {
-                x: self.path.final_x,
-                wanted: self.sign,
-            })?;
-        let mut shift = 0.0;
+    /// Iterates to an optimum.
+    pub(crate) fn run(mut self) -> Result<Optimum, CollocationError> {
+        let mut barrier = if self.walls.is_empty() {
+            0.0
+        } else {
+            FIRST_BARRIER
+        };
+        let wrong_way = CollocationError::WrongWay {
+            x: self.path.final_x,
+            wanted: self.sign,
+        };
+        let mut here = self.merit(&self.path, barrier).ok_or(wrong_way)?;
         for iteration in 1..=MOST_ITERATIONS {
-            let Some(step) = self.step(barrier, &mut shift) else {
+            let step = self.step(barrier);
+            let largest = step.shapes.amax();
+            let settled = largest <= SMALL_STEP;
+            let next = if let Some((length, path, value)) = self.search(&step, barrier, here) {
+                self.move_multipliers(&step.shapes, &path, barrier, length);
+                (self.path, here) = (path, value);
+                step.convex && length >= 0.9 && (settled || -step.slope <= barrier)
+            } else if -step.slope <= 1e-11 {
+                // As flat as rounding lets the objective be.
+                true
+            } else {
                 return Err(self.stalled(iteration));
             };
-            let largest = step.shapes.iter().map(Vector2::amax).fold(0.0, f64::max);
-            let settled = -step.slope <= 1e-18 || largest <= SMALL_STEP;
-            let longest = self.longest(&step.shapes).min(LONG_STEP / largest);
-            let taken = self.search(&step, barrier, here, longest.min(1.0), settled);
-            let Some((length, value)) = taken else {
-                if -step.slope <= 1e-11 {
-                    // As flat as rounding lets the objective be.
-                    if barrier <= LAST_BARRIER {
-                        return Ok(self.done(iteration, largest));
-                    }
-                    (barrier, here) = self.lower(barrier);
-                    continue;
-                }
-                if !step.convex && shift > 1e6 {
-                    return Err(self.stalled(iteration));
-                }
-                shift = (shift * 10.0).max(1e-2);
-                continue;
-            };
-            self.move_multipliers(&step.shapes, barrier, length);
-            std::mem::swap(&mut self.path, &mut self.trial);
-            here = value;
-            if settled && step.convex && length >= 1.0 {
-                if barrier <= LAST_BARRIER {
-                    return Ok(self.done(iteration, largest));
-                }
-                (barrier, here) = self.lower(barrier);
-            } else if -step.slope <= barrier && length >= 0.9 && step.convex {
-                (barrier, here) = self.lower(barrier);
+            if next && barrier <= LAST_BARRIER {
+                return Ok(self.done(iteration));
+            } else if next {
+                barrier = (barrier * 0.1).min(barrier.powf(1.5)).max(LAST_BARRIER);
+                here = self.merit(&self.path, barrier).unwrap_or(f64::INFINITY);
             }
         }
         Err(self.stalled(MOST_ITERATIONS))
@@ -149,41 +124,28 @@ impl<'a> Newton<'a> {
     fn stalled(&self, iterations: usize) -> CollocationError {
         CollocationError::Stalled {
             iterations,
-            efficiency: super::lighthill(self.model, &self.path),
+            efficiency: lighthill(self.model, self.path.final_x, self.path.final_energy),
         }
     }
 
-    fn done(mut self, iterations: usize, last_step: f64) -> Optimum {
-        // The costates belong to the last path.
-        self.assemble(0.0);
+    fn done(self, iterations: usize) -> Optimum {
         Optimum {
+            lambda_theta: self.path.slope(self.mesh).lambda_theta,
             path: self.path,
             multipliers: self.multipliers,
-            lambda_theta: self.lambda_theta,
             iterations,
-            last_step,
         }
-    }
-
-    fn lower(&self, barrier: f64) -> (f64, f64) {
-        let lower = (barrier * 0.1).min(barrier.powf(1.5)).max(LAST_BARRIER);
-        let value = self.merit(&self.path, lower).unwrap_or(f64::INFINITY);
-        (lower, value)
     }
 
     /// The barrier function; none where the path leaves the walls or the horizon, or x has the wrong sign.
     fn merit(&self, path: &Path, barrier: f64) -> Option<f64> {
         let mut value = path.objective(self.sign)?;
-        let far = |phi: &Vector2<f64>| {
-            phi.iter()
-                .any(|angle| angle.is_nan() || angle.abs() > self.horizon)
-        };
-        if path.phi.iter().any(far) {
+        if path.phi.amax() > HORIZON {
             return None;
         }
-        for (phi, weight) in path.phi.iter().zip(&self.weights) {
+        for (phi, weight) in path.phi.column_iter().zip(&self.mesh.weights) {
             for wall in self.walls {
-                let margin = wall.value(phi);
+                let margin = wall.smooth_level(&phi.into_owned()).value;
                 if margin <= 0.0 || margin.is_nan() {
                     return None;
                 }
@@ -194,122 +156,104 @@ impl<'a> Newton<'a> {
     }
 
     /// Multipliers on the central path.
-    fn reset_multipliers(&mut self, barrier: f64) {
-        let walls = self.walls.len();
-        for (phi, multipliers) in self
+    fn center(&mut self, barrier: f64) {
+        for (phi, mut multipliers) in self
             .path
             .phi
-            .iter()
-            .zip(self.multipliers.chunks_exact_mut(walls.max(1)))
+            .column_iter()
+            .zip(self.multipliers.column_iter_mut())
         {
             for (multiplier, wall) in multipliers.iter_mut().zip(self.walls) {
-                *multiplier = barrier / wall.value(phi);
+                *multiplier = barrier / wall.smooth_level(&phi.into_owned()).value;
             }
         }
     }
 
-    /// Gradient and Hessian at the path.
-    fn assemble(&mut self, barrier: f64) {
-        let prices = Prices {
-            x: -2.0 / self.path.final_x,
-            energy: 1.0 / self.path.final_energy,
-        };
-        let walls = self.walls.len();
-        let mut later = 0.0;
-        for (k, (block, element)) in self
-            .blocks
-            .iter_mut()
-            .zip(&self.mesh.elements)
-            .enumerate()
-            .rev()
-        {
-            later = block.assemble(
-                self.model,
-                element,
-                &self.path,
-                prices,
-                later,
-                &mut self.lambda_theta,
-            );
-            if walls == 0 {
-                continue;
-            }
-            for j in usize::from(k > 0)..=element.rule.degree {
-                let point = element.first + j;
-                let term = wall_term(
-                    self.walls,
-                    &self.multipliers[point * walls..(point + 1) * walls],
-                    &self.path.phi[point],
-                    barrier,
-                    self.weights[point],
-                );
-                block.add_walls(j, &term);
-            }
-        }
-        self.lambda_theta[0] = later;
-    }
-
-    /// The Newton step of the barrier problem; none where no shift makes its matrix positive definite.
-    fn step(&mut self, barrier: f64, shift: &mut f64) -> Option<Step> {
-        self.assemble(barrier);
-        // A shift that was needed before is likely to be needed still, but smaller.
-        let mut trial = if *shift > 1e-3 { *shift / 5.0 } else { 0.0 };
-        let mut attempts = 0;
-        while !factor(&mut self.blocks, self.mesh, &self.path, trial) {
-            attempts += 1;
-            if attempts > 40 {
-                return None;
-            }
-            trial = if trial == 0.0 { 1e-2 } else { trial * 4.0 };
-        }
-        *shift = trial;
-        let solutions = solve(&self.blocks, self.mesh);
-        let step = self.combine(&solutions, trial == 0.0);
-        (step.slope <= 0.0 && step.shapes.iter().flatten().all(|angle| angle.is_finite()))
-            .then_some(step)
-    }
-
-    /// How much of the step the walls let pass.
-    fn longest(&self, shapes: &[Vector2<f64>]) -> f64 {
-        let mut longest = f64::INFINITY;
-        for (phi, change) in self.path.phi.iter().zip(shapes) {
+    /// Of the barrier function, per shape, the ends on their lines; from that of the objective.
+    fn gradient(&self, slope: &Matrix2xX<f64>, barrier: f64) -> Matrix2xX<f64> {
+        let mut gradient = slope.clone();
+        for (point, weight) in self.mesh.weights.iter().enumerate() {
             for wall in self.walls {
-                let margin = wall.margin(phi);
-                let towards = -margin.gradient.dot(change);
-                if towards > 0.0 {
-                    longest = longest.min(0.99 * margin.value / towards);
-                }
+                let level = wall.smooth_level(&self.path.phi.column(point).into_owned());
+                let mut pushed = gradient.column_mut(point);
+                pushed -= level.gradient * (weight * barrier / level.value);
             }
         }
-        longest
+        bind_ends(&mut gradient);
+        gradient
     }
 
-    /// Backtracks until the barrier function falls as it should; leaves the new path in `trial`.
-    fn search(
-        &mut self,
-        step: &Step,
-        barrier: f64,
-        here: f64,
-        longest: f64,
-        settled: bool,
-    ) -> Option<(f64, f64)> {
-        let mut length = longest;
-        let rounding = 1e-14 * (1.0 + here.abs());
-        for _ in 0..if settled { 3 } else { 30 } {
-            for ((phi, old), change) in self
-                .trial
-                .phi
-                .iter_mut()
-                .zip(&self.path.phi)
-                .zip(&step.shapes)
-            {
-                *phi = old + change * length;
+    /// Newton's step of the barrier problem, or as much of it as is convex.
+    fn step(&self, barrier: f64) -> Step {
+        let slope = self.path.slope(self.mesh).by_phi;
+        let gradient = self.gradient(&slope, barrier);
+        let mut preconditioner = Preconditioner::new(&self.path, self.mesh);
+        let mut curvature = vec![Matrix2::zeros(); self.mesh.len()];
+        for (point, weight) in self.mesh.weights.iter().enumerate() {
+            for (wall, multiplier) in self.walls.iter().zip(&self.multipliers.column(point)) {
+                let level = wall.smooth_level(&self.path.phi.column(point).into_owned());
+                let stiff = level.gradient * level.gradient.transpose();
+                let stiff = stiff * (weight * multiplier / level.value);
+                preconditioner.stiffen(point, &stiff);
+                curvature[point] += stiff - level.hessian * (weight * multiplier);
             }
-            self.trial.follow(self.model, self.mesh);
-            if let Some(value) = self.merit(&self.trial, barrier)
+        }
+        preconditioner.factor();
+        let product = |along: &Matrix2xX<f64>| {
+            let size = DIFFERENCE / along.amax();
+            let moved = Path::new(self.model, self.mesh, &self.path.phi + along * size);
+            let mut changed = (moved.slope(self.mesh).by_phi - &slope) / size;
+            for (point, curvature) in curvature.iter().enumerate() {
+                let mut column = changed.column_mut(point);
+                column += curvature * along.column(point);
+            }
+            bind_ends(&mut changed);
+            changed
+        };
+        let mut shapes = Matrix2xX::zeros(self.mesh.len());
+        let mut residual = -&gradient;
+        let mut towards = preconditioner.solve(&residual);
+        let mut direction = towards.clone();
+        let first = residual.dot(&towards);
+        let (mut left, mut convex) = (first, true);
+        for _ in 0..MOST_PRODUCTS {
+            if left <= INEXACT * INEXACT * first {
+                break;
+            }
+            let bent = product(&direction);
+            let curved = direction.dot(&bent);
+            if curved.is_nan() || curved <= 0.0 {
+                convex = false;
+                if shapes.amax() <= 0.0 {
+                    shapes = direction;
+                }
+                break;
+            }
+            shapes += &direction * (left / curved);
+            residual -= bent * (left / curved);
+            towards = preconditioner.solve(&residual);
+            let before = left;
+            left = residual.dot(&towards);
+            direction = &towards + direction * (left / before);
+        }
+        Step {
+            slope: gradient.dot(&shapes),
+            shapes,
+            convex,
+        }
+    }
+
+    /// Backtracks until the barrier function falls as it should: how far, the path there, and its value.
+    fn search(&self, step: &Step, barrier: f64, here: f64) -> Option<(f64, Path, f64)> {
+        let rounding = 1e-14 * (1.0 + here.abs());
+        let mut length = (LONG_STEP / step.shapes.amax()).min(1.0);
+        for _ in 0..30 {
+            let phi = &self.path.phi + &step.shapes * length;
+            let path = Path::new(self.model, self.mesh, phi);
+            if let Some(value) = self.merit(&path, barrier)
                 && value <= here + 1e-4 * length * step.slope + rounding
             {
-                return Some((length, value));
+                return Some((length, path, value));
             }
             length *= 0.5;
         }
@@ -317,19 +261,21 @@ impl<'a> Newton<'a> {
     }
 
     /// The dual step, no farther than keeps every multiplier positive, and back near the central path of the new shapes.
-    fn move_multipliers(&mut self, shapes: &[Vector2<f64>], barrier: f64, length: f64) {
-        let walls = self.walls.len();
-        if walls == 0 {
-            return;
-        }
-        for (point, multipliers) in self.multipliers.chunks_exact_mut(walls).enumerate() {
-            let (phi, next) = (&self.path.phi[point], &self.trial.phi[point]);
+    fn move_multipliers(
+        &mut self,
+        shapes: &Matrix2xX<f64>,
+        next: &Path,
+        barrier: f64,
+        length: f64,
+    ) {
+        for (point, mut multipliers) in self.multipliers.column_iter_mut().enumerate() {
+            let at = |path: &Path| path.phi.column(point).into_owned();
             for (multiplier, wall) in multipliers.iter_mut().zip(self.walls) {
-                let margin = wall.margin(phi);
-                let opening = margin.gradient.dot(&shapes[point]);
+                let level = wall.smooth_level(&at(&self.path));
+                let opening = level.gradient.dot(&shapes.column(point));
                 let change =
-                    barrier / margin.value - *multiplier - *multiplier / margin.value * opening;
-                let central = barrier / wall.value(next);
+                    barrier / level.value - *multiplier - *multiplier / level.value * opening;
+                let central = barrier / wall.smooth_level(&at(next)).value;
                 *multiplier = (*multiplier + length * change)
                     .max(0.01 * *multiplier)
                     .clamp(central * 1e-6, central * 1e6);

@@ -4,102 +4,84 @@
 //! quadrature, and from it x and E. So every iterate is a gait of the discretised problem, and the objective is a plain
 //! function of the shapes. The multipliers of the eliminated equations are the discrete costates, found by going back.
 
-use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
-use swimmer_model::Model;
+use nalgebra::{DVector, Matrix2xX, Matrix3xX, Vector2, Vector3};
+use swimmer_model::{FirstDerivatives, Model};
 
-use super::mesh::{Element, Mesh};
+use super::mesh::Mesh;
 
-/// What one node is made of.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Node {
-    pub(crate) rate: Vector2<f64>,
-    pub(crate) theta: f64,
-    pub(crate) sin: f64,
-    pub(crate) cos: f64,
-    pub(crate) connection: Matrix3x2<f64>,
-    pub(crate) power: Matrix2<f64>,
-    /// Body velocity A u.
-    pub(crate) body: Vector3<f64>,
-}
-
-impl Node {
-    const NONE: Self = Self {
-        rate: Vector2::new(0.0, 0.0),
-        theta: 0.0,
-        sin: 0.0,
-        cos: 1.0,
-        connection: Matrix3x2::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-        power: Matrix2::new(0.0, 0.0, 0.0, 0.0),
-        body: Vector3::new(0.0, 0.0, 0.0),
-    };
-
-    /// ẋ and ẏ.
-    pub(crate) fn velocity(&self) -> Vector2<f64> {
-        Vector2::new(
-            self.cos * self.body.x - self.sin * self.body.y,
-            self.sin * self.body.x + self.cos * self.body.y,
-        )
-    }
-
-    pub(crate) fn power_spent(&self) -> f64 {
-        self.rate.dot(&(self.power * self.rate))
-    }
-}
-
-/// The shapes and the states that follow. All vectors have one entry per point of the mesh.
+/// The shapes and the states that follow: one column or entry per point of the mesh. The first point is no node and has no
+/// rates.
 #[derive(Debug, Clone)]
 pub(crate) struct Path {
-    pub(crate) phi: Vec<Vector2<f64>>,
-    /// The first, which is no node, holds nothing but θ = 0.
-    pub(crate) nodes: Vec<Node>,
+    pub(crate) phi: Matrix2xX<f64>,
+    /// φ̇.
+    pub(crate) control: Matrix2xX<f64>,
+    pub(crate) theta: DVector<f64>,
+    /// ẋ, ẏ and Ė.
+    rates: Matrix3xX<f64>,
+    pub(crate) physics: Vec<FirstDerivatives<f64>>,
     pub(crate) final_x: f64,
     pub(crate) final_energy: f64,
 }
 
+/// What changes of the shapes do to the objective.
+#[derive(Debug, Clone)]
+pub(crate) struct Slope {
+    /// Of ln E − 2 ln x, per shape.
+    pub(crate) by_phi: Matrix2xX<f64>,
+    /// Costate of θ at each node, for `x_f` alone.
+    pub(crate) lambda_theta: DVector<f64>,
+}
+
 impl Path {
-    pub(crate) fn new(model: &Model<f64>, mesh: &Mesh, phi: Vec<Vector2<f64>>) -> Self {
-        let mut path = Self {
-            nodes: vec![Node::NONE; phi.len()],
-            phi,
-            final_x: 0.0,
-            final_energy: 0.0,
-        };
-        path.follow(model, mesh);
-        path
-    }
-
     /// Solves the state equations for the shapes.
-    pub(crate) fn follow(&mut self, model: &Model<f64>, mesh: &Mesh) {
-        (self.final_x, self.final_energy) = (0.0, 0.0);
-        for element in &mesh.elements {
-            self.follow_element(model, element);
+    pub(crate) fn new(model: &Model<f64>, mesh: &Mesh, phi: Matrix2xX<f64>) -> Self {
+        let (degree, per_time) = (mesh.rule.degree(), mesh.elements as f64);
+        let mut control = Matrix2xX::zeros(phi.ncols());
+        let mut turning = DVector::zeros(phi.ncols());
+        let mut theta = DVector::zeros(phi.ncols());
+        let mut rates = Matrix3xX::zeros(phi.ncols());
+        let physics: Vec<_> = phi
+            .column_iter()
+            .map(|shape| model.first_derivatives(&shape.into_owned()))
+            .collect();
+        for first in mesh.firsts() {
+            let slopes = phi.columns(first, degree + 1) * &mesh.rule.slopes * per_time;
+            control.columns_mut(first + 1, degree).copy_from(&slopes);
+            for point in first + 1..=first + degree {
+                turning[point] = physics[point]
+                    .connection
+                    .row(2)
+                    .tr_dot(&control.column(point));
+            }
+            let turned = mesh.rule.integrals.tr_mul(&turning.rows(first + 1, degree)) / per_time;
+            let start = theta[first];
+            theta
+                .rows_mut(first + 1, degree)
+                .copy_from(&turned.add_scalar(start));
         }
-    }
-
-    fn follow_element(&mut self, model: &Model<f64>, element: &Element) {
-        let rule = element.rule;
-        let first = element.first;
-        for j in 1..=rule.degree {
-            let rate = element.rate(&self.phi, j);
-            let (connection, power) = model.connection_and_power(&self.phi[first + j]);
-            let node = &mut self.nodes[first + j];
-            node.rate = rate;
-            node.body = connection * rate;
-            (node.connection, node.power) = (connection, power);
+        for point in 1..phi.ncols() {
+            let (sin, cos) = theta[point].sin_cos();
+            let rate = control.column(point);
+            let body = physics[point].connection * rate;
+            rates.set_column(
+                point,
+                &Vector3::new(
+                    cos * body.x - sin * body.y,
+                    sin * body.x + cos * body.y,
+                    rate.dot(&(physics[point].power * rate)),
+                ),
+            );
         }
-        for (j, weight) in (1..=rule.degree).zip(rule.weights()) {
-            let turned: f64 = rule
-                .integral(j)
-                .iter()
-                .zip(&self.nodes[first + 1..])
-                .map(|(share, node)| share * node.body.z)
-                .sum();
-            let theta = self.nodes[first].theta + element.length * turned;
-            let node = &mut self.nodes[first + j];
-            node.theta = theta;
-            (node.sin, node.cos) = theta.sin_cos();
-            self.final_x += element.length * weight * node.velocity().x;
-            self.final_energy += element.length * weight * node.power_spent();
+        let ends = &rates * &mesh.weights;
+        Self {
+            phi,
+            control,
+            theta,
+            rates,
+            physics,
+            final_x: ends.x,
+            final_energy: ends.z,
         }
     }
 
@@ -110,21 +92,74 @@ impl Path {
         (x > 0.0 && energy > 0.0 && value.is_finite()).then_some(value)
     }
 
+    /// The objective's gradient, by going back from the last element to the first.
+    pub(crate) fn slope(&self, mesh: &Mesh) -> Slope {
+        let (degree, per_time) = (mesh.rule.degree(), mesh.elements as f64);
+        let (of_x, of_energy) = (-2.0 / self.final_x, 1.0 / self.final_energy);
+        let mut by_phi = Matrix2xX::zeros(self.phi.ncols());
+        let mut lambda_theta = DVector::zeros(self.phi.ncols());
+        // ∂x_f/∂θ of all later elements.
+        let mut later = 0.0;
+        for first in mesh.firsts().rev() {
+            // A turn at a node turns the nodes after it, by the quadrature's shares, and all later elements.
+            let weights = mesh.weights.rows(first + 1, degree);
+            let pull = -self
+                .rates
+                .row(1)
+                .columns(first + 1, degree)
+                .transpose()
+                .component_mul(&weights);
+            let here = (&mesh.rule.integrals * &pull / per_time).component_div(&weights);
+            lambda_theta
+                .rows_mut(first + 1, degree)
+                .copy_from(&here.add_scalar(later));
+            later += pull.sum();
+            let mut by_rate = Matrix2xX::zeros(degree);
+            for node in 0..degree {
+                let point = first + 1 + node;
+                let (weight, physics) = (weights[node], &self.physics[point]);
+                let rate = self.control.column(point);
+                let carry = self.carry(point, lambda_theta[point]) * (of_x * weight);
+                let energy = of_energy * weight;
+                by_rate.set_column(
+                    node,
+                    &(physics.connection.tr_mul(&carry) + physics.power * rate * (2.0 * energy)),
+                );
+                let mut own = by_phi.column_mut(point);
+                own += Vector2::from([0, 1].map(|i| {
+                    carry.dot(&(physics.d_connection[i] * rate))
+                        + energy * rate.dot(&(physics.d_power[i] * rate))
+                }));
+            }
+            let mut shapes = by_phi.columns_mut(first, degree + 1);
+            shapes += by_rate * mesh.rule.slopes.transpose() * per_time;
+        }
+        lambda_theta[0] = later;
+        Slope {
+            by_phi,
+            lambda_theta,
+        }
+    }
+
+    /// What `x_f` gains from the body velocity at a point.
+    pub(crate) fn carry(&self, point: usize, lambda_theta: f64) -> Vector3<f64> {
+        let (sin, cos) = self.theta[point].sin_cos();
+        Vector3::new(cos, -sin, lambda_theta)
+    }
+
     /// x, y and E at every point.
-    pub(crate) fn travelled(&self, mesh: &Mesh) -> Vec<[f64; 3]> {
-        let mut all = vec![[0.0; 3]; self.phi.len()];
-        for element in &mesh.elements {
-            let nodes = &self.nodes[element.first + 1..];
-            for j in 1..=element.rule.degree {
-                let mut here = all[element.first];
-                for (share, node) in element.rule.integral(j).iter().zip(nodes) {
-                    let velocity = node.velocity();
-                    let rates = [velocity.x, velocity.y, node.power_spent()];
-                    for (sum, rate) in here.iter_mut().zip(rates) {
-                        *sum += element.length * share * rate;
-                    }
-                }
-                all[element.first + j] = here;
+    pub(crate) fn travelled(&self, mesh: &Mesh) -> Matrix3xX<f64> {
+        let degree = mesh.rule.degree();
+        let mut all = Matrix3xX::zeros(self.phi.ncols());
+        for first in mesh.firsts() {
+            let rates = self.rates.columns(first + 1, degree) / mesh.elements as f64;
+            let start = all.column(first).into_owned();
+            for (mut state, moved) in all
+                .columns_mut(first + 1, degree)
+                .column_iter_mut()
+                .zip((rates * &mesh.rule.integrals).column_iter())
+            {
+                state.copy_from(&(start + moved));
             }
         }
         all

@@ -6,151 +6,107 @@
 //! Comput. Optim. Appl. 49 (2011), with the barycentric differentiation matrix of J.-P. Berrut and L. N. Trefethen,
 //! *Barycentric Lagrange interpolation*, SIAM Review 46 (2004).
 
-use std::sync::LazyLock;
+use nalgebra::{DMatrix, DVector, DVectorView};
 
-use nalgebra::DMatrix;
-
-/// Highest degree in use. Above it the elements are split instead: the blocks grow with the square of the degree.
+/// Highest degree in use; more elements serve better than higher ones.
 pub(crate) const HIGHEST_DEGREE: usize = 16;
-
-/// Room for one share per point of any rule.
-pub(crate) type Shares = [f64; HIGHEST_DEGREE + 1];
-
-/// Shares before they are known.
-pub(crate) const NO_SHARES: Shares = [0.0; HIGHEST_DEGREE + 1];
-
-static RULES: LazyLock<Vec<Rule>> =
-    LazyLock::new(|| (1..=HIGHEST_DEGREE).map(Rule::of_degree).collect());
 
 /// The rule of a degree d: a polynomial of degree d through d + 1 points, collocated at the last d of them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Rule {
-    pub(crate) degree: usize,
     /// The d + 1 points: 0, then the nodes, the last of them 1.
-    pub(crate) points: Vec<f64>,
-    /// Slope at node j (row j − 1) per value at point i (column i).
-    differentiation: Vec<f64>,
-    /// Integral from 0 to node j (row j − 1) per value at node i (column i − 1).
-    integration: Vec<f64>,
+    pub(crate) points: DVector<f64>,
+    /// Slope at each node (columns) per value at each point (rows).
+    pub(crate) slopes: DMatrix<f64>,
+    /// Integral from 0 to each node (columns) per value at each node (rows).
+    pub(crate) integrals: DMatrix<f64>,
     /// Of the barycentric interpolation through all d + 1 points.
-    barycentric: Vec<f64>,
-}
-
-/// The rule of a degree, which is brought between 1 and [`HIGHEST_DEGREE`].
-pub(crate) fn rule(degree: usize) -> &'static Rule {
-    &RULES[degree.clamp(1, HIGHEST_DEGREE) - 1]
+    barycentric: DVector<f64>,
 }
 
 impl Rule {
-    fn of_degree(degree: usize) -> Self {
-        let mut points = vec![0.0];
-        points.extend((0..degree).rev().map(|i| 0.5 * (1.0 + node(degree, i))));
-        let barycentric: Vec<f64> = (0..=degree)
-            .map(|i| {
-                let apart = |r: &usize| *r != i;
-                1.0 / (0..=degree)
-                    .filter(apart)
-                    .map(|r| points[i] - points[r])
-                    .product::<f64>()
-            })
-            .collect();
-        let mut differentiation = vec![0.0; degree * (degree + 1)];
-        for j in 1..=degree {
-            let row = &mut differentiation[(j - 1) * (degree + 1)..j * (degree + 1)];
-            for i in (0..=degree).filter(|&i| i != j) {
-                row[i] = barycentric[i] / barycentric[j] / (points[j] - points[i]);
+    /// Of a degree, which is brought between 1 and [`HIGHEST_DEGREE`].
+    pub(crate) fn new(degree: usize) -> Self {
+        let degree = degree.clamp(1, HIGHEST_DEGREE);
+        let points = points(degree);
+        let barycentric = DVector::from_fn(degree + 1, |i, _| {
+            let others = (0..=degree).filter(|&other| other != i);
+            1.0 / others
+                .map(|other| points[i] - points[other])
+                .product::<f64>()
+        });
+        let mut slopes = DMatrix::from_fn(degree + 1, degree, |i, j| {
+            if i == j + 1 {
+                return 0.0;
             }
+            barycentric[i] / barycentric[j + 1] / (points[j + 1] - points[i])
+        });
+        for j in 0..degree {
             // A constant has no slope.
-            row[j] = -row.iter().sum::<f64>();
+            slopes[(j + 1, j)] = -slopes.column(j).sum();
         }
         // Over the nodes alone differentiation is the inverse of integration from 0.
-        let square = DMatrix::from_fn(degree, degree, |j, i| {
-            differentiation[j * (degree + 1) + i + 1]
-        });
-        let inverse = square
-            .try_inverse()
-            .unwrap_or_else(|| DMatrix::zeros(degree, degree));
-        let integration = (0..degree * degree)
-            .map(|k| inverse[(k / degree, k % degree)])
-            .collect();
+        let integrals = slopes.rows(1, degree).into_owned().try_inverse();
         Self {
-            degree,
+            integrals: integrals.unwrap_or_else(|| DMatrix::zeros(degree, degree)),
             points,
-            differentiation,
-            integration,
+            slopes,
             barycentric,
         }
     }
 
-    /// Slope at node j = 1, …, d per value at each of the d + 1 points.
-    pub(crate) fn slope(&self, j: usize) -> &[f64] {
-        &self.differentiation[(j - 1) * (self.degree + 1)..j * (self.degree + 1)]
-    }
-
-    /// Integral from 0 to node j = 1, …, d per value at each node.
-    pub(crate) fn integral(&self, j: usize) -> &[f64] {
-        &self.integration[(j - 1) * self.degree..j * self.degree]
+    pub(crate) fn degree(&self) -> usize {
+        self.integrals.nrows()
     }
 
     /// Quadrature weights of the d nodes over the whole element.
-    pub(crate) fn weights(&self) -> &[f64] {
-        self.integral(self.degree)
+    pub(crate) fn weights(&self) -> DVectorView<'_, f64> {
+        self.integrals.column(self.degree() - 1)
     }
 
-    /// What each of the d + 1 points counts in the value at `tau`; written to the first d + 1 places of `shares`.
-    pub(crate) fn shares(&self, tau: f64, shares: &mut Shares) {
-        self.barycentric_shares(tau, shares, |weight, _| weight);
-    }
-
-    /// The same for a polynomial of degree d − 1 through the nodes alone, such as the rate; the first point counts nothing.
-    pub(crate) fn rate_shares(&self, tau: f64, shares: &mut Shares) {
-        self.barycentric_shares(tau, shares, |weight, point| weight * point);
-    }
-
-    fn barycentric_shares(&self, tau: f64, shares: &mut Shares, weigh: impl Fn(f64, f64) -> f64) {
-        shares.fill(0.0);
-        let mut sum = 0.0;
-        for (i, (&weight, &point)) in self.barycentric.iter().zip(&self.points).enumerate() {
-            let weight = weigh(weight, point);
-            if weight != 0.0 && (tau - point).abs() < 1e-15 {
-                shares.fill(0.0);
-                shares[i] = 1.0;
-                return;
-            }
-            if weight != 0.0 {
-                shares[i] = weight / (tau - point);
-                sum += shares[i];
-            }
+    /// What each of the d + 1 points counts in the value at `tau`.
+    pub(crate) fn shares(&self, tau: f64) -> DVector<f64> {
+        if let Some(at) = self
+            .points
+            .iter()
+            .position(|point| (tau - point).abs() < 1e-15)
+        {
+            return DVector::from_fn(self.points.len(), |i, _| f64::from(u8::from(i == at)));
         }
-        for share in shares {
-            *share /= sum;
-        }
+        let shares = self
+            .barycentric
+            .zip_map(&self.points, |weight, point| weight / (tau - point));
+        &shares / shares.sum()
+    }
+
+    /// What each of the d nodes counts in the value at 0 of the polynomial of degree d − 1 through them, such as the rate.
+    pub(crate) fn shares_at_start(&self) -> DVector<f64> {
+        let shares = self.barycentric.rows(1, self.degree());
+        shares / shares.sum()
     }
 }
 
-/// Zero i of `P_d − P_{d−1}` on \[−1, 1\], from the right; the first is 1. Newton's method from the Chebyshev–Radau points.
-fn node(degree: usize, i: usize) -> f64 {
-    if i == 0 {
-        return 1.0;
+/// 0 and the zeros of `P_d − P_{d−1}`, brought from \[−1, 1\] to \[0, 1\]: eigenvalues of the Jacobi matrix of Legendre's
+/// polynomials, its last entry such that 1 is one of them (G. H. Golub, *Some modified matrix eigenvalue problems*, SIAM
+/// Review 15 (1973)).
+fn points(degree: usize) -> DVector<f64> {
+    let d = degree as f64;
+    let mut jacobi = DMatrix::zeros(degree, degree);
+    for i in 1..degree {
+        let k = i as f64;
+        jacobi[(i, i - 1)] = k / (4.0 * k * k - 1.0).sqrt();
+        jacobi[(i - 1, i)] = jacobi[(i, i - 1)];
     }
-    let mut x = (std::f64::consts::TAU * i as f64 / (2 * degree - 1) as f64).cos();
-    for _ in 0..20 {
-        let (mut before, mut here) = (1.0, x);
-        let (mut slope_before, mut slope) = (0.0, 1.0);
-        for n in 1..degree {
-            let n = n as f64;
-            let next = ((2.0 * n + 1.0) * x * here - n * before) / (n + 1.0);
-            let next_slope = slope_before + (2.0 * n + 1.0) * here;
-            (before, here) = (here, next);
-            (slope_before, slope) = (slope, next_slope);
-        }
-        let step = (here - before) / (slope - slope_before);
-        x -= step;
-        if step.abs() < 1e-16 {
-            break;
-        }
-    }
-    x
+    jacobi[(degree - 1, degree - 1)] = d / (2.0 * d - 1.0);
+    let mut points: Vec<f64> = jacobi
+        .symmetric_eigenvalues()
+        .iter()
+        .map(|x| 0.5 * (1.0 + x))
+        .collect();
+    points.push(0.0);
+    points.sort_by(f64::total_cmp);
+    points[degree] = 1.0;
+    points.into()
 }
 
 #[cfg(test)]
@@ -160,7 +116,8 @@ mod tests {
     #[test]
     fn the_known_nodes_of_degree_three() {
         // Radau IIA of order 5: (4 ∓ √6)/10 and 1.
-        let points = &rule(3).points;
+        let rule = Rule::new(3);
+        let points = &rule.points;
         let root = 6.0_f64.sqrt();
         for (point, known) in
             points
@@ -169,7 +126,7 @@ mod tests {
         {
             assert!((point - known).abs() < 1e-15, "{points:?}");
         }
-        let weights = rule(3).weights();
+        let weights = rule.weights();
         assert!((weights[2] - 1.0 / 9.0).abs() < 1e-15, "{weights:?}");
     }
 
@@ -177,13 +134,14 @@ mod tests {
     #[test]
     fn polynomials_are_exact() {
         for degree in 1..=HIGHEST_DEGREE {
-            let rule = rule(degree);
+            let rule = Rule::new(degree);
             let power = i32::try_from(degree).unwrap();
             for j in 1..=degree {
                 let slope: f64 = rule
-                    .slope(j)
+                    .slopes
+                    .column(j - 1)
                     .iter()
-                    .zip(&rule.points)
+                    .zip(rule.points.iter())
                     .map(|(share, point)| share * point.powi(power))
                     .sum();
                 let exact = f64::from(power) * rule.points[j].powi(power - 1);
@@ -195,7 +153,7 @@ mod tests {
             let integral = |power: i32| {
                 rule.weights()
                     .iter()
-                    .zip(&rule.points[1..])
+                    .zip(rule.points.iter().skip(1))
                     .map(|(weight, point)| weight * point.powi(power))
                     .sum::<f64>()
             };
@@ -208,16 +166,15 @@ mod tests {
 
     #[test]
     fn interpolation_runs_through_the_points() {
-        let mut shares = NO_SHARES;
-        let rule = rule(7);
-        rule.shares(0.3, &mut shares);
+        let rule = Rule::new(7);
+        let shares = rule.shares(0.3);
         let value: f64 = shares
             .iter()
-            .zip(&rule.points)
+            .zip(rule.points.iter())
             .map(|(share, point)| share * point.powi(7))
             .sum();
         assert!((value - 0.3_f64.powi(7)).abs() < 1e-14);
-        rule.shares(rule.points[4], &mut shares);
+        let shares = rule.shares(rule.points[4]);
         assert!((shares[4] - 1.0).abs() < 1e-15 && shares[3].abs() < 1e-15);
     }
 }

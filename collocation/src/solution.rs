@@ -1,17 +1,21 @@
 //! What direct collocation returns: the quarter gait with its costates, its active bounds, and what it was checked against.
 
-use nalgebra::Vector2;
+use gait_optimizer::region::Bound;
+use nalgebra::{DMatrix, Matrix2xX, Vector2};
 use swimmer_files::{AnyGait, ArcKind};
+use swimmer_model::Model;
 
 use super::mesh::Mesh;
 use super::newton::Optimum;
 use super::reintegration::Reintegration;
-use super::walls::Wall;
-use super::{ACTIVE, ACTIVE_AT_ALL, CollocationProblem, lighthill, lighthill_of};
-use super::{CollocationError, QuarterGuess};
+use super::{CollocationError, QuarterGuess, lighthill};
 
 /// Samples of a quarter as a gait.
 const SAMPLES: usize = 256;
+/// Share of the largest multiplier of a bound above which it counts as active.
+const ACTIVE: f64 = 1e-3;
+/// Multiplier density below which no bound is active, in an objective of order one.
+const ACTIVE_AT_ALL: f64 = 1e-6;
 
 /// One point of the solution. The costates are those of the paper's section V, for J = `x_f²/E_f` made greatest, by the
 /// covector mapping from the multipliers of the discretised equations.
@@ -45,25 +49,6 @@ pub struct BoundArc {
     pub to: f64,
 }
 
-/// One mesh of the refinement.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MeshRound {
-    /// Elements.
-    pub elements: usize,
-    /// Points, the first included.
-    pub nodes: usize,
-    /// Largest error of an element: θ \[rad\], x over `x_f`, E over `E_f`, integrated again.
-    pub error: f64,
-    /// Largest |P/`E_f` − 1| between nodes.
-    pub uneven_power: f64,
-    /// Largest overstepping of a bound between nodes, in rad, or over L for the distance of links.
-    pub overstepped: f64,
-    /// ξ.
-    pub efficiency: f64,
-    /// Newton steps.
-    pub iterations: usize,
-}
-
 /// A collocated optimum.
 #[derive(Debug, Clone)]
 pub struct CollocationSolution {
@@ -82,25 +67,18 @@ pub struct CollocationSolution {
     /// How often the direction turns round in a whole cycle: 1 for a simple counter-clockwise curve. Others are optima too,
     /// of curves with loops, in which displacement is not worth much.
     pub turning_number: f64,
-    /// Each mesh that was solved; the last is that of the solution.
-    pub rounds: Vec<MeshRound>,
-    /// Largest last Newton step \[rad\].
-    pub last_step: f64,
+    /// Largest overstepping of a bound between nodes, in rad, or over L for the distance of links.
+    pub overstepped: f64,
+    /// Newton steps.
+    pub iterations: usize,
+    pub(crate) phi: Matrix2xX<f64>,
     pub(crate) mesh: Mesh,
 }
 
 impl CollocationSolution {
     /// Joint angles at a time 0 … 1, on the solution's own polynomials.
     pub fn phi(&self, t: f64) -> Vector2<f64> {
-        let Some(element) = self.mesh.holding(t) else {
-            return Vector2::zeros();
-        };
-        let phi: Vec<Vector2<f64>> = self
-            .nodes
-            .iter()
-            .map(|node| Vector2::new(node.state[0], node.state[1]))
-            .collect();
-        element.shape(&phi, t)
+        self.mesh.shape(&self.phi, t)
     }
 
     /// The quarter as a guess for another problem, such as a neighbouring bound.
@@ -140,95 +118,81 @@ impl CollocationSolution {
             problem: "its samples make no closed curve",
         })
     }
-
-    /// Newton steps on all meshes together.
-    pub fn iterations(&self) -> usize {
-        self.rounds.iter().map(|round| round.iterations).sum()
-    }
-
-    /// Largest error of an element of the last mesh, integrated again.
-    pub fn error(&self) -> f64 {
-        self.rounds.last().map_or(f64::NAN, |round| round.error)
-    }
 }
 
 pub(crate) fn finish(
-    problem: &CollocationProblem<'_>,
-    mesh: &Mesh,
-    walls: &[Wall],
+    model: &Model<f64>,
+    mesh: Mesh,
+    walls: &[Bound],
     optimum: Optimum,
     again: &Reintegration,
-    rounds: Vec<MeshRound>,
 ) -> CollocationSolution {
     let Optimum {
         path,
         multipliers,
         lambda_theta,
-        last_step,
-        ..
+        iterations,
     } = optimum;
-    let along = path.travelled(mesh);
+    let along = path.travelled(&mesh);
     let (x, energy) = (path.final_x, path.final_energy);
     // J = exp(−objective): its costates are those of the objective times −J.
     let merit = x * x / energy;
     let (of_x, of_energy) = (2.0 * x / energy, -merit / energy);
     let mut nodes: Vec<CollocationNode> = (0..mesh.len())
         .map(|point| {
-            let node = &path.nodes[point];
-            let phi = path.phi[point];
-            let of_theta = of_x * lambda_theta[point];
+            let (phi, control) = (
+                path.phi.column(point).into_owned(),
+                path.control.column(point),
+            );
             // H_u = 0, which the multipliers of φ̇ = u obey at every node.
-            let carry = nalgebra::Vector3::new(of_x * node.cos, -of_x * node.sin, of_theta);
+            let carry = path.carry(point, lambda_theta[point]) * of_x;
+            let physics = &path.physics[point];
             let of_phi =
-                -(node.connection.tr_mul(&carry) + node.power * node.rate * (2.0 * of_energy));
+                -(physics.connection.tr_mul(&carry) + physics.power * control * (2.0 * of_energy));
             let mut force = Vector2::zeros();
-            for (wall, multiplier) in walls.iter().zip(&multipliers[point * walls.len()..]) {
-                force -= wall.margin(&phi).gradient * (multiplier * merit);
+            for (wall, multiplier) in walls.iter().zip(&multipliers.column(point)) {
+                force -= wall.smooth_level(&phi).gradient * (multiplier * merit);
             }
             CollocationNode {
                 t: mesh.times[point],
-                state: [phi.x, phi.y, along[point][0], node.theta, along[point][2]],
-                control: node.rate.into(),
-                costate: [of_phi.x, of_phi.y, of_x, of_theta, of_energy],
+                state: [
+                    phi.x,
+                    phi.y,
+                    along[(0, point)],
+                    path.theta[point],
+                    along[(2, point)],
+                ],
+                control: control.into_owned().into(),
+                costate: [of_phi.x, of_phi.y, of_x, carry.z, of_energy],
                 bound_force: force.into(),
                 y: again.y[point],
             }
         })
         .collect();
-    extrapolate_first(mesh, &mut nodes);
-    let rounds_efficiency = lighthill(problem.model, &path);
+    // At t = 0 on the polynomials of the first element's nodes.
+    let shares = mesh.rule.shares_at_start();
+    let (first, later) = nodes.split_at_mut(1);
+    let at_start = |of: &dyn Fn(&CollocationNode) -> f64| -> f64 {
+        later
+            .iter()
+            .zip(&shares)
+            .map(|(node, share)| share * of(node))
+            .sum()
+    };
+    first[0].control = [0, 1].map(|i| at_start(&|node| node.control[i]));
+    first[0].costate = [0, 1, 2, 3, 4].map(|i| at_start(&|node| node.costate[i]));
     CollocationSolution {
         turning_number: turning_number(&nodes),
         bound_arcs: bound_arcs(&nodes, walls, &multipliers),
         nodes,
         final_x: x,
         final_energy: energy,
-        efficiency: rounds_efficiency,
-        efficiency_again: lighthill_of(problem.model, again.final_x, again.final_energy),
-        rounds,
-        last_step,
-        mesh: mesh.clone(),
-    }
-}
-
-/// Control and costates at t = 0 on the polynomials of the first element's nodes.
-fn extrapolate_first(mesh: &Mesh, nodes: &mut [CollocationNode]) {
-    let Some(element) = mesh.elements.first() else {
-        return;
-    };
-    let mut shares = super::radau::NO_SHARES;
-    element.rule.rate_shares(0.0, &mut shares);
-    let (mut control, mut costate) = ([0.0; 2], [0.0; 5]);
-    for (node, share) in nodes.iter().zip(shares).skip(1) {
-        for (sum, value) in control.iter_mut().zip(node.control) {
-            *sum += share * value;
-        }
-        for (sum, value) in costate.iter_mut().zip(node.costate) {
-            *sum += share * value;
-        }
-    }
-    if let Some(first) = nodes.first_mut() {
-        (first.control, first.costate) = (control, costate);
+        efficiency: lighthill(model, x, energy),
+        efficiency_again: lighthill(model, again.final_x, again.final_energy),
+        overstepped: again.overstepped,
+        iterations,
+        phi: path.phi,
+        mesh,
     }
 }
 
@@ -245,20 +209,23 @@ fn turning_number(nodes: &[CollocationNode]) -> f64 {
 }
 
 /// Runs of nodes with an active multiplier.
-fn bound_arcs(nodes: &[CollocationNode], walls: &[Wall], multipliers: &[f64]) -> Vec<BoundArc> {
-    let count = walls.len();
+fn bound_arcs(
+    nodes: &[CollocationNode],
+    walls: &[Bound],
+    multipliers: &DMatrix<f64>,
+) -> Vec<BoundArc> {
     let mut arcs: Vec<BoundArc> = Vec::new();
     for (k, wall) in walls.iter().enumerate() {
-        let multiplier = |point: usize| multipliers[point * count + k];
-        let largest = (0..nodes.len()).map(multiplier).fold(0.0, f64::max);
+        let multipliers = multipliers.row(k);
+        let largest = multipliers.max();
         let mut open: Option<BoundArc> = None;
-        for (point, node) in nodes.iter().enumerate() {
-            if largest < ACTIVE_AT_ALL || multiplier(point) < ACTIVE * largest {
+        for (node, &multiplier) in nodes.iter().zip(multipliers.iter()) {
+            if largest < ACTIVE_AT_ALL || multiplier < ACTIVE * largest {
                 arcs.extend(open.take());
                 continue;
             }
             let normal = -wall
-                .margin(&Vector2::new(node.state[0], node.state[1]))
+                .smooth_level(&Vector2::new(node.state[0], node.state[1]))
                 .gradient
                 .normalize();
             open.get_or_insert(BoundArc {

@@ -17,7 +17,6 @@ pub enum CollocationError {
     NoStart { branch: Branch },
     Polish(EfficiencyError),
     Spurious { efficiency: f64, again: f64, points: usize },
-    NotResolved { points: usize, error: f64, uneven_power: f64, tolerance: f64 },
 }
 impl From<InvalidProblem> for CollocationError {}
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +35,6 @@ pub struct CollocationProblem<'a> {
     pub sign: f64,
     pub elements: usize,
     pub degree: usize,
-    pub tolerance: f64,
 }
 impl<'a> CollocationProblem<'a> {
     pub fn new(model: &'a Model<f64>, sign: f64) -> Self {}
@@ -52,25 +50,13 @@ pub struct CollocationSolution {
     pub efficiency: f64,
     pub efficiency_again: f64,
     pub turning_number: f64,
-    pub rounds: Vec<MeshRound>,
-    pub last_step: f64,
+    pub overstepped: f64,
+    pub iterations: usize,
 }
 impl CollocationSolution {
     pub fn phi(&self, t: f64) -> Vector2<f64> {}
     pub fn guess(&self) -> Result<QuarterGuess, CollocationError> {}
     pub fn gait(&self) -> Result<AnyGait, CollocationError> {}
-    pub fn iterations(&self) -> usize {}
-    pub fn error(&self) -> f64 {}
-}
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MeshRound {
-    pub elements: usize,
-    pub nodes: usize,
-    pub error: f64,
-    pub uneven_power: f64,
-    pub overstepped: f64,
-    pub efficiency: f64,
-    pub iterations: usize,
 }
 #[derive(Debug, Clone, PartialEq)]
 pub struct QuarterGuess {}
@@ -78,7 +64,6 @@ impl QuarterGuess {
     pub fn from_samples(samples: &[(f64, [f64; 2])]) -> Result<Self, CollocationError> {}
     pub fn from_gait<G: Gait<f64>>(gait: &G) -> Result<Self, CollocationError> {}
     pub fn circle(amplitude: f64) -> Result<Self, CollocationError> {}
-    pub fn fourier(coefficients: &[[f64; 2]]) -> Result<Self, CollocationError> {}
 }
 pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, CollocationError> {}
 pub fn solve(

@@ -1,0 +1,83 @@
+//! What is stiff in Newton's equation: the energy of straight steps from point to point, and the walls. Linear elements
+//! precondition polynomials of any degree alike (M. O. Deville, E. H. Mund, *Finite-element preconditioning for pseudospectral
+//! solutions of elliptic problems*, SIAM J. Sci. Stat. Comput. 11 (1990)).
+
+use nalgebra::{Matrix2, Matrix2xX, Vector2};
+
+use crate::guess::bind_ends;
+use crate::mesh::Mesh;
+use crate::path::Path;
+
+/// How much stiffer than the energy's the ends are held on their lines.
+const HELD: f64 = 1e6;
+
+/// A chain of blocks: neighbours are coupled by minus `links`.
+#[derive(Debug)]
+pub(super) struct Preconditioner {
+    blocks: Vec<Matrix2<f64>>,
+    links: Vec<Matrix2<f64>>,
+}
+
+impl Preconditioner {
+    pub(super) fn new(path: &Path, mesh: &Mesh) -> Self {
+        let power = |point: usize| path.physics[point].power / path.final_energy;
+        let last = mesh.len() - 1;
+        let links: Vec<_> = (0..last)
+            .map(|point| {
+                let step = mesh.times[point + 1] - mesh.times[point];
+                (power(point) + power(point + 1)) / step
+            })
+            .collect();
+        let mut blocks: Vec<_> = (0..=last)
+            .map(|point| power(point) * mesh.weights[point])
+            .collect();
+        for (point, link) in links.iter().enumerate() {
+            blocks[point] += link;
+            blocks[point + 1] += link;
+        }
+        for (point, across) in [(0, Vector2::new(1.0, -1.0)), (last, Vector2::new(1.0, 1.0))] {
+            let held = HELD * blocks[point].trace();
+            blocks[point] += across * across.transpose() * held;
+        }
+        Self { blocks, links }
+    }
+
+    /// Adds to the block of a point.
+    pub(super) fn stiffen(&mut self, point: usize, by: &Matrix2<f64>) {
+        self.blocks[point] += by;
+    }
+
+    /// Makes each block the inverse of what is left of it once all before are eliminated.
+    pub(super) fn factor(&mut self) {
+        for point in 0..self.blocks.len() {
+            if point > 0 {
+                let link = self.links[point - 1];
+                let gone = link * self.blocks[point - 1] * link;
+                self.blocks[point] -= gone;
+            }
+            let inverse = self.blocks[point].try_inverse();
+            self.blocks[point] = inverse.unwrap_or_else(Matrix2::zeros);
+        }
+    }
+
+    /// Solves for a right-hand side after [`Self::factor`].
+    pub(super) fn solve(&self, right: &Matrix2xX<f64>) -> Matrix2xX<f64> {
+        let mut solution = right.clone();
+        for (point, link) in self.links.iter().enumerate() {
+            let carried = link * (self.blocks[point] * solution.column(point));
+            let mut next = solution.column_mut(point + 1);
+            next += carried;
+        }
+        let mut after = Vector2::zeros();
+        for (point, block) in self.blocks.iter().enumerate().rev() {
+            let known = self
+                .links
+                .get(point)
+                .map_or_else(Vector2::zeros, |link| link * after);
+            after = block * (solution.column(point) + known);
+            solution.set_column(point, &after);
+        }
+        bind_ends(&mut solution);
+        solution
+    }
+}
