@@ -33,12 +33,8 @@ pub(crate) struct Basis {
 enum Kind {
     /// 1, cos 2πu, sin 2πu, cos 4πu, …
     Fourier { order: usize },
-    /// Uniform cubic B-splines, one a panel.
-    #[allow(
-        dead_code,
-        reason = "the local basis, for finer curves than a series can hold"
-    )]
-    Spline,
+    /// cos s, sin s, cos 3s, sin 3s, … over a quarter of the cycle, s = 0 … π/2.
+    Quarter { order: usize },
 }
 
 impl Basis {
@@ -47,13 +43,10 @@ impl Basis {
         Self::tabulated(Kind::Fourier { order }, 2 * order + 1, panels)
     }
 
-    /// A closed cubic spline whose knots are the panels' ends.
-    #[allow(
-        dead_code,
-        reason = "the local basis, for finer curves than a series can hold"
-    )]
-    pub(crate) fn spline(panels: usize) -> Self {
-        Self::tabulated(Kind::Spline, panels, panels)
+    /// The odd part of a series over a quarter of the cycle, which u then runs over: what the paper's two symmetries leave, and what
+    /// they tie together besides (φ₁ = φ₂ in the cosines, φ₁ = −φ₂ in the sines).
+    pub(crate) fn quarter(order: usize, panels: usize) -> Self {
+        Self::tabulated(Kind::Quarter { order }, 2 * order, panels)
     }
 
     fn tabulated(kind: Kind, functions: usize, panels: usize) -> Self {
@@ -97,30 +90,18 @@ impl Basis {
     /// ∮(b′)² du of a function, that of the slowest for a constant: how much it lengthens a curve. Steps are damped in
     /// proportion.
     pub(crate) fn roughness(&self, function: usize) -> f64 {
-        match self.kind {
-            Kind::Fourier { .. } => {
-                let rate = std::f64::consts::TAU * function.div_ceil(2).max(1) as f64;
-                0.5 * rate * rate
-            }
-            Kind::Spline => self.panels as f64 * 2.0 / 3.0,
-        }
+        let rate = match self.kind {
+            Kind::Fourier { .. } => std::f64::consts::TAU * function.div_ceil(2).max(1) as f64,
+            Kind::Quarter { .. } => std::f64::consts::FRAC_PI_2 * (function | 1) as f64,
+        };
+        0.5 * rate * rate
     }
 
-    /// Turns the curve round: the same points, run backwards from the same start.
+    /// Turns a closed curve round: the same points, run backwards from the same start.
     pub(crate) fn reverse(&self, coefficients: &mut DMatrix<f64>) {
-        match self.kind {
-            Kind::Fourier { order } => {
-                for k in 1..=order {
-                    let mut sine = coefficients.column_mut(2 * k);
-                    sine.neg_mut();
-                }
-            }
-            Kind::Spline => {
-                let mirrored = DMatrix::from_fn(2, self.panels, |row, j| {
-                    coefficients[(row, (self.panels - j) % self.panels)]
-                });
-                coefficients.copy_from(&mirrored);
-            }
+        for k in (2..self.functions()).step_by(2) {
+            let mut sine = coefficients.column_mut(k);
+            sine.neg_mut();
         }
     }
 
@@ -150,33 +131,11 @@ impl Basis {
                     }
                 }
             }
-            Kind::Spline => {
-                out.fill((0.0, 0.0));
-                let place = (u - u.floor()) * self.panels as f64;
-                #[allow(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "0 <= place <= panels"
-                )]
-                let (panel, t) = ((place as usize).min(self.panels - 1), place.fract());
-                let rest = 1.0 - t;
-                let pieces = [
-                    (rest * rest * rest / 6.0, -rest * rest / 2.0),
-                    (
-                        (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
-                        (3.0 * t * t - 4.0 * t) / 2.0,
-                    ),
-                    (
-                        (-3.0 * t * t * t + 3.0 * t * t + 3.0 * t + 1.0) / 6.0,
-                        (-3.0 * t * t + 2.0 * t + 1.0) / 2.0,
-                    ),
-                    (t * t * t / 6.0, t * t / 2.0),
-                ];
-                for (shift, (value, slope)) in pieces.into_iter().enumerate() {
-                    let function = (panel + self.panels + shift - 1) % self.panels;
-                    if let Some(entry) = out.get_mut(function) {
-                        *entry = (value, slope * self.panels as f64);
-                    }
+            Kind::Quarter { order } => {
+                for (n, pair) in out.chunks_exact_mut(2).take(order).enumerate() {
+                    let rate = std::f64::consts::FRAC_PI_2 * (2 * n + 1) as f64;
+                    let (sin, cos) = (rate * u).sin_cos();
+                    pair.copy_from_slice(&[(cos, -rate * sin), (sin, rate * cos)]);
                 }
             }
         }

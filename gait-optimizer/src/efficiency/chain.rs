@@ -3,9 +3,7 @@
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use super::fourier::{
-    Ends, Grid, Maximum, Objective, best_circles, best_ellipses, climb, raised, series,
-};
+use super::fourier::{Ends, Maximum, Objective, best_circles, best_ellipses, climb, series};
 use super::{Branch, EfficiencyError, Method};
 use crate::certificate::crossings;
 use crate::extremal::guess::quarter_of_curve;
@@ -25,32 +23,30 @@ pub(crate) struct Found {
 
 /// Joint angles beyond this are not followed \[rad\].
 const FARTHEST: f64 = 9.0;
-/// Weight of constant speed in the Fourier objective: enough to make the Hessian regular.
-const GAUGE: f64 = 0.01;
-/// Orders that lead to shooting, the nodes of the quarter's grid, the gain that a climb stops at, and the numbers of pieces
+/// Orders that lead to shooting, the panels of the quarter, the gain that a climb stops at, and the numbers of pieces
 /// that are shot from there.
 const BRIDGES: [(usize, usize, f64, &[usize]); 8] = [
-    (1, 24, 1e-6, &[]),
-    (2, 24, 1e-6, &[]),
-    (3, 32, 1e-6, &[]),
-    (4, 40, 1e-7, &[8, 16]),
-    (6, 64, 1e-8, &[8, 16]),
-    (9, 64, 1e-9, &[8, 16]),
-    (13, 96, 1e-9, &[8, 16]),
-    (18, 96, 1e-10, &[16, 32]),
+    (1, 8, 1e-6, &[]),
+    (2, 8, 1e-6, &[]),
+    (3, 11, 1e-6, &[]),
+    (4, 14, 1e-7, &[8, 16]),
+    (6, 22, 1e-8, &[8, 16]),
+    (9, 22, 1e-9, &[8, 16]),
+    (13, 32, 1e-9, &[8, 16]),
+    (18, 32, 1e-10, &[16, 32]),
 ];
-/// Orders of the pure Fourier method, with their grids and gains.
+/// Orders of the pure Fourier method, with their panels and gains.
 const ORDERS: [(usize, usize, f64); 10] = [
-    (1, 48, 1e-4),
-    (2, 48, 1e-4),
-    (3, 48, 1e-6),
-    (4, 64, 1e-8),
-    (6, 64, 1e-10),
-    (9, 96, 1e-12),
-    (13, 96, 1e-14),
-    (18, 96, 1e-15),
-    (24, 128, 1e-15),
-    (32, 128, 1e-15),
+    (1, 16, 1e-4),
+    (2, 16, 1e-4),
+    (3, 16, 1e-6),
+    (4, 22, 1e-8),
+    (6, 22, 1e-10),
+    (9, 32, 1e-12),
+    (13, 32, 1e-14),
+    (18, 32, 1e-15),
+    (24, 43, 1e-15),
+    (32, 43, 1e-15),
 ];
 /// Pieces that a settled series is shot in.
 const SETTLED_PIECES: usize = 8;
@@ -60,12 +56,11 @@ const SAME_GAIT: std::ops::Range<f64> = 1.0 - 1e-5..1.05;
 
 /// Starts for a branch: coefficients of order 1.
 pub(crate) fn starts(model: &Model<f64>, branch: Branch) -> Result<Vec<[f64; 2]>, EfficiencyError> {
-    let grid = Grid::new(32);
-    let circles = best_circles(model, &grid, branch.sign());
+    let circles = best_circles(model, branch.sign());
     if !circles.is_empty() {
         return Ok(circles.into_iter().map(|a| [a, a]).collect());
     }
-    let (ellipses, best) = best_ellipses(model, &grid, branch.sign());
+    let (ellipses, best) = best_ellipses(model, branch.sign());
     if ellipses.is_empty() {
         return Err(EfficiencyError::NoStart { branch, best });
     }
@@ -80,8 +75,8 @@ pub(crate) fn by_shooting(
 ) -> Result<Found, EfficiencyError> {
     let mut ladder = Ladder::new(model, branch, start);
     let (mut last, mut saddle) = (None, None);
-    for (order, nodes, gain, bridges) in BRIDGES {
-        let maximum = ladder.climb_to(order, nodes, gain)?;
+    for (order, panels, gain, bridges) in BRIDGES {
+        let maximum = ladder.climb_to(order, panels, gain)?;
         for &pieces in bridges {
             if let Some(extremal) = shot(model, &maximum, pieces) {
                 // Newton's method takes saddles as well.
@@ -133,8 +128,8 @@ pub(crate) fn by_fourier(
 ) -> Result<Found, EfficiencyError> {
     let mut ladder = Ladder::new(model, branch, start);
     let mut last: Option<(usize, Maximum)> = None;
-    for (order, nodes, gain) in ORDERS {
-        let maximum = ladder.climb_to(order, nodes, gain)?;
+    for (order, panels, gain) in ORDERS {
+        let maximum = ladder.climb_to(order, panels, gain)?;
         let settled = last.as_ref().is_some_and(|(_, before)| {
             (maximum.value.efficiency() / before.value.efficiency() - 1.0).abs() < 1e-8
         });
@@ -182,21 +177,17 @@ impl<'a> Ladder<'a> {
     fn climb_to(
         &mut self,
         order: usize,
-        nodes: usize,
+        panels: usize,
         least_gain: f64,
     ) -> Result<Maximum, EfficiencyError> {
-        let grid = Grid::new(nodes);
-        let objective = Objective {
-            model: self.model,
-            grid: &grid,
-            gauge: GAUGE,
-        };
-        let from = raised(&self.coefficients, order);
+        let mut objective = Objective::new(self.model, order, panels);
+        let mut from = self.coefficients.clone();
+        from.resize(2 * order, 0.0);
         let ends = Ends {
             least_gain,
             farthest: FARTHEST,
         };
-        let maximum = climb(&objective, &from, ends).ok_or(EfficiencyError::RunsAway {
+        let maximum = climb(&mut objective, &from, ends).ok_or(EfficiencyError::RunsAway {
             branch: self.branch,
             amplitude: self.amplitude,
             order,

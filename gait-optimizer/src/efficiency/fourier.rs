@@ -1,15 +1,15 @@
 //! Efficiency gaits as symmetric truncated Fourier series of any order (paper, Appendix C).
 
 mod ascent;
-mod grid;
 mod objective;
 
 use swimmer_model::Model;
 
 pub(crate) use ascent::{Ends, Maximum, climb};
-pub(crate) use grid::Grid;
 pub(crate) use objective::{Objective, series};
 
+/// Panels of the quarter that circles and ellipses are looked at in.
+const PANELS: usize = 11;
 /// Circles of these amplitudes are tried first \[rad\].
 const AMPLITUDES: (f64, f64, usize) = (0.3, 4.6, 44);
 
@@ -17,12 +17,8 @@ const AMPLITUDES: (f64, f64, usize) = (0.3, 4.6, 44);
 const ELLIPSES: usize = 18;
 
 /// Amplitudes where circles have a local maximum of X/S with this sign of X, in order.
-pub(crate) fn best_circles(model: &Model<f64>, grid: &Grid, sign: f64) -> Vec<f64> {
-    let objective = Objective {
-        model,
-        grid,
-        gauge: 0.0,
-    };
+pub(crate) fn best_circles(model: &Model<f64>, sign: f64) -> Vec<f64> {
+    let mut objective = Objective::new(model, 1, PANELS);
     let (low, high, count) = AMPLITUDES;
     let amplitude = |i: usize| low + (high - low) * i as f64 / (count - 1) as f64;
     let worth: Vec<f64> = (0..count)
@@ -42,12 +38,8 @@ pub(crate) fn best_circles(model: &Model<f64>, grid: &Grid, sign: f64) -> Vec<f6
 
 /// Half axes of ellipses where X/S with this sign of X has a local maximum over both, in order of size, and the largest
 /// |X|/S seen: for swimmers whose circles have none.
-pub(crate) fn best_ellipses(model: &Model<f64>, grid: &Grid, sign: f64) -> (Vec<[f64; 2]>, f64) {
-    let objective = Objective {
-        model,
-        grid,
-        gauge: 0.0,
-    };
+pub(crate) fn best_ellipses(model: &Model<f64>, sign: f64) -> (Vec<[f64; 2]>, f64) {
+    let mut objective = Objective::new(model, 1, PANELS);
     let (low, high, _) = AMPLITUDES;
     let axis = |i: usize| low + (high - low) * i as f64 / (ELLIPSES - 1) as f64;
     let worth: Vec<Vec<f64>> = (0..ELLIPSES)
@@ -78,52 +70,34 @@ pub(crate) fn best_ellipses(model: &Model<f64>, grid: &Grid, sign: f64) -> (Vec<
     (found, best)
 }
 
-/// The coefficients of a series of higher order that is the same curve.
-pub(crate) fn raised(coefficients: &[f64], order: usize) -> Vec<f64> {
-    let (a, b) = coefficients.split_at(coefficients.len() / 2);
-    let mut raised = vec![0.0; 2 * order];
-    let (new_a, new_b) = raised.split_at_mut(order);
-    for (new, old) in new_a.iter_mut().zip(a).chain(new_b.iter_mut().zip(b)) {
-        *new = *old;
-    }
-    raised
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use swimmer_model::Swimmer;
 
-    /// Gradient and Hessian against central differences, with and without the gauge.
+    /// Gradient and Hessian against central differences.
     #[test]
     fn derivatives_are_exact() {
         let model = Model::new(&Swimmer::robot().of_unit_length()).unwrap();
-        let grid = Grid::new(48);
-        let here = [1.9, 0.2, -0.05, 1.4, 0.3, 0.08];
-        for gauge in [0.0, 0.3] {
-            let objective = Objective {
-                model: &model,
-                grid: &grid,
-                gauge,
+        let here = [1.9, 1.4, 0.2, 0.3, -0.05, 0.08];
+        let mut objective = Objective::new(&model, 3, 16);
+        let expansion = objective.expansion(&here);
+        let value = objective.value(&here);
+        assert!((expansion.value.objective - value.objective).abs() < 1e-13);
+        assert!((expansion.value.x - value.x).abs() < 1e-14);
+        let h = 1e-5;
+        for i in 0..here.len() {
+            let mut moved = |h: f64| {
+                let mut moved = here;
+                moved[i] += h;
+                objective.expansion(&moved)
             };
-            let expansion = objective.expansion(&here);
-            let value = objective.value(&here);
-            assert!((expansion.value.objective - value.objective).abs() < 1e-13);
-            assert!((expansion.value.x - value.x).abs() < 1e-14);
-            let h = 1e-5;
-            for i in 0..here.len() {
-                let moved = |h: f64| {
-                    let mut moved = here;
-                    moved[i] += h;
-                    objective.expansion(&moved)
-                };
-                let (up, down) = (moved(h), moved(-h));
-                let slope = (up.value.objective - down.value.objective) / (2.0 * h);
-                assert!((slope - expansion.gradient[i]).abs() < 1e-8, "{i}");
-                for j in 0..here.len() {
-                    let bend = (up.gradient[j] - down.gradient[j]) / (2.0 * h);
-                    assert!((bend - expansion.hessian[(i, j)]).abs() < 1e-7, "{i} {j}");
-                }
+            let (up, down) = (moved(h), moved(-h));
+            let slope = (up.value.objective - down.value.objective) / (2.0 * h);
+            assert!((slope - expansion.gradient[i]).abs() < 1e-8, "{i}");
+            for j in 0..here.len() {
+                let bend = (up.gradient[j] - down.gradient[j]) / (2.0 * h);
+                assert!((bend - expansion.hessian[(i, j)]).abs() < 1e-7, "{i} {j}");
             }
         }
     }

@@ -25,7 +25,7 @@ pub(crate) struct Ends {
 }
 
 /// Climbs from these coefficients; X keeps its sign. None where the curve runs away or the climb does not end.
-pub(crate) fn climb(objective: &Objective<'_>, start: &[f64], ends: Ends) -> Option<Maximum> {
+pub(crate) fn climb(objective: &mut Objective<'_>, start: &[f64], ends: Ends) -> Option<Maximum> {
     let mut here = start.to_vec();
     let mut damping = 0.0_f64;
     for _ in 0..MOST_STEPS {
