@@ -1,16 +1,13 @@
-//! Gaussian elimination with row pivoting that skips zeros.
+//! Gaussian elimination with row pivoting that passes over zeros.
 //!
 //! The conditions of a chain couple neighbouring pieces, with a few columns (lengths) and rows (ends of a closed curve) that
-//! reach across. Kept in the order of the chain, few rows touch a column and their entries lie close together, so that the
-//! cost grows with the number of pieces and not with its cube.
+//! reach across. Kept in the order of the chain, few rows touch a column, so that the cost grows with the square of the number of
+//! pieces and not with its cube.
 
-/// A square system, row by row.
+/// A square system, row by row, with room for the right-hand side at the end of each.
 #[derive(Debug, Clone)]
 pub(crate) struct System {
-    size: usize,
-    /// Columns from here on are filled in every row (the lengths of the arcs).
-    border: usize,
-    entries: Vec<f64>,
+    rows: Vec<Vec<f64>>,
 }
 
 /// A solved system.
@@ -22,43 +19,29 @@ pub(crate) struct Eliminated {
 }
 
 impl System {
-    pub(crate) fn new(size: usize, border: usize) -> Self {
+    pub(crate) fn new(size: usize) -> Self {
         Self {
-            size,
-            border: border.min(size),
-            entries: vec![0.0; size * size],
+            rows: vec![vec![0.0; size + 1]; size],
         }
     }
 
     /// Adds to an entry; one that does not exist is left alone.
     pub(crate) fn add(&mut self, row: usize, column: usize, value: f64) {
-        if row < self.size
-            && column < self.size
-            && let Some(entry) = self.entries.get_mut(row * self.size + column)
-        {
+        if let Some(entry) = self.rows.get_mut(row).and_then(|row| row.get_mut(column)) {
             *entry += value;
         }
     }
 
     /// Solves for a right-hand side; none where a pivot vanishes or is not finite.
     pub(crate) fn solve(&self, right: &[f64]) -> Option<Eliminated> {
-        let (size, border) = (self.size, self.border);
-        let mut rows: Vec<Row> = self
-            .entries
-            .chunks_exact(size.max(1))
-            .zip(right)
-            .map(|(entries, right)| Row::new(entries, border, *right))
-            .collect();
-        if rows.len() != size {
-            return None;
+        let (mut rows, size) = (self.rows.clone(), self.rows.len());
+        for (row, right) in rows.iter_mut().zip(right) {
+            row[size] = *right;
         }
         let mut orientation = 1.0;
         for column in 0..size {
-            let (pivot, largest) = rows
-                .iter()
-                .enumerate()
-                .skip(column)
-                .map(|(index, row)| (index, row.at(column).abs()))
+            let (pivot, largest) = (column..size)
+                .map(|row| (row, rows[row][column].abs()))
                 .max_by(|a, b| a.1.total_cmp(&b.1))?;
             if largest <= 0.0 || !largest.is_finite() {
                 return None;
@@ -69,73 +52,25 @@ impl System {
             }
             let (done, left) = rows.split_at_mut(column + 1);
             let top = done.last()?;
-            orientation *= top.at(column).signum();
-            for row in left.iter_mut().filter(|row| row.at(column) != 0.0) {
-                row.eliminate(top, column, border);
+            orientation *= top[column].signum();
+            for row in left.iter_mut().filter(|row| row[column] != 0.0) {
+                let factor = row[column] / top[column];
+                for (entry, above) in row.iter_mut().zip(top).skip(column) {
+                    *entry -= factor * above;
+                }
             }
         }
         let mut solution = vec![0.0; size];
         for (index, row) in rows.iter().enumerate().rev() {
-            let known = row
-                .entries
-                .iter()
-                .zip(&solution)
-                .skip(index + 1)
-                .map(|(entry, value)| entry * value);
-            let value = (row.right - known.sum::<f64>()) / row.at(index);
-            *solution.get_mut(index)? = value;
+            let known = row.iter().zip(&solution).skip(index + 1);
+            let known: f64 = known.map(|(entry, value)| entry * value).sum();
+            solution[index] = (row[size] - known) / row[index];
         }
-        solution
-            .iter()
-            .all(|value| value.is_finite())
-            .then_some(Eliminated {
-                solution,
-                orientation,
-            })
-    }
-}
-
-/// One row under elimination.
-struct Row {
-    entries: Vec<f64>,
-    /// Before the border, entries from here on are zero.
-    end: usize,
-    right: f64,
-}
-
-impl Row {
-    fn new(entries: &[f64], border: usize, right: f64) -> Self {
-        let filled = entries.iter().take(border).rposition(|&entry| entry != 0.0);
-        Self {
-            entries: entries.to_vec(),
-            end: filled.map_or(0, |last| last + 1),
-            right,
-        }
-    }
-
-    fn at(&self, column: usize) -> f64 {
-        self.entries.get(column).copied().unwrap_or(f64::NAN)
-    }
-
-    /// Takes off the multiple of the pivot's row that clears a column.
-    fn eliminate(&mut self, top: &Self, column: usize, border: usize) {
-        let factor = self.at(column) / top.at(column);
-        let mut clear = |from: usize, to: usize| {
-            if let (Some(own), Some(pivot)) =
-                (self.entries.get_mut(from..to), top.entries.get(from..to))
-            {
-                for (entry, other) in own.iter_mut().zip(pivot) {
-                    *entry -= factor * other;
-                }
-            }
-        };
-        clear(column, top.end.max(column));
-        clear(border.max(column), top.entries.len());
-        if let Some(entry) = self.entries.get_mut(column) {
-            *entry = 0.0;
-        }
-        self.end = self.end.max(top.end);
-        self.right -= factor * top.right;
+        let finite = solution.iter().all(|value| value.is_finite());
+        finite.then_some(Eliminated {
+            solution,
+            orientation,
+        })
     }
 }
 
@@ -171,7 +106,7 @@ mod tests {
             }
         }
         let right = DVector::from_fn(size, |_, _| next());
-        let mut system = System::new(size, 3 * blocks);
+        let mut system = System::new(size);
         for row in 0..size {
             for column in 0..size {
                 system.add(row, column, dense[(row, column)]);
@@ -187,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_singular_system_is_refused() {
-        let mut system = System::new(2, 2);
+        let mut system = System::new(2);
         system.add(0, 0, 1.0);
         system.add(1, 0, 2.0);
         assert!(system.solve(&[1.0, 2.0]).is_none());

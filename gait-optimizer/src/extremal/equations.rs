@@ -77,6 +77,8 @@ pub(crate) struct Turning {
     pub(crate) curvature: Vector3<f64>,
     /// √g.
     pub(crate) speed: f64,
+    /// A.
+    pub(crate) connection: Matrix3x2<f64>,
 }
 
 impl Turning {
@@ -96,6 +98,7 @@ impl Turning {
             gain: g / area,
             curvature: d.curvature(),
             speed: g.sqrt(),
+            connection: d.connection,
         }
     }
 }
@@ -107,15 +110,9 @@ pub(crate) fn rate(model: &Model<f64>, motion: &Motion, z: &State) -> [f64; RATE
     let e = Vector2::new(cos, sin);
     let (connection, turn, sigma) = match motion {
         Motion::Free => {
-            let d = model.first_derivatives(&phi);
-            let we = d.power * e;
-            let g = e.dot(&we);
-            let along = d.d_power.map(|w| w * e);
-            let bend = along[0] * e.x + along[1] * e.y;
-            let k = Vector2::new(0.5 * e.dot(&along[0]), 0.5 * e.dot(&along[1])) - bend;
-            let (area, sigma) = (det(&d.power), g.sqrt().recip());
-            let turn = (mu.dot(&d.curvature()) * g + sigma * turned(&we).dot(&k)) / area;
-            (d.connection, turn, sigma)
+            let local = Turning::at(model, &phi, z[2]);
+            let turn = local.plain + local.gain * mu.dot(&local.curvature);
+            (local.connection, turn, local.speed.recip())
         }
         Motion::Along(wall) => {
             let (connection, power) = model.connection_and_power(&phi);
@@ -259,7 +256,6 @@ fn free_turning(
 mod tests {
     use super::*;
     use crate::region::{Clearance, Edge, Piece};
-    use crate::runge_kutta::{Point, StepControl, advance};
     use swimmer_files::ArcKind;
     use swimmer_model::Swimmer;
 
@@ -310,76 +306,6 @@ mod tests {
                     }
                 }
             }
-        }
-    }
-
-    /// The same extremal by the paper's costate equations (section V) with λ₅ = −½: canonical momenta, pose carried
-    /// along, no curvature, no magnetic field.
-    #[test]
-    fn the_flow_is_the_papers_costate_system() {
-        for (model, z) in cases() {
-            let (theta, y, x) = (0.3_f64, 0.2, -0.4);
-            let (sin, cos) = theta.sin_cos();
-            let mu = momentum(&z);
-            // p and c from μ at this pose.
-            let p = Vector2::new(cos * mu.x - sin * mu.y, sin * mu.x + cos * mu.y);
-            let c = mu.z - p.x * y + p.y * x;
-            let (a, w) = model.connection_and_power(&shape(&z));
-            let e = Vector2::new(z[2].cos(), z[2].sin());
-            let u = e / e.dot(&(w * e)).sqrt();
-            // H = λ·u + μ·A u − ½ uᵀWu with H_u = 0.
-            let costate = w * u - a.transpose() * mu;
-            let body_momentum = |s: &[f64; 7]| {
-                let (sin, cos) = s[4].sin_cos();
-                Vector3::new(
-                    p.x * cos + p.y * sin,
-                    p.y * cos - p.x * sin,
-                    p.x * s[3] - p.y * s[2] + c,
-                )
-            };
-            let system = |s: &[f64; 7]| {
-                let phi = Vector2::new(s[0], s[1]);
-                let d = model.first_derivatives(&phi);
-                let mu = body_momentum(s);
-                let lambda = Vector2::new(s[5], s[6]);
-                let u = d.power.try_inverse().unwrap() * (lambda + d.connection.transpose() * mu);
-                let body = d.connection * u;
-                let (sin, cos) = s[4].sin_cos();
-                let force = |joint: usize| {
-                    -(mu.dot(&(d.d_connection[joint] * u)) - 0.5 * u.dot(&(d.d_power[joint] * u)))
-                };
-                [
-                    u.x,
-                    u.y,
-                    cos * body.x - sin * body.y,
-                    sin * body.x + cos * body.y,
-                    body.z,
-                    force(0),
-                    force(1),
-                ]
-            };
-            let control = StepControl {
-                tolerance: 1e-13,
-                longest: 0.1,
-            };
-            let start = [z[0], z[1], x, y, theta, costate.x, costate.y];
-            let there = advance(&system, Point::new(&system, start), 0.3, control).unwrap();
-            let reduced = |s: &[f64; RATES]| {
-                rate(&model, &Motion::Free, &[s[0], s[1], s[2], s[3], s[4], s[5]])
-            };
-            let start = [z[0], z[1], z[2], z[3], z[4], z[5], 0.0];
-            let here = advance(&reduced, Point::new(&reduced, start), 0.3, control).unwrap();
-            let mu = body_momentum(&there.z);
-            let gain = p.x * (there.z[2] - x) + p.y * (there.z[3] - y);
-            let expected = [there.z[0], there.z[1], mu.x, mu.y, mu.z, gain];
-            let found = [
-                here.z[0], here.z[1], here.z[3], here.z[4], here.z[5], here.z[6],
-            ];
-            for (a, b) in expected.iter().zip(&found) {
-                assert!((a - b).abs() < 1e-10, "{expected:?} {found:?}");
-            }
-            let kept = here.z[3].hypot(here.z[4]) - z[3].hypot(z[4]);
-            assert!(kept.abs() < 1e-11, "{kept}");
         }
     }
 }

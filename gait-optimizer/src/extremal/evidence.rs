@@ -193,3 +193,37 @@ impl Evidence {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extremal::flow::flowed;
+    use crate::extremal::shooting::{Entry, Stretch};
+    use swimmer_model::Swimmer;
+
+    /// An extremal of the reduced flow is one of the paper's costate equations: canonical momenta, pose carried along, no
+    /// curvature, no magnetic field.
+    #[test]
+    fn the_flow_is_the_papers_costate_system() {
+        for (swimmer, z) in [
+            (Swimmer::purcell(), [0.7, -1.3, 2.1, 3.0, -1.2, 0.4]),
+            (Swimmer::robot(), [-2.4, 1.1, -0.6, -12.0, 5.0, 1.7]),
+        ] {
+            let model = Model::new(&swimmer).unwrap();
+            let flow = |length| flowed(&model, &Motion::Free, &z, length).unwrap();
+            let chain = Chain {
+                arcs: vec![Stretch {
+                    motion: Motion::Free,
+                    entry: Entry::Smooth,
+                    pieces: 2,
+                    length: 0.6,
+                }],
+                states: vec![z, flow(0.3).0],
+            };
+            let evidence = follow(&model, &Walls::default(), &chain).unwrap();
+            assert!(evidence.off_extremal < 1e-10 && evidence.momentum < 1e-10);
+            let gain = momentum(&z).xy().dot(&evidence.displacement);
+            assert!((gain - flow(0.6).1).abs() < 1e-10, "{evidence:?}");
+        }
+    }
+}

@@ -7,7 +7,7 @@
 //! closed curve δθ must vanish at the end. On quarters both drop out. ν is piecewise linear, so the count is a bound from
 //! below that settles as the mesh gets finer.
 
-use nalgebra::{DMatrix, DVector, DVectorView, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 use swimmer_model::Model;
 
 use super::equations::{Motion, State, momentum, rate, shape};
@@ -170,7 +170,7 @@ pub(crate) fn ascent_directions(model: &Model<f64>, class: Class, chain: &Chain)
 /// How many eigenvalues are positive, to rounding.
 fn positive(form: &DMatrix<f64>) -> usize {
     // None at a maximum, which a factorisation shows sooner than the eigenvalues do.
-    if is_negative(form) {
+    if (-form).cholesky().is_some() {
         return 0;
     }
     let eigenvalues = form.clone().symmetric_eigenvalues();
@@ -179,25 +179,6 @@ fn positive(form: &DMatrix<f64>) -> usize {
         .iter()
         .filter(|&&value| value > 1e-12 * scale)
         .count()
-}
-
-/// Cholesky's factorisation of minus a form, row by row, so that its inner loop runs along memory.
-fn is_negative(form: &DMatrix<f64>) -> bool {
-    let mut rows: Vec<Vec<f64>> = Vec::with_capacity(form.nrows());
-    for i in 0..form.nrows() {
-        let mut row: Vec<f64> = Vec::with_capacity(i + 1);
-        for (j, other) in rows.iter().enumerate() {
-            let done = DVectorView::from_slice(&row, j).dot(&DVectorView::from_slice(other, j));
-            row.push((-form[(i, j)] - done) / other.last().copied().unwrap_or(f64::NAN));
-        }
-        let left = -form[(i, i)] - DVectorView::from_slice(&row, i).norm_squared();
-        if left.is_nan() || left <= 0.0 {
-            return false;
-        }
-        row.push(left.sqrt());
-        rows.push(row);
-    }
-    true
 }
 
 /// A form where a linear function vanishes: reflected so that the function is the last coordinate, which is dropped.

@@ -96,11 +96,7 @@ pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<So
             orientation = newton.orientation;
         }
         if residual <= TOLERANCE {
-            return Ok(Solved {
-                chain,
-                residual,
-                orientation,
-            });
+            break;
         }
         let step = newton.ok_or(Unsolved::Singular)?.solution;
         let norm = here.norm();
@@ -117,17 +113,10 @@ pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<So
                 break None;
             }
         };
-        match next {
-            Some(next) => (chain, here) = next,
-            None if residual <= ACCEPTED => {
-                return Ok(Solved {
-                    chain,
-                    residual,
-                    orientation,
-                });
-            }
-            None => return Err(Unsolved::Stuck { residual }),
-        }
+        let Some(next) = next else {
+            break;
+        };
+        (chain, here) = next;
     }
     let residual = here.largest();
     if residual <= ACCEPTED {

@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Vector2};
 use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Links;
 
-use crate::region::{Clearance, Edge, Piece, Region};
+use crate::region::{Bound, Clearance, Edge, Level, Piece, Region};
 
 /// A bound `value(Φ) ≤ 0` whose zero is a smooth curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,28 +29,27 @@ impl Wall {
         matches!(self, Self::Curved(_, Piece::Tips))
     }
 
+    /// The margin with its derivatives.
+    fn level(&self, phi: &Vector2<f64>) -> Level {
+        match self {
+            Self::Straight(edge) => Bound::Straight(*edge).level(phi),
+            Self::Curved(clearance, piece) => clearance.level(*piece, phi),
+        }
+    }
+
     /// How far beyond the bound a shape is, in rad or (between links) over L; negative inside.
     pub(crate) fn value(&self, phi: &Vector2<f64>) -> f64 {
-        match self {
-            Self::Straight(edge) => -edge.margin(phi),
-            Self::Curved(clearance, piece) => -clearance.level(*piece, phi).value,
-        }
+        -self.level(phi).value
     }
 
     /// Gradient of [`Wall::value`]; points out.
     pub(crate) fn gradient(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        match self {
-            Self::Straight(edge) => edge.normal,
-            Self::Curved(clearance, piece) => -clearance.level(*piece, phi).gradient,
-        }
+        -self.level(phi).gradient
     }
 
     /// Second derivatives of [`Wall::value`].
     pub(crate) fn hessian(&self, phi: &Vector2<f64>) -> Matrix2<f64> {
-        match self {
-            Self::Straight(_) => Matrix2::zeros(),
-            Self::Curved(clearance, piece) => -clearance.level(*piece, phi).hessian,
-        }
+        -self.level(phi).hessian
     }
 
     /// dψ over the arc length of a curve that keeps tangent to the bound.
@@ -171,8 +170,8 @@ impl Walls {
         };
         let region = Region::new(bounds, links);
         let clearance = region.bounds().find_map(|bound| match bound {
-            crate::region::Bound::Clearance(clearance) => Some(clearance),
-            crate::region::Bound::Straight(_) => None,
+            Bound::Clearance(clearance) => Some(clearance),
+            Bound::Straight(_) => None,
         });
         let both_ways = |edge: &&Edge| matches!(edge.kind, ArcKind::Upper | ArcKind::Clearance);
         Self {

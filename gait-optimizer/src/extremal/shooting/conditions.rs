@@ -18,10 +18,10 @@ pub(super) struct Equations {
 }
 
 impl Equations {
-    fn new(size: usize, lengths_from: usize) -> Self {
+    fn new(size: usize) -> Self {
         Self {
             residual: Vec::with_capacity(size),
-            jacobian: System::new(size, lengths_from),
+            jacobian: System::new(size),
             size,
         }
     }
@@ -86,7 +86,7 @@ pub(super) fn assemble(
 ) -> Option<Equations> {
     let count = chain.states.len();
     let lengths_from = STATE * count;
-    let mut equations = Equations::new(lengths_from + chain.arcs.len(), lengths_from);
+    let mut equations = Equations::new(lengths_from + chain.arcs.len());
     let mut maps = Vec::with_capacity(count);
     for (_, arc, state) in chain.pieces() {
         let share = arc.length / arc.pieces as f64;
