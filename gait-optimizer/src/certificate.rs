@@ -222,7 +222,7 @@ impl Certificate {
         }
         // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
         let curve = if region.has_diagonals() {
-            &trace.phi
+            &trace.samples.phi
         } else {
             &cycle.phi
         };

@@ -5,9 +5,10 @@
 mod trace;
 
 use nalgebra::Vector2;
-use swimmer_files::{AnyGait, GaitArc};
+use swimmer_files::{AnyGait, ArcKind, GaitArc};
 use swimmer_model::{InvalidSamples, Model, Stroke, Tolerance, crossing_share, swim};
 
+use crate::Arc;
 pub(crate) use trace::QuarterTrace;
 
 /// A full cycle, sampled.
@@ -21,16 +22,16 @@ pub(crate) struct Cycle {
     pub(crate) arcs: Vec<GaitArc>,
 }
 
-/// A quarter from φ₁ = φ₂ to φ₁ = −φ₂, sampled; places are fractions of it, 0 to 1, proportional to ∫√P.
-#[derive(Debug, Clone)]
-pub(crate) struct Quarter<'a> {
-    pub(crate) at: Vec<f64>,
-    pub(crate) phi: &'a [Vector2<f64>],
-    /// Corners inside it.
-    pub(crate) corners: Vec<f64>,
-    pub(crate) arcs: Vec<GaitArc>,
-    /// Whether it begins and ends at a right angle to the symmetry lines, so that it meets its images smoothly.
-    pub(crate) square: [bool; 2],
+/// Arcs one after the other, sampled.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Samples {
+    pub(crate) phi: Vec<Vector2<f64>>,
+    /// ∫√P up to each sample.
+    pub(crate) along: Vec<f64>,
+    /// Samples where the direction jumps, or its rate does.
+    pub(crate) corners: Vec<usize>,
+    /// Arcs with their first and last sample.
+    pub(crate) arcs: Vec<(ArcKind, usize, usize)>,
 }
 
 /// Directions this close in angle \[rad\] make no corner.
@@ -55,18 +56,85 @@ impl Cycle {
         }
     }
 
-    /// The quarter with its images: run backwards and reflected in φ₁ = −φ₂, then both turned by half a turn.
-    pub(crate) fn of_quarter(quarter: &Quarter<'_>) -> Self {
-        let samples = quarter.at.iter().map(|at| 0.25 * at).zip(quarter.phi);
-        let last = quarter.phi.len().saturating_sub(1);
-        let inner = quarter.corners.iter().map(|at| 0.25 * at);
-        let [starts_square, ends_square] = quarter.square;
-        let images = quarter.arcs.iter().rev().map(|arc| GaitArc {
+    pub(crate) fn gait(&self) -> Result<AnyGait, InvalidSamples> {
+        let corners: Vec<usize> = self
+            .corners
+            .iter()
+            .filter_map(|corner| self.u.iter().position(|u| u.to_bits() == corner.to_bits()))
+            .collect();
+        AnyGait::from_samples(&self.u, &self.phi, &corners)
+    }
+
+    /// One cycle swum by the model, which shares no code with the arcs; none where the samples make no gait.
+    pub(crate) fn swum(&self, model: &Model<f64>) -> Option<Stroke<f64>> {
+        let gait = self.gait().ok()?;
+        Some(swim(model, &gait, &Tolerance::new(1e-12)))
+    }
+
+    /// Share of the cycle in which links cross; NaN where the samples make no gait.
+    pub(crate) fn links_cross(&self, model: &Model<f64>) -> f64 {
+        self.gait().map_or(f64::NAN, |gait| {
+            crossing_share(&model.swimmer().links, &gait).of_cycle
+        })
+    }
+}
+
+impl Samples {
+    /// Share of the whole at a sample, 0 to 1.
+    fn place(&self, sample: usize) -> f64 {
+        let whole = self.along.last().copied().unwrap_or(1.0);
+        self.along.get(sample).map_or(1.0, |along| along / whole)
+    }
+
+    fn gait_arcs(&self) -> impl DoubleEndedIterator<Item = GaitArc> + Clone {
+        self.arcs.iter().map(|&(kind, from, to)| GaitArc {
+            kind,
+            from: self.place(from),
+            to: self.place(to),
+        })
+    }
+
+    /// The arcs with their joint angles.
+    pub(crate) fn arcs(&self) -> Vec<Arc> {
+        let at = |i: usize| self.phi.get(i).map_or([f64::NAN; 2], |phi| [phi.x, phi.y]);
+        let arcs = self.arcs.iter().map(|&(kind, from, to)| Arc {
+            kind,
+            from: at(from),
+            to: at(to),
+        });
+        arcs.collect()
+    }
+
+    /// The cycle of a closed curve.
+    pub(crate) fn closed(&self) -> Cycle {
+        let mut phi = self.phi.clone();
+        // The last sample repeats the first to the last bit.
+        if let (Some(first), Some(last)) = (phi.first().copied(), phi.last_mut()) {
+            *last = first;
+        }
+        Cycle {
+            u: (0..phi.len()).map(|i| self.place(i)).collect(),
+            phi,
+            corners: self.corners.iter().map(|&i| self.place(i)).collect(),
+            arcs: self.gait_arcs().collect(),
+        }
+    }
+
+    /// The cycle of a quarter from φ₁ = φ₂ to φ₁ = −φ₂, with its images: run backwards and reflected in φ₁ = −φ₂, then both turned
+    /// by half a turn. Where it begins or ends `square` to its symmetry line, it meets its images smoothly.
+    pub(crate) fn unfolded(&self, square: [bool; 2]) -> Cycle {
+        let at = (0..self.phi.len()).map(|i| 0.25 * self.place(i));
+        let samples = at.zip(&self.phi);
+        let last = self.phi.len().saturating_sub(1);
+        let inner = self.corners.iter().filter(|&&i| i > 0);
+        let inner = inner.map(|&i| 0.25 * self.place(i));
+        let [starts_square, ends_square] = square;
+        let images = self.gait_arcs().rev().map(|arc| GaitArc {
             kind: arc.kind,
             from: 2.0 - arc.to,
             to: 2.0 - arc.from,
         });
-        let half_arcs: Vec<GaitArc> = quarter.arcs.iter().copied().chain(images).collect();
+        let half_arcs: Vec<GaitArc> = self.gait_arcs().chain(images).collect();
         let (mut u, mut phi) = (Vec::new(), Vec::new());
         let (mut corners, mut arcs) = (Vec::new(), Vec::<GaitArc>::new());
         for (before, sign) in [(0.0, 1.0), (0.5, -1.0)] {
@@ -90,7 +158,7 @@ impl Cycle {
                 };
                 // An arc that crosses a symmetry line smoothly is one with its image.
                 let joins =
-                    (number == 0 && starts_square) || (number == quarter.arcs.len() && ends_square);
+                    (number == 0 && starts_square) || (number == self.arcs.len() && ends_square);
                 match arcs.last_mut() {
                     Some(last) if joins && last.kind == arc.kind => last.to = arc.to,
                     _ => arcs.push(arc),
@@ -99,33 +167,11 @@ impl Cycle {
         }
         u.push(1.0);
         phi.extend(phi.first().copied());
-        Self {
+        Cycle {
             u,
             phi,
             corners,
             arcs,
         }
-    }
-
-    pub(crate) fn gait(&self) -> Result<AnyGait, InvalidSamples> {
-        let corners: Vec<usize> = self
-            .corners
-            .iter()
-            .filter_map(|corner| self.u.iter().position(|u| u.to_bits() == corner.to_bits()))
-            .collect();
-        AnyGait::from_samples(&self.u, &self.phi, &corners)
-    }
-
-    /// One cycle swum by the model, which shares no code with the arcs; none where the samples make no gait.
-    pub(crate) fn swum(&self, model: &Model<f64>) -> Option<Stroke<f64>> {
-        let gait = self.gait().ok()?;
-        Some(swim(model, &gait, &Tolerance::new(1e-12)))
-    }
-
-    /// Share of the cycle in which links cross; NaN where the samples make no gait.
-    pub(crate) fn links_cross(&self, model: &Model<f64>) -> f64 {
-        self.gait().map_or(f64::NAN, |gait| {
-            crossing_share(&model.swimmer().links, &gait).of_cycle
-        })
     }
 }

@@ -3,10 +3,9 @@
 mod second_variation;
 
 use nalgebra::Vector2;
-use swimmer_files::{ArcKind, GaitArc};
+use swimmer_files::ArcKind;
 
-use super::{Cycle, Quarter, SMOOTH};
-use crate::Arc;
+use super::{Cycle, SMOOTH, Samples};
 use crate::displacement::flow::Leg;
 use crate::displacement::height::Extremal;
 use crate::momentum::{Motion, pose_rates, shape};
@@ -49,13 +48,7 @@ pub(crate) struct Evidence {
 /// A quarter gait, sampled.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct QuarterTrace {
-    pub(crate) phi: Vec<Vector2<f64>>,
-    /// ∫√P from the start to each sample.
-    pub(crate) power_length: Vec<f64>,
-    /// Samples inside the quarter where the direction jumps.
-    pub(crate) corners: Vec<usize>,
-    /// Arcs with their first and last sample.
-    pub(crate) kinds: Vec<(ArcKind, usize, usize)>,
+    pub(crate) samples: Samples,
     pub(crate) first_direction: Vector2<f64>,
     pub(crate) last_direction: Vector2<f64>,
     pub(crate) evidence: Evidence,
@@ -121,10 +114,11 @@ impl QuarterTrace {
         let total = last.to[5] - first.from[5];
         let mut here = start(&extremal, first);
         let mut trace = Self {
-            phi: vec![shape(&here)],
-            power_length: vec![0.0],
-            corners: Vec::new(),
-            kinds: Vec::new(),
+            samples: Samples {
+                phi: vec![shape(&here)],
+                along: vec![0.0],
+                ..Samples::default()
+            },
             first_direction: Vector2::zeros(),
             last_direction: Vector2::zeros(),
             evidence: Evidence::start(&here),
@@ -144,7 +138,7 @@ impl QuarterTrace {
                 .unwrap_or(samples.max(fewest));
             let direction = equations.direction(&shape(&here), &[here[2], here[3], here[4]]);
             trace.begin_arc(direction);
-            let from = trace.phi.len() - 1;
+            let from = trace.samples.phi.len() - 1;
             let step = leg.length / intervals as f64;
             let mut before = None;
             let mut point = Point::new(&equations, here);
@@ -158,8 +152,8 @@ impl QuarterTrace {
                 here = point.z;
                 let along = leg.from[5] - first.from[5]
                     + leg_length * (interval + 1) as f64 / intervals as f64;
-                trace.phi.push(shape(&here));
-                trace.power_length.push(along);
+                trace.samples.phi.push(shape(&here));
+                trace.samples.along.push(along);
             }
             let push = trace
                 .evidence
@@ -167,9 +161,8 @@ impl QuarterTrace {
             trace.evidence.vary(before, push, step);
             let gap = (shape(&here) - shape(&leg.to)).norm();
             trace.evidence.retraced = trace.evidence.retraced.max(gap);
-            trace
-                .kinds
-                .push((kind(leg.motion), from, trace.phi.len() - 1));
+            let to = trace.samples.phi.len() - 1;
+            trace.samples.arcs.push((kind(leg.motion), from, to));
             trace.last_direction = equations.direction(&shape(&here), &[here[2], here[3], here[4]]);
         }
         trace.evidence.end(&extremal, &here);
@@ -178,56 +171,27 @@ impl QuarterTrace {
 
     /// A new arc sets out in this direction: is there a corner?
     fn begin_arc(&mut self, direction: Vector2<f64>) {
-        if self.kinds.is_empty() {
+        if self.samples.arcs.is_empty() {
             self.first_direction = direction;
         } else if (direction - self.last_direction).norm() > SMOOTH {
-            self.corners.push(self.phi.len() - 1);
+            self.samples.corners.push(self.samples.phi.len() - 1);
         }
     }
 
     pub(crate) fn start(&self) -> Vector2<f64> {
-        self.phi.first().copied().unwrap_or_default()
+        self.samples.phi.first().copied().unwrap_or_default()
     }
 
     pub(crate) fn end(&self) -> Vector2<f64> {
-        self.phi.last().copied().unwrap_or_default()
+        self.samples.phi.last().copied().unwrap_or_default()
     }
 
     /// The full cycle.
     pub(crate) fn cycle(&self) -> Cycle {
-        let total = self.power_length.last().copied().unwrap_or(1.0);
-        let place = |i: usize| {
-            self.power_length
-                .get(i)
-                .map_or(1.0, |length| length / total)
-        };
         let (first, last) = (self.first_direction, self.last_direction);
-        let arcs = self.kinds.iter().map(|&(kind, from, to)| GaitArc {
-            kind,
-            from: place(from),
-            to: place(to),
-        });
-        Cycle::of_quarter(&Quarter {
-            at: (0..self.phi.len()).map(place).collect(),
-            phi: &self.phi,
-            corners: self.corners.iter().map(|&i| place(i)).collect(),
-            arcs: arcs.collect(),
-            // Square to φ₁ = φ₂ (φ₁ = −φ₂) is a direction without a part along it.
-            square: [first.x + first.y, last.x - last.y].map(|along| along.abs() < SMOOTH),
-        })
-    }
-
-    /// The arcs with their joint angles.
-    pub(crate) fn arcs(&self) -> Vec<Arc> {
-        let at = |i: usize| self.phi.get(i).map_or([f64::NAN; 2], |phi| [phi.x, phi.y]);
-        self.kinds
-            .iter()
-            .map(|&(kind, from, to)| Arc {
-                kind,
-                from: at(from),
-                to: at(to),
-            })
-            .collect()
+        // Square to φ₁ = φ₂ (φ₁ = −φ₂) is a direction without a part along it.
+        let square = [first.x + first.y, last.x - last.y].map(|along| along.abs() < SMOOTH);
+        self.samples.unfolded(square)
     }
 }
 

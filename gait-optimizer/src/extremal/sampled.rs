@@ -1,25 +1,19 @@
 //! An extremal as a sampled cycle.
 
-use nalgebra::Vector2;
-use swimmer_files::{ArcKind, GaitArc};
+use swimmer_files::ArcKind;
 use swimmer_model::Model;
 
 use super::equations::{Motion, shape};
 use super::flow::flowed;
 use super::shooting::{Chain, Class, Entry};
 use crate::Arc;
-use crate::cycle::{Cycle, Quarter};
+use crate::cycle::{Cycle, Samples};
 
-/// A chain at equal steps of power length, arc by arc.
+/// A chain at equal steps of power length, arc by arc. Where an arc begins is a corner: the curvature jumps there (the direction
+/// too at a corner of the forbidden shapes), and no interpolation shall reach across.
 #[derive(Debug, Clone)]
 pub(crate) struct Sampled {
-    /// Power length over that of the chain.
-    at: Vec<f64>,
-    phi: Vec<Vector2<f64>>,
-    /// Each arc with its first and last sample.
-    arcs: Vec<(ArcKind, usize, usize)>,
-    /// Samples where an arc begins: there the curvature jumps (the direction too at a corner of the forbidden shapes).
-    joints: Vec<usize>,
+    samples: Samples,
     /// Whether the first sample is a kink.
     starts_bent: bool,
 }
@@ -32,10 +26,7 @@ impl Sampled {
     pub(crate) fn new(model: &Model<f64>, chain: &Chain, samples: usize) -> Option<Self> {
         let total = chain.length();
         let mut sampled = Self {
-            at: Vec::with_capacity(samples + 1),
-            phi: Vec::with_capacity(samples + 1),
-            arcs: Vec::new(),
-            joints: Vec::new(),
+            samples: Samples::default(),
             starts_bent: chain
                 .arcs
                 .first()
@@ -56,84 +47,41 @@ impl Sampled {
                     Motion::Along(wall) => wall.kind(),
                 };
                 if index > 0 || sampled.starts_bent || chain.arcs.len() > 1 {
-                    sampled.joints.push(sampled.phi.len());
+                    sampled.samples.corners.push(sampled.samples.phi.len());
                 }
-                sampled.arcs.push((kind, sampled.phi.len(), 0));
+                sampled
+                    .samples
+                    .arcs
+                    .push((kind, sampled.samples.phi.len(), 0));
             }
             let mut here = *state;
             for step in 0..count {
-                sampled
-                    .at
-                    .push((from + share * step as f64 / count as f64) / total);
-                sampled.phi.push(shape(&here));
+                let along = from + share * step as f64 / count as f64;
+                sampled.samples.along.push(along);
+                sampled.samples.phi.push(shape(&here));
                 here = flowed(model, &arc.motion, &here, share / count as f64)?.0;
             }
             from += share;
-            if let Some(arc) = sampled.arcs.last_mut() {
-                arc.2 = sampled.phi.len();
+            if let Some(arc) = sampled.samples.arcs.last_mut() {
+                arc.2 = sampled.samples.phi.len();
             }
             last = Some(shape(&here));
         }
-        sampled.at.push(1.0);
-        sampled.phi.push(last?);
+        sampled.samples.along.push(total);
+        sampled.samples.phi.push(last?);
         Some(sampled)
     }
 
     /// The arcs with their joint angles.
     pub(crate) fn arcs(&self) -> Vec<Arc> {
-        let at = |i: usize| self.phi.get(i).map_or([f64::NAN; 2], |phi| [phi.x, phi.y]);
-        let arcs = self.arcs.iter().map(|&(kind, from, to)| Arc {
-            kind,
-            from: at(from),
-            to: at(to),
-        });
-        arcs.collect()
-    }
-
-    fn place(&self, i: usize) -> f64 {
-        self.at.get(i).copied().unwrap_or(1.0)
-    }
-
-    fn gait_arcs(&self) -> Vec<GaitArc> {
-        let arcs = self.arcs.iter().map(|&(kind, from, to)| GaitArc {
-            kind,
-            from: self.place(from),
-            to: self.place(to),
-        });
-        arcs.collect()
+        self.samples.arcs()
     }
 
     /// The full cycle.
     pub(crate) fn cycle(&self, class: Class) -> Cycle {
         match class {
-            Class::Quarter => Cycle::of_quarter(&Quarter {
-                at: self.at.clone(),
-                phi: &self.phi,
-                corners: self
-                    .joints
-                    .iter()
-                    .filter(|&&i| i > 0)
-                    .map(|&i| self.place(i))
-                    .collect(),
-                arcs: self.gait_arcs(),
-                square: [!self.starts_bent, true],
-            }),
-            Class::Closed { .. } => {
-                let mut cycle = Cycle {
-                    u: self.at.clone(),
-                    phi: self.phi.clone(),
-                    // Marked as corners, so that no interpolation reaches across a jump of the curvature.
-                    corners: self.joints.iter().map(|&i| self.place(i)).collect(),
-                    arcs: self.gait_arcs(),
-                };
-                // The last sample repeats the first to the last bit.
-                if let (Some(first), Some(last)) =
-                    (cycle.phi.first().copied(), cycle.phi.last_mut())
-                {
-                    *last = first;
-                }
-                cycle
-            }
+            Class::Quarter => self.samples.unfolded([!self.starts_bent, true]),
+            Class::Closed { .. } => self.samples.closed(),
         }
     }
 }
