@@ -4,11 +4,12 @@ pub(crate) mod calibration;
 pub(crate) mod chart;
 pub(crate) mod drawing;
 mod figures;
+pub(crate) mod markup;
 mod page;
 pub(crate) mod style;
 pub(crate) mod swimming;
 
-pub(crate) use page::{escaped, minus, page};
+pub(crate) use page::{page, written};
 
 use swimming::Swimming;
 
@@ -65,7 +66,7 @@ pub(crate) struct Report {
 pub(crate) struct Parameter {
     /// Name as in the paper.
     pub(crate) name: String,
-    /// `mm` or nothing; the values are already in it.
+    /// ` mm` or nothing, as it follows a number; the values are already in it.
     pub(crate) unit: &'static str,
     /// Where the fit started.
     pub(crate) start: f64,

@@ -34,8 +34,8 @@ pub(super) fn report(round: &Finished, lab: Option<String>) -> Outcome<Report> {
     let intervals = &round.fit.answer.intervals;
     let parameters = vec![
         Parameter {
-            name: "r<sub>s</sub>".into(),
-            unit: "mm",
+            name: "r_s".into(),
+            unit: " mm",
             start: round.start.swimmer.sphere_radius * 1e3,
             fitted: radius * 1e3,
             interval: intervals.sphere_radius.map(|metres| metres * 1e3),
