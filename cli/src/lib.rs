@@ -10,6 +10,7 @@ mod answer;
 mod arguments;
 mod bounds;
 mod commands;
+mod csv_text;
 mod failure;
 mod fit_file;
 mod in_fluid;

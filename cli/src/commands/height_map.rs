@@ -2,7 +2,7 @@
 
 pub(crate) mod picture;
 
-use std::fmt::{self, Write as _};
+use std::fmt;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
@@ -11,6 +11,7 @@ use serde::Serialize;
 use swimmer_files::{AnyGait, GaitSpec};
 
 use crate::arguments::{gait, load_gait_for, load_swimmer, positive_angle};
+use crate::csv_text::csv_text;
 use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
 use crate::output::{Output, verbose};
@@ -109,7 +110,7 @@ impl HeightMap {
             .collect::<Outcome<Vec<_>>>()?;
         if let (Some(path), Some(kind)) = (&self.output, kind) {
             let text = match kind {
-                Kind::Csv => table(&map, row),
+                Kind::Csv => table(&map, row)?,
                 _ => picture::svg(&picture::Figure {
                     title: format!("{}, |φᵢ| ≤ {} rad", file.name, self.max_angle),
                     quantity: self.row.quantity(),
@@ -142,16 +143,14 @@ impl HeightMap {
     }
 }
 
-fn table(map: &Map, row: Row) -> String {
+fn table(map: &Map, row: Row) -> Outcome<String> {
     let grid = map.grid(row, TABLE);
-    let mut text = String::from("phi1,phi2,H\n");
+    let mut rows = Vec::with_capacity(grid.heights.len());
     for (phi2, column) in grid.angles.iter().zip(grid.heights.column_iter()) {
-        for (phi1, height) in grid.angles.iter().zip(column.iter()) {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "{phi1:?},{phi2:?},{height:?}");
-        }
+        let nodes = grid.angles.iter().zip(column.iter());
+        rows.extend(nodes.map(|(phi1, height)| [*phi1, *phi2, *height]));
     }
-    text
+    csv_text("phi1,phi2,H".split(','), rows)
 }
 
 #[derive(Debug, Serialize)]

@@ -53,7 +53,7 @@ impl Paper {
                 let drawing = figure.svg()?;
                 write_atomically(&place("svg"), drawing.as_bytes())?;
                 write_atomically(&place("png"), &png(&drawing)?)?;
-                write_atomically(&place("csv"), figure.csv().as_bytes())?;
+                write_atomically(&place("csv"), figure.csv()?.as_bytes())?;
             }
             let html = page(&rows, &drawn)?;
             write_atomically(&folder.draft().join(PAGE), html.as_bytes())?;

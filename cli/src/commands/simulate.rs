@@ -2,7 +2,7 @@
 
 pub(crate) mod played;
 
-use std::fmt::{self, Write};
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 use forecast::NetMotion;
@@ -11,6 +11,7 @@ use swimmer_files::{AnyGait, GaitSpec, write_atomically};
 use swimmer_model::{CrossingShare, Model, Pose, Tolerance, crossing_share, swim, trajectory};
 
 use crate::arguments::{gait, load_gait_for, load_swimmer, model};
+use crate::csv_text::csv_text;
 use crate::failure::Outcome;
 use crate::in_fluid::InFluid;
 use crate::new_file::may_be_written;
@@ -180,7 +181,7 @@ fn drawn(path: &Path) -> String {
 
 /// One line for each instant; the pose starts at the origin along x and goes on from cycle to cycle.
 fn write_trajectory(path: &Path, model: &Model<f64>, gait: &AnyGait, cycles: u32) -> Outcome {
-    let mut text = String::from("cycle,u,phi1_rad,phi2_rad,x_m,y_m,theta_rad\n");
+    let mut rows = Vec::new();
     let mut start = Pose::identity();
     for cycle in 0..cycles {
         let mut end = start;
@@ -194,15 +195,12 @@ fn write_trajectory(path: &Path, model: &Model<f64>, gait: &AnyGait, cycles: u32
                 // The last instant of a cycle is the first of the next.
                 if point.u < 1.0 || cycle + 1 == cycles {
                     let (phi, u) = (point.phi, point.u);
-                    let _ = writeln!(
-                        text,
-                        "{cycle},{u:?},{:?},{:?},{:?},{:?},{:?}",
-                        phi.x, phi.y, end.x, end.y, end.theta
-                    );
+                    rows.push((cycle, u, [phi.x, phi.y], [end.x, end.y, end.theta]));
                 }
             },
         );
         start = end;
     }
-    Ok(write_atomically(path, text.as_bytes())?)
+    let heading = "cycle,u,phi1_rad,phi2_rad,x_m,y_m,theta_rad".split(',');
+    Ok(write_atomically(path, csv_text(heading, rows)?.as_bytes())?)
 }

@@ -3,8 +3,6 @@
 mod efficiency;
 mod experiment;
 
-use std::fmt::Write;
-
 use gait_optimizer::{HeightMap, OptimalGait, Row as HeightRow, SimpleShape};
 use nalgebra::Vector2;
 use plotters::style::RGBColor;
@@ -12,8 +10,8 @@ use swimmer_files::AnyGait;
 use swimmer_model::{Gait as _, Stroke};
 
 use crate::commands::height_map::picture;
+use crate::csv_text::csv_text;
 use crate::failure::Outcome;
-use crate::report::calibration::field;
 use crate::report::chart::{
     BOUND, Chart, INK, MEASURED, PREDICTED, Point, SINGULAR, SLENDER, Series,
 };
@@ -132,28 +130,25 @@ impl Figure {
     }
 
     /// Its points as a table, one line each, in the units of the axes.
-    pub(crate) fn csv(&self) -> String {
-        let mut text = format!(
-            "curve,{},{}\n",
-            field(&self.chart.x_label),
-            field(&self.chart.y_label)
-        );
-        for (name, series) in self.names.iter().zip(&self.chart.series) {
+    ///
+    /// # Errors
+    /// As the writing of a table.
+    pub(crate) fn csv(&self) -> Outcome<String> {
+        let named = self.names.iter().zip(&self.chart.series);
+        let rows = named.flat_map(|(name, series)| {
             let points = match series {
                 Series::Line { points, .. }
                 | Series::Dashes { points, .. }
-                | Series::Dots { points, .. } => points,
+                | Series::Dots { points, .. } => points.as_slice(),
                 Series::Bars { .. }
                 | Series::Arrows { .. }
                 | Series::Word { .. }
                 | Series::Cells(_)
-                | Series::Names(_) => continue,
+                | Series::Names(_) => &[],
             };
-            for (x, y) in points {
-                let _ = writeln!(text, "{},{x:?},{y:?}", field(name));
-            }
-        }
-        text
+            points.iter().map(move |point| (name, point))
+        });
+        csv_text(["curve", &self.chart.x_label, &self.chart.y_label], rows)
     }
 }
 

@@ -73,7 +73,7 @@ pub(super) fn write(
             (FITTED_FURTHER, "the same with all that was fitted also"),
         );
     }
-    for (name, what, text) in tables(found, evidence, &names) {
+    for (name, what, text) in tables(found, evidence, &names)? {
         save(name, &text)?;
         files.push((name, what));
     }

@@ -1,6 +1,5 @@
 //! `swimmer optimize speed --front`: displacement per cycle against speed, as a figure or a table.
 
-use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -8,12 +7,13 @@ use gait_optimizer::{Fastest, Front};
 use serde::Serialize;
 use swimmer_files::write_atomically;
 
+use crate::csv_text::csv_text;
 use crate::failure::Outcome;
 use crate::report::chart::{Chart, INK, MEASURED, PREDICTED, Point, Series};
 
 /// Where the front goes, and in which form.
 #[derive(Debug, Clone)]
-pub(super) struct FrontFile {
+pub(crate) struct FrontFile {
     pub(super) path: PathBuf,
     form: Form,
 }
@@ -40,7 +40,7 @@ impl FromStr for FrontFile {
 
 /// What was written.
 #[derive(Debug, Serialize)]
-pub(super) struct FrontAnswer {
+pub(crate) struct FrontAnswer {
     pub(super) file: PathBuf,
     /// Periods that were looked at, and those in which a farthest gait is told.
     pub(super) periods: usize,
@@ -52,7 +52,7 @@ impl FrontFile {
     pub(super) fn write(&self, front: &Front, name: &str, length: f64) -> Outcome<FrontAnswer> {
         let text = match self.form {
             Form::Figure => figure(front, name, length).svg()?,
-            Form::Table => table(front, length),
+            Form::Table => table(front, length)?,
         };
         write_atomically(&self.path, text.as_bytes())?;
         Ok(FrontAnswer {
@@ -64,27 +64,27 @@ impl FrontFile {
 }
 
 /// A line for each period; empty where no gait is told.
-fn table(front: &Front, length: f64) -> String {
-    let mut text = String::from(
-        "period_s,displacement_over_length,displacement_m,speed_over_length_per_s,speed_m_per_s,heading_rad\n",
-    );
-    for (period, farthest) in front.periods.iter().zip(&front.farthest) {
-        let numbers = farthest.as_ref().map_or_else(
-            || ",,,,".to_owned(),
-            |gait| {
-                format!(
-                    "{:?},{:?},{:?},{:?},{:?}",
-                    gait.distance_over_length,
-                    gait.distance_over_length * length,
-                    gait.speed_over_length,
-                    gait.speed_over_length * length,
-                    gait.heading
-                )
-            },
-        );
-        let _ = writeln!(text, "{period:?},{numbers}");
-    }
-    text
+fn table(front: &Front, length: f64) -> Outcome<String> {
+    let farthest = front.periods.iter().zip(&front.farthest);
+    let rows = farthest.map(|(period, gait)| {
+        let numbers = gait.as_ref().map(|gait| {
+            let (distance, speed) = (gait.distance_over_length, gait.speed_over_length);
+            [
+                distance,
+                distance * length,
+                speed,
+                speed * length,
+                gait.heading,
+            ]
+            .map(Some)
+        });
+        (period, numbers.unwrap_or_default())
+    });
+    csv_text(
+        "period_s,displacement_over_length,displacement_m,speed_over_length_per_s,speed_m_per_s,heading_rad"
+            .split(','),
+        rows,
+    )
 }
 
 fn figure(front: &Front, name: &str, length: f64) -> Chart {

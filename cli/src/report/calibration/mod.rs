@@ -10,7 +10,7 @@ use calibrate::{CampaignFit, EvidenceOptions};
 use swimmer_files::{Campaign, GaitSpec, Provenance, SwimmerFile};
 
 pub(crate) use self::page::page;
-pub(crate) use self::tables::{field, tables};
+pub(crate) use self::tables::tables;
 use super::{MeasuredCircle, ModelCircle};
 use crate::commands::calibrate::FitAnswer;
 
