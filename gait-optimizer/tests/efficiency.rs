@@ -4,7 +4,7 @@ mod paper_shooting;
 
 use gait_optimizer::{
     Branch, EfficiencyError, EfficiencyFigures, EfficiencyProblem, InvalidProblem, Method,
-    Objective, OptimalGait, SimpleShape, best_amplitudes, efficiency,
+    OptimalGait, efficiency,
 };
 use nalgebra::Vector4;
 use swimmer_files::{AnyGait, ArcKind, GaitFile};
