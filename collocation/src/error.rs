@@ -6,17 +6,6 @@ use thiserror::Error;
 /// Why a collocation was given up.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CollocationError {
-    /// The swimmer lacks the symmetry that makes a quarter tell the whole.
-    #[error(
-        "direct collocation of a quarter gait needs side links of equal length; these are {front} m and {back} m: use a method \
-         for closed curves without symmetry"
-    )]
-    Asymmetric {
-        /// Length of link 1 \[m\].
-        front: f64,
-        /// Length of link 2 \[m\].
-        back: f64,
-    },
     /// A parameter is out of range.
     #[error("direct collocation: {name} is {value}; {problem}")]
     Problem {
@@ -66,7 +55,7 @@ pub enum CollocationError {
         /// Which gait.
         branch: Branch,
     },
-    /// The collocated gait could not be polished, or is not the gait that was asked for.
+    /// The problem makes no sense; or the collocated gait could not be polished, or is not the gait that was asked for.
     #[error(transparent)]
     Polish(#[from] EfficiencyError),
     /// An optimum of the discretisation alone: its control swims otherwise.

@@ -17,17 +17,6 @@ pub struct QuarterGuess {
 const SAMPLES: usize = 512;
 /// Share of the room inside the bounds that a guess is shrunk to.
 const INSIDE: f64 = 0.98;
-/// How far inside the bounds a sample is clipped, in rad, or over L between links.
-const CLIPPED: f64 = 0.01;
-
-/// How a guess is brought inside the bounds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Fit {
-    /// All of it smaller.
-    Shrunk,
-    /// Only what is outside moved in.
-    Clipped,
-}
 
 impl QuarterGuess {
     /// From samples (t, (φ₁, φ₂)) in order of t, the first near φ₁ = φ₂ > 0 and the last near φ₁ = −φ₂, φ₂ > 0; these two
@@ -75,6 +64,11 @@ impl QuarterGuess {
         Self::from_samples(&samples)
     }
 
+    /// From shapes that begin and end on the symmetry lines already.
+    pub(crate) fn of(shapes: Matrix2xX<f64>) -> Self {
+        Self { shapes }
+    }
+
     /// A circle of this amplitude \[rad\].
     ///
     /// # Errors
@@ -89,12 +83,11 @@ impl QuarterGuess {
         model: &Model<f64>,
         mesh: &Mesh,
         walls: &[Bound],
-        fit: Fit,
     ) -> Result<Matrix2xX<f64>, CollocationError> {
-        let shapes = match fit {
-            _ if is_inside(walls, &(&self.shapes / INSIDE)) => self.shapes.clone(),
-            Fit::Shrunk => self.shrunk(walls),
-            Fit::Clipped => self.clipped(walls),
+        let shapes = if is_inside(walls, &(&self.shapes / INSIDE)) {
+            self.shapes.clone()
+        } else {
+            self.shrunk(walls)
         };
         let mut times = vec![0.0];
         let mut total = 0.0;
@@ -127,24 +120,6 @@ impl QuarterGuess {
         } else {
             refuse("it does not fit inside the bounds")
         }
-    }
-
-    /// Each sample by itself, moved inside the bounds, near enough.
-    fn clipped(&self, walls: &[Bound]) -> Matrix2xX<f64> {
-        let mut shapes = self.shapes.clone();
-        for _ in 0..12 {
-            for mut column in shapes.column_iter_mut() {
-                for wall in walls {
-                    let level = wall.smooth_level(&column.clone_owned());
-                    let missing = (CLIPPED - level.value) / level.gradient.norm_squared();
-                    if missing > 0.0 && missing.is_finite() {
-                        column += level.gradient * missing;
-                    }
-                }
-            }
-            bind_ends(&mut shapes);
-        }
-        shapes
     }
 
     /// Brought inside the bounds as a whole.

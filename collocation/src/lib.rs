@@ -28,11 +28,11 @@ mod tests;
 
 pub use efficiency::efficiency;
 pub use error::CollocationError;
-use guess::Fit;
 pub use guess::QuarterGuess;
 pub use solution::{BoundArc, CollocationNode, CollocationSolution};
 
 use gait_optimizer::region::{Bound, Region};
+use gait_optimizer::{Branch, EfficiencyProblem};
 use swimmer_files::Bounds;
 use swimmer_model::Model;
 
@@ -45,7 +45,7 @@ use reintegration::Reintegration;
 pub struct CollocationProblem<'a> {
     /// The swimmer, its side links alike.
     pub model: &'a Model<f64>,
-    /// Bounds of the shapes; not the sector, whose sides the quarter starts and ends on.
+    /// Bounds of the shapes; `max_angle` and `no_overlap` apply.
     pub bounds: Bounds,
     /// Whether x shall be positive or negative: +1 or −1.
     pub sign: f64,
@@ -80,6 +80,12 @@ impl<'a> CollocationProblem<'a> {
     }
 
     fn validate(&self) -> Result<Vec<Bound>, CollocationError> {
+        let swimmer = *self.model.swimmer();
+        EfficiencyProblem {
+            bounds: self.bounds,
+            ..EfficiencyProblem::new(swimmer, Branch::Small)
+        }
+        .validated()?;
         let refuse = |name, value, problem| {
             Err(CollocationError::Problem {
                 name,
@@ -87,13 +93,6 @@ impl<'a> CollocationProblem<'a> {
                 problem,
             })
         };
-        let links = self.model.swimmer().links;
-        if (links.front - links.back).abs() > 1e-12 * links.front.abs() {
-            return Err(CollocationError::Asymmetric {
-                front: links.front,
-                back: links.back,
-            });
-        }
         if self.sign.abs().to_bits() != 1.0_f64.to_bits() {
             return refuse("sign", self.sign, "it must be 1 or −1");
         }
@@ -103,37 +102,7 @@ impl<'a> CollocationProblem<'a> {
         if self.degree < 2 || self.degree > radau::HIGHEST_DEGREE {
             return refuse("degree", self.degree as f64, "use 2 to 16");
         }
-        let angle = |value: f64| value > 0.0 && value <= HORIZON;
-        let bounds = &self.bounds;
-        if let Some(max) = bounds.max_angle.filter(|&max| !angle(max)) {
-            return refuse("max_angle", max, "it must be above 0 and at most two turns");
-        }
-        let highest = bounds.max_angle.unwrap_or(HORIZON);
-        if let Some(min) = bounds
-            .min_angle
-            .filter(|&min| !angle(min) || min >= highest)
-        {
-            return refuse(
-                "min_angle",
-                min,
-                "it must be above 0 and below the upper bound",
-            );
-        }
-        if bounds.sector {
-            return refuse(
-                "sector",
-                1.0,
-                "a smooth gait crosses its sides; leave it out",
-            );
-        }
-        if bounds.clearance.is_nan() || bounds.clearance < 0.0 || bounds.clearance >= links.middle {
-            return refuse(
-                "clearance",
-                bounds.clearance,
-                "it must be 0 or above, and below the middle link's length",
-            );
-        }
-        Ok(Region::new(bounds, &links).bounds().collect())
+        Ok(Region::new(&self.bounds, &swimmer.links).bounds().collect())
     }
 }
 
@@ -142,7 +111,7 @@ fn lighthill(model: &Model<f64>, x: f64, energy: f64) -> f64 {
     model.side_drag() * model.swimmer().total_length() * x * x / energy
 }
 
-/// Solves from a guess. One that leaves the bounds is shrunk, and if that leads nowhere, clipped.
+/// Solves from a guess; one that leaves the bounds is shrunk.
 ///
 /// # Errors
 /// [`CollocationError`]: what is wrong with the problem or the guess, where the iteration stopped, or that the
@@ -156,7 +125,7 @@ fn lighthill(model: &Model<f64>, x: f64, energy: f64) -> f64 {
 /// let found = solve(&CollocationProblem::new(&model, 1.0), &QuarterGuess::circle(1.3)?)?;
 /// assert!((found.efficiency - 0.012364154624).abs() < 1e-10);
 /// let within = CollocationProblem::new(&model, 1.0).with_max_angle(1.2);
-/// assert!(solve(&within, &found.guess()?)?.efficiency < found.efficiency);
+/// assert!(solve(&within, &found.guess())?.efficiency < found.efficiency);
 /// # Ok::<(), collocation::CollocationError>(())
 /// ```
 pub fn solve(
@@ -164,24 +133,11 @@ pub fn solve(
     guess: &QuarterGuess,
 ) -> Result<CollocationSolution, CollocationError> {
     let walls = problem.validate()?;
-    let shrunk = fitted(problem, guess, &walls, Fit::Shrunk);
-    if shrunk.is_ok() {
-        return shrunk;
-    }
-    fitted(problem, guess, &walls, Fit::Clipped).or(shrunk)
-}
-
-fn fitted(
-    problem: &CollocationProblem<'_>,
-    guess: &QuarterGuess,
-    walls: &[Bound],
-    fit: Fit,
-) -> Result<CollocationSolution, CollocationError> {
     let mesh = Mesh::new(problem.elements, problem.degree);
-    let phi = guess.on(problem.model, &mesh, walls, fit)?;
-    let optimum = Newton::new(problem.model, &mesh, walls, problem.sign, phi).run()?;
-    let again = Reintegration::new(problem.model, &mesh, walls, &optimum.path);
-    let solution = solution::finish(problem.model, mesh, walls, optimum, &again);
+    let phi = guess.on(problem.model, &mesh, &walls)?;
+    let optimum = Newton::new(problem.model, &mesh, &walls, problem.sign, phi).run()?;
+    let again = Reintegration::new(problem.model, &mesh, &walls, &optimum.path);
+    let solution = solution::finish(problem.model, mesh, &walls, optimum, &again);
     let off = (solution.efficiency_again / solution.efficiency - 1.0).abs();
     if off <= TOLERANCE && again.final_x * problem.sign > 0.0 {
         return Ok(solution);

@@ -82,15 +82,8 @@ impl CollocationSolution {
     }
 
     /// The quarter as a guess for another problem, such as a neighbouring bound.
-    ///
-    /// # Errors
-    /// As [`QuarterGuess::from_samples`]; never for a solution that this module made.
-    pub fn guess(&self) -> Result<QuarterGuess, CollocationError> {
-        let nodes = self.nodes.iter();
-        let samples: Vec<_> = nodes
-            .map(|node| (node.t, [node.state[0], node.state[1]]))
-            .collect();
-        QuarterGuess::from_samples(&samples)
+    pub fn guess(&self) -> QuarterGuess {
+        QuarterGuess::of(self.phi.clone())
     }
 
     /// The whole cycle, by the paper's two symmetries, smooth throughout: of a solution that keeps off the corners of its bounds.

@@ -9,7 +9,6 @@ pub struct BoundArc {
 }
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CollocationError {
-    Asymmetric { front: f64, back: f64 },
     Problem { name: &'static str, value: f64, problem: &'static str },
     Guess { problem: &'static str },
     WrongWay { x: f64, wanted: f64 },
@@ -55,7 +54,7 @@ pub struct CollocationSolution {
 }
 impl CollocationSolution {
     pub fn phi(&self, t: f64) -> Vector2<f64> {}
-    pub fn guess(&self) -> Result<QuarterGuess, CollocationError> {}
+    pub fn guess(&self) -> QuarterGuess {}
     pub fn gait(&self) -> Result<AnyGait, CollocationError> {}
 }
 #[derive(Debug, Clone, PartialEq)]
