@@ -161,10 +161,7 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Efficiency
     let mut best: Option<(OptimalGait, Extremal)> = None;
     let mut refused: Option<EfficiencyError> = None;
     for start in starts(&model, problem.branch)? {
-        let led_to = match problem.method {
-            Method::Fourier => chain::by_fourier(&model, problem.branch, start),
-            Method::Auto | Method::Shooting => chain::by_shooting(&model, problem.branch, start),
-        };
+        let led_to = chain::extremal_from(&model, problem.branch, problem.method, start);
         match led_to.and_then(|found| accepted(problem, &model, found)) {
             Ok(found) => {
                 if best

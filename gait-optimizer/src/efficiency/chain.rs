@@ -23,9 +23,9 @@ pub(crate) struct Found {
 
 /// Joint angles beyond this are not followed \[rad\].
 const FARTHEST: f64 = 9.0;
-/// Orders that lead to shooting, the panels of the quarter, the gain that a climb stops at, and the numbers of pieces
-/// that are shot from there.
-const BRIDGES: [(usize, usize, f64, &[usize]); 8] = [
+/// Orders of the series, the panels of the quarter, the gain that a climb stops at, and the numbers of pieces that are shot from
+/// there.
+const LADDER: [(usize, usize, f64, &[usize]); 10] = [
     (1, 8, 1e-6, &[]),
     (2, 8, 1e-6, &[]),
     (3, 11, 1e-6, &[]),
@@ -34,22 +34,12 @@ const BRIDGES: [(usize, usize, f64, &[usize]); 8] = [
     (9, 22, 1e-9, &[8, 16]),
     (13, 32, 1e-9, &[8, 16]),
     (18, 32, 1e-10, &[16, 32]),
+    (24, 43, 1e-15, &[16, 32]),
+    (32, 43, 1e-15, &[16, 32]),
 ];
-/// Orders of the pure Fourier method, with their panels and gains.
-const ORDERS: [(usize, usize, f64); 10] = [
-    (1, 16, 1e-4),
-    (2, 16, 1e-4),
-    (3, 16, 1e-6),
-    (4, 22, 1e-8),
-    (6, 22, 1e-10),
-    (9, 32, 1e-12),
-    (13, 32, 1e-14),
-    (18, 32, 1e-15),
-    (24, 43, 1e-15),
-    (32, 43, 1e-15),
-];
-/// Pieces that a settled series is shot in.
-const SETTLED_PIECES: usize = 8;
+/// A series has settled where the next order changes its efficiency by no more than this share; the pieces that it is shot in then.
+const SETTLED: f64 = 1e-8;
+const SETTLED_PIECES: &[usize] = &[8];
 /// The extremal may be better than the gait of the direct method by this factor. It cannot be worse, but for the error of the
 /// direct method's quadrature: else it is another extremal.
 const SAME_GAIT: std::ops::Range<f64> = 1.0 - 1e-5..1.05;
@@ -67,39 +57,57 @@ pub(crate) fn starts(model: &Model<f64>, branch: Branch) -> Result<Vec<[f64; 2]>
     Ok(ellipses)
 }
 
-/// Fourier to a low order, then shooting; higher orders where that does not converge.
-pub(crate) fn by_shooting(
+/// Fourier to a low order, then shooting; higher orders where that does not converge. By Fourier alone it is shot from the order
+/// where the series has settled.
+pub(crate) fn extremal_from(
     model: &Model<f64>,
     branch: Branch,
+    method: Method,
     start: [f64; 2],
 ) -> Result<Found, EfficiencyError> {
     let mut ladder = Ladder::new(model, branch, start);
-    let (mut last, mut saddle) = (None, None);
-    for (order, panels, gain, bridges) in BRIDGES {
+    let mut last: Option<(usize, Maximum)> = None;
+    let mut saddle = None;
+    let alone = method == Method::Fourier;
+    for (order, panels, gain, bridges) in LADDER {
         let maximum = ladder.climb_to(order, panels, gain)?;
+        let efficiency = maximum.value.efficiency();
+        let bridges = if alone {
+            let settled = last.as_ref().is_some_and(|(_, before)| {
+                (efficiency / before.value.efficiency() - 1.0).abs() < SETTLED
+            });
+            if settled { SETTLED_PIECES } else { &[] }
+        } else {
+            bridges
+        };
         for &pieces in bridges {
-            if let Some(extremal) = shot(model, &maximum, pieces) {
-                // Newton's method takes saddles as well.
-                let is_maximum = extremal.ascents(model) == Some(0);
-                let found = Found {
-                    extremal,
-                    order,
-                    method: Method::Shooting.word(),
-                    direct_efficiency: None,
-                };
-                if is_maximum {
-                    return Ok(found);
-                }
-                saddle.get_or_insert(found);
+            let Some(extremal) = shot(model, &maximum, pieces) else {
+                continue;
+            };
+            // Newton's method takes saddles as well; what has settled is where the climb led.
+            let is_maximum = alone || extremal.ascents(model) == Some(0);
+            let found = Found {
+                extremal,
+                order,
+                method: if alone { method } else { Method::Shooting }.word(),
+                direct_efficiency: alone.then_some(efficiency),
+            };
+            if is_maximum {
+                return Ok(found);
             }
+            saddle.get_or_insert(found);
         }
-        if !bridges.is_empty() && saddle.is_none() {
+        if !alone && !bridges.is_empty() && saddle.is_none() {
             simple(branch, order, &maximum)?;
         }
         last = Some((order, maximum));
     }
     // A saddle is told with its certificate, which says so.
-    saddle.ok_or_else(|| not_converged(branch, last.as_ref()))
+    saddle.ok_or(EfficiencyError::NotConverged {
+        branch,
+        order: last.as_ref().map_or(0, |(order, _)| *order),
+        efficiency: last.map_or(f64::NAN, |(_, maximum)| maximum.value.efficiency()),
+    })
 }
 
 /// A gait that crosses itself is out of the class: no need to look for an extremal near it.
@@ -117,40 +125,6 @@ fn simple(branch: Branch, order: usize, maximum: &Maximum) -> Result<(), Efficie
             efficiency: maximum.value.efficiency(),
             crossings,
         }),
-    }
-}
-
-/// Fourier alone up to orders where it has settled.
-pub(crate) fn by_fourier(
-    model: &Model<f64>,
-    branch: Branch,
-    start: [f64; 2],
-) -> Result<Found, EfficiencyError> {
-    let mut ladder = Ladder::new(model, branch, start);
-    let mut last: Option<(usize, Maximum)> = None;
-    for (order, panels, gain) in ORDERS {
-        let maximum = ladder.climb_to(order, panels, gain)?;
-        let settled = last.as_ref().is_some_and(|(_, before)| {
-            (maximum.value.efficiency() / before.value.efficiency() - 1.0).abs() < 1e-8
-        });
-        if settled && let Some(extremal) = shot(model, &maximum, SETTLED_PIECES) {
-            return Ok(Found {
-                extremal,
-                order,
-                method: Method::Fourier.word(),
-                direct_efficiency: Some(maximum.value.efficiency()),
-            });
-        }
-        last = Some((order, maximum));
-    }
-    Err(not_converged(branch, last.as_ref()))
-}
-
-fn not_converged(branch: Branch, last: Option<&(usize, Maximum)>) -> EfficiencyError {
-    EfficiencyError::NotConverged {
-        branch,
-        order: last.map_or(0, |(order, _)| *order),
-        efficiency: last.map_or(f64::NAN, |(_, maximum)| maximum.value.efficiency()),
     }
 }
 

@@ -3,6 +3,7 @@
 mod ascent;
 mod objective;
 
+use nalgebra::DMatrix;
 use swimmer_model::Model;
 
 pub(crate) use ascent::{Ends, Maximum, climb};
@@ -22,18 +23,16 @@ pub(crate) fn best_circles(model: &Model<f64>, sign: f64) -> Vec<f64> {
     let (low, high, count) = AMPLITUDES;
     let amplitude = |i: usize| low + (high - low) * i as f64 / (count - 1) as f64;
     let worth: Vec<f64> = (0..count)
-        .map(|i| {
-            let value = objective.value(&[amplitude(i), amplitude(i)]);
-            sign * value.x / value.power_length
-        })
+        .map(|i| sign * objective.value(&[amplitude(i); 2]).ratio())
         .collect();
-    (1..count - 1)
-        .filter(|&i| {
-            let at = |i: usize| worth.get(i).copied().unwrap_or(f64::NAN);
-            at(i) > 0.0 && at(i) >= at(i - 1) && at(i) > at(i + 1)
-        })
-        .map(amplitude)
-        .collect()
+    let tops = worth
+        .windows(3)
+        .zip(1..)
+        .filter_map(|(three, i)| match *three {
+            [before, here, after] => (here > 0.0 && here >= before && here > after).then_some(i),
+            _ => None,
+        });
+    tops.map(amplitude).collect()
 }
 
 /// Half axes of ellipses where X/S with this sign of X has a local maximum over both, in order of size, and the largest
@@ -42,32 +41,17 @@ pub(crate) fn best_ellipses(model: &Model<f64>, sign: f64) -> (Vec<[f64; 2]>, f6
     let mut objective = Objective::new(model, 1, PANELS);
     let (low, high, _) = AMPLITUDES;
     let axis = |i: usize| low + (high - low) * i as f64 / (ELLIPSES - 1) as f64;
-    let worth: Vec<Vec<f64>> = (0..ELLIPSES)
-        .map(|i| {
-            (0..ELLIPSES)
-                .map(|j| {
-                    let value = objective.value(&[axis(i), axis(j)]);
-                    sign * value.x / value.power_length
-                })
-                .collect()
-        })
-        .collect();
-    let at = |i: usize, j: usize| worth.get(i).and_then(|row| row.get(j)).copied();
-    let mut found = Vec::new();
-    for i in 1..ELLIPSES - 1 {
-        for j in 1..ELLIPSES - 1 {
-            let here = at(i, j).unwrap_or(f64::NAN);
-            let around = (i - 1..=i + 1).flat_map(|k| (j - 1..=j + 1).map(move |l| (k, l)));
-            let top = around
-                .filter(|&place| place != (i, j))
-                .all(|(k, l)| at(k, l).is_some_and(|other| here >= other));
-            if here > 0.0 && top {
-                found.push([axis(i), axis(j)]);
-            }
-        }
-    }
-    let best = worth.iter().flatten().copied().fold(0.0, f64::max);
-    (found, best)
+    let worth = DMatrix::from_fn(ELLIPSES, ELLIPSES, |i, j| {
+        sign * objective.value(&[axis(i), axis(j)]).ratio()
+    });
+    let inner = || 1..ELLIPSES - 1;
+    let places = inner().flat_map(|i| inner().map(move |j| (i, j)));
+    let top = |&(i, j): &(usize, usize)| {
+        let around = worth.view((i - 1, j - 1), (3, 3));
+        worth[(i, j)] > 0.0 && around.iter().all(|other| worth[(i, j)] >= *other)
+    };
+    let found = places.filter(top).map(|(i, j)| [axis(i), axis(j)]);
+    (found.collect(), worth.max().max(0.0))
 }
 
 #[cfg(test)]

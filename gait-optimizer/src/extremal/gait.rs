@@ -1,5 +1,6 @@
 //! From an extremal to a gait with its certificate.
 
+use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, Objective};
 use swimmer_model::{Gait, Model, Stroke, Swimmer, Tolerance, crossing_share, swim};
 
@@ -51,16 +52,7 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
         samples = more(samples, variation);
     };
     let stroke = swim(model, &curve, &Tolerance::new(1e-12));
-    let certificate = Finished {
-        extremal,
-        walls: &walls,
-        evidence: &evidence,
-        stroke: &stroke,
-        power_variation: variation,
-        efficiency: extremal.efficiency(model),
-        ascents: extremal.ascents(model),
-    }
-    .certificate();
+    let certificate = certificate(model, extremal, &walls, (&evidence, &stroke), variation);
     let links_cross = crossing_share(&model.swimmer().links, &curve).of_cycle;
     let mut gait = OptimalGait::new(Solution {
         objective: Objective::Efficiency,
@@ -97,65 +89,60 @@ fn more(samples: usize, variation: f64) -> usize {
     more
 }
 
-struct Finished<'a> {
-    extremal: &'a Extremal,
-    walls: &'a Walls,
-    evidence: &'a Evidence,
-    stroke: &'a Stroke<f64>,
+fn certificate(
+    model: &Model<f64>,
+    extremal: &Extremal,
+    walls: &Walls,
+    (evidence, stroke): (&Evidence, &Stroke<f64>),
     power_variation: f64,
-    efficiency: f64,
-    ascents: Option<usize>,
-}
-
-impl Finished<'_> {
-    fn certificate(&self) -> Certificate {
-        let (evidence, chain) = (self.evidence, &self.extremal.solved.chain);
-        let first = chain.states.first().copied().unwrap_or([f64::NAN; 6]);
-        let p = nalgebra::Vector2::new(first[3], first[4]);
-        let d = self.stroke.displacement;
-        let mut checks = vec![
-            Check::at_most("shooting_residual", self.extremal.solved.residual, RESIDUAL),
-            Check::at_most("off_extremal_rad", evidence.off_extremal, 1e-8),
-            Check::at_most(
-                "hamiltonian_variation",
-                evidence.power[1] - evidence.power[0],
-                1e-8,
-            ),
-            Check::at_most("momentum_off_pose", evidence.momentum, 1e-8),
-            Check::at_most(
-                "displacement_off_momentum",
-                (d.perp(&p) / (d.norm() * p.norm())).abs(),
-                1e-7,
-            ),
-            Check::at_most(
-                "momentum_off_scale",
-                (p.norm() * d.norm() / self.stroke.power_length - 1.0).abs(),
-                1e-7,
-            ),
-            Check::at_most("net_rotation_rad", self.stroke.rotation.abs(), 1e-8),
-            Check::at_most("power_variation", self.power_variation, POWER_VARIATION),
-            Check::at_most(
-                "efficiency_swum_again",
-                (self.stroke.efficiency_constant_power() / self.efficiency - 1.0).abs(),
-                1e-7,
-            ),
-        ];
-        checks.extend(
-            evidence
-                .multiplier
-                .map(|least| Check::at_least("bound_multiplier_least", least, -1e-7)),
-        );
-        if self.walls.nearest(&nalgebra::Vector2::zeros()).is_some() {
-            checks.push(Check::at_most(
-                "bound_overstepped",
-                evidence.overstepped,
-                1e-8,
-            ));
-        }
-        let ascents = self.ascents.map_or(f64::NAN, |count| count as f64);
-        checks.push(Check::at_most("ascent_directions", ascents, 0.0));
-        Certificate::new(checks)
+) -> Certificate {
+    let first = extremal.solved.chain.states.first();
+    let p = first.map_or(Vector2::repeat(f64::NAN), |z| Vector2::new(z[3], z[4]));
+    let d = stroke.displacement;
+    let mut checks = vec![
+        Check::at_most("shooting_residual", extremal.solved.residual, RESIDUAL),
+        Check::at_most("off_extremal_rad", evidence.off_extremal, 1e-8),
+        Check::at_most(
+            "hamiltonian_variation",
+            evidence.power[1] - evidence.power[0],
+            1e-8,
+        ),
+        Check::at_most("momentum_off_pose", evidence.momentum, 1e-8),
+        Check::at_most(
+            "displacement_off_momentum",
+            (d.perp(&p) / (d.norm() * p.norm())).abs(),
+            1e-7,
+        ),
+        Check::at_most(
+            "momentum_off_scale",
+            (p.norm() * d.norm() / stroke.power_length - 1.0).abs(),
+            1e-7,
+        ),
+        Check::at_most("net_rotation_rad", stroke.rotation.abs(), 1e-8),
+        Check::at_most("power_variation", power_variation, POWER_VARIATION),
+        Check::at_most(
+            "efficiency_swum_again",
+            (stroke.efficiency_constant_power() / extremal.efficiency(model) - 1.0).abs(),
+            1e-7,
+        ),
+    ];
+    checks.extend(
+        evidence
+            .multiplier
+            .map(|least| Check::at_least("bound_multiplier_least", least, -1e-7)),
+    );
+    if walls.nearest(&Vector2::zeros()).is_some() {
+        checks.push(Check::at_most(
+            "bound_overstepped",
+            evidence.overstepped,
+            1e-8,
+        ));
     }
+    let ascents = extremal
+        .ascents(model)
+        .map_or(f64::NAN, |count| count as f64);
+    checks.push(Check::at_most("ascent_directions", ascents, 0.0));
+    Certificate::new(checks)
 }
 
 /// (max − min)/mean of the power in the middle of the samples' intervals.

@@ -21,9 +21,14 @@ pub(crate) struct Value {
 }
 
 impl Value {
+    /// x/S.
+    pub(crate) fn ratio(&self) -> f64 {
+        self.x / self.power_length
+    }
+
     /// Lighthill's efficiency at constant power.
     pub(crate) fn efficiency(&self) -> f64 {
-        (self.x / self.power_length).powi(2)
+        self.ratio().powi(2)
     }
 }
 
