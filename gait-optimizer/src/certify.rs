@@ -35,6 +35,7 @@ use crate::OptimalGait;
 use crate::certificate::{
     Certificate, Check, SHARE, SWUM_AGAIN, SeenBy, simple_and_turning_once, turning_number,
 };
+use crate::cycle::Cycle;
 use crate::region::Region;
 use crate::speed::certify_speed;
 pub(crate) use ascent::{Curve, around};
@@ -191,6 +192,24 @@ pub(crate) fn samples_suffice(model: &Model<f64>, gait: &OptimalGait) -> bool {
     sampling(gait.objective, subject.openness())
         .iter()
         .all(|check| check.pass)
+}
+
+/// How far two polynomials through the samples of a cycle of most efficiency differ in its slopes, over what [`certify`] lets them.
+pub(crate) fn slopes_open(cycle: &Cycle) -> f64 {
+    let file = GaitFile {
+        arcs: cycle.arcs.clone(),
+        corners: cycle.corners.clone(),
+        u: cycle.u.clone(),
+        phi: cycle.phi.clone(),
+        ..GaitFile::default()
+    };
+    let (grid, shapes) = Grid::new(&file, &grid::told_by_arcs(&file));
+    let [fine, coarse] = [Degree::Fine, Degree::Coarse].map(|degree| grid.slopes(&shapes, degree));
+    let apart = fine
+        .iter()
+        .zip(&coarse)
+        .map(|(fine, coarse)| (fine - coarse).norm() / fine.norm());
+    apart.fold(0.0, f64::max) / COARSEST
 }
 
 /// What the sampling may leave open.

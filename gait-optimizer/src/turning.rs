@@ -35,6 +35,7 @@ use swimmer_model::{Gait as _, Model, Stroke, Swimmer};
 pub use error::TurningError;
 
 use crate::OptimalGait;
+use crate::certify::samples_suffice;
 use crate::cycle::Cycle;
 use crate::height_map::legendre::gauss;
 use crate::height_map::{Level, LevelSearch, level_seeds};
@@ -87,20 +88,41 @@ const STEPS: f64 = 240.0;
 /// # Ok::<(), gait_optimizer::TurningError>(())
 /// ```
 pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
+    let model = validated(&problem.swimmer, &problem.bounds, GaitClass::Closed)?;
+    let found = at_resolution(problem, &model, 1.0)?;
+    if samples_suffice(&model, &found.gait) {
+        return Ok(found);
+    }
+    // As many samples as the certificate from a file asks for, where some number of them will do.
+    let finer = FINER.into_iter().find_map(|times| {
+        let finer = at_resolution(problem, &model, times).ok()?;
+        samples_suffice(&model, &finer.gait).then_some(finer)
+    });
+    Ok(finer.unwrap_or(found))
+}
+
+/// How many times as close samples may lie.
+const FINER: [f64; 3] = [2.0, 4.0, 8.0];
+
+/// As [`turning`], with so many times as many samples.
+fn at_resolution(
+    problem: &TurningProblem,
+    model: &Model<f64>,
+    times: f64,
+) -> Result<Turning, TurningError> {
     let mut bounds = problem.bounds;
-    let model = validated(&problem.swimmer, &bounds, GaitClass::Closed)?;
     if bounds.max_angle.is_none() && !bounds.no_overlap {
         bounds.max_angle = Some(std::f64::consts::PI);
     }
     let region = Region::new(&bounds, &problem.swimmer.links);
-    let border = Border::new(&region, SPACING).ok_or(TurningError::Border)?;
+    let border = Border::new(&region, SPACING / times).ok_or(TurningError::Border)?;
     let reach = border.reach();
-    let level = Level(|phi: &Vector2<f64>| curvature(&model, phi));
+    let level = Level(|phi: &Vector2<f64>| curvature(model, phi));
     let domain = Domain {
         region: &region,
         border: &border,
         level: &level,
-        step: reach / STEPS,
+        step: reach / (STEPS * times),
     };
     let search = LevelSearch::new(reach);
     let seeds = level_seeds(&level, &search, |first, second| {
@@ -115,7 +137,7 @@ pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
     let mut best: Option<Loop> = None;
     for round in &rounds {
         let pieces = begun_on_diagonal(round, &border, &level);
-        let found = Loop::new(&pieces, &model).ok_or_else(|| no_gait(&pieces))?;
+        let found = Loop::new(&pieces, model).ok_or_else(|| no_gait(&pieces))?;
         let rotation = found.stroke.rotation;
         bridged_supremum += rotation;
         let outside = certificate::area(&pieces) > 0.0;
@@ -129,7 +151,7 @@ pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
     }
     let gait = best
         .ok_or(TurningError::NoRegion)?
-        .certified(problem, bounds, &model, &domain);
+        .certified(problem, bounds, model, &domain);
     if !gait.certificate.pass() {
         return Err(TurningError::NotCertified {
             rotation: gait.rotation,

@@ -11,8 +11,8 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 use gait_optimizer::{
-    AtlasProblem, Branch, EfficiencyProblem, Objective, OptimalGait, SidewaysProblem,
-    TurningProblem, atlas, certify, efficiency, sideways, turning,
+    AtlasProblem, Branch, EfficiencyProblem, Objective, OptimalGait, SidewaysProblem, SpeedProblem,
+    TurningProblem, atlas, certify, efficiency, fastest, sideways, turning,
 };
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, GaitFile};
@@ -194,6 +194,20 @@ fn efficiency_atlas(case: &Case) -> Answer {
     small_atlas(case, Objective::Efficiency)
 }
 
+/// With few starts.
+fn fastest_gait(case: &Case) -> Answer {
+    let problem = SpeedProblem {
+        bounds: case.bounds,
+        starts: 8,
+        ..SpeedProblem::new(case.swimmer, [1.0, 0.8])
+    };
+    match fastest(&problem) {
+        Ok(found) if found.speed_over_length > 0.0 => Answer::Gaits(vec![found.gait.into()]),
+        Ok(found) => Answer::Wrong(format!("{} L a second", found.speed_over_length)),
+        Err(error) => Answer::refused(&error),
+    }
+}
+
 /// What `certify` holds against a gait's file, if anything.
 fn refused(case: &Case, Found { gait, simple }: &Found) -> Option<String> {
     let text = gait.gait_file("one").to_text();
@@ -273,8 +287,8 @@ fn faults(case: &Case, gait: &OptimalGait) -> Vec<String> {
 }
 
 /// Asks for the gaits of `every`-th of the swimmers, prints what comes, and fails where anything is wrong, or where `certify`
-/// refuses the file of more than `most_refused` that their solvers certify.
-fn ask(objective: &str, every: usize, most_refused: usize, solve: fn(&Case) -> Answer) {
+/// refuses the file of a gait that its solver certifies.
+fn ask(objective: &str, every: usize, solve: fn(&Case) -> Answer) {
     let (mut certified, mut gaits, mut asked) = (0, 0, 0);
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
     let (mut wrong, mut refusals) = (Vec::new(), Vec::new());
@@ -342,7 +356,7 @@ fn ask(objective: &str, every: usize, most_refused: usize, solve: fn(&Case) -> A
     assert!(certified > 0, "{objective}: not one gait");
     assert!(wrong.is_empty(), "{objective}:\n{}", wrong.join("\n"));
     assert!(
-        refusals.len() <= most_refused,
+        refusals.is_empty(),
         "{objective}: {} refused:\n{}",
         refusals.len(),
         refusals.join("\n")
@@ -352,49 +366,55 @@ fn ask(objective: &str, every: usize, most_refused: usize, solve: fn(&Case) -> A
 /// One swimmer in so many, for every change; primes, so that bounds of all kinds are among them.
 #[test]
 fn some_of_each() {
-    ask("small", 29, 0, small);
-    ask("large", 41, 0, large);
-    ask("turning", 13, 0, most_turning);
-    ask("sideways", 99, 0, most_sideways);
-    ask("displacement atlas", 67, 0, displacement_atlas);
-    ask("efficiency atlas", 67, 0, efficiency_atlas);
+    ask("small", 29, small);
+    ask("large", 41, large);
+    ask("turning", 13, most_turning);
+    ask("sideways", 99, most_sideways);
+    ask("speed", 67, fastest_gait);
+    ask("displacement atlas", 67, displacement_atlas);
+    ask("efficiency atlas", 67, efficiency_atlas);
 }
 
-// The files that `certify` refuses below are known gaps, and shall only get fewer: sharp turns sampled too coarsely for its
-// slopes. Loops of most displacement have none left. Those in whose second variation it saw a way up were saddles, which the
-// atlas lists no more; for three swimmers (115, 117, 144) the few starts here find nothing else, more starts do.
+// `certify` refuses none of the files: sharp turns are sampled as closely as its slopes ask for. For three swimmers (115, 117, 144) the
+// few starts here find saddles alone, which the atlas does not list; more starts find optima.
 #[test]
 #[ignore = "minutes: part of the soak"]
 fn small_gaits_of_all() {
-    ask("small", 1, 0, small);
+    ask("small", 1, small);
 }
 
 #[test]
 #[ignore = "minutes: part of the soak"]
 fn large_gaits_of_all() {
-    ask("large", 1, 2, large);
+    ask("large", 1, large);
 }
 
 #[test]
 #[ignore = "a minute: part of the soak"]
 fn turning_gaits_of_all() {
-    ask("turning", 1, 7, most_turning);
+    ask("turning", 1, most_turning);
+}
+
+#[test]
+#[ignore = "minutes: part of the soak"]
+fn fastest_gaits_of_all() {
+    ask("speed", 1, fastest_gait);
 }
 
 #[test]
 #[ignore = "minutes: part of the soak"]
 fn sideways_gaits_of_all() {
-    ask("sideways", 1, 0, most_sideways);
+    ask("sideways", 1, most_sideways);
 }
 
 #[test]
 #[ignore = "minutes: part of the soak"]
 fn displacement_atlases_of_all() {
-    ask("displacement atlas", 1, 0, displacement_atlas);
+    ask("displacement atlas", 1, displacement_atlas);
 }
 
 #[test]
 #[ignore = "minutes: part of the soak"]
 fn efficiency_atlases_of_all() {
-    ask("efficiency atlas", 1, 1, efficiency_atlas);
+    ask("efficiency atlas", 1, efficiency_atlas);
 }

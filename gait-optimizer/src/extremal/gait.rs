@@ -10,6 +10,7 @@ use super::shooting::Class;
 use super::wall::Walls;
 use super::{Extremal, Unpolished};
 use crate::certificate::{Certificate, Check};
+use crate::certify::slopes_open;
 use crate::optimal_gait::{OptimalGait, Solution};
 
 /// The residual of the shooting that an extremal may have.
@@ -32,7 +33,8 @@ pub(crate) struct Order<'a> {
 }
 
 /// An extremal as a gait, with all its checks; whether they pass is for the caller to see. Where the interpolated samples do
-/// not keep the power constant there are more of them than were asked for.
+/// not keep the power constant, or leave its slopes open where [`certify`](crate::certify()) asks for them, there are more of them
+/// than were asked for.
 pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait, Unpolished> {
     let Order { model, .. } = *order;
     let walls = Walls::new(order.bounds, &order.swimmer.links);
@@ -46,10 +48,13 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
         let cycle = sampled.cycle(class);
         let curve = cycle.gait().map_err(|_| lost())?;
         let variation = power_variation(model, &cycle.u, &curve);
-        if variation <= POWER_VARIATION || samples * parts > MOST_SAMPLES {
+        // The power varies by the third power of the samples' distance, slopes are open by the sixth.
+        let off = (variation / POWER_VARIATION).cbrt();
+        let off = off.max(slopes_open(&cycle).powf(1.0 / 6.0));
+        if off <= 1.0 || samples * parts > MOST_SAMPLES {
             break (sampled, cycle, curve, variation);
         }
-        samples = more(samples, variation);
+        samples = more(samples, off);
     };
     let stroke = swim(model, &curve, &Tolerance::new(1e-12));
     let certificate = certificate(model, extremal, &walls, (&evidence, &stroke), variation);
@@ -81,9 +86,9 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
     Ok(gait)
 }
 
-/// So many samples that the power should vary little enough: it does so by the third power of their distance.
-fn more(samples: usize, variation: f64) -> usize {
-    let factor = (1.1 * (variation / POWER_VARIATION).cbrt()).clamp(1.1, 2.0);
+/// So many samples that they should suffice where they are too far apart by this factor.
+fn more(samples: usize, off: f64) -> usize {
+    let factor = (1.1 * off).clamp(1.1, 2.0);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousands
     let more = (samples as f64 * factor).ceil() as usize;
     more
