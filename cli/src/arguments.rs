@@ -50,6 +50,14 @@ fn above_zero_angle(angle: f64, what: &str) -> Result<f64, String> {
     }
 }
 
+/// What servos turn over what they are told, on the command line.
+pub(crate) fn gain(text: &str) -> Result<f64, String> {
+    match f64::from_str(text) {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("write a number above zero, as 0.98".to_owned()),
+    }
+}
+
 /// A length on the command line, zero or above, in metres.
 pub(crate) fn length(text: &str) -> Result<f64, String> {
     match f64::from_str(text) {

@@ -6,6 +6,7 @@ use gait_optimizer::Uncertainty;
 use serde::Deserialize;
 
 use crate::failure::{Failure, Outcome};
+use crate::output::aside;
 
 /// What is read of a fit.
 #[derive(Debug, Deserialize)]
@@ -14,6 +15,49 @@ struct Fit {
     chi: f64,
     intervals: Intervals,
     correlation: Option<f64>,
+    further: Option<Further>,
+}
+
+/// What was fitted along.
+#[derive(Debug, Deserialize)]
+struct Further {
+    parameters: Vec<Parameter>,
+    level: f64,
+    correlations: Vec<Vec<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Parameter {
+    name: String,
+    value: f64,
+    interval: [f64; 2],
+}
+
+impl Further {
+    /// All that it leaves open, where it tells of the servos' gain. What it finds of the gain belongs into the servo map; how well
+    /// that is known is left.
+    fn uncertainty(&self) -> Option<Uncertainty> {
+        let of = |name: &str| self.parameters.iter().find(|one| one.name == name);
+        let (radius, chi, gain) = (of("r_s")?, of("chi")?, of("gain")?);
+        let place = |name: &str| self.parameters.iter().position(|one| one.name == name);
+        let row = self.correlations.get(place("r_s")?)?;
+        if (gain.value - 1.0).abs() > 1e-3 {
+            aside(&format!(
+                "warning: the fit says that the servos turn {:.4} times what they are told; the design takes slope_rad_per_us of the \
+                 swimmer file as put right by that",
+                gain.value
+            ));
+        }
+        Some(Uncertainty {
+            sphere_radius: radius.value,
+            chi: chi.value,
+            sphere_radius_interval: radius.interval,
+            chi_interval: chi.interval,
+            gain_interval: gain.interval.map(|end| end / gain.value),
+            level: self.level,
+            correlation: row.get(place("chi")?).copied(),
+        })
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -23,7 +67,7 @@ struct Intervals {
     level: f64,
 }
 
-/// Reads what a fit leaves open of `r_s` and χ.
+/// Reads what a fit leaves open of `r_s` and χ, and of the servos' gain where that was fitted along.
 ///
 /// # Errors
 /// [`Failure::BadInput`] with the place in the file.
@@ -39,14 +83,14 @@ pub(crate) fn load_fit(path: &Path) -> Outcome<Uncertainty> {
             error.column()
         ))
     })?;
-    let uncertainty = Uncertainty {
-        sphere_radius: fit.sphere_radius_m,
-        chi: fit.chi,
+    let further = fit.further.as_ref().and_then(Further::uncertainty);
+    let uncertainty = further.unwrap_or(Uncertainty {
         sphere_radius_interval: fit.intervals.sphere_radius_m,
         chi_interval: fit.intervals.chi,
         level: fit.intervals.level,
         correlation: fit.correlation,
-    };
+        ..Uncertainty::none(fit.sphere_radius_m, fit.chi)
+    });
     uncertainty.validate()?;
     Ok(uncertainty)
 }

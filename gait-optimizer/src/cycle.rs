@@ -56,6 +56,14 @@ impl Cycle {
         }
     }
 
+    /// The cycle of servos that turn so many times what they are told.
+    pub(crate) fn turned(&self, gain: f64) -> Self {
+        Self {
+            phi: self.phi.iter().map(|phi| phi * gain).collect(),
+            ..self.clone()
+        }
+    }
+
     pub(crate) fn gait(&self) -> Result<AnyGait, InvalidSamples> {
         let corners: Vec<usize> = self
             .corners

@@ -25,6 +25,7 @@ pub use bounded::Reached;
 pub(crate) use chain::starts;
 use chain::{Found, same_gait};
 pub use error::EfficiencyError;
+pub(crate) use fourier::Objective;
 pub use near::EfficiencySeed;
 
 /// Which of the two optima.

@@ -76,6 +76,7 @@ mod extremal;
 mod height_map;
 mod immobile;
 mod loops;
+mod member;
 mod momentum;
 mod optimal_gait;
 mod parallel;
@@ -113,7 +114,8 @@ pub use immobile::Immobile;
 pub use optimal_gait::{Arc, OptimalGait};
 pub use problem::InvalidProblem;
 pub use robust::{
-    Over, RobustError, RobustGait, Uncertainty, Values, robust_displacement, robust_efficiency,
+    Holder, Over, RobustError, RobustGait, RobustSpeed, Robustness, Uncertainty, Values,
+    robust_displacement, robust_efficiency, robust_speed,
 };
 pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways, sideways_watched};
 pub use simple_shapes::{BestAmplitude, SimpleShape, best_amplitudes};

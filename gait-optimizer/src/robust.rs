@@ -1,13 +1,20 @@
 //! Gaits for a swimmer that is not known exactly: the best worst case, or the best mean, over what a calibration leaves open
-//! of r_s and χ, beside what the nominal optimum would bring there.
+//! of r_s and χ and what is left open of the servos' gain, beside what the nominal optimum would bring there.
 //!
 //! **Conditions.** For the mean with weights wₖ, Σ wₖ fₖ is stationary: on free arcs of a displacement gait the weighted
 //! height h̄ = Σ wₖ μₖ·Fₖ vanishes and along bounds h̄ ≥ 0, each member with its own pose and body momentum (an ensemble
-//! maximum principle: one control, many states); for the efficiency of a Fourier gait the weighted gradient vanishes. For the
-//! worst case the same holds with multipliers λₖ in place of the weights, positive only for members that are the worst.
+//! maximum principle: one control, many states); for the efficiency of a Fourier gait the weighted gradient vanishes; for speed the
+//! costate is σ̄ = Σ wₖ σₖ, with the same switching functions, signs and integrals as of one swimmer. For the worst case the same
+//! holds with multipliers λₖ in place of the weights, positive only for members that are the worst.
 //!
 //! **Families.** Displacement, free or with an upper bound: gaits with the arcs of the nominal optimum, any shape (spectral
-//! collocation of h̄ = 0). Efficiency: doubly symmetric Fourier gaits of order N, one timing for all members.
+//! collocation of h̄ = 0). Efficiency: doubly symmetric Fourier gaits of order N, one timing for all members. Speed: chains of
+//! arcs, begun at those of the fastest gait and mended where they no longer fit. No member may rotate: with a net rotation the
+//! displacement of a cycle depends on where the cycle begins. Where both side links are alike nobody rotates along a loop that is
+//! its own image in φ₁ = −φ₂ or has the paper's symmetries, as the fastest gaits as a rule are; others are refused.
+//!
+//! **Gain.** A servo with gain g turns to g times what it is told, about the straight swimmer, as in a calibration. Bounds on angles
+//! and rates are about what is told: there the robot limits them.
 //!
 //! Values are signed as the objective asks: a gait for X < 0 is best where X is least.
 
@@ -19,29 +26,31 @@
 mod arcs;
 mod certificate;
 mod cycle;
+mod ensemble;
+mod error;
 mod fourier;
 mod newton;
 mod nodes;
 mod quarter;
+mod speed;
 #[cfg(test)]
 mod tests;
 mod uncertainty;
 mod worst;
 
-use nalgebra::DVector;
 use swimmer_files::{Bounds, Objective};
-use swimmer_model::{InvalidSwimmer, Model, Swimmer};
+use swimmer_model::Swimmer;
 
 use crate::cycle::Cycle;
 use crate::immobile::refuse_immobile;
 use crate::optimal_gait::Solution;
-use crate::{
-    Branch, Certificate, DisplacementError, DisplacementProblem, Heading, Immobile, OptimalGait,
-    displacement,
-};
+use crate::{Branch, Certificate, DisplacementProblem, Heading, OptimalGait, displacement};
 use arcs::Arcs;
+use ensemble::{Ensemble, Found};
+pub use error::RobustError;
 use fourier::FourierFamily;
 use newton::Design;
+pub use speed::{RobustSpeed, robust_speed};
 pub use uncertainty::Uncertainty;
 
 /// What a robust design maximises.
@@ -53,69 +62,7 @@ pub enum Over {
     Mean,
 }
 
-/// Why there is no robust design.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum RobustError {
-    /// The nominal optimum does not exist.
-    #[error("the nominal problem comes first, and there: {0}")]
-    Nominal(#[from] DisplacementError),
-    /// A member is no swimmer.
-    #[error("{0}")]
-    Swimmer(#[from] InvalidSwimmer),
-    /// Gaits do not move the swimmer of the estimates.
-    #[error(transparent)]
-    Immobile(#[from] Immobile),
-    /// The uncertainty makes no sense.
-    #[error("the {name} of the fit is {value}; {problem}")]
-    Uncertainty {
-        /// Which number.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// What it must be.
-        problem: &'static str,
-    },
-    /// The order of the Fourier series.
-    #[error("a Fourier gait of order {order}: give 1 to 12")]
-    Order {
-        /// The order.
-        order: usize,
-    },
-    /// The nominal gait is not of the family.
-    #[error("{problem}")]
-    Structure {
-        /// What stands against it.
-        problem: &'static str,
-    },
-    /// The search did not end.
-    #[error(
-        "the robust gait did not converge (residual {residual:.1e}): its arcs are not those of the nominal optimum, or the \
-         intervals are too wide for one gait; give narrower intervals, or optimise for their corners one by one"
-    )]
-    NotConverged {
-        /// What was left.
-        residual: f64,
-    },
-    /// A bound that the family does not know is broken.
-    #[error(
-        "the robust gait turns a joint to {reach:.4} rad, beyond {max_angle} rad; Fourier gaits are designed without bounds, so \
-         take a lower order, the small gait, or leave the bound out"
-    )]
-    Bound {
-        /// The largest angle \[rad\].
-        reach: f64,
-        /// The bound \[rad\].
-        max_angle: f64,
-    },
-    /// A condition does not hold.
-    #[error("a robust gait was found, but it does not hold: {failed}")]
-    NotCertified {
-        /// What failed.
-        failed: String,
-    },
-}
-
-/// What a gait brings over the uncertainty: X/L per cycle, signed, or ξ as timed.
+/// What a gait brings over the uncertainty: X/L per cycle, signed, ξ as timed, or |d|/(L T) \[1/s\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Values {
     /// For the estimates themselves.
@@ -126,159 +73,72 @@ pub struct Values {
     pub mean: f64,
 }
 
+/// A swimmer that holds the worst case.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Holder {
+    /// r_s \[m\].
+    pub sphere_radius: f64,
+    /// χ.
+    pub chi: f64,
+    /// What its servos turn over what they are told.
+    pub gain: f64,
+    /// λ, its share of the first-order condition.
+    pub multiplier: f64,
+}
+
+/// What robustness costs and brings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Robustness {
+    /// What was maximised.
+    pub over: Over,
+    /// What the gait brings.
+    pub values: Values,
+    /// What the nominal optimum of the same family brings.
+    pub nominal: Values,
+    /// The swimmers that hold the worst case; none for a mean.
+    pub held_by: Vec<Holder>,
+    /// How many swimmers the search for the worst case begins with, and how many the mean is taken of.
+    pub members: (usize, usize),
+    /// Whether the gait lies on another branch of optima than the nominal one, to which it does not lead back: it is better for
+    /// the estimates themselves, or near it another gait is best for them.
+    pub off_branch: bool,
+    /// Share of the cycle in which links cross, at most: of the gait over all gains, and of the nominal optimum with exact servos.
+    pub links_cross: [f64; 2],
+}
+
 /// A robust gait, with what robustness costs and brings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobustGait {
     /// The gait; its numbers are those of the nominal swimmer.
     pub gait: OptimalGait,
-    /// What was maximised.
-    pub over: Over,
-    /// What it brings.
-    pub values: Values,
-    /// What the nominal optimum of the same family brings.
-    pub nominal: Values,
-    /// The members that hold the worst case, r_s \[m\], χ and multiplier; empty for a mean.
-    pub held_by: Vec<[f64; 3]>,
-    /// How many swimmers the worst case was looked for among, and how many the mean is taken of.
-    pub members: (usize, usize),
+    /// What it costs and brings.
+    pub robustness: Robustness,
 }
 
-impl RobustGait {
-    /// Whether the gait is better than the nominal optimum for the estimates themselves: then that optimum was only the best
-    /// of its neighbourhood, and the robust gait lies in another, where the nominal branch does not reach.
-    pub fn off_branch(&self) -> bool {
-        let sign = self.nominal.nominal.signum();
-        sign * self.values.nominal > sign * self.nominal.nominal + 1e-6 * self.nominal.nominal.abs()
-    }
-}
-
-/// Steps of the grid among which the worst case is looked for.
-const GRID: u32 = 4;
-
-/// All swimmers of a problem, measured in their own length.
-struct Ensemble {
-    nominal: Model<f64>,
-    candidates: Vec<Model<f64>>,
-    /// Of the candidates, as they are in metres.
-    swimmers: Vec<Swimmer<f64>>,
-    normal: Vec<Model<f64>>,
-    weights: Vec<f64>,
-}
-
-/// A design found: parameters, the members that its first-order condition weighs, and who holds the worst case.
-struct Found {
-    x: DVector<f64>,
-    held_by: Vec<[f64; 3]>,
-    weighted: Vec<(Model<f64>, f64)>,
-}
-
-impl Ensemble {
-    fn new(swimmer: &Swimmer<f64>, uncertainty: &Uncertainty) -> Result<Self, RobustError> {
-        uncertainty.validate()?;
-        let model = |swimmer: &Swimmer<f64>| Model::new(&swimmer.of_unit_length());
-        let swimmers = uncertainty.candidates(swimmer, GRID);
-        let normal = uncertainty.normal(swimmer);
-        Ok(Self {
-            nominal: model(&uncertainty.nominal(swimmer))?,
-            candidates: swimmers.iter().map(model).collect::<Result<_, _>>()?,
-            swimmers,
-            weights: normal.iter().map(|(_, weight)| *weight).collect(),
-            normal: normal
-                .iter()
-                .map(|(swimmer, _)| model(swimmer))
-                .collect::<Result<_, _>>()?,
-        })
-    }
-
-    fn find(&self, design: &impl Design, over: Over) -> Result<Found, RobustError> {
-        match over {
-            Over::Mean => {
-                let weighted: Vec<(Model<f64>, f64)> = self
-                    .normal
-                    .iter()
-                    .copied()
-                    .zip(self.weights.iter().copied())
-                    .collect();
-                let x = design.solve(&design.start(), &borrowed(&weighted))?;
-                Ok(Found {
-                    x,
-                    held_by: Vec::new(),
-                    weighted,
-                })
-            }
-            Over::Worst => {
-                let held = worst::worst(design, &self.candidates)?;
-                let active = || {
-                    held.active.iter().filter_map(|&(member, weight)| {
-                        Some((
-                            self.candidates.get(member)?,
-                            self.swimmers.get(member)?,
-                            weight,
-                        ))
-                    })
-                };
-                Ok(Found {
-                    held_by: active()
-                        .map(|(_, swimmer, weight)| [swimmer.sphere_radius, swimmer.chi, weight])
-                        .collect(),
-                    weighted: active()
-                        .map(|(model, _, weight)| (*model, weight))
-                        .collect(),
-                    x: held.x,
-                })
-            }
-        }
-    }
-
-    /// Where the arcs of the nominal optimum do not lead to the best worst case, those of the worst swimmer's own may.
-    fn find_around_worst(
-        &self,
-        problem: &DisplacementProblem,
-        family: &Arcs,
-        sign: f64,
-    ) -> Result<(Arcs, Found), RobustError> {
-        let values = family.values(&family.start(), &self.candidates);
-        let worst = values
-            .iter()
-            .zip(self.swimmers.iter().zip(&self.candidates))
-            .min_by(|a, b| a.0.total_cmp(b.0));
-        let Some((_, (swimmer, model))) = worst else {
-            return Err(RobustError::NotConverged { residual: f64::NAN });
+impl Robustness {
+    /// Of the gait of this cycle.
+    fn new<D: Design>(
+        ensemble: &Ensemble<'_>,
+        design: &D,
+        found: &Found<D::Point>,
+        (over, values, nominal): (Over, Values, Values),
+        [cycle, optimum]: [&Cycle; 2],
+    ) -> Self {
+        let mut robustness = Self {
+            over,
+            values,
+            nominal,
+            held_by: found.held_by.clone(),
+            members: ensemble.counts(),
+            off_branch: ensemble.is_off_branch(design, &found.point),
+            links_cross: [0.0, optimum.links_cross(&ensemble.nominal.model)],
         };
-        let own = displacement(&DisplacementProblem {
-            swimmer: *swimmer,
-            ..*problem
-        })?;
-        let family = Arcs::around(&own, model, sign)?;
-        let found = self.find(&family, Over::Worst)?;
-        Ok((family, found))
-    }
-
-    fn values(&self, design: &impl Design, x: &DVector<f64>, sign: f64) -> Values {
-        let first = |models: &[Model<f64>]| design.values(x, models).first().copied();
-        let worst = design
-            .values(x, &self.candidates)
-            .into_iter()
-            .fold(f64::INFINITY, f64::min);
-        let mean: f64 = design
-            .values(x, &self.normal)
-            .iter()
-            .zip(&self.weights)
-            .map(|(value, weight)| value * weight)
-            .sum();
-        Values {
-            nominal: sign * first(std::slice::from_ref(&self.nominal)).unwrap_or(f64::NAN),
-            worst: sign * worst,
-            mean: sign * mean,
+        for member in ensemble.on_grid() {
+            let crossing = cycle.turned(member.gain).links_cross(&member.model);
+            robustness.links_cross[0] = robustness.links_cross[0].max(crossing);
         }
+        robustness
     }
-}
-
-fn borrowed(weighted: &[(Model<f64>, f64)]) -> Vec<(&Model<f64>, f64)> {
-    weighted
-        .iter()
-        .map(|(model, weight)| (model, *weight))
-        .collect()
 }
 
 /// The gait whose displacement, in the worst case or in the mean over the uncertainty, is the most, free or under an upper
@@ -298,7 +158,7 @@ fn borrowed(weighted: &[(Model<f64>, f64)]) -> Vec<(&Model<f64>, f64)> {
 /// };
 /// let problem = DisplacementProblem::new(robot).with_max_angle(1.5);
 /// let robust = robust_displacement(&problem, &uncertainty, Over::Worst).unwrap();
-/// assert!(robust.values.worst >= robust.nominal.worst);
+/// assert!(robust.robustness.values.worst >= robust.robustness.nominal.worst);
 /// ```
 pub fn robust_displacement(
     problem: &DisplacementProblem,
@@ -311,53 +171,62 @@ pub fn robust_displacement(
         ..*problem
     };
     let ensemble = Ensemble::new(&problem.swimmer, uncertainty)?;
+    if problem.bounds.no_overlap && uncertainty.gain_is_open() {
+        return Err(RobustError::Clearance);
+    }
+    let of = |swimmer| {
+        displacement(&DisplacementProblem {
+            swimmer,
+            ..*problem
+        })
+    };
     let swimmer = uncertainty.nominal(&problem.swimmer);
-    let nominal = displacement(&DisplacementProblem {
-        swimmer,
-        ..*problem
-    })?;
-    let sign = if nominal.displacement_over_length < 0.0 {
+    let optimum = of(swimmer)?;
+    let backwards = optimum.displacement_over_length < 0.0;
+    let sign = if backwards {
         Heading::Backwards
     } else {
         Heading::Forwards
     }
     .sign();
-    let family = Arcs::around(&nominal, &ensemble.nominal, sign)?;
-    let start = family.solve(&family.start(), &[(&ensemble.nominal, 1.0)])?;
+    let mut family = Arcs::around(&optimum, sign)?;
+    let start = family.solve(&family.start(), &[(ensemble.nominal, 1.0)])?;
     let nominal = ensemble.values(&family, &start, sign);
-    let (family, found) = match ensemble.find(&family, over) {
-        Err(RobustError::NotConverged { .. }) if over == Over::Worst => {
-            ensemble.find_around_worst(problem, &family, sign)?
+    let found = match ensemble.find(&family, over) {
+        // Where the arcs of the nominal optimum do not lead to the best worst case, those of the worst swimmer's own may.
+        Err(error @ RobustError::NotConverged { .. }) if over == Over::Worst => {
+            let worst = ensemble.worst_swimmer(|member| family.value(&start, member));
+            family = Arcs::around(&of(worst.ok_or(error)?)?, sign)?;
+            ensemble.find(&family, over)?
         }
-        found => (family, found?),
+        found => found?,
     };
-    let values = ensemble.values(&family, &found.x, sign);
-    let (cycle, arcs) = cycle::of_arcs(&ensemble.nominal, &family, &found.x);
-    let mut checks = certificate::of_arcs(&family, &found.x, &borrowed(&found.weighted));
+    let values = ensemble.values(&family, &found.point, sign);
+    let (cycle, arcs) = cycle::of_arcs(&ensemble.nominal.model, &family, &found.point);
+    let mut checks = certificate::of_arcs(&family, &found.point, &found.weighted);
     checks.extend(certificate::of_curve(
         &cycle,
         &problem.bounds,
         &swimmer.links,
     ));
-    checks.extend(certificate::of_displacement(
+    checks.extend(certificate::of_symmetry(&cycle, &ensemble.nominal.model));
+    checks.extend(certificate::swum_again(
         &ensemble,
         &cycle,
-        &values,
-        sign,
-        &found.held_by,
+        (&values, sign),
+        &found,
+        1.0,
+        |stroke| sign * stroke.displacement.x,
     ));
+    let told = (over, values, nominal);
+    let robustness = Robustness::new(&ensemble, &family, &found, told, [&cycle, &optimum.cycle]);
     finish(
         Objective::Displacement,
         (&swimmer, problem.bounds),
         &ensemble,
         (cycle, arcs),
         checks,
-        RobustParts {
-            over,
-            values,
-            nominal,
-            held_by: found.held_by,
-        },
+        robustness,
     )
 }
 
@@ -400,75 +269,68 @@ pub fn robust_efficiency(
         });
     }
     let ensemble = Ensemble::new(swimmer, uncertainty)?;
+    if bounds.no_overlap && uncertainty.gain_is_open() {
+        return Err(RobustError::Clearance);
+    }
     let swimmer = uncertainty.nominal(swimmer);
-    refuse_immobile(&ensemble.nominal, bounds)?;
+    refuse_immobile(&ensemble.nominal.model, bounds)?;
     let family = FourierFamily::around(&ensemble.nominal, order, branch)?;
     let found = ensemble.find(&family, over)?;
-    let values = ensemble.values(&family, &found.x, 1.0);
-    let (cycle, arcs) = cycle::of_series(&FourierFamily::gait(&found.x));
-    let reach = cycle
-        .phi
-        .iter()
-        .map(nalgebra::Matrix::amax)
-        .fold(0.0, f64::max);
-    if let Some(max_angle) = bounds.max_angle
-        && reach > max_angle
-    {
-        return Err(RobustError::Bound { reach, max_angle });
+    let values = ensemble.values(&family, &found.point, 1.0);
+    let nominal = ensemble.values(&family, &family.start(), 1.0);
+    let cycle_of = |x| cycle::of_series(&FourierFamily::gait(x));
+    let (cycle, arcs) = cycle_of(&found.point);
+    let (optimum, _) = cycle_of(&family.start());
+    let by = certificate::overstepped(&cycle, bounds, &swimmer.links);
+    if by > 1e-10 {
+        let bounds = *bounds;
+        return Err(RobustError::Bound { by, bounds });
     }
-    let mut checks = certificate::of_series(&family, &found.x, &borrowed(&found.weighted));
+    let mut checks = certificate::of_series(&found.point, &found.weighted);
     checks.extend(certificate::of_curve(&cycle, bounds, &swimmer.links));
-    checks.extend(certificate::of_efficiency(
+    checks.extend(certificate::of_symmetry(&cycle, &ensemble.nominal.model));
+    checks.extend(certificate::swum_again(
         &ensemble,
         &cycle,
-        &values,
-        &found.held_by,
+        (&values, 1.0),
+        &found,
+        values.nominal.abs(),
+        swimmer_model::Stroke::efficiency,
     ));
+    let told = (over, values, nominal);
+    let robustness = Robustness::new(&ensemble, &family, &found, told, [&cycle, &optimum]);
     finish(
         Objective::Efficiency,
         (&swimmer, *bounds),
         &ensemble,
         (cycle, arcs),
         checks,
-        RobustParts {
-            over,
-            values,
-            nominal: ensemble.values(&family, &family.start(), 1.0),
-            held_by: found.held_by,
-        },
+        robustness,
     )
 }
 
 /// Highest order of a Fourier gait.
 const MOST_ORDER: usize = 12;
 
-struct RobustParts {
-    over: Over,
-    values: Values,
-    nominal: Values,
-    held_by: Vec<[f64; 3]>,
-}
-
 fn finish(
     objective: Objective,
     (swimmer, bounds): (&Swimmer<f64>, Bounds),
-    ensemble: &Ensemble,
+    ensemble: &Ensemble<'_>,
     (cycle, arcs): (Cycle, Vec<crate::Arc>),
     checks: Vec<crate::Check>,
-    parts: RobustParts,
+    robustness: Robustness,
 ) -> Result<RobustGait, RobustError> {
-    let stroke = cycle
-        .swum(&ensemble.nominal)
-        .ok_or(RobustError::Structure {
-            problem: "the robust gait's samples cannot be swum",
-        })?;
+    let nominal = &ensemble.nominal.model;
+    let stroke = cycle.swum(nominal).ok_or(RobustError::Structure {
+        problem: "the robust gait's samples cannot be swum",
+    })?;
     let certificate = Certificate::new(checks);
     if !certificate.pass() {
         return Err(RobustError::NotCertified {
             failed: certificate.failures(),
         });
     }
-    let links_cross = cycle.links_cross(&ensemble.nominal);
+    let links_cross = cycle.links_cross(nominal);
     Ok(RobustGait {
         gait: OptimalGait::new(Solution {
             objective,
@@ -481,10 +343,6 @@ fn finish(
             links_cross,
             certificate,
         }),
-        over: parts.over,
-        values: parts.values,
-        nominal: parts.nominal,
-        held_by: parts.held_by,
-        members: (ensemble.candidates.len(), ensemble.normal.len()),
+        robustness,
     })
 }

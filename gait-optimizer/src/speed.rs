@@ -11,6 +11,7 @@ mod arc;
 mod candidate;
 mod certificate;
 mod chain;
+mod ensemble;
 mod error;
 mod front;
 mod interior;
@@ -37,12 +38,17 @@ use crate::parallel::in_parallel;
 use crate::region::Region;
 use crate::{Certificate, Immobile, Watch};
 
+pub(crate) use candidate::mended;
+pub(crate) use ensemble::speed_of;
 pub use error::SpeedError;
 pub use front::{Front, front};
+pub(crate) use polish::Polished;
 pub use power::{Limit, Limited, PowerError, PowerProblem, fastest_on_power};
+use problem::Goal;
 pub use problem::HeadingRule;
-use problem::{Goal, Setting};
+pub(crate) use problem::Setting;
 use search::Search;
+pub(crate) use search::told;
 pub use steer::{Joined, SteerProblem, Steering, steer};
 
 /// What is asked for.
@@ -123,7 +129,7 @@ impl SpeedProblem {
     }
 
     /// The problem in units in which the faster servo turns by 1 rad.
-    fn setting<'a>(&self, model: &'a Model<f64>, region: &'a Region) -> Setting<'a> {
+    pub(crate) fn setting<'a>(&self, model: &'a Model<f64>, region: &'a Region) -> Setting<'a> {
         let fast = self.rates[0].max(self.rates[1]);
         Setting {
             model,
@@ -132,6 +138,7 @@ impl SpeedProblem {
             heading: self.heading,
             period: self.period.map(|period| period * fast),
             goal: Goal::Distance,
+            members: &[],
             anchor: None,
         }
     }
@@ -222,7 +229,7 @@ pub(crate) fn certify_speed(
             period,
             ..certificate::Asked::default()
         };
-        certificate::certificate(model, region, asked, file, gait)
+        certificate::certificate((model, &[]), region, asked, file, gait)
     };
     let free = of((HeadingRule::Any, false));
     if free.pass() {
@@ -239,6 +246,18 @@ pub(crate) fn certify_speed(
     .map(of)
     .find(Certificate::pass)
     .unwrap_or(free)
+}
+
+/// As [`certify_speed`], of an ensemble's displacement.
+#[cfg(test)]
+pub(crate) fn certify_ensemble(
+    of: (&Model<f64>, &[(crate::member::Member, f64)]),
+    bounds: &Bounds,
+    file: &GaitFile,
+    gait: &AnyGait,
+) -> Certificate {
+    let region = Region::new(bounds, &of.0.swimmer().links);
+    certificate::certificate(of, &region, certificate::Asked::default(), file, gait)
 }
 
 pub(crate) fn validate(problem: &SpeedProblem) -> Result<(), SpeedError> {

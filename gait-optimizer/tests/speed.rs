@@ -3,7 +3,7 @@
 mod plane;
 mod speed_direct;
 
-use gait_optimizer::{Bounds, SpeedProblem, fastest, front};
+use gait_optimizer::{Bounds, Over, SpeedProblem, Uncertainty, fastest, front, robust_speed};
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -54,6 +54,67 @@ fn by_two_methods(swimmer: Swimmer<f64>, max_angle: f64) {
 fn the_direct_method_agrees() {
     by_two_methods(Swimmer::robot(), 2.0);
     by_two_methods(Swimmer::purcell(), 2.8);
+}
+
+/// The swimmer with another χ.
+fn with_chi(swimmer: Swimmer<f64>, chi: f64) -> Swimmer<f64> {
+    Swimmer { chi, ..swimmer }
+}
+
+/// Robust gaits: of the mean, and of the worst case, where the swimmers that hold it, weighed by their multipliers, have no better
+/// gait than the one in whose worst case they all are. Then no gait has a better worst case, for any weighted mean is at least
+/// the worst.
+fn robust_by_two_methods(swimmer: Swimmer<f64>, max_angle: f64, gain_interval: [f64; 2]) {
+    let problem = problem(swimmer, max_angle, 24);
+    let spread: f64 = 0.08;
+    let uncertainty = Uncertainty {
+        chi_interval: [swimmer.chi * (-spread).exp(), swimmer.chi * spread.exp()],
+        gain_interval,
+        ..Uncertainty::none(swimmer.sphere_radius, swimmer.chi)
+    };
+    let climbed = |members: &[(Swimmer<f64>, f64, f64)]| {
+        let circles = [([0.0, 0.0], 0.85), ([0.62, -0.62], 0.33)].into_iter();
+        circles
+            .filter_map(|(centre, radius)| {
+                let (centre, radius) = (Vector2::from(centre) * max_angle, radius * max_angle);
+                let circle = |s: f64| centre + Vector2::new(s.cos(), s.sin()) * radius;
+                Direct::new(&problem, 24, circle).of(members).climb()
+            })
+            .fold(0.0, f64::max)
+    };
+    // Gauss and Hermite, over the normal distribution of which both intervals hold 95 in a hundred.
+    let node = 3.0_f64.sqrt() / 1.959_963_984_540_054;
+    let half = 0.5 * (gain_interval[1] - gain_interval[0]);
+    let mut normal = Vec::new();
+    for (a, w1) in [(-node, 1.0), (0.0, 4.0), (node, 1.0)] {
+        for (b, w2) in [(-node, 1.0), (0.0, 4.0), (node, 1.0)] {
+            let one = with_chi(swimmer, swimmer.chi * (a * spread).exp());
+            normal.push((one, 1.0 + b * half, w1 * w2 / 36.0));
+        }
+    }
+    let found = |over| robust_speed(&problem, &uncertainty, over, &|_| ()).unwrap();
+    let mean = found(Over::Mean).robustness.values.mean;
+    let direct = climbed(&normal);
+    println!("mean {mean:.14}, direct {direct:.14}");
+    assert!((direct / mean - 1.0).abs() < 1e-8, "{direct} {mean}");
+    let held = found(Over::Worst).robustness;
+    let holders: Vec<_> = held
+        .held_by
+        .iter()
+        .map(|one| (with_chi(swimmer, one.chi), one.gain, one.multiplier))
+        .collect();
+    let direct = climbed(&holders);
+    println!(
+        "worst {:.14}, direct {direct:.14}, {holders:?}",
+        held.values.worst
+    );
+    assert!((direct / held.values.worst - 1.0).abs() < 1e-8, "{held:?}");
+}
+
+#[test]
+fn the_direct_method_agrees_on_robust_gaits() {
+    robust_by_two_methods(Swimmer::robot(), 2.0, [1.0; 2]);
+    robust_by_two_methods(Swimmer::purcell(), 2.8, [0.97, 1.03]);
 }
 
 #[test]

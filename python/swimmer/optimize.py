@@ -26,13 +26,15 @@ def displacement(
     sign: Literal["+", "-"] | None = None,
     simple: bool = False,
     robust: Result | Text | None = None,
+    gain: Sequence[float] | None = None,
     over: Literal["worst", "mean"] | None = None,
     max_rate: Angle | None = None,
     period: float | None = None,
 ) -> OptimalGait:
     """The gait of most net displacement of the doubly symmetric class: `displacement_over_length`, `start_angle_rad`, `arcs`, …
 
-    `clearance` in metres, `max_rate` an angle a second, `period` in seconds; `robust` a `Calibration` or its fit.json.
+    `clearance` in metres, `max_rate` an angle a second, `period` in seconds; `robust` a `Calibration` or its fit.json, `gain`
+    the least and the most that servos turn over what they are told.
     """
     return _optimal("displacement", swimmer, locals())
 
@@ -47,6 +49,7 @@ def efficiency(
     clearance: float | None = None,
     playable: bool = False,
     robust: Result | Text | None = None,
+    gain: Sequence[float] | None = None,
     over: Literal["worst", "mean"] | None = None,
     order: int | None = None,
     max_rate: Angle | None = None,
@@ -91,6 +94,9 @@ def speed(
     no_overlap: bool = False,
     clearance: float | None = None,
     playable: bool = False,
+    robust: Result | Text | None = None,
+    gain: Sequence[float] | None = None,
+    over: Literal["worst", "mean"] | None = None,
     front: Text | None = None,
 ) -> OptimalGait:
     """The fastest gait under servos' rates (an angle a second, one for both or one each): `speed_over_length_per_s`, `period_s`, …

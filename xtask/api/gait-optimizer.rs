@@ -348,6 +348,13 @@ pub enum HeightMapError {
     NotConverged { half_width: f64, order: usize },
     GaitBeyondMap { reach: f64, half_width: f64 },
 }
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Holder {
+    pub sphere_radius: f64,
+    pub chi: f64,
+    pub gain: f64,
+    pub multiplier: f64,
+}
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub struct Immobile {
     pub chi: f64,
@@ -517,26 +524,38 @@ impl fmt::Display for Reached {}
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RobustError {
     Nominal(DisplacementError),
+    NominalSpeed(SpeedError),
     Swimmer(InvalidSwimmer),
     Immobile(Immobile),
     Uncertainty { name: &'static str, value: f64, problem: &'static str },
     Order { order: usize },
     Structure { problem: &'static str },
+    Arc { kind: ArcKind },
+    Turns { rotation: f64 },
+    Clearance,
     NotConverged { residual: f64 },
-    Bound { reach: f64, max_angle: f64 },
+    Bound { by: f64, bounds: Bounds },
     NotCertified { failed: String },
 }
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobustGait {
     pub gait: OptimalGait,
+    pub robustness: Robustness,
+}
+#[derive(Debug, Clone, PartialEq)]
+pub struct RobustSpeed {
+    pub fastest: Fastest,
+    pub robustness: Robustness,
+}
+#[derive(Debug, Clone, PartialEq)]
+pub struct Robustness {
     pub over: Over,
     pub values: Values,
     pub nominal: Values,
-    pub held_by: Vec<[f64; 3]>,
+    pub held_by: Vec<Holder>,
     pub members: (usize, usize),
-}
-impl RobustGait {
-    pub fn off_branch(&self) -> bool {}
+    pub off_branch: bool,
+    pub links_cross: [f64; 2],
 }
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Row {
@@ -671,6 +690,7 @@ pub struct Uncertainty {
     pub chi: f64,
     pub sphere_radius_interval: [f64; 2],
     pub chi_interval: [f64; 2],
+    pub gain_interval: [f64; 2],
     pub level: f64,
     pub correlation: Option<f64>,
 }
@@ -767,6 +787,12 @@ pub fn robust_efficiency(
     uncertainty: &Uncertainty,
     over: Over,
 ) -> Result<RobustGait, RobustError> {}
+pub fn robust_speed(
+    problem: &SpeedProblem,
+    uncertainty: &Uncertainty,
+    over: Over,
+    watch: Watch<'_>,
+) -> Result<RobustSpeed, RobustError> {}
 pub fn sideways(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {}
 pub fn sideways_watched(
     problem: &SidewaysProblem,

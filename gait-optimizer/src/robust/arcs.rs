@@ -11,13 +11,14 @@
 
 use nalgebra::{DVector, Vector2};
 use swimmer_files::ArcKind;
-use swimmer_model::{Gait, Model};
+use swimmer_model::Gait;
 
 use super::RobustError;
 use super::newton::{Design, newton};
 use super::nodes::Nodes;
 use super::quarter::{ArcCurve, Trajectory};
 use crate::OptimalGait;
+use crate::member::Member;
 
 /// Degree of the polynomial of an arc: of one of several, and of one that is the whole quarter.
 const DEGREES: [usize; 2] = [28, 44];
@@ -40,17 +41,11 @@ pub(super) struct Arcs {
     legs: Vec<Leg>,
     /// 1 or −1: X is maximised or minimised.
     sign: f64,
-    /// Whose optimum the family lies around.
-    nominal: Model<f64>,
 }
 
 impl Arcs {
     /// The family around a gait.
-    pub(super) fn around(
-        gait: &OptimalGait,
-        nominal: &Model<f64>,
-        sign: f64,
-    ) -> Result<Self, RobustError> {
+    pub(super) fn around(gait: &OptimalGait, sign: f64) -> Result<Self, RobustError> {
         let [several, single] = DEGREES;
         let nodes = Nodes::new(if gait.arcs.len() > 1 { several } else { single });
         let curve = gait.gait().map_err(|_| RobustError::Structure {
@@ -70,29 +65,20 @@ impl Arcs {
                 ArcKind::Upper => Leg::Bound(ends),
                 ArcKind::Singular => {
                     let neighbour = |at: Option<usize>, diagonal: Vector2<f64>| {
-                        at.and_then(|at| gait.arcs.get(at)).map_or(diagonal, |bound| {
-                            Vector2::from(bound.to) - Vector2::from(bound.from)
-                        })
+                        at.and_then(|at| gait.arcs.get(at))
+                            .map_or(diagonal, |bound| {
+                                Vector2::from(bound.to) - Vector2::from(bound.from)
+                            })
                     };
                     let first = neighbour(index.checked_sub(1), Vector2::new(1.0, 1.0));
                     let last = neighbour(Some(index + 1), Vector2::new(-1.0, 1.0));
                     free(&nodes, &curve, (start, end), ends, [first, last])
                 }
-                _ => {
-                    return Err(RobustError::Structure {
-                        problem: "a robust design follows free arcs and upper bounds only; leave out --min-angle, \
-                                  --sector and --no-overlap",
-                    });
-                }
+                kind => return Err(RobustError::Arc { kind }),
             });
             start = end;
         }
-        Ok(Self {
-            nodes,
-            legs,
-            sign,
-            nominal: *nominal,
-        })
+        Ok(Self { nodes, legs, sign })
     }
 
     /// The arcs moved by `x`, a number for each free node.
@@ -140,21 +126,21 @@ impl Arcs {
     }
 
     /// Weighted heights of all nodes.
-    fn heights(&self, arcs: &[ArcCurve], members: &[(&Model<f64>, f64)]) -> Vec<f64> {
+    fn heights(&self, arcs: &[ArcCurve], members: &[(Member, f64)]) -> Vec<f64> {
         let count: usize = arcs.iter().map(|arc| arc.phi.len()).sum();
         let mut heights = vec![0.0; count];
-        for (model, weight) in members.iter().filter(|(_, weight)| *weight != 0.0) {
-            let swum = Trajectory::new(model, &self.nodes, arcs);
+        for (member, weight) in members.iter().filter(|(_, weight)| *weight != 0.0) {
+            let swum = Trajectory::new(member, &self.nodes, arcs);
             let shapes = arcs.iter().flat_map(|arc| &arc.phi);
             for ((index, phi), height) in shapes.enumerate().zip(&mut heights) {
-                *height += self.sign * weight * swum.height(model, index, phi);
+                *height += self.sign * weight * swum.height(member, index, phi);
             }
         }
         heights
     }
 
     /// What the certificate asks of a solution.
-    pub(super) fn evidence(&self, x: &DVector<f64>, members: &[(&Model<f64>, f64)]) -> Evidence {
+    pub(super) fn evidence(&self, x: &DVector<f64>, members: &[(Member, f64)]) -> Evidence {
         let arcs = self.curves(x);
         let heights = self.heights(&arcs, members);
         let mut evidence = Evidence {
@@ -165,7 +151,7 @@ impl Arcs {
         let swum: Vec<_> = members
             .iter()
             .filter(|(_, weight)| *weight != 0.0)
-            .map(|(model, weight)| (*model, *weight, Trajectory::new(model, &self.nodes, &arcs)))
+            .map(|(one, weight)| (one, *weight, Trajectory::new(one, &self.nodes, &arcs)))
             .collect();
         let mut index = 0;
         for (leg, arc) in self.legs.iter().zip(&arcs) {
@@ -179,8 +165,8 @@ impl Arcs {
                     let outward = Vector2::new(slope.y, -slope.x).normalize();
                     let falls: f64 = swum
                         .iter()
-                        .map(|(model, weight, swum)| {
-                            -self.sign * weight * swum.height_slope(model, index, phi, &outward)
+                        .map(|(member, weight, swum)| {
+                            -self.sign * weight * swum.height_slope(member, index, phi, &outward)
                         })
                         .sum();
                     evidence.legendre_clebsch = evidence.legendre_clebsch.min(falls);
@@ -204,6 +190,8 @@ pub(super) struct Evidence {
 }
 
 impl Design for Arcs {
+    type Point = DVector<f64>;
+
     fn start(&self) -> DVector<f64> {
         let free = self.legs.iter().map(|leg| match leg {
             Leg::Free(nodes) => nodes.len(),
@@ -212,33 +200,15 @@ impl Design for Arcs {
         DVector::zeros(free.sum())
     }
 
-    fn values(&self, x: &DVector<f64>, members: &[Model<f64>]) -> Vec<f64> {
+    fn value(&self, x: &DVector<f64>, member: &Member) -> f64 {
         let arcs = self.curves(x);
-        members
-            .iter()
-            .map(|model| self.sign * Trajectory::new(model, &self.nodes, &arcs).displacement)
-            .collect()
+        self.sign * Trajectory::new(member, &self.nodes, &arcs).displacement
     }
 
-    /// Newton's method from the start; where that fails, along the weights from the nominal swimmer's optimum to those asked
-    /// for.
     fn solve(
         &self,
         start: &DVector<f64>,
-        members: &[(&Model<f64>, f64)],
-    ) -> Result<DVector<f64>, RobustError> {
-        match self.polished(start, members) {
-            Err(RobustError::NotConverged { .. }) => self.followed(members),
-            other => other,
-        }
-    }
-}
-
-impl Arcs {
-    fn polished(
-        &self,
-        start: &DVector<f64>,
-        members: &[(&Model<f64>, f64)],
+        members: &[(Member, f64)],
     ) -> Result<DVector<f64>, RobustError> {
         let residual = |x: &DVector<f64>| {
             let heights = self.heights(&self.curves(x), members);
@@ -255,30 +225,7 @@ impl Arcs {
         };
         newton(residual, start.clone(), FLAT, MOST)
     }
-
-    fn followed(&self, members: &[(&Model<f64>, f64)]) -> Result<DVector<f64>, RobustError> {
-        let mut x = self.polished(&self.start(), &[(&self.nominal, 1.0)])?;
-        let (mut share, mut step) = (0.0, 0.25);
-        while share < 1.0 {
-            let next = f64::min(share + step, 1.0);
-            let mut mixed = vec![(&self.nominal, 1.0 - next)];
-            mixed.extend(
-                members
-                    .iter()
-                    .map(|(model, weight)| (*model, weight * next)),
-            );
-            match self.polished(&x, &mixed) {
-                Ok(there) => (x, share) = (there, next),
-                Err(error) if step < SMALLEST_STEP => return Err(error),
-                Err(_) => step *= 0.5,
-            }
-        }
-        Ok(x)
-    }
 }
-
-/// Smallest step along the weights.
-const SMALLEST_STEP: f64 = 0.05;
 
 /// Longest step of a node in one iteration \[rad\].
 const MOST: f64 = 0.1;

@@ -5,20 +5,18 @@ use nalgebra::DVector;
 use swimmer_files::Bounds;
 use swimmer_model::{Links, Model, Stroke};
 
+use super::Values;
 use super::arcs::Arcs;
+use super::ensemble::{Ensemble, Found};
 use super::fourier::FourierFamily;
-use super::{Ensemble, Values};
 use crate::Check;
 use crate::certificate::simple_and_turning_once;
 use crate::cycle::Cycle;
+use crate::member::Member;
 use crate::region::Region;
 
 /// The ensemble maximum principle.
-pub(super) fn of_arcs(
-    family: &Arcs,
-    x: &DVector<f64>,
-    members: &[(&Model<f64>, f64)],
-) -> Vec<Check> {
+pub(super) fn of_arcs(family: &Arcs, x: &DVector<f64>, members: &[(Member, f64)]) -> Vec<Check> {
     let evidence = family.evidence(x, members);
     let mut checks = vec![
         Check::at_most("robust_height", evidence.free_height, 1e-8),
@@ -37,16 +35,16 @@ pub(super) fn of_arcs(
 }
 
 /// Stationary, and a maximum.
-pub(super) fn of_series(
-    family: &FourierFamily,
-    x: &DVector<f64>,
-    members: &[(&Model<f64>, f64)],
-) -> Vec<Check> {
+pub(super) fn of_series(x: &DVector<f64>, members: &[(Member, f64)]) -> Vec<Check> {
     vec![
-        Check::at_most("robust_gradient", family.gradient_norm(x, members), 1e-8),
+        Check::at_most(
+            "robust_gradient",
+            FourierFamily::gradient_norm(x, members),
+            1e-8,
+        ),
         Check::at_most(
             "robust_curvature",
-            family.largest_curvature(x, members),
+            FourierFamily::largest_curvature(x, members),
             0.0,
         ),
     ]
@@ -54,23 +52,7 @@ pub(super) fn of_series(
 
 /// Bounds kept, a simple curve that turns once.
 pub(super) fn of_curve(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) -> Vec<Check> {
-    // Those that hold all round; the family has none of the others.
-    let full = Bounds {
-        min_angle: None,
-        sector: false,
-        ..*bounds
-    };
-    let region = Region::new(&full, links);
-    let overstepped = cycle
-        .phi
-        .iter()
-        .map(|phi| {
-            let beyond = bounds
-                .max_angle
-                .map_or(f64::NEG_INFINITY, |max| phi.amax() - max);
-            region.overstepped(phi).max(beyond)
-        })
-        .fold(f64::NEG_INFINITY, f64::max);
+    let overstepped = overstepped(cycle, bounds, links);
     let mut checks = Vec::new();
     if overstepped > f64::NEG_INFINITY {
         checks.push(Check::at_most("bound_overstepped_rad", overstepped, 1e-10));
@@ -79,97 +61,58 @@ pub(super) fn of_curve(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) -> Ve
     checks
 }
 
-/// X of all members swum again.
-pub(super) fn of_displacement(
-    ensemble: &Ensemble,
-    cycle: &Cycle,
-    values: &Values,
-    sign: f64,
-    held_by: &[[f64; 3]],
-) -> Vec<Check> {
-    again(
-        ensemble,
-        cycle,
-        values,
-        held_by,
-        1.0,
-        |stroke| sign * stroke.displacement.x,
-        sign,
-    )
+/// By how much the bounds that hold all round are overstepped \[rad\]; the families have none of the others.
+pub(super) fn overstepped(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) -> f64 {
+    let full = Bounds {
+        min_angle: None,
+        sector: false,
+        ..*bounds
+    };
+    let region = Region::new(&full, links);
+    let by = cycle.phi.iter().map(|phi| region.overstepped(phi));
+    by.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// ξ of all members swum again.
-pub(super) fn of_efficiency(
-    ensemble: &Ensemble,
-    cycle: &Cycle,
-    values: &Values,
-    held_by: &[[f64; 3]],
-) -> Vec<Check> {
-    let scale = values.nominal.abs();
-    again(
-        ensemble,
-        cycle,
-        values,
-        held_by,
-        scale,
-        Stroke::efficiency,
-        1.0,
-    )
+/// The displacement of the estimates along their heading, all of it, without rotation: what gaits with the paper's symmetries bring.
+pub(super) fn of_symmetry(cycle: &Cycle, nominal: &Model<f64>) -> [Check; 2] {
+    let swum = cycle.swum(nominal);
+    let of = |part: fn(&Stroke<f64>) -> f64| swum.as_ref().map_or(f64::NAN, |s| part(s).abs());
+    [
+        Check::at_most("net_lateral", of(|stroke| stroke.displacement.y), 1e-8),
+        Check::at_most("net_rotation_rad", of(|stroke| stroke.rotation), 1e-8),
+    ]
 }
 
-fn again(
-    ensemble: &Ensemble,
+/// All values swum again by the model's own integration, and looked for again among all swimmers; and who holds the worst case is as
+/// badly off as the worst. What they may be off by is over `scale`.
+pub(super) fn swum_again<P>(
+    ensemble: &Ensemble<'_>,
     cycle: &Cycle,
-    values: &Values,
-    held_by: &[[f64; 3]],
+    (values, sign): (&Values, f64),
+    found: &Found<P>,
     scale: f64,
     value: impl Fn(&Stroke<f64>) -> f64,
-    sign: f64,
 ) -> Vec<Check> {
-    let swum = |model: &Model<f64>| cycle.swum(model);
-    let of = |model: &Model<f64>| swum(model).map_or(f64::NAN, |stroke| value(&stroke));
-    let nominal = swum(&ensemble.nominal);
-    let worst = ensemble
-        .candidates
-        .iter()
-        .map(of)
-        // Unlike f64::min this keeps a NaN.
-        .fold(
-            f64::INFINITY,
-            |least, one| if one >= least { least } else { one },
-        );
-    let mean: f64 = ensemble
-        .normal
-        .iter()
-        .zip(&ensemble.weights)
-        .map(|(model, weight)| of(model) * weight)
-        .sum();
-    let off = |found: f64, told: f64| (found - sign * told).abs() / scale;
-    let mut checks = vec![
-        Check::at_most(
-            "nominal_swum_again",
-            off(nominal.as_ref().map_or(f64::NAN, &value), values.nominal),
-            1e-8,
-        ),
-        Check::at_most("worst_swum_again", off(worst, values.worst), 1e-8),
-        Check::at_most("mean_swum_again", off(mean, values.mean), 1e-8),
-        Check::at_most(
-            "net_lateral",
-            nominal.map_or(f64::NAN, |stroke| stroke.displacement.y.abs()),
-            1e-8,
-        ),
-        Check::at_most(
-            "net_rotation_rad",
-            nominal.map_or(f64::NAN, |stroke| stroke.rotation.abs()),
-            1e-8,
-        ),
-    ];
-    let least = held_by
-        .iter()
-        .map(|[_, _, weight]| *weight)
-        .fold(f64::INFINITY, f64::min);
-    if least.is_finite() {
+    let swum = |member: &Member| {
+        let swum = cycle.turned(member.gain).swum(&member.model);
+        swum.map_or(f64::NAN, |stroke| value(&stroke))
+    };
+    let again = ensemble.brings(swum, sign);
+    let mut checks: Vec<Check> = [
+        ("nominal_swum_again", again.nominal - values.nominal),
+        ("worst_swum_again", again.worst - values.worst),
+        ("mean_swum_again", again.mean - values.mean),
+    ]
+    .map(|(name, off)| Check::at_most(name, off.abs() / scale, 1e-8))
+    .into();
+    if !found.held_by.is_empty() {
+        let holders = found.weighted.iter();
+        let (least, apart) = holders.fold((f64::INFINITY, 0.0_f64), |(least, apart), one| {
+            let off = (swum(&one.0) - sign * values.worst).abs() / scale;
+            (one.1.min(least), if off <= apart { apart } else { off })
+        });
         checks.push(Check::at_least("worst_case_multiplier_least", least, 0.0));
+        checks.push(Check::at_most("worst_case_held_apart", apart, 1e-8));
     }
     checks
 }

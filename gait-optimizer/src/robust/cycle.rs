@@ -6,7 +6,7 @@ use swimmer_model::{Gait, Model, SymmetricFourier};
 
 use super::arcs::Arcs;
 use crate::Arc;
-use crate::cycle::Cycle;
+use crate::cycle::{Cycle, Samples};
 
 /// Samples of an arc.
 const SAMPLES: u32 = 128;
@@ -19,10 +19,9 @@ const SMOOTH: f64 = 1e-6;
 pub(super) fn of_arcs(model: &Model<f64>, family: &Arcs, x: &DVector<f64>) -> (Cycle, Vec<Arc>) {
     let nodes = family.nodes();
     let curves = family.curves(x);
-    let mut quarter: Vec<(f64, Vector2<f64>)> = Vec::new();
-    // Where each arc ends, as ∫√P.
-    let (mut length, mut ends) = (0.0, Vec::with_capacity(curves.len()));
-    for curve in &curves {
+    let mut quarter = Samples::default();
+    let mut length = 0.0;
+    for (kind, curve) in family.kinds().zip(&curves) {
         let speed: Vec<f64> = curve
             .phi
             .iter()
@@ -39,31 +38,23 @@ pub(super) fn of_arcs(model: &Model<f64>, family: &Arcs, x: &DVector<f64>) -> (C
             .into_iter()
             .map(|along| Vector2::new(along, 0.0))
             .collect();
-        let from = u32::from(!quarter.is_empty());
-        for sample in from..=SAMPLES {
+        let first = quarter.phi.len().saturating_sub(1);
+        for sample in u32::from(!quarter.phi.is_empty())..=SAMPLES {
             let t = f64::from(sample) / f64::from(SAMPLES);
-            quarter.push((
-                length + nodes.value(&lengths, t).x,
-                nodes.value(&curve.phi, t),
-            ));
+            quarter.along.push(length + nodes.value(&lengths, t).x);
+            quarter.phi.push(nodes.value(&curve.phi, t));
         }
         length += lengths.last().map_or(0.0, |along| along.x);
-        ends.push(length);
+        quarter.corners.push(first);
+        quarter.arcs.push((kind, first, quarter.phi.len() - 1));
     }
-    let quarter: Vec<(f64, Vector2<f64>)> = quarter
-        .into_iter()
-        .map(|(along, phi)| (0.25 * along / length, phi))
-        .collect();
-    let ends: Vec<f64> = ends.into_iter().map(|end| 0.25 * end / length).collect();
-    let begins_square = curves
-        .first()
-        .and_then(|curve| curve.slope.first())
-        .is_some_and(|slope| (slope.x + slope.y).abs() < SMOOTH * slope.norm());
-    let ends_square = curves
-        .last()
-        .and_then(|curve| curve.slope.last())
-        .is_some_and(|slope| (slope.x - slope.y).abs() < SMOOTH * slope.norm());
-    // Corners of the quarter by number of sample, images and all counted below.
+    let square = [
+        curves.first().and_then(|curve| curve.slope.first()),
+        curves.last().and_then(|curve| curve.slope.last()),
+    ];
+    let [begins_across, ends_across] = [1.0, -1.0].map(|sign| {
+        move |slope: &Vector2<f64>| (slope.x + sign * slope.y).abs() < SMOOTH * slope.norm()
+    });
     let arcs = family
         .kinds()
         .zip(&curves)
@@ -75,16 +66,11 @@ pub(super) fn of_arcs(model: &Model<f64>, family: &Arcs, x: &DVector<f64>) -> (C
             })
         })
         .collect();
-    let inner: Vec<f64> = ends
-        .iter()
-        .take(ends.len().saturating_sub(1))
-        .copied()
-        .collect();
-    let kinds: Vec<ArcKind> = family.kinds().collect();
-    (
-        unfolded(&quarter, &inner, &kinds, begins_square, ends_square),
-        arcs,
-    )
+    let cycle = quarter.unfolded([
+        square[0].is_some_and(begins_across),
+        square[1].is_some_and(ends_across),
+    ]);
+    (cycle, arcs)
 }
 
 /// The cycle of a series, timed as it is.
@@ -112,68 +98,4 @@ pub(super) fn of_series(gait: &SymmetricFourier<Vec<[f64; 2]>>) -> (Cycle, Vec<A
         }],
     };
     (cycle, arcs)
-}
-
-/// Mirrored in φ₁ = −φ₂, run backwards, then turned by half.
-fn unfolded(
-    quarter: &[(f64, Vector2<f64>)],
-    inner: &[f64],
-    kinds: &[ArcKind],
-    begins_square: bool,
-    ends_square: bool,
-) -> Cycle {
-    let mut cycle = Cycle {
-        u: Vec::with_capacity(4 * quarter.len()),
-        phi: Vec::with_capacity(4 * quarter.len()),
-        corners: Vec::new(),
-        arcs: Vec::new(),
-    };
-    // The sample at a junction is found again by its place in the quarter, so that corners are samples to the last bit.
-    let is = |u: f64, places: &[f64]| places.iter().any(|place| (place - u).abs() < 1e-12);
-    for (before, sign) in [(0.0, 1.0), (0.5, -1.0)] {
-        let last = quarter.len().saturating_sub(1);
-        for (index, (u, phi)) in quarter.iter().enumerate().take(last) {
-            if (index == 0 && !begins_square) || is(*u, inner) {
-                cycle.corners.push(before + u);
-            }
-            cycle.u.push(before + u);
-            cycle.phi.push(phi * sign);
-        }
-        for (index, (u, phi)) in quarter.iter().enumerate().skip(1).rev() {
-            let at = before + 0.5 - u;
-            if (index == last && !ends_square) || is(*u, inner) {
-                cycle.corners.push(at);
-            }
-            cycle.u.push(at);
-            cycle.phi.push(Vector2::new(-phi.y, -phi.x) * sign);
-        }
-        let places: Vec<f64> = std::iter::once(0.0)
-            .chain(inner.iter().copied())
-            .chain([0.25])
-            .collect();
-        let spans = || kinds.iter().zip(places.windows(2));
-        for (kind, span) in spans() {
-            if let [from, to] = span {
-                cycle.arcs.push(GaitArc {
-                    kind: *kind,
-                    from: before + from,
-                    to: before + to,
-                });
-            }
-        }
-        let images: Vec<GaitArc> = spans()
-            .filter_map(|(kind, span)| match span {
-                [from, to] => Some(GaitArc {
-                    kind: *kind,
-                    from: before + 0.5 - to,
-                    to: before + 0.5 - from,
-                }),
-                _ => None,
-            })
-            .collect();
-        cycle.arcs.extend(images.into_iter().rev());
-    }
-    cycle.u.push(1.0);
-    cycle.phi.extend(cycle.phi.first().copied());
-    cycle
 }

@@ -1,24 +1,27 @@
 //! Newton's method with a Jacobian by differences, and what a family of gaits must offer to be designed robustly.
 
 use nalgebra::{DMatrix, DVector};
-use swimmer_model::Model;
 
 use super::RobustError;
+use crate::member::Member;
 
 /// A family of gaits in which the best for a weighted sum over swimmers can be found.
 pub(super) trait Design {
-    /// The nominal optimum's parameters.
-    fn start(&self) -> DVector<f64>;
+    /// A gait of the family.
+    type Point: Clone;
 
-    /// The objective of each member; larger is better.
-    fn values(&self, x: &DVector<f64>, members: &[Model<f64>]) -> Vec<f64>;
+    /// The nominal optimum.
+    fn start(&self) -> Self::Point;
+
+    /// The objective of a member; larger is better.
+    fn value(&self, point: &Self::Point, member: &Member) -> f64;
 
     /// The stationary point of the weighted sum near `start`.
     fn solve(
         &self,
-        start: &DVector<f64>,
-        members: &[(&Model<f64>, f64)],
-    ) -> Result<DVector<f64>, RobustError>;
+        start: &Self::Point,
+        members: &[(Member, f64)],
+    ) -> Result<Self::Point, RobustError>;
 }
 
 const STEPS: usize = 40;

@@ -4,6 +4,7 @@ use nalgebra::{Vector2, Vector3};
 use swimmer_model::Model;
 
 use super::nodes::Nodes;
+use crate::member::Member;
 
 /// One smooth arc: shapes and their derivative at the nodes.
 #[derive(Debug, Clone)]
@@ -24,7 +25,8 @@ pub(super) struct Trajectory {
 }
 
 impl Trajectory {
-    pub(super) fn new(model: &Model<f64>, nodes: &Nodes, arcs: &[ArcCurve]) -> Self {
+    pub(super) fn new(member: &Member, nodes: &Nodes, arcs: &[ArcCurve]) -> Self {
+        let Member { model, gain } = member;
         let (mut x, mut y, mut theta) = (0.0, 0.0, 0.0);
         let mut swum = Self {
             displacement: 0.0,
@@ -37,7 +39,7 @@ impl Trajectory {
                 .phi
                 .iter()
                 .zip(&arc.slope)
-                .map(|(phi, slope)| model.local_connection(phi) * slope)
+                .map(|(phi, slope)| model.local_connection(&(phi * *gain)) * slope * *gain)
                 .collect();
             let column =
                 |of: fn(&Vector3<f64>) -> f64| -> Vec<f64> { body.iter().map(of).collect() };
@@ -72,21 +74,23 @@ impl Trajectory {
     /// Height at node `index`, counted over all arcs, for the shape there: what a push of the curve to its right, a radian
     /// for a radian of its length, adds to a quarter's x. With the body momentum μ = (cos θ, −sin θ, y − y_f) and the
     /// curvature of the connection F it is μ · F.
-    pub(super) fn height(&self, model: &Model<f64>, index: usize, phi: &Vector2<f64>) -> f64 {
+    pub(super) fn height(&self, member: &Member, index: usize, phi: &Vector2<f64>) -> f64 {
+        let Member { model, gain } = member;
         let (theta, y) = self.pose(index);
-        height(model, phi, theta, y - self.final_y)
+        height(model, &(phi * *gain), theta, y - self.final_y) * gain.powi(2)
     }
 
     /// How the height changes along `direction`, the swimmer carried there too.
     pub(super) fn height_slope(
         &self,
-        model: &Model<f64>,
+        Member { model, gain }: &Member,
         index: usize,
         phi: &Vector2<f64>,
         direction: &Vector2<f64>,
     ) -> f64 {
         const STEP: f64 = 1e-5;
         let (theta, y) = self.pose(index);
+        let (phi, direction) = (&(phi * *gain), &(direction * *gain));
         let twist = model.local_connection(phi) * direction;
         let rise = theta.sin() * twist.x + theta.cos() * twist.y;
         let at = |step: f64| {
@@ -97,7 +101,7 @@ impl Trajectory {
                 y + rise * step - self.final_y,
             )
         };
-        (at(STEP) - at(-STEP)) / (2.0 * STEP)
+        (at(STEP) - at(-STEP)) / (2.0 * STEP) * gain.powi(2)
     }
 
     fn pose(&self, index: usize) -> (f64, f64) {

@@ -1,8 +1,10 @@
 //! Robust gaits against nominal ones, brute force and differences.
 
 use super::*;
+use crate::member::Member;
+use nalgebra::DVector;
 use swimmer_files::AnyGait;
-use swimmer_model::{Gait, Tolerance, swim};
+use swimmer_model::{Gait, Model, Tolerance, swim};
 
 fn fit() -> Uncertainty {
     Uncertainty {
@@ -42,21 +44,27 @@ fn without_an_interval_it_is_the_nominal_optimum() {
     for over in [Over::Worst, Over::Mean] {
         let robust = robust_displacement(&bounded(), &exact, over).unwrap();
         // Collocation and shooting share nothing but the maximum principle.
-        let off = robust.values.nominal - nominal.displacement_over_length;
+        let off = robust.robustness.values.nominal - nominal.displacement_over_length;
         assert!(off.abs() < 1e-10, "{off:e}");
         assert!((robust.gait.start_angle - nominal.start_angle).abs() < 1e-6);
         assert!((robust.gait.end_angle - nominal.end_angle).abs() < 1e-6);
         assert_eq!(
-            (robust.values.worst, robust.values.mean),
-            (robust.values.nominal, robust.values.nominal)
+            (
+                robust.robustness.values.worst,
+                robust.robustness.values.mean
+            ),
+            (
+                robust.robustness.values.nominal,
+                robust.robustness.values.nominal
+            )
         );
     }
     let free = DisplacementProblem::new(Swimmer::purcell());
     let purcell = robust_displacement(&free, &Uncertainty::none(0.0, 2.0), Over::Worst).unwrap();
     assert!(
-        (purcell.values.nominal - 0.103_532_240_0).abs() < 1e-10,
+        (purcell.robustness.values.nominal - 0.103_532_240_0).abs() < 1e-10,
         "{}",
-        purcell.values.nominal
+        purcell.robustness.values.nominal
     );
 }
 
@@ -64,11 +72,17 @@ fn without_an_interval_it_is_the_nominal_optimum() {
 fn robustness_pays_where_it_is_asked_for() {
     let worst = robust_displacement(&bounded(), &fit(), Over::Worst).unwrap();
     let mean = robust_displacement(&bounded(), &fit(), Over::Mean).unwrap();
-    assert!(worst.values.worst > worst.nominal.worst + 1e-7, "{worst:?}");
-    assert!(mean.values.mean > mean.nominal.mean + 1e-8);
-    assert!(worst.values.worst >= mean.values.worst && mean.values.mean >= worst.values.mean);
+    assert!(
+        worst.robustness.values.worst > worst.robustness.nominal.worst + 1e-7,
+        "{worst:?}"
+    );
+    assert!(mean.robustness.values.mean > mean.robustness.nominal.mean + 1e-8);
+    assert!(
+        worst.robustness.values.worst >= mean.robustness.values.worst
+            && mean.robustness.values.mean >= worst.robustness.values.mean
+    );
     for robust in [&worst, &mean] {
-        assert!(robust.values.nominal <= robust.nominal.nominal + 1e-12);
+        assert!(robust.robustness.values.nominal <= robust.robustness.nominal.nominal + 1e-12);
         assert!(robust.gait.certificate.pass());
     }
     // Brute force over a finer grid than the design's.
@@ -88,9 +102,9 @@ fn robustness_pays_where_it_is_asked_for() {
         }
     }
     assert!(
-        (least - worst.values.worst).abs() < 1e-8,
+        (least - worst.robustness.values.worst).abs() < 1e-8,
         "{least} {}",
-        worst.values.worst
+        worst.robustness.values.worst
     );
 }
 
@@ -127,7 +141,7 @@ fn no_neighbour_has_a_better_mean() {
         members
             .iter()
             .map(|(swimmer, weight)| {
-                let model = Model::new(swimmer).unwrap();
+                let model = Model::new(&swimmer.swimmer).unwrap();
                 weight
                     * swim(&model, gait, &Tolerance::new(1e-11))
                         .displacement_over_length()
@@ -137,7 +151,7 @@ fn no_neighbour_has_a_better_mean() {
     };
     let gait = robust.gait.gait().unwrap();
     let best = mean(&gait);
-    assert!((best - robust.values.mean).abs() < 1e-8);
+    assert!((best - robust.robustness.values.mean).abs() < 1e-8);
     // At the middle of the first free arc and at the antidiagonal; bumps repeat with a quarter's period, so both images.
     for (at, size) in [(0.0, 0.02), (0.0, -0.02), (0.22, 0.02), (0.22, -0.02)] {
         let other = mean(&Bumped(&gait, at, size));
@@ -147,11 +161,15 @@ fn no_neighbour_has_a_better_mean() {
 
 #[test]
 fn fourier_gradients_are_exact() {
-    let model = Model::new(&Swimmer::robot().of_unit_length()).unwrap();
-    let family = FourierFamily::around(&model, 1, Branch::Small).unwrap();
+    let member = Member::new(&Swimmer::robot(), 1.0).unwrap();
+    let family = FourierFamily::around(&member, 1, Branch::Small).unwrap();
     let x = family.start() + DVector::from_vec(vec![0.1, -0.07]);
-    let norm = family.gradient_norm(&x, &[(&model, 1.0)]);
-    let value = |x: &DVector<f64>| family.values(x, &[model]).first().copied().unwrap().ln();
+    let member = Member {
+        gain: 0.97,
+        ..member
+    };
+    let norm = FourierFamily::gradient_norm(&x, &[(member, 1.0)]);
+    let value = |x: &DVector<f64>| family.value(x, &member).ln();
     let slopes = (0..2).map(|i| {
         let at = |step: f64| {
             let mut x = x.clone();
@@ -166,7 +184,8 @@ fn fourier_gradients_are_exact() {
         "{norm} {differences}"
     );
     // The value is that of the model's own integration.
-    let stroke = swim(&model, &FourierFamily::gait(&x), &Tolerance::default());
+    let turned = FourierFamily::gait(&(&x * member.gain));
+    let stroke = swim(&member.model, &turned, &Tolerance::default());
     assert!((value(&x).exp() / stroke.efficiency() - 1.0).abs() < 1e-10);
 }
 
@@ -185,15 +204,22 @@ fn purcells_small_gait_comes_out_of_the_series() {
     };
     let (third, sixth) = (robust(3), robust(6));
     let optimum = 0.012_364_154_624;
-    assert!(third.values.nominal < sixth.values.nominal && sixth.values.nominal <= optimum);
     assert!(
-        sixth.values.nominal / optimum > 1.0 - 1e-5,
+        third.robustness.values.nominal < sixth.robustness.values.nominal
+            && sixth.robustness.values.nominal <= optimum
+    );
+    assert!(
+        sixth.robustness.values.nominal / optimum > 1.0 - 1e-5,
         "{}",
-        sixth.values.nominal
+        sixth.robustness.values.nominal
     );
     assert!((sixth.gait.efficiency / optimum - 1.0).abs() < 1e-5);
     assert!(
-        (sixth.values.worst, sixth.values.mean) == (sixth.values.nominal, sixth.values.nominal)
+        (sixth.robustness.values.worst, sixth.robustness.values.mean)
+            == (
+                sixth.robustness.values.nominal,
+                sixth.robustness.values.nominal
+            )
     );
 }
 
@@ -211,47 +237,75 @@ fn robust_efficiency_pays_too() {
             .unwrap()
         };
         let (worst, mean) = (robust(Over::Worst), robust(Over::Mean));
-        assert!(worst.values.worst > worst.nominal.worst, "{worst:?}");
-        assert!(mean.values.mean > mean.nominal.mean);
-        assert!(worst.values.nominal < worst.nominal.nominal);
+        assert!(
+            worst.robustness.values.worst > worst.robustness.nominal.worst,
+            "{worst:?}"
+        );
+        assert!(mean.robustness.values.mean > mean.robustness.nominal.mean);
+        assert!(worst.robustness.values.nominal < worst.robustness.nominal.nominal);
         assert!(worst.gait.certificate.pass() && mean.gait.certificate.pass());
     }
 }
 
-/// A worst case that two members share: one of them gains where the other loses, so the design weighs both.
+/// A gain in doubt alone: a little more angle than told is more than a little less loses, so both ends may hold the worst case.
 #[test]
-fn two_members_can_hold_the_worst_case() {
-    let model = |middle: f64, chi: f64| {
-        let mut swimmer = Swimmer::<f64>::purcell();
-        swimmer.links.middle = middle;
-        swimmer.chi = chi;
-        Model::new(&swimmer.of_unit_length()).unwrap()
+fn a_gain_in_doubt_is_designed_for() {
+    let exact = Uncertainty {
+        gain_interval: [0.9, 1.1],
+        ..Uncertainty::none(0.0, 2.0)
     };
-    let family = FourierFamily::around(&model(1.0, 2.0), 2, Branch::Small).unwrap();
-    let ours = |chi| [model(0.5, 2.0), model(1.8, chi)];
-    // The χ at which both are equal at a gait between their optima: there they must share.
-    let (mut low, mut high) = (1.5, 3.0);
-    for _ in 0..40 {
-        let chi = 0.5 * (low + high);
-        let values = family.values(&family.start(), &ours(chi));
-        if values[1] < values[0] {
-            low = chi;
-        } else {
-            high = chi;
-        }
-    }
-    let members = ours(0.5 * (low + high));
-    let held = worst::worst(&family, &members).unwrap();
-    assert_eq!(held.active.len(), 2, "{held:?}");
+    let free = DisplacementProblem::new(Swimmer::purcell());
+    let robust = robust_displacement(&free, &exact, Over::Worst).unwrap();
+    let Robustness {
+        values,
+        nominal,
+        held_by,
+        ..
+    } = &robust.robustness;
+    // The free optimum is one over all sizes, too: it loses either way, and there is a size at which both ends lose as much.
+    assert!(values.worst > nominal.worst + 1e-6, "{robust:?}");
+    assert_eq!(held_by.len(), 2, "{held_by:?}");
+    let curve = robust.gait.gait().unwrap();
+    let brings = |gain: f64| {
+        let phi: Vec<_> = robust.gait.phi().iter().map(|phi| phi * gain).collect();
+        let corners: Vec<usize> = (0..phi.len())
+            .filter(|&at| robust.gait.corners().contains(&robust.gait.u()[at]))
+            .collect();
+        let turned = AnyGait::from_samples(robust.gait.u(), &phi, &corners).unwrap();
+        displacement_of(&turned, &Swimmer::purcell())
+    };
+    assert!((brings(1.0) - displacement_of(&curve, &Swimmer::purcell())).abs() < 1e-12);
+    let least = (0..=40).map(|i| brings(0.9 + 0.005 * f64::from(i)));
+    let least = least.fold(f64::INFINITY, f64::min);
+    assert!((least - values.worst).abs() < 1e-8, "{least} {values:?}");
+}
+
+/// The worst of an ellipse is a minimum over it, border and all within, not the lowest of the points where its search begins.
+#[test]
+fn the_worst_of_an_ellipse_is_a_minimum() {
+    let tilted = Uncertainty {
+        correlation: Some(0.83),
+        ..fit()
+    };
+    let robust = robust_displacement(&bounded(), &tilted, Over::Worst).unwrap();
+    let gait = robust.gait.gait().unwrap();
+    let steps = 720;
+    let brings = |i: i32| {
+        let turn = std::f64::consts::TAU * f64::from(i) / f64::from(steps);
+        let possible = tilted.at(&Swimmer::robot(), [1.0, turn, 0.0]);
+        displacement_of(&gait, &possible.swimmer)
+    };
+    let on_border: Vec<f64> = (0..steps).map(brings).collect();
+    let least = on_border.iter().copied().fold(f64::INFINITY, f64::min);
+    let coarse = on_border.iter().copied().step_by(24);
+    let coarse = coarse.fold(f64::INFINITY, f64::min);
+    let worst = robust.robustness.values.worst;
+    assert!(worst <= least + 1e-10, "{worst} {least}");
+    assert!(least - worst < 1e-5 * worst, "{worst} {least}");
     assert!(
-        held.active
-            .iter()
-            .all(|(_, weight)| *weight > 0.0 && *weight < 1.0)
+        coarse - worst > 1e-7,
+        "the test cannot tell: {coarse} {worst}"
     );
-    let values = family.values(&held.x, &members);
-    assert!((values[0] / values[1] - 1.0).abs() < 1e-9);
-    let before = family.values(&family.start(), &members);
-    assert!(values[0] > before[0].min(before[1]));
 }
 
 #[test]
@@ -293,6 +347,22 @@ fn nonsense_is_refused() {
         robust_displacement(&free, &fit(), Over::Mean),
         Err(RobustError::Nominal(_))
     ));
+    let mut sector = bounded();
+    sector.bounds.sector = true;
+    assert!(matches!(
+        robust_displacement(&sector, &fit(), Over::Mean),
+        Err(RobustError::Arc { .. })
+    ));
+    let slipping = Uncertainty {
+        gain_interval: [0.95, 1.05],
+        ..fit()
+    };
+    let mut apart = bounded();
+    apart.bounds.no_overlap = true;
+    assert!(matches!(
+        robust_displacement(&apart, &slipping, Over::Mean),
+        Err(RobustError::Clearance)
+    ));
 }
 
 /// At the corner of these intervals the small gait's branch has ended (by shooting, too: X/L = 0.094, not 0.05), and the best
@@ -309,7 +379,85 @@ fn a_branch_that_ends_is_told() {
         )
         .unwrap()
     };
-    assert!(!on(3).off_branch());
+    assert!(!on(3).robustness.off_branch);
     let off = on(4);
-    assert!(off.off_branch() && off.values.worst > off.nominal.worst);
+    assert!(
+        off.robustness.off_branch && off.robustness.values.worst > off.robustness.nominal.worst
+    );
+}
+
+fn fast(max_angle: f64) -> crate::SpeedProblem {
+    crate::SpeedProblem {
+        bounds: Bounds {
+            max_angle: Some(max_angle),
+            ..Bounds::default()
+        },
+        starts: 6,
+        ..crate::SpeedProblem::new(Swimmer::robot(), [1.0; 2])
+    }
+}
+
+/// Without an interval the fastest gait; with one a gait that gives up some of its speed for the worst case or the mean.
+#[test]
+fn robust_speed_pays_too() {
+    let exact = Uncertainty::none(0.0692, 3.598);
+    let same = robust_speed(&fast(2.8), &exact, Over::Worst, &|_| ()).unwrap();
+    assert!((same.fastest.speed_over_length - 0.007_533_853_203_8).abs() < 1e-12);
+    let wide = Uncertainty {
+        gain_interval: [0.97, 1.03],
+        ..fit()
+    };
+    let of = |over| robust_speed(&fast(2.8), &wide, over, &|_| ()).unwrap();
+    let (worst, mean) = (of(Over::Worst), of(Over::Mean));
+    let (a, b) = (&worst.robustness, &mean.robustness);
+    assert!(a.values.worst > a.nominal.worst * (1.0 + 1e-6), "{a:?}");
+    assert!(b.values.mean > b.nominal.mean * (1.0 + 1e-9), "{b:?}");
+    assert!(a.values.worst >= b.values.worst && b.values.mean >= a.values.mean);
+    for one in [&worst, &mean] {
+        assert!(one.fastest.gait.certificate.pass());
+        assert!(one.robustness.values.nominal <= one.robustness.nominal.nominal * (1.0 + 1e-12));
+        assert!((one.fastest.speed_over_length - one.robustness.values.nominal).abs() < 1e-12);
+        assert!(!one.robustness.off_branch);
+    }
+}
+
+/// With unlike side links a gait is free of rotation for one swimmer only, and what others swim depends on where its cycle begins.
+#[test]
+fn a_gait_that_turns_others_is_refused() {
+    let mut problem = fast(2.0);
+    problem.swimmer.links.front *= 1.2;
+    let found = robust_speed(&problem, &fit(), Over::Mean, &|_| ());
+    let turns = |rotation: f64| rotation > 1e-8;
+    assert!(
+        matches!(found, Err(RobustError::Turns { rotation }) if turns(rotation)),
+        "{found:?}"
+    );
+}
+
+/// The certificate is that of the curve and the ensemble: the nominal optimum fails it.
+#[test]
+fn the_nominal_optimum_is_not_robust() {
+    let problem = fast(2.0);
+    let uncertainty = fit();
+    let found = robust_speed(&problem, &uncertainty, Over::Mean, &|_| ()).unwrap();
+    let optimum = crate::fastest(&problem).unwrap();
+    let members: Vec<(Member, f64)> = uncertainty
+        .normal(&Swimmer::robot())
+        .iter()
+        .map(|(possible, weight)| (possible.member().unwrap(), *weight))
+        .collect();
+    let residual = |gait: &OptimalGait| {
+        let file = gait.gait_file("");
+        let curve = gait.gait().unwrap();
+        let model = Model::new(&Swimmer::robot().of_unit_length()).unwrap();
+        let certificate =
+            crate::speed::certify_ensemble((&model, &members), &problem.bounds, &file, &curve);
+        certificate.value("switch_to_switch_integrals").unwrap()
+    };
+    assert!(residual(&found.fastest.gait) < 1e-8);
+    assert!(
+        residual(&optimum.gait) > 1e-5,
+        "{}",
+        residual(&optimum.gait)
+    );
 }

@@ -1,14 +1,18 @@
-//! What is known of r_s and χ, as the swimmers that a robust gait is held against.
+//! What is known of r_s, χ and the servos' gain, as the swimmers that a robust gait is held against.
 //!
 //! A calibration fits r_s and ln χ: its interval of χ is χ·exp(±d), and its correlation is that of r_s and ln χ. So
-//! everything here lives in the plane of r_s and ln χ, where χ stays above 0 by itself.
+//! everything here lives in the plane of r_s and ln χ, where χ stays above 0 by itself. The gain has an interval of its own.
+
+#[cfg(test)]
+mod tests;
 
 use statrs::distribution::{ContinuousCDF, Normal};
-use swimmer_model::Swimmer;
+use swimmer_model::{InvalidSwimmer, Swimmer};
 
 use super::RobustError;
+use crate::member::Member;
 
-/// Estimates of r_s and χ with their intervals, as a calibration finds them.
+/// Estimates of r_s and χ with their intervals, as a calibration finds them, and what may be off about the servos.
 ///
 /// Intervals need not be even: on each side of its estimate an interval has its own half width, in r_s and in ln χ. An
 /// interval of r_s that begins at 0 was cut there: it is as wide below the estimate as above, and a sphere below nothing
@@ -23,15 +27,77 @@ pub struct Uncertainty {
     pub sphere_radius_interval: [f64; 2],
     /// Interval of χ.
     pub chi_interval: [f64; 2],
-    /// Level of both.
+    /// Interval about 1 of the servos' gain, what both turn over what they are told: shapes are so many times the told ones,
+    /// while bounds on angles and the servos' rates are about what is told. An estimate other than 1 belongs into the servo map.
+    pub gain_interval: [f64; 2],
+    /// Level of all.
     pub level: f64,
     /// Correlation of r_s and ln χ where it is known; then the worst case is looked for on the ellipse that touches the
     /// intervals' borders, else in their box.
     pub correlation: Option<f64>,
 }
 
-/// A swimmer with its weight in a mean.
-pub(super) type Weighted = (Swimmer<f64>, f64);
+/// A swimmer that is left open.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Possible {
+    pub(super) swimmer: Swimmer<f64>,
+    pub(super) gain: f64,
+}
+
+impl Possible {
+    pub(super) fn member(&self) -> Result<Member, InvalidSwimmer> {
+        Member::new(&self.swimmer, self.gain)
+    }
+}
+
+/// One coordinate of all that is left open.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Axis {
+    from: f64,
+    to: f64,
+    /// Steps of the grid; none where there is nothing open.
+    steps: u32,
+    /// Whether both ends are one.
+    round: bool,
+}
+
+impl Axis {
+    const fn new(from: f64, to: f64, steps: u32) -> Self {
+        let round = false;
+        Self {
+            from,
+            to,
+            steps,
+            round,
+        }
+    }
+
+    fn grid(self) -> impl Iterator<Item = f64> + Clone {
+        let last = if self.round {
+            self.steps - 1
+        } else {
+            self.steps
+        };
+        (0..=last).map(move |i| {
+            let share = f64::from(i) / f64::from(self.steps.max(1));
+            self.from + (self.to - self.from) * share
+        })
+    }
+
+    /// Halfway to the grid's neighbour; none where nothing is open.
+    pub(super) fn half_step(self) -> Option<f64> {
+        (self.steps > 0).then(|| 0.5 * (self.to - self.from) / f64::from(self.steps))
+    }
+
+    /// A coordinate, or where it ends.
+    pub(super) fn within(self, at: f64) -> f64 {
+        if self.round {
+            at
+        } else {
+            at.clamp(self.from, self.to)
+        }
+    }
+}
 
 /// Gauss–Hermite nodes and weights for a standard normal variable, exact for polynomials of degree 5; the nodes are ±√3.
 const HERMITE: [(f64, f64); 3] = [
@@ -48,6 +114,7 @@ impl Uncertainty {
             chi,
             sphere_radius_interval: [sphere_radius; 2],
             chi_interval: [chi; 2],
+            gain_interval: [1.0; 2],
             level: 0.95,
             correlation: None,
         }
@@ -77,26 +144,37 @@ impl Uncertainty {
             Ok(())
         };
         interval(
-            "interval of r_s [m]",
+            "fit's interval of r_s [m]",
             self.sphere_radius,
             self.sphere_radius_interval,
         )?;
-        interval("interval of χ", self.chi, self.chi_interval)?;
+        interval("fit's interval of χ", self.chi, self.chi_interval)?;
+        interval("interval of the gain, about 1,", 1.0, self.gain_interval)?;
+        if self.gain_interval[0] <= 0.0 {
+            let [low, _] = self.gain_interval;
+            return wrong("gain", low, "its whole interval must be above 0");
+        }
         let [low, _] = self.chi_interval;
         if low <= 0.0 || self.chi <= 0.0 {
             return wrong(
-                "χ",
+                "fit's χ",
                 low.min(self.chi),
                 "χ and its whole interval must be above 0",
             );
         }
         if !(self.level > 0.0 && self.level < 1.0) {
-            return wrong("level", self.level, "give a share between 0 and 1, as 0.95");
+            return wrong(
+                "fit's level",
+                self.level,
+                "give a share between 0 and 1, as 0.95",
+            );
         }
         match self.correlation {
-            Some(rho) if rho.is_nan() || rho.abs() > 1.0 => {
-                wrong("correlation", rho, "a correlation lies between -1 and 1")
-            }
+            Some(rho) if rho.is_nan() || rho.abs() > 1.0 => wrong(
+                "fit's correlation",
+                rho,
+                "a correlation lies between -1 and 1",
+            ),
             _ => Ok(()),
         }
     }
@@ -130,54 +208,88 @@ impl Uncertainty {
         self.correlation.map(|rho| if both { rho } else { 0.0 })
     }
 
-    /// The swimmer so far from the estimates.
-    fn off(&self, swimmer: &Swimmer<f64>, radius: f64, log_chi: f64) -> Swimmer<f64> {
-        with(
-            swimmer,
-            self.sphere_radius + radius,
-            self.chi * log_chi.exp(),
-        )
+    fn gain_widths(&self) -> [f64; 2] {
+        let [low, high] = self.gain_interval;
+        [(1.0 - low).max(0.0), (high - 1.0).max(0.0)]
     }
 
-    /// Swimmers among which the worst is looked for: a grid of so many steps over the box, or as many times eight points of
-    /// the ellipse's border and its centre. (With 32 points the worst of the border is met to half a per cent of the
-    /// half widths.)
-    pub(super) fn candidates(&self, swimmer: &Swimmer<f64>, steps: u32) -> Vec<Swimmer<f64>> {
-        let mut candidates = vec![self.nominal(swimmer)];
-        if let Some(rho) = self.rho() {
-            for point in 0..8 * steps {
-                let turn = std::f64::consts::TAU * f64::from(point) / f64::from(8 * steps);
-                let (a, b) = correlated(rho, turn.cos(), turn.sin());
-                candidates.push(self.off(
-                    swimmer,
-                    scaled(self.radius_widths(), a),
-                    scaled(self.log_chi_widths(), b),
-                ));
+    /// Whether nobody knows how far the servos turn.
+    pub(super) fn gain_is_open(&self) -> bool {
+        self.gain_widths().iter().any(|width| *width > 0.0)
+    }
+
+    /// The swimmer so many half widths from the estimates.
+    fn off(&self, swimmer: &Swimmer<f64>, [radius, log_chi, gain]: [f64; 3]) -> Possible {
+        let log_chi = scaled(self.log_chi_widths(), log_chi);
+        Possible {
+            swimmer: with(
+                swimmer,
+                self.sphere_radius + scaled(self.radius_widths(), radius),
+                self.chi * log_chi.exp(),
+            ),
+            gain: 1.0 + scaled(self.gain_widths(), gain),
+        }
+    }
+
+    /// The coordinates of all that is left open: of the ellipse radius and turn, else both half widths; and the gain's.
+    pub(super) fn axes(&self) -> [Axis; 3] {
+        let side = |widths: [f64; 2], steps| {
+            let open = widths[0] + widths[1] > 0.0;
+            if open {
+                Axis::new(-1.0, 1.0, steps)
+            } else {
+                Axis::new(0.0, 0.0, 0)
             }
-        } else {
-            let places = |widths: [f64; 2]| {
-                let count = if widths[0] + widths[1] > 0.0 {
-                    steps
-                } else {
-                    0
+        };
+        let gain = side(self.gain_widths(), GAIN_STEPS);
+        match self.rho() {
+            Some(_) => {
+                let turn = Axis {
+                    round: true,
+                    ..Axis::new(0.0, std::f64::consts::TAU, 8 * STEPS)
                 };
-                (0..=count).map(move |i| {
-                    let share = f64::from(2 * i) / f64::from(steps.max(1)) - 1.0;
-                    scaled(widths, if count > 0 { share } else { 0.0 })
-                })
-            };
-            for radius in places(self.radius_widths()) {
-                let logs = places(self.log_chi_widths());
-                candidates.extend(logs.map(|log| self.off(swimmer, radius, log)));
+                [Axis::new(0.0, 1.0, 1), turn, gain]
+            }
+            None => [
+                side(self.radius_widths(), STEPS),
+                side(self.log_chi_widths(), STEPS),
+                gain,
+            ],
+        }
+    }
+
+    /// Half widths from the estimates at these coordinates.
+    pub(super) fn half_widths(&self, [one, two, gain]: [f64; 3]) -> [f64; 3] {
+        match self.rho() {
+            Some(rho) => {
+                let (a, b) = correlated(rho, one * two.cos(), one * two.sin());
+                [a, b, gain]
+            }
+            None => [one, two, gain],
+        }
+    }
+
+    /// The swimmer at these coordinates.
+    pub(super) fn at(&self, swimmer: &Swimmer<f64>, place: [f64; 3]) -> Possible {
+        self.off(swimmer, self.half_widths(place))
+    }
+
+    /// A grid over all that is left open, the estimates first, to begin the search for the worst case from.
+    pub(super) fn grid(&self) -> Vec<[f64; 3]> {
+        let [one, two, gain] = self.axes().map(Axis::grid);
+        let mut places = Vec::new();
+        for first in one {
+            // The middle of the ellipse is one place.
+            let middle = self.rho().is_some() && first <= 0.0;
+            let most = if middle { 1 } else { usize::MAX };
+            for second in two.clone().take(most) {
+                places.extend(gain.clone().map(|third| [first, second, third]));
             }
         }
-        let mut distinct: Vec<Swimmer<f64>> = Vec::new();
-        for candidate in candidates {
-            if !distinct.contains(&candidate) {
-                distinct.push(candidate);
-            }
-        }
-        distinct
+        let estimates = |place: &[f64; 3]| place.iter().all(|off| off.abs() <= 0.0);
+        places.retain(|place| !estimates(place));
+        places.insert(0, [0.0; 3]);
+        places
     }
 
     /// Swimmers with weights that integrate over a normal distribution of r_s and ln χ about the estimates: standard
@@ -187,13 +299,15 @@ impl Uncertainty {
     /// An interval does not tell its degrees of freedom, so the deviation is taken as if they were many: half width over the
     /// normal quantile. A calibration's intervals are Student's, wider for few runs: there the deviation comes out larger than the
     /// standard error, and the mean is taken over a wider spread than the fit's own.
-    pub(super) fn normal(&self, swimmer: &Swimmer<f64>) -> Vec<Weighted> {
+    pub(super) fn normal(&self, swimmer: &Swimmer<f64>) -> Vec<(Possible, f64)> {
         let quantile = Normal::standard().inverse_cdf(0.5 + 0.5 * self.level);
         let deviation = |[below, above]: [f64; 2]| 0.5 * (below + above) / quantile;
-        let (dr, dchi) = (
-            deviation(self.radius_widths()),
-            deviation(self.log_chi_widths()),
-        );
+        let deviations = [
+            self.radius_widths(),
+            self.log_chi_widths(),
+            self.gain_widths(),
+        ]
+        .map(deviation);
         let one = [(0.0, 1.0)];
         let rule = |deviation: f64| {
             if deviation > 0.0 {
@@ -202,17 +316,33 @@ impl Uncertainty {
                 one.as_slice()
             }
         };
+        let [radius, log_chi, gain] = deviations.map(rule);
         let rho = self.rho().unwrap_or(0.0);
-        let mut weighted = Vec::with_capacity(HERMITE.len() * HERMITE.len());
-        for &(z1, w1) in rule(dr) {
-            for &(z2, w2) in rule(dchi) {
-                let (a, b) = correlated(rho, z1, z2);
-                weighted.push((self.off(swimmer, dr * a, dchi * b), w1 * w2));
+        let mut weighted = Vec::with_capacity(radius.len() * log_chi.len() * gain.len());
+        for &(z1, w1) in radius {
+            for &(z2, w2) in log_chi {
+                for &(z3, w3) in gain {
+                    let (a, b) = correlated(rho, z1, z2);
+                    let [radius, log_chi, gain] = deviations;
+                    let possible = Possible {
+                        swimmer: with(
+                            swimmer,
+                            self.sphere_radius + radius * a,
+                            self.chi * (log_chi * b).exp(),
+                        ),
+                        gain: 1.0 + gain * z3,
+                    };
+                    weighted.push((possible, w1 * w2 * w3));
+                }
             }
         }
         weighted
     }
 }
+
+/// Steps of the grid over an interval, and over that of the gain; the ellipse's border has eight times as many.
+const STEPS: u32 = 4;
+const GAIN_STEPS: u32 = 2;
 
 /// A standard variable in units of the half width on its side.
 fn scaled([below, above]: [f64; 2], z: f64) -> f64 {
@@ -229,136 +359,5 @@ fn with(swimmer: &Swimmer<f64>, sphere_radius: f64, chi: f64) -> Swimmer<f64> {
         sphere_radius: sphere_radius.max(0.0),
         chi,
         ..*swimmer
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn wide() -> Uncertainty {
-        Uncertainty {
-            sphere_radius_interval: [0.06, 0.08],
-            chi_interval: [3.6 * (-0.15_f64).exp(), 3.6 * 0.15_f64.exp()],
-            correlation: Some(0.7),
-            ..Uncertainty::none(0.07, 3.6)
-        }
-    }
-
-    /// As a calibration gives them: about χ by a factor, about r_s by a length, never below nothing.
-    fn fitted(chi: f64, [low, high]: [f64; 2], correlation: Option<f64>) -> Uncertainty {
-        Uncertainty {
-            sphere_radius_interval: [0.0, 0.05],
-            chi_interval: [low, high],
-            correlation,
-            ..Uncertainty::none(0.02, chi)
-        }
-    }
-
-    #[test]
-    fn the_rule_has_the_moments_of_the_normal_distribution() {
-        let members = wide().normal(&Swimmer::robot());
-        let mean = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
-            members
-                .iter()
-                .map(|(s, w)| w * f(s.sphere_radius - 0.07, (s.chi / 3.6).ln()))
-                .sum()
-        };
-        let quantile = 1.959_963_984_540_054;
-        let (dr, dchi) = (0.01 / quantile, 0.15 / quantile);
-        assert!((mean(&|_, _| 1.0) - 1.0).abs() < 1e-14);
-        assert!(mean(&|r, c| r + c).abs() < 1e-14);
-        assert!((mean(&|r, _| r * r) / (dr * dr) - 1.0).abs() < 1e-8);
-        assert!((mean(&|_, c| c * c) / (dchi * dchi) - 1.0).abs() < 1e-8);
-        assert!((mean(&|r, c| r * c) / (0.7 * dr * dchi) - 1.0).abs() < 1e-8);
-        assert!((mean(&|_, c| c.powi(4)) / (3.0 * dchi.powi(4)) - 1.0).abs() < 1e-8);
-        // A χ known to a factor of three has no swimmers of no χ, nor any that a floor made.
-        let open = fitted(5.16, [1.55, 17.1], Some(-0.9)).normal(&Swimmer::robot());
-        let logs = open.iter().map(|(s, w)| w * s.chi.ln());
-        assert!((logs.sum::<f64>() - 5.16_f64.ln()).abs() < 1e-12);
-        // An exact r_s leaves χ its whole spread, whatever the correlation.
-        let alone = Uncertainty {
-            sphere_radius_interval: [0.07; 2],
-            ..wide()
-        };
-        let spread = alone.normal(&Swimmer::robot());
-        let spread = spread.iter().map(|(s, w)| w * (s.chi / 3.6).ln().powi(2));
-        assert!((spread.sum::<f64>() / (dchi * dchi) - 1.0).abs() < 1e-8);
-    }
-
-    #[test]
-    fn the_swimmers_touch_the_intervals_and_never_leave_them() {
-        let tilted = Uncertainty {
-            sphere_radius_interval: [0.065, 0.09],
-            chi_interval: [3.5, 6.0],
-            ..wide()
-        };
-        let mut cases = vec![wide(), tilted];
-        for correlation in [None, Some(0.0), Some(0.95), Some(-0.8), Some(1.0)] {
-            cases.push(fitted(3.675, [2.437, 5.541], correlation));
-            cases.push(fitted(5.16, [1.55, 17.1], correlation));
-        }
-        for case in cases {
-            let points = case.candidates(&Swimmer::robot(), 64);
-            let ends = |of: &dyn Fn(&Swimmer<f64>) -> f64| {
-                let of = points.iter().map(of);
-                of.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
-                    [low.min(v), high.max(v)]
-                })
-            };
-            let close = |[low, high]: [f64; 2], [from, to]: [f64; 2]| {
-                let slack = 1e-3 * (to - from);
-                low >= from * (1.0 - 1e-12)
-                    && high <= to * (1.0 + 1e-12)
-                    && low < from + slack
-                    && high > to - slack
-            };
-            let (r, chi) = (ends(&|s| s.sphere_radius), ends(&|s| s.chi));
-            assert!(close(r, case.sphere_radius_interval), "{case:?} {r:?}");
-            assert!(close(chi, case.chi_interval), "{case:?} {chi:?}");
-        }
-        let count = |case: Uncertainty| case.candidates(&Swimmer::robot(), 2).len();
-        let box_only = Uncertainty {
-            correlation: None,
-            ..wide()
-        };
-        assert_eq!(count(box_only), 9);
-        assert_eq!(count(Uncertainty::none(0.07, 3.6)), 1);
-        let exact = Uncertainty::none(0.07, 3.6).normal(&Swimmer::robot());
-        assert_eq!(exact.len(), 1);
-    }
-
-    #[test]
-    fn nonsense_is_refused() {
-        assert!(wide().validate().is_ok());
-        for wrong in [
-            Uncertainty {
-                chi_interval: [-1.0, 4.0],
-                ..wide()
-            },
-            Uncertainty {
-                chi_interval: [4.0, 3.0],
-                ..wide()
-            },
-            Uncertainty {
-                sphere_radius_interval: [f64::NAN, 0.1],
-                ..wide()
-            },
-            Uncertainty {
-                level: 1.0,
-                ..wide()
-            },
-            Uncertainty {
-                correlation: Some(1.5),
-                ..wide()
-            },
-            Uncertainty { chi: 9.0, ..wide() },
-            Uncertainty {
-                sphere_radius: 0.01,
-                ..wide()
-            },
-        ] {
-            assert!(wrong.validate().is_err(), "{wrong:?}");
-        }
     }
 }

@@ -2,20 +2,21 @@
 //!
 //! At such a gait Σ λₖ ∇fₖ = 0 with λₖ ≥ 0, Σ λₖ = 1, and λₖ > 0 only where fₖ is the least: the gait is the best for a
 //! weighted mean, and the weights are found by adding the worst member, making the active ones equal, and dropping those
-//! whose weight would be negative.
+//! whose weight would be negative. The worst member is looked for over all that is left open, so an active one moves along with
+//! the gait until it is a minimum.
 
 use nalgebra::{DMatrix, DVector};
-use swimmer_model::Model;
 
 use super::RobustError;
+use super::ensemble::{Ensemble, Lowest};
 use super::newton::Design;
+use crate::member::Member;
 
-/// A gait with the members that hold it.
+/// A gait with the members that hold it, each with its multiplier.
 #[derive(Debug, Clone)]
-pub(super) struct Held {
-    pub(super) x: DVector<f64>,
-    /// Member and multiplier.
-    pub(super) active: Vec<(usize, f64)>,
+pub(super) struct Held<P> {
+    pub(super) point: P,
+    pub(super) members: Vec<(Lowest, f64)>,
 }
 
 const EXCHANGES: usize = 30;
@@ -24,58 +25,67 @@ const STEPS: usize = 30;
 const EQUAL: f64 = 1e-11;
 const DIFFERENCE: f64 = 1e-4;
 
-/// The gait of the best worst case among `members`.
-pub(super) fn worst(design: &impl Design, members: &[Model<f64>]) -> Result<Held, RobustError> {
-    let mut x = design.start();
-    let mut active: Vec<(usize, f64)> = Vec::new();
+impl<P> Held<P> {
+    pub(super) fn weighted(&self) -> Vec<(Member, f64)> {
+        let members = self.members.iter();
+        members.map(|(one, weight)| (one.member, *weight)).collect()
+    }
+}
+
+/// The gait of the best worst case.
+pub(super) fn worst<D: Design>(
+    design: &D,
+    ensemble: &Ensemble<'_>,
+) -> Result<Held<D::Point>, RobustError> {
+    let mut held = Held {
+        point: design.start(),
+        members: Vec::new(),
+    };
+    let mut apart = f64::INFINITY;
     for _ in 0..EXCHANGES {
-        let values = design.values(&x, members);
-        let Some((least, value)) = values
-            .iter()
-            .copied()
-            .enumerate()
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-        else {
+        let value = |member: &Member| design.value(&held.point, member);
+        let Some(lowest) = ensemble.lowest(value) else {
             break;
         };
-        let level = active
-            .iter()
-            .filter_map(|(member, _)| values.get(*member))
-            .copied()
-            .fold(f64::INFINITY, f64::min);
-        if value >= level - 10.0 * EQUAL * level.abs() {
-            return Ok(Held { x, active });
+        let level = held.members.iter().map(|(one, _)| value(&one.member));
+        let level = level.fold(f64::INFINITY, f64::min);
+        apart = (level - lowest.value) / level.abs();
+        if apart <= 10.0 * EQUAL {
+            return Ok(held);
         }
-        let weight = if active.is_empty() { 1.0 } else { 0.0 };
-        active.push((least, weight));
-        x = equalise(design, members, &mut active, x)?;
+        let mut known = held.members.iter_mut();
+        if let Some((one, _)) = known.find(|(one, _)| ensemble.is_same(one, &lowest)) {
+            *one = lowest;
+        } else {
+            let weight = if held.members.is_empty() { 1.0 } else { 0.0 };
+            held.members.push((lowest, weight));
+        }
+        equalise(design, ensemble, &mut held)?;
     }
-    Err(RobustError::NotConverged { residual: f64::NAN })
+    Err(RobustError::NotConverged { residual: apart })
 }
 
 /// Solves for the weights at which all active members fare alike; members whose weight turns negative are dropped.
-fn equalise(
-    design: &impl Design,
-    members: &[Model<f64>],
-    active: &mut Vec<(usize, f64)>,
-    mut x: DVector<f64>,
-) -> Result<DVector<f64>, RobustError> {
+pub(super) fn equalise<D: Design>(
+    design: &D,
+    ensemble: &Ensemble<'_>,
+    held: &mut Held<D::Point>,
+) -> Result<(), RobustError> {
+    let mut left = f64::INFINITY;
     for _ in 0..STEPS {
-        x = solve(design, members, active, &x)?;
-        let apart = differences(design, members, active, &x);
-        let scale = design
-            .values(&x, members)
-            .iter()
-            .fold(0.0, |a: f64, b| a.max(b.abs()));
-        if active.len() < 2 || apart.amax() <= EQUAL * scale {
-            return Ok(x);
+        held.point = ensemble.solve(design, &held.point, &held.weighted())?;
+        let (apart, scale) = differences(design, held);
+        left = apart.amax() / scale;
+        if held.members.len() < 2 || left <= EQUAL {
+            return Ok(());
         }
         // How the differences answer to the weights of all but the first member.
-        let columns: Result<Vec<DVector<f64>>, RobustError> = (1..active.len())
+        let columns: Result<Vec<DVector<f64>>, RobustError> = (1..held.members.len())
             .map(|i| {
-                let shifted = shift(active, i, DIFFERENCE);
-                let there = solve(design, members, &shifted, &x)?;
-                Ok((differences(design, members, &shifted, &there) - &apart) / DIFFERENCE)
+                let mut other = held.clone();
+                shift(&mut other.members, i, DIFFERENCE);
+                other.point = ensemble.solve(design, &held.point, &other.weighted())?;
+                Ok((differences(design, &other).0 - &apart) / DIFFERENCE)
             })
             .collect();
         let step = DMatrix::from_columns(&columns?).lu().solve(&apart);
@@ -83,12 +93,12 @@ fn equalise(
             break;
         };
         for (i, by) in step.iter().enumerate() {
-            *active = shift(active, i + 1, -by.clamp(-0.5, 0.5));
+            shift(&mut held.members, i + 1, -by.clamp(-0.5, 0.5));
         }
-        if let Some(negative) = active.iter().position(|(_, weight)| *weight < 0.0) {
-            active.remove(negative);
-            let total: f64 = active.iter().map(|(_, weight)| weight.max(0.0)).sum();
-            for (_, weight) in active.iter_mut() {
+        if let Some(negative) = held.members.iter().position(|(_, weight)| *weight < 0.0) {
+            held.members.remove(negative);
+            let total: f64 = held.members.iter().map(|(_, weight)| weight.max(0.0)).sum();
+            for (_, weight) in &mut held.members {
                 *weight = if total > 0.0 {
                     weight.max(0.0) / total
                 } else {
@@ -97,49 +107,27 @@ fn equalise(
             }
         }
     }
-    Err(RobustError::NotConverged { residual: f64::NAN })
+    Err(RobustError::NotConverged { residual: left })
 }
 
-/// Weight moved to active member `i` from the first.
-fn shift(active: &[(usize, f64)], i: usize, by: f64) -> Vec<(usize, f64)> {
-    let mut shifted = active.to_vec();
-    if let Some((_, weight)) = shifted.get_mut(i) {
+/// Moves weight to active member `i` from the first.
+fn shift(members: &mut [(Lowest, f64)], i: usize, by: f64) {
+    if let Some((_, weight)) = members.get_mut(i) {
         *weight += by;
     }
-    if let Some((_, weight)) = shifted.first_mut() {
+    if let Some((_, weight)) = members.first_mut() {
         *weight -= by;
     }
-    shifted
 }
 
-fn solve(
-    design: &impl Design,
-    members: &[Model<f64>],
-    active: &[(usize, f64)],
-    start: &DVector<f64>,
-) -> Result<DVector<f64>, RobustError> {
-    let weighted: Vec<(&Model<f64>, f64)> = active
-        .iter()
-        .filter_map(|(member, weight)| Some((members.get(*member)?, *weight)))
+/// Value of each active member but the first, less the first's; and their size.
+fn differences<D: Design>(design: &D, held: &Held<D::Point>) -> (DVector<f64>, f64) {
+    let values = held.members.iter();
+    let values: Vec<f64> = values
+        .map(|(one, _)| design.value(&held.point, &one.member))
         .collect();
-    design.solve(start, &weighted)
-}
-
-/// Value of each active member but the first, less the first's.
-fn differences(
-    design: &impl Design,
-    members: &[Model<f64>],
-    active: &[(usize, f64)],
-    x: &DVector<f64>,
-) -> DVector<f64> {
-    let chosen: Vec<Model<f64>> = active
-        .iter()
-        .filter_map(|(member, _)| members.get(*member).copied())
-        .collect();
-    let values = design.values(x, &chosen);
     let first = values.first().copied().unwrap_or(f64::NAN);
-    DVector::from_iterator(
-        values.len().saturating_sub(1),
-        values.iter().skip(1).map(|value| value - first),
-    )
+    let apart = values.iter().skip(1).map(|value| value - first);
+    let apart = DVector::from_iterator(values.len().saturating_sub(1), apart);
+    (apart, first.abs())
 }

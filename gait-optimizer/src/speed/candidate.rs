@@ -24,7 +24,7 @@ pub(crate) fn candidate(setting: &Setting, rough: &Polygon) -> Option<Polished> 
 
 /// Polishes, and mends the arcs until they fit: bounds that are overstepped hold, corners that rest on a bound become arcs along
 /// it, arcs that run backwards go, and bounds that pull let go.
-pub(super) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished> {
+pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished> {
     for _ in 0..MENDS {
         widened::along_bounds(setting, &mut links);
         let polished = polish(setting, &links)?;

@@ -17,6 +17,7 @@ use swimmer_model::{Model, Tolerance, crossing_share, swim};
 use super::problem::{Goal, HeadingRule, Setting};
 use crate::certificate::{Certificate, Check, SeenBy, again_within};
 use crate::cycle::Cycle;
+use crate::member::Member;
 use crate::region::Region;
 use legs::{Leg, Legs};
 use switching::Switching;
@@ -63,20 +64,22 @@ pub(super) fn of_cycle(
         phi: cycle.phi.clone(),
         ..GaitFile::default()
     };
-    let certificate = certificate(setting.model, setting.region, asked, &file, &gait);
+    let of = (setting.model, setting.members);
+    let certificate = certificate(of, setting.region, asked, &file, &gait);
     Some((gait, certificate))
 }
 
-/// Holds one cycle, timed as it shall run, against the conditions. Of the swimmer with L = 1.
+/// Holds one cycle, timed as it shall run, against the conditions. Of the swimmer with L = 1; where there are members, of the most
+/// displacement of these.
 pub(crate) fn certificate(
-    model: &Model<f64>,
+    (model, members): (&Model<f64>, &[(Member, f64)]),
     region: &Region,
     asked: Asked,
     file: &GaitFile,
     gait: &AnyGait,
 ) -> Certificate {
     let mut checks = of_the_curve(model, region, file, gait);
-    let Some(legs) = Legs::new((model, region), asked.goal, file, gait) else {
+    let Some(legs) = Legs::new((model, members), region, asked.goal, file, gait) else {
         checks.push(Check::at_most("moves_nowhere", 1.0, 0.0));
         return Certificate::new(checks);
     };
@@ -119,6 +122,7 @@ pub(crate) fn certificate(
         heading: asked.heading,
         period: asked.period.then_some(1.0),
         goal: asked.goal,
+        members,
         anchor: asked.anchor,
     };
     match second_order::least(&setting, &legs, asked) {

@@ -25,7 +25,7 @@ pub(crate) struct Polished {
 }
 
 /// Quadrature points on an arc.
-const POINTS: usize = 32;
+pub(super) const POINTS: usize = 32;
 const MOST_STEPS: usize = 40;
 /// Most times that a solution gives way to the other of its fold.
 const FOLDS: usize = 4;

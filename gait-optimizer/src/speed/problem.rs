@@ -5,6 +5,7 @@ use swimmer_model::Model;
 
 use super::arc::Jet;
 use super::chain::{self, Layout, Net, Weights};
+use crate::member::Member;
 use crate::region::Region;
 
 /// What is to be the most per unit of time.
@@ -55,6 +56,9 @@ pub(crate) struct Setting<'a> {
     /// The period, where it is prescribed.
     pub(crate) period: Option<f64>,
     pub(crate) goal: Goal,
+    /// Whose displacements, with these weights, are to be the most; where there are none, the model's own. What holds of the
+    /// whole chain holds of the model alone.
+    pub(crate) members: &'a [(Member, f64)],
     /// A shape that the gait must pass: there gaits join.
     pub(crate) anchor: Option<Vector2<f64>>,
 }
@@ -136,7 +140,8 @@ impl Setting<'_> {
         };
         match self.goal {
             Goal::Distance => Weights {
-                log_distance: -1.0,
+                // The members' own is added to it.
+                log_distance: if self.members.is_empty() { -1.0 } else { 0.0 },
                 rotation: multiplier(0),
                 heading: if self.heads() { multiplier(1) } else { 0.0 },
             },

@@ -208,7 +208,7 @@ fn shortest_of_alike(chains: &[(Polished, usize)]) -> Vec<&Polished> {
 }
 
 /// A chain as an answer; none where its samples make no gait.
-pub(super) fn told(
+pub(crate) fn told(
     problem: &SpeedProblem,
     setting: &Setting,
     chain: &Polished,

@@ -118,6 +118,7 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
         heading,
         period: None,
         goal,
+        members: &[],
         anchor,
     };
     if let Some(shape) = problem.shape {

@@ -1,6 +1,6 @@
 //! An independent direct method for the fastest gait: a polygon whose corners and times are free.
 //!
-//! From the model it takes A(Φ) alone. Slopes are differences of the swum polygon, second derivatives differences of the
+//! Of many swimmers with one gait it climbs the weighted sum of displacements. From the model it takes A(Φ) alone. Slopes are differences of the swum polygon, second derivatives differences of the
 //! slopes; nothing is known of arcs, heights or switching functions. Limits by a primal–dual barrier, the rotation by an
 //! augmented Lagrangian. Where the fastest gait is a polygon, so where it has no singular arc, this is exact.
 
@@ -9,10 +9,10 @@ mod swum;
 
 use gait_optimizer::SpeedProblem;
 use nalgebra::{DMatrix, DVector, Vector2};
-use swimmer_model::Model;
+use swimmer_model::{Model, Swimmer};
 
 use limits::{Slack, longest};
-use swum::Pose;
+use swum::Poses;
 
 /// Differences for slopes and for second derivatives \[rad\].
 const FINE: f64 = 1e-5;
@@ -24,7 +24,10 @@ const PRICE: f64 = 300.0;
 const MOST_STEPS: usize = 300;
 
 pub(crate) struct Direct {
-    model: Model<f64>,
+    /// Whose rotation vanishes, then the others; each with what its servos turn over what they are told.
+    swimmers: Vec<(Model<f64>, f64)>,
+    /// Of their displacements.
+    weights: Vec<f64>,
     rates: [f64; 2],
     max_angle: f64,
     sides: usize,
@@ -36,8 +39,8 @@ pub(crate) struct Direct {
 
 /// A side as it is, and with each coordinate of its ends moved both ways.
 struct Side {
-    here: Pose,
-    moved: [[Pose; 2]; 4],
+    here: Poses,
+    moved: [[Poses; 2]; 4],
 }
 
 impl Direct {
@@ -49,7 +52,8 @@ impl Direct {
     ) -> Self {
         let max_angle = problem.bounds.max_angle.unwrap_or(f64::INFINITY);
         let mut direct = Self {
-            model: Model::new(&problem.swimmer.of_unit_length()).unwrap(),
+            swimmers: vec![(Model::new(&problem.swimmer.of_unit_length()).unwrap(), 1.0)],
+            weights: vec![1.0],
             rates: problem.rates,
             max_angle,
             sides,
@@ -71,6 +75,18 @@ impl Direct {
         direct
     }
 
+    /// For the displacements of these swimmers with these gains and weights; that of the problem's does not count, but it does not
+    /// rotate.
+    pub(crate) fn of(mut self, members: &[(Swimmer<f64>, f64, f64)]) -> Self {
+        self.weights = vec![0.0];
+        for (swimmer, gain, weight) in members {
+            let model = Model::new(&swimmer.of_unit_length()).unwrap();
+            self.swimmers.push((model, *gain));
+            self.weights.push(*weight);
+        }
+        self
+    }
+
     fn ends(&self, z: &DVector<f64>, side: usize) -> [Vector2<f64>; 2] {
         [side, side + 1].map(|corner| {
             let at = 2 * (corner % self.sides);
@@ -86,8 +102,8 @@ impl Direct {
         self.times(z).iter().sum()
     }
 
-    fn along(&self, z: &DVector<f64>, side: usize) -> Pose {
-        Pose::along(&self.model, self.ends(z, side))
+    fn along(&self, z: &DVector<f64>, side: usize) -> Poses {
+        Poses::along(&self.swimmers, self.ends(z, side))
     }
 
     fn side(&self, z: &DVector<f64>, k: usize) -> Side {
@@ -97,32 +113,44 @@ impl Direct {
                 [FINE, -FINE].map(|step| {
                     let mut ends = self.ends(z, k);
                     ends[p / 2][p % 2] += step;
-                    Pose::along(&self.model, ends)
+                    Poses::along(&self.swimmers, ends)
                 })
             }),
         }
     }
 
-    fn worth(&self, whole: Pose) -> f64 {
-        -whole.x.hypot(whole.y).ln() + self.lambda * whole.theta + 0.5 * PRICE * whole.theta.powi(2)
+    fn distance(&self, whole: &Poses) -> f64 {
+        let weighted = self.weights.iter().zip(whole.all());
+        weighted
+            .map(|(weight, pose)| weight * pose.x.hypot(pose.y))
+            .sum()
+    }
+
+    fn worth(&self, whole: &Poses) -> f64 {
+        let theta = whole.first().theta;
+        -self.distance(whole).ln() + self.lambda * theta + 0.5 * PRICE * theta.powi(2)
     }
 
     /// Gradient of ln of the period less that of the distance, with the rotation's price; and the whole cycle's pose.
-    fn gradient(&self, z: &DVector<f64>, sides: &[Side]) -> (DVector<f64>, Pose) {
-        let mut after = vec![Pose::default(); self.sides + 1];
+    fn gradient(&self, z: &DVector<f64>, sides: &[Side]) -> (DVector<f64>, Poses) {
+        let still = Poses::still(self.swimmers.len());
+        let mut after = vec![still.clone(); self.sides + 1];
         for k in (0..self.sides).rev() {
-            after[k] = sides[k].here * after[k + 1];
+            after[k] = &sides[k].here * &after[k + 1];
         }
-        let mut before = Pose::default();
+        let mut before = still;
         let mut gradient = DVector::zeros(3 * self.sides);
         for (k, side) in sides.iter().enumerate() {
             for p in 0..4 {
-                let [up, down] = side.moved[p].map(|one| self.worth(before * one * after[k + 1]));
+                let [up, down] = [0, 1].map(|way| {
+                    let moved = &(&before * &side.moved[p][way]) * &after[k + 1];
+                    self.worth(&moved)
+                });
                 let at = 2 * ((k + p / 2) % self.sides) + p % 2;
                 gradient[at] += (up - down) / (2.0 * FINE);
             }
             gradient[2 * self.sides + k] += 1.0 / self.period(z);
-            before = before * side.here;
+            before = &before * &side.here;
         }
         (gradient, before)
     }
@@ -162,9 +190,10 @@ impl Direct {
         if slacks.iter().any(|slack| slack.value <= 0.0) {
             return f64::INFINITY;
         }
-        let whole = (0..self.sides).fold(Pose::default(), |pose, k| pose * self.along(z, k));
+        let still = Poses::still(self.swimmers.len());
+        let whole = (0..self.sides).fold(still, |pose, k| &pose * &self.along(z, k));
         let logs: f64 = slacks.iter().map(|slack| slack.value.ln()).sum();
-        self.worth(whole) + self.period(z).ln() - barrier * logs
+        self.worth(&whole) + self.period(z).ln() - barrier * logs
     }
 
     /// Climbs; |d|/(L T) of the polygon, whose rotation vanishes, or none where it does not come to rest.
@@ -184,11 +213,12 @@ impl Direct {
                 apart = apart.max((slack.value * push - barrier).abs());
             }
             if apart < 5.0 * barrier && dual.amax() < (10.0 * barrier).max(3e-8) {
-                self.lambda += PRICE * whole.theta;
-                if barrier <= LAST_BARRIER && whole.theta.abs() < 1e-8 {
+                let theta = whole.first().theta;
+                self.lambda += PRICE * theta;
+                if barrier <= LAST_BARRIER && theta.abs() < 1e-8 {
                     // What is left of the rotation is priced to first order.
-                    let priced = (-self.lambda * whole.theta).exp();
-                    return Some(whole.x.hypot(whole.y) / self.period(&self.z) * priced);
+                    let priced = (-self.lambda * theta).exp();
+                    return Some(self.distance(&whole) / self.period(&self.z) * priced);
                 }
                 barrier = (0.2 * barrier).min(barrier.powf(1.4)).max(LAST_BARRIER);
                 continue;

@@ -1,16 +1,52 @@
-//! The pose that a straight side in the plane of joint angles brings.
+//! The poses that a straight side in the plane of joint angles brings, one for each swimmer.
+
+use std::ops::Mul;
 
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-pub(super) use crate::plane::Pose;
+use crate::plane::Pose;
+
+/// One for each swimmer.
+#[derive(Debug, Clone)]
+pub(super) struct Poses(Vec<Pose>);
+
+impl Poses {
+    pub(super) fn still(count: usize) -> Self {
+        Self(vec![Pose::default(); count])
+    }
+
+    /// Each with what its servos turn over what they are told.
+    pub(super) fn along(swimmers: &[(Model<f64>, f64)], ends: [Vector2<f64>; 2]) -> Self {
+        let swimmers = swimmers.iter();
+        let poses = swimmers.map(|(model, gain)| Pose::along(model, ends.map(|end| end * *gain)));
+        Self(poses.collect())
+    }
+
+    pub(super) fn first(&self) -> Pose {
+        self.0[0]
+    }
+
+    pub(super) fn all(&self) -> &[Pose] {
+        &self.0
+    }
+}
+
+impl Mul for &Poses {
+    type Output = Poses;
+
+    fn mul(self, next: Self) -> Poses {
+        let pairs = self.0.iter().zip(&next.0);
+        Poses(pairs.map(|(one, next)| *one * *next).collect())
+    }
+}
 
 /// Longest step \[rad\].
 const STEP: f64 = 0.15;
 
 impl Pose {
     /// Steps of the Gauss method of order six, explicit here as the rates depend on the shape and θ alone.
-    pub(super) fn along(model: &Model<f64>, [from, to]: [Vector2<f64>; 2]) -> Self {
+    fn along(model: &Model<f64>, [from, to]: [Vector2<f64>; 2]) -> Self {
         let root = 15.0_f64.sqrt();
         let nodes = [0.5 - root / 10.0, 0.5, 0.5 + root / 10.0];
         let weights = [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0];

@@ -17,7 +17,7 @@ use crate::quantity::Rows;
 
 use super::answer::{Closing, Quarter, say_if_beyond};
 use super::better::{Better, than_displacement};
-use super::robust::{RobustAnswer, Robustly};
+use super::robust::{RobustAnswer, Robustly, as_written, refused};
 use super::timing::ServoTiming;
 
 /// Find the gait of most displacement per cycle by the maximum principle, with its certificate
@@ -50,7 +50,7 @@ pub(crate) struct Displacement {
 impl Displacement {
     pub(super) fn run(self, output: Output) -> Outcome {
         let file = load_swimmer(&self.swimmer)?;
-        let uncertain = self.robustly.load()?;
+        let uncertain = self.robustly.load(&file)?;
         let begun = Instant::now();
         let problem = DisplacementProblem {
             bounds: self.bounds.of(&file),
@@ -60,10 +60,11 @@ impl Displacement {
             ..DisplacementProblem::new(file.swimmer)
         };
         if let Some((uncertainty, over)) = uncertain {
-            let found = robust_displacement(&problem, &uncertainty, over)?;
+            let found = robust_displacement(&problem, &uncertainty, over)
+                .map_err(|error| refused(error, &self.bounds))?;
             let seconds = begun.elapsed().as_secs_f64();
             let timing = self.timing.write(
-                &found.gait,
+                &as_written(&found.gait),
                 (&file.name, &self.swimmer),
                 self.output.as_deref(),
             )?;

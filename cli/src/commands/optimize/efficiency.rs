@@ -19,8 +19,11 @@ use crate::quantity::{self, Rows};
 
 use super::answer::{Closing, Quarter, say_if_beyond};
 use super::better::{Better, than_efficiency};
-use super::robust::{RobustAnswer, Robustly};
+use super::robust::{RobustAnswer, Robustly, as_written, refused};
 use super::timing::{ServoTiming, TimingAnswer};
+
+/// Order of a robust gait's series unless told otherwise.
+const ROBUST_ORDER: usize = 6;
 
 /// Find a gait of most Lighthill efficiency by the maximum principle, with its certificate
 ///
@@ -40,9 +43,9 @@ pub(crate) struct Efficiency {
     bounds: WholeBounds,
     #[command(flatten)]
     robustly: Robustly,
-    /// Order of the Fourier series of a robust gait
-    #[arg(long, value_name = "N", default_value_t = 6, requires = "robust")]
-    order: usize,
+    /// Order of the Fourier series of a robust gait, 6 unless given
+    #[arg(long, value_name = "N")]
+    order: Option<usize>,
     #[command(flatten)]
     timing: ServoTiming,
     /// Write the gait, at constant power or as timed for the servos, as a gait file
@@ -71,20 +74,27 @@ impl Efficiency {
             Which::Small => Branch::Small,
             Which::Large => Branch::Large,
         };
-        let uncertain = self.robustly.load()?;
+        let uncertain = self.robustly.load(&file)?;
+        if uncertain.is_none() && self.order.is_some() {
+            return Err(Failure::BadInput(
+                "--order is that of a robust gait's Fourier series: give --robust FIT.json or --gain LOW HIGH"
+                    .to_owned(),
+            ));
+        }
         let begun = Instant::now();
         let bounds = self.bounds.of(&file);
         if let Some((uncertainty, over)) = uncertain {
             let mut found = robust_efficiency(
                 &file.swimmer,
-                (branch, self.order),
+                (branch, self.order.unwrap_or(ROBUST_ORDER)),
                 &bounds,
                 &uncertainty,
                 over,
-            )?;
+            )
+            .map_err(|error| refused(error, &self.bounds))?;
             let seconds = begun.elapsed().as_secs_f64();
             let timing = self.timing.write(
-                &found.gait,
+                &as_written(&found.gait),
                 (&file.name, &self.swimmer),
                 self.output.as_deref(),
             )?;

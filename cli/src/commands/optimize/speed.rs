@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use gait_optimizer::{Arc, Fastest, HeadingRule, SpeedError, SpeedProblem, front};
+use gait_optimizer::{Arc, Fastest, HeadingRule, SpeedError, SpeedProblem, front, robust_speed};
 use serde::Serialize;
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 
@@ -18,12 +18,16 @@ use crate::quantity::{self, Rows};
 use super::answer::{Closing, arc_rows, unfolded};
 use super::front::{FrontAnswer, FrontFile};
 use super::power::on_power;
+use super::robust::{Brings, Robustly, as_written, refused};
 use crate::new_file::may_be_written;
 use crate::own_robot::{PlayedSpeed, servo_rates};
 use crate::threads;
 
 /// Find the fastest gait: most net displacement per unit of time, without net rotation, with servos that turn no faster than a
 /// given rate
+///
+/// With --robust or --gain: with the worst swimmer that is left open, or in the mean, beside what the fastest gait of the estimates
+/// would bring there: along gaits that turn none of the swimmers, as the fastest as a rule are where both side links are alike.
 ///
 /// With --power instead: with servos that give no more than so many watts, which is the most efficient gait at constant power; with
 /// both, where one of them alone limits the gait.
@@ -40,7 +44,7 @@ pub(crate) struct Speed {
     #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2, required_unless_present_any = ["playable", "power"])]
     max_rate: Vec<f64>,
     /// The servos together give no more than this many watts; the swimmer file names its fluid
-    #[arg(long, value_name = "WATTS", value_parser = watts, conflicts_with_all = ["heading", "period", "front"])]
+    #[arg(long, value_name = "WATTS", value_parser = watts, conflicts_with_all = ["heading", "period", "front", "robust", "gain"])]
     power: Option<f64>,
     /// Which way the gait shall lead, against the mean heading of its cycle
     #[arg(long, value_name = "HEADING", value_enum, default_value = "any")]
@@ -50,9 +54,11 @@ pub(crate) struct Speed {
     period: Option<f64>,
     #[command(flatten)]
     bounds: WholeBounds,
+    #[command(flatten)]
+    robustly: Robustly,
     /// Also draw displacement per cycle against speed, of the farthest gaits in shorter and longer periods: a figure, or their
     /// table
-    #[arg(long, value_name = "FILE.svg|.csv", conflicts_with = "period")]
+    #[arg(long, value_name = "FILE.svg|.csv", conflicts_with_all = ["period", "robust", "gain"])]
     front: Option<FrontFile>,
     /// Write the gait, timed as it shall run, as a gait file
     #[arg(short, long, value_name = "FILE")]
@@ -86,6 +92,7 @@ impl Speed {
                 "give --max-rate or --playable".to_owned(),
             ));
         };
+        let uncertain = self.robustly.load(&file)?;
         let begun = Instant::now();
         let progress = Progress::of_a_whole("looking for the fastest gait");
         let problem = SpeedProblem {
@@ -100,7 +107,13 @@ impl Speed {
             ..SpeedProblem::new(file.swimmer, rates)
         };
         let watch = |share| progress.at_share(share);
-        let (found, farthest) = if self.front.is_some() {
+        let mut robust = None;
+        let (found, farthest) = if let Some((uncertainty, over)) = uncertain {
+            let found = robust_speed(&problem, &uncertainty, over, &watch)
+                .map_err(|error| refused(error, &self.bounds))?;
+            robust = Some(Brings::new(&found.robustness, "|d|/(L T)"));
+            (found.fastest, None)
+        } else if self.front.is_some() {
             let front = front(&problem, &watch)?;
             (front.fastest.clone(), Some(front))
         } else {
@@ -109,8 +122,13 @@ impl Speed {
         drop(progress);
         let seconds = begun.elapsed().as_secs_f64();
         unfolded(&found.gait)?;
-        let gait_file = found.gait.gait_file(&file.name);
+        let gait_file = if robust.is_some() {
+            as_written(&found.gait).gait_file(&file.name)
+        } else {
+            found.gait.gait_file(&file.name)
+        };
         let mut answer = Answer::new(&file, &found, seconds, self.output.clone());
+        answer.robust = robust;
         if let Ok(curve) = AnyGait::from_file(&gait_file) {
             let servo = self.servo(&file);
             answer.played =
@@ -164,6 +182,9 @@ struct Answer {
     longer_speed_over_length_per_s: Option<f64>,
     /// The speed of a faster chain of arcs that failed its certificate.
     uncertified_speed_over_length_per_s: Option<f64>,
+    /// Of a robust gait: what robustness costs and brings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    robust: Option<Brings>,
     /// What the robot of the file makes of it, as fast as it can.
     #[serde(skip_serializing_if = "Option::is_none")]
     played: Option<PlayedSpeed>,
@@ -193,6 +214,7 @@ impl Answer {
             found: found.found,
             longer_speed_over_length_per_s: found.longer,
             uncertified_speed_over_length_per_s: found.uncertified,
+            robust: None,
             played: None,
             front: None,
             closing: Closing::new(gait, None, seconds, output),
@@ -254,6 +276,9 @@ impl fmt::Display for Answer {
                 ),
             );
         }
+        if let Some(robust) = &self.robust {
+            robust.rows(&mut rows);
+        }
         if let Some(played) = &self.played {
             rows.row(
                 "as played",
@@ -279,8 +304,9 @@ impl fmt::Display for Answer {
         self.closing.rows(&mut rows);
         write!(
             f,
-            "{}: the fastest gait swims {} in {:.2} s, {} a second\n{rows}",
+            "{}: the {}fastest gait swims {} in {:.2} s, {} a second\n{rows}",
             self.name,
+            if self.robust.is_some() { "robust " } else { "" },
             quantity::length(self.displacement_m),
             self.period_s,
             quantity::length(self.speed_m_per_s),

@@ -6,7 +6,8 @@ use swimmer_model::{Gait as _, Model, Panel, Panels, Tolerance};
 
 use super::super::problem::Goal;
 use crate::height_map::legendre::gauss;
-use crate::momentum::Momentum;
+use crate::member::Member;
+use crate::momentum::{Height, Momentum};
 use crate::region::Region;
 
 /// One place on an arc.
@@ -17,8 +18,8 @@ pub(crate) struct Node {
     pub(crate) phi: Vector2<f64>,
     pub(crate) rate: Vector2<f64>,
     pub(crate) theta: f64,
-    /// The height for p along d, for a unit of the multiplier of rotation, and for one of the heading; of most rotation the
-    /// height for it, and nothing.
+    /// The height for p along d (of members each along its own, weighted and summed), for a unit of the multiplier of rotation, and
+    /// for one of the heading; of most rotation the height for it, and nothing.
     pub(crate) height: [f64; 3],
     /// Gradients of the same.
     pub(crate) slope: [Vector2<f64>; 3],
@@ -57,7 +58,7 @@ pub(crate) struct Legs {
     pub(crate) all: Vec<Leg>,
     /// Pose after the cycle.
     pub(crate) end: [f64; 3],
-    /// |d|, or |Δθ| where that is to be the most.
+    /// |d|, the weighted sum of the members', or |Δθ| where that is to be the most.
     pub(crate) distance: f64,
     /// Mean of θ over the period.
     pub(crate) mean_theta: f64,
@@ -72,7 +73,8 @@ const PANELS: usize = 16;
 impl Legs {
     /// None for a cycle that leads nowhere, or whose arcs are none.
     pub(crate) fn new(
-        (model, region): (&Model<f64>, &Region),
+        (model, members): (&Model<f64>, &[(Member, f64)]),
+        region: &Region,
         goal: Goal,
         file: &GaitFile,
         gait: &AnyGait,
@@ -94,6 +96,14 @@ impl Legs {
         let (points, weights) = gauss(NODES);
         let unit = Vector2::new(last.x, last.y) / distance;
         let across = Vector2::new(-unit.y, unit.x);
+        let ensemble = members.iter().map(|one| Swum::new(one, file));
+        let ensemble: Vec<Swum> = ensemble.collect::<Option<_>>()?;
+        let own = distance;
+        let distance = if ensemble.is_empty() {
+            own
+        } else {
+            ensemble.iter().map(|one| one.weight * one.distance).sum()
+        };
         let mut legs = Vec::with_capacity(spans.len());
         for span in spans.iter().filter(|span| span.to > span.from) {
             let width = (span.to - span.from) / PANELS as f64;
@@ -105,9 +115,18 @@ impl Legs {
                 let none = || height(Vector2::zeros(), 0.0);
                 let parts = match goal {
                     Goal::Distance => [
-                        height(unit, 0.0),
+                        if ensemble.is_empty() {
+                            height(unit, 0.0)
+                        } else {
+                            let heights = ensemble.iter().map(|one| one.height(u, &point.phi));
+                            heights.fold(none(), |sum, one| Height {
+                                value: sum.value + one.value,
+                                gradient: sum.gradient + one.gradient,
+                            })
+                        },
                         height(Vector2::zeros(), 1.0),
-                        height(across, -distance * (1.0 - u)),
+                        // Over |d|, as the first.
+                        height(across * (distance / own), -distance * (1.0 - u)),
                     ],
                     Goal::Rotation => [
                         height(Vector2::zeros(), last.theta.signum()),
@@ -192,6 +211,51 @@ impl Legs {
             }
         }
         usize::from(sums[1] > sums[0])
+    }
+}
+
+/// A member's own way through the cycle.
+struct Swum<'a> {
+    member: &'a Member,
+    weight: f64,
+    panels: Vec<Panel<f64>>,
+    distance: f64,
+    unit: Vector2<f64>,
+}
+
+impl<'a> Swum<'a> {
+    fn new((member, weight): &'a (Member, f64), file: &GaitFile) -> Option<Self> {
+        let turned = GaitFile {
+            phi: file.phi.iter().map(|phi| phi * member.gain).collect(),
+            ..file.clone()
+        };
+        let gait = AnyGait::from_file(&turned).ok()?;
+        let panels = Panels::new(&member.model, &gait, &Tolerance::default());
+        let panels: Vec<Panel<f64>> = panels.collect();
+        let end = panels.last()?.end_pose();
+        let distance = end.x.hypot(end.y);
+        Some(Self {
+            unit: Vector2::new(end.x, end.y) / distance,
+            weight: *weight,
+            member,
+            panels,
+            distance,
+        })
+    }
+
+    /// Its share of the height at a shape that the servos are told.
+    fn height(&self, u: f64, phi: &Vector2<f64>) -> Height {
+        let Member { model, gain } = self.member;
+        let momentum = Momentum {
+            p: self.unit,
+            c: 0.0,
+        };
+        let second = model.second_derivatives(&(phi * *gain));
+        let height = momentum.height(&second, &pose_at(&self.panels, u));
+        Height {
+            value: height.value * self.weight * gain.powi(2),
+            gradient: height.gradient * (self.weight * gain.powi(3)),
+        }
     }
 }
 

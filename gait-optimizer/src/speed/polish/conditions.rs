@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 use super::super::chain::{self, Layout, Net};
+use super::super::ensemble;
 use super::super::problem::Setting;
 use super::super::quadrature::Rule;
 use super::super::structure::{Hold, Link, Motion};
@@ -99,6 +100,8 @@ impl Conditions<'_> {
             return None;
         }
         let (_, mut objective) = chain::gradient(layout, &jets, z, setting.weights(&net, None));
+        let (slope, bend) = ensemble::expansion((layout, rule), z, setting.members);
+        objective += slope;
         for index in times.clone() {
             objective[index] += 1.0 / period;
         }
@@ -118,6 +121,7 @@ impl Conditions<'_> {
             setting.weights(&net, y.map(DVector::as_slice)),
             true,
         );
+        hessian += bend;
         if let Some(slope) = setting.of_the_log(&net, (layout, &jets), z) {
             hessian.ger(1.0, &slope, &slope, 1.0);
         }

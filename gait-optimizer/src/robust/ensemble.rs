@@ -1,0 +1,234 @@
+//! All swimmers that are left open: what a gait brings with them, and the gait that is best for their mean or their worst.
+
+use swimmer_model::{InvalidSwimmer, Swimmer};
+
+use super::newton::Design;
+use super::uncertainty::Uncertainty;
+use super::{Holder, Over, RobustError, Values, worst};
+use crate::member::Member;
+
+/// All swimmers of a problem.
+pub(super) struct Ensemble<'a> {
+    swimmer: &'a Swimmer<f64>,
+    uncertainty: &'a Uncertainty,
+    pub(super) nominal: Member,
+    /// Where the search for the worst case begins.
+    grid: Vec<([f64; 3], Member)>,
+    /// With their weights in the mean.
+    pub(super) normal: Vec<(Member, f64)>,
+}
+
+/// The worst case of a gait.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lowest {
+    pub(super) value: f64,
+    place: [f64; 3],
+    pub(super) member: Member,
+}
+
+/// A gait found: the members that its first-order condition weighs, and who holds the worst case.
+pub(super) struct Found<P> {
+    pub(super) point: P,
+    pub(super) weighted: Vec<(Member, f64)>,
+    pub(super) held_by: Vec<Holder>,
+}
+
+/// Of the grid, so many of the lowest are gone downhill from.
+const DESCENTS: usize = 2;
+/// Shares of the grid's spacing down to which the worst case is known: its value is off by the square of it.
+const FINEST: f64 = 1e-6;
+/// A worst case that moved by less, in half widths, is still the same.
+const SAME: f64 = 0.5;
+/// Smallest step along the weights.
+const SMALLEST_STEP: f64 = 0.05;
+
+impl<'a> Ensemble<'a> {
+    pub(super) fn new(
+        swimmer: &'a Swimmer<f64>,
+        uncertainty: &'a Uncertainty,
+    ) -> Result<Self, RobustError> {
+        uncertainty.validate()?;
+        let grid = uncertainty.grid().into_iter();
+        let grid = grid.map(|place| Ok((place, uncertainty.at(swimmer, place).member()?)));
+        let normal = uncertainty.normal(swimmer).into_iter();
+        let normal = normal.map(|(possible, weight)| Ok((possible.member()?, weight)));
+        Ok(Self {
+            swimmer,
+            uncertainty,
+            nominal: Member::new(&uncertainty.nominal(swimmer), 1.0)?,
+            grid: grid.collect::<Result<_, InvalidSwimmer>>()?,
+            normal: normal.collect::<Result<_, InvalidSwimmer>>()?,
+        })
+    }
+
+    /// How many swimmers the search for the worst case begins with, and how many the mean is taken of.
+    pub(super) fn counts(&self) -> (usize, usize) {
+        (self.grid.len(), self.normal.len())
+    }
+
+    /// The least value over all that is left open; none where no value is a number.
+    pub(super) fn lowest(&self, value: impl Fn(&Member) -> f64) -> Option<Lowest> {
+        let seen = self.grid.iter().map(|&(place, member)| Lowest {
+            value: value(&member),
+            place,
+            member,
+        });
+        let mut seen: Vec<Lowest> = seen.filter(|one| !one.value.is_nan()).collect();
+        seen.sort_by(|a, b| a.value.total_cmp(&b.value));
+        seen.truncate(DESCENTS);
+        let ends = seen.into_iter().map(|start| self.downhill(start, &value));
+        ends.min_by(|a, b| a.value.total_cmp(&b.value))
+    }
+
+    /// Coordinate by coordinate, with ever smaller steps.
+    fn downhill(&self, mut here: Lowest, value: &impl Fn(&Member) -> f64) -> Lowest {
+        let axes = self.uncertainty.axes();
+        let mut share = 1.0;
+        while share > FINEST {
+            let mut moved = false;
+            for (index, axis) in axes.iter().enumerate() {
+                let Some(step) = axis.half_step() else {
+                    continue;
+                };
+                for by in [step * share, -step * share] {
+                    let mut place = here.place;
+                    place[index] = axis.within(place[index] + by);
+                    // Already at the end of it.
+                    if (place[index] - here.place[index]).abs() <= 0.0 {
+                        continue;
+                    }
+                    let Ok(member) = self.uncertainty.at(self.swimmer, place).member() else {
+                        continue;
+                    };
+                    let value = value(&member);
+                    if value < here.value {
+                        here = Lowest {
+                            value,
+                            place,
+                            member,
+                        };
+                        moved = true;
+                        break;
+                    }
+                }
+            }
+            if !moved {
+                share *= 0.5;
+            }
+        }
+        here
+    }
+
+    /// Whether two worst cases are one that the gait moved along.
+    pub(super) fn is_same(&self, one: &Lowest, other: &Lowest) -> bool {
+        let [one, other] = [one, other].map(|lowest| self.uncertainty.half_widths(lowest.place));
+        one.iter().zip(&other).all(|(a, b)| (a - b).abs() < SAME)
+    }
+
+    /// The gait that is best for a weighted mean, near `start`; where it is too far from there, along the weights from the nominal
+    /// optimum.
+    pub(super) fn solve<D: Design>(
+        &self,
+        design: &D,
+        start: &D::Point,
+        members: &[(Member, f64)],
+    ) -> Result<D::Point, RobustError> {
+        match design.solve(start, members) {
+            Err(RobustError::NotConverged { .. }) => self.followed(design, members),
+            other => other,
+        }
+    }
+
+    fn followed<D: Design>(
+        &self,
+        design: &D,
+        members: &[(Member, f64)],
+    ) -> Result<D::Point, RobustError> {
+        let mut here = design.start();
+        let (mut share, mut step) = (0.0, 0.25);
+        while share < 1.0 {
+            let next = f64::min(share + step, 1.0);
+            let scaled = members.iter().map(|(one, weight)| (*one, weight * next));
+            let mut mixed = vec![(self.nominal, 1.0 - next)];
+            mixed.extend(scaled);
+            match design.solve(&here, &mixed) {
+                Ok(there) => (here, share) = (there, next),
+                Err(error) if step < SMALLEST_STEP => return Err(error),
+                Err(_) => step *= 0.5,
+            }
+        }
+        Ok(here)
+    }
+
+    /// The gait that is the best over the uncertainty.
+    pub(super) fn find<D: Design>(
+        &self,
+        design: &D,
+        over: Over,
+    ) -> Result<Found<D::Point>, RobustError> {
+        let active = match over {
+            Over::Mean => {
+                return Ok(Found {
+                    point: self.solve(design, &design.start(), &self.normal)?,
+                    weighted: self.normal.clone(),
+                    held_by: Vec::new(),
+                });
+            }
+            Over::Worst => worst::worst(design, self)?,
+        };
+        let holder = |(lowest, multiplier): &(Lowest, f64)| {
+            let possible = self.uncertainty.at(self.swimmer, lowest.place);
+            Holder {
+                sphere_radius: possible.swimmer.sphere_radius,
+                chi: possible.swimmer.chi,
+                gain: possible.gain,
+                multiplier: *multiplier,
+            }
+        };
+        Ok(Found {
+            held_by: active.members.iter().map(holder).collect(),
+            weighted: active.weighted(),
+            point: active.point,
+        })
+    }
+
+    /// What a gait brings, signed.
+    pub(super) fn values<D: Design>(&self, design: &D, point: &D::Point, sign: f64) -> Values {
+        self.brings(|member| design.value(point, member), sign)
+    }
+
+    /// The same of any value.
+    pub(super) fn brings(&self, value: impl Fn(&Member) -> f64, sign: f64) -> Values {
+        let mean = self.normal.iter();
+        let mean: f64 = mean.map(|(member, weight)| value(member) * weight).sum();
+        Values {
+            nominal: sign * value(&self.nominal),
+            worst: sign * self.lowest(&value).map_or(f64::NAN, |lowest| lowest.value),
+            mean: sign * mean,
+        }
+    }
+
+    /// The swimmer in whose hands the gait fares worst.
+    pub(super) fn worst_swimmer(&self, value: impl Fn(&Member) -> f64) -> Option<Swimmer<f64>> {
+        let lowest = self.lowest(value)?;
+        Some(self.uncertainty.at(self.swimmer, lowest.place).swimmer)
+    }
+
+    /// The swimmers of the grid, which reaches to the border of all that is left open.
+    pub(super) fn on_grid(&self) -> impl Iterator<Item = &Member> {
+        self.grid.iter().map(|(_, member)| member)
+    }
+
+    /// Whether another branch of optima than the nominal one holds a gait that was found from it: it is better for the estimates
+    /// themselves, or what is best for them near it is another gait than the nominal optimum.
+    pub(super) fn is_off_branch<D: Design>(&self, design: &D, point: &D::Point) -> bool {
+        let value = |point: &D::Point| design.value(point, &self.nominal);
+        let nominal = value(&design.start());
+        let close = 1e-6 * nominal.abs();
+        if value(point) > nominal + close {
+            return true;
+        }
+        let back = design.solve(point, &[(self.nominal, 1.0)]);
+        back.is_ok_and(|back| (value(&back) - nominal).abs() > close)
+    }
+}

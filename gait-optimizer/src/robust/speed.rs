@@ -1,0 +1,148 @@
+//! Speed: the fastest gait for the worst swimmer, or in the mean, under the servos' rates.
+
+use super::ensemble::Ensemble;
+use super::newton::Design;
+use super::{Over, RobustError, Robustness, Uncertainty, certificate};
+use crate::cycle::Cycle;
+use crate::member::Member;
+use crate::region::Region;
+use crate::speed::{Polished, Setting, mended, speed_of, told};
+use crate::{Check, Fastest, SpeedProblem, Watch};
+
+/// A robust fastest gait.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RobustSpeed {
+    /// The gait, timed as it shall run; its numbers are those of the estimates' swimmer.
+    pub fastest: Fastest,
+    /// What robustness costs and brings, in |d|/(L T) \[1/s\].
+    pub robustness: Robustness,
+}
+
+/// Chains of arcs about the fastest one of the estimates' swimmer.
+struct Chains<'a> {
+    setting: &'a Setting<'a>,
+    start: Polished,
+}
+
+impl Design for Chains<'_> {
+    type Point = Polished;
+
+    fn start(&self) -> Polished {
+        self.start.clone()
+    }
+
+    fn value(&self, chain: &Polished, member: &Member) -> f64 {
+        speed_of(chain, member)
+    }
+
+    /// Newton's method on all conditions, the arcs mended where they no longer fit.
+    fn solve(&self, start: &Polished, members: &[(Member, f64)]) -> Result<Polished, RobustError> {
+        let setting = Setting {
+            members,
+            ..*self.setting
+        };
+        let chain = mended(&setting, start.links.clone());
+        chain.ok_or(RobustError::NotConverged {
+            residual: f64::INFINITY,
+        })
+    }
+}
+
+/// A swimmer that turns by less does not turn \[rad\].
+const STILL: f64 = 1e-8;
+
+/// The most that one of the swimmers turns in a cycle \[rad\], where that is nothing.
+fn turns_nobody(ensemble: &Ensemble<'_>, cycle: &Cycle) -> Result<f64, RobustError> {
+    let turns = ensemble.on_grid().map(|member| {
+        let swum = cycle.turned(member.gain).swum(&member.model);
+        swum.map_or(f64::NAN, |stroke| stroke.rotation.abs())
+    });
+    let rotation = turns.fold(0.0, |most, one| if one <= most { most } else { one });
+    if rotation.is_nan() || rotation > STILL {
+        return Err(RobustError::Turns { rotation });
+    }
+    Ok(rotation)
+}
+
+/// The gait whose speed |d|/T, in the worst case or in the mean over the uncertainty, is the most with servos of these rates. r_s and χ of
+/// the problem's swimmer give way to the estimates, whose fastest gait comes first. No swimmer may rotate along it.
+///
+/// # Errors
+/// [`RobustError`]: why there is none.
+///
+/// ```
+/// use gait_optimizer::{Bounds, Over, SpeedProblem, Uncertainty, robust_speed};
+/// use swimmer_model::Swimmer;
+///
+/// let purcell = Swimmer::purcell();
+/// let problem = SpeedProblem {
+///     bounds: Bounds { max_angle: Some(2.0), ..Bounds::default() },
+///     starts: 3,
+///     ..SpeedProblem::new(purcell, [1.0; 2])
+/// };
+/// let uncertainty = Uncertainty { gain_interval: [0.98, 1.02], ..Uncertainty::none(0.0, 2.0) };
+/// let found = robust_speed(&problem, &uncertainty, Over::Worst, &|_| ()).unwrap();
+/// assert!(found.robustness.values.worst >= found.robustness.nominal.worst);
+/// ```
+pub fn robust_speed(
+    problem: &SpeedProblem,
+    uncertainty: &Uncertainty,
+    over: Over,
+    watch: Watch<'_>,
+) -> Result<RobustSpeed, RobustError> {
+    let ensemble = Ensemble::new(&problem.swimmer, uncertainty)?;
+    if problem.bounds.no_overlap && uncertainty.gain_is_open() {
+        return Err(RobustError::Clearance);
+    }
+    let problem = &SpeedProblem {
+        swimmer: uncertainty.nominal(&problem.swimmer),
+        ..*problem
+    };
+    let optimum = problem.watched(watch)?;
+    let region = Region::new(&problem.bounds, &problem.swimmer.links);
+    let setting = problem.setting(&ensemble.nominal.model, &region);
+    let lost = || RobustError::Structure {
+        problem: "the fastest gait's arcs do not lead back to it",
+    };
+    turns_nobody(&ensemble, &optimum.gait.cycle)?;
+    let design = Chains {
+        start: mended(&setting, optimum.links.clone()).ok_or_else(lost)?,
+        setting: &setting,
+    };
+    let found = ensemble.find(&design, over)?;
+    let fast = problem.rates[0].max(problem.rates[1]);
+    let values = ensemble.values(&design, &found.point, fast);
+    let nominal = ensemble.values(&design, &design.start, fast);
+    let weighed = Setting {
+        members: &found.weighted,
+        ..setting
+    };
+    let mut fastest = told(problem, &weighed, &found.point, fast).ok_or_else(lost)?;
+    fastest.found = optimum.found;
+    let cycle = fastest.gait.cycle.clone();
+    fastest.gait.certificate = fastest.gait.certificate.with(certificate::swum_again(
+        &ensemble,
+        &cycle,
+        (&values, 1.0),
+        &found,
+        values.nominal,
+        |stroke| stroke.displacement.norm() / fastest.period,
+    ));
+    fastest.gait.certificate = fastest.gait.certificate.with(vec![Check::at_most(
+        "largest_rotation_rad",
+        turns_nobody(&ensemble, &cycle)?,
+        STILL,
+    )]);
+    if !fastest.gait.certificate.pass() {
+        return Err(RobustError::NotCertified {
+            failed: fastest.gait.certificate.failures(),
+        });
+    }
+    let said = (over, values, nominal);
+    let cycles = [&cycle, &optimum.gait.cycle];
+    let robustness = Robustness::new(&ensemble, &design, &found, said, cycles);
+    Ok(RobustSpeed {
+        fastest,
+        robustness,
+    })
+}
