@@ -27,8 +27,8 @@ mod error;
 mod table;
 
 use nalgebra::Vector2;
-use swimmer_files::{AnyGait, GaitArc, GaitFile};
-use swimmer_model::{Gait, InvalidSamples, Model};
+use swimmer_files::{GaitArc, GaitFile};
+use swimmer_model::{Gait, Model};
 
 pub use error::TimingError;
 use error::{check_period, check_rate};
@@ -309,43 +309,6 @@ impl Timing {
             }
             _ => u,
         }
-    }
-
-    /// The power curve: fractions of the period at the ends of stretches, with P/μ \[m³/s²\] in the mean over each.
-    pub fn power_curve(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.cells
-            .iter()
-            .skip(1)
-            .map(|cell| (cell.time / self.period, cell.power))
-    }
-
-    /// The gait as retimed: samples at the ends of the cells, corners where the gait has them.
-    ///
-    /// # Errors
-    /// Samples that make no gait (a curve that rests somewhere).
-    pub fn retime<G: Gait<f64> + ?Sized>(&self, gait: &G) -> Result<AnyGait, InvalidSamples> {
-        let mut u: Vec<f64> = Vec::with_capacity(self.cells.len());
-        let mut phi: Vec<Vector2<f64>> = Vec::with_capacity(self.cells.len());
-        for cell in &self.cells {
-            u.push(cell.time / self.period);
-            phi.push(gait.at(cell.u).phi);
-        }
-        let ends: Vec<f64> = (0..gait.pieces())
-            .filter(|&piece| gait.corner_at_end(piece))
-            .map(|piece| gait.piece_end(piece))
-            .collect();
-        let corners: Vec<usize> = self
-            .cells
-            .iter()
-            .enumerate()
-            .filter(|(_, cell)| {
-                ends.iter()
-                    .any(|end| end.to_bits() == cell.u.to_bits() || (cell.u == 0.0 && *end >= 1.0))
-            })
-            .map(|(i, _)| i)
-            .filter(|&i| i + 1 < self.cells.len())
-            .collect();
-        AnyGait::from_samples(&u, &phi, &corners)
     }
 
     /// A gait file with this timing: the same shapes, arcs and corners, each at its new time. The file must hold the gait

@@ -239,11 +239,6 @@ pub struct Timing {
 }
 impl Timing {
     pub fn fraction_at(&self, u: f64) -> f64 {}
-    pub fn power_curve(&self) -> impl Iterator<Item = (f64, f64)> + '_ {}
-    pub fn retime<G: Gait<f64> + ?Sized>(
-        &self,
-        gait: &G,
-    ) -> Result<AnyGait, InvalidSamples> {}
     #[must_use]
     pub fn retime_file(&self, file: &GaitFile) -> GaitFile {}
 }

@@ -47,10 +47,7 @@ fn gaits() -> Vec<GaitFile> {
         };
         displacement(&problem).unwrap().gait_file("robot")
     };
-    let at_most = Bounds {
-        max_angle: Some(2.8),
-        ..Bounds::default()
-    };
+    let at_most = Bounds::within(2.8);
     vec![
         square(1.0),
         square(2.4),
