@@ -1,4 +1,6 @@
-//! Each number that the paper prints beside the same number computed.
+//! Each number that the paper prints beside the same number computed. What it prints is data, `printed.tsv`: a row without words is
+//! a number, one with words lies from `least` to `most`; `within` is how far off it may be (`none` where the paper's number
+//! cannot be reproduced, and the note says why).
 
 mod displacement;
 mod efficiency;
@@ -7,6 +9,8 @@ use gait_optimizer::{BestAmplitude, Bounds, Objective, OptimalGait, certify};
 use serde::Serialize;
 
 use super::study::Study;
+
+const PRINTED: &str = include_str!("rows/printed.tsv");
 
 /// What the paper says.
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -38,122 +42,70 @@ pub struct Row {
     pub note: &'static str,
 }
 
-/// Ratios are printed to two or three digits.
-const RATIO: f64 = 0.01;
-/// The paper rounds its rough figures freely.
-const ROUGH: f64 = 0.05;
-
 impl Row {
-    /// A printed number, met to a relative tolerance.
-    fn near(id: &'static str, quantity: &'static str, paper: f64, ours: f64, within: f64) -> Self {
-        let deviation = ours / paper - 1.0;
-        Self::new(
-            id,
-            quantity,
-            Printed::Number(paper),
-            ours,
-            deviation,
-            deviation.abs() <= within,
-        )
-    }
-
-    /// Zero, or as good as.
-    fn zero(id: &'static str, quantity: &'static str, ours: f64, within: f64) -> Self {
-        Self::new(
-            id,
-            quantity,
-            Printed::Number(0.0),
-            ours,
-            ours,
-            ours.abs() <= within,
-        )
-    }
-
-    /// A printed range.
-    fn range(
-        id: &'static str,
-        quantity: &'static str,
-        words: &'static str,
-        (low, high): (f64, f64),
-        ours: f64,
-    ) -> Self {
-        let deviation = if ours < low {
-            ours / low - 1.0
-        } else if ours > high {
-            ours / high - 1.0
-        } else {
-            0.0
+    /// A line of the table beside what was computed; none where it is no such line.
+    fn new(line: &'static str, ours: f64) -> Option<Self> {
+        let [id, quantity, paper, least, most, within, note] = cells(line)?;
+        let (printed, low, high) = match paper.parse() {
+            Ok(number) => (Printed::Number(number), number, number),
+            Err(_) => (
+                Printed::Words(paper),
+                least.parse().ok()?,
+                most.parse().ok()?,
+            ),
         };
-        Self::new(
+        let nearest = ours.max(low).min(high);
+        let deviation = if (low..=high).contains(&ours) {
+            0.0
+        } else if nearest == 0.0 {
+            ours
+        } else {
+            ours / nearest - 1.0
+        };
+        let pass = match within {
+            "none" => None,
+            within => Some(deviation.abs() <= within.parse().ok()?),
+        };
+        Some(Self {
             id,
             quantity,
-            Printed::Words(words),
+            paper: printed,
             ours,
             deviation,
-            (low..=high).contains(&ours),
-        )
-    }
-
-    /// A range that the paper reads off a figure, "around": met within [`ROUGH`] of its ends.
-    fn around(
-        id: &'static str,
-        quantity: &'static str,
-        words: &'static str,
-        ends: (f64, f64),
-        ours: f64,
-    ) -> Self {
-        let row = Self::range(id, quantity, words, ends, ours);
-        Self {
-            pass: Some(row.deviation.abs() <= ROUGH),
-            ..row
-        }
-    }
-
-    fn new(
-        id: &'static str,
-        quantity: &'static str,
-        paper: Printed,
-        ours: f64,
-        deviation: f64,
-        pass: bool,
-    ) -> Self {
-        Self {
-            id,
-            quantity,
-            paper,
-            ours,
-            deviation,
-            pass: Some(pass),
-            note: "",
-        }
-    }
-
-    fn note(mut self, note: &'static str) -> Self {
-        self.note = note;
-        self
-    }
-
-    /// It does not come out, and the note says why.
-    fn not_reproducible(self, note: &'static str) -> Self {
-        Self {
-            pass: None,
+            pass,
             note,
-            ..self
-        }
+        })
     }
 }
 
+/// The cells of a line of the table.
+fn cells(line: &'static str) -> Option<[&'static str; 7]> {
+    let cells: Vec<_> = line.split('\t').collect();
+    cells.try_into().ok()
+}
+
+/// A quantity's name, and what it came to.
+type Computed = (&'static str, f64);
+
 /// All rows, in the order of the paper.
 pub fn rows(study: &Study) -> Vec<Row> {
-    let mut rows = displacement::robot_data(study);
-    rows.extend(displacement::experiments(study));
-    rows.extend(displacement::simple_displacement(study));
-    rows.extend(displacement::displacement_gaits(study));
-    rows.extend(displacement::height_maps(study));
-    rows.extend(efficiency::simple_efficiency(study));
-    rows.extend(efficiency::lighthill_gaits(study));
-    rows.extend(efficiency::appendices(study));
-    rows
+    let ours: Vec<Computed> = [
+        displacement::robot_data(study),
+        displacement::experiments(study),
+        displacement::simple_displacement(study),
+        displacement::displacement_gaits(study),
+        displacement::height_maps(study),
+        efficiency::simple_efficiency(study),
+        efficiency::lighthill_gaits(study),
+        efficiency::appendices(study),
+    ]
+    .concat();
+    let of = |line: &'static str| {
+        let id = line.split('\t').next();
+        let ours = ours.iter().find(|(own, _)| Some(*own) == id);
+        Row::new(line, ours.map_or(f64::NAN, |(_, ours)| *ours))
+    };
+    PRINTED.lines().skip(1).filter_map(of).collect()
 }
 
 /// How many conditions a gait fails when only its samples are known; NaN where it cannot be asked.
@@ -198,3 +150,45 @@ const NONE: BestAmplitude = BestAmplitude {
     displacement_over_length: f64::NAN,
     efficiency: f64::NAN,
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The row of a line with these four cells.
+    fn row(paper: &str, least: &str, most: &str, within: &str, ours: f64) -> Row {
+        let line = format!("id\tquantity\t{paper}\t{least}\t{most}\t{within}\t");
+        Row::new(line.leak(), ours).unwrap()
+    }
+
+    #[test]
+    fn a_number_is_met_within_its_share_zero_absolutely_and_nothing_by_what_is_no_number() {
+        assert_eq!(row("2", "", "", "0.01", 2.01).pass, Some(true));
+        assert_eq!(row("2", "", "", "0.01", 2.03).pass, Some(false));
+        assert_eq!(
+            row("0", "", "", "1e-9", -1e-10).deviation.to_bits(),
+            (-1e-10_f64).to_bits()
+        );
+        assert_eq!(row("0", "", "", "1e-9", 1e-8).pass, Some(false));
+        assert_eq!(row("2", "", "", "none", 7.0).pass, None);
+        for (paper, least, most) in [("2", "", ""), ("0", "", ""), ("some", "0", "inf")] {
+            assert_eq!(row(paper, least, most, "0.05", f64::NAN).pass, Some(false));
+        }
+    }
+
+    #[test]
+    fn a_range_is_met_inside_and_beside_its_ends_as_far_as_it_says() {
+        let around = |ours| row("around 1.5 to 2", "1.5", "2", "0.05", ours);
+        assert_eq!(
+            (around(1.7).pass, around(1.7).deviation.to_bits()),
+            (Some(true), 0)
+        );
+        assert_eq!(
+            (around(2.05).pass, around(2.15).pass),
+            (Some(true), Some(false))
+        );
+        assert!((around(1.2).deviation + 0.2).abs() < 1e-12);
+        let negative = |ours| row("negative", "-inf", "0", "0", ours).pass;
+        assert_eq!((negative(-0.1), negative(0.1)), (Some(true), Some(false)));
+    }
+}
