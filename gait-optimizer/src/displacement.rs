@@ -7,6 +7,7 @@ pub(crate) mod height;
 mod near;
 mod search;
 mod start_family;
+mod supremum;
 
 use std::fmt;
 
@@ -15,6 +16,7 @@ use best::{best, candidates};
 pub use error::{DisplacementError, Fates};
 pub use near::displacement_near;
 use search::{Candidate, SCAN_POINTS};
+pub use supremum::{Member, Supremum, displacement_supremum};
 use swimmer_files::{Bounds, Objective};
 use swimmer_model::{Model, Swimmer};
 
@@ -166,7 +168,9 @@ pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, Displa
     let (touching, seen) = best(problem, &model, within, carries(&found));
     let mut answer = if touching.is_ok() { touching } else { found };
     let least = carries(&answer) * (1.0 + OUTDONE);
-    let farthest = seen.farthest(problem, &model, within, least);
+    let farthest = seen
+        .farthest(problem, &model, within, least)
+        .map(|gait| gait.displacement_over_length);
     match &mut answer {
         Ok(gait) => gait.outdone_over_length = farthest,
         Err(DisplacementError::NoOptimum { outdone, .. }) => *outdone = farthest,

@@ -100,7 +100,8 @@ pub use continuation::{
     Parameter, Point, Start, continuation, continuation_watched,
 };
 pub use displacement::{
-    DisplacementError, DisplacementProblem, Fates, Heading, displacement, displacement_near,
+    DisplacementError, DisplacementProblem, Fates, Heading, Member, Supremum, displacement,
+    displacement_near, displacement_supremum,
 };
 pub use efficiency::{
     Branch, Direct, EfficiencyError, EfficiencyFigures, EfficiencyProblem, EfficiencySeed, Method,

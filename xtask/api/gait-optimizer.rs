@@ -409,6 +409,16 @@ pub struct ManyFirstDerivatives {
     pub values: ConnectionsAndPowers,
     pub slopes: [ConnectionsAndPowers; 2],
 }
+#[derive(Debug, Clone, PartialEq)]
+pub struct Member {
+    pub gap: f64,
+    pub displacement_over_length: f64,
+    pub links_cross: f64,
+    pub quarter: Vec<Vector2<f64>>,
+}
+impl Member {
+    pub fn gait_file(&self, swimmer_name: &str) -> GaitFile {}
+}
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Method {
     Auto,
@@ -666,6 +676,12 @@ pub struct Steering {
     pub turning_angle: Option<f64>,
 }
 #[derive(Debug, Clone, PartialEq)]
+pub struct Supremum {
+    pub over_length: f64,
+    pub uncertainty: f64,
+    pub members: Vec<Member>,
+}
+#[derive(Debug, Clone, PartialEq)]
 pub struct Turning {
     pub gait: OptimalGait,
     pub bridged_supremum: f64,
@@ -761,6 +777,10 @@ pub fn displacement_near(
     problem: &DisplacementProblem,
     neighbour: &OptimalGait,
 ) -> Option<OptimalGait> {}
+pub fn displacement_supremum(
+    problem: &DisplacementProblem,
+    found: Option<&OptimalGait>,
+) -> Option<Supremum> {}
 pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, EfficiencyError> {}
 pub fn efficiency_from(
     problem: &EfficiencyProblem,

@@ -74,14 +74,14 @@ fn farther(a: &Candidate, b: &Candidate) -> Ordering {
 }
 
 impl Extremals<'_> {
-    /// How far, over L, gaits carry that are no extremals; none where none was seen that carries farther than `least`.
+    /// Of the gaits seen that are no extremals and carry farther than `least`, over L, about the farthest; none where none was seen.
     pub(super) fn farthest(
         &self,
         problem: &DisplacementProblem,
         model: &Model<f64>,
         within: (&Bounds, &Region),
         least: f64,
-    ) -> Option<f64> {
+    ) -> Option<OptimalGait> {
         let sign = problem.heading().sign();
         let scans = self.scans.iter();
         let mut carried: Vec<Candidate> = scans
@@ -96,7 +96,7 @@ impl Extremals<'_> {
                 return None;
             }
             let gait = certified(problem, model, within, candidate)?;
-            is_gait(&gait).then_some(gait.displacement_over_length)
+            is_gait(&gait).then_some(gait)
         })
     }
 }
