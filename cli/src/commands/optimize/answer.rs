@@ -40,6 +40,17 @@ impl Quarter {
         self.displacement_m > 0.0
     }
 
+    /// X/L of a local optimum that other gaits outdo.
+    pub(super) fn outdone_row(&self, rows: &mut Rows) {
+        rows.row(
+            "outdone",
+            format!(
+                "a local optimum with X/L = {:.6}",
+                self.displacement_over_length
+            ),
+        );
+    }
+
     /// X with its unit and over L, where the quarter starts and ends, and its arcs.
     pub(crate) fn rows(&self, rows: &mut Rows) {
         rows.row(

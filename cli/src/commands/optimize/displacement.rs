@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use gait_optimizer::{
-    DisplacementError, DisplacementProblem, Heading, displacement, robust_displacement,
+    DisplacementError, DisplacementProblem, Heading, displacement, displacement_supremum,
+    robust_displacement,
 };
 use serde::Serialize;
 
@@ -17,13 +18,15 @@ use crate::quantity::Rows;
 
 use super::answer::{Closing, Quarter, say_if_beyond};
 use super::better::{Better, than_displacement};
+use super::no_optimum::NoOptimum;
 use super::robust::{RobustAnswer, Robustly, as_written, refused};
 use super::timing::ServoTiming;
 
 /// Find the gait of most displacement per cycle by the maximum principle, with its certificate
 ///
 /// Signed, per full cycle, for the gait run counter-clockwise: with no bound or --max-angle alone the local optimum with
-/// X > 0; with --min-angle or --sector the one with X < 0; --sign asks for the other.
+/// X > 0; with --min-angle or --sector the one with X < 0; --sign asks for the other. Where gaits along ever narrower slits carry
+/// ever farther no optimum exists: exit status 1, with the limit, a gait near it (which -o writes) and the fastest gait.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Displacement {
     /// purcell, robot, robot-slender or a swimmer file
@@ -77,7 +80,18 @@ impl Displacement {
             ));
             return Ok(());
         }
-        let gait = displacement(&problem)?;
+        let found = displacement(&problem);
+        if let Ok(_)
+        | Err(DisplacementError::NoOptimum { .. } | DisplacementError::NotCertified { .. }) =
+            found
+            && let local = found.as_ref().ok()
+            && let Some(supremum) = displacement_supremum(&problem, local)
+            && let Some(answer) = NoOptimum::new((&file, &self.swimmer), &problem, &supremum, local)
+        {
+            let best = supremum.members.last().zip(self.output);
+            return answer.told(best, begun.elapsed().as_secs_f64(), output);
+        }
+        let gait = found?;
         let seconds = begun.elapsed().as_secs_f64();
         let better = than_displacement(&problem, &self.swimmer, &gait);
         say_if_beyond(&file, &gait);
@@ -102,7 +116,8 @@ struct Found {
     name: String,
     #[serde(flatten)]
     quarter: Quarter,
-    /// X/L of a gait within the bounds that carries farther but is no extremal; left out where none was seen.
+    /// X/L of a gait within the bounds that carries farther but is no extremal, where no gaits were found that go on from there;
+    /// left out where none was seen.
     #[serde(skip_serializing_if = "Option::is_none")]
     outdone_over_length: Option<f64>,
     /// Local optima and other extremals found, of which this is the best certified one.
@@ -122,10 +137,7 @@ impl fmt::Display for Found {
         if let Some(carried) = self.outdone_over_length {
             rows.row(
                 "not the farthest",
-                format!(
-                    "a gait that is no extremal carries X/L = {carried:.6}; the farthest reach shapes off all bounds along \
-                     a slit, which this search does not know"
-                ),
+                format!("a gait that is no extremal carries X/L = {carried:.6}"),
             );
         }
         let sign = if self.quarter.forwards() { ">" } else { "<" };

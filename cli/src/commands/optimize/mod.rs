@@ -5,6 +5,7 @@ mod better;
 mod displacement;
 mod efficiency;
 mod front;
+mod no_optimum;
 mod power;
 mod robust;
 mod sideways;
