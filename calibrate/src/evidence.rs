@@ -78,15 +78,18 @@ impl std::fmt::Display for Quantity {
 }
 
 /// The estimate of greatest likelihood.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Likelihood {
     /// The estimate, outliers left out.
+    #[serde(flatten)]
     pub estimate: Pair,
     /// Where the profile likelihoods fall to Student's threshold.
     pub intervals: Intervals,
     /// Standard deviation from run to run of X \[m\], ΔY \[m\] and Δθ \[rad\], beyond what cycles explain.
+    #[serde(skip)]
     pub between_runs: [f64; 3],
     /// Correlation between r_s and ln χ.
+    #[serde(skip)]
     pub correlation: f64,
 }
 

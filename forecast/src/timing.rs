@@ -48,24 +48,31 @@ const RULE: [(f64, f64); 4] = [
 const STEPS: usize = 200;
 
 /// The best timing of a gait under a rate limit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Timing {
     /// Duration of the cycle \[s\].
+    #[serde(rename = "period_s")]
     pub period: f64,
     /// The shortest period that the rate limit leaves possible \[s\].
+    #[serde(rename = "period_min_s")]
     pub shortest_period: f64,
     /// The rate limit \[rad/s\]; infinite for none.
+    #[serde(rename = "max_rate_rad_s")]
     pub max_rate: f64,
+    /// Fastest joint at constant power, without the limit \[rad/s\].
+    #[serde(rename = "rate_at_constant_power_rad_s")]
+    pub rate_at_constant_power: f64,
     /// Share of the period in which a servo runs at its limit, or within a hundredth of it.
     pub at_limit: f64,
-    /// Fastest joint at constant power, without the limit \[rad/s\].
-    pub rate_at_constant_power: f64,
-    /// Energy of the cycle over μ \[m³/s\].
-    pub energy: f64,
     /// Share of Lighthill's ξ that the limit costs: 0 where constant power keeps within it.
     pub efficiency_loss: f64,
+    /// Energy of the cycle over μ \[m³/s\].
+    #[serde(skip)]
+    pub energy: f64,
     /// Highest power over μ \[m³/s²\]: that of every stretch where no servo is at its limit.
+    #[serde(skip)]
     pub power: f64,
+    #[serde(skip)]
     cells: Vec<Cell>,
 }
 

@@ -22,6 +22,8 @@ mod parameter;
 #[cfg(test)]
 mod tests;
 
+use serde::ser::SerializeStruct as _;
+use serde::{Serialize, Serializer};
 use swimmer_files::{ArcKind, Bounds, Objective};
 use swimmer_model::{InvalidSwimmer, Swimmer};
 
@@ -112,7 +114,7 @@ pub struct Point {
 }
 
 /// Something that happened on the way.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Event {
     /// Which of the starts it happened to.
     pub branch: usize,
@@ -121,17 +123,21 @@ pub struct Event {
     /// The value is as sure as this, either way.
     pub within: f64,
     /// What happened.
+    #[serde(flatten)]
     pub kind: EventKind,
 }
 
 /// What can happen.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
 pub enum EventKind {
     /// An arc appeared or vanished.
     Structure {
         /// Arcs before.
+        #[serde(rename = "arcs_before")]
         before: Vec<ArcKind>,
         /// Arcs after.
+        #[serde(rename = "arcs_after")]
         after: Vec<ArcKind>,
     },
     /// The branch turns back.
@@ -139,32 +145,38 @@ pub enum EventKind {
     /// The nearest gait beyond, within `within`, is further off than a step may lead: it may be another branch's, or the same
     /// branch after a gap in the search. It is followed from here on.
     Jump {
-        /// Largest distance of the two curves \[rad\].
-        apart: f64,
         /// Power of the distance in the parameter that the gait changed with before; 1 where it changed evenly.
+        #[serde(skip_serializing_if = "Option::is_none")]
         exponent: Option<f64>,
+        /// Largest distance of the two curves \[rad\].
+        #[serde(rename = "apart_rad")]
+        apart: f64,
     },
     /// The gait of this branch becomes the gait of another branch.
     Merger {
         /// The other branch.
+        #[serde(rename = "other_branch")]
         with: usize,
     },
     /// Another branch becomes the better one.
     Overtaken {
         /// The other branch.
+        #[serde(rename = "other_branch")]
         by: usize,
     },
     /// There is a gait, but it is no optimum any more.
     Lost {
         /// The conditions that it fails.
+        #[serde(rename = "reason")]
         failed: String,
     },
     /// No gait is found beyond.
     Ended {
+        /// As for a jump.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        exponent: Option<f64>,
         /// Why, as far as is known.
         reason: String,
-        /// As for a jump.
-        exponent: Option<f64>,
     },
     /// The last value is reached.
     Reached,
@@ -179,14 +191,30 @@ pub struct Fold {
     pub exponent: Option<f64>,
 }
 
+impl Serialize for Fold {
+    /// Its fields, after whether it is `proven`.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut fold = serializer.serialize_struct("Fold", 3)?;
+        fold.serialize_field("proven", &self.other.is_some())?;
+        if let Some(other) = &self.other {
+            fold.serialize_field("other_side", other)?;
+        }
+        if let Some(exponent) = &self.exponent {
+            fold.serialize_field("exponent", exponent)?;
+        }
+        fold.end()
+    }
+}
+
 /// The extremal that a branch meets in a fold: its Jacobian has the other orientation.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct OtherSide {
     /// Where it was found.
     pub value: f64,
     /// Its efficiency.
     pub efficiency: f64,
     /// φ₁ at its start \[rad\].
+    #[serde(rename = "start_angle_rad")]
     pub start_angle: f64,
     /// Along how many directions its efficiency grows to second order; 0 for an optimum.
     pub ascent_directions: Option<usize>,

@@ -57,7 +57,7 @@ pub enum Row {
 }
 
 /// How still the frame stood when the order was raised for the last time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Convergence {
     /// Polynomials in each direction: degrees 0 to `order` − 1.
     pub order: usize,

@@ -63,7 +63,7 @@ pub enum Over {
 }
 
 /// What a gait brings over the uncertainty: X/L per cycle, signed, ξ as timed, or |d|/(L T) \[1/s\].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Values {
     /// For the estimates themselves.
     pub nominal: f64,

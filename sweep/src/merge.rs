@@ -18,9 +18,10 @@ use crate::row::Row;
 use crate::{Aim, Field, Plan, SweepError, part};
 
 /// What was merged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Merged {
     /// Rows of the table.
+    #[serde(rename = "done")]
     pub tasks: u64,
     /// Designs without a gait.
     pub failed: u64,

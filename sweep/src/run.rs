@@ -65,18 +65,21 @@ impl std::fmt::Debug for Running<'_> {
 }
 
 /// How far a run is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Ran {
-    /// Blocks of the shard.
-    pub blocks: u64,
-    /// Finished, in this run or before.
-    pub done: u64,
-    /// Of these, those that were there already.
-    pub skipped: u64,
     /// Tasks of the finished blocks.
+    #[serde(rename = "done")]
     pub tasks: u64,
     /// Of these, designs without a gait.
     pub failed: u64,
+    /// Blocks of the shard.
+    pub blocks: u64,
+    /// Finished, in this run or before.
+    #[serde(skip)]
+    pub done: u64,
+    /// Of these, those that were there already.
+    #[serde(rename = "blocks_skipped")]
+    pub skipped: u64,
 }
 
 /// Runs a shard: every block of it that is not there, or not whole.

@@ -468,7 +468,7 @@ pub struct Statistics {
     pub lag1: f64,
     pub count: usize,
 }
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Stretch {
     pub from_s: f64,
     pub until_s: f64,
@@ -870,7 +870,7 @@ pub mod evidence {
     #[derive(Debug, Serialize)]
     pub struct EvidenceDocument<'a> {}
     pub use crate::EvidenceOptions;
-    #[derive(Debug, Clone, PartialEq)]
+    #[derive(Debug, Clone, PartialEq, serde::Serialize)]
     pub struct Likelihood {
         pub estimate: Pair,
         pub intervals: Intervals,

@@ -226,15 +226,15 @@ pub struct Tank {
     pub length: f64,
     pub width: f64,
 }
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Timing {
     pub period: f64,
     pub shortest_period: f64,
     pub max_rate: f64,
-    pub at_limit: f64,
     pub rate_at_constant_power: f64,
-    pub energy: f64,
+    pub at_limit: f64,
     pub efficiency_loss: f64,
+    pub energy: f64,
     pub power: f64,
 }
 impl Timing {

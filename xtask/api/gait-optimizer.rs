@@ -150,7 +150,7 @@ impl ContinuationProblem {
         start: Start,
     ) -> Self {}
 }
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Convergence {
     pub order: usize,
     pub order_before: usize,
@@ -242,22 +242,22 @@ impl EfficiencySeed {
     pub fn gait(&self) -> &OptimalGait {}
     pub fn near(&self, problem: &EfficiencyProblem) -> Option<Self> {}
 }
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Event {
     pub branch: usize,
     pub value: f64,
     pub within: f64,
     pub kind: EventKind,
 }
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub enum EventKind {
     Structure { before: Vec<ArcKind>, after: Vec<ArcKind> },
     Fold(Fold),
-    Jump { apart: f64, exponent: Option<f64> },
+    Jump { exponent: Option<f64>, apart: f64 },
     Merger { with: usize },
     Overtaken { by: usize },
     Lost { failed: String },
-    Ended { reason: String, exponent: Option<f64> },
+    Ended { exponent: Option<f64>, reason: String },
     Reached,
 }
 #[derive(Debug, Clone, PartialEq)]
@@ -287,6 +287,7 @@ pub struct Fold {
     pub other: Option<OtherSide>,
     pub exponent: Option<f64>,
 }
+impl Serialize for Fold {}
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     pub b: Vector3<f64>,
@@ -380,11 +381,11 @@ impl Joined {
     pub fn cost(&self) -> f64 {}
     pub fn gait_file(&self, swimmer_name: &str, backwards: bool) -> GaitFile {}
 }
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct LevelCurve {
-    pub points: Vec<Vector2<f64>>,
     pub closed: bool,
     pub residual: f64,
+    pub points: Vec<Vector2<f64>>,
 }
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Limit {
@@ -465,7 +466,7 @@ pub struct Optimum {
     pub simple: bool,
     pub found: usize,
 }
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct OtherSide {
     pub value: f64,
     pub efficiency: f64,
@@ -730,7 +731,7 @@ pub enum Unsolved {
     Malformed,
 }
 impl std::fmt::Display for Unsolved {}
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Values {
     pub nominal: f64,
     pub worst: f64,

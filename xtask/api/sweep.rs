@@ -122,7 +122,7 @@ pub struct MapAxis {
 impl MapAxis {
     pub fn borders(&self) -> Vec<f64> {}
 }
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Merged {
     pub tasks: u64,
     pub failed: u64,
@@ -159,13 +159,13 @@ pub struct Quantity {
     pub unit: &'static str,
     pub values: Vec<Vec<Option<f64>>>,
 }
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Ran {
+    pub tasks: u64,
+    pub failed: u64,
     pub blocks: u64,
     pub done: u64,
     pub skipped: u64,
-    pub tasks: u64,
-    pub failed: u64,
 }
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Row {

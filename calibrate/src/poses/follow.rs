@@ -68,7 +68,7 @@ impl FollowReport {
 }
 
 /// Rows one after another in which something held.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Stretch {
     /// The first of them \[s\].
     pub from_s: f64,

@@ -1,7 +1,7 @@
 //! `swimmer atlas`: every locally optimal gait that a seeded multi-start finds.
 
+mod folder;
 mod follow;
-mod kept;
 mod picture;
 mod speed;
 
@@ -28,7 +28,7 @@ use crate::quantity;
 use crate::threads;
 
 use super::optimize::answer::Figures;
-use kept::{drawn_in, saved};
+use folder::{drawn_in, saved};
 use speed::AtRate;
 
 /// Find every locally optimal gait, with and without the paper's symmetries, each certified

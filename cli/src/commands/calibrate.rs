@@ -224,7 +224,7 @@ impl Calibrate {
         stages.next("weighing the evidence", WEIGHING);
         let evidence = weigh_evidence(&fitted.found, options);
         match &evidence {
-            Ok(evidence) => fitted.answer.likelihood = Some((&evidence.likelihood).into()),
+            Ok(evidence) => fitted.answer.likelihood = Some(evidence.likelihood.clone()),
             Err(cause) => fitted
                 .answer
                 .warnings

@@ -134,8 +134,8 @@ impl HeightMap {
             zero_on_antidiagonal: on_antidiagonal.first().copied(),
             zeros_on_diagonal: on_diagonal,
             zeros_on_antidiagonal: on_antidiagonal,
-            convergence: map.convergence().into(),
-            zero_curves: curves.iter().map(Curve::from).collect(),
+            convergence: map.convergence(),
+            zero_curves: curves,
             gaits: rules,
             written: self.output,
         });
@@ -170,31 +170,12 @@ struct Mapped {
     zero_on_antidiagonal: Option<f64>,
     zeros_on_diagonal: Vec<f64>,
     zeros_on_antidiagonal: Vec<f64>,
-    convergence: Converged,
-    zero_curves: Vec<Curve>,
+    convergence: Convergence,
+    zero_curves: Vec<LevelCurve>,
     gaits: Vec<Rule>,
     /// The file that was written.
     #[serde(skip_serializing_if = "Option::is_none")]
     written: Option<PathBuf>,
-}
-
-/// How far the frame moved when its order was raised for the last time.
-#[derive(Debug, Serialize)]
-struct Converged {
-    order: usize,
-    order_before: usize,
-    /// Where |φᵢ| ≤ 0.8 D; lengths over L, angles in rad.
-    inner_change: f64,
-    /// On the whole square, corners included.
-    change: f64,
-}
-
-#[derive(Debug, Serialize)]
-struct Curve {
-    closed: bool,
-    /// Largest |H| at a vertex.
-    residual: f64,
-    vertices: Vec<[f64; 2]>,
 }
 
 /// The area rule for one gait.
@@ -217,27 +198,6 @@ impl Rule {
             swum: rule.swum.into(),
             deviation: rule.deviation().into(),
         })
-    }
-}
-
-impl From<Convergence> for Converged {
-    fn from(convergence: Convergence) -> Self {
-        Self {
-            order: convergence.order,
-            order_before: convergence.order_before,
-            inner_change: convergence.inner_change,
-            change: convergence.change,
-        }
-    }
-}
-
-impl From<&LevelCurve> for Curve {
-    fn from(curve: &LevelCurve) -> Self {
-        Self {
-            closed: curve.closed,
-            residual: curve.residual,
-            vertices: curve.points.iter().map(|phi| (*phi).into()).collect(),
-        }
     }
 }
 
@@ -273,7 +233,7 @@ impl fmt::Display for Mapped {
             "zero-level curves",
             format!("{closed} closed, {open} from edge to edge"),
         );
-        let Converged {
+        let Convergence {
             order,
             order_before,
             inner_change,

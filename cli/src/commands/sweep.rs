@@ -108,12 +108,13 @@ impl Run {
             },
         )?;
         drop(progress);
-        output.answer(&RunAnswer::new(
-            &plan,
-            shard,
+        output.answer(&RunAnswer {
+            plan: plan.hash(),
+            shard: shard.to_string(),
+            tasks: plan.tasks(),
             ran,
-            began.elapsed().as_secs_f64(),
-        ));
+            seconds: began.elapsed().as_secs_f64(),
+        });
         Ok(())
     }
 }

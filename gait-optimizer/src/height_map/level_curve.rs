@@ -11,14 +11,19 @@ use nalgebra::{DMatrix, Vector2};
 pub(crate) struct Level<F>(pub(crate) F);
 
 /// One connected zero-level curve, possibly through points where it crosses another.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct LevelCurve {
-    /// Vertices Φ \[rad\] in order; where the curve is closed the last is the first again.
-    pub points: Vec<Vector2<f64>>,
     /// Whether it is closed; an open one ends on the square's edge at both ends.
     pub closed: bool,
     /// The largest |H| at a vertex.
     pub residual: f64,
+    /// Vertices Φ \[rad\] in order; where the curve is closed the last is the first again.
+    #[serde(rename = "vertices", serialize_with = "pairs")]
+    pub points: Vec<Vector2<f64>>,
+}
+
+fn pairs<S: serde::Serializer>(points: &[Vector2<f64>], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(points.iter().map(|phi| [phi.x, phi.y]))
 }
 
 /// Where and how finely to look.

@@ -1,6 +1,6 @@
 //! Gaits followed as a parameter changes.
 
-mod told;
+mod answer;
 
 use clap::ValueEnum;
 use gait_optimizer::{
@@ -13,7 +13,7 @@ use crate::arguments::angle;
 use crate::failure::{Failure, Outcome};
 use crate::progress::Progress;
 
-pub(super) use told::{Alone, Followed};
+pub(super) use answer::{Alone, Followed};
 
 /// What to follow gaits in, from where to where.
 #[derive(Debug, Clone, Copy, PartialEq)]

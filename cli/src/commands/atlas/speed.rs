@@ -10,7 +10,7 @@ use serde::Serialize;
 use swimmer_files::SwimmerFile;
 
 use super::Atlas;
-use super::kept::{drawn_in, saved};
+use super::folder::{drawn_in, saved};
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;

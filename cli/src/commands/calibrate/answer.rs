@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
-use calibrate::evidence::Likelihood;
+use calibrate::evidence::{Likelihood, Pair};
 use calibrate::{Intervals, Origin, RunResult, Stretch};
 use serde::Serialize;
 use swimmer_files::GaitSpec;
@@ -40,9 +40,9 @@ pub(crate) struct RunAnswer {
     #[serde(skip_serializing_if = "Option::is_none")]
     joints: Option<RunJoints>,
     /// When the names of both reflectors were exchanged, and set right.
-    swaps: Vec<StretchAnswer>,
+    swaps: Vec<Stretch>,
     /// When there were points that are no reflector.
-    ghosts: Vec<StretchAnswer>,
+    ghosts: Vec<Stretch>,
     /// What is noteworthy about its track and its cycles.
     pub(crate) diagnoses: Vec<String>,
     pub(crate) samples: Samples,
@@ -65,29 +65,6 @@ struct Spreads {
     turn_sd_rad: f64,
     turn_se_rad: f64,
     turn_lag1: f64,
-}
-
-/// Rows one after another in which something held.
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct StretchAnswer {
-    from_s: f64,
-    until_s: f64,
-    rows: usize,
-}
-
-impl From<&Stretch> for StretchAnswer {
-    fn from(stretch: &Stretch) -> Self {
-        let Stretch {
-            from_s,
-            until_s,
-            rows,
-        } = *stretch;
-        Self {
-            from_s,
-            until_s,
-            rows,
-        }
-    }
 }
 
 /// A whole cycle that does not count.
@@ -123,7 +100,7 @@ pub(crate) struct FitAnswer {
     pub(crate) c_t_form: String,
     /// The estimate beside the paper's: each value weighed by its own variance.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) likelihood: Option<LikelihoodAnswer>,
+    pub(super) likelihood: Option<Likelihood>,
     /// What the servos made of their commands, where the joint angles were measured: the mean of the runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) joints: Option<JointsAnswer>,
@@ -134,24 +111,6 @@ pub(crate) struct FitAnswer {
     pub(crate) assessment: Option<AssessmentAnswer>,
     #[serde(flatten)]
     pub(crate) beyond: FurtherAnswers,
-}
-
-/// The estimate of greatest likelihood, with its profiles' intervals.
-#[derive(Debug, Clone, Serialize)]
-pub(super) struct LikelihoodAnswer {
-    sphere_radius_m: f64,
-    chi: f64,
-    intervals: Intervals,
-}
-
-impl From<&Likelihood> for LikelihoodAnswer {
-    fn from(likelihood: &Likelihood) -> Self {
-        Self {
-            sphere_radius_m: likelihood.estimate.sphere_radius,
-            chi: likelihood.estimate.chi,
-            intervals: likelihood.intervals,
-        }
-    }
 }
 
 /// Only the cycles: what a single run can tell.
@@ -215,13 +174,9 @@ impl fmt::Display for FitAnswer {
             format!("{} (the paper's weights)", quantity::small(self.rmse)),
         )
         .row("form of c_t", &self.c_t_form);
-        if let Some(LikelihoodAnswer {
-            sphere_radius_m,
-            chi,
-            intervals,
-        }) = &self.likelihood
-        {
-            let [radius, chi] = with_intervals(*sphere_radius_m, *chi, intervals);
+        if let Some(likelihood) = &self.likelihood {
+            let Pair { sphere_radius, chi } = likelihood.estimate;
+            let [radius, chi] = with_intervals(sphere_radius, chi, &likelihood.intervals);
             rows.row("r_s by likelihood", radius)
                 .row("χ by likelihood", chi);
         }
@@ -358,8 +313,8 @@ impl RunAnswer {
                 })
                 .collect(),
             joints: RunJoints::of(run),
-            swaps: run.poses.report.swaps.iter().map(Into::into).collect(),
-            ghosts: run.poses.report.ghosts.iter().map(Into::into).collect(),
+            swaps: run.poses.report.swaps.clone(),
+            ghosts: run.poses.report.ghosts.clone(),
             diagnoses: run.diagnoses(),
             samples: Samples {
                 frames: run.poses.frames,

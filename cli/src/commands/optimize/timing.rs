@@ -15,8 +15,8 @@ use crate::quantity::{self, Rows};
 use crate::threads;
 
 /// How fast the servos are, and in which period the gait shall run.
-#[derive(Debug, clap::Args)]
-pub(super) struct ServoTiming {
+#[derive(Debug, Clone, Copy, Default, clap::Args)]
+pub(crate) struct ServoTiming {
     /// Servos turn no faster than this angle a second: the gait is timed best under that limit instead of at constant power
     #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, requires = "period")]
     pub(super) max_rate: Option<f64>,
@@ -38,16 +38,8 @@ struct Timed {
 /// What the limit costs.
 #[derive(Debug, Serialize)]
 pub(crate) struct TimingAnswer {
-    period_s: f64,
-    /// The shortest period in which such servos can run the gait's table at all.
-    period_min_s: f64,
-    max_rate_rad_s: f64,
-    /// Fastest joint at constant power, without the limit.
-    rate_at_constant_power_rad_s: f64,
-    /// Share of the period in which a servo runs at its limit.
-    at_limit: f64,
-    /// Share of Lighthill's ξ that the limit costs.
-    efficiency_loss: f64,
+    #[serde(flatten)]
+    timing: Timing,
     /// |d| over the period.
     speed_m_per_s: f64,
     /// The gait that is made for speed, where it is faster.
@@ -128,36 +120,22 @@ impl ServoTiming {
                 .map_or(&file, |timed| &timed.file)
                 .save(path)?;
         }
-        Ok(timed.as_ref().map(|timed| timed.answer(gait, swimmer)))
+        Ok(timed.map(|timed| timed.answer(gait, swimmer)))
     }
 }
 
 impl Timed {
     /// What is printed of it.
-    fn answer(&self, gait: &OptimalGait, swimmer: &str) -> TimingAnswer {
-        let Timing {
-            period,
-            shortest_period,
-            max_rate,
-            at_limit,
-            rate_at_constant_power,
-            efficiency_loss,
-            ..
-        } = self.timing;
-        let speed_m_per_s = gait
+    fn answer(self, gait: &OptimalGait, swimmer: &str) -> TimingAnswer {
+        let distance = gait
             .displacement_over_length
             .hypot(gait.lateral_over_length)
-            * gait.swimmer.total_length()
-            / period;
+            * gait.swimmer.total_length();
+        let speed_m_per_s = distance / self.timing.period;
         TimingAnswer {
             speed_m_per_s,
-            known_to_be_faster: Faster::than(speed_m_per_s, gait, swimmer, max_rate),
-            period_s: period,
-            period_min_s: shortest_period,
-            max_rate_rad_s: max_rate,
-            rate_at_constant_power_rad_s: rate_at_constant_power,
-            at_limit,
-            efficiency_loss,
+            known_to_be_faster: Faster::than(speed_m_per_s, gait, swimmer, self.timing.max_rate),
+            timing: self.timing,
             efficiency: self.efficiency,
         }
     }
@@ -166,27 +144,28 @@ impl Timed {
 impl TimingAnswer {
     /// Lines for people.
     pub(super) fn rows(&self, rows: &mut Rows) {
+        let timing = &self.timing;
         let rate = |value: f64| format!("{} a second", quantity::angle(value));
         rows.row(
             "timed for",
             format!(
                 "{} s with joints of at most {} (shortest period {:.2} s)",
-                self.period_s,
-                rate(self.max_rate_rad_s),
-                self.period_min_s
+                timing.period,
+                rate(timing.max_rate),
+                timing.shortest_period
             ),
         )
         .row(
             "servo at limit",
             format!(
                 "{:.1} % of the period; constant power would want {}",
-                self.at_limit * 100.0,
-                rate(self.rate_at_constant_power_rad_s)
+                timing.at_limit * 100.0,
+                rate(timing.rate_at_constant_power)
             ),
         )
         .row(
             "limit costs",
-            format!("{:.3} % of ξ", self.efficiency_loss * 100.0),
+            format!("{:.3} % of ξ", timing.efficiency_loss * 100.0),
         )
         .row(
             "speed",

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use serde::Serialize;
-use sweep::{Merged, Plan, Ran, Shard, Status};
+use sweep::{Merged, Plan, Ran, Status};
 use swimmer_files::{FileError, hash_of};
 
 use super::shown;
@@ -14,42 +14,24 @@ use crate::quantity::Rows;
 /// What was run.
 #[derive(Debug, Serialize)]
 pub(super) struct RunAnswer {
-    plan: String,
-    shard: String,
+    pub(super) plan: String,
+    pub(super) shard: String,
     /// Of the plan.
-    tasks: u64,
-    /// Of the shard, finished now or before.
-    done: u64,
-    failed: u64,
-    blocks: u64,
-    blocks_skipped: u64,
-    seconds: f64,
-}
-
-impl RunAnswer {
-    pub(super) fn new(plan: &Plan, shard: Shard, ran: Ran, seconds: f64) -> Self {
-        Self {
-            plan: plan.hash(),
-            shard: shard.to_string(),
-            tasks: plan.tasks(),
-            done: ran.tasks,
-            failed: ran.failed,
-            blocks: ran.blocks,
-            blocks_skipped: ran.skipped,
-            seconds,
-        }
-    }
+    pub(super) tasks: u64,
+    #[serde(flatten)]
+    pub(super) ran: Ran,
+    pub(super) seconds: f64,
 }
 
 impl fmt::Display for RunAnswer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
         rows.row("shard", &self.shard)
-            .row("designs", format!("{} of {}", self.done, self.tasks))
-            .row("without a gait", self.failed.to_string())
+            .row("designs", format!("{} of {}", self.ran.tasks, self.tasks))
+            .row("without a gait", self.ran.failed.to_string())
             .row(
                 "blocks",
-                format!("{}, {} finished before", self.blocks, self.blocks_skipped),
+                format!("{}, {} finished before", self.ran.blocks, self.ran.skipped),
             )
             .row("took", format!("{:.1} s", self.seconds));
         write!(f, "{rows}")
@@ -97,9 +79,8 @@ impl fmt::Display for StatusAnswer {
 pub(super) struct MergeAnswer {
     plan: String,
     tasks: u64,
-    done: u64,
-    failed: u64,
-    certified: u64,
+    #[serde(flatten)]
+    merged: Merged,
     table: PathBuf,
     bytes: u64,
     sha256: Option<String>,
@@ -121,9 +102,7 @@ impl MergeAnswer {
         Ok(Self {
             plan: plan.hash(),
             tasks: plan.tasks(),
-            done: merged.tasks,
-            failed: merged.failed,
-            certified: merged.certified,
+            merged,
             table,
             bytes,
             sha256,
@@ -136,9 +115,9 @@ const MOST_HASHED: u64 = 1 << 28;
 impl fmt::Display for MergeAnswer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
-        rows.row("designs", self.done.to_string())
-            .row("certified", self.certified.to_string())
-            .row("without a gait", self.failed.to_string())
+        rows.row("designs", self.merged.tasks.to_string())
+            .row("certified", self.merged.certified.to_string())
+            .row("without a gait", self.merged.failed.to_string())
             .row(
                 "table",
                 format!("{}, {} bytes", shown(&self.table), self.bytes),
