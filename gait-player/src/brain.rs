@@ -45,7 +45,7 @@ mod battery;
 mod bench;
 mod config;
 #[cfg(test)]
-mod enumeration;
+mod model_check;
 mod motion;
 mod outbox;
 mod persist;

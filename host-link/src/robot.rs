@@ -1,11 +1,11 @@
 //! A robot as a program uses it: blocking calls over any port. Everything is decided in the [`Session`]; this moves its
 //! bytes and waits.
 
-pub mod finish;
+pub mod await_play;
 mod requests;
 pub mod sequence;
 
-pub use finish::time_left;
+pub use await_play::time_left;
 pub use sequence::{Leg, Sequence, SequenceProgress};
 
 use std::ops::ControlFlow;

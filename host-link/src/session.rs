@@ -25,9 +25,9 @@ mod drive;
 mod error;
 mod event;
 mod greeting;
+mod in_flight;
 mod receive;
 mod round_trip;
-mod under_way;
 mod upload;
 mod upload_time;
 
@@ -50,8 +50,8 @@ pub(crate) use greeting::firmware_name;
 pub use upload::{UploadPhase, UploadProgress};
 
 use beats::Beats;
+use in_flight::{Greeting, Link, Owner, Pending, Upload, describe};
 use round_trip::RoundTrip;
-use under_way::{Greeting, Link, Owner, Pending, Upload, describe};
 use upload::Window;
 
 /// Tries before a request that an operator waits for is given up.

@@ -472,7 +472,7 @@ pub mod robot {
     }
     pub use crate::StoppedBy;
     pub fn time_left(status: &Status) -> Option<Duration> {}
-    pub mod finish {
+    pub mod await_play {
         pub fn at_rest(state: StateName, cause: StopCause) -> bool {}
         pub fn finished(status: Status) -> Result<Status, LinkError> {}
         pub use crate::robot::time_left;

@@ -9,7 +9,7 @@ use swimmer_model::Model;
 
 use super::Subject;
 use super::limits::Limits;
-use super::neighbours::{Ascents, Gain, Neighbours};
+use super::second_variation::{Ascents, Gain, Neighbours};
 use crate::OptimalGait;
 use crate::certificate::{Check, turning_number};
 

@@ -8,8 +8,8 @@
 use nalgebra::Vector2;
 
 use super::grid::Along;
-use super::neighbours::Gain;
 use super::path::Path;
+use super::second_variation::Gain;
 use super::{Degree, Openness, Subject, lesser, worse};
 use crate::certificate::Check;
 use crate::momentum::Momentum;

@@ -8,8 +8,8 @@ use nalgebra::{DVector, Matrix3x2, Vector2, Vector3};
 use swimmer_model::SecondDerivatives;
 
 use super::grid::{Degree, Grid};
-use super::neighbours::Gain;
 use super::path::{Path, Place};
+use super::second_variation::Gain;
 use crate::momentum::Momentum;
 
 /// A push at every node \[rad\], and its slope there.

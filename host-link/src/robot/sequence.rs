@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use link_protocol::{Flags, Refusal, Status, Telemetry, crc32c};
 
-use super::finish::{at_rest, finished};
+use super::await_play::{at_rest, finished};
 use super::{BEAT, Robot};
 use crate::port::Port;
 use crate::session::{Event, LinkError};

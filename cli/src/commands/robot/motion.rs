@@ -5,7 +5,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use host_link::robot::finish::{at_rest, finished};
+use host_link::robot::await_play::{at_rest, finished};
 use host_link::{LinkError, Robot};
 use link_protocol::{StateName, Status};
 use serde::Serialize;

@@ -7,7 +7,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use host_link::robot::finish::at_rest;
+use host_link::robot::await_play::at_rest;
 use host_link::session::cause_in_words;
 
 use super::super::access::{BEAT, Line};
