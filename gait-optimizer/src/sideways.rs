@@ -19,7 +19,7 @@ mod square;
 
 use nalgebra::Vector2;
 use swimmer_files::{Bounds, Objective};
-use swimmer_model::{Model, Swimmer, Tolerance, trajectory};
+use swimmer_model::{Model, Stroke, Swimmer, Tolerance, trajectory};
 
 pub use error::SidewaysError;
 
@@ -99,7 +99,7 @@ const LOOKS: usize = 2048;
 /// use gait_optimizer::{Bounds, SidewaysProblem, sideways};
 /// use swimmer_model::Swimmer;
 ///
-/// let bounds = Bounds { max_angle: Some(1.2), ..Bounds::default() };
+/// let bounds = Bounds::within(1.2);
 /// let found = sideways(&SidewaysProblem { bounds, ..SidewaysProblem::new(Swimmer::purcell()) })?;
 /// assert!(found.lateral_over_length > 0.0 && found.gait.rotation.abs() < 1e-8);
 /// # Ok::<(), gait_optimizer::SidewaysError>(())
@@ -118,7 +118,7 @@ pub fn sideways(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
 /// use gait_optimizer::{Bounds, SidewaysProblem, sideways_watched};
 /// use swimmer_model::Swimmer;
 ///
-/// let bounds = Bounds { max_angle: Some(1.2), ..Bounds::default() };
+/// let bounds = Bounds::within(1.2);
 /// let shares = Mutex::new(Vec::new());
 /// let problem = SidewaysProblem { bounds, ..SidewaysProblem::new(Swimmer::purcell()) };
 /// sideways_watched(&problem, &|share| shares.lock().unwrap().push(share))?;
@@ -185,17 +185,30 @@ fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sid
         bridged_supremum_over_length: found.bridged_supremum_over_length,
         outdone_over_length: found.outdone_over_length,
         loops: found.loops,
-        gait: OptimalGait::new(Solution {
-            objective: Objective::Sideways,
-            swimmer: problem.swimmer,
-            bounds: problem.bounds,
-            symmetric: false,
-            links_cross: cycle.links_cross(&model),
-            arcs: arcs.collect(),
-            cycle,
-            stroke,
-            certificate: theirs.certificate.clone(),
-        }),
+        gait: gait(
+            (problem, &model),
+            (cycle, arcs.collect()),
+            (stroke, theirs.certificate.clone()),
+        ),
+    })
+}
+
+/// A cycle with what was found of it, as a gait.
+fn gait(
+    (problem, model): (&SidewaysProblem, &Model<f64>),
+    (cycle, arcs): (Cycle, Vec<Arc>),
+    (stroke, certificate): (Stroke<f64>, Certificate),
+) -> OptimalGait {
+    OptimalGait::new(Solution {
+        objective: Objective::Sideways,
+        swimmer: problem.swimmer,
+        bounds: problem.bounds,
+        symmetric: false,
+        links_cross: cycle.links_cross(model),
+        arcs,
+        cycle,
+        stroke,
+        certificate,
     })
 }
 
@@ -357,17 +370,7 @@ fn settled(
         bridged_supremum_over_length: Some(lateral),
         outdone_over_length: None,
         loops: 1,
-        gait: OptimalGait::new(Solution {
-            objective: Objective::Sideways,
-            swimmer: problem.swimmer,
-            bounds: problem.bounds,
-            symmetric: false,
-            links_cross: cycle.links_cross(model),
-            arcs,
-            cycle,
-            stroke,
-            certificate,
-        }),
+        gait: gait((problem, model), (cycle, arcs), (stroke, certificate)),
     })
 }
 

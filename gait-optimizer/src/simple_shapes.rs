@@ -78,7 +78,7 @@ pub fn best_amplitudes(
             _ => None,
         });
     tops.map(|i| {
-        let amplitude = top(&gain, place(i - 1), place(i + 1));
+        let amplitude = top(&gain, (place(i - 1), place(i + 1)), CLOSE);
         let stroke = shape.swum(model, amplitude);
         BestAmplitude {
             amplitude,
@@ -89,12 +89,12 @@ pub fn best_amplitudes(
     .collect()
 }
 
-/// The maximum between two places by golden sections.
-fn top(gain: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+/// The maximum between two places by golden sections, so close.
+pub(crate) fn top(gain: &impl Fn(f64) -> f64, (mut low, mut high): (f64, f64), close: f64) -> f64 {
     const SECTION: f64 = 0.618_033_988_749_894_9;
     let (mut a, mut b) = (high - SECTION * (high - low), low + SECTION * (high - low));
     let (mut at_a, mut at_b) = (gain(a), gain(b));
-    while high - low > CLOSE {
+    while high - low > close {
         if at_a > at_b {
             (high, b, at_b) = (b, a, at_a);
             a = high - SECTION * (high - low);

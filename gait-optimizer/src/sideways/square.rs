@@ -6,6 +6,7 @@ use swimmer_model::{Gait, Model, Tolerance, trajectory};
 use super::{Sideways, SidewaysProblem, settled};
 use crate::certificate::Check;
 use crate::cycle::Cycle;
+use crate::simple_shapes::top;
 use crate::{Arc, OptimalGait};
 
 /// Instants that headings are looked at.
@@ -34,9 +35,9 @@ pub(super) fn turned(
         let least = along
             .iter()
             .min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-        lowest(least.0, |u| {
-            along_at(model, &any, u.rem_euclid(1.0), d).abs()
-        })
+        let width = 1.0 / LOOKS as f64;
+        let less_along = |u: f64| -along_at(model, &any, u.rem_euclid(1.0), d).abs();
+        top(&less_along, (least.0 - width, least.0 + width), 1e-13)
     };
     let cycle = shifted(gait, &any, start.rem_euclid(1.0))?;
     let across = along_at(model, &any, start.rem_euclid(1.0), d);
@@ -65,22 +66,6 @@ fn crossed(low: (f64, f64), high: (f64, f64), value: impl Fn(f64) -> f64) -> f64
         }
     }
     0.5 * (low.0 + high.0)
-}
-
-/// Where a value is least, near a look at it: golden section.
-fn lowest(near: f64, value: impl Fn(f64) -> f64) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_895;
-    let width = 1.0 / LOOKS as f64;
-    let (mut low, mut high) = (near - width, near + width);
-    for _ in 0..60 {
-        let (left, right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-        if value(left) < value(right) {
-            high = right;
-        } else {
-            low = left;
-        }
-    }
-    0.5 * (low + high)
 }
 
 /// d · heading at one instant.

@@ -1,16 +1,12 @@
 use swimmer_files::{Bounds, Objective};
 use swimmer_model::{Model, Swimmer, Tolerance, swim};
 
-use super::{Sideways, SidewaysError, SidewaysProblem, sideways};
-use crate::optimal_gait::Solution;
-use crate::{InvalidProblem, OptimalGait};
+use super::{SidewaysError, SidewaysProblem, sideways};
+use crate::InvalidProblem;
 
 fn problem(swimmer: Swimmer<f64>) -> SidewaysProblem {
     SidewaysProblem {
-        bounds: Bounds {
-            max_angle: Some(2.8),
-            ..Bounds::default()
-        },
+        bounds: Bounds::within(2.8),
         starts: 24,
         ..SidewaysProblem::new(swimmer)
     }
@@ -35,23 +31,14 @@ fn the_robot_moves_sideways_without_turning() {
     // Told against the mean heading, the first sample does not matter.
     let heading = found.gait.heading().unwrap();
     let cycle = super::square::shifted(&found.gait, &found.gait.gait().unwrap(), 0.3).unwrap();
-    let later = Sideways {
-        gait: OptimalGait::new(Solution {
-            objective: Objective::Sideways,
-            swimmer: found.gait.swimmer,
-            bounds: found.gait.bounds,
-            symmetric: false,
-            links_cross: 0.0,
-            arcs: Vec::new(),
-            stroke: cycle
-                .swum(&Model::new(&found.gait.swimmer.of_unit_length()).unwrap())
-                .unwrap(),
-            cycle,
-            certificate: found.gait.certificate.clone(),
-        }),
-        ..found
-    };
-    let off = later.gait.heading().unwrap() - heading;
+    let unit = Model::new(&found.gait.swimmer.of_unit_length()).unwrap();
+    let swum = (cycle.swum(&unit).unwrap(), found.gait.certificate.clone());
+    let later = super::gait(
+        (&problem(Swimmer::robot()), &unit),
+        (cycle, Vec::new()),
+        swum,
+    );
+    let off = later.heading().unwrap() - heading;
     assert!(off.abs() < 1e-6, "{heading} and {off:.1e}");
 }
 
@@ -60,10 +47,7 @@ fn the_robot_moves_sideways_without_turning() {
 fn a_wider_bound_leaves_purcells_swimmer_no_less() {
     let within = |max_angle: f64| {
         let found = sideways(&SidewaysProblem {
-            bounds: Bounds {
-                max_angle: Some(max_angle),
-                ..Bounds::default()
-            },
+            bounds: Bounds::within(max_angle),
             starts: 4,
             ..SidewaysProblem::new(Swimmer::purcell())
         });
