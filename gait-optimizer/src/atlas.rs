@@ -114,7 +114,7 @@ pub struct Optimum {
 }
 
 /// All that was found, and what became of the rest.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Atlas {
     /// Certified optima, best first.
     pub optima: Vec<Optimum>,
@@ -171,7 +171,7 @@ pub type Watch<'a> = &'a (dyn Fn(f64) + Sync);
 /// use swimmer_model::Swimmer;
 ///
 /// let problem = AtlasProblem {
-///     bounds: Bounds { max_angle: Some(1.2), ..Bounds::default() },
+///     bounds: Bounds::within(1.2),
 ///     starts: 1,
 ///     ..AtlasProblem::new(Swimmer::purcell(), Objective::Displacement)
 /// };
@@ -193,7 +193,7 @@ pub fn atlas(problem: &AtlasProblem) -> Result<Atlas, AtlasError> {
 /// use gait_optimizer::{AtlasProblem, Bounds, Objective, atlas_watched};
 /// use swimmer_model::Swimmer;
 ///
-/// let bounds = Bounds { max_angle: Some(1.2), ..Bounds::default() };
+/// let bounds = Bounds::within(1.2);
 /// let problem = AtlasProblem { bounds, starts: 1, ..AtlasProblem::new(Swimmer::purcell(), Objective::Displacement) };
 /// let finished = AtomicBool::new(false);
 /// atlas_watched(&problem, &|share| finished.store(share >= 1.0, Ordering::Relaxed))?;

@@ -18,7 +18,7 @@ pub struct AreaRule {
 impl AreaRule {
     pub fn deviation(&self) -> Vector3<f64> {}
 }
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Atlas {
     pub optima: Vec<Optimum>,
     pub starts: usize,

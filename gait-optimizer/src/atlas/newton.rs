@@ -247,7 +247,7 @@ impl<'a> Newton<'a> {
     fn scale(&self) -> f64 {
         let length = self.work.slope.norm_squared() / self.functional.basis.nodes() as f64;
         let panels = self.functional.basis.panels() as f64;
-        2.0 * self.aim.energy_weight().max(0.1) / (length * panels * panels).max(1e-12)
+        2.0 * self.aim.energy_weight.max(0.1) / (length * panels * panels).max(1e-12)
     }
 
     /// The damped Newton step; none where the matrix is not positive definite.

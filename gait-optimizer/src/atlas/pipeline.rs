@@ -96,7 +96,7 @@ pub(super) fn run<S: MultiStart>(
         count,
         problem.threads,
         &|share| watch(STARTS * share),
-        || Newton::new(functional, Aim::Far { energy_weight: 1.0 }, barrier),
+        || Newton::new(functional, Aim { energy_weight: 1.0 }, barrier),
         |newton, index| {
             let curve = match known.get(index.wrapping_sub(problem.starts)) {
                 Some(known) => fitted(known, &basis, &barrier),
@@ -108,14 +108,7 @@ pub(super) fn run<S: MultiStart>(
             coarse::<S>(newton, &basis, curve, symmetries.turns)
         },
     );
-    let mut atlas = Atlas {
-        optima: Vec::new(),
-        starts: 0,
-        unsettled: 0,
-        left: 0,
-        uncertified: 0,
-        best_uncertified: None,
-    };
+    let mut atlas = Atlas::default();
     let mut settled = Vec::new();
     for (index, one) in ended.into_iter().enumerate() {
         let counts = usize::from(!is_kept(index));
@@ -218,7 +211,7 @@ fn coarse<S: MultiStart>(
     let mut curve = start;
     let mut last = None;
     for &energy_weight in S::ENERGY_WEIGHTS {
-        newton.set_aim(Aim::Far { energy_weight });
+        newton.set_aim(Aim { energy_weight });
         let Some(stationary) = newton.solve(&curve, &S::SETTINGS) else {
             break;
         };
