@@ -70,6 +70,44 @@ mod tests {
     use crate::Swimmer;
     use core::f64::consts::PI;
 
+    /// The moment of a link's force about a point, counter-clockwise.
+    fn moment(link: &LinkForce<f64>, about: &Vector2<f64>) -> f64 {
+        let [a, b] = link.ends.map(|end| end - about);
+        let [f, g] = link.density;
+        // Simpson's rule is exact for the product of two straight lines.
+        let middle = (a + b).perp(&(f + g)) * 0.25;
+        (a.perp(&f) + 4.0 * middle + b.perp(&g)) * (b - a).norm() / 6.0
+    }
+
+    /// What each servo must give to turn its side link against the fluid, from the balance of that link about its joint, is W Φ̇:
+    /// nothing of W is asked for it.
+    #[test]
+    fn the_torques_of_the_joints_are_w_times_their_rates() {
+        let mut uneven = Swimmer::<f64>::robot();
+        uneven.links.front = 0.09;
+        for swimmer in [Swimmer::purcell(), Swimmer::robot(), uneven] {
+            let model = Model::new(&swimmer).unwrap();
+            for (phi, rate) in [
+                (Vector2::new(0.9, -1.4), Vector2::new(0.7, 1.3)),
+                (Vector2::new(-2.1, -0.3), Vector2::new(-0.2, 0.9)),
+                (Vector2::new(0.0, 2.6), Vector2::new(1.1, 0.0)),
+            ] {
+                let [back, _, front] = model.link_forces(&phi, &rate);
+                // φ₁ turns the front link counter-clockwise, φ₂ the back link clockwise.
+                let torques = Vector2::new(
+                    -moment(&front, &front.ends[0]),
+                    moment(&back, &back.ends[1]),
+                );
+                let by_power = model.power_matrix(&phi) * rate;
+                let off = (torques - by_power).norm();
+                assert!(
+                    off < 1e-13 * torques.norm().max(1e-3),
+                    "{torques} {by_power}"
+                );
+            }
+        }
+    }
+
     /// With those of the sphere, the forces and the torques of the links balance.
     #[test]
     fn forces_and_torques_balance() {
@@ -83,11 +121,8 @@ mod tests {
             for link in model.link_forces(&phi, &rate) {
                 let [a, b] = link.ends;
                 let [f, g] = link.density;
-                let length = (b - a).norm();
-                force += (f + g) * (0.5 * length);
-                // Simpson's rule is exact for the product of two straight lines.
-                let middle = (a + b).perp(&(f + g)) * 0.25;
-                torque += (a.perp(&f) + 4.0 * middle + b.perp(&g)) * length / 6.0;
+                force += (f + g) * (0.5 * (b - a).norm());
+                torque += moment(&link, &Vector2::zeros());
             }
             assert!(force.norm() < 1e-13 * drag.max(1.0), "{force}");
             assert!(torque.abs() < 1e-13, "{torque}");
