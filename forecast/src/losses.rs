@@ -316,6 +316,7 @@ impl Played {
             slope_rad_per_us,
             centre_us,
             torque: _,
+            no_load_rate: _,
         } = self.servos.file;
         let positive = [
             ("largest angle [rad]", max_angle),

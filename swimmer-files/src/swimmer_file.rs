@@ -54,6 +54,8 @@ pub struct ServoFile {
     pub centre_us: f64,
     /// Largest torque at the joint \[N m\], where it is known.
     pub torque: Option<f64>,
+    /// How fast it turns without a load \[rad/s\], where it is known; the torque falls to 0 on the way there.
+    pub no_load_rate: Option<f64>,
 }
 
 impl Default for ServoFile {
@@ -67,6 +69,7 @@ impl Default for ServoFile {
             slope_rad_per_us: 0.0274,
             centre_us: 1500.0,
             torque: None,
+            no_load_rate: None,
         }
     }
 }

@@ -168,6 +168,7 @@ prop_compose! {
             servo: servo.map(|(max_angle, max_rate, dead_band, slope_rad_per_us, centre_us)| ServoFile {
                 max_angle, max_rate, dead_band, slope_rad_per_us, centre_us,
                 torque: (dead_band > 0.01).then_some(0.6),
+                no_load_rate: (dead_band > 0.02).then_some(5.2),
             }),
         }
     }

@@ -326,6 +326,7 @@ pub struct ServoFile {
     pub slope_rad_per_us: f64,
     pub centre_us: f64,
     pub torque: Option<f64>,
+    pub no_load_rate: Option<f64>,
 }
 impl Default for ServoFile {}
 #[derive(Debug, Clone, PartialEq)]

@@ -34,7 +34,8 @@ const OPTIONAL: &str = "
 #dead_band = 0.017            # rad, half its width
 #slope_rad_per_us = 0.0274    # joint angle for a microsecond of pulse
 #centre_us = 1500.0           # pulse of the straight joint
-#torque_n_m = 0.6             # what the servo has at the joint
+#torque_n_m = 0.6             # what the servo has at the joint, standing still
+#no_load_rate = 5.2           # rad/s, where that torque has fallen to 0
 ";
 
 impl Swimmers {

@@ -72,6 +72,7 @@ struct RawServo {
     slope_rad_per_us: Option<Number>,
     centre_us: Option<Number>,
     torque_n_m: Option<Number>,
+    no_load_rate: Option<Number>,
 }
 
 /// A TOML text being read: makes errors with places out of byte ranges.
@@ -218,6 +219,7 @@ fn servo(source: &Source<'_>, raw: &RawServo) -> Result<ServoFile, FileError> {
         slope_rad_per_us,
         centre_us,
         torque: _,
+        no_load_rate: _,
     } = ServoFile::default();
     let positive = |key: &str, number: &Option<Number>, standard: f64| {
         number
@@ -231,6 +233,12 @@ fn servo(source: &Source<'_>, raw: &RawServo) -> Result<ServoFile, FileError> {
     ] {
         source.radians(key, number.as_ref(), limit)?;
     }
+    let known = |key: &str, number: &Option<Number>| {
+        let number = number.as_ref();
+        number
+            .map(|number| source.positive(key, number))
+            .transpose()
+    };
     Ok(ServoFile {
         max_angle: positive("max_angle", &raw.max_angle, max_angle)?,
         max_rate: positive("max_rate", &raw.max_rate, max_rate)?,
@@ -240,11 +248,8 @@ fn servo(source: &Source<'_>, raw: &RawServo) -> Result<ServoFile, FileError> {
         },
         slope_rad_per_us: positive("slope_rad_per_us", &raw.slope_rad_per_us, slope_rad_per_us)?,
         centre_us: positive("centre_us", &raw.centre_us, centre_us)?,
-        torque: raw
-            .torque_n_m
-            .as_ref()
-            .map(|torque| source.positive("torque_n_m", torque))
-            .transpose()?,
+        torque: known("torque_n_m", &raw.torque_n_m)?,
+        no_load_rate: known("no_load_rate", &raw.no_load_rate)?,
     })
 }
 

@@ -74,6 +74,9 @@ fn write_tables(text: &mut String, file: &SwimmerFile) -> std::fmt::Result {
         if let Some(torque) = servo.torque {
             writeln!(text, "torque_n_m = {torque:?}")?;
         }
+        if let Some(rate) = servo.no_load_rate {
+            writeln!(text, "no_load_rate = {rate:?}      # rad/s")?;
+        }
     }
     Ok(())
 }
