@@ -5,6 +5,7 @@
 //! strands are held a gap apart ([`curve`]); as the gap is halved they give a growing sequence of gaits and its limit.
 
 mod curve;
+mod excursion;
 
 use nalgebra::Vector2;
 use swimmer_files::{Bounds, GaitFile, Objective, SwimmerHash};

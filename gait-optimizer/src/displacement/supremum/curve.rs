@@ -4,8 +4,6 @@
 //! is in its way or where it would meet itself: strands that press against each other are held a gap apart, and move as their
 //! heights pull them together. Polygons that come to rest at a smaller gap carry farther.
 
-use std::collections::BTreeMap;
-
 use nalgebra::Vector2;
 use swimmer_model::{Model, Pose};
 
@@ -13,7 +11,7 @@ use crate::certificate::crossings;
 use crate::momentum::{Height, Momentum};
 use crate::region::{Bound, Region};
 
-type Shape = Vector2<f64>;
+pub(super) type Shape = Vector2<f64>;
 
 /// What a polygon climbs on.
 #[derive(Debug, Clone, Copy)]
@@ -52,7 +50,7 @@ const WATCH: usize = 7;
 const GROWTH: f64 = 1e-7;
 
 /// The pose that a straight side brings: one Magnus step of order four.
-fn along(model: &Model<f64>, from: &Shape, to: &Shape) -> Pose<f64> {
+pub(super) fn along(model: &Model<f64>, from: &Shape, to: &Shape) -> Pose<f64> {
     let (way, half_gap) = (to - from, 3.0_f64.sqrt() / 6.0);
     let velocity = |s: f64| model.local_connection(&(from + way * s)) * way;
     let (a, b) = (velocity(0.5 - half_gap), velocity(0.5 + half_gap));
@@ -61,7 +59,7 @@ fn along(model: &Model<f64>, from: &Shape, to: &Shape) -> Pose<f64> {
 }
 
 /// To the right of a direction.
-fn right(way: &Shape) -> Shape {
+pub(super) fn right(way: &Shape) -> Shape {
     Shape::new(way.y, -way.x)
 }
 
@@ -86,14 +84,14 @@ impl Ground<'_> {
     }
 
     /// The multipliers that belong to a polygon which ends in a pose.
-    fn momentum(&self, end: &Pose<f64>) -> Momentum {
+    pub(super) fn momentum(&self, end: &Pose<f64>) -> Momentum {
         Momentum {
             p: Vector2::new(self.sign, 0.0),
             c: -self.sign * end.y,
         }
     }
 
-    fn height(&self, momentum: &Momentum, phi: &Shape, pose: &Pose<f64>) -> Height {
+    pub(super) fn height(&self, momentum: &Momentum, phi: &Shape, pose: &Pose<f64>) -> Height {
         momentum
             .evaluate(self.model, phi, &[pose.x, pose.y, pose.theta])
             .0
@@ -238,125 +236,19 @@ impl Ground<'_> {
             .chain(middles)
             .all(|phi| self.region.overstepped(&phi) < SLACK)
     }
-
-    /// Places off the polygon which it would gain by going round, or by leaving out, seen from the nearest corner: best first.
-    pub(super) fn excursions(&self, corners: &[Shape], mesh: Mesh) -> Vec<Excursion> {
-        let poses = self.poses(corners);
-        let Some(end) = poses.last() else {
-            return Vec::new();
-        };
-        let momentum = self.momentum(end);
-        let edges = self.region.edges().iter();
-        let reach = edges.map(|edge| edge.offset.abs()).fold(0.0, f64::max);
-        let mut seen = BTreeMap::new();
-        for j in 0..whole(reach / GRID) {
-            for i in -whole(reach / GRID)..whole(reach / GRID) {
-                let phi = Shape::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * GRID;
-                if self.region.overstepped(&phi) <= -2.0 * mesh.gap
-                    && let Some(found) = self.excursion((corners, &poses), &momentum, phi, mesh)
-                {
-                    seen.insert((i, j), found);
-                }
-            }
-        }
-        let around = (-1..=1).flat_map(|a| (-1..=1).map(move |b| (a, b)));
-        let mut best: Vec<Excursion> = seen
-            .iter()
-            .filter(|((i, j), here)| {
-                let mut near = around
-                    .clone()
-                    .filter_map(|(a, b)| seen.get(&(i + a, j + b)));
-                here.gain > 0.0 && near.all(|there| there.gain <= here.gain)
-            })
-            .map(|(_, here)| *here)
-            .collect();
-        best.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        best
-    }
-
-    /// The way to a shape from the nearest corner; none where it is too short for a slit.
-    fn excursion(
-        &self,
-        (corners, poses): (&[Shape], &[Pose<f64>]),
-        momentum: &Momentum,
-        to: Shape,
-        mesh: Mesh,
-    ) -> Option<Excursion> {
-        let from = (1..corners.len() - 1).min_by(|&a, &b| {
-            let [a, b] = [a, b].map(|k| (corners[k] - to).norm_squared());
-            a.total_cmp(&b)
-        })?;
-        let way = to - corners[from];
-        if way.norm() < 2.0 * mesh.side + 4.0 * mesh.gap {
-            return None;
-        }
-        let [before, _, after] = neighbours(corners, from);
-        let is_left = (after - before).perp(&way) > 0.0;
-        let steps = whole(way.norm() / 0.2).max(1);
-        let place = |k: i32| corners[from] + way * (f64::from(k) / f64::from(steps));
-        let pose = (0..steps).fold(poses[from], |pose, k| {
-            pose * along(self.model, &place(k), &place(k + 1))
-        });
-        let height = self.height(momentum, &to, &pose).value;
-        let gain = if is_left { -height } else { height };
-        Some(Excursion { from, to, gain })
-    }
 }
-
-/// Shapes looked at lie this far apart \[rad\].
-const GRID: f64 = 0.1;
 
 /// Rounded up.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "a few hundred sides or shapes at most"
 )]
-fn whole(count: f64) -> i32 {
+pub(super) fn whole(count: f64) -> i32 {
     count.ceil() as i32
 }
 
-/// A way off the polygon, from one of its corners.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Excursion {
-    from: usize,
-    to: Shape,
-    /// For each unit of area.
-    gain: f64,
-}
-
-impl Excursion {
-    /// The polygon with a slit to this place, and once round it.
-    pub(super) fn taken(&self, corners: &[Shape], mesh: Mesh) -> Vec<Shape> {
-        const ROUND: usize = 10;
-        let Some(&base) = corners.get(self.from) else {
-            return corners.to_vec();
-        };
-        let [before, _, after] = neighbours(corners, self.from);
-        let way = self.to - base;
-        let out = way.normalize();
-        let mut aside = right(&out);
-        if aside.dot(&(after - before)) < 0.0 {
-            aside = -aside;
-        }
-        let half = aside * (0.6 * mesh.gap);
-        let radius = (2.0 * mesh.gap).max(1.2 * mesh.side);
-        let straight = way.norm() - radius;
-        let steps = whole(straight / mesh.side).max(1);
-        let place = |k: i32| base + out * (straight * f64::from(k) / f64::from(steps));
-        let mut path: Vec<Shape> = corners[..self.from].to_vec();
-        path.extend((0..=steps).map(|k| place(k) - half));
-        for k in 1..ROUND {
-            let turn = std::f64::consts::TAU * k as f64 / ROUND as f64;
-            path.push(self.to - out * (radius * turn.cos()) - aside * (radius * turn.sin()));
-        }
-        path.extend((0..=steps).rev().map(|k| place(k) + half));
-        path.extend_from_slice(&corners[self.from + 1..]);
-        path
-    }
-}
-
 /// A corner between its neighbours; at the ends one of them is an image.
-fn neighbours(corners: &[Shape], at: usize) -> [Shape; 3] {
+pub(super) fn neighbours(corners: &[Shape], at: usize) -> [Shape; 3] {
     let here = corners[at];
     let before = if at > 0 {
         corners[at - 1]
