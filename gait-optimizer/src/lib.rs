@@ -121,8 +121,9 @@ pub use robust::{
 pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways, sideways_watched};
 pub use simple_shapes::{BestAmplitude, SimpleShape, best_amplitudes};
 pub use speed::{
-    Fastest, Front, HeadingRule, Joined, Limit, Limited, PowerError, PowerProblem, SpeedAtlas,
-    SpeedError, SpeedProblem, SteerProblem, Steering, fastest, fastest_on_power, front, steer,
+    Fastest, Front, HeadingRule, Joined, Limit, Limited, LimitedError, LimitedProblem, SpeedAtlas,
+    SpeedError, SpeedProblem, SteerProblem, Steering, Torque, fastest, fastest_within, front,
+    steer,
 };
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};
 pub use turning::{Turning, TurningError, TurningProblem, turning};

@@ -14,9 +14,11 @@ mod chain;
 mod ensemble;
 mod error;
 mod front;
+mod gauge;
 mod interior;
+mod limited;
+mod phases;
 mod polish;
-mod power;
 mod problem;
 mod quadrature;
 mod samples;
@@ -42,8 +44,8 @@ pub(crate) use candidate::mended;
 pub(crate) use ensemble::speed_of;
 pub use error::SpeedError;
 pub use front::{Front, front};
+pub use limited::{Limit, Limited, LimitedError, LimitedProblem, Torque, fastest_within};
 pub(crate) use polish::Polished;
-pub use power::{Limit, Limited, PowerError, PowerProblem, fastest_on_power};
 use problem::Goal;
 pub use problem::HeadingRule;
 pub(crate) use problem::Setting;
@@ -135,6 +137,7 @@ impl SpeedProblem {
             model,
             region,
             rates: self.rates.map(|rate| rate / fast),
+            beyond: Vec::new(),
             heading: self.heading,
             period: self.period.map(|period| period * fast),
             goal: Goal::Distance,

@@ -391,19 +391,42 @@ pub struct LevelCurve {
 pub enum Limit {
     Power,
     Rate,
+    Torque,
 }
 impl Limit {
     pub fn word(self) -> &'static str {}
 }
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limited {
-    pub limit: Limit,
+    pub limits: Vec<(Limit, f64)>,
     pub speed_over_length: f64,
     pub distance_over_length: f64,
     pub period: f64,
     pub peak_power_over_viscosity: f64,
     pub peak_rates: [f64; 2],
+    pub peak_torques_over_viscosity: [f64; 2],
+    pub refinement: Option<f64>,
+    pub uncertified: Option<f64>,
     pub gait: OptimalGait,
+}
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LimitedError {
+    Power { power: f64 },
+    Torque { torque: Torque },
+    Unlimited,
+    Problem(InvalidProblem),
+    Atlas(AtlasError),
+    Speed(SpeedError),
+    NoGait { bounds: Bounds, between: Option<[f64; 2]>, uncertified: Option<f64> },
+}
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LimitedProblem {
+    pub swimmer: Swimmer<f64>,
+    pub bounds: Bounds,
+    pub power_over_viscosity: Option<f64>,
+    pub rates: Option<[f64; 2]>,
+    pub torque: Option<Torque>,
+    pub threads: usize,
 }
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ManyFirstDerivatives {
@@ -509,22 +532,6 @@ pub struct Polish {
 }
 impl Polish {
     pub fn new(swimmer: Swimmer<f64>) -> Self {}
-}
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PowerError {
-    Power { power: f64 },
-    Atlas(AtlasError),
-    Speed(SpeedError),
-    NoGait { bounds: Bounds },
-    BothBind { least: f64, most: f64 },
-}
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PowerProblem {
-    pub swimmer: Swimmer<f64>,
-    pub bounds: Bounds,
-    pub power_over_viscosity: f64,
-    pub rates: Option<[f64; 2]>,
-    pub threads: usize,
 }
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reached {
@@ -682,6 +689,11 @@ pub struct Supremum {
     pub uncertainty: f64,
     pub members: Vec<Member>,
 }
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Torque {
+    pub stall_over_viscosity: f64,
+    pub no_load_rate: f64,
+}
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turning {
     pub gait: OptimalGait,
@@ -788,10 +800,10 @@ pub fn efficiency_from(
     direct: &Direct<'_>,
 ) -> Result<OptimalGait, EfficiencyError> {}
 pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {}
-pub fn fastest_on_power(
-    problem: &PowerProblem,
+pub fn fastest_within(
+    problem: &LimitedProblem,
     watch: Watch<'_>,
-) -> Result<Limited, PowerError> {}
+) -> Result<Limited, LimitedError> {}
 pub fn polish_efficiency<G: Gait<f64> + ?Sized>(
     polish_for: &Polish,
     gait: &G,

@@ -39,7 +39,7 @@ impl Design for Chains<'_> {
     fn solve(&self, start: &Polished, members: &[(Member, f64)]) -> Result<Polished, RobustError> {
         let setting = Setting {
             members,
-            ..*self.setting
+            ..self.setting.clone()
         };
         let chain = mended(&setting, start.links.clone());
         chain.ok_or(RobustError::NotConverged {
@@ -115,7 +115,7 @@ pub fn robust_speed(
     let nominal = ensemble.values(&design, &design.start, fast);
     let weighed = Setting {
         members: &found.weighted,
-        ..setting
+        ..setting.clone()
     };
     let mut fastest = told(problem, &weighed, &found.point, fast).ok_or_else(lost)?;
     fastest.found = optimum.found;

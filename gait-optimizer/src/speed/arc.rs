@@ -22,6 +22,8 @@ pub(crate) enum Shape {
     Straight,
     /// A straight line, with `s(1 − s) Σ_k b_k P_k(2s − 1)` added to this joint's angle.
     Bent { joint: usize, bends: usize },
+    /// The same with `bends` coefficients of each joint's angle, those of the first joint first.
+    Free { bends: usize },
     /// The curve on which a piece of the clearance vanishes, as a graph over joint `pace`.
     Along {
         clearance: Clearance,
@@ -39,17 +41,18 @@ pub(crate) struct Jet {
 }
 
 /// A place on an arc: shape, its rate over s, and how both change with each parameter.
-struct Place<const P: usize> {
-    phi: Vector2<f64>,
-    rate: Vector2<f64>,
-    d_phi: [Vector2<f64>; P],
-    d_rate: [Vector2<f64>; P],
+pub(crate) struct Place<const P: usize> {
+    pub(crate) phi: Vector2<f64>,
+    pub(crate) rate: Vector2<f64>,
+    pub(crate) d_phi: [Vector2<f64>; P],
+    pub(crate) d_rate: [Vector2<f64>; P],
 }
 
 impl Shape {
     pub(crate) fn bends(&self) -> usize {
         match self {
             Self::Bent { bends, .. } => *bends,
+            Self::Free { bends } => 2 * bends,
             _ => 0,
         }
     }
@@ -60,7 +63,7 @@ impl Shape {
     }
 
     /// With slopes along P parameters: all four coordinates of the ends at least.
-    fn place<const P: usize>(
+    pub(crate) fn place<const P: usize>(
         &self,
         [from, to]: &[Vector2<f64>; 2],
         bends: &[f64],
@@ -84,26 +87,10 @@ impl Shape {
             Self::Bent {
                 joint,
                 bends: count,
-            } => {
-                let x = 2.0 * s - 1.0;
-                let p = legendre(count, x);
-                let hump = s * (1.0 - s);
-                let mut slope_before = 0.0;
-                for (k, value) in p.iter().enumerate().take(count) {
-                    // P′_k = x P′_{k−1} + k P_{k−1}.
-                    let slope = if k == 0 {
-                        0.0
-                    } else {
-                        x * slope_before + k as f64 * p[k - 1]
-                    };
-                    slope_before = slope;
-                    let bend = bends.get(k).copied().unwrap_or(0.0);
-                    let (up, along) = (hump * value, -x * value + 2.0 * hump * slope);
-                    place.phi[joint] += bend * up;
-                    place.rate[joint] += bend * along;
-                    place.d_phi[4 + k][joint] = up;
-                    place.d_rate[4 + k][joint] = along;
-                }
+            } => bend(&mut place, joint, 0, (count, bends), s),
+            Self::Free { bends: count } => {
+                bend(&mut place, 0, 0, (count, bends), s);
+                bend(&mut place, 1, count, (count, bends), s);
             }
             Self::Along {
                 clearance,
@@ -124,7 +111,9 @@ impl Shape {
     ) -> Jet {
         // Most arcs have no bends, and most of the time is spent here.
         match self {
-            Self::Bent { .. } => self.sized::<MOST_PARAMETERS>(model, rule, ends, bends),
+            Self::Bent { .. } | Self::Free { .. } => {
+                self.sized::<MOST_PARAMETERS>(model, rule, ends, bends)
+            }
             _ => self.sized::<4>(model, rule, ends, bends),
         }
     }
@@ -219,6 +208,35 @@ impl Shape {
     }
 }
 
+/// Adds to one joint's angle the bends of it, `count` of all from number `first` on.
+fn bend<const P: usize>(
+    place: &mut Place<P>,
+    joint: usize,
+    first: usize,
+    (count, bends): (usize, &[f64]),
+    s: f64,
+) {
+    let x = 2.0 * s - 1.0;
+    let p = legendre(count, x);
+    let hump = s * (1.0 - s);
+    let mut slope_before = 0.0;
+    for (k, value) in p.iter().enumerate().take(count) {
+        // P′_k = x P′_{k−1} + k P_{k−1}.
+        let slope = if k == 0 {
+            0.0
+        } else {
+            x * slope_before + k as f64 * p[k - 1]
+        };
+        slope_before = slope;
+        let bend = bends.get(first + k).copied().unwrap_or(0.0);
+        let (up, along) = (hump * value, -x * value + 2.0 * hump * slope);
+        place.phi[joint] += bend * up;
+        place.rate[joint] += bend * along;
+        place.d_phi[4 + first + k][joint] = up;
+        place.d_rate[4 + first + k][joint] = along;
+    }
+}
+
 fn add(sum: &mut [f64; 4], weight: f64, terms: [f64; 4]) {
     for (sum, term) in sum.iter_mut().zip(terms) {
         *sum += weight * term;
@@ -273,12 +291,13 @@ mod tests {
         let model = Model::new(&Swimmer::<f64>::robot().of_unit_length()).unwrap();
         let rule = Rule::new(24);
         let bent = Shape::Bent { joint: 1, bends: 3 };
-        for shape in [Shape::Straight, bent, clearance()] {
-            let value = |z: &[f64; 7]| {
+        let free = Shape::Free { bends: 2 };
+        for shape in [Shape::Straight, bent, free, clearance()] {
+            let value = |z: &[f64; 8]| {
                 let ends = [Vector2::new(z[0], z[1]), Vector2::new(z[2], z[3])];
                 shape.jet(&model, &rule, &ends, &z[4..])
             };
-            let z = [0.9, 2.3, 1.4, 1.9, 0.1, -0.05, 0.02];
+            let z = [0.9, 2.3, 1.4, 1.9, 0.1, -0.05, 0.02, 0.07];
             let jet = value(&z);
             for p in 0..4 + shape.bends() {
                 let (mut up, mut down) = (z, z);

@@ -15,7 +15,7 @@ const OVERSTEPPED: f64 = 1e-10;
 
 /// The chain that a rough polygon leads to.
 pub(crate) fn candidate(setting: &Setting, rough: &Polygon) -> Option<Polished> {
-    let polygon = best_polygon(setting, rough)?;
+    let polygon = best_polygon(setting, rough, 2)?;
     let links = arcs(setting, &polygon)?;
     let polished = mended(setting, links)?;
     // A polish that lost what the polygon had went astray.

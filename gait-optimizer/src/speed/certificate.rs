@@ -6,6 +6,7 @@
 //! where a corner rests on a bound, follows from the integrals of h between switches by least squares.
 
 mod affine;
+mod costate;
 mod legs;
 mod second_order;
 mod switching;
@@ -19,6 +20,7 @@ use crate::certificate::{Certificate, Check, SeenBy, again_within};
 use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::region::Region;
+pub(crate) use costate::certificate as within_limits;
 use legs::{Leg, Legs};
 use switching::Switching;
 
@@ -119,6 +121,7 @@ pub(crate) fn certificate(
         model,
         region,
         rates: legs.rates,
+        beyond: Vec::new(),
         heading: asked.heading,
         period: asked.period.then_some(1.0),
         goal: asked.goal,

@@ -92,7 +92,7 @@ impl Layout {
     }
 
     /// Index of an arc's parameter.
-    fn parameter_index(&self, arc: usize, parameter: usize) -> usize {
+    pub(crate) fn parameter_index(&self, arc: usize, parameter: usize) -> usize {
         match parameter {
             0 | 1 => self.corner_index(arc) + parameter,
             2 | 3 => self.corner_index(arc + 1) + parameter - 2,

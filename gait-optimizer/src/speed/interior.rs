@@ -18,8 +18,8 @@ use super::quadrature::Rule;
 pub(crate) struct Polygon {
     pub(crate) layout: Layout,
     pub(crate) z: DVector<f64>,
-    /// Per side: multipliers of φ̇₁ ≤ ω₁, φ̇₁ ≥ −ω₁, then of φ̇₂.
-    pub(crate) pushes: Vec<[f64; 4]>,
+    /// Per side: multipliers of φ̇₁ ≤ ω₁, φ̇₁ ≥ −ω₁, then of φ̇₂, then of what else limits it.
+    pub(crate) pushes: Vec<Vec<f64>>,
     pub(crate) speed: f64,
 }
 
@@ -51,22 +51,34 @@ pub(crate) fn rough_polygon(setting: &Setting, start: &[Vector2<f64>]) -> Option
     }
     for side in 0..n {
         let [from, to] = layout.ends(&z, side);
-        z[layout.time_index(side)] = 1.3 * setting.time(&(to - from)) + 1e-3;
+        z[layout.time_index(side)] = 1.3 * setting.least_time(&from, &to) + 1e-3;
     }
     Method::new(setting, layout).solve(z, [FIRST_BARRIER, ROUGH_BARRIER])
 }
 
-/// The best polygon of twice as many sides near a rough one.
-pub(crate) fn best_polygon(setting: &Setting, rough: &Polygon) -> Option<Polygon> {
+/// The best polygon of so many times as many sides near a rough one.
+pub(crate) fn best_polygon(setting: &Setting, rough: &Polygon, times: usize) -> Option<Polygon> {
     let n = rough.layout.arcs();
-    let layout = Layout::new(vec![Shape::Straight; 2 * n]);
+    let layout = Layout::new(vec![Shape::Straight; times * n]);
     let mut z = DVector::zeros(layout.size);
+    let part = 1.0 / times as f64;
     for side in 0..n {
         let [from, to] = rough.layout.ends(&rough.z, side);
-        for (corner, phi) in [(2 * side, from), (2 * side + 1, 0.5 * (from + to))] {
+        for k in 0..times {
+            let (corner, share) = (times * side + k, k as f64 * part);
+            let phi = from + (to - from) * share;
             z[2 * corner] = phi.x;
             z[2 * corner + 1] = phi.y;
-            z[layout.time_index(corner)] = 0.5 * rough.z[rough.layout.time_index(side)];
+            z[layout.time_index(corner)] = part * rough.z[rough.layout.time_index(side)];
+        }
+    }
+    // What is limited by the shape may be tighter where the sides' new middles are.
+    if !setting.beyond.is_empty() {
+        for side in 0..times * n {
+            let [from, to] = layout.ends(&z, side);
+            let least = 1.01 * setting.least_time(&from, &to);
+            let time = &mut z[layout.time_index(side)];
+            *time = time.max(least);
         }
     }
     Method::new(setting, layout).solve(z, [ROUGH_BARRIER, LAST_BARRIER])
@@ -162,7 +174,8 @@ impl<'a> Method<'a> {
             damping: 0.0,
             penalty: 1.0,
         };
-        for _ in 0..MOST_STEPS {
+        let most = MOST_STEPS * if self.setting.beyond.is_empty() { 1 } else { 2 };
+        for _ in 0..most {
             let look = self.look(&here)?;
             if look.error(&here) < 10.0 * here.barrier {
                 if here.barrier <= last {
@@ -181,7 +194,10 @@ impl<'a> Method<'a> {
                 }
             }
         }
-        None
+        // Sides of a smooth curve may slide along it, which costs steps and changes nothing.
+        let look = self.look(&here)?;
+        (!self.setting.beyond.is_empty() && here.barrier < 1e-5)
+            .then(|| self.finish(&here, look.net))
     }
 
     fn look(&self, here: &Iterate) -> Option<Look> {
@@ -238,17 +254,16 @@ impl<'a> Method<'a> {
         let mut right = -&look.gradient;
         for (one, push) in look.inequalities.iter().zip(&here.pushes) {
             let stiffness = push / one.value;
-            for (i, a) in one.slope {
+            for &(i, a) in one.slope() {
                 right[i] += here.barrier / one.value * a;
-                for (j, b) in one.slope {
+                for &(j, b) in one.slope() {
                     matrix[(i, j)] += stiffness * a * b;
                 }
             }
-            if let Some(curved) = one.curved {
-                let at = one.slope[0].0;
-                for i in 0..2 {
-                    for j in 0..2 {
-                        matrix[(at + i, at + j)] -= push * curved[(i, j)];
+            if let Some(curved) = &one.curved {
+                for (i, &(row, _)) in one.slope().iter().take(4).enumerate() {
+                    for (j, &(column, _)) in one.slope().iter().take(4).enumerate() {
+                        matrix[(row, column)] -= push * curved[(i, j)];
                     }
                 }
             }
@@ -286,7 +301,7 @@ impl<'a> Method<'a> {
         let (mut longest, mut dual_longest) = (1.0_f64, 1.0_f64);
         let mut pushes = Vec::with_capacity(here.pushes.len());
         for (one, push) in look.inequalities.iter().zip(&here.pushes) {
-            let along: f64 = one.slope.iter().map(|(at, a)| a * step[*at]).sum();
+            let along: f64 = one.slope().iter().map(|(at, a)| a * step[*at]).sum();
             if along < 0.0 && one.curved.is_none() {
                 longest = longest.min(-SHARE * one.value / along);
             }
@@ -336,10 +351,11 @@ impl<'a> Method<'a> {
     }
 
     fn finish(&self, here: &Iterate, net: chain::Net) -> Polygon {
-        let four = |side: usize| std::array::from_fn(|k| here.pushes[4 * side + k]);
+        let count = 4 + self.setting.beyond.len();
+        let of_sides = here.pushes.chunks(count).take(self.layout.arcs());
         Polygon {
             layout: self.layout.clone(),
-            pushes: (0..self.layout.arcs()).map(four).collect(),
+            pushes: of_sides.map(<[f64]>::to_vec).collect(),
             speed: self.setting.measure(&net) / self.layout.period(&here.z),
             z: here.z.clone(),
         }
@@ -352,7 +368,7 @@ impl Look {
         let mut dual = self.gradient.clone();
         let mut error: f64 = 0.0;
         for (one, push) in self.inequalities.iter().zip(&here.pushes) {
-            for (at, slope) in one.slope {
+            for &(at, slope) in one.slope() {
                 dual[at] -= push * slope;
             }
             error = error.max((one.value * push - here.barrier).abs());

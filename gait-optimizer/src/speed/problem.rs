@@ -5,6 +5,7 @@ use swimmer_model::Model;
 
 use super::arc::Jet;
 use super::chain::{self, Layout, Net, Weights};
+use super::gauge::Facet;
 use crate::member::Member;
 use crate::region::Region;
 
@@ -45,13 +46,15 @@ impl HeadingRule {
 }
 
 /// What every step of the search shares.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Setting<'a> {
     /// Of the swimmer with L = 1.
     pub(crate) model: &'a Model<f64>,
     pub(crate) region: &'a Region,
     /// Largest |φ̇ᵢ|.
     pub(crate) rates: [f64; 2],
+    /// What else limits the servos.
+    pub(crate) beyond: Vec<Facet>,
     pub(crate) heading: HeadingRule,
     /// The period, where it is prescribed.
     pub(crate) period: Option<f64>,
@@ -67,6 +70,23 @@ impl Setting<'_> {
     /// The least time in which the servos turn by this.
     pub(crate) fn time(&self, way: &Vector2<f64>) -> f64 {
         (way.x.abs() / self.rates[0]).max(way.y.abs() / self.rates[1])
+    }
+
+    /// About the least time from a shape to one nearby.
+    pub(crate) fn least_time(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
+        let way = to - from;
+        if self.beyond.is_empty() {
+            return self.time(&way);
+        }
+        let power = self.model.power_matrix(&(0.5 * (from + to)));
+        let beyond = self.beyond.iter().map(|limit| limit.value(&power, &way));
+        beyond.fold(self.time(&way), f64::max)
+    }
+
+    /// Everything that limits the servos: four rates, then the rest.
+    pub(crate) fn limits(&self) -> Vec<Facet> {
+        let rates = Facet::of_rates(self.rates).into_iter();
+        rates.chain(self.beyond.iter().copied()).collect()
     }
 
     /// What is to be the most per unit of time.

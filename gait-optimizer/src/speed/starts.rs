@@ -93,7 +93,7 @@ fn random(reach: f64, seed: u64, index: usize) -> Box<dyn Fn(f64) -> Vector2<f64
 }
 
 /// Each corner drawn towards the straight shape until it lies well within the bounds.
-fn within(region: &Region, mut points: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
+pub(crate) fn within(region: &Region, mut points: Vec<Vector2<f64>>) -> Vec<Vector2<f64>> {
     const MARGIN: f64 = 0.02;
     for point in &mut points {
         for _ in 0..200 {

@@ -115,6 +115,7 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
             &region
         },
         rates: of.rates.map(|rate| rate / fast),
+        beyond: Vec::new(),
         heading,
         period: None,
         goal,

@@ -17,7 +17,7 @@ use crate::quantity::{self, Rows};
 
 use super::answer::{Closing, arc_rows, unfolded};
 use super::front::{FrontAnswer, FrontFile};
-use super::power::on_power;
+use super::limited::{Limits, within};
 use super::robust::{Brings, Robustly, as_written, refused};
 use crate::new_file::may_be_written;
 use crate::own_robot::{PlayedSpeed, servo_rates};
@@ -29,8 +29,9 @@ use crate::threads;
 /// With --robust or --gain: with the worst swimmer that is left open, or in the mean, beside what the fastest gait of the estimates
 /// would bring there: along gaits that turn none of the swimmers, as the fastest as a rule are where both side links are alike.
 ///
-/// With --power instead: with servos that give no more than so many watts, which is the most efficient gait at constant power; with
-/// both, where one of them alone limits the gait.
+/// With --power instead: with servos that together give no more than so many watts, which is the most efficient gait at constant
+/// power; with --torque: with servos each of which gives no more than the swimmer file says, less the faster it turns. Such limits
+/// hold together, and with --max-rate; the answer says which of them binds on what share of the cycle.
 ///
 /// Fastest means the best of all cycles of at most 16 corners: a chain of unlike cycles may always beat each of them, and a
 /// longer cycle that was met and is better by more than 1e-6 is told. The gait is timed as it shall run, with its corners where
@@ -41,11 +42,14 @@ pub(crate) struct Speed {
     #[arg(long, value_name = "SWIMMER")]
     swimmer: String,
     /// No servo turns faster than this angle a second; a second one is that of joint 2
-    #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2, required_unless_present_any = ["playable", "power"])]
+    #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2, required_unless_present_any = ["playable", "power", "torque"])]
     max_rate: Vec<f64>,
     /// The servos together give no more than this many watts; the swimmer file names its fluid
     #[arg(long, value_name = "WATTS", value_parser = watts, conflicts_with_all = ["heading", "period", "front", "robust", "gain"])]
     power: Option<f64>,
+    /// Each servo gives no more torque than the swimmer file says, which falls evenly to 0 at its rate without a load
+    #[arg(long, conflicts_with_all = ["heading", "period", "front"])]
+    torque: bool,
     /// Which way the gait shall lead, against the mean heading of its cycle
     #[arg(long, value_name = "HEADING", value_enum, default_value = "any")]
     heading: Heading,
@@ -82,10 +86,13 @@ impl Speed {
             may_be_written(&front.path)?;
         }
         let file = load_swimmer(&self.swimmer)?;
-        if let Some(power) = self.power {
-            let rates = servo_rates(&self.max_rate, self.bounds.playable(), &file);
-            let limits = (power, rates);
-            return on_power(&file, self.bounds.of(&file), limits, self.output, output);
+        if self.power.is_some() || self.torque {
+            let limits = Limits {
+                power: self.power,
+                rates: servo_rates(&self.max_rate, self.bounds.playable(), &file),
+                torque: self.torque,
+            };
+            return within(&file, self.bounds.of(&file), &limits, self.output, output);
         }
         let Some(rates) = servo_rates(&self.max_rate, self.bounds.playable(), &file) else {
             return Err(Failure::BadInput(

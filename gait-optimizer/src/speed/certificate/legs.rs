@@ -259,7 +259,7 @@ impl<'a> Swum<'a> {
     }
 }
 
-fn pose_at(panels: &[Panel<f64>], u: f64) -> [f64; 3] {
+pub(super) fn pose_at(panels: &[Panel<f64>], u: f64) -> [f64; 3] {
     let at = panels
         .partition_point(|panel| panel.end() < u)
         .min(panels.len().saturating_sub(1));

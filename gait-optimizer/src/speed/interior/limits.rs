@@ -1,6 +1,6 @@
-//! The limits of a polygon: rates of its sides, bounds of its corners.
+//! The limits of a polygon: rates of its sides and what else limits their servos, bounds of its corners.
 
-use nalgebra::{DVector, Matrix2};
+use nalgebra::{DVector, Matrix4};
 
 use super::super::chain::Layout;
 use super::super::problem::Setting;
@@ -9,12 +9,31 @@ use crate::region::Bound;
 /// One inequality, `value ≥ 0`, with the entries of its slope.
 pub(super) struct Inequality {
     pub(super) value: f64,
-    pub(super) slope: [(usize, f64); 3],
-    /// Second derivatives in the corner's two coordinates, for curved bounds.
-    pub(super) curved: Option<Matrix2<f64>>,
+    entries: [(usize, f64); 5],
+    count: usize,
+    /// Second derivatives in the coordinates of its first entries, where it is not linear.
+    pub(super) curved: Option<Matrix4<f64>>,
 }
 
-/// All limits of a polygon: four of each side's rates, then those of each corner.
+impl Inequality {
+    fn new(value: f64, slope: &[(usize, f64)], curved: Option<Matrix4<f64>>) -> Self {
+        let mut entries = [(0, 0.0); 5];
+        entries[..slope.len()].copy_from_slice(slope);
+        Self {
+            value,
+            entries,
+            count: slope.len(),
+            curved,
+        }
+    }
+
+    pub(super) fn slope(&self) -> &[(usize, f64)] {
+        &self.entries[..self.count]
+    }
+}
+
+/// All limits of a polygon: of each side four of its rates, then what else limits it, in the order of [`Setting::limits`]; then
+/// those of each corner.
 pub(super) fn inequalities(
     setting: &Setting,
     layout: &Layout,
@@ -28,12 +47,33 @@ pub(super) fn inequalities(
             let limit = setting.rates[joint];
             let way = z[to + joint] - z[from + joint];
             for sign in [1.0, -1.0] {
-                all.push(Inequality {
-                    value: limit * z[time] - sign * way,
-                    slope: [(time, limit), (to + joint, -sign), (from + joint, sign)],
-                    curved: None,
-                });
+                let slope = [(time, limit), (to + joint, -sign), (from + joint, sign)];
+                all.push(Inequality::new(limit * z[time] - sign * way, &slope, None));
             }
+        }
+        if setting.beyond.is_empty() {
+            continue;
+        }
+        // As if the shape were the middle one all along.
+        let [a, b] = layout.ends(z, side);
+        let middle = setting.model.second_derivatives(&(0.5 * (a + b)));
+        for limit in &setting.beyond {
+            let level = limit.level(&middle, &(b - a));
+            let ends = Matrix4::from_fn(|i, j| match (i < 2, i % 2 == j % 2) {
+                (_, false) => 0.0,
+                (true, true) => 0.5,
+                (false, true) => f64::from(u8::from(j >= 2)) * 2.0 - 1.0,
+            });
+            let slope = -ends.transpose() * level.slope;
+            let slope = [
+                (from, slope[0]),
+                (from + 1, slope[1]),
+                (to, slope[2]),
+                (to + 1, slope[3]),
+                (time, 1.0),
+            ];
+            let curved = -ends.transpose() * level.curved * ends;
+            all.push(Inequality::new(z[time] - level.value, &slope, Some(curved)));
         }
     }
     for corner in 0..layout.arcs() {
@@ -42,14 +82,16 @@ pub(super) fn inequalities(
         for bound in setting.region.bounds() {
             let gradient = bound.gradient(&phi);
             let curved = match bound {
-                Bound::Clearance(clearance) => Some(clearance.deciding_level(&phi).hessian),
+                Bound::Clearance(clearance) => {
+                    let mut curved = Matrix4::zeros();
+                    let hessian = clearance.deciding_level(&phi).hessian;
+                    curved.fixed_view_mut::<2, 2>(0, 0).copy_from(&hessian);
+                    Some(curved)
+                }
                 Bound::Straight(_) => None,
             };
-            all.push(Inequality {
-                value: bound.margin(&phi),
-                slope: [(at, gradient.x), (at + 1, gradient.y), (at, 0.0)],
-                curved,
-            });
+            let slope = [(at, gradient.x), (at + 1, gradient.y)];
+            all.push(Inequality::new(bound.margin(&phi), &slope, curved));
         }
     }
     all

@@ -1,0 +1,320 @@
+//! The conditions of a fastest gait whose servos keep within any limits, from its curve alone.
+//!
+//! With V = |d|/T, the costate of Φ is σ = V Σ αⱼ ∂Gⱼ/∂Φ̇ over the limits Gⱼ that bind, and
+//! σ̇ = h (−Φ̇₂, Φ̇₁) + V Σ αⱼ ∂Gⱼ/∂Φ, less η∇(margin) along a bound and, at once, ν∇(margin) where a corner rests on one. The shares α and
+//! the pushes η, ν must not be negative, and Σα = 1: H = σ·Φ̇ − V vanishes. All of them follow from the curve by least squares,
+//! with the multiplier of rotation; nothing of the search is asked.
+
+use nalgebra::{DMatrix, DVector, Vector2};
+use swimmer_files::{AnyGait, GaitFile};
+use swimmer_model::{Gait as _, Model, Panel, Panels, Tolerance, swim};
+
+use super::legs::pose_at;
+use super::{RESTS, of_the_curve};
+use crate::certificate::{Certificate, Check, again_within};
+use crate::momentum::Momentum;
+use crate::region::Region;
+use crate::speed::gauge::{Facet, Level};
+use crate::speed::quadrature::{Rule, cut};
+
+/// What the conditions may miss, over V.
+const CLOSE: f64 = 1e-6;
+/// A multiplier may be less than 0 by this.
+const MULTIPLIER: f64 = 1e-5;
+/// A limit binds where the gait takes this share of it.
+const BINDS: f64 = 1.0 - 1e-6;
+/// Times that multipliers below 0 are held there.
+const SIGNS: usize = 6;
+/// Gauss nodes of a part of the cycle, its longest share of the period, and about the most that it turns \[rad\].
+const NODES: usize = 10;
+const LONGEST: f64 = 0.06;
+const TURN: f64 = 0.5;
+/// Fewest parts of an arc.
+const LEAST: usize = 3;
+
+/// One node.
+struct Node {
+    rate: Vector2<f64>,
+    /// Height over V for p along d, and for a unit of the multiplier of rotation.
+    height: [f64; 2],
+    /// The largest share of any limit, and the limits that bind.
+    taken: f64,
+    levels: Vec<Level>,
+    /// Gradient of the margin of the bound that it lies on.
+    bound: Option<Vector2<f64>>,
+}
+
+/// The equations, row by row, in unknowns that are added as they come.
+#[derive(Default)]
+struct Equations {
+    rows: Vec<(Vec<(usize, f64)>, f64)>,
+    unknowns: usize,
+}
+
+impl Equations {
+    fn unknown(&mut self) -> usize {
+        self.unknowns += 1;
+        self.unknowns - 1
+    }
+
+    /// The unknowns of the least squares, and the largest residual. Those of which the sign is known stay near 1 where the
+    /// equations leave them free; where they come out below 0 all the same, they are held at 0.
+    fn solve(mut self, positive: &[usize]) -> Option<(DVector<f64>, f64)> {
+        let mut solution = self.least_squares(positive)?;
+        for _ in 0..SIGNS {
+            let below = positive.iter().filter(|at| solution.0[**at] < -CLOSE);
+            let below: Vec<usize> = below.copied().collect();
+            if below.is_empty() {
+                break;
+            }
+            self.rows
+                .extend(below.into_iter().map(|at| (vec![(at, 1.0)], 0.0)));
+            solution = self.least_squares(positive)?;
+        }
+        Some(solution)
+    }
+
+    fn least_squares(&self, positive: &[usize]) -> Option<(DVector<f64>, f64)> {
+        let mut normal = DMatrix::zeros(self.unknowns, self.unknowns);
+        let residual = |x: &DVector<f64>| -> Vec<f64> {
+            let left = |row: &[(usize, f64)]| row.iter().map(|(at, a)| a * x[*at]).sum::<f64>();
+            let rows = self.rows.iter();
+            rows.map(|(row, right)| right - left(row)).collect()
+        };
+        for (row, _) in &self.rows {
+            for &(i, a) in row {
+                for &(j, b) in row {
+                    normal[(i, j)] += a * b;
+                }
+            }
+        }
+        let mut x = DVector::zeros(self.unknowns);
+        for i in 0..self.unknowns {
+            normal[(i, i)] += 1e-11;
+        }
+        for &at in positive {
+            x[at] = 1.0;
+        }
+        let factors = normal.cholesky()?;
+        for _ in 0..3 {
+            let mut right = DVector::zeros(self.unknowns);
+            for ((row, _), rest) in self.rows.iter().zip(residual(&x)) {
+                for &(i, a) in row {
+                    right[i] += a * rest;
+                }
+            }
+            x += factors.solve(&right);
+        }
+        let worst = residual(&x)
+            .iter()
+            .fold(0.0, |most: f64, r| most.max(r.abs()));
+        Some((x, worst))
+    }
+}
+
+/// A cycle whose costate is asked for.
+struct Costate<'a> {
+    model: &'a Model<f64>,
+    region: &'a Region,
+    limits: &'a [Facet],
+    gait: &'a AnyGait,
+    panels: Vec<Panel<f64>>,
+    period: f64,
+    /// Dual to the displacement, over V; and 1/V.
+    p: Vector2<f64>,
+    slowness: f64,
+    rule: Rule,
+}
+
+/// What the equations' unknowns are.
+#[derive(Default)]
+struct Unknowns {
+    rotation: usize,
+    /// σ where each part begins.
+    starts: Vec<[usize; 2]>,
+    /// Of each node the shares of its limits.
+    shares: Vec<Vec<usize>>,
+    /// Of bounds.
+    pushes: Vec<usize>,
+}
+
+impl Costate<'_> {
+    fn node(&self, u: f64) -> Node {
+        let point = self.gait.at(u);
+        let rate = point.rate / self.period;
+        let pose = pose_at(&self.panels, u);
+        let second = self.model.second_derivatives(&point.phi);
+        let height = |p, c| Momentum { p, c }.height(&second, &pose).value;
+        let levels = self.limits.iter().map(|limit| limit.level(&second, &rate));
+        let levels: Vec<Level> = levels.collect();
+        Node {
+            rate,
+            height: [height(self.p, 0.0), height(Vector2::zeros(), self.slowness)],
+            taken: levels.iter().map(|level| level.value).fold(0.0, f64::max),
+            levels: levels
+                .into_iter()
+                .filter(|level| level.value >= BINDS)
+                .collect(),
+            bound: self.rests(&point.phi).next(),
+        }
+    }
+
+    /// Gradients of the margins of the bounds that a shape lies on.
+    fn rests(&self, phi: &Vector2<f64>) -> impl Iterator<Item = Vector2<f64>> {
+        let on = self.region.bounds();
+        let on = on.filter(move |bound| bound.margin(phi).abs() < RESTS);
+        on.map(move |bound| bound.gradient(phi))
+    }
+
+    /// The equations of one part of the cycle, with those that join it to the next.
+    fn part(
+        &self,
+        (number, (from, to)): (usize, (f64, f64)),
+        nodes: &[Node],
+        (equations, unknowns): (&mut Equations, &mut Unknowns),
+    ) {
+        let time = (to - from) * self.period;
+        let mut own = Vec::with_capacity(nodes.len());
+        for node in nodes {
+            let shares: Vec<usize> = node.levels.iter().map(|_| equations.unknown()).collect();
+            let push = node.bound.map(|_| equations.unknown());
+            let sum = shares.iter().map(|at| (*at, 1.0)).collect();
+            equations.rows.push((sum, 1.0));
+            unknowns.shares.push(shares.clone());
+            unknowns.pushes.extend(push);
+            own.push((shares, push));
+        }
+        let rotation = unknowns.rotation;
+        // ∫ of one joint's σ̇ with these weights: its entries, and what is known of it.
+        let integral = |weights: &[f64], joint: usize| {
+            let mut row = Vec::new();
+            let mut known = 0.0;
+            for ((node, (shares, push)), weight) in nodes.iter().zip(&own).zip(weights) {
+                let weight = weight * time;
+                let turned = [-node.rate.y, node.rate.x][joint];
+                known += weight * node.height[0] * turned;
+                row.push((rotation, weight * node.height[1] * turned));
+                for (level, at) in node.levels.iter().zip(shares) {
+                    row.push((*at, weight * level.slope[joint]));
+                }
+                if let (Some(gradient), Some(at)) = (node.bound, push) {
+                    row.push((*at, -weight * gradient[joint]));
+                }
+            }
+            (row, known)
+        };
+        let start = unknowns.starts[number];
+        for (node, (weights, (shares, _))) in
+            nodes.iter().zip(self.rule.cumulative.iter().zip(&own))
+        {
+            for (joint, &begun) in start.iter().enumerate() {
+                let (mut row, known) = integral(weights, joint);
+                row.push((begun, 1.0));
+                for (level, at) in node.levels.iter().zip(shares) {
+                    row.push((*at, -level.slope[2 + joint]));
+                }
+                equations.rows.push((row, -known));
+            }
+        }
+        // On to the next part, past what its first corner rests on.
+        let next = unknowns.starts[(number + 1) % unknowns.starts.len()];
+        let corner = self.gait.at(to).phi;
+        let rests: Vec<Vector2<f64>> = self.rests(&corner).collect();
+        let jumps: Vec<usize> = rests.iter().map(|_| equations.unknown()).collect();
+        for joint in 0..2 {
+            let (mut row, known) = integral(&self.rule.weights, joint);
+            row.push((start[joint], 1.0));
+            row.push((next[joint], -1.0));
+            let jumps = rests.iter().zip(&jumps);
+            row.extend(jumps.map(|(gradient, at)| (*at, -gradient[joint])));
+            equations.rows.push((row, -known));
+        }
+        unknowns.pushes.extend(jumps);
+    }
+
+    /// The conditions of limits, costate and multipliers.
+    fn checks(&self, file: &GaitFile) -> Vec<Check> {
+        let parts = parts(file, self.gait);
+        let mut equations = Equations::default();
+        let mut unknowns = Unknowns {
+            rotation: equations.unknown(),
+            ..Unknowns::default()
+        };
+        let starts = parts.iter();
+        let starts = starts.map(|_| [equations.unknown(), equations.unknown()]);
+        unknowns.starts = starts.collect();
+        let (mut most, mut least) = (0.0_f64, f64::INFINITY);
+        for (number, &(from, to)) in parts.iter().enumerate() {
+            let places = self.rule.nodes.iter().map(|s| from + (to - from) * s);
+            let nodes: Vec<Node> = places.map(|u| self.node(u)).collect();
+            for node in &nodes {
+                (most, least) = (most.max(node.taken), least.min(node.taken));
+            }
+            let into = (&mut equations, &mut unknowns);
+            self.part((number, (from, to)), &nodes, into);
+        }
+        let mut checks = vec![
+            Check::at_most("limit_overstepped", most - 1.0, CLOSE),
+            Check::at_least("limits_taken_least", least, BINDS),
+        ];
+        let Unknowns { shares, pushes, .. } = unknowns;
+        let positive: Vec<usize> = shares.iter().flatten().chain(&pushes).copied().collect();
+        let Some((x, residual)) = equations.solve(&positive) else {
+            checks.push(Check::at_most("costate", f64::NAN, CLOSE));
+            return checks;
+        };
+        let off = |own: &Vec<usize>| (own.iter().map(|at| x[*at]).sum::<f64>() - 1.0).abs();
+        let hamiltonian = shares.iter().map(off).fold(0.0, f64::max);
+        let least = |least: f64, at: &usize| least.min(x[*at]);
+        let share = shares.iter().flatten().fold(f64::INFINITY, least);
+        checks.extend([
+            Check::at_most("costate", residual, CLOSE),
+            Check::at_most("hamiltonian", hamiltonian, CLOSE),
+            Check::at_least("limit_multiplier_least", share, -MULTIPLIER),
+        ]);
+        if !pushes.is_empty() {
+            let push = pushes.iter().fold(f64::INFINITY, least);
+            checks.push(Check::at_least("bound_multiplier_least", push, -MULTIPLIER));
+        }
+        checks
+    }
+}
+
+/// Holds one cycle that takes this period against the conditions. Of the swimmer with L = 1.
+pub(crate) fn certificate(
+    (model, region): (&Model<f64>, &Region),
+    limits: &[Facet],
+    (file, gait): (&GaitFile, &AnyGait),
+    (period, distance): (f64, f64),
+) -> Certificate {
+    let mut checks = of_the_curve(model, region, file, gait);
+    let stroke = swim(model, gait, &Tolerance::default());
+    let d = stroke.displacement;
+    let apart = (d.norm() - distance).abs();
+    checks.extend([
+        Check::at_most("displacement_stepped_again", apart, again_within(distance)),
+        Check::at_most("net_rotation_rad", stroke.rotation.abs(), 1e-8),
+    ]);
+    let slowness = period / d.norm();
+    let costate = Costate {
+        model,
+        region,
+        limits,
+        gait,
+        panels: Panels::new(model, gait, &Tolerance::default()).collect(),
+        period,
+        p: d / d.norm() * slowness,
+        slowness,
+        rule: Rule::new(NODES),
+    };
+    checks.extend(costate.checks(file));
+    Certificate::new(checks)
+}
+
+/// The arcs, cut into parts that are short and turn little.
+fn parts(file: &GaitFile, gait: &AnyGait) -> Vec<(f64, f64)> {
+    let arcs = file.arcs.iter().filter(|arc| arc.to > arc.from);
+    let rates = [1.0 / LONGEST, 1.0 / TURN];
+    arcs.flat_map(|arc| cut((arc.from, arc.to), |u| gait.at(u).rate, (rates, LEAST)))
+        .collect()
+}

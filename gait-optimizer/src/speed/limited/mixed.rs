@@ -1,0 +1,244 @@
+//! Where several limits bind, each on its part of the cycle, or the torque alone: from many starts to the fastest certified curve.
+
+use nalgebra::Vector2;
+use swimmer_files::{ArcKind, GaitArc, GaitFile, Objective};
+use swimmer_model::{Gait, Model, Tolerance, swim};
+
+use super::super::certificate::within_limits;
+use super::super::gauge::Facet;
+use super::super::interior::{self, Polygon};
+use super::super::phases::{Curve, Phase, polished};
+use super::super::problem::{Goal, HeadingRule, Setting};
+use super::super::{SpeedError, samples, selection, starts};
+use super::{Limit, Limited, LimitedError, LimitedProblem, STARTS};
+use crate::Watch;
+use crate::cycle::Cycle;
+use crate::immobile::refuse_immobile;
+use crate::optimal_gait::{Arc, OptimalGait, Solution};
+use crate::parallel::in_parallel;
+use crate::region::Region;
+
+/// Elements of a cycle of several limits, first and last.
+const ELEMENTS: [usize; 2] = [8, 16];
+/// Rough polygons that are slower than this share of the best finished gait are left, and at most so many are finished.
+const HOPELESS: f64 = 0.95;
+const FINISHED: usize = 8;
+/// A polygon may be slower than the curve near it by this share.
+const NEAR: f64 = 2e-3;
+/// Sides of a finished polygon for each of a rough one, tried in this order.
+const FINER: [usize; 3] = [4, 3, 2];
+/// A limit that is none, in the units of the search.
+const NONE: f64 = 1e3;
+/// A curve on more elements that differs by more than this share of its speed is another one.
+const REFINED: f64 = 1e-6;
+/// Samples of an element.
+const SAMPLES: usize = 48;
+
+impl LimitedProblem {
+    /// Where several limits bind, or the torque alone.
+    pub(super) fn mixed(
+        &self,
+        singles: &[Limited],
+        watch: Watch<'_>,
+    ) -> Result<Limited, LimitedError> {
+        let model = Model::new(&self.swimmer.of_unit_length()).map_err(SpeedError::from)?;
+        refuse_immobile(&model, &self.bounds).map_err(SpeedError::from)?;
+        let region = Region::new(&self.bounds, &self.swimmer.links);
+        let unit = self.unit(&model);
+        let setting = self.setting(&model, &region, unit);
+        let known = |index: usize| {
+            let gait = singles.get(index)?.gait.gait().ok()?;
+            let corner = |k: u32| gait.at((f64::from(k) + 0.25) / 16.0).phi;
+            Some(starts::within(&region, (0..16).map(corner).collect()))
+        };
+        let rough = |(): &mut (), index: usize| {
+            let start = known(index).unwrap_or_else(|| starts::start(&region, 0, index));
+            interior::rough_polygon(&setting, &start)
+        };
+        let count = STARTS + singles.len();
+        let rough = in_parallel(count, self.threads, watch, || (), rough);
+        let groups = selection::groups(rough.into_iter().flatten().collect());
+        let chosen: Vec<&Polygon> = groups
+            .iter()
+            .take_while(|group| group.speed() > HOPELESS * groups[0].speed())
+            .flat_map(|group| &group.chosen)
+            .take(FINISHED)
+            .collect();
+        let finer = |(): &mut (), index: usize| {
+            let finer = |times: &usize| interior::best_polygon(&setting, chosen[index], *times);
+            FINER.iter().find_map(finer)
+        };
+        let polygons = in_parallel(chosen.len(), self.threads, &|_| (), || (), finer);
+        // A polygon is about as fast as the curve near it, so the first that is certified is the fastest but for a few.
+        let (mut best, mut uncertified) = (None::<Limited>, None::<f64>);
+        for group in selection::groups(polygons.into_iter().flatten().collect()) {
+            let known = best.as_ref().map_or(0.0, |best| best.speed_over_length);
+            if group.speed() * unit < known * (1.0 - NEAR) {
+                break;
+            }
+            let curves = group.chosen.iter();
+            let curves = curves.filter_map(|polygon| polished(&setting, polygon, ELEMENTS[0]));
+            for told in curves.filter_map(|curve| self.told(&setting, &curve, unit)) {
+                let speed = told.speed_over_length;
+                if !told.gait.certificate.pass() {
+                    uncertified = Some(uncertified.map_or(speed, |most| most.max(speed)));
+                } else if speed > known {
+                    best = Some(told);
+                    break;
+                }
+            }
+        }
+        let mut best = best.ok_or_else(|| self.no_gait(singles, uncertified))?;
+        let clearly = |speed: &f64| *speed > best.speed_over_length * (1.0 + 1e-6);
+        best.uncertified = uncertified.filter(clearly);
+        Ok(best)
+    }
+
+    /// The rate \[rad/s\] of about the faster joint at the straight shape: the unit of the search.
+    fn unit(&self, model: &Model<f64>) -> f64 {
+        let power = model.power_matrix(&Vector2::zeros());
+        let facets = self.facets_over_length(1.0);
+        let least = |joint: usize| {
+            let mut turn = Vector2::zeros();
+            turn[joint] = 1.0;
+            facets
+                .iter()
+                .map(|facet| facet.value(&power, &turn))
+                .fold(0.0, f64::max)
+        };
+        1.0 / least(0).min(least(1))
+    }
+
+    /// The limits for the swimmer of length 1 whose time unit is so many times shorter.
+    fn facets_over_length(&self, unit: f64) -> Vec<Facet> {
+        let volume = self.swimmer.total_length().powi(3);
+        let scaled = |(_, facet): (Limit, Facet)| match facet {
+            Facet::Power { power } => Facet::Power {
+                power: power / (volume * unit * unit),
+            },
+            Facet::Flat {
+                joint,
+                rate,
+                torque,
+            } => Facet::Flat {
+                joint,
+                rate: rate * unit,
+                torque: torque * volume * unit,
+            },
+        };
+        self.facets().into_iter().map(scaled).collect()
+    }
+
+    fn setting<'a>(&self, model: &'a Model<f64>, region: &'a Region, unit: f64) -> Setting<'a> {
+        // The four facets of the rates come first, if any.
+        let known = if self.rates.is_some() { 4 } else { 0 };
+        Setting {
+            model,
+            region,
+            rates: self
+                .rates
+                .map_or([NONE; 2], |rates| rates.map(|rate| rate / unit)),
+            beyond: self.facets_over_length(unit).split_off(known),
+            heading: HeadingRule::Any,
+            period: None,
+            goal: Goal::Distance,
+            members: &[],
+            anchor: None,
+        }
+    }
+
+    /// A curve as an answer, on more elements; none where it cannot be had on them.
+    fn told(&self, setting: &Setting, curve: &Curve, unit: f64) -> Option<Limited> {
+        let finer = curve.refined(setting, ELEMENTS[1]);
+        let off = |finer: &Curve| (curve.speed / finer.speed - 1.0).abs();
+        let finer = finer.filter(|finer| off(finer) < REFINED);
+        let refinement = finer.as_ref().map(off);
+        let curve = finer.as_ref().unwrap_or(curve);
+        let ahead = curve.net.heading().cos() >= 0.0;
+        let limits = setting.limits();
+        let (mut cycle, mut arcs) = sampled(setting.region, &limits, curve);
+        if !ahead {
+            (cycle, arcs) = (cycle.reversed(|phi| *phi), samples::reversed(&arcs));
+        }
+        let gait = cycle.gait().ok()?;
+        let file = GaitFile {
+            bounds: self.bounds,
+            arcs: cycle.arcs.clone(),
+            corners: cycle.corners.clone(),
+            u: cycle.u.clone(),
+            phi: cycle.phi.clone(),
+            ..GaitFile::default()
+        };
+        let told = (curve.period(), curve.net.distance());
+        let of = (setting.model, setting.region);
+        let certificate = within_limits(of, &limits, (&file, &gait), told);
+        let gait = OptimalGait::new(Solution {
+            objective: Objective::Speed,
+            swimmer: self.swimmer,
+            bounds: self.bounds,
+            symmetric: false,
+            links_cross: cycle.links_cross(setting.model),
+            arcs,
+            stroke: swim(setting.model, &gait, &Tolerance::default()),
+            cycle,
+            certificate,
+        });
+        let limited = self.limited(gait, told.1, told.0 / unit).ok()?;
+        Some(Limited {
+            refinement,
+            ..limited
+        })
+    }
+}
+
+/// A curve as one cycle of samples, each phase with its own.
+fn sampled(region: &Region, limits: &[Facet], curve: &Curve) -> (Cycle, Vec<Arc>) {
+    let mut cycle = Cycle {
+        u: Vec::new(),
+        phi: Vec::new(),
+        corners: Vec::new(),
+        arcs: Vec::new(),
+    };
+    let mut arcs = Vec::new();
+    for (number, phase) in curve.phases().iter().enumerate() {
+        let kind = kind(region, limits, phase);
+        cycle.corners.push(phase.from);
+        let mut from = phase.from;
+        for (_, until) in curve.elements().filter(|(of, _)| *of == number) {
+            for step in 0..SAMPLES {
+                let u = from + (until - from) * step as f64 / SAMPLES as f64;
+                cycle.u.push(u);
+                cycle.phi.push(curve.at(u));
+            }
+            from = until;
+        }
+        cycle.arcs.push(GaitArc {
+            kind,
+            from: phase.from,
+            to: phase.to,
+        });
+        arcs.push(Arc {
+            kind,
+            from: curve.at(phase.from).into(),
+            to: curve.at(phase.to).into(),
+        });
+    }
+    cycle.u.push(1.0);
+    cycle.phi.extend(cycle.phi.first().copied());
+    if let Some(last) = cycle.arcs.last_mut() {
+        last.to = 1.0;
+    }
+    (cycle, arcs)
+}
+
+/// Two limits leave no choice of the direction, one flat one leaves the costate none.
+fn kind(region: &Region, limits: &[Facet], phase: &Phase) -> ArcKind {
+    if let Some(bound) = phase.bound.and_then(|bound| region.bound(bound)) {
+        return bound.kind();
+    }
+    match phase.limits.as_slice() {
+        [one] if matches!(limits[*one], Facet::Power { .. }) => ArcKind::Regular,
+        [_] => ArcKind::Singular,
+        _ => ArcKind::Extreme,
+    }
+}

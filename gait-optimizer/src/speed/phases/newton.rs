@@ -1,0 +1,283 @@
+//! Newton's method on a cycle of phases: elements, when they end, and all multipliers.
+
+use nalgebra::{DMatrix, DVector, Vector4};
+
+use super::super::arc::{MOST_PARAMETERS, Place};
+use super::super::chain;
+use super::super::gauge::Facet;
+use super::super::problem::Setting;
+use super::super::quadrature::Rule;
+use super::equations::{Equation, equations};
+use super::{BENDS, Curve, Draft, Phase};
+
+/// Quadrature points of the path on an element.
+const POINTS: usize = 24;
+const MOST_STEPS: usize = 40;
+/// Longest step of a corner \[rad\] or a time.
+const STRIDE: f64 = 0.2;
+/// Residuals below this are rounding; where they come to rest below the second, the method has converged.
+const ROUNDING: f64 = 1e-12;
+const AT_REST: f64 = 1e-9;
+/// An element loses no more than this share of its time in a step; a phase that is shorter than so much of the period has gone.
+const SHRINKS: f64 = 0.7;
+const GONE: f64 = 1e-5;
+
+pub(super) enum Outcome {
+    /// The curve, and the phases that it should have, node by node.
+    Solved(Box<Curve>, Vec<Phase>),
+    /// The phase of this number has no length.
+    Gone(usize),
+    /// The method does not converge.
+    Lost,
+}
+
+pub(super) struct Method<'a> {
+    pub(super) setting: &'a Setting<'a>,
+    pub(super) draft: Draft,
+    pub(super) limits: Vec<Facet>,
+    /// Where limits bind, and where bounds do.
+    pub(super) nodes: Rule,
+    pub(super) inner: Rule,
+    pub(super) path: Rule,
+    pub(super) equations: Vec<Equation>,
+}
+
+struct Look {
+    net: chain::Net,
+    /// Of ln of the period less that of the distance.
+    gradient: DVector<f64>,
+    /// Rotation, then the equations.
+    values: DVector<f64>,
+    slopes: DMatrix<f64>,
+    /// What each multiplier weighs in the stationarity: the slopes, but for what stands in for some of it.
+    forces: DMatrix<f64>,
+    hessian: DMatrix<f64>,
+}
+
+pub(super) fn solve(setting: &Setting, draft: Draft) -> Outcome {
+    let method = Method {
+        setting,
+        limits: setting.limits(),
+        nodes: Rule::new(BENDS + 1),
+        inner: Rule::new(BENDS),
+        path: Rule::new(POINTS),
+        equations: equations(setting, &draft),
+        draft,
+    };
+    method.run()
+}
+
+impl Method<'_> {
+    fn run(mut self) -> Outcome {
+        let mut y: Option<DVector<f64>> = None;
+        let mut best = f64::INFINITY;
+        let mut stalls = 0;
+        for _ in 0..MOST_STEPS {
+            let Some(look) = self.look(y.as_ref()) else {
+                return Outcome::Lost;
+            };
+            if let Some(y) = &y {
+                let residual = look.residual(y);
+                stalls = if residual < 0.5 * best { 0 } else { stalls + 1 };
+                best = best.min(residual);
+                if residual < ROUNDING || (stalls > 2 && residual < AT_REST) {
+                    return self.solved(&look, y);
+                }
+                if stalls > 10 {
+                    return Outcome::Lost;
+                }
+            }
+            let Some((step, next)) = look.newton() else {
+                return Outcome::Lost;
+            };
+            if y.is_some() {
+                let elements = self.draft.layout.arcs();
+                // No element loses more than so much of its time in a step.
+                let times = 2 * elements..3 * elements;
+                let shrinks = times.map(|at| -step[at] / (SHRINKS * self.draft.z[at]));
+                let most = (step.rows(0, 3 * elements).amax() / STRIDE).max(1.0);
+                let scale = 1.0 / shrinks.fold(most, f64::max);
+                self.draft.z += step * scale;
+            }
+            y = Some(next);
+            if let Some(phase) = self.gone() {
+                return Outcome::Gone(phase);
+            }
+        }
+        Outcome::Lost
+    }
+
+    /// The phase that has lost its length.
+    fn gone(&self) -> Option<usize> {
+        let Draft {
+            phases,
+            phase_of,
+            layout,
+            z,
+            ..
+        } = &self.draft;
+        let mut lengths = vec![0.0; phases.len()];
+        for (element, &phase) in phase_of.iter().enumerate() {
+            lengths[phase] += z[layout.time_index(element)];
+        }
+        let shortest = lengths.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
+        let (phase, length) = shortest?;
+        (*length < GONE * layout.period(z)).then_some(phase)
+    }
+
+    pub(super) fn place(&self, element: usize, s: f64) -> Place<MOST_PARAMETERS> {
+        let Draft { layout, z, .. } = &self.draft;
+        layout.shapes[element].place(&layout.ends(z, element), layout.bends(z, element), s)
+    }
+
+    fn look(&self, y: Option<&DVector<f64>>) -> Option<Look> {
+        let Self { setting, draft, .. } = self;
+        let Draft { layout, z, .. } = draft;
+        let jets = layout.jets(setting.model, &self.path, z);
+        let (net, equalities, equality_slopes) = setting.equalities(layout, &jets, z);
+        if net.distance().is_nan() || net.distance() < 1e-9 {
+            return None;
+        }
+        let (_, mut gradient) = chain::gradient(layout, &jets, z, setting.weights(&net, None));
+        let period = layout.period(z);
+        let times = 2 * layout.arcs()..3 * layout.arcs();
+        let global = equalities.len();
+        let count = global + self.equations.len();
+        let mut values = DVector::zeros(count);
+        let mut slopes = DMatrix::zeros(count, layout.size);
+        for (row, (value, slope)) in equalities.iter().zip(&equality_slopes).enumerate() {
+            values[row] = *value;
+            slopes.set_row(row, &slope.transpose());
+        }
+        let mut hessian = match y {
+            Some(y) => {
+                let of = (layout, setting.model, &self.path);
+                let weights = setting.weights(&net, Some(&y.as_slice()[..global]));
+                chain::hessian(of, &jets, z, weights, true)
+            }
+            None => DMatrix::identity(layout.size, layout.size),
+        };
+        for one in times.clone() {
+            gradient[one] += 1.0 / period;
+            if y.is_some() {
+                for other in times.clone() {
+                    hessian[(one, other)] -= 1.0 / (period * period);
+                }
+            }
+        }
+        for (row, equation) in (global..).zip(&self.equations) {
+            let Some((element, place, level)) = self.level(equation) else {
+                if let Equation::Even { element } = *equation {
+                    for (element, sign) in [(element, 1.0), (element + 1, -1.0)] {
+                        let (at, share) = (layout.time_index(element), draft.spans[element].1);
+                        values[row] += sign * z[at] / share;
+                        slopes[(row, at)] = sign / share;
+                    }
+                }
+                continue;
+            };
+            values[row] = level.value;
+            let by = (0..4 + 2 * BENDS).map(|p| {
+                let (phi, rate) = (place.d_phi[p], place.d_rate[p]);
+                let by = Vector4::new(phi.x, phi.y, rate.x, rate.y);
+                (layout.parameter_index(element, p), by)
+            });
+            let by: Vec<(usize, Vector4<f64>)> = by.collect();
+            for (at, by) in &by {
+                slopes[(row, *at)] += level.slope.dot(by);
+            }
+            if let Equation::Limit { .. } | Equation::Meets { .. } = equation {
+                slopes[(row, layout.time_index(element))] += 1.0;
+            }
+            let Some(y) = y.filter(|_| equation.stands_in_at().is_none()) else {
+                continue;
+            };
+            for (at, along) in &by {
+                let curved = level.curved * along * y[row];
+                for (other, by) in &by {
+                    hessian[(*at, *other)] += curved.dot(by);
+                }
+            }
+        }
+        let forces = self.forces(&slopes, global);
+        Some(Look {
+            net,
+            gradient,
+            values,
+            slopes,
+            forces,
+            hessian,
+        })
+    }
+
+    /// What each multiplier weighs in the stationarity.
+    fn forces(&self, slopes: &DMatrix<f64>, global: usize) -> DMatrix<f64> {
+        let mut forces = slopes.transpose();
+        for (row, equation) in (global..).zip(&self.equations) {
+            if let Some((element, s)) = equation.stands_in_at() {
+                let way = self.place(element, s).rate.normalize();
+                let corner = if s > 0.5 { element + 1 } else { element };
+                let corner = self.draft.layout.corner_index(corner);
+                forces.column_mut(row).fill(0.0);
+                forces[(corner, row)] = way.x;
+                forces[(corner + 1, row)] = way.y;
+            }
+        }
+        forces
+    }
+
+    fn solved(mut self, look: &Look, y: &DVector<f64>) -> Outcome {
+        let wanted = self.wanted(y, look.values.len() - self.equations.len());
+        let Draft {
+            phases,
+            phase_of,
+            layout,
+            z,
+            ..
+        } = &mut self.draft;
+        let period = layout.period(z);
+        let mut until = 0.0;
+        for (number, phase) in phases.iter_mut().enumerate() {
+            phase.from = until;
+            let own = (0..layout.arcs()).filter(|&element| phase_of[element] == number);
+            until += own.map(|k| z[layout.time_index(k)]).sum::<f64>() / period;
+            phase.to = until;
+        }
+        let speed = look.net.distance() / period;
+        let (draft, net) = (self.draft, look.net);
+        Outcome::Solved(Box::new(Curve { draft, net, speed }), wanted)
+    }
+}
+
+impl Look {
+    fn residual(&self, y: &DVector<f64>) -> f64 {
+        let dual = &self.gradient + &self.forces * y;
+        dual.amax().max(self.values.amax())
+    }
+
+    /// The step, and the multipliers after it.
+    fn newton(&self) -> Option<(DVector<f64>, DVector<f64>)> {
+        let (size, count) = (self.gradient.len(), self.values.len());
+        let mut matrix = DMatrix::zeros(size + count, size + count);
+        matrix
+            .view_mut((0, 0), (size, size))
+            .copy_from(&self.hessian);
+        matrix
+            .view_mut((size, 0), (count, size))
+            .copy_from(&self.slopes);
+        matrix
+            .view_mut((0, size), (size, count))
+            .copy_from(&self.forces);
+        let mut right = DVector::zeros(size + count);
+        right.rows_mut(0, size).copy_from(&-&self.gradient);
+        right.rows_mut(size, count).copy_from(&-&self.values);
+        let all = matrix.lu().solve(&right)?;
+        let finite = all.iter().all(|value| value.is_finite());
+        finite.then(|| {
+            (
+                all.rows(0, size).into_owned(),
+                all.rows(size, count).into_owned(),
+            )
+        })
+    }
+}
