@@ -78,7 +78,7 @@ def test_scipy_swims_a_circle_as_far(pair: tuple[sw.Swimmer, Robot]) -> None:
     np.testing.assert_allclose(have, pose, rtol=0, atol=1e-11)
 
 
-@pytest.mark.parametrize("words", [["turning", "--max-angle=1.2"], ["sideways", "--max-angle=1.2"], ["displacement", "--max-angle=2.8"]])
+@pytest.mark.parametrize("words", [["turning", "--max-angle=1.2"], ["sideways", "--max-angle=1.2"], ["displacement", "--max-angle=1.2"]])
 def test_answers_are_those_of_the_command(purcell: sw.Swimmer, words: list[str]) -> None:
     command = [sys.executable, "-m", "swimmer", "optimize", *words, "--swimmer=purcell", "--json"]
     told = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
@@ -86,6 +86,17 @@ def test_answers_are_those_of_the_command(purcell: sw.Swimmer, words: list[str])
     assert {key: value for key, value in have.items() if key != "seconds"} == {
         key: value for key, value in told.items() if key != "seconds"
     }
+
+
+def test_what_has_no_optimum_says_so(purcell: sw.Swimmer) -> None:
+    with pytest.warns(sw.Doubt, match="no gait within these bounds carries farthest.*optimize speed"):
+        limit = sw.optimize.displacement(purcell, max_angle=2.8)
+    told = limit.to_dict()
+    assert told["exists"] is False
+    nearest = told["best_member"]["displacement_over_length"]
+    assert told["local_optimum"]["displacement_over_length"] < nearest < told["supremum_over_length"]
+    assert sw.simulate(purcell, limit.gait).displacement_over_length == pytest.approx(nearest, rel=1e-9)
+    assert sw.optimize.displacement(purcell, max_angle=2.8, simple=True).displacement_over_length > 0.1
 
 
 def test_the_gait_file_is_the_commands(farthest: sw.OptimalGait, tmp_path: Path) -> None:
