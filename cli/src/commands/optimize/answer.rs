@@ -11,6 +11,51 @@ use crate::failure::{Failure, Outcome};
 use crate::own_robot::PERIOD_S;
 use crate::quantity::{self, Rows};
 
+/// What every answer of a fastest gait tells first.
+#[derive(Debug, Serialize)]
+pub(super) struct Pace {
+    pub(super) speed_over_length_per_s: f64,
+    pub(super) speed_m_per_s: f64,
+    /// |d| of a cycle.
+    displacement_over_length: f64,
+    pub(super) displacement_m: f64,
+    pub(super) period_s: f64,
+}
+
+impl Pace {
+    /// Of a swimmer with this speed \[1/s\] and way of a cycle, both over L, and this period \[s\].
+    pub(super) fn new(file: &SwimmerFile, (speed, distance): (f64, f64), period: f64) -> Self {
+        let length = file.swimmer.total_length();
+        Self {
+            speed_over_length_per_s: speed,
+            speed_m_per_s: speed * length,
+            displacement_over_length: distance,
+            displacement_m: distance * length,
+            period_s: period,
+        }
+    }
+
+    pub(super) fn rows(&self, rows: &mut Rows) {
+        rows.row(
+            "speed",
+            format!(
+                "{} a second   |d|/(L T) = {:.10} 1/s",
+                quantity::length(self.speed_m_per_s),
+                self.speed_over_length_per_s
+            ),
+        )
+        .row(
+            "displacement",
+            format!(
+                "{} per cycle   |d|/L = {:.10}",
+                quantity::length(self.displacement_m),
+                self.displacement_over_length
+            ),
+        )
+        .row("period", format!("{:.6} s", self.period_s));
+    }
+}
+
 /// What every answer of a gait with the paper's symmetries tells of its quarter.
 #[derive(Debug, Serialize)]
 pub(crate) struct Quarter {

@@ -15,7 +15,7 @@ use crate::progress::Progress;
 use crate::quantity::{self, Rows};
 use crate::threads;
 
-use super::answer::{Closing, arc_rows, unfolded};
+use super::answer::{Closing, Pace, arc_rows, unfolded};
 
 /// What limits the servos.
 pub(super) struct Limits {
@@ -94,12 +94,8 @@ fn torque(file: &SwimmerFile, viscosity: f64) -> Result<Torque, Failure> {
 struct Answer {
     #[serde(skip)]
     name: String,
-    speed_over_length_per_s: f64,
-    speed_m_per_s: f64,
-    /// |d| of a cycle.
-    displacement_over_length: f64,
-    displacement_m: f64,
-    period_s: f64,
+    #[serde(flatten)]
+    pace: Pace,
     /// Of the displacement against the cycle's mean heading.
     heading_rad: Option<f64>,
     rotation_rad: f64,
@@ -129,7 +125,6 @@ impl Answer {
         (seconds, path): (f64, Option<PathBuf>),
     ) -> Self {
         let gait = &found.gait;
-        let length = file.swimmer.total_length();
         let shares = found
             .limits
             .iter()
@@ -137,11 +132,11 @@ impl Answer {
         let words: Vec<&str> = shares.clone().map(|(word, _)| word).collect();
         Self {
             name: file.name.clone(),
-            speed_over_length_per_s: found.speed_over_length,
-            speed_m_per_s: found.speed_over_length * length,
-            displacement_over_length: found.distance_over_length,
-            displacement_m: found.distance_over_length * length,
-            period_s: found.period,
+            pace: Pace::new(
+                file,
+                (found.speed_over_length, found.distance_over_length),
+                found.period,
+            ),
             heading_rad: gait.heading(),
             rotation_rad: gait.rotation,
             efficiency: gait.efficiency,
@@ -168,34 +163,18 @@ impl fmt::Display for Answer {
             .map(|(limit, share)| format!("{limit} {:.1} % of the cycle", share * 100.0))
             .collect();
         let [front, back] = self.peak_rates_rad_s.map(quantity::angle);
-        rows.row(
-            "speed",
-            format!(
-                "{} a second   |d|/(L T) = {:.10} 1/s",
-                quantity::length(self.speed_m_per_s),
-                self.speed_over_length_per_s
-            ),
-        )
-        .row(
-            "displacement",
-            format!(
-                "{} per cycle   |d|/L = {:.10}",
-                quantity::length(self.displacement_m),
-                self.displacement_over_length
-            ),
-        )
-        .row("period", format!("{:.6} s", self.period_s))
-        .row("efficiency ξ", format!("{:.10}", self.efficiency))
-        .row("limited by", limited_by.join(", "))
-        .row(
-            "takes at most",
-            format!(
-                "{} mW, {front} and {back} a second, {} and {} mN m",
-                quantity::small(self.peak_power_w * 1e3),
-                quantity::small(self.peak_torques_n_m[0] * 1e3),
-                quantity::small(self.peak_torques_n_m[1] * 1e3)
-            ),
-        );
+        self.pace.rows(&mut rows);
+        rows.row("efficiency ξ", format!("{:.10}", self.efficiency))
+            .row("limited by", limited_by.join(", "))
+            .row(
+                "takes at most",
+                format!(
+                    "{} mW, {front} and {back} a second, {} and {} mN m",
+                    quantity::small(self.peak_power_w * 1e3),
+                    quantity::small(self.peak_torques_n_m[0] * 1e3),
+                    quantity::small(self.peak_torques_n_m[1] * 1e3)
+                ),
+            );
         if let Some(refinement) = self.refinement {
             rows.row(
                 "refined",
@@ -207,7 +186,7 @@ impl fmt::Display for Answer {
                 "not certified",
                 format!(
                     "another gait is {:.4} % faster, but meets not all conditions",
-                    (speed / self.speed_over_length_per_s - 1.0) * 100.0
+                    (speed / self.pace.speed_over_length_per_s - 1.0) * 100.0
                 ),
             );
         }
@@ -223,9 +202,9 @@ impl fmt::Display for Answer {
             f,
             "{}: the fastest gait swims {} in {:.2} s, {} a second\n{rows}",
             self.name,
-            quantity::length(self.displacement_m),
-            self.period_s,
-            quantity::length(self.speed_m_per_s),
+            quantity::length(self.pace.displacement_m),
+            self.pace.period_s,
+            quantity::length(self.pace.speed_m_per_s),
         )
     }
 }

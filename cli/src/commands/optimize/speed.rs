@@ -15,7 +15,7 @@ use crate::output::Output;
 use crate::progress::Progress;
 use crate::quantity::{self, Rows};
 
-use super::answer::{Closing, arc_rows, unfolded};
+use super::answer::{Closing, Pace, arc_rows, unfolded};
 use super::front::{FrontAnswer, FrontFile};
 use super::limited::{Limits, within};
 use super::robust::{Brings, Robustly, as_written, refused};
@@ -168,12 +168,8 @@ impl Speed {
 struct Answer {
     #[serde(skip)]
     name: String,
-    speed_over_length_per_s: f64,
-    speed_m_per_s: f64,
-    /// |d| of a cycle.
-    displacement_over_length: f64,
-    displacement_m: f64,
-    period_s: f64,
+    #[serde(flatten)]
+    pace: Pace,
     /// Of the displacement against the cycle's mean heading.
     heading_rad: f64,
     rotation_rad: f64,
@@ -204,14 +200,13 @@ struct Answer {
 impl Answer {
     fn new(file: &SwimmerFile, found: &Fastest, seconds: f64, output: Option<PathBuf>) -> Self {
         let gait = &found.gait;
-        let length = file.swimmer.total_length();
         Self {
             name: file.name.clone(),
-            speed_over_length_per_s: found.speed_over_length,
-            speed_m_per_s: found.speed_over_length * length,
-            displacement_over_length: found.distance_over_length,
-            displacement_m: found.distance_over_length * length,
-            period_s: found.period,
+            pace: Pace::new(
+                file,
+                (found.speed_over_length, found.distance_over_length),
+                found.period,
+            ),
             heading_rad: found.heading,
             rotation_rad: gait.rotation,
             arcs: gait.arcs.clone(),
@@ -232,24 +227,8 @@ impl Answer {
 impl fmt::Display for Answer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut rows = Rows::default();
+        self.pace.rows(&mut rows);
         rows.row(
-            "speed",
-            format!(
-                "{} a second   |d|/(L T) = {:.10} 1/s",
-                quantity::length(self.speed_m_per_s),
-                self.speed_over_length_per_s
-            ),
-        )
-        .row(
-            "displacement",
-            format!(
-                "{} per cycle   |d|/L = {:.10}",
-                quantity::length(self.displacement_m),
-                self.displacement_over_length
-            ),
-        )
-        .row("period", format!("{:.6} s", self.period_s))
-        .row(
             "leads",
             format!("{} off the mean heading", quantity::angle(self.heading_rad)),
         )
@@ -261,7 +240,7 @@ impl fmt::Display for Answer {
         let better = |speed: f64| {
             format!(
                 "{:.4} % faster",
-                (speed / self.speed_over_length_per_s - 1.0) * 100.0
+                (speed / self.pace.speed_over_length_per_s - 1.0) * 100.0
             )
         };
         if let Some(speed) = self.longer_speed_over_length_per_s {
@@ -314,9 +293,9 @@ impl fmt::Display for Answer {
             "{}: the {}fastest gait swims {} in {:.2} s, {} a second\n{rows}",
             self.name,
             if self.robust.is_some() { "robust " } else { "" },
-            quantity::length(self.displacement_m),
-            self.period_s,
-            quantity::length(self.speed_m_per_s),
+            quantity::length(self.pace.displacement_m),
+            self.pace.period_s,
+            quantity::length(self.pace.speed_m_per_s),
         )
     }
 }
