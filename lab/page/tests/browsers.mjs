@@ -130,16 +130,16 @@ export class Tab {
     });
   }
 
-  /** Drops files onto the page. */
+  /** Drops files onto the page, once it lets them be dropped. */
   async drop(...paths) {
     const files = paths.map((path) => ({ name: path.split("/").pop(), base64: readFileSync(path, "base64") }));
-    await this.evaluate((files) => {
+    const taken = (files) => {
       const data = new DataTransfer();
       for (const { name, base64 } of files) data.items.add(new File([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))], name));
-      for (const type of ["dragover", "drop"]) {
-        window.dispatchEvent(new DragEvent(type, { dataTransfer: data, bubbles: true, cancelable: true }));
-      }
-    }, files);
+      const refused = (type) => window.dispatchEvent(new DragEvent(type, { dataTransfer: data, bubbles: true, cancelable: true }));
+      return !refused("dragover") && !refused("drop");
+    };
+    await this.until(taken, files, "a place for files");
     await new Promise((resolve) => setTimeout(resolve, 100));
     await this.settled();
   }

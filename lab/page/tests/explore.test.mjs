@@ -90,6 +90,7 @@ for (const [name, launch] of Object.entries(BROWSERS)) {
       assert.ok(Math.abs(told.displacement_over_length - swum.displacement_over_length) < 1e-9);
       await tab.until(() => document.querySelector(".certificate.pass:not(.stale)") !== null, undefined, "its certificate");
       await tab.drop(wrong);
+      await tab.until(() => document.querySelector(".error") !== null, undefined, "a refusal");
       assert.match(await tab.text(".error"), /wrong\.txt: .*gait/);
       assert.deepEqual(tab.said, []);
       await tab.close();

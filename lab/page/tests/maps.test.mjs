@@ -39,6 +39,7 @@ for (const [name, launch] of Object.entries(BROWSERS)) {
     const tab = await Tab.open(browser);
     await tab.click("#tab-maps");
     await tab.drop(bad);
+    await tab.until(() => document.querySelector("#maps [role=alert]") !== null, undefined, "a refusal");
     assert.match(await tab.text("#maps [role=alert]"), /no-map\.json: its format is "another 2"/);
     await tab.drop(good);
     await tab.until(() => document.querySelector("#cells") !== null, undefined, "the map");

@@ -1,10 +1,10 @@
 // Files dropped anywhere on a room, or chosen; a room says what it opens.
 
-import { useEffect } from "preact/hooks";
+import { useLayoutEffect } from "preact/hooks";
 
-/** Calls `open` for files dropped on the page while `place` is to be seen. */
+/** Calls `open` for files dropped on the page while `place` is to be seen, from the moment that it is. */
 export function useDrop(place: string, open: (files: File[]) => void): void {
-  useEffect(() => {
+  useLayoutEffect(() => {
     const here = () => document.getElementById(place)?.offsetParent !== null;
     const over = (event: DragEvent) => {
       if (here() && event.dataTransfer?.types.includes("Files")) event.preventDefault();
