@@ -79,6 +79,11 @@ const TRIED_AT_ONCE: usize = 5;
 const SPREAD: f64 = 2e-4;
 /// What carries this much farther, relatively, is another gait.
 const FARTHER: f64 = 1e-5;
+/// Kinds whose gaps are closed, and by how much they differ, relatively, while gaps are wide.
+const CLOSED: usize = 2;
+const ALIKE: f64 = 1e-4;
+/// So much less, relatively, a kind may carry while gaps are wide.
+const WIDE: f64 = 1e-2;
 
 /// How far gaits carry that are no optimum, where they carry farther than the optimum that was found (none for none). None where
 /// no such gait was met, or the problem asks for simple gaits, or has no upper bound.
@@ -113,50 +118,59 @@ pub fn displacement_supremum(
         sign: problem.heading().sign(),
     };
     let least = found.map_or(0.0, |gait| gait.displacement_over_length.abs());
-    let mut known = least;
-    let mut starts: Vec<Vec<Vector2<f64>>> = found.map(of_gait).into_iter().collect();
-    if found.is_none_or(|gait| gait.outdone_over_length.is_some()) {
-        let (_, seen) = best(problem, &model, (&bounds, &region), 0.0);
-        let farthest = seen.farthest(problem, &model, (&bounds, &region), least * (1.0 + OUTDONE));
-        if let Some(gait) = farthest {
-            known = gait.displacement_over_length.abs();
-            starts.push(of_gait(&gait));
-        }
-        starts.extend(across(problem));
-    }
-    let of_start = |start: &Vec<_>| explored(&ground, start);
-    let farther = |(_, a): &(_, f64), (_, b): &(_, f64)| a.total_cmp(b);
-    let first = starts.iter().map(of_start).max_by(farther)?;
-    if first.1 <= least * (1.0 + FARTHER) || first.1 <= 0.0 {
-        return None;
-    }
-    let tighter = tighter(problem).filter_map(|problem| explored_alone(&problem, &model));
-    let tighter = tighter.map(|(start, _)| of_start(&start));
-    let (mut here, _) = tighter.chain([first]).max_by(farther)?;
-    let mut members: Vec<Member> = Vec::new();
-    for mesh in FINER {
-        let (there, _) = ground.climbed(&here, mesh, FINE_MOVES);
-        let farther = members.last().map_or(least * (1.0 + FARTHER), |last| {
-            last.displacement_over_length.abs()
-        });
-        if ground.is_member(&there, mesh)
-            && let Some(member) = Member::new(problem, &model, &there, mesh.gap)
-            && ground.sign * member.displacement_over_length > farther
-        {
-            members.push(member);
-        }
-        here = there;
-    }
-    let last = members.last()?.displacement_over_length;
+    let (own, known) = kinds(&ground, problem, found);
+    let tighter = tighter(problem).flat_map(|problem| {
+        let region = Region::new(&problem.touching(), &problem.swimmer.links);
+        let within = Ground {
+            region: &region,
+            ..ground
+        };
+        let (kinds, _) = kinds(&within, &problem, displacement(&problem).ok().as_ref());
+        kinds.into_iter().take(CLOSED)
+    });
+    let tighter = tighter.map(|(kind, _)| explored(&ground, &kind));
+    let mut kinds = distinct(own.into_iter().chain(tighter).collect());
+    kinds.retain(|(_, carried)| *carried > least * (1.0 - WIDE));
+    let closed = kinds.iter().take(CLOSED).map(|(kind, _)| {
+        let members = ground.members(problem, kind, least * (1.0 + FARTHER));
+        (members.last().map_or(0.0, Member::carried), members)
+    });
+    let (_, members) = closed.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    let last = members.last()?.carried();
     let grown = match members.as_slice() {
-        [.., before, _] => last - before.displacement_over_length,
+        [.., before, _] => last - before.carried(),
         _ => 0.0,
     };
     Some(Supremum {
-        over_length: ground.sign * (last + grown).abs().max(known),
-        uncertainty: grown.abs().max(SPREAD * last.abs()),
+        over_length: ground.sign * (last + grown).max(known),
+        uncertainty: grown.max(SPREAD * last),
         members,
     })
+}
+
+impl Ground<'_> {
+    /// Gaits of one kind with narrower gaps from one to the next, each of which carries farther than the one before, and the first
+    /// farther than `least`.
+    fn members(
+        &self,
+        problem: &DisplacementProblem,
+        kind: &[Vector2<f64>],
+        least: f64,
+    ) -> Vec<Member> {
+        let mut here = kind.to_vec();
+        let mut members: Vec<Member> = Vec::new();
+        for mesh in FINER {
+            (here, _) = self.climbed(&here, mesh, FINE_MOVES);
+            let farther = members.last().map_or(least, Member::carried);
+            if self.is_member(&here, mesh)
+                && let Some(member) = Member::new(problem, self.model, &here, mesh.gap)
+                && self.sign * member.displacement_over_length > farther
+            {
+                members.push(member);
+            }
+        }
+        members
+    }
 }
 
 /// Problems whose gaits are gaits of this one.
@@ -180,19 +194,37 @@ fn tighter(problem: &DisplacementProblem) -> impl Iterator<Item = DisplacementPr
     all.map(|bounds| DisplacementProblem { bounds, ..*problem })
 }
 
-/// What the local optimum of a problem climbs to within that problem's own bounds.
-fn explored_alone(
+/// A polygon at rest and what it carries.
+type Kind = (Vec<Vector2<f64>>, f64);
+
+/// What climbs from a problem's own starts come to, farthest first, and how far over L gaits carry that were met by the search for
+/// optima.
+fn kinds(
+    ground: &Ground<'_>,
     problem: &DisplacementProblem,
-    model: &Model<f64>,
-) -> Option<(Vec<Vector2<f64>>, f64)> {
-    let found = displacement(problem).ok()?;
-    let region = Region::new(&problem.touching(), &problem.swimmer.links);
-    let ground = Ground {
-        model,
-        region: &region,
-        sign: problem.heading().sign(),
-    };
-    Some(explored(&ground, &of_gait(&found)))
+    found: Option<&OptimalGait>,
+) -> (Vec<Kind>, f64) {
+    let least = found.map_or(0.0, |gait| gait.displacement_over_length.abs());
+    let bounds = problem.touching();
+    let within = (&bounds, ground.region);
+    let (_, seen) = best(problem, ground.model, within, 0.0);
+    let farthest = seen.farthest(problem, ground.model, within, least * (1.0 + OUTDONE));
+    let known = farthest
+        .as_ref()
+        .map_or(least, |gait| gait.displacement_over_length.abs());
+    let gaits = found.into_iter().chain(&farthest).map(of_gait);
+    let starts = gaits.chain(across(problem));
+    (
+        distinct(starts.map(|start| explored(ground, &start)).collect()),
+        known,
+    )
+}
+
+/// Farthest first, without those that carry as far as another.
+fn distinct(mut kinds: Vec<Kind>) -> Vec<Kind> {
+    kinds.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    kinds.dedup_by(|(_, a), (_, b)| (*b - *a).abs() < ALIKE * *b);
+    kinds
 }
 
 /// The first quarter of a gait.
@@ -213,7 +245,7 @@ fn across(problem: &DisplacementProblem) -> impl Iterator<Item = Vec<Vector2<f64
 }
 
 /// What a start climbs to, with every slit that pays, and how far that carries.
-fn explored(ground: &Ground<'_>, start: &[Vector2<f64>]) -> (Vec<Vector2<f64>>, f64) {
+fn explored(ground: &Ground<'_>, start: &[Vector2<f64>]) -> Kind {
     let (mut here, mut carried) = ground.climbed(start, COARSE, COARSE_MOVES);
     let mut tried = 0;
     'further: while tried < MOST_TRIED {
@@ -233,6 +265,11 @@ fn explored(ground: &Ground<'_>, start: &[Vector2<f64>]) -> (Vec<Vector2<f64>>, 
 }
 
 impl Member {
+    /// |X| over L.
+    fn carried(&self) -> f64 {
+        self.displacement_over_length.abs()
+    }
+
     /// The cycle of a quarter, at constant power, swum by the model; none where it cannot be.
     fn new(
         problem: &DisplacementProblem,
