@@ -93,7 +93,7 @@ pub use atlas::{
     Atlas, AtlasError, AtlasProblem, Optimum, StartCurves, Watch, atlas, atlas_watched,
 };
 pub use batch::{Batch, ConnectionsAndPowers, ManyFirstDerivatives};
-pub use certificate::{Certificate, Check, Verdict};
+pub use certificate::{Certificate, Check, Condition, Verdict};
 pub use certify::{CertifyError, certify};
 pub use continuation::{
     Continuation, ContinuationError, ContinuationProblem, Event, EventKind, Fold, OtherSide,

@@ -22,7 +22,6 @@
 )]
 
 mod border;
-mod certificate;
 mod crossing;
 mod error;
 mod piece;
@@ -34,14 +33,14 @@ use swimmer_model::{Gait as _, Model, Stroke, Swimmer};
 
 pub use error::TurningError;
 
-use crate::OptimalGait;
-use crate::certify::samples_suffice;
+use crate::certify::certified;
 use crate::cycle::Cycle;
 use crate::height_map::legendre::gauss;
 use crate::height_map::{Level, LevelSearch, level_seeds};
 use crate::optimal_gait::{Arc, Solution};
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
+use crate::{Certificate, OptimalGait};
 use border::Border;
 use piece::{Piece, close_up};
 use walk::{Domain, curvature};
@@ -89,22 +88,30 @@ const STEPS: f64 = 240.0;
 /// ```
 pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
     let model = validated(&problem.swimmer, &problem.bounds, GaitClass::Closed)?;
-    let found = at_resolution(problem, &model, 1.0)?;
-    if samples_suffice(&model, &found.gait) {
+    let mut found = at_resolution(problem, &model, 1.0)?;
+    // As many samples as the certificate asks for, where some number of them will do.
+    for times in FINER {
+        if found.gait.certificate.pass() {
+            break;
+        }
+        if let Ok(finer) = at_resolution(problem, &model, times) {
+            found = finer;
+        }
+    }
+    let Turning { gait, .. } = &found;
+    if gait.certificate.pass() {
         return Ok(found);
     }
-    // As many samples as the certificate from a file asks for, where some number of them will do.
-    let finer = FINER.into_iter().find_map(|times| {
-        let finer = at_resolution(problem, &model, times).ok()?;
-        samples_suffice(&model, &finer.gait).then_some(finer)
-    });
-    Ok(finer.unwrap_or(found))
+    Err(TurningError::NotCertified {
+        rotation: gait.rotation,
+        failed: gait.certificate.failures(),
+    })
 }
 
 /// How many times as close samples may lie.
 const FINER: [f64; 3] = [2.0, 4.0, 8.0];
 
-/// As [`turning`], with so many times as many samples.
+/// As [`turning`], with so many times as many samples, whether it is certified or not.
 fn at_resolution(
     problem: &TurningProblem,
     model: &Model<f64>,
@@ -140,7 +147,7 @@ fn at_resolution(
         let found = Loop::new(&pieces, model).ok_or_else(|| no_gait(&pieces))?;
         let rotation = found.stroke.rotation;
         bridged_supremum += rotation;
-        let outside = certificate::area(&pieces) > 0.0;
+        let outside = area(&pieces) > 0.0;
         if outside
             && best
                 .as_ref()
@@ -149,15 +156,8 @@ fn at_resolution(
             best = Some(found);
         }
     }
-    let gait = best
-        .ok_or(TurningError::NoRegion)?
-        .certified(problem, bounds, model, &domain);
-    if !gait.certificate.pass() {
-        return Err(TurningError::NotCertified {
-            rotation: gait.rotation,
-            failed: gait.certificate.failures(),
-        });
-    }
+    let best = best.ok_or(TurningError::NoRegion)?;
+    let gait = certified(best.gait(problem, bounds, model));
     Ok(Turning {
         gait,
         bridged_supremum,
@@ -332,11 +332,20 @@ fn at_constant_power(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Option<Ve
     Some(fractions)
 }
 
+/// Signed area that the pieces enclose \[rad²\].
+fn area(pieces: &[Piece]) -> f64 {
+    let twice: f64 = pieces
+        .iter()
+        .flat_map(|piece| piece.points.iter().zip(piece.points.iter().skip(1)))
+        .map(|(a, b)| a.perp(b))
+        .sum();
+    0.5 * twice
+}
+
 /// A loop round a region, swum.
 struct Loop {
     pieces: Vec<Piece>,
     cycle: Cycle,
-    gait: AnyGait,
     stroke: Stroke<f64>,
 }
 
@@ -346,32 +355,17 @@ impl Loop {
         let cycle = cycle(pieces, model)?;
         Some(Self {
             pieces: pieces.to_vec(),
-            gait: cycle.gait().ok()?,
             stroke: cycle.swum(model)?,
             cycle,
         })
     }
 
-    fn certified<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
-        self,
-        problem: &TurningProblem,
-        bounds: Bounds,
-        model: &Model<f64>,
-        domain: &Domain<'_, F>,
-    ) -> OptimalGait {
-        let certificate = certificate::certificate(model, domain, &self);
-        let ends = |piece: &Piece| {
-            piece
-                .points
-                .first()
-                .copied()
-                .zip(piece.points.last().copied())
-        };
+    fn gait(self, problem: &TurningProblem, bounds: Bounds, model: &Model<f64>) -> OptimalGait {
         let arc = |piece: &Piece| {
-            ends(piece).map(|(from, to)| Arc {
+            Some(Arc {
                 kind: piece.kind,
-                from: from.into(),
-                to: to.into(),
+                from: (*piece.points.first()?).into(),
+                to: (*piece.points.last()?).into(),
             })
         };
         OptimalGait::new(Solution {
@@ -383,7 +377,7 @@ impl Loop {
             links_cross: self.cycle.links_cross(model),
             cycle: self.cycle,
             stroke: self.stroke,
-            certificate,
+            certificate: Certificate::unasked(),
         })
     }
 }

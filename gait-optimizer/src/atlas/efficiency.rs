@@ -8,7 +8,7 @@ use super::barrier::Barrier;
 use super::distinct::Outline;
 use super::newton::{Settings, Stationary};
 use super::pipeline::MultiStart;
-use crate::certificate::{Certificate, Check};
+use crate::certificate::{Certificate, Check, Condition};
 use crate::closed_curve::Functional;
 use crate::extremal::gait::{Order, gait};
 use crate::extremal::{Walls, polish};
@@ -94,15 +94,15 @@ impl Efficiency<'_> {
         let quarter = self.solved(start, true)?;
         let same = (quarter.efficiency / closed.efficiency - 1.0).abs();
         let mut checks = quarter.certificate.checks().to_vec();
-        checks.push(Check::at_most("closed_curve_off_quarter", same, 1e-8));
+        checks.push(Condition::SameAsQuarter.check(same));
         checks.extend(
             closed
                 .certificate
                 .checks()
                 .iter()
-                .filter(|check| check.name == "ascent_directions")
+                .filter(|check| check.condition == Condition::NoAscent)
                 .map(|check| Check {
-                    name: "ascent_directions_without_symmetry",
+                    condition: Condition::NoAscentWithoutSymmetry,
                     ..*check
                 }),
         );

@@ -47,7 +47,7 @@ pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) ->
             for rotation in family.roots() {
                 let trace = family.shoot(rotation, FINE).and_then(|orbit| {
                     let momentum = family.momentum(rotation);
-                    LoopTrace::from_start(model, region, momentum, &orbit, samples)
+                    LoopTrace::from_start(model, momentum, &orbit, samples)
                 });
                 found.extend(trace);
             }
