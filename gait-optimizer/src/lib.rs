@@ -34,6 +34,7 @@
 //! | `certify` | the same conditions asked of any closed curve, from its samples alone |
 //! | [`closed_forms`] | formulas of the paper's appendix, mended |
 //! | `simple_shapes` | circles and squares over their amplitude |
+//! | `numerics` | halving, roots |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
 //!
 //! ```
@@ -78,6 +79,7 @@ mod immobile;
 mod loops;
 mod member;
 mod momentum;
+mod numerics;
 mod optimal_gait;
 mod parallel;
 mod problem;

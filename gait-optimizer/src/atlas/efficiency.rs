@@ -12,6 +12,7 @@ use crate::certificate::{Certificate, Check, Condition};
 use crate::closed_curve::Functional;
 use crate::extremal::gait::{Order, gait};
 use crate::extremal::{Walls, polish};
+use crate::numerics::halved;
 use crate::{Branch, EfficiencyProblem, OptimalGait};
 
 /// Curves are symmetric to within this, the sag of the outline that they are compared by \[rad\].
@@ -139,18 +140,11 @@ fn home(curve: &Series) -> f64 {
     };
     let mut best = (0.0, 0.0);
     for k in 0..LOOKS {
-        let (mut low, mut high) = (place(k), place(k + 1));
+        let (low, high) = (place(k), place(k + 1));
         if off(low) * off(high) > 0.0 {
             continue;
         }
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if off(low) * off(middle) <= 0.0 {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
+        let [low, _] = halved([low, high], 40, |u| off(low) * off(u) > 0.0);
         let out = curve.at(low).phi.sum();
         if out > best.1 {
             best = (low, out);

@@ -5,11 +5,11 @@ mod quarter;
 use swimmer_files::ArcKind;
 
 use super::height::Extremal;
-use crate::arcs::{EndCondition, Event, TracedArc, Tracer};
+use crate::arcs::{EndCondition, Event, Leg, TracedArc, Tracer};
 use crate::momentum::{Flow, Motion, State, Track, shape};
 use crate::region::{Bound, Region};
 use crate::runge_kutta::{Point, StepControl, System};
-pub(crate) use quarter::{Fate, Leg, MOST_ARCS, Quarter};
+pub(crate) use quarter::{Fate, MOST_ARCS, Quarter};
 
 /// Longest curve of a quarter \[rad\].
 const LONGEST_CURVE: f64 = 40.0;

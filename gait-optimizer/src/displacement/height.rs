@@ -6,8 +6,8 @@
 //! function of the geometric picture, exact along this extremal. It holds on bounds too, and unlike `λ₄ = −F₁/F₂` it is
 //! regular on φ₁ = −φ₂.
 
-use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
-use swimmer_model::{FirstDerivatives, Model};
+use nalgebra::{Matrix2, Matrix3x2, Vector2};
+use swimmer_model::Model;
 
 use crate::momentum::{Height, Momentum};
 
@@ -20,21 +20,6 @@ pub(crate) struct Extremal<'a> {
     pub(crate) sign: f64,
     /// `y_f` over L, in `λ₄ = λ₃ (y − y_f)`.
     pub(crate) final_y: f64,
-}
-
-/// What the costate equations need at one state.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Slopes {
-    /// λ₃ g + λ₄ f and λ₃ h + λ₄ q: minus λ₁ and λ₂ where `H_u = 0`.
-    pub(crate) momentum: Vector2<f64>,
-    /// Their partial derivatives in φ₁ (first column) and φ₂ (second column), θ, y held.
-    pub(crate) by_angle: Matrix2<f64>,
-    pub(crate) connection: Matrix3x2<f64>,
-    pub(crate) power: Matrix2<f64>,
-    /// The height.
-    pub(crate) height: f64,
-    /// The connection's curvature in the body's frame.
-    pub(crate) curvature: Vector3<f64>,
 }
 
 impl Extremal<'_> {
@@ -63,19 +48,6 @@ impl Extremal<'_> {
         self.momentum().evaluate(self.model, phi, pose)
     }
 
-    /// The height with its gradient, and everything that the costate equations need, from one look at the model.
-    pub(crate) fn height_and_slopes(
-        &self,
-        phi: &Vector2<f64>,
-        pose: &[f64; 3],
-    ) -> (Height, Slopes) {
-        let second = self.model.second_derivatives(phi);
-        (
-            self.momentum().height(&second, pose),
-            self.slopes_of(&second.first, pose),
-        )
-    }
-
     /// The final y for which the height vanishes at a state; none where every λ₄ or none makes it vanish.
     pub(crate) fn final_y_of_zero(
         model: &Model<f64>,
@@ -86,27 +58,6 @@ impl Extremal<'_> {
         let (sin, cos) = pose[2].sin_cos();
         let final_y = pose[1] + (cos * curvature.x - sin * curvature.y) / curvature.z;
         final_y.is_finite().then_some(final_y)
-    }
-
-    /// Everything that the costate equations need.
-    pub(crate) fn slopes(&self, phi: &Vector2<f64>, pose: &[f64; 3]) -> Slopes {
-        self.slopes_of(&self.model.first_derivatives(phi), pose)
-    }
-
-    fn slopes_of(&self, first: &FirstDerivatives<f64>, pose: &[f64; 3]) -> Slopes {
-        let mu = self.momentum().at(pose);
-        let weigh = |a: &Matrix3x2<f64>| a.tr_mul(&mu);
-        Slopes {
-            momentum: weigh(&first.connection),
-            by_angle: Matrix2::from_columns(&[
-                weigh(&first.d_connection[0]),
-                weigh(&first.d_connection[1]),
-            ]),
-            curvature: first.curvature(),
-            height: mu.dot(&first.curvature()),
-            connection: first.connection,
-            power: first.power,
-        }
     }
 }
 

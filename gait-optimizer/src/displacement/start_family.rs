@@ -7,9 +7,10 @@ use swimmer_files::{ArcKind, Bounds};
 
 use swimmer_model::Model;
 
-use super::flow::{Fate, Leg, Touch, TraceOptions, along_bounds, follow, is_end_line};
+use super::flow::{Fate, Touch, TraceOptions, along_bounds, follow, is_end_line};
 use super::height::Extremal;
 use super::search::{FINE, lasting};
+use crate::arcs::Leg;
 use crate::momentum::{Flow, Motion, State, Track, shape};
 use crate::region::{Bound, Piece, Region};
 use crate::runge_kutta::{Point, StepControl, advance};

@@ -3,18 +3,10 @@
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use crate::arcs::{EndCondition, Event, TracedArc, Tracer};
+use crate::arcs::{EndCondition, Event, Leg, TracedArc, Tracer};
 use crate::momentum::{Flow, Momentum, Motion, State, Track, shape};
 use crate::region::{Bound, Region};
 use crate::runge_kutta::{Point, StepControl, exact_step};
-
-/// One arc of an orbit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Leg {
-    pub(crate) motion: Motion,
-    pub(crate) from: State,
-    pub(crate) to: State,
-}
 
 /// Most arcs of an orbit.
 const MOST_ARCS: usize = 24;
@@ -104,6 +96,7 @@ impl Launch<'_> {
                 motion,
                 from: orbit.end,
                 to: end,
+                length,
             });
             orbit.end = end;
             travelled += length;

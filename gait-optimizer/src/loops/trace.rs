@@ -1,16 +1,14 @@
 //! A closed loop traced once more from any of its points, sampled at constant power.
 
-use nalgebra::Vector2;
-use swimmer_files::{ArcKind, GaitArc};
 use swimmer_model::Model;
 
-use super::flow::{ClosedOrbit, Leg};
+use super::flow::ClosedOrbit;
 use super::shooting::Closed;
 use crate::Arc;
+use crate::arcs::{ByPower, Leg, Trace};
 use crate::cycle::Cycle;
-use crate::momentum::{Flow, Momentum, Motion, State, pose, shape};
-use crate::region::Bound;
-use crate::runge_kutta::{Point, StepControl, System, advance, locate};
+use crate::momentum::{Flow, Momentum, Motion, State, pose};
+use crate::runge_kutta::{Point, StepControl, advance, locate};
 
 /// A loop, sampled.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,22 +22,10 @@ const CONTROL: StepControl = StepControl {
     tolerance: 1e-13,
     longest: f64::INFINITY,
 };
-/// Fewest samples of an arc: the interpolation takes five on the same side of a corner, and needs more where the arc is
-/// curved.
-const FEWEST: usize = 8;
-const FEWEST_CURVED: usize = 24;
+/// Samples fall on the quarters of the cycle, where a symmetric loop has its images meet.
+const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
 /// Arcs below this share of the cycle are crossings of a corner, not arcs.
 const LASTING: f64 = 1e-9;
-
-/// The same dynamics over the power length.
-struct ByPower<'a>(Flow<'a>);
-
-impl System<6> for ByPower<'_> {
-    fn rate(&self, z: &State) -> State {
-        let rate = self.0.rate(z);
-        rate.map(|part| part / rate[5])
-    }
-}
 
 impl LoopTrace {
     /// Traces a loop with about this many samples, from where it crosses φ₁ = φ₂ > 0 farthest out, or from its own start.
@@ -65,7 +51,7 @@ impl LoopTrace {
             whole
         });
         let start = [state[0], state[1], 0.0, 0.0, 0.0, 0.0];
-        Self::along(model, momentum, start, &route, total, samples)
+        Self::along((model, momentum), start, &route, samples)
     }
 
     /// Traces an orbit from its own start.
@@ -81,7 +67,7 @@ impl LoopTrace {
             .iter()
             .map(|leg| (leg.motion, leg.to[5] - leg.from[5]))
             .collect();
-        Self::along(model, momentum, start, &route, orbit.end[5], samples)
+        Self::along((model, momentum), start, &route, samples)
     }
 
     /// Where the loop crosses φ₁ = φ₂ > 0: the leg, and the state there.
@@ -139,84 +125,16 @@ impl LoopTrace {
     }
 
     fn along(
-        model: &Model<f64>,
-        momentum: Momentum,
+        of: (&Model<f64>, Momentum),
         start: State,
         route: &[(Motion, f64)],
-        total: f64,
         samples: usize,
     ) -> Option<Self> {
-        let mut cycle = Cycle {
-            u: vec![0.0],
-            phi: vec![shape(&start)],
-            corners: Vec::new(),
-            arcs: Vec::new(),
-        };
-        let mut arcs: Vec<Arc> = Vec::new();
-        let mut here = start;
-        let mut done = 0.0;
-        let mut directions: Vec<(Vector2<f64>, Vector2<f64>)> = Vec::new();
-        for &(motion, length) in route {
-            let system = ByPower(Flow {
-                model,
-                momentum,
-                motion,
-            });
-            let from = (done / total, shape(&here));
-            let set_out = system.0.direction(&here);
-            // Samples fall on the quarters of the cycle, where a symmetric loop has its images meet.
-            for (from, to) in between_quarters(done / total, (done + length) / total) {
-                let fewest = match motion {
-                    Motion::Along(track) if matches!(track.bound, Bound::Straight(_)) => FEWEST,
-                    _ => FEWEST_CURVED,
-                };
-                let intervals = (fewest..samples)
-                    .find(|&count| count as f64 >= samples as f64 * (to - from))
-                    .unwrap_or(samples.max(fewest));
-                for interval in 0..intervals {
-                    let step = (to - from) * total / intervals as f64;
-                    here = advance(&system, Point::new(&system, here), step, CONTROL)?.z;
-                    // Exactly `to` in the end: corners are named by their sample's fraction.
-                    let share = (interval + 1) as f64 / intervals as f64;
-                    cycle.u.push(if interval + 1 == intervals {
-                        to
-                    } else {
-                        from + (to - from) * share
-                    });
-                    cycle.phi.push(shape(&here));
-                }
-            }
-            directions.push((set_out, system.0.direction(&here)));
-            done += length;
-            let kind = kind(motion);
-            cycle.arcs.push(GaitArc {
-                kind,
-                from: from.0,
-                to: done / total,
-            });
-            let to = shape(&here);
-            arcs.push(Arc {
-                kind,
-                from: from.1.into(),
-                to: to.into(),
-            });
-        }
-        let ends = directions.iter().map(|(_, end)| *end);
-        let mut before = ends.clone().next_back()?;
-        for (arc, ((set_out, _), end)) in cycle.arcs.iter().zip(directions.iter().zip(ends)) {
-            if (set_out - before).norm() > 1e-7 {
-                cycle.corners.push(arc.from);
-            }
-            before = end;
-        }
-        if let (Some(u), Some(phi)) = (cycle.u.last_mut(), cycle.phi.last_mut()) {
-            *u = 1.0;
-            *phi = shape(&start);
-        }
-        if let Some(arc) = cycle.arcs.last_mut() {
-            arc.to = 1.0;
-        }
-        Some(Self { cycle, arcs })
+        let samples = Trace::new(of, start, route, &QUARTERS, samples)?.samples(true);
+        Some(Self {
+            arcs: samples.arcs(),
+            cycle: samples.closed(),
+        })
     }
 }
 
@@ -227,20 +145,4 @@ fn lasting(orbit: &ClosedOrbit) -> Vec<Leg> {
     legs.filter(|leg| leg.to[5] - leg.from[5] > LASTING * total)
         .copied()
         .collect()
-}
-
-/// An interval of the cycle, cut at the quarters inside it.
-fn between_quarters(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
-    let inner = [0.25, 0.5, 0.75]
-        .into_iter()
-        .filter(move |cut| *cut > from + 1e-6 && *cut < to - 1e-6);
-    let starts = std::iter::once(from).chain(inner.clone());
-    starts.zip(inner.chain(std::iter::once(to)))
-}
-
-fn kind(motion: Motion) -> ArcKind {
-    match motion {
-        Motion::Singular => ArcKind::Singular,
-        Motion::Along(track) => track.bound.kind(),
-    }
 }

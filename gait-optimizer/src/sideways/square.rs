@@ -5,6 +5,7 @@ use swimmer_model::{Gait, Model, Tolerance, trajectory};
 
 use super::SidewaysProblem;
 use crate::cycle::Cycle;
+use crate::numerics::halved;
 use crate::simple_shapes::top;
 use crate::{Arc, OptimalGait};
 
@@ -29,7 +30,10 @@ pub(super) fn turned(
         .windows(2)
         .find(|pair| matches!(pair, [a, b] if a.1 * b.1 <= 0.0));
     let start = if let Some([low, high]) = crossing {
-        crossed(*low, *high, |u| along_at(model, &any, u, d))
+        let [low, high] = halved([low.0, high.0], 60, |u| {
+            along_at(model, &any, u, d) * low.1 > 0.0
+        });
+        f64::midpoint(low, high)
     } else {
         let least = along
             .iter()
@@ -41,21 +45,6 @@ pub(super) fn turned(
     let cycle = begun_at(gait, &any, start.rem_euclid(1.0));
     let arcs = arcs(&cycle);
     super::gait((problem, model), (cycle, arcs))
-}
-
-/// Where a value changes sign between two places.
-fn crossed(low: (f64, f64), high: (f64, f64), value: impl Fn(f64) -> f64) -> f64 {
-    let (mut low, mut high) = (low, high);
-    for _ in 0..60 {
-        let middle = 0.5 * (low.0 + high.0);
-        let here = value(middle);
-        if here * low.1 > 0.0 {
-            low = (middle, here);
-        } else {
-            high = (middle, here);
-        }
-    }
-    0.5 * (low.0 + high.0)
 }
 
 /// d · heading at one instant.

@@ -1,17 +1,8 @@
 //! What following arcs comes to: the arcs of a quarter gait, and how it ended.
 
 use super::is_end_line;
+use crate::arcs::Leg;
 use crate::momentum::{Motion, State};
-
-/// One arc of a quarter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Leg {
-    pub(crate) motion: Motion,
-    pub(crate) from: State,
-    pub(crate) to: State,
-    /// Of its curve in the (φ₁, φ₂) plane \[rad\].
-    pub(crate) length: f64,
-}
 
 /// How a quarter came to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
