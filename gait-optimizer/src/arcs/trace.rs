@@ -6,7 +6,6 @@ use swimmer_model::Model;
 
 use crate::cycle::Samples;
 use crate::momentum::{Flow, Momentum, Motion, State, shape};
-use crate::region::Bound;
 use crate::runge_kutta::{Point, StepControl, System, advance};
 
 /// The arcs, each with its states from its beginning to its end.
@@ -61,7 +60,7 @@ impl Trace {
                 motion,
             });
             let fewest = match motion {
-                Motion::Along(track) if matches!(track.bound, Bound::Straight(_)) => FEWEST,
+                Motion::Along(track) if track.wall.edge().is_some() => FEWEST,
                 _ => FEWEST_CURVED,
             };
             let mut states = vec![here];
@@ -117,7 +116,7 @@ impl Trace {
             }
             let kind = match motion {
                 Motion::Singular => ArcKind::Singular,
-                Motion::Along(track) => track.bound.kind(),
+                Motion::Along(track) => track.wall.kind(),
             };
             samples.arcs.push((kind, from, samples.phi.len() - 1));
         }

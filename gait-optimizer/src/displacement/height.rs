@@ -47,18 +47,6 @@ impl Extremal<'_> {
     ) -> (Height, Matrix3x2<f64>, Matrix2<f64>) {
         self.momentum().evaluate(self.model, phi, pose)
     }
-
-    /// The final y for which the height vanishes at a state; none where every λ₄ or none makes it vanish.
-    pub(crate) fn final_y_of_zero(
-        model: &Model<f64>,
-        phi: &Vector2<f64>,
-        pose: &[f64; 3],
-    ) -> Option<f64> {
-        let curvature = model.first_derivatives(phi).curvature();
-        let (sin, cos) = pose[2].sin_cos();
-        let final_y = pose[1] + (cos * curvature.x - sin * curvature.y) / curvature.z;
-        final_y.is_finite().then_some(final_y)
-    }
 }
 
 #[cfg(test)]

@@ -78,7 +78,7 @@ impl Border {
     pub(super) fn between(from: &BorderPoint, to: &BorderPoint, share: f64) -> Vector2<f64> {
         let phi = from.phi.lerp(&to.phi, share);
         if from.track == to.track {
-            from.track.onto(&phi)
+            from.track.wall.onto(&phi)
         } else {
             phi
         }
@@ -115,7 +115,7 @@ fn next(
 ) -> Option<BorderPoint> {
     let track = here.track;
     let along = track.direction(&here.phi);
-    let ahead = |step: f64| track.onto(&(here.phi + along * step));
+    let ahead = |step: f64| track.wall.onto(&(here.phi + along * step));
     let mut step = spacing;
     while step > NARROWEST && along.dot(&track.direction(&ahead(step))) < TURN.cos() {
         step *= 0.5;

@@ -40,6 +40,6 @@ impl Quarter {
     /// Whether it ends on a way along φ₁ = −φ₂, which it would go back: no loop.
     pub(crate) fn ends_in_a_spike(&self) -> bool {
         let last = self.legs().last().map(|leg| leg.motion);
-        matches!(last, Some(Motion::Along(track)) if is_end_line(&track.bound))
+        matches!(last, Some(Motion::Along(track)) if is_end_line(track.wall.edge()))
     }
 }
