@@ -1,4 +1,4 @@
-//! Where something changes along a line: halving, and roots by regula falsi.
+//! Where something changes along a line: halving, roots by regula falsi, steps that are damped.
 
 /// The ends of an interval halved so often, the lower one the last place where a property is seen to hold that is taken to hold at
 /// its beginning and not at its end.
@@ -44,4 +44,25 @@ pub(crate) fn root(
         b = (at, here);
     }
     None
+}
+
+/// Shares of a step to try, each half of the one before.
+pub(crate) fn damped(most: f64) -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(most), |share| Some(0.5 * share))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_root_is_found_and_a_jump_is_none() {
+        let cubic = |at: f64| Some(at.powi(3) - 0.2);
+        let found = root([(0.0, -0.2), (1.0, 0.8)], 1e-15, cubic).unwrap();
+        assert!((found - 0.2_f64.cbrt()).abs() < 1e-14, "{found}");
+        let jump = |at: f64| Some(if at < 0.3 { -1.0 } else { 1.0 });
+        assert_eq!(root([(0.0, -1.0), (1.0, 1.0)], 1e-9, jump), None);
+        let [low, high] = halved([0.0, 1.0], 40, |at| at < 0.3);
+        assert!(low < 0.3 && 0.3 <= high && high - low < 1e-11);
+    }
 }
