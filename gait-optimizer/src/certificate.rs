@@ -188,7 +188,8 @@ impl Certificate {
         words.join(", ")
     }
 
-    /// The conditions of paper section IV for a quarter gait, and those of the full cycle. Lengths are over L.
+    /// The conditions of paper section IV for a quarter gait, and those of the full cycle. Lengths are over L. The arcs tell them
+    /// at once; to read them off the samples, as [`certify`](crate::certify()) does, takes longer than the search.
     pub(crate) fn of_displacement(
         region: &Region,
         trace: &QuarterTrace,
@@ -196,34 +197,7 @@ impl Certificate {
         displacement_over_length: f64,
         stroke: &Stroke<f64>,
     ) -> Self {
-        let evidence = &trace.evidence;
-        let mut checks = vec![
-            Condition::OnSymmetryLines.check(evidence.off_symmetry_lines),
-            Condition::Retraced.check(evidence.retraced),
-            Condition::FinalLambda4.check(evidence.final_lambda4),
-            Condition::StartTransversality.check(evidence.start_transversality),
-            Condition::EndTransversality.check(evidence.end_transversality),
-            Condition::StationaryQuarter.check(evidence.h_u),
-            Condition::OnZeroHeight.check(evidence.off_zero),
-        ];
-        checks.extend(
-            evidence
-                .legendre_clebsch
-                .map(|least| Condition::GrowsInwardsSteeply.check(least / evidence.steepest)),
-        );
-        checks.extend(
-            evidence
-                .multiplier
-                .map(|least| Condition::HeightOnBound.check(least)),
-        );
-        checks.extend(
-            evidence
-                .second_variation
-                .map(|form| Condition::NoConjugatePoint.check(form.least)),
-        );
-        if region.bounds().next().is_some() {
-            checks.push(Condition::KeepsBounds.check(evidence.overstepped));
-        }
+        let mut checks = trace.conditions.clone();
         // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
         let curve = if region.has_diagonals() {
             &trace.samples.phi

@@ -6,38 +6,32 @@ use nalgebra::Vector2;
 
 use super::{Cycle, Samples};
 use crate::arcs::{Leg, SMOOTH, Trace};
+use crate::certificate::{Check, Condition};
 use crate::displacement::height::Extremal;
 use crate::momentum::{Motion, State, pose, shape};
 use crate::region::Region;
 use second_variation::{Push, SecondVariation};
 
 /// Numbers gathered along the trace, for the certificate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Evidence {
+struct Evidence<'a> {
+    extremal: Extremal<'a>,
+    region: &'a Region,
+    /// x at the end.
+    final_x: f64,
     /// Largest `|H_u|` that the costate equations leave, over L.
-    pub(crate) h_u: f64,
+    h_u: f64,
     /// Largest distance of a singular arc from the zero of the height \[rad\].
-    pub(crate) off_zero: f64,
-    /// Smallest multiplier on a bound, over the largest |height| there; none without such arcs.
-    pub(crate) multiplier: Option<f64>,
+    off_zero: f64,
+    /// Smallest multiplier on a bound; none without such arcs.
+    multiplier: Option<f64>,
     /// Smallest slope of the height across a singular arc; none without such arcs.
-    pub(crate) legendre_clebsch: Option<f64>,
+    legendre_clebsch: Option<f64>,
     /// Largest gradient of the height along the quarter: the scale of that slope.
-    pub(crate) steepest: f64,
-    /// The second variation; none without singular arcs.
-    pub(crate) second_variation: Option<SecondVariation>,
+    steepest: f64,
+    /// None without singular arcs.
+    second_variation: Option<SecondVariation>,
     /// Largest overstepping of a bound \[rad\].
-    pub(crate) overstepped: f64,
-    /// |λ₁ + λ₂| at the start.
-    pub(crate) start_transversality: f64,
-    /// |λ₁ − λ₂| at the end.
-    pub(crate) end_transversality: f64,
-    /// |λ₄| at the end.
-    pub(crate) final_lambda4: f64,
-    /// |φ₁ − φ₂| at the start and |φ₁ + φ₂| at the end, the larger.
-    pub(crate) off_symmetry_lines: f64,
-    /// Largest jump between the arcs of the search and of the trace \[rad\].
-    pub(crate) retraced: f64,
+    overstepped: f64,
 }
 
 /// A quarter gait, sampled.
@@ -46,7 +40,8 @@ pub(crate) struct QuarterTrace {
     pub(crate) samples: Samples,
     /// Whether it begins and ends square to φ₁ = φ₂ and φ₁ = −φ₂.
     square: [bool; 2],
-    pub(crate) evidence: Evidence,
+    /// What its arcs were held against.
+    pub(crate) conditions: Vec<Check>,
 }
 
 impl QuarterTrace {
@@ -63,17 +58,18 @@ impl QuarterTrace {
         let route: Vec<_> = route.collect();
         let of = (extremal.model, extremal.momentum());
         let trace = Trace::new(of, start, &route, &[], samples)?;
-        let mut evidence = Evidence::new(&extremal, region, &trace)?;
+        let mut conditions = conditions(extremal, region, &trace)?;
         let ends = trace.arcs.iter().filter_map(|(_, states)| states.last());
         let gaps = ends.zip(legs).map(|(end, leg)| shape(end) - shape(&leg.to));
-        evidence.retraced = gaps.map(|gap| gap.norm()).fold(0.0, f64::max);
+        let retraced = gaps.map(|gap| gap.norm()).fold(0.0, f64::max);
+        conditions.push(Condition::Retraced.check(retraced));
         let [first, last] = trace.ends()?;
         // Square to φ₁ = φ₂ (φ₁ = −φ₂) is a direction without a part along it.
         let square = [first.x + first.y, last.x - last.y].map(|along| along.abs() < SMOOTH);
         Some(Self {
             samples: trace.samples(false),
             square,
-            evidence,
+            conditions,
         })
     }
 
@@ -91,60 +87,72 @@ impl QuarterTrace {
     }
 }
 
-impl Evidence {
-    fn new(extremal: &Extremal<'_>, region: &Region, trace: &Trace) -> Option<Self> {
-        let first = trace.arcs.first()?.1.first()?;
-        let last = *trace.arcs.last()?.1.last()?;
-        let mut evidence = Self {
-            h_u: 0.0,
-            off_zero: 0.0,
-            multiplier: None,
-            legendre_clebsch: None,
-            steepest: 0.0,
-            second_variation: None,
-            overstepped: f64::NEG_INFINITY,
-            start_transversality: costate(extremal, first).sum().abs(),
-            end_transversality: f64::NAN,
-            final_lambda4: (last[3] - extremal.final_y).abs(),
-            off_symmetry_lines: (first[0] - first[1]).abs().max((last[0] + last[1]).abs()),
-            retraced: f64::NAN,
-        };
-        // λ₁, λ₂ from H_u = 0 at the start. On a free arc their equations leave Ḣ_u = h (Φ̇₂, −Φ̇₁); along a bound the multiplier
-        // pushes along its normal and keeps H_u as it is.
-        let mut h_u = Vector2::zeros();
-        for (motion, states) in &trace.arcs {
-            let mut before: Option<(Vector2<f64>, f64, Option<Push>)> = None;
-            for z in states {
-                let (height, push) = evidence.evaluate(extremal, region, (motion, z), last[2]);
-                let phi = shape(z);
-                if let Some((from, lower, last)) = before
-                    && *motion == Motion::Singular
-                {
-                    let way = phi - from;
-                    h_u += Vector2::new(way.y, -way.x) * (0.5 * (lower + height));
-                    evidence.vary(last, push, way.norm());
-                }
-                evidence.h_u = evidence.h_u.max(h_u.norm());
-                before = Some((phi, height, push));
+/// The conditions of paper section IV.
+fn conditions(extremal: Extremal<'_>, region: &Region, trace: &Trace) -> Option<Vec<Check>> {
+    let first = trace.arcs.first()?.1.first()?;
+    let last = trace.arcs.last()?.1.last()?;
+    let mut evidence = Evidence {
+        extremal,
+        region,
+        final_x: last[2],
+        h_u: 0.0,
+        off_zero: 0.0,
+        multiplier: None,
+        legendre_clebsch: None,
+        steepest: 0.0,
+        second_variation: None,
+        overstepped: f64::NEG_INFINITY,
+    };
+    // λ₁, λ₂ from H_u = 0 at the start. On a free arc their equations leave Ḣ_u = h (Φ̇₂, −Φ̇₁); along a bound the multiplier
+    // pushes along its normal and keeps H_u as it is.
+    let mut h_u = Vector2::zeros();
+    for (motion, states) in &trace.arcs {
+        let mut before: Option<(Vector2<f64>, f64, Option<Push>)> = None;
+        for z in states {
+            let (height, push) = evidence.evaluate(motion, z);
+            let phi = shape(z);
+            if let Some((from, lower, last)) = before
+                && *motion == Motion::Singular
+            {
+                let way = phi - from;
+                h_u += Vector2::new(way.y, -way.x) * (0.5 * (lower + height));
+                evidence.vary(last, push, way.norm());
             }
+            evidence.h_u = evidence.h_u.max(h_u.norm());
+            before = Some((phi, height, push));
         }
-        let costate = costate(extremal, &last) + h_u;
-        evidence.end_transversality = (costate.x - costate.y).abs();
-        Some(evidence)
     }
+    let starts = costate(&extremal, first);
+    let ends = costate(&extremal, last) + h_u;
+    let off_lines = (first[0] - first[1]).abs().max((last[0] + last[1]).abs());
+    let mut checks = vec![
+        Condition::OnSymmetryLines.check(off_lines),
+        Condition::FinalLambda4.check((last[3] - extremal.final_y).abs()),
+        Condition::StartTransversality.check(starts.sum().abs()),
+        Condition::EndTransversality.check((ends.x - ends.y).abs()),
+        Condition::StationaryQuarter.check(evidence.h_u),
+        Condition::OnZeroHeight.check(evidence.off_zero),
+    ];
+    let steepest = evidence.steepest;
+    let clebsch = evidence.legendre_clebsch.map(|least| least / steepest);
+    checks.extend(clebsch.map(|least| Condition::GrowsInwardsSteeply.check(least)));
+    let pushes = evidence.multiplier;
+    checks.extend(pushes.map(|least| Condition::HeightOnBound.check(least)));
+    let form = evidence.second_variation;
+    checks.extend(form.map(|form| Condition::NoConjugatePoint.check(form.least)));
+    if region.bounds().next().is_some() {
+        checks.push(Condition::KeepsBounds.check(evidence.overstepped));
+    }
+    Some(checks)
+}
 
+impl Evidence<'_> {
     /// Takes in one state of an arc; the height there, and what a push does to the displacement, where pushes are free.
-    fn evaluate(
-        &mut self,
-        extremal: &Extremal<'_>,
-        region: &Region,
-        (motion, z): (&Motion, &State),
-        final_x: f64,
-    ) -> (f64, Option<Push>) {
-        let (phi, pose) = (shape(z), pose(z));
+    fn evaluate(&mut self, motion: &Motion, z: &State) -> (f64, Option<Push>) {
+        let (phi, pose, extremal) = (shape(z), pose(z), self.extremal);
         let second = extremal.model.second_derivatives(&phi);
         let height = extremal.momentum().height(&second, &pose);
-        self.overstepped = self.overstepped.max(region.overstepped(&phi));
+        self.overstepped = self.overstepped.max(self.region.overstepped(&phi));
         let slope = height.gradient.norm();
         self.steepest = self.steepest.max(slope);
         if let Motion::Along(track) = motion {
@@ -165,7 +173,7 @@ impl Evidence {
             extremal.sign,
             &second.first.curvature(),
             pose[2],
-            final_x - pose[0],
+            self.final_x - pose[0],
             left,
         );
         (height.value, Some(push))

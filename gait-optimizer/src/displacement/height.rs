@@ -1,15 +1,15 @@
-//! The switching function of the displacement problem, its gradient, and the control that keeps it at zero.
+//! The multipliers of the displacement problem.
 //!
 //! With the multipliers λ₃ = ±1 (x forwards or backwards) and `λ₄ = λ₃ (y − y_f)`, the paper's
 //! `F = F₁ λ₃ + F₂ λ₄` is minus the curvature of the connection, turned by θ and weighed by the multipliers. Its negative,
-//! the [`Extremal::height`], is what a counter-clockwise loop gains by enclosing a little more on its left: the height
+//! the height of their [`Momentum`], is what a counter-clockwise loop gains by enclosing a little more on its left: the height
 //! function of the geometric picture, exact along this extremal. It holds on bounds too, and unlike `λ₄ = −F₁/F₂` it is
 //! regular on φ₁ = −φ₂.
 
-use nalgebra::{Matrix2, Matrix3x2, Vector2};
+use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use crate::momentum::{Height, Momentum};
+use crate::momentum::Momentum;
 
 /// One choice of the problem's multipliers: all extremals with this λ₃ and this final y.
 #[derive(Debug, Clone, Copy)]
@@ -30,23 +30,6 @@ impl Extremal<'_> {
             c: -self.sign * self.final_y,
         }
     }
-
-    /// The height −F at a state.
-    #[cfg(test)]
-    pub(crate) fn height(&self, phi: &Vector2<f64>, pose: &[f64; 3]) -> f64 {
-        let curvature = self.model.first_derivatives(phi).curvature();
-        self.momentum().at(pose).dot(&curvature)
-    }
-
-    /// The height −F and its derivative along each joint: total, that is with the θ and y that this joint's motion brings.
-    /// (The paper's A and B in `Ḟ = A u₁ + B u₂` are minus this gradient over λ₃.)
-    pub(crate) fn height_and_gradient(
-        &self,
-        phi: &Vector2<f64>,
-        pose: &[f64; 3],
-    ) -> (Height, Matrix3x2<f64>, Matrix2<f64>) {
-        self.momentum().evaluate(self.model, phi, pose)
-    }
 }
 
 #[cfg(test)]
@@ -54,6 +37,11 @@ mod tests {
     use super::*;
     use crate::momentum::pose_rates;
     use swimmer_model::Swimmer;
+
+    fn height(extremal: &Extremal<'_>, phi: &Vector2<f64>, pose: &[f64; 3]) -> f64 {
+        let curvature = extremal.model.first_derivatives(phi).curvature();
+        extremal.momentum().at(pose).dot(&curvature)
+    }
 
     /// The gradient is the height's change along a short stretch of the dynamics.
     #[test]
@@ -65,8 +53,8 @@ mod tests {
             final_y: 0.13,
         };
         let (phi, pose) = (Vector2::new(0.7, 1.9), [0.2, -0.1, 0.4]);
-        let (height, ..) = extremal.height_and_gradient(&phi, &pose);
-        assert!((height.value - extremal.height(&phi, &pose)).abs() < 1e-15);
+        let (there, ..) = extremal.momentum().evaluate(&model, &phi, &pose);
+        assert!((there.value - height(&extremal, &phi, &pose)).abs() < 1e-15);
         for joint in 0..2 {
             let mut direction = Vector2::zeros();
             direction[joint] = 1.0;
@@ -83,14 +71,14 @@ mod tests {
                 };
                 let middle = half(&phi, &pose, &pose, h / 2.0);
                 let end = half(&(phi + direction * (h / 2.0)), &middle, &pose, h);
-                extremal.height(&(phi + direction * h), &end)
+                height(&extremal, &(phi + direction * h), &end)
             };
             let h = 1e-4;
             let numeric = (moved(h) - moved(-h)) / (2.0 * h);
             assert!(
-                (numeric - height.gradient[joint]).abs() < 1e-7,
+                (numeric - there.gradient[joint]).abs() < 1e-7,
                 "{numeric} {}",
-                height.gradient[joint]
+                there.gradient[joint]
             );
         }
     }
@@ -116,6 +104,6 @@ mod tests {
         let f1 = g_2 + g_theta * q - h_1 - h_theta * f;
         let f2 = a2[(2, 0)] - a1[(2, 1)];
         let printed = f1 + f2 * (0.05 - 0.03);
-        assert!((extremal.height(&phi, &pose) + printed).abs() < 1e-15 * (1.0 + printed.abs()));
+        assert!((height(&extremal, &phi, &pose) + printed).abs() < 1e-15 * (1.0 + printed.abs()));
     }
 }

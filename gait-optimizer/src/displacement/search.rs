@@ -12,7 +12,7 @@ use super::flow::{Fate, Quarter, Touch, TraceOptions, follow};
 use super::height::Extremal;
 use super::start_family::{Place, StartFamily};
 use crate::arcs::Leg;
-use crate::momentum::{Motion, State, shape};
+use crate::momentum::{Motion, State, pose, shape};
 use crate::numerics::root;
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
@@ -353,9 +353,9 @@ impl<'a> Search<'a> {
         let place = self.place(family, p, control)?;
         let final_y = family.final_y(self.model, &place, p)?;
         let Place { state, motion } = place;
-        let (phi, pose) = (shape(&state), [state[2], state[3], state[4]]);
+        let (phi, pose) = (shape(&state), pose(&state));
         let extremal = self.extremal(final_y);
-        let (height, ..) = extremal.height_and_gradient(&phi, &pose);
+        let (height, ..) = extremal.momentum().evaluate(self.model, &phi, &pose);
         let direction = height.singular_direction();
         let inwards = match motion {
             Motion::Singular => direction.y - direction.x,
