@@ -83,7 +83,7 @@ impl Branch {
     pub fn sign(self) -> f64 {}
 }
 impl fmt::Display for Branch {}
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {}
 impl Serialize for Certificate {}
 impl Certificate {

@@ -22,8 +22,6 @@ use crate::optimal_gait::Solution;
 use crate::region::Region;
 use crate::{Certificate, Condition, DisplacementProblem, Heading, OptimalGait};
 
-/// Curves are symmetric to within this, the sag of the outline that they are compared by \[rad\].
-const SYMMETRIC: f64 = 0.01;
 /// Gaits that gain less than this over another, over L, are not on the way up from it.
 const HIGHER: f64 = 1e-9;
 
@@ -115,8 +113,8 @@ impl Displacement<'_> {
         let trace = LoopTrace::new(model, closed, problem.samples)?;
         let stroke = trace.cycle.swum(model)?;
         let links_cross = trace.cycle.links_cross(model);
-        let symmetric = Outline::new(&trace.cycle.phi).asymmetry() < SYMMETRIC
-            && stroke.displacement.y.abs() < 1e-8;
+        let symmetric =
+            Outline::new(&trace.cycle.phi).is_symmetric() && stroke.displacement.y.abs() < 1e-8;
         Some(OptimalGait::new(Solution {
             objective: Objective::Displacement,
             swimmer: problem.swimmer,

@@ -15,9 +15,6 @@ use crate::extremal::{Walls, polish};
 use crate::numerics::halved;
 use crate::{Branch, EfficiencyProblem, OptimalGait};
 
-/// Curves are symmetric to within this, the sag of the outline that they are compared by \[rad\].
-const SYMMETRIC: f64 = 0.01;
-
 pub(super) struct Efficiency<'a> {
     pub(super) problem: &'a AtlasProblem,
     pub(super) model: &'a Model<f64>,
@@ -66,7 +63,7 @@ impl MultiStart for Efficiency<'_> {
         if !closed.certificate.pass() {
             return None;
         }
-        let symmetric = Outline::new(closed.phi()).asymmetry() < SYMMETRIC;
+        let symmetric = Outline::new(closed.phi()).is_symmetric();
         if symmetric && let Some(quarter) = self.of_quarter(&start, &closed) {
             return Some(quarter);
         }

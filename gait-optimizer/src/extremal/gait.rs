@@ -89,6 +89,8 @@ fn more(samples: usize, off: f64) -> usize {
     more
 }
 
+/// What the arcs tell, known to rounding and at once: [`certify`](crate::certify()) sees samples and a few waves alone, and takes as
+/// long as the search.
 fn certificate(
     model: &Model<f64>,
     extremal: &Extremal,
