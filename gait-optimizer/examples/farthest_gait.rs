@@ -24,7 +24,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let verdict = if check.pass { "holds" } else { "FAILS" };
         println!(
             "  {:30} {:10.3e} of {:8.1e}  {verdict}",
-            check.name, check.value, check.tolerance
+            check.condition.key(),
+            check.value,
+            check.tolerance
         );
     }
     Ok(())

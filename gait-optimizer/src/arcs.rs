@@ -14,13 +14,25 @@
 //! is armed only once it has left that neighbourhood.
 
 mod event;
+mod trace;
 
 pub(crate) use event::Event;
 use event::{MOST_EVENTS, Watched, first_event};
+pub(crate) use trace::{ByPower, SMOOTH, Trace};
 
 use crate::momentum::{Flow, Motion, State, shape};
 use crate::region::{Bound, Region};
 use crate::runge_kutta::{Point, StepControl, controlled_step, exact_step, locate};
+
+/// One arc of a chain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Leg {
+    pub(crate) motion: Motion,
+    pub(crate) from: State,
+    pub(crate) to: State,
+    /// Of its curve in the (φ₁, φ₂) plane \[rad\].
+    pub(crate) length: f64,
+}
 
 /// What ends a chain of arcs.
 pub(crate) trait EndCondition {

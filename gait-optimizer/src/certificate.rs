@@ -1,22 +1,26 @@
 //! The proof that a gait carries: necessary conditions of an optimum, each with its number and tolerance.
 
 mod closed_curve;
+mod condition;
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use swimmer_model::Stroke;
 
 use crate::cycle::{Cycle, QuarterTrace};
 use crate::region::Region;
+pub use condition::Condition;
+
 pub(crate) use closed_curve::{crossings, simple_and_turning_once, turning_number};
 
-/// One condition.
+/// One condition, asked.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Check {
     /// Which condition.
-    pub name: &'static str,
+    #[serde(rename = "name")]
+    pub condition: Condition,
     /// What was found.
     pub value: f64,
-    /// What it is held against: from above, or from below for the checks whose name ends in `_least`.
+    /// What it is held against: from above, or from below for the conditions whose name ends in `_least`.
     pub tolerance: f64,
     /// Whether it holds.
     pub pass: bool,
@@ -25,6 +29,13 @@ pub struct Check {
     pub uncertainty: f64,
     #[serde(skip)]
     pub(crate) seen_by: SeenBy,
+}
+
+/// From where a number is held against its tolerance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    AtMost,
+    AtLeast,
 }
 
 /// What a condition is seen by, which tells what samples may leave open in it.
@@ -61,19 +72,7 @@ impl Verdict {
 }
 
 impl Check {
-    /// The value may be at most the tolerance. NaN fails.
-    pub(crate) fn at_most(name: &'static str, value: f64, tolerance: f64) -> Self {
-        Self {
-            name,
-            value,
-            tolerance,
-            pass: value <= tolerance,
-            uncertainty: 0.0,
-            seen_by: SeenBy::Curve,
-        }
-    }
-
-    /// The same, seen by something else than the curve.
+    /// The same number, seen by something else than the curve.
     pub(crate) fn seen_by(self, seen_by: SeenBy) -> Self {
         Self { seen_by, ..self }
     }
@@ -83,18 +82,6 @@ impl Check {
         !self.pass && {
             let by = (self.value - self.tolerance).abs();
             by.is_nan() || by > self.uncertainty
-        }
-    }
-
-    /// The value must be at least the tolerance. NaN fails.
-    pub(crate) fn at_least(name: &'static str, value: f64, tolerance: f64) -> Self {
-        Self {
-            name,
-            value,
-            tolerance,
-            pass: value >= tolerance,
-            uncertainty: 0.0,
-            seen_by: SeenBy::Curve,
         }
     }
 }
@@ -121,6 +108,11 @@ impl Certificate {
         Self { checks }
     }
 
+    /// Of what is yet to be asked.
+    pub(crate) fn unasked() -> Self {
+        Self::new(Vec::new())
+    }
+
     /// The same with further conditions.
     pub(crate) fn with(mut self, checks: Vec<Check>) -> Self {
         self.checks.extend(checks);
@@ -132,15 +124,27 @@ impl Certificate {
         &self.checks
     }
 
-    /// The number of the condition of this name; `None` where there is none.
-    pub fn value(&self, name: &str) -> Option<f64> {
-        let mut named = self.checks.iter().filter(|check| check.name == name);
-        named.next().map(|check| check.value)
+    /// The number of a condition; `None` where it was not asked.
+    pub fn value(&self, condition: Condition) -> Option<f64> {
+        let mut checks = self.checks.iter();
+        checks.find_map(|check| (check.condition == condition).then_some(check.value))
     }
 
     /// Whether all hold.
     pub fn pass(&self) -> bool {
         self.checks.iter().all(|check| check.pass)
+    }
+
+    /// The same without a condition.
+    pub(crate) fn without(mut self, condition: Condition) -> Self {
+        self.checks.retain(|check| check.condition != condition);
+        self
+    }
+
+    /// Whether all hold, these excepted.
+    pub(crate) fn holds_but(&self, excepted: &[Condition]) -> bool {
+        let mut checks = self.checks.iter();
+        checks.all(|check| check.pass || excepted.contains(&check.condition))
     }
 
     /// What it says: where all hold, pass; else fail, unless the samples may be the reason of all that fails.
@@ -175,14 +179,17 @@ impl Certificate {
             .map(|check| {
                 format!(
                     "{} = {:.3e} (against {:.1e})",
-                    check.name, check.value, check.tolerance
+                    check.condition.key(),
+                    check.value,
+                    check.tolerance
                 )
             })
             .collect();
         words.join(", ")
     }
 
-    /// The conditions of paper section IV for a quarter gait, and those of the full cycle. Lengths are over L.
+    /// The conditions of paper section IV for a quarter gait, and those of the full cycle. Lengths are over L. The arcs tell them
+    /// at once; to read them off the samples, as [`certify`](crate::certify()) does, takes longer than the search.
     pub(crate) fn of_displacement(
         region: &Region,
         trace: &QuarterTrace,
@@ -190,36 +197,7 @@ impl Certificate {
         displacement_over_length: f64,
         stroke: &Stroke<f64>,
     ) -> Self {
-        let evidence = &trace.evidence;
-        let mut checks = vec![
-            Check::at_most("off_symmetry_lines_rad", evidence.off_symmetry_lines, 1e-9),
-            Check::at_most("retraced_rad", evidence.retraced, 1e-8),
-            Check::at_most("final_lambda4", evidence.final_lambda4, 1e-9),
-            Check::at_most("start_transversality", evidence.start_transversality, 1e-9),
-            Check::at_most("end_transversality", evidence.end_transversality, 1e-9),
-            Check::at_most("h_u", evidence.h_u, 1e-9),
-            Check::at_most("off_singular_condition_rad", evidence.off_zero, 1e-8),
-        ];
-        checks.extend(evidence.legendre_clebsch.map(|least| {
-            Check::at_least("legendre_clebsch_least", least / evidence.steepest, 1e-4)
-        }));
-        checks.extend(
-            evidence
-                .multiplier
-                .map(|least| Check::at_least("bound_multiplier_least", least, -1e-9)),
-        );
-        checks.extend(
-            evidence
-                .second_variation
-                .map(|form| Check::at_least("conjugate_point_least", form.least, 1e-6)),
-        );
-        if region.bounds().next().is_some() {
-            checks.push(Check::at_most(
-                "bound_overstepped_rad",
-                evidence.overstepped,
-                1e-10,
-            ));
-        }
+        let mut checks = trace.conditions.clone();
         // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
         let curve = if region.has_diagonals() {
             &trace.samples.phi
@@ -248,12 +226,8 @@ pub(crate) fn swum_again(stroke: &Stroke<f64>, displacement_over_length: f64) ->
     let rotation = stroke.rotation;
     let tolerance = again_within(displacement_over_length.abs());
     [
-        Check::at_most(
-            "displacement_swum_again",
-            (x - displacement_over_length).abs(),
-            tolerance,
-        ),
-        Check::at_most("net_lateral", y.abs(), 1e-8),
-        Check::at_most("net_rotation_rad", rotation.abs(), 1e-8),
+        Condition::DisplacementSwumAgain.within((x - displacement_over_length).abs(), tolerance),
+        Condition::NoLateral.check(y.abs()),
+        Condition::NoRotation.check(rotation.abs()),
     ]
 }

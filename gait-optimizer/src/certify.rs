@@ -33,12 +33,13 @@ use swimmer_model::{
 
 use crate::OptimalGait;
 use crate::certificate::{
-    Certificate, Check, SHARE, SWUM_AGAIN, SeenBy, simple_and_turning_once, turning_number,
+    Certificate, Check, Condition, SHARE, SWUM_AGAIN, SeenBy, simple_and_turning_once,
+    turning_number,
 };
 use crate::cycle::Cycle;
 use crate::region::Region;
 use crate::speed::certify_speed;
-pub(crate) use ascent::{Curve, around};
+pub(crate) use ascent::ways_up;
 use grid::{Along, Degree, Grid};
 use limits::{Limit, Limits};
 use path::Path;
@@ -52,10 +53,8 @@ const TOUCHING: f64 = 1e-9;
 /// An arc along the links' clearance lies on it up to this \[rad\]: solvers keep a hair off the corner where tip meets tip,
 /// at which the bound has no tangent.
 const TOUCHING_CURVED: f64 = 1e-7;
-/// Poses by polynomials of degree eight and six through the samples may differ by this, over L and in radians; so may slopes,
-/// over the slope, where a condition asks for slopes.
-const COARSEST: f64 = 1e-5;
-/// The same where none does.
+/// Slopes by polynomials of degree eight and six through the samples may differ by this, over the slope, where no condition asks
+/// for them.
 const COARSEST_WEAKLY: f64 = 1e-2;
 
 /// Why a gait cannot even be asked.
@@ -185,6 +184,20 @@ fn of_samples(
     certify_turned(model, gait, objective, limits, &curve)
 }
 
+/// A gait that an optimiser made, with the certificate that its file has, but for side links that lie on the middle one: such a gait
+/// is the limit of those that keep off, which whoever asked for it is told in other words.
+pub(crate) fn certified(gait: OptimalGait) -> OptimalGait {
+    let file = gait.gait_file("");
+    let certificate = certify(&gait.swimmer, &file, gait.objective, &gait.bounds);
+    // Of what makes no closed curve nothing holds.
+    let nothing = |_| Certificate::new(vec![Condition::Closed.check(f64::NAN)]);
+    let certificate = certificate.unwrap_or_else(nothing);
+    OptimalGait {
+        certificate: certificate.without(Condition::NothingFolded),
+        ..gait
+    }
+}
+
 /// Whether the samples of a gait that an optimiser made are as close as [`certify`] asks for.
 pub(crate) fn samples_suffice(model: &Model<f64>, gait: &OptimalGait) -> bool {
     let file = gait.gait_file("");
@@ -196,32 +209,26 @@ pub(crate) fn samples_suffice(model: &Model<f64>, gait: &OptimalGait) -> bool {
 
 /// How far two polynomials through the samples of a cycle of most efficiency differ in its slopes, over what [`certify`] lets them.
 pub(crate) fn slopes_open(cycle: &Cycle) -> f64 {
-    let file = GaitFile {
-        arcs: cycle.arcs.clone(),
-        corners: cycle.corners.clone(),
-        u: cycle.u.clone(),
-        phi: cycle.phi.clone(),
-        ..GaitFile::default()
-    };
+    let file = cycle.file();
     let (grid, shapes) = Grid::new(&file, &grid::told_by_arcs(&file));
     let [fine, coarse] = [Degree::Fine, Degree::Coarse].map(|degree| grid.slopes(&shapes, degree));
     let apart = fine
         .iter()
         .zip(&coarse)
         .map(|(fine, coarse)| (fine - coarse).norm() / fine.norm());
-    apart.fold(0.0, f64::max) / COARSEST
+    apart.fold(0.0, f64::max) / Condition::SlopesKnown.tolerance()
 }
 
 /// What the sampling may leave open.
 fn sampling(objective: Objective, open: Openness) -> [Check; 2] {
     let coarsest = if objective == Objective::Efficiency {
-        COARSEST
+        Condition::SlopesKnown.tolerance()
     } else {
         COARSEST_WEAKLY
     };
     [
-        Check::at_most("sampling_slope_error", open.slope, coarsest),
-        Check::at_most("sampling_pose_error", open.pose, COARSEST),
+        Condition::SlopesKnown.within(open.slope, coarsest),
+        Condition::PosesKnown.check(open.pose),
     ]
     .map(|check| check.seen_by(SeenBy::Spacing))
 }
@@ -249,22 +256,10 @@ fn certify_turned(
     if objective != Objective::Turning {
         tolerance = tolerance.min(SHARE * x.hypot(y));
     }
-    checks.push(Check::at_most(
-        "displacement_swum_again",
-        apart(swum),
-        tolerance,
-    ));
-    checks.push(Check::at_most(
-        "displacement_stepped_again",
-        apart([again[0], again[1]]),
-        tolerance,
-    ));
+    checks.push(Condition::DisplacementSwumAgain.within(apart(swum), tolerance));
+    checks.push(Condition::DisplacementSteppedAgain.within(apart([again[0], again[1]]), tolerance));
     if objective != Objective::Turning {
-        checks.push(Check::at_most(
-            "net_rotation_rad",
-            theta.abs(),
-            1e-8 + open.pose,
-        ));
+        checks.push(Condition::NoRotation.open(theta.abs(), open.pose));
     }
     match objective {
         Objective::Displacement | Objective::Turning | Objective::Sideways => {
@@ -325,11 +320,7 @@ impl<'a> Subject<'a> {
             (Some(first), Some(last)) => (last - first).norm(),
             _ => f64::NAN,
         };
-        let mut checks = vec![at_samples(Check::at_most(
-            "open_rad",
-            gap,
-            GaitFile::CLOSURE,
-        ))];
+        let mut checks = vec![at_samples(Condition::Closed.check(gap))];
         // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
         let quarter = gait.u.partition_point(|&u| u <= 0.25 + 1e-12);
         let simple = if self.limits.region.has_diagonals() {
@@ -345,36 +336,28 @@ impl<'a> Subject<'a> {
             } else {
                 SeenBy::Curve
             };
-            let check = Check::at_most("without_the_papers_symmetries", off, 0.0);
+            let check = Condition::PapersSymmetries.check(off);
             checks.push(check.seen_by(seen_by));
         }
         let overstepped = self
             .all_limits()
             .map(|(_, limit)| -limit.margin)
             .reduce(f64::max);
-        let overstepped =
-            overstepped.map(|by| Check::at_most("bound_overstepped_rad", by, TOUCHING));
+        let overstepped = overstepped.map(|by| Condition::KeepsBounds.check(by));
         checks.extend(overstepped.map(at_samples));
         if self.limits.bounds.no_overlap {
             let crosses = crossing_share(&self.model.swimmer().links, curve);
             let folds = if crosses.folds { 1.0 } else { 0.0 };
-            checks.push(at_samples(Check::at_most(
-                "side_link_on_middle_link",
-                folds,
-                0.0,
-            )));
+            checks.push(at_samples(Condition::NothingFolded.check(folds)));
         }
-        for (curved, name, tolerance) in [
-            (false, "arc_off_its_bound_rad", TOUCHING),
-            (true, "arc_off_clearance_rad", TOUCHING_CURVED),
-        ] {
+        for (curved, condition) in [(false, Condition::OnBound), (true, Condition::OnClearance)] {
             let off = (0..self.grid.nodes.len())
                 .filter(|&node| self.along(node) == Along::Bound)
                 .map(|node| self.bound_followed(node))
                 .filter(|limit| limit.is_some_and(|limit| limit.curved) == curved)
                 .map(|limit| limit.map_or(f64::NAN, |limit| limit.margin.abs()))
                 .reduce(worse);
-            checks.extend(off.map(|off| at_samples(Check::at_most(name, off, tolerance))));
+            checks.extend(off.map(|off| at_samples(condition.check(off))));
         }
         checks
     }

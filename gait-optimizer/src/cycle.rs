@@ -5,7 +5,7 @@
 mod trace;
 
 use nalgebra::Vector2;
-use swimmer_files::{AnyGait, ArcKind, GaitArc};
+use swimmer_files::{AnyGait, ArcKind, GaitArc, GaitFile};
 use swimmer_model::{InvalidSamples, Model, Stroke, Tolerance, crossing_share, swim};
 
 use crate::Arc;
@@ -34,9 +34,6 @@ pub(crate) struct Samples {
     pub(crate) arcs: Vec<(ArcKind, usize, usize)>,
 }
 
-/// Directions this close in angle \[rad\] make no corner.
-const SMOOTH: f64 = 1e-7;
-
 impl Cycle {
     /// The same cycle run backwards, each shape as `image` maps it.
     pub(crate) fn reversed(&self, image: impl Fn(&Vector2<f64>) -> Vector2<f64>) -> Self {
@@ -61,6 +58,17 @@ impl Cycle {
         Self {
             phi: self.phi.iter().map(|phi| phi * gain).collect(),
             ..self.clone()
+        }
+    }
+
+    /// What a file holds of it.
+    pub(crate) fn file(&self) -> GaitFile {
+        GaitFile {
+            arcs: self.arcs.clone(),
+            corners: self.corners.clone(),
+            u: self.u.clone(),
+            phi: self.phi.clone(),
+            ..GaitFile::default()
         }
     }
 

@@ -16,7 +16,7 @@ use swimmer_files::{AnyGait, Bounds};
 use swimmer_model::{Model, Swimmer};
 
 use crate::OptimalGait;
-use crate::certificate::{crossings, simple_and_turning_once};
+use crate::certificate::{Condition, crossings, simple_and_turning_once};
 use crate::extremal::gait::{Order, gait};
 use crate::extremal::{Extremal, Unpolished, Walls, polish};
 use crate::immobile::refuse_immobile;
@@ -323,7 +323,7 @@ fn finished(
         samples: 4 * problem.quarter_samples.max(16),
     };
     let mut gait = gait(&order, &found.extremal)?;
-    let power_variation = gait.certificate.value("hamiltonian_variation");
+    let power_variation = gait.certificate.value(Condition::PowerFollowedAgain);
     gait.efficiency_figures = Some(EfficiencyFigures {
         residual: found.extremal.solved.residual,
         power_variation: power_variation.unwrap_or(f64::NAN),

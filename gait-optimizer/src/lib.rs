@@ -21,7 +21,7 @@
 //! | `loops` | closed loops of singular arcs and bounds, without any symmetry |
 //! | `sideways` | the gait of most displacement across the heading at its start |
 //! | [`region`] | the bounds: straight ones of the joint angles, and the curved one that keeps the side links apart |
-//! | `arcs` | an arc of most displacement, integrated until an event ends it; of quarters and of closed curves |
+//! | `arcs` | an arc of most displacement, integrated until an event ends it, and chains followed once more; of quarters and of closed curves |
 //! | `displacement::flow` | what follows an arc of a quarter, and where quarters end |
 //! | `displacement::start_family` | where singular arcs may begin: φ₁ = φ₂, and chains of bounds from there |
 //! | `efficiency` | the small and the large Lighthill gait: Fourier series, then `extremal`, bounds followed |
@@ -30,10 +30,11 @@
 //! | `speed` | the fastest gait of servos with a limit on rate, power or both |
 //! | `turning` | the simple closed gait that turns most: round a region of the curvature |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
-//! | `certificate` | checks, and those that any closed curve can be asked |
-//! | `certify` | the same conditions asked of any closed curve, from its samples alone |
+//! | `certificate` | every condition with its key and tolerance, checks, and those that a quarter's arcs tell |
+//! | `certify` | conditions asked of any closed curve, from its samples alone: the certificate of turning, sideways and atlas gaits |
 //! | [`closed_forms`] | formulas of the paper's appendix, mended |
 //! | `simple_shapes` | circles and squares over their amplitude |
+//! | `numerics` | halving, roots, damped steps |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
 //!
 //! ```
@@ -78,6 +79,7 @@ mod immobile;
 mod loops;
 mod member;
 mod momentum;
+mod numerics;
 mod optimal_gait;
 mod parallel;
 mod problem;
@@ -93,7 +95,7 @@ pub use atlas::{
     Atlas, AtlasError, AtlasProblem, Optimum, StartCurves, Watch, atlas, atlas_watched,
 };
 pub use batch::{Batch, ConnectionsAndPowers, ManyFirstDerivatives};
-pub use certificate::{Certificate, Check, Verdict};
+pub use certificate::{Certificate, Check, Condition, Verdict};
 pub use certify::{CertifyError, certify};
 pub use continuation::{
     Continuation, ContinuationError, ContinuationProblem, Event, EventKind, Fold, OtherSide,

@@ -12,7 +12,9 @@ mod motion;
 use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
 use swimmer_model::{Model, SecondDerivatives};
 
-pub(crate) use arc::{Flow, State, pose, pose_rates, shape};
+#[cfg(test)]
+pub(crate) use arc::pose_rates;
+pub(crate) use arc::{Flow, State, pose, shape};
 pub(crate) use motion::{Motion, Track};
 
 /// One choice of the multipliers, in the frame of the curve's first point.

@@ -35,6 +35,15 @@ pub enum Bound {
     Clearance(Clearance),
 }
 
+/// One smooth curve of a bound, also beyond the stretch on which it decides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Wall {
+    /// A bound of one angle, or of both alike.
+    Straight(Edge),
+    /// One piece of the bound that keeps the side links apart.
+    Curved(Clearance, Piece),
+}
+
 /// Where all bounds hold. Convex but for the clearance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
@@ -70,11 +79,27 @@ impl Bound {
         }
     }
 
+    /// The edge, where it is straight.
+    pub(crate) fn edge(&self) -> Option<&Edge> {
+        match self {
+            Self::Straight(edge) => Some(edge),
+            Self::Clearance(_) => None,
+        }
+    }
+
     /// Which piece of the bound decides at a shape; none for an edge, which has one piece.
     pub(crate) fn piece(&self, phi: &Vector2<f64>) -> Option<Piece> {
         match self {
             Self::Straight(_) => None,
             Self::Clearance(clearance) => Some(clearance.piece(phi)),
+        }
+    }
+
+    /// The smooth curve that it is at a shape.
+    pub(crate) fn wall(&self, phi: &Vector2<f64>) -> Wall {
+        match self {
+            Self::Straight(edge) => Wall::Straight(*edge),
+            Self::Clearance(clearance) => Wall::Curved(*clearance, clearance.piece(phi)),
         }
     }
 
@@ -136,6 +161,51 @@ impl Bound {
             Self::Straight(edge) => edge.onto(phi),
             Self::Clearance(clearance) => onto(clearance, phi),
         }
+    }
+}
+
+impl Wall {
+    /// What an arc along it is called.
+    pub(crate) fn kind(&self) -> ArcKind {
+        self.edge().map_or(ArcKind::Clearance, |edge| edge.kind)
+    }
+
+    /// The edge, where it is straight.
+    pub(crate) fn edge(&self) -> Option<&Edge> {
+        match self {
+            Self::Straight(edge) => Some(edge),
+            Self::Curved(..) => None,
+        }
+    }
+
+    /// Whether it is the bound on the distance from tip to tip.
+    pub(crate) fn is_tips(&self) -> bool {
+        matches!(self, Self::Curved(_, Piece::Tips))
+    }
+
+    /// The margin with its derivatives.
+    pub(crate) fn level(&self, phi: &Vector2<f64>) -> Level {
+        match self {
+            Self::Straight(edge) => Bound::Straight(*edge).level(phi),
+            Self::Curved(clearance, piece) => clearance.level(*piece, phi),
+        }
+    }
+
+    /// The shape on it nearest to this one, or (where it is curved) near it.
+    pub(crate) fn onto(&self, phi: &Vector2<f64>) -> Vector2<f64> {
+        const STEPS: usize = 8;
+        let mut here = *phi;
+        for _ in 0..STEPS {
+            let Level {
+                value, gradient, ..
+            } = self.level(&here);
+            let step = gradient * (value / gradient.norm_squared());
+            if !step.norm().is_finite() || step.norm() < 1e-15 {
+                break;
+            }
+            here -= step;
+        }
+        here
     }
 }
 

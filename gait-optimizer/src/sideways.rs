@@ -17,16 +17,14 @@ mod error;
 mod on_bound;
 mod square;
 
-use nalgebra::Vector2;
 use swimmer_files::{Bounds, Objective};
-use swimmer_model::{Model, Stroke, Swimmer, Tolerance, trajectory};
+use swimmer_model::{Model, Swimmer};
 
 pub use error::SidewaysError;
 
-use crate::certificate::{Certificate, Check, SWUM_AGAIN, again_within};
-use crate::certify::samples_suffice;
+use crate::certificate::{Certificate, Verdict};
+use crate::certify::certified;
 use crate::cycle::Cycle;
-use crate::loops::LoopTrace;
 use crate::optimal_gait::Solution;
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
@@ -79,9 +77,6 @@ pub struct Sideways {
     /// Loops that were found, of which this is the best.
     pub loops: usize,
 }
-
-/// Instants that headings are looked at.
-const LOOKS: usize = 2048;
 
 /// The simple closed loop of most displacement across the heading at its first sample, without net rotation: the best of
 /// those that are found and certified. Random starts know no front and back, so a swimmer whose side links differ is looked
@@ -163,80 +158,64 @@ pub fn sideways_watched(
     }
 }
 
-/// The gait of a swimmer that was turned end for end, as the swimmer itself runs it; none where it does not come as far.
+/// The gait of a swimmer that was turned end for end, as the swimmer itself runs it; none where it is not certified.
 fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sideways> {
     let model = Model::new(&problem.swimmer.of_unit_length()).ok()?;
     let turned = |[one, two]: [f64; 2]| [-two, -one];
     let theirs = &found.gait;
-    let cycle = theirs.turned_end_for_end();
-    let stroke = cycle.swum(&model)?;
-    let lateral = stroke.displacement.y;
-    let again = (lateral - found.lateral_over_length).abs();
-    if again > again_within(lateral) || stroke.rotation.abs() > SWUM_AGAIN {
-        return None;
-    }
     let arcs = theirs.arcs.iter().rev().map(|arc| Arc {
         kind: arc.kind,
         from: turned(arc.to),
         to: turned(arc.from),
     });
-    Some(Sideways {
-        lateral_over_length: lateral,
-        bridged_supremum_over_length: found.bridged_supremum_over_length,
-        outdone_over_length: found.outdone_over_length,
-        loops: found.loops,
-        gait: gait(
-            (problem, &model),
-            (cycle, arcs.collect()),
-            (stroke, theirs.certificate.clone()),
-        ),
+    let cycle = theirs.turned_end_for_end();
+    let gait = certified(gait((problem, &model), (cycle, arcs.collect()))?);
+    gait.certificate.pass().then(|| Sideways {
+        lateral_over_length: gait.lateral_over_length,
+        gait,
+        ..found.clone()
     })
 }
 
-/// A cycle with what was found of it, as a gait.
+/// A cycle as a gait, not yet certified; none where it cannot be swum.
 fn gait(
     (problem, model): (&SidewaysProblem, &Model<f64>),
     (cycle, arcs): (Cycle, Vec<Arc>),
-    (stroke, certificate): (Stroke<f64>, Certificate),
-) -> OptimalGait {
-    OptimalGait::new(Solution {
+) -> Option<OptimalGait> {
+    Some(OptimalGait::new(Solution {
         objective: Objective::Sideways,
         swimmer: problem.swimmer,
         bounds: problem.bounds,
         symmetric: false,
         links_cross: cycle.links_cross(model),
         arcs,
+        stroke: cycle.swum(model)?,
         cycle,
-        stroke,
-        certificate,
-    })
+        certificate: Certificate::unasked(),
+    }))
 }
 
-/// As [`sideways`], from one end, with as many samples as the gait's own certificate needs when it is worked out from the
-/// samples alone.
+/// As [`sideways`], from one end, with as many samples as the certificates ask for.
 fn from_this_end(problem: &SidewaysProblem, watch: Watch<'_>) -> Result<Sideways, SidewaysError> {
-    let found = sampled_as_asked(problem, watch)?;
-    let model = validated(&problem.swimmer, &problem.bounds, GaitClass::Closed)
-        .map_err(crate::AtlasError::from)?;
+    let (mut best, mut open) = sampled_as_asked(problem, watch)?;
     let mut finer = *problem;
-    let mut sampled = found.clone();
-    while !samples_suffice(&model, &sampled.gait) {
+    while open && finer.samples < FINEST * problem.samples {
         finer.samples *= 2;
-        if finer.samples > FINEST * problem.samples {
-            return Ok(found);
-        }
-        sampled = sampled_as_asked(&finer, watch)?;
+        let sampled;
+        (sampled, open) = sampled_as_asked(&finer, watch)?;
+        best = sampled.or(best);
     }
-    Ok(sampled)
+    best
 }
 
 /// Most samples, as a multiple of those asked for.
 const FINEST: usize = 16;
 
+/// The best that is certified, and whether more samples might have a better one certified.
 fn sampled_as_asked(
     problem: &SidewaysProblem,
     watch: Watch<'_>,
-) -> Result<Sideways, SidewaysError> {
+) -> Result<(Result<Sideways, SidewaysError>, bool), SidewaysError> {
     let asked = AtlasProblem {
         bounds: problem.bounds,
         starts: problem.starts,
@@ -248,46 +227,56 @@ fn sampled_as_asked(
     let model = validated(&problem.swimmer, &problem.bounds, GaitClass::Closed)
         .map_err(crate::AtlasError::from)?;
     let region = Region::new(&problem.bounds, &problem.swimmer.links);
-    let mut found: Vec<Sideways> = Vec::new();
-    for optimum in &loops.optima {
-        found.extend(turned(problem, &model, &optimum.gait));
-    }
-    for candidate in on_bound::candidates(&model, &region, problem.samples) {
-        found.extend(finished(problem, &model, &region, candidate));
-    }
-    let farthest = loops.optima.first().map(|best| best.distance_over_length);
-    let touching = touching(problem);
+    let across = |gait: &OptimalGait| gait.lateral_over_length.abs();
+    let optima = loops.optima.iter().map(|optimum| &optimum.gait);
+    let mut found: Vec<OptimalGait> = optima
+        .filter_map(|gait| turned(problem, &model, gait))
+        .collect();
+    found.extend(
+        on_bound::candidates(&model, &region, problem.samples)
+            .into_iter()
+            .filter_map(|trace| gait((problem, &model), (trace.cycle, trace.arcs))),
+    );
+    found.sort_by(|a, b| across(b).total_cmp(&across(a)));
     let count = found.len();
-    let across = |found: &Sideways| found.lateral_over_length;
-    found
-        .into_iter()
-        .max_by(|a, b| across(a).total_cmp(&across(b)))
-        .map(|best| Sideways {
-            bridged_supremum_over_length: farthest
-                .map(|farthest| farthest.max(across(&best)))
-                .filter(|farthest| {
-                    let beyond = touching.iter().map(|(_, known)| *known);
-                    let beyond = beyond.chain(loops.best_uncertified);
-                    beyond.fold(0.0, f64::max) <= farthest + 1e-9
-                }),
-            outdone_over_length: touching
-                .iter()
-                .filter_map(|(gait, _)| turned(problem, &model, gait.as_ref()?))
-                .map(|found| across(&found))
-                .filter(|known| *known > across(&best) + 1e-9)
-                .reduce(f64::max),
-            gait: if best.gait.lateral_over_length < 0.0 {
-                best.gait.mirrored()
-            } else {
-                best.gait
-            },
-            lateral_over_length: best.lateral_over_length,
-            loops: count,
-        })
-        .ok_or(SidewaysError::NoOptimum {
+    let mut open = false;
+    let passes = |gait: &OptimalGait| {
+        let certificate = &gait.certificate;
+        open |= certificate.verdict() == Verdict::Undecided && certificate.is_too_coarse();
+        certificate.pass()
+    };
+    let Some(best) = found.into_iter().map(certified).find(passes) else {
+        let none = SidewaysError::NoOptimum {
             bounds: problem.bounds,
             loops: loops.optima.len(),
-        })
+        };
+        return Ok((Err(none), open));
+    };
+    let farthest = loops.optima.first().map(|best| best.distance_over_length);
+    let touching = touching(problem);
+    let best = Sideways {
+        bridged_supremum_over_length: farthest.map(|farthest| farthest.max(across(&best))).filter(
+            |farthest| {
+                let beyond = touching.iter().map(|(_, known)| *known);
+                let beyond = beyond.chain(loops.best_uncertified);
+                beyond.fold(0.0, f64::max) <= farthest + 1e-9
+            },
+        ),
+        outdone_over_length: touching
+            .iter()
+            .filter_map(|(gait, _)| turned(problem, &model, gait.as_ref()?))
+            .map(|found| across(&found))
+            .filter(|known| *known > across(&best) + 1e-9)
+            .reduce(f64::max),
+        lateral_over_length: across(&best),
+        gait: if best.lateral_over_length < 0.0 {
+            best.mirrored()
+        } else {
+            best
+        },
+        loops: count,
+    };
+    Ok((Ok(best), open))
 }
 
 /// The gaits of most displacement with the paper's symmetries, which may touch their own images, and how far over L gaits are known
@@ -318,71 +307,6 @@ fn touching(problem: &SidewaysProblem) -> Vec<(Option<OptimalGait>, f64)> {
         .into_iter()
         .filter_map(|heading| known(asked(heading)))
         .collect()
-}
-
-/// A traced loop as a gait, where its certificate holds.
-fn finished(
-    problem: &SidewaysProblem,
-    model: &Model<f64>,
-    region: &Region,
-    trace: LoopTrace,
-) -> Option<Sideways> {
-    let checks = trace.conditions(region);
-    let expected = trace.evidence.along;
-    let tolerance = 1e-9;
-    settled(
-        (problem, model),
-        (trace.cycle, trace.arcs),
-        checks,
-        (expected, tolerance),
-    )
-}
-
-/// A cycle with the conditions of its loop, where it also carries as far across as `expected`, does not rotate, and no other
-/// start on it is better by more than the tolerance.
-fn settled(
-    (problem, model): (&SidewaysProblem, &Model<f64>),
-    (cycle, arcs): (Cycle, Vec<Arc>),
-    mut checks: Vec<Check>,
-    (expected, tolerance): (f64, f64),
-) -> Option<Sideways> {
-    let stroke = cycle.swum(model)?;
-    let lateral = stroke.displacement.y.abs();
-    checks.extend([
-        Check::at_most(
-            "lateral_swum_again",
-            (lateral - expected).abs(),
-            again_within(expected),
-        ),
-        Check::at_most("net_rotation_rad", stroke.rotation.abs(), 1e-8),
-        Check::at_most(
-            "other_start_better",
-            better_start(model, &cycle, &stroke.displacement)?,
-            tolerance,
-        ),
-    ]);
-    let certificate = Certificate::new(checks);
-    if !certificate.pass() {
-        return None;
-    }
-    Some(Sideways {
-        lateral_over_length: lateral,
-        bridged_supremum_over_length: Some(lateral),
-        outdone_over_length: None,
-        loops: 1,
-        gait: gait((problem, model), (cycle, arcs), (stroke, certificate)),
-    })
-}
-
-/// How much more of d another start would have across its heading, over L.
-fn better_start(model: &Model<f64>, cycle: &Cycle, d: &Vector2<f64>) -> Option<f64> {
-    let gait = cycle.gait().ok()?;
-    let mut best = 0.0_f64;
-    trajectory(model, &gait, &Tolerance::new(1e-11), LOOKS, |point| {
-        let (sin, cos) = point.pose.theta.sin_cos();
-        best = best.max((d.y * cos - d.x * sin).abs());
-    });
-    Some(best - d.y.abs())
 }
 
 #[cfg(test)]

@@ -22,26 +22,25 @@
 )]
 
 mod border;
-mod certificate;
 mod crossing;
 mod error;
 mod piece;
 mod walk;
 
 use nalgebra::{DMatrix, Vector2};
-use swimmer_files::{AnyGait, ArcKind, Bounds, GaitArc, Objective};
+use swimmer_files::{AnyGait, ArcKind, Bounds, Objective};
 use swimmer_model::{Gait as _, Model, Stroke, Swimmer};
 
 pub use error::TurningError;
 
-use crate::OptimalGait;
-use crate::certify::samples_suffice;
-use crate::cycle::Cycle;
+use crate::certify::certified;
+use crate::cycle::{Cycle, Samples};
 use crate::height_map::legendre::gauss;
 use crate::height_map::{Level, LevelSearch, level_seeds};
 use crate::optimal_gait::{Arc, Solution};
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
+use crate::{Certificate, OptimalGait};
 use border::Border;
 use piece::{Piece, close_up};
 use walk::{Domain, curvature};
@@ -89,22 +88,30 @@ const STEPS: f64 = 240.0;
 /// ```
 pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {
     let model = validated(&problem.swimmer, &problem.bounds, GaitClass::Closed)?;
-    let found = at_resolution(problem, &model, 1.0)?;
-    if samples_suffice(&model, &found.gait) {
+    let mut found = at_resolution(problem, &model, 1.0)?;
+    // As many samples as the certificate asks for, where some number of them will do.
+    for times in FINER {
+        if found.gait.certificate.pass() {
+            break;
+        }
+        if let Ok(finer) = at_resolution(problem, &model, times) {
+            found = finer;
+        }
+    }
+    let Turning { gait, .. } = &found;
+    if gait.certificate.pass() {
         return Ok(found);
     }
-    // As many samples as the certificate from a file asks for, where some number of them will do.
-    let finer = FINER.into_iter().find_map(|times| {
-        let finer = at_resolution(problem, &model, times).ok()?;
-        samples_suffice(&model, &finer.gait).then_some(finer)
-    });
-    Ok(finer.unwrap_or(found))
+    Err(TurningError::NotCertified {
+        rotation: gait.rotation,
+        failed: gait.certificate.failures(),
+    })
 }
 
 /// How many times as close samples may lie.
 const FINER: [f64; 3] = [2.0, 4.0, 8.0];
 
-/// As [`turning`], with so many times as many samples.
+/// As [`turning`], with so many times as many samples, whether it is certified or not.
 fn at_resolution(
     problem: &TurningProblem,
     model: &Model<f64>,
@@ -140,7 +147,7 @@ fn at_resolution(
         let found = Loop::new(&pieces, model).ok_or_else(|| no_gait(&pieces))?;
         let rotation = found.stroke.rotation;
         bridged_supremum += rotation;
-        let outside = certificate::area(&pieces) > 0.0;
+        let outside = area(&pieces) > 0.0;
         if outside
             && best
                 .as_ref()
@@ -149,15 +156,8 @@ fn at_resolution(
             best = Some(found);
         }
     }
-    let gait = best
-        .ok_or(TurningError::NoRegion)?
-        .certified(problem, bounds, model, &domain);
-    if !gait.certificate.pass() {
-        return Err(TurningError::NotCertified {
-            rotation: gait.rotation,
-            failed: gait.certificate.failures(),
-        });
-    }
+    let best = best.ok_or(TurningError::NoRegion)?;
+    let gait = certified(best.gait(problem, bounds, model));
     Ok(Turning {
         gait,
         bridged_supremum,
@@ -239,49 +239,29 @@ fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     pieces
 }
 
-/// The pieces as a cycle at constant power; none where they make no gait.
-fn cycle(pieces: &[Piece], model: &Model<f64>) -> Option<Cycle> {
-    let mut phi: Vec<Vector2<f64>> = Vec::new();
-    let mut ends = Vec::new();
+/// The pieces' points at constant power; none where they make no gait.
+fn sampled(pieces: &[Piece], model: &Model<f64>) -> Option<Samples> {
+    let mut samples = Samples::default();
     for piece in pieces {
-        let new = piece.points.iter().skip(usize::from(!phi.is_empty()));
-        phi.extend(new.copied());
-        ends.push(phi.len() - 1);
+        let from = samples.phi.len().saturating_sub(1);
+        let new = piece.points.iter().skip(usize::from(from > 0));
+        samples.phi.extend(new.copied());
+        let to = samples.phi.len() - 1;
+        samples.arcs.push((piece.kind, from, to));
+        samples.corners.push(from);
     }
     // Exactly closed.
-    let first = *phi.first()?;
-    *phi.last_mut()? = first;
-    let mut chord = vec![0.0];
-    for (a, b) in phi.iter().zip(phi.iter().skip(1)) {
-        chord.push(chord.last()? + (b - a).norm());
+    *samples.phi.last_mut()? = *samples.phi.first()?;
+    if begins_smoothly(&samples.phi) {
+        samples.corners.remove(0);
     }
-    let smooth_start = begins_smoothly(&phi);
-    let mut corners: Vec<usize> = ends.iter().copied().take(ends.len() - 1).collect();
-    if !smooth_start {
-        corners.insert(0, 0);
+    samples.along.push(0.0);
+    for (a, b) in samples.phi.iter().zip(samples.phi.iter().skip(1)) {
+        samples.along.push(samples.along.last()? + (b - a).norm());
     }
-    let total = *chord.last()?;
-    let u: Vec<f64> = chord.iter().map(|length| length / total).collect();
-    let gait = AnyGait::from_samples(&u, &phi, &corners).ok()?;
-    let u = at_constant_power(&gait, &u, model)?;
-    let place = |i: usize| u.get(i).copied().unwrap_or(1.0);
-    let mut from = 0.0;
-    let mut arcs = Vec::new();
-    for (piece, end) in pieces.iter().zip(&ends) {
-        let to = place(*end);
-        arcs.push(GaitArc {
-            kind: piece.kind,
-            from,
-            to,
-        });
-        from = to;
-    }
-    Some(Cycle {
-        corners: corners.iter().map(|&corner| place(corner)).collect(),
-        arcs,
-        u,
-        phi,
-    })
+    let by_chord = samples.closed();
+    samples.along = power_lengths(&by_chord.gait().ok()?, &by_chord.u, model);
+    Some(samples)
 }
 
 /// Whether the last side of a closed curve goes on into the first: it bends there no more than the neighbours' bends explain.
@@ -308,82 +288,63 @@ fn begins_smoothly(phi: &[Vector2<f64>]) -> bool {
 /// A curve that bends this much more than beside has a corner \[1/rad\].
 const SHARP: f64 = 0.05;
 
-/// Fractions of the period for the same knots such that the power is constant: proportional to ∫√(Φ′ᵀWΦ′).
-fn at_constant_power(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Option<Vec<f64>> {
+/// ∫√(Φ′ᵀWΦ′) up to each knot.
+fn power_lengths(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Vec<f64> {
     let (nodes, weights) = gauss(4);
-    let mut length = vec![0.0];
+    let (mut length, mut lengths) = (0.0, vec![0.0]);
     for (a, b) in u.iter().zip(u.iter().skip(1)) {
-        let sum: f64 = nodes
-            .iter()
-            .zip(&weights)
-            .map(|(s, w)| {
-                let point = gait.at(a + 0.5 * (s + 1.0) * (b - a));
-                let power = point
-                    .rate
-                    .dot(&(model.power_matrix(&point.phi) * point.rate));
-                w * power.max(0.0).sqrt()
-            })
-            .sum();
-        length.push(length.last()? + 0.5 * (b - a) * sum);
+        for (s, w) in nodes.iter().zip(&weights) {
+            let point = gait.at(a + 0.5 * (s + 1.0) * (b - a));
+            let power = point
+                .rate
+                .dot(&(model.power_matrix(&point.phi) * point.rate));
+            length += 0.5 * (b - a) * w * power.max(0.0).sqrt();
+        }
+        lengths.push(length);
     }
-    let total = *length.last()?;
-    let mut fractions: Vec<f64> = length.iter().map(|length| length / total).collect();
-    *fractions.last_mut()? = 1.0;
-    Some(fractions)
+    lengths
+}
+
+/// Signed area that the pieces enclose \[rad²\].
+fn area(pieces: &[Piece]) -> f64 {
+    let twice: f64 = pieces
+        .iter()
+        .flat_map(|piece| piece.points.iter().zip(piece.points.iter().skip(1)))
+        .map(|(a, b)| a.perp(b))
+        .sum();
+    0.5 * twice
 }
 
 /// A loop round a region, swum.
 struct Loop {
-    pieces: Vec<Piece>,
+    arcs: Vec<Arc>,
     cycle: Cycle,
-    gait: AnyGait,
     stroke: Stroke<f64>,
 }
 
 impl Loop {
     /// None where the pieces make no gait.
     fn new(pieces: &[Piece], model: &Model<f64>) -> Option<Self> {
-        let cycle = cycle(pieces, model)?;
+        let samples = sampled(pieces, model)?;
+        let cycle = samples.closed();
         Some(Self {
-            pieces: pieces.to_vec(),
-            gait: cycle.gait().ok()?,
+            arcs: samples.arcs(),
             stroke: cycle.swum(model)?,
             cycle,
         })
     }
 
-    fn certified<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
-        self,
-        problem: &TurningProblem,
-        bounds: Bounds,
-        model: &Model<f64>,
-        domain: &Domain<'_, F>,
-    ) -> OptimalGait {
-        let certificate = certificate::certificate(model, domain, &self);
-        let ends = |piece: &Piece| {
-            piece
-                .points
-                .first()
-                .copied()
-                .zip(piece.points.last().copied())
-        };
-        let arc = |piece: &Piece| {
-            ends(piece).map(|(from, to)| Arc {
-                kind: piece.kind,
-                from: from.into(),
-                to: to.into(),
-            })
-        };
+    fn gait(self, problem: &TurningProblem, bounds: Bounds, model: &Model<f64>) -> OptimalGait {
         OptimalGait::new(Solution {
             objective: Objective::Turning,
             swimmer: problem.swimmer,
             bounds,
             symmetric: false,
-            arcs: self.pieces.iter().filter_map(arc).collect(),
+            arcs: self.arcs,
             links_cross: self.cycle.links_cross(model),
             cycle: self.cycle,
             stroke: self.stroke,
-            certificate,
+            certificate: Certificate::unasked(),
         })
     }
 }

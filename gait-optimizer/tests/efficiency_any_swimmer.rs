@@ -1,41 +1,18 @@
 //! Any sane swimmer: a certified gait or a reason, never a wrong gait, a hang or a panic.
 
+#[expect(dead_code, reason = "simple gaits are held against displacement only")]
+mod swimmers;
+
 use gait_optimizer::{Branch, EfficiencyProblem, efficiency};
 use swimmer_files::AnyGait;
-use swimmer_model::{Links, Model, Swimmer, TangentialDrag, Tolerance, swim};
-
-/// Link ratio 0.3–3, χ 1.3–5, sphere 0–1.2 l₀ (none for every fourth), all forms of `c_t`; spread evenly and always the same
-/// (Roberts' sequence in four dimensions).
-fn swimmer(i: u32) -> Swimmer<f64> {
-    let root = 1.167_303_978_261_418_7_f64;
-    let part = |power: i32| (0.5 + f64::from(i) / root.powi(power)).fract();
-    let middle = 0.1;
-    let side = middle / (0.3 * 10_f64.powf(part(1)));
-    Swimmer {
-        links: Links {
-            middle,
-            front: side,
-            back: side,
-        },
-        chi: 1.3 + 3.7 * part(2),
-        tangential_drag: match i % 3 {
-            0 => TangentialDrag::LogAspect(3.0 + 3.0 * part(4)),
-            1 => TangentialDrag::HalfThickness(0.02 * part(4).max(0.05) * middle.min(side)),
-            _ => TangentialDrag::OverViscosity(0.5 + 2.0 * part(4)),
-        },
-        sphere_radius: if i.is_multiple_of(4) {
-            0.0
-        } else {
-            1.2 * middle * part(3)
-        },
-    }
-}
+use swimmer_model::{Model, Tolerance, swim};
 
 #[test]
 fn every_swimmer_gets_a_certified_gait_or_a_reason() {
     let mut refused = Vec::new();
-    for i in 0..64 {
-        let swimmer = swimmer(i);
+    for (i, case) in swimmers::random(20_260_703, 64).into_iter().enumerate() {
+        // Whatever the bounds are.
+        let swimmer = case.swimmer;
         let model = Model::new(&swimmer).unwrap();
         for branch in [Branch::Small, Branch::Large] {
             let gait = match efficiency(&EfficiencyProblem::new(swimmer, branch)) {
@@ -68,9 +45,9 @@ fn every_swimmer_gets_a_certified_gait_or_a_reason() {
             }
         }
     }
-    // Large spheres bend the large gaits until they cross themselves: 14 of the 128. Others are one in a hundred.
+    // Large spheres bend the large gaits until they cross themselves: 10 of the 128.
     assert!(
-        refused.len() <= 18,
+        refused.len() <= 12,
         "{} refused:\n{}",
         refused.len(),
         refused.join("\n")

@@ -11,8 +11,8 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 use gait_optimizer::{
-    AtlasProblem, Branch, EfficiencyProblem, Objective, OptimalGait, SidewaysProblem, SpeedProblem,
-    TurningProblem, atlas, certify, efficiency, fastest, sideways, turning,
+    AtlasProblem, Branch, Condition, EfficiencyProblem, Objective, OptimalGait, SidewaysProblem,
+    SpeedProblem, TurningProblem, atlas, certify, efficiency, fastest, sideways, turning,
 };
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, GaitFile};
@@ -217,14 +217,14 @@ fn refused(case: &Case, Found { gait, simple }: &Found) -> Option<String> {
         Err(error) => return Some(error.to_string()),
     };
     // A curve that crosses itself fails for that, and shall fail for nothing else.
-    let crossings = ["self_crossings", "turning_number_off_one"];
+    let crossings = [Condition::Simple, Condition::TurnsOnce];
     let held = if *simple {
         certificate.pass()
     } else {
         certificate
             .checks()
             .iter()
-            .all(|check| check.pass || crossings.contains(&check.name))
+            .all(|check| check.pass || crossings.contains(&check.condition))
     };
     (!held).then(|| certificate.failures())
 }

@@ -5,7 +5,7 @@
 mod displacement;
 mod efficiency;
 
-use gait_optimizer::{BestAmplitude, Bounds, Objective, OptimalGait, certify};
+use gait_optimizer::{BestAmplitude, Bounds, Condition, Objective, OptimalGait, certify};
 use serde::Serialize;
 
 use super::study::Study;
@@ -121,7 +121,7 @@ fn failed_checks(gait: &OptimalGait) -> f64 {
 }
 
 /// One number of that certificate.
-fn value_of(gait: &OptimalGait, name: &str) -> f64 {
+fn value_of(gait: &OptimalGait, condition: Condition) -> f64 {
     let file = gait.gait_file("");
     certify(
         &gait.swimmer,
@@ -130,7 +130,7 @@ fn value_of(gait: &OptimalGait, name: &str) -> f64 {
         &Bounds::default(),
     )
     .ok()
-    .and_then(|certificate| certificate.value(name))
+    .and_then(|certificate| certificate.value(condition))
     .unwrap_or(f64::NAN)
 }
 

@@ -1,5 +1,6 @@
 // What `gait-optimizer` offers, without bodies and documentation: written by `cargo xtask api`, not by hand, and never compiled.
 
+pub use certificate::Condition;
 pub use swimmer_files::ArcKind;
 pub use swimmer_files::Bounds;
 pub use swimmer_files::GaitArc;
@@ -87,7 +88,7 @@ pub struct Certificate {}
 impl Serialize for Certificate {}
 impl Certificate {
     pub fn checks(&self) -> &[Check] {}
-    pub fn value(&self, name: &str) -> Option<f64> {}
+    pub fn value(&self, condition: Condition) -> Option<f64> {}
     pub fn pass(&self) -> bool {}
     pub fn verdict(&self) -> Verdict {}
     pub fn failures(&self) -> String {}
@@ -101,7 +102,7 @@ pub enum CertifyError {
 }
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Check {
-    pub name: &'static str,
+    pub condition: Condition,
     pub value: f64,
     pub tolerance: f64,
     pub pass: bool,

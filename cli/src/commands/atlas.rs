@@ -11,7 +11,8 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use gait_optimizer::{
-    Arc, Atlas as Found, AtlasError, AtlasProblem, Certificate, Objective, Optimum, atlas_watched,
+    Arc, Atlas as Found, AtlasError, AtlasProblem, Certificate, Condition, Objective, Optimum,
+    atlas_watched,
 };
 use serde::Serialize;
 
@@ -271,8 +272,8 @@ impl Line {
             end_angle_rad: gait.end_angle,
             arcs: gait.arcs.clone(),
             links_cross: gait.links_cross,
-            figures: Figures::of(gait, "shooting_residual", |gait| {
-                gait.certificate.value("power_variation")
+            figures: Figures::of(gait, Condition::ShootingResidual, |gait| {
+                gait.certificate.value(Condition::ConstantPowerOfSamples)
             }),
             certificate: gait.certificate.clone(),
             simple: optimum.simple,

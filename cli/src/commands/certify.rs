@@ -121,13 +121,13 @@ impl fmt::Display for Answer {
         let checks = self.certificate.checks();
         let mut table = quantity::Table::new(["condition", "number", "", "tolerance", ""]);
         for check in checks {
-            let sign = if check.name.ends_with("_least") {
+            let sign = if check.condition.is_from_below() {
                 "≥"
             } else {
                 "≤"
             };
             table.line([
-                check.name.to_owned(),
+                check.condition.key().to_owned(),
                 format!("{:.2e}", check.value),
                 sign.to_owned(),
                 format!("{:.1e}", check.tolerance),

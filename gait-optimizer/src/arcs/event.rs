@@ -1,6 +1,8 @@
 //! What ends an arc, and where within a step: looked for on the cubic through value and slope at both ends of the step, so
 //! that two crossings within one step are seen.
 
+use crate::numerics::halved;
+
 /// What may end an arc. Each has a value that falls through zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Event<E> {
@@ -64,17 +66,10 @@ fn falls(value: [f64; 2], slope: [f64; 2], length: f64) -> Option<f64> {
     };
     let mut low = 0.0;
     for look in 1..=SCAN_POINTS {
-        let mut high = f64::from(look) / f64::from(SCAN_POINTS);
+        let high = f64::from(look) / f64::from(SCAN_POINTS);
         if cubic(high) < 0.0 {
-            for _ in 0..20 {
-                let middle = 0.5 * (low + high);
-                if cubic(middle) < 0.0 {
-                    high = middle;
-                } else {
-                    low = middle;
-                }
-            }
-            return Some(high * length);
+            let [_, fallen] = halved([low, high], 20, |s| cubic(s) >= 0.0);
+            return Some(fallen * length);
         }
         low = high;
     }

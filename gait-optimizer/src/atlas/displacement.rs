@@ -15,15 +15,13 @@ use super::newton::{Settings, Stationary};
 use super::pipeline::{MultiStart, distance};
 use super::sections::guesses;
 use super::starts::through;
-use crate::certify::{Curve, around};
+use crate::certify::{certified, ways_up};
 use crate::closed_curve::Functional;
 use crate::loops::{Closed, LoopTrace, close};
 use crate::optimal_gait::Solution;
 use crate::region::Region;
-use crate::{Certificate, DisplacementProblem, Heading, OptimalGait};
+use crate::{Certificate, Condition, DisplacementProblem, Heading, OptimalGait};
 
-/// Curves are symmetric to within this, the sag of the outline that they are compared by \[rad\].
-const SYMMETRIC: f64 = 0.01;
 /// Gaits that gain less than this over another, over L, are not on the way up from it.
 const HIGHER: f64 = 1e-9;
 
@@ -67,7 +65,7 @@ impl MultiStart for Displacement<'_> {
                 .ok()
             })
             // Optimal among gaits of its symmetry; there it may be a saddle among all.
-            .map(|gait| self.asked(gait).0)
+            .map(certified)
             .collect()
     }
 
@@ -77,22 +75,21 @@ impl MultiStart for Displacement<'_> {
         barrier: &Barrier,
         coarse: &Stationary,
     ) -> Option<OptimalGait> {
-        let (gait, pushed) = self.asked(self.extremals(functional, &coarse.coefficients).next()?);
+        let gait = self.extremals(functional, &coarse.coefficients).next()?;
         if gait.certificate.pass() {
             return Some(gait);
         }
         // A saddle. Where it is pushed up, a better extremal may be near.
-        pushed.iter().find_map(|pushed| {
+        ways_up(self.model, &gait).iter().find_map(|pushed| {
             self.extremals(functional, &through(pushed, functional.basis, barrier))
                 .filter(|there| distance(there) > distance(&gait) + HIGHER)
-                .map(|there| self.asked(there).0)
                 .find(|there| there.certificate.pass())
         })
     }
 }
 
 impl Displacement<'_> {
-    /// The closed extremals that a coarse curve leads to.
+    /// The closed extremals that a coarse curve leads to, saddles among them.
     fn extremals(
         &self,
         functional: &Functional<'_>,
@@ -102,37 +99,22 @@ impl Displacement<'_> {
         guesses(functional, model, region, coarse)
             .into_iter()
             .filter_map(|guess| close(model, region, guess.section, guess.from, guess.length))
-            .filter_map(|closed| self.certified(&closed))
+            .filter_map(|closed| self.gait(&closed))
+            .map(certified)
+            .filter(|gait| {
+                gait.certificate
+                    .holds_but(&[Condition::NoAscent, Condition::NoAscentWithoutSymmetry])
+            })
     }
 
-    /// The gait with the second variation over all closed curves in its certificate; where it is a saddle, curves on the way
-    /// up from it.
-    fn asked(&self, gait: OptimalGait) -> (OptimalGait, Vec<Curve>) {
-        let Some(around) = around(self.model, &gait) else {
-            return (gait, Vec::new());
-        };
-        let mut checks = gait.certificate.checks().to_vec();
-        checks.push(around.check);
-        let certificate = Certificate::new(checks);
-        let gait = OptimalGait {
-            certificate,
-            ..gait
-        };
-        (gait, around.up)
-    }
-
-    /// A closed loop as a gait, where its certificate holds.
-    fn certified(&self, closed: &Closed) -> Option<OptimalGait> {
+    /// A closed loop as a gait, not yet certified.
+    fn gait(&self, closed: &Closed) -> Option<OptimalGait> {
         let (problem, model) = (self.problem, self.model);
-        let trace = LoopTrace::new(model, self.region, closed, problem.samples)?;
+        let trace = LoopTrace::new(model, closed, problem.samples)?;
         let stroke = trace.cycle.swum(model)?;
-        let certificate = Certificate::new(trace.checks(self.region, &stroke));
-        if !certificate.pass() {
-            return None;
-        }
         let links_cross = trace.cycle.links_cross(model);
-        let symmetric = Outline::new(&trace.cycle.phi).asymmetry() < SYMMETRIC
-            && stroke.displacement.y.abs() < 1e-8;
+        let symmetric =
+            Outline::new(&trace.cycle.phi).is_symmetric() && stroke.displacement.y.abs() < 1e-8;
         Some(OptimalGait::new(Solution {
             objective: Objective::Displacement,
             swimmer: problem.swimmer,
@@ -146,7 +128,7 @@ impl Displacement<'_> {
             cycle: trace.cycle,
             stroke,
             links_cross,
-            certificate,
+            certificate: Certificate::unasked(),
         }))
     }
 }

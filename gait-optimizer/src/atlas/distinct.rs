@@ -99,8 +99,13 @@ impl Outline {
         least
     }
 
+    /// Whether the curve has both symmetries of the paper, to within the sag of the outline.
+    pub(crate) fn is_symmetric(&self) -> bool {
+        self.asymmetry() < 0.01
+    }
+
     /// How far the curve is from having both symmetries of the paper: its images in φ₁ = φ₂ and in φ₁ = −φ₂.
-    pub(crate) fn asymmetry(&self) -> f64 {
+    fn asymmetry(&self) -> f64 {
         let mirrored = self.mapped(|phi| Vector2::new(phi.y, phi.x));
         let turned = self.mapped(|phi| -Vector2::new(phi.y, phi.x));
         self.distance(&mirrored).max(self.distance(&turned))

@@ -8,14 +8,12 @@ use super::barrier::Barrier;
 use super::distinct::Outline;
 use super::newton::{Settings, Stationary};
 use super::pipeline::MultiStart;
-use crate::certificate::{Certificate, Check};
+use crate::certificate::{Certificate, Check, Condition};
 use crate::closed_curve::Functional;
 use crate::extremal::gait::{Order, gait};
 use crate::extremal::{Walls, polish};
+use crate::numerics::halved;
 use crate::{Branch, EfficiencyProblem, OptimalGait};
-
-/// Curves are symmetric to within this, the sag of the outline that they are compared by \[rad\].
-const SYMMETRIC: f64 = 0.01;
 
 pub(super) struct Efficiency<'a> {
     pub(super) problem: &'a AtlasProblem,
@@ -65,7 +63,7 @@ impl MultiStart for Efficiency<'_> {
         if !closed.certificate.pass() {
             return None;
         }
-        let symmetric = Outline::new(closed.phi()).asymmetry() < SYMMETRIC;
+        let symmetric = Outline::new(closed.phi()).is_symmetric();
         if symmetric && let Some(quarter) = self.of_quarter(&start, &closed) {
             return Some(quarter);
         }
@@ -94,15 +92,15 @@ impl Efficiency<'_> {
         let quarter = self.solved(start, true)?;
         let same = (quarter.efficiency / closed.efficiency - 1.0).abs();
         let mut checks = quarter.certificate.checks().to_vec();
-        checks.push(Check::at_most("closed_curve_off_quarter", same, 1e-8));
+        checks.push(Condition::SameAsQuarter.check(same));
         checks.extend(
             closed
                 .certificate
                 .checks()
                 .iter()
-                .filter(|check| check.name == "ascent_directions")
+                .filter(|check| check.condition == Condition::NoAscent)
                 .map(|check| Check {
-                    name: "ascent_directions_without_symmetry",
+                    condition: Condition::NoAscentWithoutSymmetry,
                     ..*check
                 }),
         );
@@ -139,18 +137,11 @@ fn home(curve: &Series) -> f64 {
     };
     let mut best = (0.0, 0.0);
     for k in 0..LOOKS {
-        let (mut low, mut high) = (place(k), place(k + 1));
+        let (low, high) = (place(k), place(k + 1));
         if off(low) * off(high) > 0.0 {
             continue;
         }
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if off(low) * off(middle) <= 0.0 {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
+        let [low, _] = halved([low, high], 40, |u| off(low) * off(u) > 0.0);
         let out = curve.at(low).phi.sum();
         if out > best.1 {
             best = (low, out);

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::Check;
+use super::{Check, Condition};
 
 /// A curve that turns once, and of which no two sides cross: `whole` is the closed curve, `simple` the part of it that must not
 /// cross itself (all of it, but for gaits that meet their own images).
@@ -12,8 +12,8 @@ pub(crate) fn simple_and_turning_once(
 ) -> [Check; 2] {
     let off_one = (turning_number(whole) - 1.0).abs();
     [
-        Check::at_most("turning_number_off_one", off_one, 1e-9),
-        Check::at_most("self_crossings", crossings(simple) as f64, 0.0),
+        Condition::TurnsOnce.check(off_one),
+        Condition::Simple.check(crossings(simple) as f64),
     ]
 }
 

@@ -11,7 +11,7 @@ use super::grid::Along;
 use super::path::Path;
 use super::second_variation::Gain;
 use super::{Degree, Openness, Subject, lesser, worse};
-use crate::certificate::Check;
+use crate::certificate::{Check, Condition};
 use crate::momentum::Momentum;
 
 impl Subject<'_> {
@@ -20,7 +20,7 @@ impl Subject<'_> {
         let path = &self.path;
         let d = path.displacement();
         if d.norm().is_nan() || d.norm() <= 1e-6 {
-            return vec![Check::at_least("gain_least", d.norm(), 1e-6)];
+            return vec![Condition::Gains.check(d.norm())];
         }
         let length = path.total_power_length();
         let powers = || path.places.iter().map(|place| place.root_power.powi(2));
@@ -28,24 +28,12 @@ impl Subject<'_> {
             (least.min(p), most.max(p))
         });
         let mut checks = vec![
-            Check::at_most(
-                "power_variation",
-                (most - least) / (length * length),
-                1e-7 + 4.0 * open.slope,
-            ),
-            Check::at_most(
-                "corner_rad",
-                self.sharpest_corner(),
-                1e-7 + 2.0 * open.slope,
-            ),
+            Condition::ConstantPower.open((most - least) / (length * length), 4.0 * open.slope),
+            Condition::NoCorner.open(self.sharpest_corner(), 2.0 * open.slope),
         ];
         if self.symmetric {
-            checks.push(Check::at_most(
-                "ends_not_square_rad",
-                self.ends_off_square(),
-                1e-7 + 2.0 * open.slope,
-            ));
-            checks.push(Check::at_most("net_lateral", d.y.abs(), 1e-8 + open.pose));
+            checks.push(Condition::EndsSquare.open(self.ends_off_square(), 2.0 * open.slope));
+            checks.push(Condition::NoLateral.open(d.y.abs(), open.pose));
         }
         let momentum = self.effort_momentum();
         let fine = Balance::new(self, path, &momentum);
@@ -57,11 +45,7 @@ impl Subject<'_> {
             let w = &place.first.power;
             w.determinant() / (w.trace() * w.trace())
         });
-        checks.push(Check::at_least(
-            "legendre_least",
-            definite.fold(f64::INFINITY, f64::min),
-            1e-12,
-        ));
+        checks.push(Condition::Legendre.check(definite.fold(f64::INFINITY, f64::min)));
         checks.extend(self.effort_multipliers(&momentum));
         checks.extend(self.ascents(Gain::Efficiency, momentum.c / length));
         checks
@@ -170,11 +154,7 @@ impl Subject<'_> {
             .map(|(a, b)| (a - b).abs())
             .fold(0.0, f64::max);
         let least = fine.into_iter().reduce(lesser)?;
-        Some(Check::at_least(
-            "bound_multiplier_least",
-            least,
-            -(1e-7 + unsure.min(1e-4)),
-        ))
+        Some(Condition::EffortOnBound.open(least, unsure.min(1e-4)))
     }
 }
 
@@ -248,10 +228,10 @@ impl Balance {
         let hamiltonian = free()
             .map(|(left, place)| (left.dot(&place.rate) / place.root_power).abs())
             .fold(0.0, worse);
-        let tolerance = 1e-8 + unsure.min(super::COARSEST);
+        let open = unsure.min(Condition::SlopesKnown.tolerance());
         vec![
-            Check::at_most("h_u", h_u, tolerance),
-            Check::at_most("hamiltonian_variation", hamiltonian, 10.0 * tolerance),
+            Condition::CostateBalance.open(h_u, open),
+            Condition::HamiltonianConstant.open(hamiltonian, 10.0 * open),
         ]
     }
 }

@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::Gait as _;
 
-use crate::certificate::{Certificate, Check, SeenBy};
+use crate::certificate::{Certificate, Check, Condition, SeenBy};
 
 /// Numbers with more digits than these were not rounded by a writer.
 const MOST_DIGITS: i32 = 13;
@@ -185,12 +185,14 @@ pub(super) fn with_uncertainty(
         .collect();
     let fewer = [0, 1].map(|from| asked(&every_second(gait, from)));
     let changed = |check: &Check, other: &Option<Certificate>| {
-        let value = other.as_ref().and_then(|other| other.value(check.name));
+        let value = other
+            .as_ref()
+            .and_then(|other| other.value(check.condition));
         // A condition that other samples do not even pose is open.
         value.map_or(f64::INFINITY, |value| (value - check.value).abs())
     };
-    let value = |name: &str| certificate.value(name).unwrap_or(0.0);
-    let (slope, pose) = (value("sampling_slope_error"), value("sampling_pose_error"));
+    let value = |condition| certificate.value(condition).unwrap_or(0.0);
+    let (slope, pose) = (value(Condition::SlopesKnown), value(Condition::PosesKnown));
     let coarse = certificate.is_too_coarse();
     certificate.with_uncertainty(|check| {
         if check.seen_by == SeenBy::Spacing {

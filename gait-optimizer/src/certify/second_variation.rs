@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector, Vector2};
 use super::Subject;
 use super::grid::{Along, Degree};
 use super::variation::{Push, Variation};
-use crate::certificate::Check;
+use crate::certificate::{Check, Condition};
 
 /// What is maximised, as far as the Hessian is concerned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,7 +56,7 @@ impl Ascents {
     pub(super) fn check(&self) -> Check {
         Check {
             uncertainty: self.unsure as f64,
-            ..Check::at_most("ascent_directions", self.count as f64, 0.0)
+            ..Condition::NoAscent.check(self.count as f64)
         }
     }
 }
@@ -77,7 +77,7 @@ impl Subject<'_> {
         let mut checks = Vec::new();
         if self.symmetric && !self.limits.need_quarters() {
             checks.extend(of(false).map(|check| Check {
-                name: "ascent_directions_without_symmetry",
+                condition: Condition::NoAscentWithoutSymmetry,
                 ..check
             }));
         }

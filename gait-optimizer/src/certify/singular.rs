@@ -10,7 +10,7 @@ use swimmer_files::Objective;
 use super::grid::Along;
 use super::second_variation::Gain;
 use super::{Degree, Openness, Subject, lesser, worse};
-use crate::certificate::Check;
+use crate::certificate::{Check, Condition};
 use crate::momentum::Momentum;
 
 /// What the height does at one node.
@@ -41,15 +41,11 @@ impl Subject<'_> {
                     checks = of_loop;
                 }
             }
-            checks.push(Check::at_most(
-                "other_start_better",
-                self.better_start(),
-                1e-8 + 4.0 * open.pose,
-            ));
+            checks.push(Condition::NoBetterStart.open(self.better_start(), 4.0 * open.pose));
         }
         if objective == Objective::Displacement && self.symmetric {
             let y = self.path.displacement().y;
-            checks.push(Check::at_most("net_lateral", y.abs(), 1e-8 + open.pose));
+            checks.push(Condition::NoLateral.open(y.abs(), open.pose));
         }
         checks
     }
@@ -58,7 +54,7 @@ impl Subject<'_> {
     fn of_gain(&self, gain: Gain, open: Openness) -> Vec<Check> {
         let Some(momentum) = self.weak_momentum(gain) else {
             // Nothing is gained, so nothing is optimal.
-            return vec![Check::at_least("gain_least", self.gained(gain), 1e-6)];
+            return vec![Condition::Gains.check(self.gained(gain))];
         };
         let looks: Vec<Look> = self
             .path
@@ -118,13 +114,9 @@ impl Subject<'_> {
         let steepest = largest(&|look| look.gradient.norm());
         let slope_at = |look: &Look| look.gradient.norm().max(1e-3 * steepest);
         let leverage = largest(&|look| look.pose_leverage / slope_at(look));
-        let tolerance = 1e-8 + leverage * open.pose;
+        let open = leverage * open.pose;
         let off_zero = |look: &Look| look.height.abs() / slope_at(look);
-        let mut checks = vec![Check::at_most(
-            "off_singular_condition_rad",
-            largest(&off_zero),
-            tolerance,
-        )];
+        let mut checks = vec![Condition::OnZeroHeight.open(largest(&off_zero), open)];
         let exits = self
             .grid
             .pieces
@@ -134,7 +126,7 @@ impl Subject<'_> {
             .filter(|&node| self.meets_free(node))
             .filter_map(|node| looks.get(node).map(off_zero))
             .reduce(worse);
-        checks.extend(exits.map(|off| Check::at_most("off_exit_condition_rad", off, tolerance)));
+        checks.extend(exits.map(|off| Condition::LeavesAtZero.open(off, open)));
         // Not where a piece ends: there two zero-level curves may cross.
         let inner = |node: usize| {
             self.along(node) == Along::Free
@@ -147,21 +139,17 @@ impl Subject<'_> {
             .filter(|(node, _)| inner(*node))
             .map(|(_, look)| look.gradient.dot(&look.left))
             .fold(f64::INFINITY, |a, b| if b.is_nan() { b } else { a.min(b) });
-        checks.push(Check::at_least("legendre_clebsch_least", least, 1e-6));
+        checks.push(Condition::GrowsInwards.check(least));
         let (h_u, hamiltonian) = self.drift_of_h_u(looks);
-        let slope = steepest;
-        checks.push(Check::at_most("h_u", h_u, tolerance * slope.max(1.0)));
+        let tolerance = (Condition::Stationary.tolerance() + open) * steepest.max(1.0);
+        checks.push(Condition::Stationary.within(h_u, tolerance));
         let rate = self
             .path
             .places
             .iter()
             .map(|place| place.rate.norm())
             .fold(0.0, f64::max);
-        checks.push(Check::at_most(
-            "hamiltonian",
-            hamiltonian,
-            tolerance * slope.max(1.0) * rate,
-        ));
+        checks.push(Condition::HamiltonianZero.within(hamiltonian, tolerance * rate));
         checks
     }
 
@@ -173,9 +161,8 @@ impl Subject<'_> {
             .filter(|(node, _)| self.along(*node) == Along::Bound)
             .map(|at| multiplier(at).unwrap_or(f64::NAN))
             .reduce(lesser);
-        let tolerance = 1e-9 + 4.0 * open.pose;
         least
-            .map(|least| Check::at_least("bound_multiplier_least", least, -tolerance))
+            .map(|least| Condition::HeightOnBound.open(least, 4.0 * open.pose))
             .into_iter()
             .collect()
     }

@@ -3,8 +3,8 @@
 use super::branch_point::BranchPoint;
 use super::follow::Family;
 use super::{ContinuationProblem, OtherSide, Start};
-use crate::OptimalGait;
 use crate::displacement::{DisplacementProblem, Heading, every};
+use crate::{Condition, OptimalGait};
 
 pub(super) struct Displacement<'a> {
     pub(super) problem: &'a ContinuationProblem,
@@ -56,8 +56,8 @@ fn heading(gait: &OptimalGait) -> Heading {
 }
 
 fn kept(value: f64, gait: OptimalGait) -> BranchPoint<()> {
-    let residual = gait.certificate.value("final_lambda4").unwrap_or(f64::NAN);
-    BranchPoint::new(value, gait, residual, ())
+    let residual = gait.certificate.value(Condition::FinalLambda4);
+    BranchPoint::new(value, gait, residual.unwrap_or(f64::NAN), ())
 }
 
 impl Family for Displacement<'_> {

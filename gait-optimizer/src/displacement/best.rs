@@ -9,10 +9,10 @@ use super::flow::Touch;
 use super::search::{Candidate, FINER_SCAN, SCAN_POINTS, Search, Seen};
 use super::start_family::{StartFamily, families, families_on_the_diagonal};
 use super::{DisplacementError, DisplacementProblem, Fates, certified, traced};
-use crate::OptimalGait;
 use crate::certificate::turning_number;
 use crate::certify::samples_suffice;
 use crate::region::Region;
+use crate::{Condition, OptimalGait};
 
 /// What a search within some bounds came to.
 pub(super) struct Extremals<'a> {
@@ -150,16 +150,12 @@ pub(super) fn best<'a>(
 
 /// Whether all holds that makes a curve a gait within its bounds, optimal or not.
 fn is_gait(gait: &OptimalGait) -> bool {
-    const OF_AN_OPTIMUM: [&str; 4] = [
-        "final_lambda4",
-        "start_transversality",
-        "end_transversality",
-        "conjugate_point_least",
-    ];
-    let checks = gait.certificate.checks().iter();
-    checks
-        .filter(|check| !OF_AN_OPTIMUM.contains(&check.name))
-        .all(|check| check.pass)
+    gait.certificate.holds_but(&[
+        Condition::FinalLambda4,
+        Condition::StartTransversality,
+        Condition::EndTransversality,
+        Condition::NoConjugatePoint,
+    ])
 }
 
 /// Most samples of a quarter, as a multiple of those asked for.

@@ -5,11 +5,11 @@ mod quarter;
 use swimmer_files::ArcKind;
 
 use super::height::Extremal;
-use crate::arcs::{EndCondition, Event, TracedArc, Tracer};
+use crate::arcs::{EndCondition, Event, Leg, TracedArc, Tracer};
 use crate::momentum::{Flow, Motion, State, Track, shape};
-use crate::region::{Bound, Region};
+use crate::region::{Bound, Edge, Region};
 use crate::runge_kutta::{Point, StepControl, System};
-pub(crate) use quarter::{Fate, Leg, MOST_ARCS, Quarter};
+pub(crate) use quarter::{Fate, MOST_ARCS, Quarter};
 
 /// Longest curve of a quarter \[rad\].
 const LONGEST_CURVE: f64 = 40.0;
@@ -187,19 +187,21 @@ impl EndCondition for Ends<'_> {
     }
 
     fn stops_at(&self, bound: &Bound, motion: &Motion) -> bool {
-        !is_end_line(bound) || on_diagonal(motion)
+        !is_end_line(bound.edge()) || on_diagonal(motion)
     }
 }
 
 /// Running along a side of the sector.
 fn on_diagonal(motion: &Motion) -> bool {
-    matches!(motion, Motion::Along(track) if track.bound.kind() == ArcKind::Diagonal)
+    matches!(motion, Motion::Along(track) if track.wall.kind() == ArcKind::Diagonal)
 }
 
 /// On along φ₁ = −φ₂; none where the quarter shall end, that line is no bound or another bound is in the way.
 fn along_the_end(region: &Region, at: &State, touch: Touch) -> Option<Motion> {
     const AHEAD: f64 = 1e-6;
-    let index = region.bounds().position(|bound| is_end_line(&bound))?;
+    let index = region
+        .bounds()
+        .position(|bound| is_end_line(bound.edge()))?;
     let phi = shape(at);
     let inwards = Track::new(region, index, &phi, 1.0)?;
     let track = match touch {
@@ -236,7 +238,7 @@ impl Next<'_> {
                     return Err(Fate::Stalled);
                 };
                 let is_straight =
-                    on_diagonal(&self.flow.motion) && track.bound.kind() == ArcKind::Diagonal;
+                    on_diagonal(&self.flow.motion) && track.wall.kind() == ArcKind::Diagonal;
                 if is_straight && self.ends_straight {
                     return Err(Fate::Ended);
                 }
@@ -245,7 +247,8 @@ impl Next<'_> {
                 // leads away from where the quarter began. In a corner of the region the only way is back inside.
                 let forwards = match self.flow.motion {
                     Motion::Singular => {
-                        let outwards = is_start_line(&track.bound) && phi.x + phi.y > self.began;
+                        let outwards =
+                            is_start_line(track.wall.edge()) && phi.x + phi.y > self.began;
                         let away = if outwards { 1.0 } else { -1.0 };
                         let towards_end = away * (along.x + along.y);
                         if towards_end.abs() > 1e-9 {
@@ -267,11 +270,11 @@ impl Next<'_> {
 }
 
 /// The edge φ₂ ≥ φ₁ of the sector, on which quarters begin.
-fn is_start_line(bound: &Bound) -> bool {
-    matches!(bound, Bound::Straight(edge) if edge.kind == ArcKind::Diagonal && edge.normal.x > 0.0)
+fn is_start_line(edge: Option<&Edge>) -> bool {
+    edge.is_some_and(|edge| edge.kind == ArcKind::Diagonal && edge.normal.x > 0.0)
 }
 
 /// The edge φ₂ ≥ −φ₁ of the sector, which is also where quarters end.
-pub(crate) fn is_end_line(bound: &Bound) -> bool {
-    matches!(bound, Bound::Straight(edge) if edge.kind == ArcKind::Diagonal && edge.normal.x < 0.0)
+pub(crate) fn is_end_line(edge: Option<&Edge>) -> bool {
+    edge.is_some_and(|edge| edge.kind == ArcKind::Diagonal && edge.normal.x < 0.0)
 }

@@ -1,15 +1,15 @@
-//! The switching function of the displacement problem, its gradient, and the control that keeps it at zero.
+//! The multipliers of the displacement problem.
 //!
 //! With the multipliers λ₃ = ±1 (x forwards or backwards) and `λ₄ = λ₃ (y − y_f)`, the paper's
 //! `F = F₁ λ₃ + F₂ λ₄` is minus the curvature of the connection, turned by θ and weighed by the multipliers. Its negative,
-//! the [`Extremal::height`], is what a counter-clockwise loop gains by enclosing a little more on its left: the height
+//! the height of their [`Momentum`], is what a counter-clockwise loop gains by enclosing a little more on its left: the height
 //! function of the geometric picture, exact along this extremal. It holds on bounds too, and unlike `λ₄ = −F₁/F₂` it is
 //! regular on φ₁ = −φ₂.
 
-use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
-use swimmer_model::{FirstDerivatives, Model};
+use nalgebra::Vector2;
+use swimmer_model::Model;
 
-use crate::momentum::{Height, Momentum};
+use crate::momentum::Momentum;
 
 /// One choice of the problem's multipliers: all extremals with this λ₃ and this final y.
 #[derive(Debug, Clone, Copy)]
@@ -22,90 +22,12 @@ pub(crate) struct Extremal<'a> {
     pub(crate) final_y: f64,
 }
 
-/// What the costate equations need at one state.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Slopes {
-    /// λ₃ g + λ₄ f and λ₃ h + λ₄ q: minus λ₁ and λ₂ where `H_u = 0`.
-    pub(crate) momentum: Vector2<f64>,
-    /// Their partial derivatives in φ₁ (first column) and φ₂ (second column), θ, y held.
-    pub(crate) by_angle: Matrix2<f64>,
-    pub(crate) connection: Matrix3x2<f64>,
-    pub(crate) power: Matrix2<f64>,
-    /// The height.
-    pub(crate) height: f64,
-    /// The connection's curvature in the body's frame.
-    pub(crate) curvature: Vector3<f64>,
-}
-
 impl Extremal<'_> {
     /// The multipliers as a momentum.
     pub(crate) fn momentum(&self) -> Momentum {
         Momentum {
             p: Vector2::new(self.sign, 0.0),
             c: -self.sign * self.final_y,
-        }
-    }
-
-    /// The height −F at a state.
-    #[cfg(test)]
-    pub(crate) fn height(&self, phi: &Vector2<f64>, pose: &[f64; 3]) -> f64 {
-        let curvature = self.model.first_derivatives(phi).curvature();
-        self.momentum().at(pose).dot(&curvature)
-    }
-
-    /// The height −F and its derivative along each joint: total, that is with the θ and y that this joint's motion brings.
-    /// (The paper's A and B in `Ḟ = A u₁ + B u₂` are minus this gradient over λ₃.)
-    pub(crate) fn height_and_gradient(
-        &self,
-        phi: &Vector2<f64>,
-        pose: &[f64; 3],
-    ) -> (Height, Matrix3x2<f64>, Matrix2<f64>) {
-        self.momentum().evaluate(self.model, phi, pose)
-    }
-
-    /// The height with its gradient, and everything that the costate equations need, from one look at the model.
-    pub(crate) fn height_and_slopes(
-        &self,
-        phi: &Vector2<f64>,
-        pose: &[f64; 3],
-    ) -> (Height, Slopes) {
-        let second = self.model.second_derivatives(phi);
-        (
-            self.momentum().height(&second, pose),
-            self.slopes_of(&second.first, pose),
-        )
-    }
-
-    /// The final y for which the height vanishes at a state; none where every λ₄ or none makes it vanish.
-    pub(crate) fn final_y_of_zero(
-        model: &Model<f64>,
-        phi: &Vector2<f64>,
-        pose: &[f64; 3],
-    ) -> Option<f64> {
-        let curvature = model.first_derivatives(phi).curvature();
-        let (sin, cos) = pose[2].sin_cos();
-        let final_y = pose[1] + (cos * curvature.x - sin * curvature.y) / curvature.z;
-        final_y.is_finite().then_some(final_y)
-    }
-
-    /// Everything that the costate equations need.
-    pub(crate) fn slopes(&self, phi: &Vector2<f64>, pose: &[f64; 3]) -> Slopes {
-        self.slopes_of(&self.model.first_derivatives(phi), pose)
-    }
-
-    fn slopes_of(&self, first: &FirstDerivatives<f64>, pose: &[f64; 3]) -> Slopes {
-        let mu = self.momentum().at(pose);
-        let weigh = |a: &Matrix3x2<f64>| a.tr_mul(&mu);
-        Slopes {
-            momentum: weigh(&first.connection),
-            by_angle: Matrix2::from_columns(&[
-                weigh(&first.d_connection[0]),
-                weigh(&first.d_connection[1]),
-            ]),
-            curvature: first.curvature(),
-            height: mu.dot(&first.curvature()),
-            connection: first.connection,
-            power: first.power,
         }
     }
 }
@@ -115,6 +37,11 @@ mod tests {
     use super::*;
     use crate::momentum::pose_rates;
     use swimmer_model::Swimmer;
+
+    fn height(extremal: &Extremal<'_>, phi: &Vector2<f64>, pose: &[f64; 3]) -> f64 {
+        let curvature = extremal.model.first_derivatives(phi).curvature();
+        extremal.momentum().at(pose).dot(&curvature)
+    }
 
     /// The gradient is the height's change along a short stretch of the dynamics.
     #[test]
@@ -126,8 +53,8 @@ mod tests {
             final_y: 0.13,
         };
         let (phi, pose) = (Vector2::new(0.7, 1.9), [0.2, -0.1, 0.4]);
-        let (height, ..) = extremal.height_and_gradient(&phi, &pose);
-        assert!((height.value - extremal.height(&phi, &pose)).abs() < 1e-15);
+        let (there, ..) = extremal.momentum().evaluate(&model, &phi, &pose);
+        assert!((there.value - height(&extremal, &phi, &pose)).abs() < 1e-15);
         for joint in 0..2 {
             let mut direction = Vector2::zeros();
             direction[joint] = 1.0;
@@ -144,14 +71,14 @@ mod tests {
                 };
                 let middle = half(&phi, &pose, &pose, h / 2.0);
                 let end = half(&(phi + direction * (h / 2.0)), &middle, &pose, h);
-                extremal.height(&(phi + direction * h), &end)
+                height(&extremal, &(phi + direction * h), &end)
             };
             let h = 1e-4;
             let numeric = (moved(h) - moved(-h)) / (2.0 * h);
             assert!(
-                (numeric - height.gradient[joint]).abs() < 1e-7,
+                (numeric - there.gradient[joint]).abs() < 1e-7,
                 "{numeric} {}",
-                height.gradient[joint]
+                there.gradient[joint]
             );
         }
     }
@@ -177,6 +104,6 @@ mod tests {
         let f1 = g_2 + g_theta * q - h_1 - h_theta * f;
         let f2 = a2[(2, 0)] - a1[(2, 1)];
         let printed = f1 + f2 * (0.05 - 0.03);
-        assert!((extremal.height(&phi, &pose) + printed).abs() < 1e-15 * (1.0 + printed.abs()));
+        assert!((height(&extremal, &phi, &pose) + printed).abs() < 1e-15 * (1.0 + printed.abs()));
     }
 }

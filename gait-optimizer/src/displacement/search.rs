@@ -8,10 +8,12 @@
 use swimmer_model::Model;
 
 use super::Fates;
-use super::flow::{Fate, Leg, Quarter, Touch, TraceOptions, follow};
+use super::flow::{Fate, Quarter, Touch, TraceOptions, follow};
 use super::height::Extremal;
 use super::start_family::{Place, StartFamily};
-use crate::momentum::{Motion, State, shape};
+use crate::arcs::Leg;
+use crate::momentum::{Motion, State, pose, shape};
+use crate::numerics::root;
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
 
@@ -226,29 +228,11 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The root of `λ₄(t_f)` in a bracket of the coarse scan: regula falsi (Illinois) at the coarse tolerance, which the
-    /// bracket holds for, then secants at the fine one. None at a jump.
+    /// The root of `λ₄(t_f)` in a bracket of the coarse scan: near it at the coarse tolerance, which the bracket holds for, then
+    /// secants at the fine one. None at a jump.
     fn root(&self, family: &StartFamily, a: (f64, f64), b: (f64, f64)) -> Option<f64> {
-        let (mut a, mut b) = (a, b);
-        for step in 0..40 {
-            let secant = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
-            let p = if step % 6 == 5 || !secant.is_finite() {
-                0.5 * (a.0 + b.0)
-            } else {
-                secant
-            };
-            let lambda4 = self.miss(family, p, COARSE)?;
-            if lambda4.signum() * b.1.signum() < 0.0 {
-                a = b;
-            } else {
-                a.1 *= 0.5;
-            }
-            b = (p, lambda4);
-            if lambda4.abs() < NEAR {
-                return self.polished(family, p);
-            }
-        }
-        None
+        let near = root([a, b], NEAR, |p| self.miss(family, p, COARSE))?;
+        self.polished(family, near)
     }
 
     /// From a place near a root to the root: secants at a middling tolerance, then a few steps at the fine one with the slope
@@ -369,9 +353,9 @@ impl<'a> Search<'a> {
         let place = self.place(family, p, control)?;
         let final_y = family.final_y(self.model, &place, p)?;
         let Place { state, motion } = place;
-        let (phi, pose) = (shape(&state), [state[2], state[3], state[4]]);
+        let (phi, pose) = (shape(&state), pose(&state));
         let extremal = self.extremal(final_y);
-        let (height, ..) = extremal.height_and_gradient(&phi, &pose);
+        let (height, ..) = extremal.momentum().evaluate(self.model, &phi, &pose);
         let direction = height.singular_direction();
         let inwards = match motion {
             Motion::Singular => direction.y - direction.x,

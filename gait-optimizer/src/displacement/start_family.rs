@@ -7,11 +7,12 @@ use swimmer_files::{ArcKind, Bounds};
 
 use swimmer_model::Model;
 
-use super::flow::{Fate, Leg, Touch, TraceOptions, along_bounds, follow, is_end_line};
+use super::flow::{Fate, Touch, TraceOptions, along_bounds, follow, is_end_line};
 use super::height::Extremal;
 use super::search::{FINE, lasting};
-use crate::momentum::{Flow, Motion, State, Track, shape};
-use crate::region::{Bound, Piece, Region};
+use crate::arcs::Leg;
+use crate::momentum::{Flow, Momentum, Motion, State, Track, pose, shape};
+use crate::region::{Bound, Piece, Region, Wall};
 use crate::runge_kutta::{Point, StepControl, advance};
 
 /// A line of places.
@@ -69,12 +70,12 @@ pub(crate) fn families(
         let Some(mut track) = Track::new(region, index, &shape, way) else {
             continue;
         };
-        if let Bound::Clearance(clearance) = &bound {
-            track.piece = Some(if clearance.has_corner() {
+        if let Wall::Curved(clearance, piece) = &mut track.wall {
+            *piece = if clearance.has_corner() {
                 Piece::BackTip
             } else {
                 Piece::Tips
-            });
+            };
         }
         let way = along_bounds(extremal, region, state, track, (FINE, Touch::Ends));
         let stretches = stretches(way.legs());
@@ -94,7 +95,7 @@ pub(crate) fn families_on_the_diagonal(
     families: &[StartFamily],
     touch: Touch,
 ) -> Vec<StartFamily> {
-    let Some(index) = region.bounds().position(|bound| is_end_line(&bound)) else {
+    let Some(index) = region.bounds().position(|bound| is_end_line(bound.edge())) else {
         return Vec::new();
     };
     let on_bounds = families.iter().filter_map(StartFamily::start);
@@ -208,7 +209,7 @@ impl StartFamily {
     /// Whether the family begins on φ₁ = −φ₂: in the straight shape.
     pub(crate) fn begins_straight(&self) -> bool {
         let first = self.stretches().first();
-        first.is_some_and(|first| is_end_line(&first.track.bound))
+        first.is_some_and(|first| is_end_line(first.track.wall.edge()))
     }
 
     /// The state at a place; `extremal` only carries the model. None outside the family.
@@ -246,11 +247,12 @@ impl StartFamily {
 
     /// `y_f` of the extremal that becomes singular at a place: the one for which the height vanishes there.
     pub(crate) fn final_y(&self, model: &Model<f64>, place: &Place, p: f64) -> Option<f64> {
-        let [.., y, theta] = pose(&place.state);
-        match self {
-            Self::EndLine { .. } => Some(y + p / (1.0 - p * p)).filter(|y| y.is_finite()),
-            _ => Extremal::final_y_of_zero(model, &shape(&place.state), &[0.0, y, theta]),
-        }
+        let [_, y, theta] = pose(&place.state);
+        let final_y = match self {
+            Self::EndLine { .. } => y + p / (1.0 - p * p),
+            _ => y - Momentum::of_zero(model, &shape(&place.state), -theta)?.c,
+        };
+        final_y.is_finite().then_some(final_y)
     }
 
     /// The place nearest to a shape, about: bounds count as the chords of their stretches. None where shapes do not tell.
@@ -286,9 +288,4 @@ impl StartFamily {
     pub(crate) fn end(&self) -> Option<State> {
         self.stretches().last().map(|last| last.to)
     }
-}
-
-/// x, y and θ of a state.
-fn pose(state: &State) -> [f64; 3] {
-    [state[2], state[3], state[4]]
 }

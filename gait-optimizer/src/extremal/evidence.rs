@@ -28,8 +28,6 @@ pub(crate) struct Evidence {
     pub(crate) overstepped: f64,
     /// Net displacement of the chain, in the frame of its start.
     pub(crate) displacement: Vector2<f64>,
-    /// Net rotation of the chain \[rad\].
-    pub(crate) rotation: f64,
 }
 
 /// φ₁, φ₂, x, y, θ, λ₁, λ₂.
@@ -115,7 +113,6 @@ pub(crate) fn follow(model: &Model<f64>, walls: &Walls, chain: &Chain) -> Option
         multiplier: None,
         overstepped: f64::NEG_INFINITY,
         displacement: Vector2::zeros(),
-        rotation: 0.0,
     };
     let mut pose = [0.0; 3];
     let nexts = chain.pieces().skip(1).map(|(arc, stretch, state)| {
@@ -155,7 +152,6 @@ pub(crate) fn follow(model: &Model<f64>, walls: &Walls, chain: &Chain) -> Option
         }
     }
     evidence.displacement = Vector2::new(pose[0], pose[1]);
-    evidence.rotation = pose[2];
     Some(evidence)
 }
 

@@ -9,15 +9,10 @@ use super::sampled::Sampled;
 use super::shooting::Class;
 use super::wall::Walls;
 use super::{Extremal, Unpolished};
-use crate::certificate::{Certificate, Check};
+use crate::certificate::{Certificate, Condition};
 use crate::certify::slopes_open;
 use crate::optimal_gait::{OptimalGait, Solution};
 
-/// The residual of the shooting that an extremal may have.
-const RESIDUAL: f64 = 1e-10;
-
-/// How much the power of the interpolated samples may vary, over its mean.
-const POWER_VARIATION: f64 = 1e-6;
 /// Samples of a cycle are not made more beyond this.
 const MOST_SAMPLES: usize = 8192;
 
@@ -49,7 +44,7 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
         let curve = cycle.gait().map_err(|_| lost())?;
         let variation = power_variation(model, &cycle.u, &curve);
         // The power varies by the third power of the samples' distance, slopes are open by the sixth.
-        let off = (variation / POWER_VARIATION).cbrt();
+        let off = (variation / Condition::ConstantPowerOfSamples.tolerance()).cbrt();
         let off = off.max(slopes_open(&cycle).powf(1.0 / 6.0));
         if off <= 1.0 || samples * parts > MOST_SAMPLES {
             break (sampled, cycle, curve, variation);
@@ -94,6 +89,8 @@ fn more(samples: usize, off: f64) -> usize {
     more
 }
 
+/// What the arcs tell, known to rounding and at once: [`certify`](crate::certify()) sees samples and a few waves alone, and takes as
+/// long as the search.
 fn certificate(
     model: &Model<f64>,
     extremal: &Extremal,
@@ -105,48 +102,29 @@ fn certificate(
     let p = first.map_or(Vector2::repeat(f64::NAN), |z| Vector2::new(z[3], z[4]));
     let d = stroke.displacement;
     let mut checks = vec![
-        Check::at_most("shooting_residual", extremal.solved.residual, RESIDUAL),
-        Check::at_most("off_extremal_rad", evidence.off_extremal, 1e-8),
-        Check::at_most(
-            "hamiltonian_variation",
-            evidence.power[1] - evidence.power[0],
-            1e-8,
-        ),
-        Check::at_most("momentum_off_pose", evidence.momentum, 1e-8),
-        Check::at_most(
-            "displacement_off_momentum",
-            (d.perp(&p) / (d.norm() * p.norm())).abs(),
-            1e-7,
-        ),
-        Check::at_most(
-            "momentum_off_scale",
-            (p.norm() * d.norm() / stroke.power_length - 1.0).abs(),
-            1e-7,
-        ),
-        Check::at_most("net_rotation_rad", stroke.rotation.abs(), 1e-8),
-        Check::at_most("power_variation", power_variation, POWER_VARIATION),
-        Check::at_most(
-            "efficiency_swum_again",
-            (stroke.efficiency_constant_power() / extremal.efficiency(model) - 1.0).abs(),
-            1e-7,
-        ),
+        Condition::ShootingResidual.check(extremal.solved.residual),
+        Condition::FollowedAgain.check(evidence.off_extremal),
+        Condition::PowerFollowedAgain.check(evidence.power[1] - evidence.power[0]),
+        Condition::MomentumOfPose.check(evidence.momentum),
+        Condition::MomentumAlongDisplacement.check((d.perp(&p) / (d.norm() * p.norm())).abs()),
+        Condition::MomentumScale.check((p.norm() * d.norm() / stroke.power_length - 1.0).abs()),
+        Condition::NoRotation.check(stroke.rotation.abs()),
+        Condition::ConstantPowerOfSamples.check(power_variation),
+        Condition::EfficiencySwumAgain
+            .check((stroke.efficiency_constant_power() / extremal.efficiency(model) - 1.0).abs()),
     ];
     checks.extend(
         evidence
             .multiplier
-            .map(|least| Check::at_least("bound_multiplier_least", least, -1e-7)),
+            .map(|least| Condition::EffortOnBound.check(least)),
     );
     if walls.nearest(&Vector2::zeros()).is_some() {
-        checks.push(Check::at_most(
-            "bound_overstepped",
-            evidence.overstepped,
-            1e-8,
-        ));
+        checks.push(Condition::KeepsWalls.check(evidence.overstepped));
     }
     let ascents = extremal
         .ascents(model)
         .map_or(f64::NAN, |count| count as f64);
-    checks.push(Check::at_most("ascent_directions", ascents, 0.0));
+    checks.push(Condition::NoAscent.check(ascents));
     Certificate::new(checks)
 }
 

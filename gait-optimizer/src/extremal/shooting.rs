@@ -14,6 +14,7 @@ use swimmer_model::Model;
 
 use super::equations::STATE;
 use super::flow::FINE;
+use crate::numerics::damped;
 pub(crate) use chain::{Chain, Class, Entry, Stretch};
 use conditions::assemble;
 
@@ -100,19 +101,13 @@ pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<So
         }
         let step = newton.ok_or(Unsolved::Singular)?.solution;
         let norm = here.norm();
-        let mut factor = longest_factor(&chain, &step);
-        let next = loop {
+        let mut factors =
+            damped(longest_factor(&chain, &step)).take_while(|&factor| factor >= 1e-3);
+        let next = factors.find_map(|factor| {
             let moved = chain.moved(&step, factor);
-            let trial = assemble(model, class, &moved, scale, tolerance)
-                .filter(|trial| trial.norm() < (1.0 - 1e-4 * factor) * norm);
-            if let Some(trial) = trial {
-                break Some((moved, trial));
-            }
-            factor *= 0.5;
-            if factor < 1e-3 {
-                break None;
-            }
-        };
+            let trial = assemble(model, class, &moved, scale, tolerance)?;
+            (trial.norm() < (1.0 - 1e-4 * factor) * norm).then_some((moved, trial))
+        });
         let Some(next) = next else {
             break;
         };

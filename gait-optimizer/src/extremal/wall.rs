@@ -1,42 +1,13 @@
-//! A bound of the joint angles as a smooth curve to run along.
+//! Walls as an extremal runs along them, and all walls of a full cycle.
 
 use nalgebra::{Matrix2, Vector2};
 use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Links;
 
-use crate::region::{Bound, Clearance, Edge, Level, Piece, Region};
-
-/// A bound `value(Φ) ≤ 0` whose zero is a smooth curve.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Wall {
-    /// A bound of one angle.
-    Straight(Edge),
-    /// One piece of the bound that keeps the side links apart.
-    Curved(Clearance, Piece),
-}
+pub(crate) use crate::region::Wall;
+use crate::region::{Bound, Clearance, Edge, Piece, Region};
 
 impl Wall {
-    /// What an arc along it is called.
-    pub(crate) fn kind(&self) -> ArcKind {
-        match self {
-            Self::Straight(edge) => edge.kind,
-            Self::Curved(..) => ArcKind::Clearance,
-        }
-    }
-
-    /// Whether it is the bound on the distance from tip to tip.
-    pub(crate) fn is_tips(&self) -> bool {
-        matches!(self, Self::Curved(_, Piece::Tips))
-    }
-
-    /// The margin with its derivatives.
-    fn level(&self, phi: &Vector2<f64>) -> Level {
-        match self {
-            Self::Straight(edge) => Bound::Straight(*edge).level(phi),
-            Self::Curved(clearance, piece) => clearance.level(*piece, phi),
-        }
-    }
-
     /// How far beyond the bound a shape is, in rad or (between links) over L; negative inside.
     pub(crate) fn value(&self, phi: &Vector2<f64>) -> f64 {
         -self.level(phi).value
@@ -102,21 +73,6 @@ impl Wall {
             (Self::Curved(_, a), Self::Curved(_, b)) => a == b,
             _ => false,
         }
-    }
-
-    /// The shape on the bound nearest to this one, or (on a curved bound) near it.
-    pub(crate) fn onto(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        const STEPS: usize = 8;
-        let mut here = *phi;
-        for _ in 0..STEPS {
-            let gradient = self.gradient(&here);
-            let step = gradient * (self.value(&here) / gradient.norm_squared());
-            if !step.norm().is_finite() || step.norm() < 1e-15 {
-                break;
-            }
-            here -= step;
-        }
-        here
     }
 
     /// The tangent's direction nearest to ψ.

@@ -3,18 +3,10 @@
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use crate::arcs::{EndCondition, Event, TracedArc, Tracer};
+use crate::arcs::{EndCondition, Event, Leg, TracedArc, Tracer};
 use crate::momentum::{Flow, Momentum, Motion, State, Track, shape};
-use crate::region::{Bound, Region};
+use crate::region::Region;
 use crate::runge_kutta::{Point, StepControl, exact_step};
-
-/// One arc of an orbit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Leg {
-    pub(crate) motion: Motion,
-    pub(crate) from: State,
-    pub(crate) to: State,
-}
 
 /// Most arcs of an orbit.
 const MOST_ARCS: usize = 24;
@@ -104,6 +96,7 @@ impl Launch<'_> {
                 motion,
                 from: orbit.end,
                 to: end,
+                length,
             });
             orbit.end = end;
             travelled += length;
@@ -167,7 +160,7 @@ fn along(region: &Region, index: usize, phi: &Vector2<f64>, before: &Motion) -> 
     let track = Track::new(region, index, phi, 1.0)?;
     // From one straight bound to the next the way must lead on inside both.
     if let Motion::Along(before) = before
-        && matches!(before.bound, Bound::Straight(_))
+        && before.wall.edge().is_some()
         && before.direction(phi).perp(&track.direction(phi)) <= 0.0
     {
         return None;

@@ -5,6 +5,7 @@ use swimmer_model::Model;
 
 use super::flow::{ClosedOrbit, Launch, ReturnCondition};
 use crate::momentum::{Momentum, Motion, pose, shape};
+use crate::numerics::damped;
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
 
@@ -31,11 +32,8 @@ pub(crate) struct Loop {
 /// A closed loop.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Closed {
-    pub(crate) start: Vector2<f64>,
     pub(crate) momentum: Momentum,
     pub(crate) orbit: ClosedOrbit,
-    /// What is left of the conditions.
-    pub(crate) residual: f64,
 }
 
 const COARSE: StepControl = StepControl {
@@ -84,21 +82,15 @@ pub(crate) fn close(
             (miss, orbit) = problem.shoot(&here, control)?;
         }
         let step = problem.step(&here, &miss, control)?;
-        let mut factor = (STRIDE / step.amax()).min(1.0);
-        let mut better = None;
-        for _ in 0..8 {
+        let mut factors = damped((STRIDE / step.amax()).min(1.0)).take(8);
+        let better = factors.find_map(|factor| {
             let there = Loop {
                 place: here.place + factor * step.x,
                 angle: here.angle + factor * step.y,
             };
-            if let Some((new, new_lap)) = problem.shoot(&there, control)
-                && new.norm() < miss.norm()
-            {
-                better = Some((there, new, new_lap));
-                break;
-            }
-            factor *= 0.5;
-        }
+            let (new, new_lap) = problem.shoot(&there, control)?;
+            (new.norm() < miss.norm()).then_some((there, new, new_lap))
+        });
         let Some((there, new, new_lap)) = better else {
             break;
         };
@@ -109,10 +101,8 @@ pub(crate) fn close(
     }
     let start = problem.start(&here);
     (control.tolerance <= FINE.tolerance && miss.norm() < CLOSED).then_some(Closed {
-        start,
         momentum: Momentum::of_zero(model, &start, here.angle)?,
         orbit,
-        residual: miss.norm(),
     })
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::region::{Bound, Piece, Region};
+use crate::region::{Piece, Region, Wall};
 
 /// What an arc runs along.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,9 +44,8 @@ impl Motion {
 pub(crate) struct Track {
     /// Place of the bound in the region.
     pub(crate) index: usize,
-    pub(crate) bound: Bound,
-    /// The piece, for a bound that has pieces.
-    pub(crate) piece: Option<Piece>,
+    /// What of it is run along.
+    pub(crate) wall: Wall,
     /// 1 with the region on the left, −1 with the region on the right.
     pub(crate) way: f64,
 }
@@ -54,11 +53,9 @@ pub(crate) struct Track {
 impl Track {
     /// Along the piece of a bound that a shape lies on; none where the region has no such bound.
     pub(crate) fn new(region: &Region, index: usize, phi: &Vector2<f64>, way: f64) -> Option<Self> {
-        let bound = region.bound(index)?;
         Some(Self {
             index,
-            bound,
-            piece: bound.piece(phi),
+            wall: region.bound(index)?.wall(phi),
             way,
         })
     }
@@ -76,23 +73,6 @@ impl Track {
         self.left(phi) * self.way
     }
 
-    /// A shape on the piece, or on its curve beyond its end, near this one.
-    pub(crate) fn onto(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        const STEPS: usize = 8;
-        let (Bound::Clearance(clearance), Some(piece)) = (&self.bound, self.piece) else {
-            return self.bound.onto(phi);
-        };
-        let mut here = *phi;
-        for _ in 0..STEPS {
-            let level = clearance.level(piece, &here);
-            here -= level.gradient * (level.value / level.gradient.norm_squared());
-            if level.value.abs() < 1e-15 {
-                break;
-            }
-        }
-        here
-    }
-
     /// Unit normal that points into the region.
     pub(crate) fn inwards(&self, phi: &Vector2<f64>) -> Vector2<f64> {
         let along = self.left(phi);
@@ -101,27 +81,24 @@ impl Track {
 
     /// The direction with the region on the left.
     fn left(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        match (&self.bound, self.piece) {
-            (Bound::Clearance(clearance), Some(piece)) => clearance.level(piece, phi).tangent(),
-            (bound, _) => bound.tangent(phi),
-        }
+        self.wall.level(phi).tangent()
     }
 
     /// What is left of the piece, with its slope in Φ; none where it does not end.
     pub(crate) fn piece_end(&self, phi: &Vector2<f64>) -> Option<(f64, Vector2<f64>)> {
-        match (&self.bound, self.piece) {
-            (Bound::Clearance(clearance), Some(piece)) => clearance.piece_end(piece, phi),
-            _ => None,
+        match &self.wall {
+            Wall::Curved(clearance, piece) => clearance.piece_end(*piece, phi),
+            Wall::Straight(_) => None,
         }
     }
 
     /// The piece after this one. Round a forbidden zone they follow each other as front tip, tips, back tip.
     pub(crate) fn next_piece(&self) -> Option<Self> {
-        let Bound::Clearance(clearance) = &self.bound else {
+        let Wall::Curved(clearance, piece) = self.wall else {
             return None;
         };
         let forwards = self.way > 0.0;
-        let next = match self.piece? {
+        let next = match piece {
             Piece::FrontTip if forwards && clearance.has_corner() => Piece::BackTip,
             Piece::BackTip if !forwards && clearance.has_corner() => Piece::FrontTip,
             Piece::FrontTip if forwards => Piece::Tips,
@@ -131,7 +108,7 @@ impl Track {
             _ => return None,
         };
         Some(Self {
-            piece: Some(next),
+            wall: Wall::Curved(clearance, next),
             ..*self
         })
     }

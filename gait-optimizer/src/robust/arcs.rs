@@ -133,7 +133,7 @@ impl Arcs {
             let swum = Trajectory::new(member, &self.nodes, arcs);
             let shapes = arcs.iter().flat_map(|arc| &arc.phi);
             for ((index, phi), height) in shapes.enumerate().zip(&mut heights) {
-                *height += self.sign * weight * swum.height(member, index, phi);
+                *height += self.sign * weight * swum.height(member, index, phi).value;
             }
         }
         heights
@@ -166,7 +166,8 @@ impl Arcs {
                     let falls: f64 = swum
                         .iter()
                         .map(|(member, weight, swum)| {
-                            -self.sign * weight * swum.height_slope(member, index, phi, &outward)
+                            let height = swum.height(member, index, phi);
+                            -self.sign * weight * height.gradient.dot(&outward)
                         })
                         .sum();
                     evidence.legendre_clebsch = evidence.legendre_clebsch.min(falls);

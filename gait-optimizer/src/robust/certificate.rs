@@ -9,8 +9,7 @@ use super::Values;
 use super::arcs::Arcs;
 use super::ensemble::{Ensemble, Found};
 use super::fourier::FourierFamily;
-use crate::Check;
-use crate::certificate::simple_and_turning_once;
+use crate::certificate::{Check, Condition, simple_and_turning_once};
 use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::region::Region;
@@ -19,17 +18,13 @@ use crate::region::Region;
 pub(super) fn of_arcs(family: &Arcs, x: &DVector<f64>, members: &[(Member, f64)]) -> Vec<Check> {
     let evidence = family.evidence(x, members);
     let mut checks = vec![
-        Check::at_most("robust_height", evidence.free_height, 1e-8),
-        Check::at_least(
-            "robust_legendre_clebsch_least",
-            evidence.legendre_clebsch,
-            1e-6,
-        ),
+        Condition::RobustHeight.check(evidence.free_height),
+        Condition::RobustGrowsInwards.check(evidence.legendre_clebsch),
     ];
     checks.extend(
         evidence
             .multiplier
-            .map(|least| Check::at_least("robust_bound_multiplier_least", least, -1e-9)),
+            .map(|least| Condition::RobustOnBound.check(least)),
     );
     checks
 }
@@ -37,16 +32,8 @@ pub(super) fn of_arcs(family: &Arcs, x: &DVector<f64>, members: &[(Member, f64)]
 /// Stationary, and a maximum.
 pub(super) fn of_series(x: &DVector<f64>, members: &[(Member, f64)]) -> Vec<Check> {
     vec![
-        Check::at_most(
-            "robust_gradient",
-            FourierFamily::gradient_norm(x, members),
-            1e-8,
-        ),
-        Check::at_most(
-            "robust_curvature",
-            FourierFamily::largest_curvature(x, members),
-            0.0,
-        ),
+        Condition::RobustGradient.check(FourierFamily::gradient_norm(x, members)),
+        Condition::RobustCurvature.check(FourierFamily::largest_curvature(x, members)),
     ]
 }
 
@@ -55,7 +42,7 @@ pub(super) fn of_curve(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) -> Ve
     let overstepped = overstepped(cycle, bounds, links);
     let mut checks = Vec::new();
     if overstepped > f64::NEG_INFINITY {
-        checks.push(Check::at_most("bound_overstepped_rad", overstepped, 1e-10));
+        checks.push(Condition::KeepsBounds.check(overstepped));
     }
     checks.extend(simple_and_turning_once(&cycle.phi, &cycle.phi));
     checks
@@ -78,8 +65,8 @@ pub(super) fn of_symmetry(cycle: &Cycle, nominal: &Model<f64>) -> [Check; 2] {
     let swum = cycle.swum(nominal);
     let of = |part: fn(&Stroke<f64>) -> f64| swum.as_ref().map_or(f64::NAN, |s| part(s).abs());
     [
-        Check::at_most("net_lateral", of(|stroke| stroke.displacement.y), 1e-8),
-        Check::at_most("net_rotation_rad", of(|stroke| stroke.rotation), 1e-8),
+        Condition::NoLateral.check(of(|stroke| stroke.displacement.y)),
+        Condition::NoRotation.check(of(|stroke| stroke.rotation)),
     ]
 }
 
@@ -99,11 +86,11 @@ pub(super) fn swum_again<P>(
     };
     let again = ensemble.brings(swum, sign);
     let mut checks: Vec<Check> = [
-        ("nominal_swum_again", again.nominal - values.nominal),
-        ("worst_swum_again", again.worst - values.worst),
-        ("mean_swum_again", again.mean - values.mean),
+        (Condition::NominalSwumAgain, again.nominal - values.nominal),
+        (Condition::WorstSwumAgain, again.worst - values.worst),
+        (Condition::MeanSwumAgain, again.mean - values.mean),
     ]
-    .map(|(name, off)| Check::at_most(name, off.abs() / scale, 1e-8))
+    .map(|(condition, off)| condition.check(off.abs() / scale))
     .into();
     if !found.held_by.is_empty() {
         let holders = found.weighted.iter();
@@ -111,8 +98,8 @@ pub(super) fn swum_again<P>(
             let off = (swum(&one.0) - sign * values.worst).abs() / scale;
             (one.1.min(least), if off <= apart { apart } else { off })
         });
-        checks.push(Check::at_least("worst_case_multiplier_least", least, 0.0));
-        checks.push(Check::at_most("worst_case_held_apart", apart, 1e-8));
+        checks.push(Condition::WorstCaseMultiplier.check(least));
+        checks.push(Condition::WorstCaseHeld.check(apart));
     }
     checks
 }

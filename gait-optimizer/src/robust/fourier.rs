@@ -12,6 +12,7 @@ use super::newton::Design;
 use crate::Branch;
 use crate::efficiency::{Objective, starts};
 use crate::member::Member;
+use crate::numerics::damped;
 
 /// Relative gradient norm, |∇ξ̄|/ξ̄ per radian, that counts as zero.
 pub(super) const FLAT: f64 = 1e-9;
@@ -139,21 +140,16 @@ impl Design for FourierFamily {
                 *slope /= curvature.abs().max(floor);
             }
             let step = &eigen.eigenvectors * along;
-            let mut share = (LONGEST / step.norm().max(f64::MIN_POSITIVE)).min(1.0);
-            let mut next = None;
-            for _ in 0..HALVINGS {
+            let most = (LONGEST / step.norm().max(f64::MIN_POSITIVE)).min(1.0);
+            let next = damped(most).take(HALVINGS).find_map(|share| {
                 let trial = &x + &step * share;
                 let there = Self::weighted(&trial, members);
                 // Near the top the value is rounding, and the gradient tells.
                 let gains = there.log_xi > here.log_xi
                     || (there.log_xi > here.log_xi - 1e-13
                         && there.gradient.norm() < here.gradient.norm());
-                if gains {
-                    next = Some((trial, there));
-                    break;
-                }
-                share *= 0.5;
-            }
+                gains.then_some((trial, there))
+            });
             let Some(next) = next else { break };
             (x, here) = next;
         }

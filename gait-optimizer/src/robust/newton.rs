@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::RobustError;
 use crate::member::Member;
+use crate::numerics::damped;
 
 /// A family of gaits in which the best for a weighted sum over swimmers can be found.
 pub(super) trait Design {
@@ -53,25 +54,21 @@ pub(super) fn newton(
         let Some(step) = step.filter(|step| step.iter().all(|s| s.is_finite())) else {
             break;
         };
-        let mut share = (longest / step.amax().max(f64::MIN_POSITIVE)).min(1.0);
         let before = r.amax();
-        let mut moved = false;
-        for _ in 0..HALVINGS {
+        let most = (longest / step.amax().max(f64::MIN_POSITIVE)).min(1.0);
+        let better = damped(most).take(HALVINGS).find_map(|share| {
             let trial = &x - &step * share;
             let there = residual(&trial);
-            if there.amax() < before {
-                (x, r, moved) = (trial, there, true);
-                break;
-            }
-            share *= 0.5;
-        }
-        if !moved {
+            (there.amax() < before).then_some((trial, there))
+        });
+        let Some(better) = better else {
             // At the floor of rounding a step may gain nothing more.
             if before <= 10.0 * tolerance {
                 return Ok(x);
             }
             break;
-        }
+        };
+        (x, r) = better;
         if r.amax() > GOOD * before {
             lu = None;
         }

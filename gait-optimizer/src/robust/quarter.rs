@@ -1,10 +1,10 @@
 //! A quarter gait swum by one member of the ensemble, with the height of its displacement along the way.
 
 use nalgebra::{Vector2, Vector3};
-use swimmer_model::Model;
 
 use super::nodes::Nodes;
 use crate::member::Member;
+use crate::momentum::{Height, Momentum};
 
 /// One smooth arc: shapes and their derivative at the nodes.
 #[derive(Debug, Clone)]
@@ -71,49 +71,20 @@ impl Trajectory {
         swum
     }
 
-    /// Height at node `index`, counted over all arcs, for the shape there: what a push of the curve to its right, a radian
-    /// for a radian of its length, adds to a quarter's x. With the body momentum μ = (cos θ, −sin θ, y − y_f) and the
-    /// curvature of the connection F it is μ · F.
-    pub(super) fn height(&self, member: &Member, index: usize, phi: &Vector2<f64>) -> f64 {
+    /// Height at node `index`, counted over all arcs, for the shape there, and its gradient with the swimmer carried along: what
+    /// a push of the curve to its right, a radian for a radian of its length, adds to a quarter's x.
+    pub(super) fn height(&self, member: &Member, index: usize, phi: &Vector2<f64>) -> Height {
         let Member { model, gain } = member;
-        let (theta, y) = self.pose(index);
-        height(model, &(phi * *gain), theta, y - self.final_y) * gain.powi(2)
-    }
-
-    /// How the height changes along `direction`, the swimmer carried there too.
-    pub(super) fn height_slope(
-        &self,
-        Member { model, gain }: &Member,
-        index: usize,
-        phi: &Vector2<f64>,
-        direction: &Vector2<f64>,
-    ) -> f64 {
-        const STEP: f64 = 1e-5;
-        let (theta, y) = self.pose(index);
-        let (phi, direction) = (&(phi * *gain), &(direction * *gain));
-        let twist = model.local_connection(phi) * direction;
-        let rise = theta.sin() * twist.x + theta.cos() * twist.y;
-        let at = |step: f64| {
-            height(
-                model,
-                &(phi + direction * step),
-                theta + twist.z * step,
-                y + rise * step - self.final_y,
-            )
+        let momentum = Momentum {
+            p: Vector2::x(),
+            c: -self.final_y,
         };
-        (at(STEP) - at(-STEP)) / (2.0 * STEP) * gain.powi(2)
+        let at = |values: &[f64]| values.get(index).copied().unwrap_or(f64::NAN);
+        let pose = [0.0, at(&self.y), at(&self.theta)];
+        let Height { value, gradient } = momentum.evaluate(model, &(phi * *gain), &pose).0;
+        Height {
+            value: value * gain.powi(2),
+            gradient: gradient * gain.powi(3),
+        }
     }
-
-    fn pose(&self, index: usize) -> (f64, f64) {
-        (
-            self.theta.get(index).copied().unwrap_or(f64::NAN),
-            self.y.get(index).copied().unwrap_or(f64::NAN),
-        )
-    }
-}
-
-fn height(model: &Model<f64>, phi: &Vector2<f64>, theta: f64, above_end: f64) -> f64 {
-    let f = model.first_derivatives(phi).curvature();
-    let (sin, cos) = theta.sin_cos();
-    cos * f.x - sin * f.y + above_end * f.z
 }

@@ -7,7 +7,7 @@ use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::region::Region;
 use crate::speed::{Polished, Setting, mended, speed_of, told};
-use crate::{Check, Fastest, SpeedProblem, Watch};
+use crate::{Condition, Fastest, SpeedProblem, Watch};
 
 /// A robust fastest gait.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,9 +48,6 @@ impl Design for Chains<'_> {
     }
 }
 
-/// A swimmer that turns by less does not turn \[rad\].
-const STILL: f64 = 1e-8;
-
 /// The most that one of the swimmers turns in a cycle \[rad\], where that is nothing.
 fn turns_nobody(ensemble: &Ensemble<'_>, cycle: &Cycle) -> Result<f64, RobustError> {
     let turns = ensemble.on_grid().map(|member| {
@@ -58,7 +55,7 @@ fn turns_nobody(ensemble: &Ensemble<'_>, cycle: &Cycle) -> Result<f64, RobustErr
         swum.map_or(f64::NAN, |stroke| stroke.rotation.abs())
     });
     let rotation = turns.fold(0.0, |most, one| if one <= most { most } else { one });
-    if rotation.is_nan() || rotation > STILL {
+    if rotation.is_nan() || rotation > Condition::NobodyTurns.tolerance() {
         return Err(RobustError::Turns { rotation });
     }
     Ok(rotation)
@@ -128,11 +125,9 @@ pub fn robust_speed(
         values.nominal,
         |stroke| stroke.displacement.norm() / fastest.period,
     ));
-    fastest.gait.certificate = fastest.gait.certificate.with(vec![Check::at_most(
-        "largest_rotation_rad",
-        turns_nobody(&ensemble, &cycle)?,
-        STILL,
-    )]);
+    fastest.gait.certificate = fastest.gait.certificate.with(vec![
+        Condition::NobodyTurns.check(turns_nobody(&ensemble, &cycle)?),
+    ]);
     if !fastest.gait.certificate.pass() {
         return Err(RobustError::NotCertified {
             failed: fastest.gait.certificate.failures(),

@@ -1,6 +1,7 @@
 //! Robust gaits against nominal ones, brute force and differences.
 
 use super::*;
+use crate::Condition;
 use crate::member::Member;
 use nalgebra::DVector;
 use swimmer_files::AnyGait;
@@ -452,7 +453,7 @@ fn the_nominal_optimum_is_not_robust() {
         let model = Model::new(&Swimmer::robot().of_unit_length()).unwrap();
         let certificate =
             crate::speed::certify_ensemble((&model, &members), &problem.bounds, &file, &curve);
-        certificate.value("switch_to_switch_integrals").unwrap()
+        certificate.value(Condition::SwitchIntegrals).unwrap()
     };
     assert!(residual(&found.fastest.gait) < 1e-8);
     assert!(

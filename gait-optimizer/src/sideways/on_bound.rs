@@ -8,6 +8,7 @@ use swimmer_model::Model;
 
 use crate::loops::{ClosedOrbit, Launch, LoopTrace};
 use crate::momentum::{Momentum, Motion, Track};
+use crate::numerics::{halved, root};
 use crate::region::{Bound, Edge, Region};
 use crate::runge_kutta::StepControl;
 
@@ -47,7 +48,7 @@ pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) ->
             for rotation in family.roots() {
                 let trace = family.shoot(rotation, FINE).and_then(|orbit| {
                     let momentum = family.momentum(rotation);
-                    LoopTrace::from_start(model, region, momentum, &orbit, samples)
+                    LoopTrace::from_start(model, momentum, &orbit, samples)
                 });
                 found.extend(trace);
             }
@@ -73,19 +74,13 @@ fn starts(model: &Model<f64>, region: &Region) -> Vec<Start> {
             a[(2, 0)] * along.x + a[(2, 1)] * along.y
         };
         for k in 0..PLACES {
-            let (mut low, mut high) = (middle + along * place(k), middle + along * place(k + 1));
+            let [low, high] = [place(k), place(k + 1)].map(|place| middle + along * place);
             if !inside(&low) || !inside(&high) || turning(&low) * turning(&high) > 0.0 {
                 continue;
             }
-            for _ in 0..60 {
-                let half = (low + high) * 0.5;
-                if turning(&low) * turning(&half) <= 0.0 {
-                    high = half;
-                } else {
-                    low = half;
-                }
-            }
-            let at = edge.onto(&((low + high) * 0.5));
+            let same = |share: f64| turning(&low) * turning(&low.lerp(&high, share)) > 0.0;
+            let [_, share] = halved([0.0, 1.0], 60, same);
+            let at = edge.onto(&low.lerp(&high, share));
             found.push(Start { at, bound, along });
         }
         found.extend(corner(region, bound, &edge).filter(|start| inside(&start.at)));
@@ -159,34 +154,10 @@ impl Family<'_> {
             if let [Some(a), Some(b)] = pair
                 && a * b <= 0.0
             {
-                roots.extend(self.root((place(k), *a), (place(k + 1), *b)));
+                let ends = [(place(k), *a), (place(k + 1), *b)];
+                roots.extend(root(ends, 1e-12, |at| self.miss(at, FINE)));
             }
         }
         roots
-    }
-
-    fn root(&self, low: (f64, f64), high: (f64, f64)) -> Option<f64> {
-        let (mut low, mut high) = (low, high);
-        for round in 0..80 {
-            let secant = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-            let at = if round % 4 != 3 && secant > low.0 && secant < high.0 {
-                secant
-            } else {
-                0.5 * (low.0 + high.0)
-            };
-            let miss = self.miss(at, FINE)?;
-            if miss.abs() < 1e-12 {
-                return Some(at);
-            }
-            if miss * low.1 > 0.0 {
-                low = (at, miss);
-            } else {
-                high = (at, miss);
-            }
-            if high.0 - low.0 < 1e-15 {
-                break;
-            }
-        }
-        None
     }
 }

@@ -16,7 +16,7 @@ use swimmer_files::{AnyGait, ArcKind, Bounds, GaitFile};
 use swimmer_model::{Model, Tolerance, crossing_share, swim};
 
 use super::problem::{Goal, HeadingRule, Setting};
-use crate::certificate::{Certificate, Check, SeenBy, again_within};
+use crate::certificate::{Certificate, Check, Condition, SeenBy, again_within};
 use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::region::Region;
@@ -24,10 +24,6 @@ pub(crate) use costate::certificate as within_limits;
 use legs::{Leg, Legs};
 use switching::Switching;
 
-/// What the conditions may miss, over V or its share of a switch-to-switch integral.
-const CLOSE: f64 = 1e-6;
-/// A rate may miss its limit by this share.
-const FULL: f64 = 1e-6;
 /// A corner this close to a bound rests on it \[rad, or over L\].
 pub(super) const RESTS: f64 = 1e-8;
 
@@ -82,41 +78,32 @@ pub(crate) fn certificate(
 ) -> Certificate {
     let mut checks = of_the_curve(model, region, file, gait);
     let Some(legs) = Legs::new((model, members), region, asked.goal, file, gait) else {
-        checks.push(Check::at_most("moves_nowhere", 1.0, 0.0));
+        checks.push(Condition::Moves.check(1.0));
         return Certificate::new(checks);
     };
     let stroke = swim(model, gait, &Tolerance::default());
     let [x, y, turned] = legs.end;
     let apart = (stroke.displacement.x - x).hypot(stroke.displacement.y - y);
-    checks.push(Check::at_most(
-        "displacement_stepped_again",
-        apart,
-        again_within(x.hypot(y)),
-    ));
+    checks.push(Condition::DisplacementSteppedAgain.within(apart, again_within(x.hypot(y))));
     match asked.goal {
-        Goal::Distance => checks.push(Check::at_most(
-            "net_rotation_rad",
-            stroke.rotation.abs(),
-            1e-8,
-        )),
-        Goal::Rotation => checks.push(Check::at_most(
-            "rotation_stepped_again",
-            (stroke.rotation - turned).abs(),
-            again_within(turned),
-        )),
+        Goal::Distance => checks.push(Condition::NoRotation.check(stroke.rotation.abs())),
+        Goal::Rotation => checks.push(
+            Condition::RotationSteppedAgain
+                .within((stroke.rotation - turned).abs(), again_within(turned)),
+        ),
     }
     if let Some(anchor) = asked.anchor {
         let least = file.phi.iter().map(|phi| (phi - anchor).norm());
         let off = least.fold(f64::INFINITY, f64::min);
-        checks.push(Check::at_most("off_the_joint_shape_rad", off, 1e-9));
+        checks.push(Condition::PassesJoint.check(off));
     }
-    checks.push(Check::at_most("off_full_rate", legs.off_full_rate(), FULL));
+    checks.push(Condition::FullRate.check(legs.off_full_rate()));
     let off_heading = asked.heading.off(legs.heading());
     if let Some(off) = off_heading.filter(|_| asked.goal == Goal::Distance) {
-        checks.push(Check::at_most("off_heading_rad", off.abs(), 1e-8));
+        checks.push(Condition::Heading.check(off.abs()));
     }
     let switching = Switching::new(region, &legs, asked);
-    checks.extend(switching.checks(CLOSE));
+    checks.extend(switching.checks());
     let setting = Setting {
         model,
         region,
@@ -132,9 +119,9 @@ pub(crate) fn certificate(
         // No shift is left that keeps all equations.
         Some(f64::INFINITY) => {}
         Some(least) if least.is_finite() => {
-            checks.push(Check::at_least("second_variation_least", least, 0.0));
+            checks.push(Condition::NoBetterCorners.check(least));
         }
-        _ => checks.push(Check::at_least("arcs_least", 0.0, 3.0)),
+        _ => checks.push(Condition::EnoughArcs.check(0.0)),
     }
     Certificate::new(checks)
 }
@@ -150,19 +137,19 @@ fn of_the_curve(
         (Some(first), Some(last)) => (last - first).norm(),
         _ => f64::NAN,
     };
-    let mut checks = vec![Check::at_most("open_rad", gap, GaitFile::CLOSURE)];
+    let mut checks = vec![Condition::Closed.check(gap)];
     if region.bounds().next().is_some() {
         let overstepped = file
             .phi
             .iter()
             .map(|phi| region.overstepped(phi))
             .fold(f64::NEG_INFINITY, f64::max);
-        checks.push(Check::at_most("bound_overstepped_rad", overstepped, 1e-9));
+        checks.push(Condition::KeepsBounds.check(overstepped));
     }
     if file.bounds.no_overlap {
         let crosses = crossing_share(&model.swimmer().links, gait);
         let folds = if crosses.folds { 1.0 } else { 0.0 };
-        checks.push(Check::at_most("side_link_on_middle_link", folds, 0.0));
+        checks.push(Condition::NothingFolded.check(folds));
     }
     let checks = checks.into_iter();
     checks.map(|check| check.seen_by(SeenBy::Samples)).collect()

@@ -24,7 +24,7 @@ use crate::immobile::refuse_immobile;
 use crate::optimal_gait::{Arc, OptimalGait, Solution};
 use crate::parallel::in_parallel;
 use crate::region::Region;
-use crate::{Certificate, Watch};
+use crate::{Certificate, Condition, Watch};
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -232,21 +232,21 @@ fn certified(setting: &Setting, chain: &Polished) -> Option<Polished> {
 
 /// Whether all holds that makes a chain a gait of its kind within its bounds and rates, optimal or not.
 fn is_gait(setting: &Setting, chain: &Polished) -> bool {
-    const OF_A_GAIT: [&str; 9] = [
-        "open_rad",
-        "bound_overstepped_rad",
-        "side_link_on_middle_link",
-        "displacement_stepped_again",
-        "net_rotation_rad",
-        "rotation_stepped_again",
-        "off_the_joint_shape_rad",
-        "off_full_rate",
-        "off_heading_rad",
+    const OF_A_GAIT: [Condition; 9] = [
+        Condition::Closed,
+        Condition::KeepsBounds,
+        Condition::NothingFolded,
+        Condition::DisplacementSteppedAgain,
+        Condition::NoRotation,
+        Condition::RotationSteppedAgain,
+        Condition::PassesJoint,
+        Condition::FullRate,
+        Condition::Heading,
     ];
     cycle(setting, chain, Bounds::default()).is_some_and(|told| {
         let checks = told.certificate.checks().iter();
         checks
-            .filter(|check| OF_A_GAIT.contains(&check.name))
+            .filter(|check| OF_A_GAIT.contains(&check.condition))
             .all(|check| check.pass)
     })
 }

@@ -1,7 +1,7 @@
 //! Known values, what the certificate catches, headings and periods.
 
 use super::*;
-use crate::certify;
+use crate::{Condition, certify};
 use swimmer_files::Objective;
 
 fn within(swimmer: Swimmer<f64>, max: f64) -> SpeedProblem {
@@ -103,7 +103,7 @@ fn the_certificate_is_that_of_the_curve() {
     };
     let file = found.gait.gait_file("");
     assert!(of(&file).pass(), "{}", of(&file).failures());
-    assert!(of(&file).value("second_variation_least").unwrap() > 0.0);
+    assert!(of(&file).value(Condition::NoBetterCorners).unwrap() > 0.0);
     for curve in [AnyGait::circle(1.6), AnyGait::square(1.4)] {
         let certificate = of(&GaitFile::sampled(&curve, 1024));
         assert!(!certificate.pass());
@@ -113,7 +113,7 @@ fn the_certificate_is_that_of_the_curve() {
         *phi *= 0.99;
     }
     let certificate = of(&moved);
-    assert!(certificate.value("switch_to_switch_integrals").unwrap() > 1e-4);
+    assert!(certificate.value(Condition::SwitchIntegrals).unwrap() > 1e-4);
     assert!(!certificate.pass());
 }
 

@@ -5,6 +5,7 @@
 use nalgebra::Vector2;
 
 use crate::momentum::Track;
+use crate::numerics::halved;
 use crate::region::{Bound, Region};
 
 /// A point of the border with the bound that it lies on, the region on the left.
@@ -77,7 +78,7 @@ impl Border {
     pub(super) fn between(from: &BorderPoint, to: &BorderPoint, share: f64) -> Vector2<f64> {
         let phi = from.phi.lerp(&to.phi, share);
         if from.track == to.track {
-            from.track.onto(&phi)
+            from.track.wall.onto(&phi)
         } else {
             phi
         }
@@ -91,16 +92,9 @@ impl Border {
             .iter()
             .zip(self.points.iter().cycle().skip(1))
             .find(|(a, b)| off(&a.phi) > 0.0 && off(&b.phi) <= 0.0 && a.phi.sum() > 0.0)?;
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..HALVINGS {
-            let middle = f64::midpoint(low, high);
-            if off(&Self::between(before, after, middle)) > 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        Some(Self::between(before, after, high))
+        let before_it = |share| off(&Self::between(before, after, share)) > 0.0;
+        let [_, share] = halved([0.0, 1.0], HALVINGS, before_it);
+        Some(Self::between(before, after, share))
     }
 }
 
@@ -121,7 +115,7 @@ fn next(
 ) -> Option<BorderPoint> {
     let track = here.track;
     let along = track.direction(&here.phi);
-    let ahead = |step: f64| track.onto(&(here.phi + along * step));
+    let ahead = |step: f64| track.wall.onto(&(here.phi + along * step));
     let mut step = spacing;
     while step > NARROWEST && along.dot(&track.direction(&ahead(step))) < TURN.cos() {
         step *= 0.5;
@@ -140,15 +134,7 @@ fn next(
         let phi = ahead(step);
         return Some(BorderPoint { phi, track });
     }
-    let (mut low, mut high) = (0.0, step);
-    for _ in 0..HALVINGS {
-        let middle = f64::midpoint(low, high);
-        if end(middle).is_none() {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let [low, high] = halved([0.0, step], HALVINGS, |step| end(step).is_none());
     let phi = here.phi;
     if low > AT_END {
         let phi = ahead(low);

@@ -42,7 +42,7 @@ pub(super) fn pieces_of(
     for point in border {
         if track != point.track {
             // Both points of a corner stand at one place: it ends one piece and begins the next.
-            ended(&mut pieces, track.bound.kind(), &mut points, point.phi, gap);
+            ended(&mut pieces, track.wall.kind(), &mut points, point.phi, gap);
             track = point.track;
         } else if points
             .last()
@@ -51,7 +51,7 @@ pub(super) fn pieces_of(
             points.push(point.phi);
         }
     }
-    ended(&mut pieces, track.bound.kind(), &mut points, end, gap);
+    ended(&mut pieces, track.wall.kind(), &mut points, end, gap);
     pieces
 }
 

@@ -9,6 +9,7 @@ use super::border::Border;
 use super::error::TurningError;
 use super::piece::{Piece, close_up, pieces_of, singular};
 use crate::height_map::{Level, LevelSearch, OnCurve, passes};
+use crate::numerics::halved;
 use crate::region::Region;
 
 /// What the walks go by.
@@ -29,6 +30,8 @@ struct Crossing {
     leaves: bool,
 }
 
+/// Halvings that place a crossing.
+const HALVINGS: usize = 60;
 /// Curvatures this small count as zero.
 const ZERO: f64 = 1e-13;
 /// A curve ends at a crossing if it comes this near \[rad\].
@@ -149,21 +152,9 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
             });
         }
         let (a, b) = (points.get(last)?, points.get(next)?);
-        let (mut low, mut high) = (0.0, 1.0);
-        let mut phi = a.phi;
-        for _ in 0..70 {
-            let middle = f64::midpoint(low, high);
-            phi = Border::between(a, b, middle);
-            let value = self.value(&phi);
-            if value.abs() < 1e-16 {
-                break;
-            }
-            if (value > 0.0) == leaves {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
+        let before = |share| (self.value(&Border::between(a, b, share)) > 0.0) == leaves;
+        let [_, share] = halved([0.0, 1.0], HALVINGS, before);
+        let phi = Border::between(a, b, share);
         Some(Crossing {
             phi,
             after: last,
@@ -272,20 +263,14 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
 
     /// Where a step leaves the region.
     fn leaving(&self, here: &OnCurve, step: f64) -> Option<Vector2<f64>> {
-        let (mut low, mut high) = (0.0, step);
-        let mut end = here.phi;
-        for _ in 0..60 {
-            let middle = f64::midpoint(low, high);
-            let guess = here.phi + here.tangent * middle;
-            let point = self.level.corrected(&guess, Some(&here.tangent), step)?;
-            end = point.phi;
-            if self.region.overstepped(&end) > 0.0 {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
-        Some(end)
+        let at = |length: f64| {
+            let guess = here.phi + here.tangent * length;
+            let point = self.level.corrected(&guess, Some(&here.tangent), step);
+            point.map(|point| point.phi)
+        };
+        let inside = |length| at(length).is_some_and(|phi| self.region.overstepped(&phi) <= 0.0);
+        let [_, length] = halved([0.0, step], HALVINGS, inside);
+        at(length)
     }
 
     /// Counter-clockwise along the border from a crossing to the next one where the walk leaves it.

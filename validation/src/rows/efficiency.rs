@@ -1,6 +1,6 @@
 //! Rows of section V and of the appendices: Lighthill's efficiency.
 
-use gait_optimizer::{BestAmplitude, closed_forms};
+use gait_optimizer::{BestAmplitude, Condition, closed_forms};
 use nalgebra::Vector2;
 use swimmer_model::{Model, Swimmer};
 
@@ -92,10 +92,10 @@ pub(super) fn appendices(study: &Study) -> Vec<Computed> {
         &study.robot_lighthill.small,
         &study.robot_lighthill.large,
     ];
-    let largest = |name: &str| {
+    let largest = |condition: Condition| {
         gaits
             .iter()
-            .map(|gait| value_of(gait, name))
+            .map(|gait| value_of(gait, condition))
             .fold(0.0, f64::max)
     };
     let forms = |symmetric: bool| {
@@ -107,8 +107,8 @@ pub(super) fn appendices(study: &Study) -> Vec<Computed> {
             .fold(0.0, f64::max)
     };
     vec![
-        ("appendix_a.power", largest("power_variation")),
-        ("appendix_b.ends", largest("ends_not_square_rad")),
+        ("appendix_a.power", largest(Condition::ConstantPower)),
+        ("appendix_b.ends", largest(Condition::EndsSquare)),
         ("appendix_b.b4", forms(true)),
         ("appendix_b.b9", forms(false)),
     ]

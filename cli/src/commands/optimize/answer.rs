@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use gait_optimizer::{Arc, Certificate, Method, Objective, OptimalGait};
+use gait_optimizer::{Arc, Certificate, Condition, Method, Objective, OptimalGait};
 use serde::Serialize;
 use swimmer_files::{AnyGait, SwimmerFile};
 
@@ -183,7 +183,7 @@ impl Figures {
     /// optimised as Fourier series first.
     pub(crate) fn of(
         gait: &OptimalGait,
-        residual: &str,
+        residual: Condition,
         power_variation: impl FnOnce(&OptimalGait) -> Option<f64>,
     ) -> Option<Self> {
         (gait.objective == Objective::Efficiency).then(|| Self {

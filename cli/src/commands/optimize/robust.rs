@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use gait_optimizer::{
-    Holder, Objective, OptimalGait, Over, RobustError, RobustGait, Robustness, Uncertainty, Values,
+    Condition, Holder, Objective, OptimalGait, Over, RobustError, RobustGait, Robustness,
+    Uncertainty, Values,
 };
 use serde::Serialize;
 use swimmer_files::{ArcKind, SwimmerFile};
@@ -275,7 +276,7 @@ impl RobustAnswer {
             quarter: gait.into(),
             // The gradient of ln ξ̄ [1/rad] for the members as they are weighed: no single swimmer's shooting conditions hold. The
             // power is that of the estimates' swimmer: one timing for all members is at constant power for none.
-            figures: Figures::of(gait, "robust_gradient", power_variation),
+            figures: Figures::of(gait, Condition::RobustGradient, power_variation),
             robust: Brings::new(&found.robustness, quantity),
             closing: Closing::new(gait, timing, seconds, file),
         }

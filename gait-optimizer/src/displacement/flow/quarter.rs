@@ -1,17 +1,8 @@
 //! What following arcs comes to: the arcs of a quarter gait, and how it ended.
 
 use super::is_end_line;
+use crate::arcs::Leg;
 use crate::momentum::{Motion, State};
-
-/// One arc of a quarter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Leg {
-    pub(crate) motion: Motion,
-    pub(crate) from: State,
-    pub(crate) to: State,
-    /// Of its curve in the (φ₁, φ₂) plane \[rad\].
-    pub(crate) length: f64,
-}
 
 /// How a quarter came to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,6 +40,6 @@ impl Quarter {
     /// Whether it ends on a way along φ₁ = −φ₂, which it would go back: no loop.
     pub(crate) fn ends_in_a_spike(&self) -> bool {
         let last = self.legs().last().map(|leg| leg.motion);
-        matches!(last, Some(Motion::Along(track)) if is_end_line(&track.bound))
+        matches!(last, Some(Motion::Along(track)) if is_end_line(track.wall.edge()))
     }
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::certificate::{Certificate, Condition};
 use crate::cycle::QuarterTrace;
 use crate::displacement::start_family::families;
 use swimmer_files::Bounds;
@@ -47,13 +48,14 @@ fn the_second_variation_agrees_with_the_neighbours() {
                             let legs: Vec<_> = lasting(candidate.quarter.legs()).copied().collect();
                             let extremal = search.extremal(candidate.final_y);
                             let trace = QuarterTrace::new(extremal, &region, &legs, 256).unwrap();
-                            let form = trace.evidence.second_variation.unwrap();
+                            let conditions = Certificate::new(trace.conditions);
+                            let least = conditions.value(Condition::NoConjugatePoint).unwrap();
                             if gain < 0.0 {
                                 maxima += 1;
-                                assert!(form.least > 0.0, "{swimmer:?} {gain} {form:?}");
+                                assert!(least > 0.0, "{swimmer:?} {gain} {least}");
                             } else {
                                 others += 1;
-                                assert!(form.least < 0.0, "{swimmer:?} {gain} {form:?}");
+                                assert!(least < 0.0, "{swimmer:?} {gain} {least}");
                             }
                         }
                     }

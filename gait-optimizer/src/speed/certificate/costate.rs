@@ -11,7 +11,7 @@ use swimmer_model::{Gait as _, Model, Panel, Panels, Tolerance, swim};
 
 use super::legs::pose_at;
 use super::{RESTS, of_the_curve};
-use crate::certificate::{Certificate, Check, again_within};
+use crate::certificate::{Certificate, Check, Condition, again_within};
 use crate::momentum::Momentum;
 use crate::region::Region;
 use crate::speed::gauge::{Facet, Level};
@@ -19,8 +19,6 @@ use crate::speed::quadrature::{Rule, cut};
 
 /// What the conditions may miss, over V.
 const CLOSE: f64 = 1e-6;
-/// A multiplier may be less than 0 by this.
-const MULTIPLIER: f64 = 1e-5;
 /// A limit binds where the gait takes this share of it.
 const BINDS: f64 = 1.0 - 1e-6;
 /// Times that multipliers below 0 are held there.
@@ -254,13 +252,13 @@ impl Costate<'_> {
             self.part((number, (from, to)), &nodes, into);
         }
         let mut checks = vec![
-            Check::at_most("limit_overstepped", most - 1.0, CLOSE),
-            Check::at_least("limits_taken_least", least, BINDS),
+            Condition::KeepsLimits.check(most - 1.0),
+            Condition::TakesLimit.check(least),
         ];
         let Unknowns { shares, pushes, .. } = unknowns;
         let positive: Vec<usize> = shares.iter().flatten().chain(&pushes).copied().collect();
         let Some((x, residual)) = equations.solve(&positive) else {
-            checks.push(Check::at_most("costate", f64::NAN, CLOSE));
+            checks.push(Condition::CostateWithinLimits.check(f64::NAN));
             return checks;
         };
         let off = |own: &Vec<usize>| (own.iter().map(|at| x[*at]).sum::<f64>() - 1.0).abs();
@@ -268,13 +266,13 @@ impl Costate<'_> {
         let least = |least: f64, at: &usize| least.min(x[*at]);
         let share = shares.iter().flatten().fold(f64::INFINITY, least);
         checks.extend([
-            Check::at_most("costate", residual, CLOSE),
-            Check::at_most("hamiltonian", hamiltonian, CLOSE),
-            Check::at_least("limit_multiplier_least", share, -MULTIPLIER),
+            Condition::CostateWithinLimits.check(residual),
+            Condition::HamiltonianWithinLimits.check(hamiltonian),
+            Condition::LimitMultiplier.check(share),
         ]);
         if !pushes.is_empty() {
             let push = pushes.iter().fold(f64::INFINITY, least);
-            checks.push(Check::at_least("bound_multiplier_least", push, -MULTIPLIER));
+            checks.push(Condition::BoundWithinLimits.check(push));
         }
         checks
     }
@@ -292,8 +290,8 @@ pub(crate) fn certificate(
     let d = stroke.displacement;
     let apart = (d.norm() - distance).abs();
     checks.extend([
-        Check::at_most("displacement_stepped_again", apart, again_within(distance)),
-        Check::at_most("net_rotation_rad", stroke.rotation.abs(), 1e-8),
+        Condition::DisplacementSteppedAgain.within(apart, again_within(distance)),
+        Condition::NoRotation.check(stroke.rotation.abs()),
     ]);
     let slowness = period / d.norm();
     let costate = Costate {

@@ -11,7 +11,7 @@ use super::super::problem::{Goal, HeadingRule};
 use super::affine::Affine;
 use super::legs::{Leg, Legs, Node};
 use super::{Asked, RESTS, least_squares, on_bound};
-use crate::certificate::Check;
+use crate::certificate::{Check, Condition};
 use crate::region::{Bound, Region};
 
 /// Columns of the least squares.
@@ -279,10 +279,10 @@ impl<'a> Switching<'a> {
             })
     }
 
-    pub(crate) fn checks(&self, close: f64) -> Vec<Check> {
+    pub(crate) fn checks(&self) -> Vec<Check> {
         let mut checks = vec![
-            Check::at_most("switch_to_switch_integrals", self.residual, close),
-            Check::at_most("double_switches", self.double_switches as f64, 0.0),
+            Condition::SwitchIntegrals.check(self.residual),
+            Condition::SingleSwitches.check(self.double_switches as f64),
         ];
         let signs: Vec<f64> = (0..self.legs.all.len())
             .flat_map(|k| self.least_sign(k))
@@ -297,11 +297,7 @@ impl<'a> Switching<'a> {
             })
         };
         if !signs.is_empty() {
-            checks.push(Check::at_least(
-                "switching_function_least",
-                least(&signs),
-                -close,
-            ));
+            checks.push(Condition::SwitchingSigns.check(least(&signs)));
         }
         let scale = self.legs.rates[0].max(self.legs.rates[1]);
         let (mut off, mut clebsch, mut pushes) = (Vec::new(), Vec::new(), Vec::new());
@@ -325,42 +321,22 @@ impl<'a> Switching<'a> {
             }
         }
         if !off.is_empty() {
-            checks.push(Check::at_most(
-                "height_on_singular_arcs",
-                -least(&off),
-                10.0 * close,
-            ));
-            checks.push(Check::at_least(
-                "legendre_clebsch_least",
-                least(&clebsch),
-                1e-6,
-            ));
+            checks.push(Condition::HeightOnSingular.check(-least(&off)));
+            checks.push(Condition::GrowsInwards.check(least(&clebsch)));
         }
         if !pushes.is_empty() {
-            checks.push(Check::at_least(
-                "bound_multiplier_least",
-                least(&pushes),
-                -close,
-            ));
+            checks.push(Condition::SpeedOnBound.check(least(&pushes)));
         }
         let jumps: Vec<f64> = (0..self.legs.all.len())
             .flat_map(|k| self.jump_signs(k))
             .collect();
         if !jumps.is_empty() {
-            checks.push(Check::at_least(
-                "contact_multiplier_least",
-                least(&jumps),
-                -close,
-            ));
+            checks.push(Condition::SpeedAtContact.check(least(&jumps)));
         }
         if self.asked.period {
             // A longer period never leads less far.
             let further = self.solution.get(SPEED).copied().unwrap_or(f64::NAN);
-            checks.push(Check::at_least(
-                "speed_of_further_time_least",
-                further,
-                -close,
-            ));
+            checks.push(Condition::FurtherTime.check(further));
         }
         checks
     }

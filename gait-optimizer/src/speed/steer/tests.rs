@@ -1,6 +1,7 @@
 //! Gaits that join: what joining costs, and where.
 
 use super::*;
+use crate::Condition;
 use swimmer_model::{Gait as _, Swimmer};
 
 fn robot(shape: Option<[f64; 2]>) -> SteerProblem {
@@ -31,14 +32,17 @@ fn three_gaits_join_where_they_are_told_to() {
         // The same bounds and one condition more: never faster.
         assert!((-1e-9..most).contains(&joined.cost()), "{}", joined.cost());
         let certificate = &joined.gait.certificate;
-        for name in [
-            "off_the_joint_shape_rad",
-            "open_rad",
-            "bound_overstepped_rad",
+        for condition in [
+            Condition::PassesJoint,
+            Condition::Closed,
+            Condition::KeepsBounds,
         ] {
-            assert!(certificate.value(name).unwrap() < 1e-9, "{name}");
+            assert!(
+                certificate.value(condition).unwrap() < 1e-9,
+                "{condition:?}"
+            );
         }
-        assert!(certificate.value("off_full_rate").unwrap() < 1e-6);
+        assert!(certificate.value(Condition::FullRate).unwrap() < 1e-6);
         for backwards in [false, true] {
             let gait = AnyGait::from_file(&joined.gait_file("robot", backwards)).unwrap();
             assert!((gait.at(0.0).phi - Vector2::from(shape)).norm() < 1e-9);

@@ -1,0 +1,258 @@
+//! Every condition that a certificate may hold: what it says, its key in answers and its tolerance, each once.
+
+use swimmer_files::GaitFile;
+
+use super::{Check, SeenBy, Side};
+
+/// Conditions with what they say, their keys, and what their numbers are held against: from above (`<=`) or from below (`>=`).
+macro_rules! conditions {
+    ($($(#[$says:meta])+ $name:ident: $key:literal $side:tt $tolerance:expr;)+) => {
+        /// A condition of an optimum, or of what its numbers rest on.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum Condition {
+            $($(#[$says])+ $name,)+
+        }
+
+        impl Condition {
+            /// Its name in answers; conditions of different objectives may share one.
+            pub fn key(self) -> &'static str {
+                match self {
+                    $(Self::$name => $key,)+
+                }
+            }
+
+            fn holds(self) -> (Side, f64) {
+                match self {
+                    $(Self::$name => (conditions!(@ $side), $tolerance),)+
+                }
+            }
+        }
+    };
+    (@ <=) => { Side::AtMost };
+    (@ >=) => { Side::AtLeast };
+}
+
+conditions! {
+    // The curve.
+    /// The first and the last sample are the same \[rad\].
+    Closed: "open_rad" <= GaitFile::CLOSURE;
+    /// It turns round once.
+    TurnsOnce: "turning_number_off_one" <= 1e-9;
+    /// It does not cross itself; a gait that may touch its own images is asked of a quarter.
+    Simple: "self_crossings" <= 0.0;
+    /// It has the paper's two symmetries, as bounds that are told of a quarter ask.
+    PapersSymmetries: "without_the_papers_symmetries" <= 0.0;
+    /// It keeps its bounds \[rad\].
+    KeepsBounds: "bound_overstepped_rad" <= 1e-9;
+    /// An extremal's arcs keep walls that are wider by a hair where links may touch \[rad\].
+    KeepsWalls: "bound_overstepped" <= 1e-8;
+    /// No side link folds through the middle one.
+    NothingFolded: "side_link_on_middle_link" <= 0.0;
+    /// Arcs along straight bounds lie on them \[rad\].
+    OnBound: "arc_off_its_bound_rad" <= 1e-9;
+    /// Arcs along the links' clearance lie on it \[rad\].
+    OnClearance: "arc_off_clearance_rad" <= 1e-7;
+    /// Polynomials of two degrees through the samples have the same slopes, relatively.
+    SlopesKnown: "sampling_slope_error" <= 1e-5;
+    /// The same of the poses, over L and in radians.
+    PosesKnown: "sampling_pose_error" <= 1e-5;
+
+    // What it brings.
+    /// What is to be large is not nothing.
+    Gains: "gain_least" >= 1e-6;
+    /// The displacement, integrated in another way, over L.
+    DisplacementSwumAgain: "displacement_swum_again" <= super::SWUM_AGAIN;
+    /// The displacement, step by step from sample to sample, over L.
+    DisplacementSteppedAgain: "displacement_stepped_again" <= super::SWUM_AGAIN;
+    /// The rotation, step by step from sample to sample \[rad\].
+    RotationSteppedAgain: "rotation_stepped_again" <= super::SWUM_AGAIN;
+    /// The efficiency of the samples is that of the arcs, relatively.
+    EfficiencySwumAgain: "efficiency_swum_again" <= 1e-7;
+    /// A gait with the paper's symmetries goes nowhere across its heading, over L.
+    NoLateral: "net_lateral" <= 1e-8;
+    /// It does not turn the swimmer \[rad\].
+    NoRotation: "net_rotation_rad" <= 1e-8;
+    /// It turns no swimmer of an ensemble \[rad\].
+    NobodyTurns: "largest_rotation_rad" <= 1e-8;
+
+    // Displacement, turning, sideways: the height is what a push of the curve gains.
+    /// Free arcs lie on the zero of the height \[rad\].
+    OnZeroHeight: "off_singular_condition_rad" <= 1e-8;
+    /// A bound is left where the height vanishes \[rad\].
+    LeavesAtZero: "off_exit_condition_rad" <= 1e-8;
+    /// The height grows to the left of free arcs (generalised Legendre–Clebsch).
+    GrowsInwards: "legendre_clebsch_least" >= 1e-6;
+    /// The same over the steepest slope of a quarter.
+    GrowsInwardsSteeply: "legendre_clebsch_least" >= 1e-4;
+    /// Costates integrated along free arcs keep `H_u = 0`.
+    Stationary: "h_u" <= 1e-8;
+    /// The same of a quarter whose arcs are known, over L.
+    StationaryQuarter: "h_u" <= 1e-9;
+    /// H keeps its value with them.
+    HamiltonianZero: "hamiltonian" <= 1e-8;
+    /// The height pushes against bounds.
+    HeightOnBound: "bound_multiplier_least" >= -1e-9;
+    /// No other first sample has more displacement across its heading, over L.
+    NoBetterStart: "other_start_better" <= 1e-8;
+    /// How many pushes of the curve gain to second order; of a gait with the paper's symmetries those that keep them.
+    NoAscent: "ascent_directions" <= 0.0;
+    /// The same with pushes of any symmetry.
+    NoAscentWithoutSymmetry: "ascent_directions_without_symmetry" <= 0.0;
+
+    // A quarter that a search traced (paper, section IV).
+    /// It begins on φ₁ = φ₂ and ends on φ₁ = −φ₂ \[rad\].
+    OnSymmetryLines: "off_symmetry_lines_rad" <= 1e-9;
+    /// The arcs traced once more end where the search's do \[rad\].
+    Retraced: "retraced_rad" <= 1e-8;
+    /// λ₄ at the end.
+    FinalLambda4: "final_lambda4" <= 1e-9;
+    /// λ₁ = −λ₂ at the start.
+    StartTransversality: "start_transversality" <= 1e-9;
+    /// λ₁ = λ₂ at the end.
+    EndTransversality: "end_transversality" <= 1e-9;
+    /// No conjugate point before the end.
+    NoConjugatePoint: "conjugate_point_least" >= 1e-6;
+
+    // Efficiency.
+    /// The power is constant: (max − min) over the square of ∮√P.
+    ConstantPower: "power_variation" <= 1e-7;
+    /// The same of samples that an extremal's arcs are interpolated by, over the mean power.
+    ConstantPowerOfSamples: "power_variation" <= 1e-6;
+    /// No corners but those of the forbidden shapes \[rad\].
+    NoCorner: "corner_rad" <= 1e-7;
+    /// The symmetry lines are crossed square \[rad\].
+    EndsSquare: "ends_not_square_rad" <= 1e-7;
+    /// Legendre's condition: the power matrix is definite.
+    Legendre: "legendre_least" >= 1e-12;
+    /// The costate equations along free arcs, over the largest costate.
+    CostateBalance: "h_u" <= 1e-8;
+    /// H along free arcs, over itself.
+    HamiltonianConstant: "hamiltonian_variation" <= 1e-7;
+    /// What a bound pushes back with, over the largest costate.
+    EffortOnBound: "bound_multiplier_least" >= -1e-7;
+    /// What is left of the shooting's equations: angles in rad, momenta over |p|.
+    ShootingResidual: "shooting_residual" <= 1e-10;
+    /// The arcs followed again by the paper's equations end where the next ones begin \[rad\].
+    FollowedAgain: "off_extremal_rad" <= 1e-8;
+    /// 2H, the power, along these.
+    PowerFollowedAgain: "hamiltonian_variation" <= 1e-8;
+    /// The body momentum is what the pose makes of p, over |p|.
+    MomentumOfPose: "momentum_off_pose" <= 1e-8;
+    /// p is parallel to the displacement: the sine between them.
+    MomentumAlongDisplacement: "displacement_off_momentum" <= 1e-7;
+    /// |p| |d| = ∮√P, relatively.
+    MomentumScale: "momentum_off_scale" <= 1e-7;
+    /// A closed curve polished without its symmetry has the efficiency of its quarter, relatively.
+    SameAsQuarter: "closed_curve_off_quarter" <= 1e-8;
+
+    // Robust gaits.
+    /// The weighted height on free arcs.
+    RobustHeight: "robust_height" <= 1e-8;
+    /// It grows to their left.
+    RobustGrowsInwards: "robust_legendre_clebsch_least" >= 1e-6;
+    /// It pushes against bounds.
+    RobustOnBound: "robust_bound_multiplier_least" >= -1e-9;
+    /// The weighted gradient of a series.
+    RobustGradient: "robust_gradient" <= 1e-8;
+    /// The largest curvature of the weighted objective of a series.
+    RobustCurvature: "robust_curvature" <= 0.0;
+    /// What the estimates bring, by the model's own integration, relatively.
+    NominalSwumAgain: "nominal_swum_again" <= 1e-8;
+    /// The same of the worst case, looked for again.
+    WorstSwumAgain: "worst_swum_again" <= 1e-8;
+    /// The same of the mean.
+    MeanSwumAgain: "mean_swum_again" <= 1e-8;
+    /// No swimmer that holds the worst case pulls the other way.
+    WorstCaseMultiplier: "worst_case_multiplier_least" >= 0.0;
+    /// Who holds the worst case is as badly off as the worst, relatively.
+    WorstCaseHeld: "worst_case_held_apart" <= 1e-8;
+
+    // Speed. Numbers are over the speed, or a share of a switch-to-switch integral.
+    /// It moves.
+    Moves: "moves_nowhere" <= 0.0;
+    /// It passes the shape at which gaits join \[rad\].
+    PassesJoint: "off_the_joint_shape_rad" <= 1e-9;
+    /// A servo runs at its full rate, relatively.
+    FullRate: "off_full_rate" <= 1e-6;
+    /// The displacement points where it was asked to \[rad\].
+    Heading: "off_heading_rad" <= 1e-8;
+    /// The integrals of the height between switches.
+    SwitchIntegrals: "switch_to_switch_integrals" <= 1e-6;
+    /// No two servos switch at once.
+    SingleSwitches: "double_switches" <= 0.0;
+    /// Switching functions keep their signs.
+    SwitchingSigns: "switching_function_least" >= -1e-6;
+    /// The height on singular arcs.
+    HeightOnSingular: "height_on_singular_arcs" <= 1e-5;
+    /// A bound pushes back.
+    SpeedOnBound: "bound_multiplier_least" >= -1e-6;
+    /// And so does a bound that a corner touches.
+    SpeedAtContact: "contact_multiplier_least" >= -1e-6;
+    /// A longer period leads no less far.
+    FurtherTime: "speed_of_further_time_least" >= -1e-6;
+    /// No shift of the corners gains to second order.
+    NoBetterCorners: "second_variation_least" >= 0.0;
+    /// It has arcs enough to be asked.
+    EnoughArcs: "arcs_least" >= 3.0;
+    /// No limit on rate, power or torque is overstepped, relatively.
+    KeepsLimits: "limit_overstepped" <= 1e-6;
+    /// Some limit is always taken, as a share of it.
+    TakesLimit: "limits_taken_least" >= 1.0 - 1e-6;
+    /// The costate equations under such limits.
+    CostateWithinLimits: "costate" <= 1e-6;
+    /// H with that costate.
+    HamiltonianWithinLimits: "hamiltonian" <= 1e-6;
+    /// A limit pushes back.
+    LimitMultiplier: "limit_multiplier_least" >= -1e-5;
+    /// A bound does.
+    BoundWithinLimits: "bound_multiplier_least" >= -1e-5;
+}
+
+impl Condition {
+    /// What its number is held against where nothing more is open.
+    pub(crate) fn tolerance(self) -> f64 {
+        self.holds().1
+    }
+
+    /// Whether its number is held against the tolerance from below.
+    pub fn is_from_below(self) -> bool {
+        self.holds().0 == Side::AtLeast
+    }
+
+    /// The condition asked: this number was found. NaN fails.
+    pub(crate) fn check(self, value: f64) -> Check {
+        self.open(value, 0.0)
+    }
+
+    /// The same, where this much more is open.
+    pub(crate) fn open(self, value: f64, open: f64) -> Check {
+        let (side, tolerance) = self.holds();
+        match side {
+            Side::AtMost => self.within(value, tolerance + open),
+            Side::AtLeast => self.within(value, tolerance - open),
+        }
+    }
+
+    /// The same against the tolerance that this very gait asks for.
+    pub(crate) fn within(self, value: f64, tolerance: f64) -> Check {
+        let pass = match self.holds().0 {
+            Side::AtMost => value <= tolerance,
+            Side::AtLeast => value >= tolerance,
+        };
+        Check {
+            condition: self,
+            value,
+            tolerance,
+            pass,
+            uncertainty: 0.0,
+            seen_by: SeenBy::Curve,
+        }
+    }
+}
+
+/// As in every answer.
+impl serde::Serialize for Condition {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.key())
+    }
+}

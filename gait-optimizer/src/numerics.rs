@@ -1,0 +1,68 @@
+//! Where something changes along a line: halving, roots by regula falsi, steps that are damped.
+
+/// The ends of an interval halved so often, the lower one the last place where a property is seen to hold that is taken to hold at
+/// its beginning and not at its end.
+pub(crate) fn halved(
+    [mut low, mut high]: [f64; 2],
+    times: usize,
+    mut holds: impl FnMut(f64) -> bool,
+) -> [f64; 2] {
+    for _ in 0..times {
+        let middle = f64::midpoint(low, high);
+        if holds(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    [low, high]
+}
+
+/// A root between two places with values of different sign: regula falsi (Illinois), now and then a halving, until a value is below
+/// `small`. None where a value is not known, or at a jump.
+pub(crate) fn root(
+    [mut a, mut b]: [(f64, f64); 2],
+    small: f64,
+    value: impl Fn(f64) -> Option<f64>,
+) -> Option<f64> {
+    for step in 0..60 {
+        let secant = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
+        let at = if step % 6 == 5 || !secant.is_finite() {
+            f64::midpoint(a.0, b.0)
+        } else {
+            secant
+        };
+        let here = value(at)?;
+        if here.abs() < small {
+            return Some(at);
+        }
+        if here.signum() * b.1.signum() < 0.0 {
+            a = b;
+        } else {
+            a.1 *= 0.5;
+        }
+        b = (at, here);
+    }
+    None
+}
+
+/// Shares of a step to try, each half of the one before.
+pub(crate) fn damped(most: f64) -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(most), |share| Some(0.5 * share))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_root_is_found_and_a_jump_is_none() {
+        let cubic = |at: f64| Some(at.powi(3) - 0.2);
+        let found = root([(0.0, -0.2), (1.0, 0.8)], 1e-15, cubic).unwrap();
+        assert!((found - 0.2_f64.cbrt()).abs() < 1e-14, "{found}");
+        let jump = |at: f64| Some(if at < 0.3 { -1.0 } else { 1.0 });
+        assert_eq!(root([(0.0, -1.0), (1.0, 1.0)], 1e-9, jump), None);
+        let [low, high] = halved([0.0, 1.0], 40, |at| at < 0.3);
+        assert!(low < 0.3 && 0.3 <= high && high - low < 1e-11);
+    }
+}
