@@ -11,7 +11,7 @@ use swimmer_model::{Gait as _, Pose};
 
 use self::answer::{Answer, Off};
 use self::playlist::write_playlist;
-use super::optimize::steer::{SteerArguments, named};
+use super::optimize::steer::{Steer, named};
 use super::robot::preflight::tank;
 use crate::arguments::{angle, length, load_swimmer};
 use crate::failure::{Failure, Outcome};
@@ -30,8 +30,11 @@ use crate::output::Output;
 /// `swimmer robot play --playlist` plays what -o writes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Plan {
+    /// purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
     #[command(flatten)]
-    steer: SteerArguments,
+    steer: Steer,
     /// Where to go, metres; with a heading or without
     #[arg(long, value_name = "X,Y[,ANGLE]", value_parser = target, allow_hyphen_values = true)]
     to: Target,
@@ -88,7 +91,7 @@ impl Plan {
         if let Some(path) = &self.output {
             may_be_written(path)?;
         }
-        let file = load_swimmer(&self.steer.swimmer)?;
+        let file = load_swimmer(&self.swimmer)?;
         let model = crate::arguments::model(&file)?;
         let mut family = self.family(&file)?;
         let errand = Errand {
@@ -151,7 +154,7 @@ impl Plan {
 }
 
 /// The gaits that are found.
-fn joined(steer: &SteerArguments, file: &SwimmerFile) -> Outcome<Family> {
+fn joined(steer: &Steer, file: &SwimmerFile) -> Outcome<Family> {
     let steering = steer.find(file)?;
     let gaits = [0, 2, 4].map(|at| {
         let (_, joined, _) = named(&steering)[at];
