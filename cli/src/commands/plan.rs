@@ -9,7 +9,7 @@ use forecast::{Errand, Family, PlanError, Servos, Tank, plan};
 use swimmer_files::{AnyGait, GaitFile, SwimmerFile};
 use swimmer_model::{Gait as _, Pose};
 
-use self::answer::{Answer, Off};
+use self::answer::answer;
 use self::playlist::write_playlist;
 use super::optimize::steer::{Steer, named};
 use super::robot::preflight::tank;
@@ -112,19 +112,19 @@ impl Plan {
             found = plan(&model, &family, &errand);
         }
         let found = found.map_err(|error| Failure::tried(&error))?;
-        let off = |share: f64| -> Outcome<Off> {
+        let off = |share: f64| -> Outcome<[f64; 2]> {
             let mut other = file.clone();
             other.swimmer.chi *= share;
             let model = crate::arguments::model(&other)?;
             let reached = found.reached_by(&model, &errand.from);
-            Ok(Off::new(found.apart_from(&reached)))
+            Ok(found.apart_from(&reached))
         };
         let wrong = [off(0.95)?, off(1.05)?];
         let gaits = match &self.output {
             Some(path) => Some(write_playlist(path, &file, &family, &found)?),
             None => None,
         };
-        output.answer(&Answer::new(&file.name, &found, wrong, gaits, self.output));
+        output.answer(&answer(&file.name, &found, wrong, gaits, self.output));
         Ok(())
     }
 
