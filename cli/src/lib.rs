@@ -11,6 +11,7 @@ mod arguments;
 mod bounds;
 mod commands;
 mod csv_text;
+mod document;
 mod failure;
 mod fit_file;
 mod in_fluid;

@@ -83,6 +83,11 @@ impl Rows {
         self.0.push((label.into(), value.into()));
         self
     }
+
+    /// Whether there are none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
 }
 
 impl fmt::Display for Rows {

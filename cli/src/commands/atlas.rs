@@ -5,21 +5,19 @@ mod follow;
 mod picture;
 mod speed;
 
-use std::fmt;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ValueEnum;
+use forecast::shortest_period;
 use gait_optimizer::{
-    Arc, Atlas as Found, AtlasError, AtlasProblem, Certificate, Condition, Objective, Optimum,
-    atlas_watched,
+    Atlas as Found, AtlasError, AtlasProblem, Condition, Objective, Optimum, atlas_watched,
 };
-use serde::Serialize;
-
 use swimmer_files::SwimmerFile;
 
 use crate::arguments::{load_swimmer, rate};
 use crate::bounds::WholeBounds;
+use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 use crate::output::Output;
@@ -28,9 +26,8 @@ use crate::progress::Progress;
 use crate::quantity;
 use crate::threads;
 
-use super::optimize::answer::Figures;
-use folder::{drawn_in, saved};
-use speed::AtRate;
+use super::optimize::answer::tell_figures;
+use folder::fill;
 
 /// Find every locally optimal gait, with and without the paper's symmetries, each certified
 ///
@@ -114,11 +111,11 @@ impl Atlas {
                 ));
             } else {
                 let followed = order.named(&self.gait)?;
-                output.answer(&follow::Alone::new(
-                    format!("{}, {objective}", file.name),
-                    followed,
-                    begun.elapsed().as_secs_f64(),
-                ));
+                let mut answer = Document::new(format!("{}, {objective}: {followed}", file.name));
+                answer
+                    .key("continuation", followed)
+                    .key("seconds", begun.elapsed().as_secs_f64());
+                output.answer(&answer);
                 return Ok(());
             }
         }
@@ -136,29 +133,41 @@ impl Atlas {
         drop(progress);
         let seconds = begun.elapsed().as_secs_f64();
         say_how_many_are_beyond(&file, found.optima.iter().map(|optimum| &optimum.gait));
-        let mut answer = Answer::new(&file.name, objective, &found, starts, seconds);
-        if let Some(rates) = rates {
-            for (line, optimum) in answer.optima.iter_mut().zip(&found.optima) {
-                line.speed = Some(AtRate::new(optimum, rates)?);
-            }
+        let (most, value): (_, fn(&Optimum) -> String) = match objective {
+            Objective::Efficiency => ("efficiency", |one| {
+                format!("ξ = {:.4e}", one.gait.efficiency)
+            }),
+            _ => ("displacement", |one| {
+                format!("|d|/L = {:.5}", one.distance_over_length)
+            }),
+        };
+        let title = format!("{}, atlas of {most}", file.name);
+        let (mut answer, mut optima) = listed(&title, &found, &asked, (rates, seconds))?;
+        let continuation = order.map(|order| order.best(&found)).transpose()?;
+        if let Some(continuation) = &continuation {
+            answer.line(continuation.to_string());
         }
-        answer.continuation = order.map(|order| order.best(&found)).transpose()?;
-        if let Some(folder) = folder {
-            for (number, (optimum, line)) in found.optima.iter().zip(&mut answer.optima).enumerate()
-            {
-                line.gait = Some(saved(&folder, number, &optimum.gait, &file.name)?);
-            }
-            let value = |optimum: &Optimum| match objective {
-                Objective::Efficiency => format!("ξ = {:.4e}", optimum.gait.efficiency),
-                _ => format!("|d|/L = {:.5}", optimum.distance_over_length),
-            };
-            let gaits = found.optima.iter();
-            let drawn: Vec<_> = gaits
-                .map(|optimum| (&optimum.gait, value(optimum)))
-                .collect();
-            answer.picture = Some(drawn_in(&folder, answer.title(), &drawn)?);
-            folder.publish()?;
-        }
+        let drawn = found.optima.iter().map(|one| (&one.gait, value(one)));
+        let picture = fill(
+            folder,
+            (&file.name, &title),
+            &drawn.collect::<Vec<_>>(),
+            &mut optima,
+            &mut answer,
+        )?;
+        answer
+            .key("optima", optima)
+            .key("starts", starts)
+            // Further ones, from gaits that the quarter solvers find without a guess.
+            .key("known_starts", found.starts.saturating_sub(starts))
+            .key("unsettled", found.unsettled)
+            .key("left", found.left)
+            .key("uncertified", found.uncertified)
+            // |d| over L or ξ of the best of these, by its curve of low order.
+            .key_if("best_uncertified", found.best_uncertified)
+            .key("seconds", seconds)
+            .key_if("continuation", continuation)
+            .key_if("picture", picture);
         output.answer(&answer);
         Ok(())
     }
@@ -169,176 +178,87 @@ impl Atlas {
     }
 }
 
-#[derive(Debug, Serialize)]
-struct Answer {
-    #[serde(skip)]
-    name: String,
-    #[serde(skip)]
-    objective: Objective,
-    /// Best first.
-    optima: Vec<Line>,
-    /// Random ones, as asked for.
-    starts: usize,
-    /// Further starts, from gaits that the quarter solvers find without a guess.
-    known_starts: usize,
-    /// Starts that settled nowhere.
-    unsettled: usize,
-    /// Starts that left the shapes searched.
-    left: usize,
-    /// Starts whose end could not be polished to a certified gait.
-    uncertified: usize,
-    /// |d| over L or ξ of the best of these, by its curve of low order.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    best_uncertified: Option<f64>,
-    seconds: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    continuation: Option<follow::Followed>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    picture: Option<PathBuf>,
-}
-
-#[derive(Debug, Serialize)]
-struct Line {
-    efficiency: f64,
-    displacement_over_length: f64,
-    displacement_m: f64,
-    lateral_over_length: f64,
-    /// |d| over L.
-    distance_over_length: f64,
-    rotation_rad: f64,
-    start_angle_rad: f64,
-    end_angle_rad: f64,
-    /// Of the quarter where the gait is symmetric, else of the cycle.
-    arcs: Vec<Arc>,
-    links_cross: f64,
-    /// Of gaits for efficiency.
-    #[serde(flatten)]
-    figures: Option<Figures>,
-    certificate: Certificate,
-    simple: bool,
-    symmetric: bool,
-    found: usize,
-    seconds: f64,
-    /// As fast as servos of the given rate run it.
-    #[serde(flatten)]
-    speed: Option<AtRate>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    gait: Option<PathBuf>,
-}
-
-impl Answer {
-    /// `asked` random starts were asked for.
-    fn new(name: &str, objective: Objective, found: &Found, asked: usize, seconds: f64) -> Self {
-        Self {
-            name: name.to_owned(),
-            objective,
-            optima: found
-                .optima
-                .iter()
-                .map(|optimum| Line::new(optimum, seconds))
-                .collect(),
-            starts: asked,
-            known_starts: found.starts.saturating_sub(asked),
-            unsettled: found.unsettled,
-            left: found.left,
-            uncertified: found.uncertified,
-            best_uncertified: found.best_uncertified,
-            seconds,
-            continuation: None,
-            picture: None,
-        }
+/// What people read of an atlas, and the keys of its gaits.
+fn listed(
+    title: &str,
+    found: &Found,
+    asked: &AtlasProblem,
+    (rates, seconds): (Option<[f64; 2]>, f64),
+) -> Outcome<(Document, Vec<Document>)> {
+    let starts = asked.starts;
+    let known = match found.starts.saturating_sub(starts) {
+        0 => String::new(),
+        count => format!(" and {count} from known gaits"),
+    };
+    let mut answer = Document::new(format!("{title}: {starts} random starts{known}"));
+    let speed = rates.map_or("", |_| "|d|/(L T) 1/s  ");
+    answer.line(format!(
+        "  no   |d|/L          efficiency ξ     {speed}simple symmetric found  links cross"
+    ));
+    let mut optima = Vec::new();
+    for (number, optimum) in found.optima.iter().enumerate() {
+        let (keys, cells) = told(optimum, rates, seconds)?;
+        answer.line(format!("  {:<3}  {cells}", number + 1));
+        optima.push(keys);
     }
-
-    fn title(&self) -> String {
-        let most = match self.objective {
-            Objective::Efficiency => "efficiency",
-            _ => "displacement",
+    let best = found.best_uncertified.map_or_else(String::new, |best| {
+        let of = match asked.objective {
+            Objective::Efficiency => "ξ",
+            _ => "|d|/L",
         };
-        format!("{}, atlas of {most}", self.name)
-    }
+        format!(" (the best of these {of} = {best:.7}, uncertified)")
+    });
+    answer.line(format!(
+        "  not listed: {} starts settled nowhere, {} left the shapes searched, {} ended where no gait could be certified{best}",
+        found.unsettled, found.left, found.uncertified
+    ));
+    Ok((answer, optima))
 }
 
-impl Line {
-    fn new(optimum: &Optimum, seconds: f64) -> Self {
-        let gait = &optimum.gait;
-        Self {
-            efficiency: gait.efficiency,
-            displacement_over_length: gait.displacement_over_length,
-            displacement_m: gait.displacement,
-            lateral_over_length: gait.lateral_over_length,
-            distance_over_length: optimum.distance_over_length,
-            rotation_rad: gait.rotation,
-            start_angle_rad: gait.start_angle,
-            end_angle_rad: gait.end_angle,
-            arcs: gait.arcs.clone(),
-            links_cross: gait.links_cross,
-            figures: Figures::of(gait, Condition::ShootingResidual, |gait| {
-                gait.certificate.value(Condition::ConstantPowerOfSamples)
-            }),
-            certificate: gait.certificate.clone(),
-            simple: optimum.simple,
-            symmetric: gait.symmetric,
-            found: optimum.found,
-            seconds,
-            speed: None,
-            gait: None,
-        }
+/// What is told of a gait: its keys, and its cells of the table.
+fn told(optimum: &Optimum, rates: Option<[f64; 2]>, seconds: f64) -> Outcome<(Document, String)> {
+    let gait = &optimum.gait;
+    let mut keys = Document::default();
+    keys.key("efficiency", gait.efficiency)
+        .key("displacement_over_length", gait.displacement_over_length)
+        .key("displacement_m", gait.displacement)
+        .key("lateral_over_length", gait.lateral_over_length)
+        .key("distance_over_length", optimum.distance_over_length)
+        .key("rotation_rad", gait.rotation)
+        .key("start_angle_rad", gait.start_angle)
+        .key("end_angle_rad", gait.end_angle)
+        // Of the quarter where the gait is symmetric, else of the cycle.
+        .key("arcs", gait.arcs.clone())
+        .key("links_cross", gait.links_cross);
+    tell_figures(&mut keys, gait, Condition::ShootingResidual, |gait| {
+        gait.certificate.value(Condition::ConstantPowerOfSamples)
+    });
+    keys.key("certificate", gait.certificate.clone())
+        .key("simple", optimum.simple)
+        .key("symmetric", gait.symmetric)
+        .key("found", optimum.found)
+        .key("seconds", seconds);
+    let mut at_rate = String::new();
+    if let Some(rates) = rates {
+        // As fast as servos of these rates run it.
+        let curve = gait.gait().map_err(|error| Failure::tried(&error))?;
+        let period = shortest_period(&curve, rates)?;
+        let speed = optimum.distance_over_length / period;
+        keys.key("period_s", period)
+            .key("speed_over_length_per_s", speed);
+        at_rate = format!("{speed:.10}   ");
     }
-}
-
-impl fmt::Display for Answer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {} random starts", self.title(), self.starts)?;
-        if self.known_starts > 0 {
-            write!(f, " and {} from known gaits", self.known_starts)?;
-        }
-        writeln!(f)?;
-        let timed = self.optima.iter().any(|line| line.speed.is_some());
-        let speed = if timed { "|d|/(L T) 1/s  " } else { "" };
-        writeln!(
-            f,
-            "  no   |d|/L          efficiency ξ     {speed}simple symmetric found  links cross"
-        )?;
-        for (number, line) in self.optima.iter().enumerate() {
-            let yes = |value: bool| if value { "yes" } else { "no" };
-            writeln!(
-                f,
-                "  {:<3}  {:.10}   {:.10}     {}{:<6} {:<9} {:<6} {}",
-                number + 1,
-                line.distance_over_length,
-                line.efficiency,
-                line.speed
-                    .as_ref()
-                    .map_or_else(String::new, |speed| format!(
-                        "{:.10}   ",
-                        speed.speed_over_length_per_s
-                    )),
-                yes(line.simple),
-                yes(line.symmetric),
-                line.found,
-                quantity::crossing(line.links_cross),
-            )?;
-        }
-        write!(
-            f,
-            "  not listed: {} starts settled nowhere, {} left the shapes searched, {} ended where no gait could be certified",
-            self.unsettled, self.left, self.uncertified
-        )?;
-        if let Some(best) = self.best_uncertified {
-            let of = match self.objective {
-                Objective::Efficiency => format!("ξ = {best:.7}"),
-                _ => format!("|d|/L = {best:.7}"),
-            };
-            write!(f, " (the best of these {of}, uncertified)")?;
-        }
-        if let Some(continuation) = &self.continuation {
-            write!(f, "\n{continuation}")?;
-        }
-        if let Some(picture) = &self.picture {
-            write!(f, "\n  drawn in {}", picture.display())?;
-        }
-        Ok(())
-    }
+    let yes = |value: bool| if value { "yes" } else { "no" };
+    let cells = format!(
+        "{:.10}   {:.10}     {at_rate}{:<6} {:<9} {:<6} {}",
+        optimum.distance_over_length,
+        gait.efficiency,
+        yes(optimum.simple),
+        yes(gait.symmetric),
+        optimum.found,
+        quantity::crossing(gait.links_cross),
+    );
+    Ok((keys, cells))
 }
 
 impl From<AtlasError> for Failure {

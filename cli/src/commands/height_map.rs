@@ -2,22 +2,22 @@
 
 pub(crate) mod picture;
 
-use std::fmt;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use gait_optimizer::{Convergence, HeightMap as Map, HeightMapError, LevelCurve, Row};
+use gait_optimizer::{AreaRule, HeightMap as Map, HeightMapError, LevelCurve, Row};
 use serde::Serialize;
-use swimmer_files::{AnyGait, GaitSpec};
+use swimmer_files::GaitSpec;
 
 use crate::arguments::{gait, load_gait_for, load_swimmer, positive_angle};
 use crate::csv_text::csv_text;
+use crate::document::{Document, object};
 use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
 use crate::output::{Output, verbose};
 use crate::own_robot::{PERIOD_S, say_if_beyond};
 use crate::picture_file::Kind;
-use crate::quantity::{self, Rows};
+use crate::quantity;
 
 /// Map the height function, with its zero-level curves and gaits
 ///
@@ -106,7 +106,7 @@ impl HeightMap {
         let curves = map.zero_curves(row);
         let rules = gaits
             .iter()
-            .map(|(name, gait)| Rule::new(&map, name, gait))
+            .map(|(_, gait)| Ok(map.area_rule(gait)?))
             .collect::<Outcome<Vec<_>>>()?;
         if let (Some(path), Some(kind)) = (&self.output, kind) {
             let text = match kind {
@@ -122,24 +122,119 @@ impl HeightMap {
             };
             kind.write(path, &text)?;
         }
+        let mut answer = Document::new(format!(
+            "{}, {} on joint angles up to {} rad",
+            file.name,
+            self.row.symbol(),
+            self.max_angle
+        ));
+        self.tell(&mut answer, &map, curves);
+        let rules: Vec<_> = gaits
+            .iter()
+            .zip(&rules)
+            .map(|((name, _), rule)| self.tell_rule(&mut answer, name, rule))
+            .collect();
+        answer.key("gaits", rules);
+        if let Some(path) = self.output {
+            answer.row("written to", path.display().to_string());
+            answer.key("written", path);
+        }
+        output.answer(&answer);
+        Ok(())
+    }
+
+    /// Adds what the map and its zero-level curves say.
+    fn tell(&self, answer: &mut Document, map: &Map, curves: Vec<LevelCurve>) {
+        let row = self.row.row();
+        let per_length = match self.row {
+            Component::X | Component::Y => "/L",
+            Component::Theta => "",
+        };
+        let at_origin = map.height(row, &[0.0, 0.0].into());
         let (on_diagonal, on_antidiagonal) =
             (map.zeros_on_diagonal(row), map.zeros_on_antidiagonal(row));
-        output.answer(&Mapped {
-            name: file.name,
-            symbol: self.row.symbol(),
-            row: self.row,
-            max_angle_rad: self.max_angle,
-            at_origin_over_length: map.height(row, &[0.0, 0.0].into()),
-            zero_on_diagonal: on_diagonal.first().copied(),
-            zero_on_antidiagonal: on_antidiagonal.first().copied(),
-            zeros_on_diagonal: on_diagonal,
-            zeros_on_antidiagonal: on_antidiagonal,
-            convergence: map.convergence(),
-            zero_curves: curves,
-            gaits: rules,
-            written: self.output,
-        });
-        Ok(())
+        let zeros = |zeros: &[f64]| match zeros {
+            [] => "none".to_owned(),
+            zeros => zeros
+                .iter()
+                .map(|zero| format!("{zero:.8} rad ({})", quantity::angle(*zero)))
+                .collect::<Vec<_>>()
+                .join(", "),
+        };
+        let closed = curves.iter().filter(|curve| curve.closed).count();
+        let open = curves.len() - closed;
+        answer
+            .row(
+                "at the straight shape",
+                format!(
+                    "{}{per_length} = {:.10}",
+                    self.row.symbol(),
+                    // Adding zero turns a rounded -0 into 0.
+                    (at_origin * 1e10).round() / 1e10 + 0.0
+                ),
+            )
+            .row("zero where φ₁ = φ₂ > 0", zeros(&on_diagonal))
+            .row("zero where −φ₁ = φ₂ > 0", zeros(&on_antidiagonal))
+            .row(
+                "zero-level curves",
+                format!("{closed} closed, {open} from edge to edge"),
+            );
+        let convergence = map.convergence();
+        if verbose() {
+            answer.row(
+                "frame",
+                format!(
+                    "order {}; from order {} it moved {:.0e} inside, {:.0e} at the corners",
+                    convergence.order,
+                    convergence.order_before,
+                    convergence.inner_change,
+                    convergence.change
+                ),
+            );
+        }
+        answer
+            .key("row", self.row)
+            // D: the frame is the best over |φᵢ| ≤ D.
+            .key("max_angle_rad", self.max_angle)
+            // For the row theta in rad/rad².
+            .key("at_origin_over_length", at_origin)
+            // φ₂ of the first zeros with φ₁ = φ₂ > 0 and with φ₁ = −φ₂ < 0, and of all.
+            .key("zero_on_diagonal", on_diagonal.first().copied())
+            .key("zero_on_antidiagonal", on_antidiagonal.first().copied())
+            .key("zeros_on_diagonal", on_diagonal)
+            .key("zeros_on_antidiagonal", on_antidiagonal)
+            .key("convergence", convergence)
+            .key("zero_curves", curves);
+    }
+
+    /// Adds the area rule for one gait; its keys, x and y over L and θ in rad.
+    fn tell_rule(&self, answer: &mut Document, gait: &str, rule: &AreaRule) -> Document {
+        let over_length = match self.row {
+            Component::X | Component::Y => " L",
+            Component::Theta => " rad",
+        };
+        let component = self.row.row().index();
+        let [area, swum] = [rule.area, rule.swum].map(|values| values[component]);
+        let off = quantity::relative(area, swum)
+            .filter(|off| off.abs() < 10.0)
+            .map(|off| format!(" ({})", quantity::deviation(off)))
+            .unwrap_or_default();
+        answer.row(
+            gait,
+            format!(
+                "encloses {:.6}{over_length}, swims {:.6}{over_length}{off}",
+                rounded(area),
+                rounded(swum)
+            ),
+        );
+        let of = |values: nalgebra::Vector3<f64>| <[f64; 3]>::from(values);
+        object! {
+            "gait": gait.to_owned(),
+            // ∬ H over what the gait encloses, seen from the middle link at the gait's start, and the same as swum.
+            "area": of(rule.area),
+            "swum": of(rule.swum),
+            "deviation": of(rule.deviation()),
+        }
     }
 }
 
@@ -151,128 +246,6 @@ fn table(map: &Map, row: Row) -> Outcome<String> {
         rows.extend(nodes.map(|(phi1, height)| [*phi1, *phi2, *height]));
     }
     csv_text("phi1,phi2,H".split(','), rows)
-}
-
-#[derive(Debug, Serialize)]
-struct Mapped {
-    #[serde(skip)]
-    name: String,
-    #[serde(skip)]
-    symbol: &'static str,
-    row: Component,
-    /// D: the frame is the best over |φᵢ| ≤ D.
-    max_angle_rad: f64,
-    /// For the row theta in rad/rad².
-    at_origin_over_length: f64,
-    /// φ₂ of the first zero with φ₁ = φ₂ > 0.
-    zero_on_diagonal: Option<f64>,
-    /// φ₂ of the first zero with φ₁ = −φ₂ < 0.
-    zero_on_antidiagonal: Option<f64>,
-    zeros_on_diagonal: Vec<f64>,
-    zeros_on_antidiagonal: Vec<f64>,
-    convergence: Convergence,
-    zero_curves: Vec<LevelCurve>,
-    gaits: Vec<Rule>,
-    /// The file that was written.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    written: Option<PathBuf>,
-}
-
-/// The area rule for one gait.
-#[derive(Debug, Serialize)]
-struct Rule {
-    gait: String,
-    /// x, y over L and θ in rad: ∬ H over what the gait encloses, seen from the middle link at the gait's start.
-    area: [f64; 3],
-    /// The same as swum.
-    swum: [f64; 3],
-    deviation: [f64; 3],
-}
-
-impl Rule {
-    fn new(map: &Map, name: &str, gait: &AnyGait) -> Outcome<Self> {
-        let rule = map.area_rule(gait)?;
-        Ok(Self {
-            gait: name.to_owned(),
-            area: rule.area.into(),
-            swum: rule.swum.into(),
-            deviation: rule.deviation().into(),
-        })
-    }
-}
-
-impl fmt::Display for Mapped {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut rows = Rows::default();
-        let (per_length, over_length) = match self.row {
-            Component::X | Component::Y => ("/L", " L"),
-            Component::Theta => ("", " rad"),
-        };
-        // Adding zero turns a rounded -0 into 0.
-        let at_origin = (self.at_origin_over_length * 1e10).round() / 1e10 + 0.0;
-        rows.row(
-            "at the straight shape",
-            format!("{}{per_length} = {at_origin:.10}", self.symbol),
-        );
-        let zeros = |zeros: &[f64]| match zeros {
-            [] => "none".to_owned(),
-            zeros => zeros
-                .iter()
-                .map(|zero| format!("{zero:.8} rad ({})", quantity::angle(*zero)))
-                .collect::<Vec<_>>()
-                .join(", "),
-        };
-        rows.row("zero where φ₁ = φ₂ > 0", zeros(&self.zeros_on_diagonal))
-            .row(
-                "zero where −φ₁ = φ₂ > 0",
-                zeros(&self.zeros_on_antidiagonal),
-            );
-        let closed = self.zero_curves.iter().filter(|curve| curve.closed).count();
-        let open = self.zero_curves.len() - closed;
-        rows.row(
-            "zero-level curves",
-            format!("{closed} closed, {open} from edge to edge"),
-        );
-        let Convergence {
-            order,
-            order_before,
-            inner_change,
-            change,
-        } = self.convergence;
-        if verbose() {
-            rows.row(
-                "frame",
-                format!(
-                    "order {order}; from order {order_before} it moved {inner_change:.0e} inside, {change:.0e} at the corners"
-                ),
-            );
-        }
-        let component = self.row.row().index();
-        for rule in &self.gaits {
-            let value = |values: &[f64; 3]| values.get(component).copied().unwrap_or(f64::NAN);
-            let (area, swum) = (value(&rule.area), value(&rule.swum));
-            let off = quantity::relative(area, swum)
-                .filter(|off| off.abs() < 10.0)
-                .map(|off| format!(" ({})", quantity::deviation(off)))
-                .unwrap_or_default();
-            rows.row(
-                rule.gait.clone(),
-                format!(
-                    "encloses {:.6}{over_length}, swims {:.6}{over_length}{off}",
-                    rounded(area),
-                    rounded(swum)
-                ),
-            );
-        }
-        if let Some(path) = &self.written {
-            rows.row("written to", path.display().to_string());
-        }
-        write!(
-            f,
-            "{}, {} on joint angles up to {} rad\n{rows}",
-            self.name, self.symbol, self.max_angle_rad
-        )
-    }
 }
 
 /// To six decimals, without a minus before zero.

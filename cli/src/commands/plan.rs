@@ -9,9 +9,9 @@ use forecast::{Errand, Family, PlanError, Servos, Tank, plan};
 use swimmer_files::{AnyGait, GaitFile, SwimmerFile};
 use swimmer_model::{Gait as _, Pose};
 
-use self::answer::{Answer, Off};
+use self::answer::answer;
 use self::playlist::write_playlist;
-use super::optimize::steer::{SteerArguments, named};
+use super::optimize::steer::{Steer, named};
 use super::robot::preflight::tank;
 use crate::arguments::{angle, length, load_swimmer};
 use crate::failure::{Failure, Outcome};
@@ -30,8 +30,11 @@ use crate::output::Output;
 /// `swimmer robot play --playlist` plays what -o writes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Plan {
+    /// purcell, robot, robot-slender or a swimmer file
+    #[arg(long, value_name = "SWIMMER")]
+    swimmer: String,
     #[command(flatten)]
-    steer: SteerArguments,
+    steer: Steer,
     /// Where to go, metres; with a heading or without
     #[arg(long, value_name = "X,Y[,ANGLE]", value_parser = target, allow_hyphen_values = true)]
     to: Target,
@@ -88,7 +91,7 @@ impl Plan {
         if let Some(path) = &self.output {
             may_be_written(path)?;
         }
-        let file = load_swimmer(&self.steer.swimmer)?;
+        let file = load_swimmer(&self.swimmer)?;
         let model = crate::arguments::model(&file)?;
         let mut family = self.family(&file)?;
         let errand = Errand {
@@ -109,19 +112,19 @@ impl Plan {
             found = plan(&model, &family, &errand);
         }
         let found = found.map_err(|error| Failure::tried(&error))?;
-        let off = |share: f64| -> Outcome<Off> {
+        let off = |share: f64| -> Outcome<[f64; 2]> {
             let mut other = file.clone();
             other.swimmer.chi *= share;
             let model = crate::arguments::model(&other)?;
             let reached = found.reached_by(&model, &errand.from);
-            Ok(Off::new(found.apart_from(&reached)))
+            Ok(found.apart_from(&reached))
         };
         let wrong = [off(0.95)?, off(1.05)?];
         let gaits = match &self.output {
             Some(path) => Some(write_playlist(path, &file, &family, &found)?),
             None => None,
         };
-        output.answer(&Answer::new(&file.name, &found, wrong, gaits, self.output));
+        output.answer(&answer(&file.name, &found, wrong, gaits, self.output));
         Ok(())
     }
 
@@ -151,7 +154,7 @@ impl Plan {
 }
 
 /// The gaits that are found.
-fn joined(steer: &SteerArguments, file: &SwimmerFile) -> Outcome<Family> {
+fn joined(steer: &Steer, file: &SwimmerFile) -> Outcome<Family> {
     let steering = steer.find(file)?;
     let gaits = [0, 2, 4].map(|at| {
         let (_, joined, _) = named(&steering)[at];

@@ -1,10 +1,8 @@
 //! `swimmer swimmers` and `swimmer gaits`: what may stand for SWIMMER and GAIT without a file, and a file to start from.
 
-use std::fmt;
-
-use serde::Serialize;
 use swimmer_files::SwimmerFile;
 
+use crate::document::{Document, object};
 use crate::failure::{Failure, Outcome};
 use crate::output::Output;
 use crate::quantity::{self, Table};
@@ -41,7 +39,7 @@ const OPTIONAL: &str = "
 impl Swimmers {
     pub(crate) fn run(self, output: Output) -> Outcome {
         let Some(name) = self.name else {
-            output.answer(&Presets::default());
+            output.answer(&presets());
             return Ok(());
         };
         let Some(preset) = SwimmerFile::preset(&name) else {
@@ -51,126 +49,75 @@ impl Swimmers {
             )));
         };
         let toml = preset.to_toml() + OPTIONAL;
-        output.answer(&Preset { name, toml });
+        let mut answer = Document::new(toml.trim_end());
+        output.answer(answer.key("name", name).key("toml", toml));
         Ok(())
     }
 }
 
-#[derive(Debug, Serialize)]
-struct Preset {
-    name: String,
-    toml: String,
-}
-
-impl fmt::Display for Preset {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.toml.trim_end())
-    }
-}
-
-#[derive(Debug, Serialize)]
-struct Presets {
-    swimmers: Vec<Known>,
-}
-
-#[derive(Debug, Serialize)]
-struct Known {
-    name: &'static str,
-    what: &'static str,
-    links_m: [f64; 3],
-    chi: f64,
-    sphere_radius_m: f64,
-}
-
-impl Default for Presets {
-    fn default() -> Self {
-        let known = |name: &'static str| {
-            let swimmer = SwimmerFile::preset(name)?.swimmer;
-            Some(Known {
-                name,
-                what: match name {
-                    "purcell" => "Purcell's swimmer, three equal slender links",
-                    "robot" => "the paper's robot, its drag fitted",
-                    _ => "the paper's robot as slender-body theory has it",
-                },
-                links_m: [
-                    swimmer.links.front,
-                    swimmer.links.middle,
-                    swimmer.links.back,
-                ],
-                chi: swimmer.chi,
-                sphere_radius_m: swimmer.sphere_radius,
-            })
+/// Those that need no file.
+fn presets() -> Document {
+    let mut table = Table::new(["swimmer", "front", "middle", "back", "χ", "sphere", "what"]);
+    let mut swimmers = Vec::new();
+    for name in SwimmerFile::PRESETS {
+        let Some(SwimmerFile { swimmer, .. }) = SwimmerFile::preset(name) else {
+            continue;
         };
-        Self {
-            swimmers: SwimmerFile::PRESETS.into_iter().filter_map(known).collect(),
-        }
+        let what = match name {
+            "purcell" => "Purcell's swimmer, three equal slender links",
+            "robot" => "the paper's robot, its drag fitted",
+            _ => "the paper's robot as slender-body theory has it",
+        };
+        let links = &swimmer.links;
+        let links = [links.front, links.middle, links.back];
+        let [front, middle, back] = links.map(quantity::length);
+        table.line([
+            name.to_owned(),
+            front,
+            middle,
+            back,
+            swimmer.chi.to_string(),
+            quantity::length(swimmer.sphere_radius),
+            what.to_owned(),
+        ]);
+        swimmers.push(object! {
+            "name": name,
+            "what": what,
+            "links_m": links,
+            "chi": swimmer.chi,
+            "sphere_radius_m": swimmer.sphere_radius,
+        });
     }
-}
-
-impl fmt::Display for Presets {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut table = Table::new(["swimmer", "front", "middle", "back", "χ", "sphere", "what"]);
-        for known in &self.swimmers {
-            let [front, middle, back] = known.links_m.map(quantity::length);
-            table.line([
-                known.name.to_owned(),
-                front,
-                middle,
-                back,
-                known.chi.to_string(),
-                quantity::length(known.sphere_radius_m),
-                known.what.to_owned(),
-            ]);
-        }
-        write!(
-            f,
-            "{table}\n`swimmer swimmers NAME` prints one as a file to start from."
-        )
-    }
-}
-
-#[derive(Debug, Serialize)]
-struct Forms {
-    gaits: [Form; 4],
-}
-
-#[derive(Debug, Serialize)]
-struct Form {
-    form: &'static str,
-    what: &'static str,
+    let mut answer = Document::new(table.to_string());
+    answer
+        .line("`swimmer swimmers NAME` prints one as a file to start from.")
+        .key("swimmers", swimmers);
+    answer
 }
 
 impl Gaits {
     #[allow(clippy::unused_self)] // as every command
     pub(crate) fn run(self, output: Output) {
-        let form = |form, what| Form { form, what };
-        output.answer(&Forms {
-            gaits: [
-                form(
-                    "circle:70deg",
-                    "joint angles on a circle of this radius, counter-clockwise",
-                ),
-                form(
-                    "square:70deg",
-                    "the square with corners at ±70° and ±70°, counter-clockwise",
-                ),
-                form(
-                    "best.gait",
-                    "a gait file, as `swimmer optimize … -o best.gait` writes it",
-                ),
-                form("circle:70deg:cw", "any of them the other way round"),
-            ],
+        let mut answer = Document::new("GAIT is one of");
+        let gaits = [
+            (
+                "circle:70deg",
+                "joint angles on a circle of this radius, counter-clockwise",
+            ),
+            (
+                "square:70deg",
+                "the square with corners at ±70° and ±70°, counter-clockwise",
+            ),
+            (
+                "best.gait",
+                "a gait file, as `swimmer optimize … -o best.gait` writes it",
+            ),
+            ("circle:70deg:cw", "any of them the other way round"),
+        ];
+        let gaits = gaits.map(|(form, what)| {
+            answer.row(form, what);
+            object! {"form": form, "what": what}
         });
-    }
-}
-
-impl fmt::Display for Forms {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut rows = quantity::Rows::default();
-        for gait in &self.gaits {
-            rows.row(gait.form, gait.what);
-        }
-        write!(f, "GAIT is one of\n{rows}")
+        output.answer(answer.key("gaits", gaits));
     }
 }

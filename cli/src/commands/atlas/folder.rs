@@ -1,4 +1,4 @@
-//! What an atlas leaves in its folder.
+//! What an atlas leaves in its folder: its gaits and a picture of them.
 
 use std::fs;
 use std::path::PathBuf;
@@ -6,29 +6,32 @@ use std::path::PathBuf;
 use gait_optimizer::OptimalGait;
 
 use super::picture;
+use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::new_folder::NewFolder;
 
-/// Writes the gait with this number into the folder; where it will lie.
-pub(super) fn saved(
-    folder: &NewFolder,
-    number: usize,
-    gait: &OptimalGait,
-    name: &str,
-) -> Outcome<PathBuf> {
-    let file = format!("{:02}.gait", number + 1);
-    gait.gait_file(name).save(&folder.draft().join(&file))?;
-    Ok(folder.place().join(&file))
-}
-
-/// Draws the gaits, each with its value, into the folder; where the picture will lie.
-pub(super) fn drawn_in(
-    folder: &NewFolder,
-    title: String,
+/// Where there is a folder: puts the gaits into it, each of whose keys then say where, and a picture of them with the value of each,
+/// which the answer's lines name. Gives where the picture will lie.
+pub(super) fn fill(
+    folder: Option<NewFolder>,
+    (name, title): (&str, &str),
     gaits: &[(&OptimalGait, String)],
-) -> Outcome<PathBuf> {
+    keys: &mut [Document],
+    answer: &mut Document,
+) -> Outcome<Option<PathBuf>> {
+    let Some(folder) = folder else {
+        return Ok(None);
+    };
+    for (number, ((gait, _), keys)) in gaits.iter().zip(keys).enumerate() {
+        let file = format!("{:02}.gait", number + 1);
+        gait.gait_file(name).save(&folder.draft().join(&file))?;
+        keys.key("gait", folder.place().join(&file));
+    }
     let path = folder.draft().join("atlas.svg");
-    fs::write(&path, picture::svg(title, gaits)?)
+    fs::write(&path, picture::svg(title.to_owned(), gaits)?)
         .map_err(|error| Failure::Tried(format!("cannot write {}: {error}", path.display())))?;
-    Ok(folder.place().join("atlas.svg"))
+    let picture = folder.place().join("atlas.svg");
+    folder.publish()?;
+    answer.line(format!("  drawn in {}", picture.display()));
+    Ok(Some(picture))
 }

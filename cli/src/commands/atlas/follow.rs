@@ -10,10 +10,11 @@ use gait_optimizer::{
 use swimmer_model::Swimmer;
 
 use crate::arguments::angle;
+use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::progress::Progress;
 
-pub(super) use answer::{Alone, Followed};
+use answer::followed;
 
 /// What to follow gaits in, from where to where.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,7 +82,7 @@ impl Order {
         )
     }
 
-    fn follow(&self, starts: Vec<Start>) -> Result<Followed, ContinuationError> {
+    fn follow(&self, starts: Vec<Start>) -> Result<Document, ContinuationError> {
         let Way {
             parameter,
             from,
@@ -100,11 +101,11 @@ impl Order {
             samples: 512,
         };
         let found = continuation_watched(&asked, &|share| progress.at_share(share))?;
-        Ok(Followed::new(parameter, [from, to], &found))
+        Ok(followed(parameter, [from, to], &found))
     }
 
     /// The gaits with these names, or those of most displacement.
-    pub(super) fn named(&self, names: &[Named]) -> Outcome<Followed> {
+    pub(super) fn named(&self, names: &[Named]) -> Outcome<Document> {
         if self.objective == Objective::Efficiency {
             let starts = names.iter().map(|name| {
                 Start::Efficiency(match name {
@@ -134,7 +135,7 @@ impl Order {
     }
 
     /// The best gaits of an atlas.
-    pub(super) fn best(&self, atlas: &Found) -> Outcome<Followed> {
+    pub(super) fn best(&self, atlas: &Found) -> Outcome<Document> {
         let optima = atlas.optima.iter().take(MOST_GAITS);
         let starts: Vec<_> = optima
             .map(|optimum| Start::Gait(Box::new(optimum.gait.clone())))

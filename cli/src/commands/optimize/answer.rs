@@ -1,203 +1,143 @@
-//! What the answers of all objectives share: arcs, certificate and the lines that people read.
+//! What the answers of several objectives share: the pace of a cycle, a quarter, arcs, and how an answer ends.
 
-use std::path::PathBuf;
+use std::path::Path;
 
-use gait_optimizer::{Arc, Certificate, Condition, Method, Objective, OptimalGait};
-use serde::Serialize;
+use gait_optimizer::{Arc, Condition, Method, Objective, OptimalGait};
 use swimmer_files::{AnyGait, SwimmerFile};
 
-use super::timing::TimingAnswer;
+use super::timing::Timed;
+use super::{Found, Task};
+use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::own_robot::PERIOD_S;
-use crate::quantity::{self, Rows};
+use crate::quantity;
 
-/// What every answer of a fastest gait tells first.
-#[derive(Debug, Serialize)]
-pub(super) struct Pace {
-    pub(super) speed_over_length_per_s: f64,
-    pub(super) speed_m_per_s: f64,
-    /// |d| of a cycle.
-    displacement_over_length: f64,
-    pub(super) displacement_m: f64,
-    pub(super) period_s: f64,
-}
-
-impl Pace {
-    /// Of a swimmer with this speed \[1/s\] and way of a cycle, both over L, and this period \[s\].
-    pub(super) fn new(file: &SwimmerFile, (speed, distance): (f64, f64), period: f64) -> Self {
-        let length = file.swimmer.total_length();
-        Self {
-            speed_over_length_per_s: speed,
-            speed_m_per_s: speed * length,
-            displacement_over_length: distance,
-            displacement_m: distance * length,
-            period_s: period,
-        }
-    }
-
-    pub(super) fn rows(&self, rows: &mut Rows) {
-        rows.row(
+/// How the answer of a fastest gait begins, from its speed \[1/s\] and the way of a cycle, both over L, and its period \[s\].
+pub(super) fn at_pace(
+    kind: &str,
+    file: &SwimmerFile,
+    (speed, distance): (f64, f64),
+    period: f64,
+) -> Document {
+    let length = file.swimmer.total_length();
+    let [pace, way] = [speed, distance].map(|one| quantity::length(one * length));
+    let mut answer = Document::new(format!(
+        "{}: the {kind} gait swims {way} in {period:.2} s, {pace} a second",
+        file.name
+    ));
+    answer
+        .key("speed_over_length_per_s", speed)
+        .key("speed_m_per_s", speed * length)
+        .key("displacement_over_length", distance)
+        .key("displacement_m", distance * length)
+        .key("period_s", period)
+        .row(
             "speed",
-            format!(
-                "{} a second   |d|/(L T) = {:.10} 1/s",
-                quantity::length(self.speed_m_per_s),
-                self.speed_over_length_per_s
-            ),
+            format!("{pace} a second   |d|/(L T) = {speed:.10} 1/s"),
         )
         .row(
             "displacement",
-            format!(
-                "{} per cycle   |d|/L = {:.10}",
-                quantity::length(self.displacement_m),
-                self.displacement_over_length
-            ),
+            format!("{way} per cycle   |d|/L = {distance:.10}"),
         )
-        .row("period", format!("{:.6} s", self.period_s));
-    }
+        .row("period", format!("{period:.6} s"));
+    answer
 }
 
-/// What every answer of a gait with the paper's symmetries tells of its quarter.
-#[derive(Debug, Serialize)]
-pub(crate) struct Quarter {
-    displacement_over_length: f64,
-    displacement_m: f64,
-    start_angle_rad: f64,
-    end_angle_rad: f64,
-    /// In order.
-    arcs: Vec<Arc>,
-}
-
-impl From<&OptimalGait> for Quarter {
-    fn from(gait: &OptimalGait) -> Self {
-        Self {
-            displacement_over_length: gait.displacement_over_length,
-            displacement_m: gait.displacement,
-            start_angle_rad: gait.start_angle,
-            end_angle_rad: gait.end_angle,
-            arcs: gait.arcs.clone(),
-        }
-    }
-}
-
-impl Quarter {
-    /// X > 0.
-    pub(crate) fn forwards(&self) -> bool {
-        self.displacement_m > 0.0
-    }
-
-    /// X/L of a local optimum that other gaits outdo.
-    pub(super) fn outdone_row(&self, rows: &mut Rows) {
-        rows.row(
-            "outdone",
-            format!(
-                "a local optimum with X/L = {:.6}",
-                self.displacement_over_length
-            ),
-        );
-    }
-
-    /// X with its unit and over L, where the quarter starts and ends, and its arcs.
-    pub(crate) fn rows(&self, rows: &mut Rows) {
-        rows.row(
+/// Adds what is told of the quarter of a gait with the paper's symmetries.
+pub(super) fn tell_quarter(answer: &mut Document, gait: &OptimalGait) {
+    answer
+        .key("displacement_over_length", gait.displacement_over_length)
+        .key("displacement_m", gait.displacement)
+        .key("start_angle_rad", gait.start_angle)
+        .key("end_angle_rad", gait.end_angle)
+        .row(
             "displacement X",
             format!(
                 "{} per cycle   X/L = {:.10}",
-                quantity::length(self.displacement_m),
-                self.displacement_over_length
+                quantity::length(gait.displacement),
+                gait.displacement_over_length
             ),
         )
         .row(
             "starts at",
-            format!("φ₁ = φ₂ = {}", quantity::angle(self.start_angle_rad)),
+            format!("φ₁ = φ₂ = {}", quantity::angle(gait.start_angle)),
         )
         .row(
             "quarter ends at",
-            format!("φ₂ = −φ₁ = {}", quantity::angle(self.end_angle_rad)),
+            format!("φ₂ = −φ₁ = {}", quantity::angle(gait.end_angle)),
         );
-        arc_rows(rows, &self.arcs);
+    tell_arcs(answer, &gait.arcs);
+}
+
+/// Adds arcs in order, each with its ends.
+pub(super) fn tell_arcs(answer: &mut Document, arcs: &[Arc]) {
+    answer.key("arcs", arcs.to_vec());
+    for arc in arcs {
+        let shape =
+            |[one, two]: [f64; 2]| format!("({}, {})", quantity::angle(one), quantity::angle(two));
+        answer.row(
+            format!("{} arc", arc.kind.word()),
+            format!("{} to {}", shape(arc.from), shape(arc.to)),
+        );
     }
 }
 
-/// What every answer ends with.
-#[derive(Debug, Serialize)]
-pub(crate) struct Closing {
-    /// Share of the cycle in which links cross.
-    links_cross: f64,
-    /// Under the servos' limit.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    timing: Option<TimingAnswer>,
-    certificate: Certificate,
-    /// From the parsed swimmer to the certified gait.
-    seconds: f64,
-    /// The gait file that was written.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    gait: Option<PathBuf>,
+/// Adds what gaits for efficiency have beside the others, where no solver tells it; of those that were optimised as Fourier series
+/// first. This condition of the certificate is the residual.
+pub(crate) fn tell_figures(
+    answer: &mut Document,
+    gait: &OptimalGait,
+    residual: Condition,
+    power_variation: impl FnOnce(&OptimalGait) -> Option<f64>,
+) {
+    if gait.objective == Objective::Efficiency {
+        answer
+            .key("residual", gait.certificate.value(residual))
+            .key("power_variation", power_variation(gait))
+            .key("method", Method::Fourier.word());
+    }
 }
 
-impl Closing {
-    pub(crate) fn new(
+impl Found {
+    /// A gait, as it is timed: the answer ends with crossing links, timing, certificate, seconds and the file.
+    pub(super) fn gait(
+        mut answer: Document,
+        task: &Task,
         gait: &OptimalGait,
-        timing: Option<TimingAnswer>,
-        seconds: f64,
-        file: Option<PathBuf>,
+        timed: Option<Timed>,
     ) -> Self {
-        Self {
-            links_cross: gait.links_cross,
-            timing,
-            certificate: gait.certificate.clone(),
-            seconds,
-            gait: file,
+        answer.key("links_cross", gait.links_cross);
+        if let Some(timed) = &timed {
+            timed.tell(&mut answer);
         }
-    }
-
-    /// The timing, crossing links, the certificate's verdict and the file written.
-    pub(crate) fn rows(&self, rows: &mut Rows) {
-        if let Some(timing) = &self.timing {
-            timing.rows(rows);
-        }
-        rows.row("links cross", quantity::crossing(self.links_cross));
-        let checks = self.certificate.checks().len();
-        let verdict = if self.certificate.pass() {
+        let checks = gait.certificate.checks().len();
+        let verdict = if gait.certificate.pass() {
             "hold"
         } else {
             "do not all hold"
         };
-        rows.row("certificate", format!("{checks} conditions {verdict}"));
-        if let Some(path) = &self.gait {
-            rows.row("written to", path.display().to_string());
+        answer
+            .key("certificate", gait.certificate.clone())
+            .key("seconds", task.seconds.get())
+            .key_if("gait", task.output.map(Path::to_owned))
+            .row("links cross", quantity::crossing(gait.links_cross))
+            .row("certificate", format!("{checks} conditions {verdict}"));
+        if let Some(path) = task.output {
+            answer.row("written to", path.display().to_string());
+        }
+        let file = timed.map_or_else(|| gait.gait_file(&task.file.name), |timed| timed.file);
+        Self {
+            answer,
+            gaits: vec![(String::new(), file)],
+            failed: None,
         }
     }
 }
 
-/// What gaits for efficiency have beside the others, where no solver tells it.
-#[derive(Debug, Serialize)]
-pub(crate) struct Figures {
-    residual: Option<f64>,
-    power_variation: Option<f64>,
-    /// What led to the start of the polish.
-    method: &'static str,
-}
-
-impl Figures {
-    /// With this condition of the certificate as the residual; none for a gait that is not for efficiency. For gaits that were
-    /// optimised as Fourier series first.
-    pub(crate) fn of(
-        gait: &OptimalGait,
-        residual: Condition,
-        power_variation: impl FnOnce(&OptimalGait) -> Option<f64>,
-    ) -> Option<Self> {
-        (gait.objective == Objective::Efficiency).then(|| Self {
-            residual: gait.certificate.value(residual),
-            power_variation: power_variation(gait),
-            method: Method::Fourier.word(),
-        })
-    }
-}
-
 /// Says where the gait is beyond the robot of the file, at the period that it runs in unless told otherwise.
-pub(super) fn say_if_beyond(file: &SwimmerFile, gait: &OptimalGait) {
-    if let Ok(curve) = AnyGait::from_file(&gait.gait_file(&file.name)) {
-        crate::own_robot::say_if_beyond(file, &curve, PERIOD_S);
+pub(super) fn say_if_beyond(task: &Task, gait: &OptimalGait) {
+    if let Ok(curve) = AnyGait::from_file(&gait.gait_file(&task.file.name)) {
+        crate::own_robot::say_if_beyond(&task.file, &curve, PERIOD_S);
     }
 }
 
@@ -215,16 +155,4 @@ pub(super) fn unfolded(gait: &OptimalGait) -> Outcome {
          side link lies on the middle one ({}); bound the joints (--max-angle 160deg) or keep the links apart (--clearance 0.005)",
         quantity::crossing(gait.links_cross)
     )))
-}
-
-/// Arcs in order, each with its ends.
-pub(crate) fn arc_rows(rows: &mut Rows, arcs: &[Arc]) {
-    for arc in arcs {
-        let shape =
-            |[one, two]: [f64; 2]| format!("({}, {})", quantity::angle(one), quantity::angle(two));
-        rows.row(
-            format!("{} arc", arc.kind.word()),
-            format!("{} to {}", shape(arc.from), shape(arc.to)),
-        );
-    }
 }

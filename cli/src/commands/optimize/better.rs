@@ -4,58 +4,75 @@ use std::cmp::Ordering;
 use std::fmt::Write as _;
 
 use gait_optimizer::{
-    AtlasProblem, Branch, DisplacementProblem, EfficiencyProblem, Heading, Objective, OptimalGait,
-    StartCurves, atlas, displacement, efficiency,
+    AtlasProblem, Branch, DisplacementProblem, EfficiencyProblem, Fastest, Heading, Objective,
+    OptimalGait, SpeedProblem, StartCurves, atlas, displacement, efficiency, fastest,
 };
-use serde::Serialize;
 use swimmer_files::Bounds;
 
-use crate::quantity::{self, Rows};
+use super::Task;
+use crate::document::{Document, object};
+use crate::quantity;
+use crate::threads;
 
 /// What is less better is the same gait.
 const BETTER: f64 = 1e-6;
 /// Starts of the look beyond the paper's symmetries, a thread each.
 const OFF_CENTRE: usize = 4;
 
-/// The better gait.
-#[derive(Debug, Serialize)]
-pub(super) struct Better {
-    command: String,
-    displacement_over_length: f64,
-    displacement_m: f64,
-    efficiency: f64,
-    links_cross: f64,
-    #[serde(skip)]
-    by_efficiency: bool,
+/// A better gait with its command.
+#[derive(Debug)]
+pub(super) struct Better<G = OptimalGait> {
+    pub(super) command: String,
+    pub(super) gait: G,
 }
 
 impl Better {
-    fn new(command: String, gait: &OptimalGait, by_efficiency: bool) -> Self {
-        Self {
-            command,
-            displacement_over_length: gait.displacement_over_length,
-            displacement_m: gait.displacement,
-            efficiency: gait.efficiency,
-            links_cross: gait.links_cross,
-            by_efficiency,
-        }
-    }
-
-    /// A line for people.
-    pub(super) fn row(&self, rows: &mut Rows) {
-        let value = if self.by_efficiency {
-            format!("ξ = {:.6}", self.efficiency)
+    /// Adds it to the answer of a gait for efficiency, or for displacement.
+    pub(super) fn tell(&self, answer: &mut Document, by_efficiency: bool) {
+        let Self { command, gait } = self;
+        let value = if by_efficiency {
+            format!("ξ = {:.6}", gait.efficiency)
         } else {
-            format!("X = {}", quantity::length(self.displacement_m))
+            format!("X = {}", quantity::length(gait.displacement))
         };
-        rows.row(
-            "known to be better",
-            format!(
-                "`{}`: {value}, links cross {}",
-                self.command,
-                quantity::crossing(self.links_cross)
-            ),
-        );
+        let crossing = quantity::crossing(gait.links_cross);
+        answer
+            .key(
+                "better",
+                object! {
+                    "command": command.clone(),
+                    "displacement_over_length": gait.displacement_over_length,
+                    "displacement_m": gait.displacement,
+                    "efficiency": gait.efficiency,
+                    "links_cross": gait.links_cross,
+                },
+            )
+            .row(
+                "known to be better",
+                format!("`{command}`: {value}, links cross {crossing}"),
+            );
+    }
+}
+
+impl Better<Fastest> {
+    /// The fastest gait for servos of this rate \[rad/s\] within the same bounds on whole cycles: those on quarters make no sense
+    /// for it. None where none is found.
+    pub(super) fn fastest(task: &Task, bounds: &Bounds, rate: f64) -> Option<Self> {
+        let bounds = Bounds {
+            min_angle: None,
+            sector: false,
+            ..*bounds
+        };
+        let gait = fastest(&SpeedProblem {
+            bounds,
+            threads: threads::available(),
+            ..SpeedProblem::new(task.file.swimmer, [rate; 2])
+        })
+        .ok()?;
+        let rate = rate.to_string();
+        let more = Some(("--max-rate", rate.as_str()));
+        let command = command("optimize speed", task.swimmer, &bounds, more);
+        Some(Self { command, gait })
     }
 }
 
@@ -99,7 +116,7 @@ pub(super) fn than_displacement(
             &other.bounds,
             heading.map(|sign| ("--sign", sign)),
         );
-        Better::new(command, &gait, false)
+        Better { command, gait }
     })
 }
 
@@ -139,17 +156,14 @@ pub(super) fn than_efficiency(
                 a.efficiency.total_cmp(&b.efficiency)
             }
         })?;
-    (gait.efficiency > found.efficiency * (1.0 + BETTER))
-        .then(|| Better::new(command(named, name, &problem.bounds, more), &gait, true))
+    (gait.efficiency > found.efficiency * (1.0 + BETTER)).then(|| Better {
+        command: command(named, name, &problem.bounds, more),
+        gait,
+    })
 }
 
 /// The command that finds a gait within these bounds.
-pub(super) fn command(
-    named: &str,
-    name: &str,
-    bounds: &Bounds,
-    more: Option<(&str, &str)>,
-) -> String {
+fn command(named: &str, name: &str, bounds: &Bounds, more: Option<(&str, &str)>) -> String {
     let mut words = format!("swimmer {named} --swimmer {name}");
     // Writing to a String cannot fail.
     for (flag, value) in [

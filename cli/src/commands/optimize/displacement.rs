@@ -1,26 +1,19 @@
 //! `swimmer optimize displacement`: the gait of most displacement per cycle.
 
-use std::fmt;
-use std::path::PathBuf;
-use std::time::Instant;
-
 use gait_optimizer::{
     DisplacementError, DisplacementProblem, Heading, displacement, displacement_supremum,
     robust_displacement,
 };
-use serde::Serialize;
 
-use crate::arguments::load_swimmer;
-use crate::bounds::QuarterBounds;
-use crate::failure::{Failure, Outcome};
-use crate::output::Output;
-use crate::quantity::Rows;
-
-use super::answer::{Closing, Quarter, say_if_beyond};
-use super::better::{Better, than_displacement};
-use super::no_optimum::NoOptimum;
-use super::robust::{RobustAnswer, Robustly, as_written, refused};
+use super::answer::{say_if_beyond, tell_quarter};
+use super::better::than_displacement;
+use super::no_optimum::no_optimum;
+use super::robust::{Robustly, refused, robust_gait};
 use super::timing::ServoTiming;
+use super::{Found, Objective, Task};
+use crate::bounds::QuarterBounds;
+use crate::document::Document;
+use crate::failure::{Failure, Outcome};
 
 /// Find the gait of most displacement per cycle by the maximum principle, with its certificate
 ///
@@ -29,9 +22,6 @@ use super::timing::ServoTiming;
 /// ever farther no optimum exists: exit status 1, with the limit, a gait near it (which -o writes) and the fastest gait.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Displacement {
-    /// purcell, robot, robot-slender or a swimmer file
-    #[arg(long, value_name = "SWIMMER")]
-    swimmer: String,
     #[command(flatten)]
     bounds: QuarterBounds,
     /// The sign of X: + or -
@@ -45,119 +35,78 @@ pub(crate) struct Displacement {
     robustly: Robustly,
     #[command(flatten)]
     timing: ServoTiming,
-    /// Write the gait, at constant power or as timed for the servos, as a gait file
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
 }
 
-impl Displacement {
-    pub(super) fn run(self, output: Output) -> Outcome {
-        let file = load_swimmer(&self.swimmer)?;
-        let uncertain = self.robustly.load(&file)?;
-        let begun = Instant::now();
+impl Objective for Displacement {
+    fn search(&self, task: &Task) -> Outcome<Found> {
         let problem = DisplacementProblem {
-            bounds: self.bounds.of(&file),
+            bounds: self.bounds.of(&task.file),
             heading: self.sign,
             // A slit costs no displacement, but time.
             simple: self.simple || self.timing.max_rate.is_some(),
-            ..DisplacementProblem::new(file.swimmer)
+            ..DisplacementProblem::new(task.file.swimmer)
         };
-        if let Some((uncertainty, over)) = uncertain {
-            let found = robust_displacement(&problem, &uncertainty, over)
+        if let Some((uncertainty, over)) = self.robustly.load(&task.file)? {
+            let found = task
+                .timed(|| robust_displacement(&problem, &uncertainty, over))
                 .map_err(|error| refused(error, &self.bounds))?;
-            let seconds = begun.elapsed().as_secs_f64();
-            let timing = self.timing.write(
-                &as_written(&found.gait),
-                (&file.name, &self.swimmer),
-                self.output.as_deref(),
-            )?;
-            output.answer(&RobustAnswer::new(
-                format!("{}, most displacement, robust", file.name),
-                "X/L",
-                &found,
-                timing,
-                (seconds, self.output),
-            ));
-            return Ok(());
+            return robust_gait(task, ("displacement", "X/L"), found, &self.timing);
         }
-        let found = displacement(&problem);
-        if let Ok(_)
-        | Err(DisplacementError::NoOptimum { .. } | DisplacementError::NotCertified { .. }) =
-            found
-            && let local = found.as_ref().ok()
-            && let Some(supremum) = displacement_supremum(&problem, local)
-            && let Some(answer) = NoOptimum::new((&file, &self.swimmer), &problem, &supremum, local)
+        let (found, supremum) = task.timed(|| {
+            let found = displacement(&problem);
+            let supremum = match &found {
+                Ok(gait) => displacement_supremum(&problem, Some(gait)),
+                Err(
+                    DisplacementError::NoOptimum { .. } | DisplacementError::NotCertified { .. },
+                ) => displacement_supremum(&problem, None),
+                Err(_) => None,
+            };
+            (found, supremum)
+        });
+        if let Some(supremum) = supremum
+            && let Some(farthest) = supremum.members.last()
         {
-            let best = supremum.members.last().zip(self.output);
-            return answer.told(best, begun.elapsed().as_secs_f64(), output);
+            let local = found.as_ref().ok();
+            return Ok(no_optimum(
+                task,
+                &problem.bounds,
+                (&supremum, farthest),
+                local,
+            ));
         }
         let gait = found?;
-        let seconds = begun.elapsed().as_secs_f64();
-        let better = than_displacement(&problem, &self.swimmer, &gait);
-        say_if_beyond(&file, &gait);
-        let timing =
-            self.timing
-                .write(&gait, (&file.name, &self.swimmer), self.output.as_deref())?;
-        output.answer(&Found {
-            name: file.name,
-            quarter: (&gait).into(),
-            outdone_over_length: gait.outdone_over_length,
-            extremals: gait.extremals,
-            better,
-            closing: Closing::new(&gait, timing, seconds, self.output),
-        });
-        Ok(())
-    }
-}
-
-#[derive(Debug, Serialize)]
-struct Found {
-    #[serde(skip)]
-    name: String,
-    #[serde(flatten)]
-    quarter: Quarter,
-    /// X/L of a gait within the bounds that carries farther but is no extremal, where no gaits were found that go on from there;
-    /// left out where none was seen.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    outdone_over_length: Option<f64>,
-    /// Local optima and other extremals found, of which this is the best certified one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    extremals: Option<usize>,
-    /// Of a wider class.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    better: Option<Better>,
-    #[serde(flatten)]
-    closing: Closing,
-}
-
-impl fmt::Display for Found {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut rows = Rows::default();
-        self.quarter.rows(&mut rows);
-        if let Some(carried) = self.outdone_over_length {
-            rows.row(
+        let better = than_displacement(&problem, task.swimmer, &gait);
+        say_if_beyond(task, &gait);
+        let timed = self.timing.of(task, &gait)?;
+        let mut answer = Document::new(format!(
+            "{}, a local optimum of displacement",
+            task.file.name
+        ));
+        tell_quarter(&mut answer, &gait);
+        // X/L of a gait within the bounds that carries farther but is no extremal, where no gaits were found that go on from there.
+        answer.key_if("outdone_over_length", gait.outdone_over_length);
+        if let Some(carried) = gait.outdone_over_length {
+            answer.row(
                 "not the farthest",
                 format!("a gait that is no extremal carries X/L = {carried:.6}"),
             );
         }
-        let sign = if self.quarter.forwards() { ">" } else { "<" };
-        let of = self
-            .extremals
-            .map_or_else(String::new, |count| match count {
-                1 => "the only extremal found ".to_owned(),
-                count => format!("the {count} extremals found "),
-            });
-        rows.row(
+        let sign = if gait.displacement > 0.0 { ">" } else { "<" };
+        let of = match gait.extremals {
+            None => String::new(),
+            Some(1) => "the only extremal found ".to_owned(),
+            Some(count) => format!("the {count} extremals found "),
+        };
+        answer.key_if("extremals", gait.extremals).row(
             "best of",
             format!(
                 "{of}with the paper's symmetries and X {sign} 0; `swimmer atlas --objective displacement` looks beyond"
             ),
         );
-        if let Some(better) = &self.better {
-            better.row(&mut rows);
+        if let Some(better) = better {
+            better.tell(&mut answer, false);
         }
-        self.closing.rows(&mut rows);
-        write!(f, "{}, a local optimum of displacement\n{rows}", self.name)
+        Ok(Found::gait(answer, task, &gait, timed))
     }
 }
 

@@ -1,26 +1,21 @@
 //! `swimmer optimize efficiency`: the gaits of most Lighthill efficiency.
 
-use std::fmt;
-use std::path::PathBuf;
-use std::time::Instant;
-
 use clap::ValueEnum;
 use collocation::CollocationError;
 use gait_optimizer::{
     Branch, EfficiencyError, EfficiencyProblem, Method, OptimalGait, efficiency, robust_efficiency,
 };
-use serde::Serialize;
 
-use crate::arguments::load_swimmer;
+use super::answer::{say_if_beyond, tell_quarter};
+use super::better::than_efficiency;
+use super::robust::{Robustly, refused, robust_gait};
+use super::timing::{ServoTiming, Timed};
+use super::{Found, Objective, Task};
 use crate::bounds::WholeBounds;
+use crate::document::Document;
 use crate::failure::{Failure, Outcome};
-use crate::output::{Output, verbose};
-use crate::quantity::{self, Rows};
-
-use super::answer::{Closing, Quarter, say_if_beyond};
-use super::better::{Better, than_efficiency};
-use super::robust::{RobustAnswer, Robustly, as_written, refused};
-use super::timing::{ServoTiming, TimingAnswer};
+use crate::output::verbose;
+use crate::quantity;
 
 /// Order of a robust gait's series unless told otherwise.
 const ROBUST_ORDER: usize = 6;
@@ -30,9 +25,6 @@ const ROBUST_ORDER: usize = 6;
 /// Closed curves with the paper's two symmetries, run counter-clockwise at constant power. No guess is needed.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Efficiency {
-    /// purcell, robot, robot-slender or a swimmer file
-    #[arg(long, value_name = "SWIMMER")]
-    swimmer: String,
     /// Which optimum: small has X > 0, large has X < 0 and a start angle above 2 rad
     #[arg(long, value_name = "GAIT", default_value = "small")]
     gait: Which,
@@ -48,9 +40,6 @@ pub(crate) struct Efficiency {
     order: Option<usize>,
     #[command(flatten)]
     timing: ServoTiming,
-    /// Write the gait, at constant power or as timed for the servos, as a gait file
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -67,170 +56,89 @@ enum How {
     Shooting,
 }
 
-impl Efficiency {
-    pub(super) fn run(self, output: Output) -> Outcome {
-        let file = load_swimmer(&self.swimmer)?;
+impl Objective for Efficiency {
+    fn search(&self, task: &Task) -> Outcome<Found> {
         let branch = match self.gait {
             Which::Small => Branch::Small,
             Which::Large => Branch::Large,
         };
-        let uncertain = self.robustly.load(&file)?;
-        if uncertain.is_none() && self.order.is_some() {
-            return Err(Failure::BadInput(
-                "--order is that of a robust gait's Fourier series: give --robust FIT.json or --gain LOW HIGH"
-                    .to_owned(),
-            ));
-        }
-        let begun = Instant::now();
-        let bounds = self.bounds.of(&file);
-        if let Some((uncertainty, over)) = uncertain {
-            let mut found = robust_efficiency(
-                &file.swimmer,
-                (branch, self.order.unwrap_or(ROBUST_ORDER)),
-                &bounds,
-                &uncertainty,
-                over,
-            )
-            .map_err(|error| refused(error, &self.bounds))?;
-            let seconds = begun.elapsed().as_secs_f64();
-            let timing = self.timing.write(
-                &as_written(&found.gait),
-                (&file.name, &self.swimmer),
-                self.output.as_deref(),
-            )?;
-            if let Some(timing) = &timing {
-                found.gait.efficiency = timing.efficiency;
-            }
-            output.answer(&RobustAnswer::new(
-                format!("{}, most efficiency, robust", file.name),
-                "ξ",
-                &found,
-                timing,
-                (seconds, self.output),
-            ));
-            return Ok(());
-        }
         let problem = EfficiencyProblem {
             method: match self.method {
                 How::Auto | How::Collocation => Method::Auto,
                 How::Fourier => Method::Fourier,
                 How::Shooting => Method::Shooting,
             },
-            bounds,
-            ..EfficiencyProblem::new(file.swimmer, branch)
+            bounds: self.bounds.of(&task.file),
+            ..EfficiencyProblem::new(task.file.swimmer, branch)
         };
-        let gait = match self.method {
-            How::Collocation => collocation::efficiency(&problem)?,
-            How::Auto | How::Fourier | How::Shooting => efficiency(&problem)?,
-        };
-        let seconds = begun.elapsed().as_secs_f64();
-        let better = than_efficiency(&problem, &self.swimmer, &gait);
-        say_if_beyond(&file, &gait);
-        let timing =
-            self.timing
-                .write(&gait, (&file.name, &self.swimmer), self.output.as_deref())?;
-        output.answer(&Found::new(
-            file.name,
-            &gait,
-            timing,
-            better,
-            (seconds, self.output),
-        ));
-        Ok(())
+        if let Some((uncertainty, over)) = self.robustly.load(&task.file)? {
+            let order = (branch, self.order.unwrap_or(ROBUST_ORDER));
+            let (swimmer, bounds) = (&problem.swimmer, &problem.bounds);
+            let found = task
+                .timed(|| robust_efficiency(swimmer, order, bounds, &uncertainty, over))
+                .map_err(|error| refused(error, &self.bounds))?;
+            return robust_gait(task, ("efficiency", "ξ"), found, &self.timing);
+        }
+        if self.order.is_some() {
+            return Err(Failure::BadInput(
+                "--order is that of a robust gait's Fourier series: give --robust FIT.json or --gain LOW HIGH"
+                    .to_owned(),
+            ));
+        }
+        let gait = task.timed(|| match self.method {
+            How::Collocation => collocation::efficiency(&problem).map_err(Failure::from),
+            How::Auto | How::Fourier | How::Shooting => Ok(efficiency(&problem)?),
+        })?;
+        let better = than_efficiency(&problem, task.swimmer, &gait);
+        say_if_beyond(task, &gait);
+        let timed = self.timing.of(task, &gait)?;
+        let mut answer = told(&task.file.name, &gait, timed.as_ref());
+        if let Some(better) = better {
+            better.tell(&mut answer, true);
+        }
+        Ok(Found::gait(answer, task, &gait, timed))
     }
 }
 
-#[derive(Debug, Serialize)]
-struct Found {
-    #[serde(skip)]
-    name: String,
-    /// Of the gait that is written: as timed for the servos, else at constant power.
-    efficiency: f64,
-    /// Of the same curve at constant power, where the servos' timing is another.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    efficiency_constant_power: Option<f64>,
-    #[serde(flatten)]
-    quarter: Quarter,
-    /// Max-norm of the shooting conditions.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    residual: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    power_variation: Option<f64>,
-    /// What led to the start of the polish.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    method: Option<&'static str>,
-    /// The direct method's own value, before the polish.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    direct_efficiency: Option<f64>,
-    /// Of another class.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    better: Option<Better>,
-    #[serde(flatten)]
-    closing: Closing,
-}
-
-impl Found {
-    fn new(
-        name: String,
-        gait: &OptimalGait,
-        timing: Option<TimingAnswer>,
-        better: Option<Better>,
-        (seconds, file): (f64, Option<PathBuf>),
-    ) -> Self {
-        let figures = gait.efficiency_figures;
-        let timed = timing.as_ref().map(|timing| timing.efficiency);
-        Self {
-            name,
-            efficiency: timed.unwrap_or(gait.efficiency),
-            efficiency_constant_power: timed.map(|_| gait.efficiency),
-            quarter: gait.into(),
-            residual: figures.map(|figures| figures.residual),
-            power_variation: figures.map(|figures| figures.power_variation),
-            method: figures.map(|figures| figures.method),
-            direct_efficiency: figures.and_then(|figures| figures.direct_efficiency),
-            better,
-            closing: Closing::new(gait, timing, seconds, file),
-        }
+/// What is told of a gait: its efficiency is that of the gait that is written.
+fn told(name: &str, gait: &OptimalGait, timed: Option<&Timed>) -> Document {
+    let mut answer = Document::new(format!("{name}, a local optimum of efficiency"));
+    let as_written = timed.map_or(gait.efficiency, |timed| timed.efficiency);
+    answer
+        .key("efficiency", as_written)
+        .row("efficiency ξ", format!("{as_written:.12}"));
+    if timed.is_some() {
+        answer
+            .key("efficiency_constant_power", gait.efficiency)
+            .row("constant power", format!("ξ = {:.12}", gait.efficiency));
     }
-}
-
-impl fmt::Display for Found {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut rows = Rows::default();
-        rows.row("efficiency ξ", format!("{:.12}", self.efficiency));
-        if let Some(untimed) = self.efficiency_constant_power {
-            rows.row("constant power", format!("ξ = {untimed:.12}"));
-        }
-        self.quarter.rows(&mut rows);
-        if let Some(residual) = self.residual.filter(|_| verbose()) {
-            let bound = if residual <= 1e-10 {
+    tell_quarter(&mut answer, gait);
+    if let Some(figures) = gait.efficiency_figures {
+        answer
+            // Max-norm of the shooting conditions.
+            .key("residual", figures.residual)
+            .key("power_variation", figures.power_variation)
+            // What led to the start of the polish, and that method's own value.
+            .key("method", figures.method)
+            .key_if("direct_efficiency", figures.direct_efficiency);
+        if verbose() {
+            let bound = if figures.residual <= 1e-10 {
                 "at most 1e-10"
             } else {
                 "above 1e-10"
             };
-            rows.row("residual", bound);
+            answer.row("residual", bound).row("method", figures.method);
         }
-        if let Some(method) = self.method.filter(|_| verbose()) {
-            rows.row("method", method);
+        if let Some(direct) = figures.direct_efficiency.filter(|_| verbose()) {
+            let deviation = quantity::small((direct / gait.efficiency - 1.0).abs());
+            answer.row("before polish", format!("ξ off by {deviation}"));
         }
-        if let Some(direct) = self.direct_efficiency.filter(|_| verbose()) {
-            let polished = self.efficiency_constant_power.unwrap_or(self.efficiency);
-            let deviation = (direct / polished - 1.0).abs();
-            rows.row(
-                "before polish",
-                format!("ξ off by {}", quantity::small(deviation)),
-            );
-        }
-        rows.row(
-            "best of",
-            "the gaits with the paper's symmetries, in one neighbourhood; `swimmer atlas --objective efficiency` looks beyond",
-        );
-        if let Some(better) = &self.better {
-            better.row(&mut rows);
-        }
-        self.closing.rows(&mut rows);
-        write!(f, "{}, a local optimum of efficiency\n{rows}", self.name)
     }
+    answer.row(
+        "best of",
+        "the gaits with the paper's symmetries, in one neighbourhood; `swimmer atlas --objective efficiency` looks beyond",
+    );
+    answer
 }
 
 impl From<EfficiencyError> for Failure {
@@ -255,12 +163,13 @@ impl From<CollocationError> for Failure {
 
 #[cfg(test)]
 mod tests {
-    use swimmer_files::Bounds;
+    use std::cell::Cell;
 
-    use swimmer_files::{AnyGait, GaitFile};
+    use swimmer_files::{AnyGait, Bounds};
     use swimmer_model::{Model, Swimmer, Tolerance, swim};
 
     use super::*;
+    use crate::arguments::load_swimmer;
 
     /// Servos at their limit cost efficiency, and what is told is that of the file.
     #[test]
@@ -273,31 +182,31 @@ mod tests {
             ..EfficiencyProblem::new(Swimmer::purcell(), Branch::Small)
         })
         .unwrap();
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("timed.gait");
-        let told = |servos: ServoTiming| {
-            let timing = servos
-                .write(&gait, ("purcell", "purcell"), Some(&path))
-                .unwrap();
-            let found = Found::new("purcell".to_owned(), &gait, timing, None, (0.0, None));
-            let file = AnyGait::from_file(&GaitFile::load(&path).unwrap()).unwrap();
+        let task = Task {
+            file: load_swimmer("purcell").unwrap(),
+            swimmer: "purcell",
+            output: None,
+            seconds: Cell::default(),
+        };
+        let found = |max_rate, period| {
+            let timed = ServoTiming { max_rate, period }.of(&task, &gait).unwrap();
+            let answer = told("purcell", &gait, timed.as_ref());
+            let found = Found::gait(answer, &task, &gait, timed);
+            let file = AnyGait::from_file(&found.gaits[0].1).unwrap();
             let model = Model::new(&Swimmer::purcell()).unwrap();
             let swum = swim(&model, &file, &Tolerance::default()).efficiency();
-            (found, swum)
+            let keys = serde_json::to_value(&found.answer).unwrap();
+            let efficiency = keys["efficiency"].as_f64().unwrap();
+            let untimed = keys.get("efficiency_constant_power").cloned();
+            (efficiency, untimed, swum, found.answer.to_string())
         };
-        let (free, swum) = told(ServoTiming {
-            max_rate: None,
-            period: None,
-        });
-        assert!((free.efficiency / swum - 1.0).abs() < 1e-6);
-        assert!(free.efficiency_constant_power.is_none());
-        let (timed, swum) = told(ServoTiming {
-            max_rate: Some(0.5),
-            period: Some(15.12),
-        });
-        assert!((timed.efficiency / swum - 1.0).abs() < 1e-9, "{swum}");
-        assert!(timed.efficiency < 0.95 * free.efficiency);
-        assert_eq!(timed.efficiency_constant_power, Some(gait.efficiency));
-        assert!(format!("{timed}").contains(&format!("{:.12}", timed.efficiency)));
+        let (free, untimed, swum, _) = found(None, None);
+        assert!((free / swum - 1.0).abs() < 1e-6);
+        assert!(untimed.is_none());
+        let (timed, untimed, swum, text) = found(Some(0.5), Some(15.12));
+        assert!((timed / swum - 1.0).abs() < 1e-9, "{swum}");
+        assert!(timed < 0.95 * free);
+        assert_eq!(untimed.unwrap().as_f64(), Some(gait.efficiency));
+        assert!(text.contains(&format!("{timed:.12}")));
     }
 }

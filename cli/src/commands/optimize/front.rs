@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use gait_optimizer::{Fastest, Front};
-use serde::Serialize;
-use swimmer_files::write_atomically;
+use swimmer_files::{SwimmerFile, write_atomically};
 
 use crate::csv_text::csv_text;
+use crate::document::{Document, object};
 use crate::failure::Outcome;
 use crate::report::chart::{Chart, INK, MEASURED, PREDICTED, Point, Series};
 
@@ -38,28 +38,33 @@ impl FromStr for FrontFile {
     }
 }
 
-/// What was written.
-#[derive(Debug, Serialize)]
-pub(crate) struct FrontAnswer {
-    pub(super) file: PathBuf,
-    /// Periods that were looked at, and those in which a farthest gait is told.
-    pub(super) periods: usize,
-    pub(super) told: usize,
-}
-
 impl FrontFile {
-    /// Writes the front of a swimmer of this length \[m\].
-    pub(super) fn write(&self, front: &Front, name: &str, length: f64) -> Outcome<FrontAnswer> {
+    /// Writes the front of a swimmer, and adds that to the answer.
+    pub(super) fn write(
+        &self,
+        front: &Front,
+        file: &SwimmerFile,
+        answer: &mut Document,
+    ) -> Outcome {
+        let length = file.swimmer.total_length();
         let text = match self.form {
-            Form::Figure => figure(front, name, length).svg()?,
+            Form::Figure => figure(front, &file.name, length).svg()?,
             Form::Table => table(front, length)?,
         };
         write_atomically(&self.path, text.as_bytes())?;
-        Ok(FrontAnswer {
-            file: self.path.clone(),
-            periods: front.periods.len(),
-            told: front.farthest.iter().flatten().count(),
-        })
+        // Those in which a farthest gait is told, of those that were looked at.
+        let (told, periods) = (front.farthest.iter().flatten().count(), front.periods.len());
+        let path = self.path.display();
+        answer
+            .key(
+                "front",
+                object! {"file": self.path.clone(), "periods": periods, "told": told},
+            )
+            .row(
+                "front",
+                format!("{path}: the farthest gait in {told} of {periods} periods"),
+            );
+        Ok(())
     }
 }
 

@@ -1,21 +1,16 @@
 //! `swimmer optimize speed --power`, `--torque`: the fastest gait of servos that give so many watts or newton-metres.
 
 use std::collections::BTreeMap;
-use std::fmt;
-use std::path::PathBuf;
-use std::time::Instant;
 
-use gait_optimizer::{Arc, Limited, LimitedError, LimitedProblem, Torque, fastest_within};
-use serde::Serialize;
+use gait_optimizer::{LimitedError, LimitedProblem, Torque, fastest_within};
 use swimmer_files::{Bounds, SwimmerFile};
 
+use super::answer::{at_pace, tell_arcs, unfolded};
+use super::speed::SEARCHING;
+use super::{Found, Task};
 use crate::failure::{Failure, Outcome};
-use crate::output::Output;
-use crate::progress::Progress;
-use crate::quantity::{self, Rows};
+use crate::quantity;
 use crate::threads;
-
-use super::answer::{Closing, Pace, arc_rows, unfolded};
 
 /// What limits the servos.
 pub(super) struct Limits {
@@ -27,14 +22,9 @@ pub(super) struct Limits {
     pub(super) torque: bool,
 }
 
-/// Finds, writes and tells the gait within these limits.
-pub(super) fn within(
-    file: &SwimmerFile,
-    bounds: Bounds,
-    limits: &Limits,
-    path: Option<PathBuf>,
-    output: Output,
-) -> Outcome {
+/// The fastest gait within these limits.
+pub(super) fn within(task: &Task, bounds: Bounds, limits: &Limits) -> Outcome<Found> {
+    let file = &task.file;
     let fluid = file.fluid.ok_or_else(|| {
         Failure::BadInput(format!(
             "{} names no fluid, without which a power or a torque tells nothing; give [fluid] kinematic_viscosity and density in a \
@@ -48,8 +38,6 @@ pub(super) fn within(
     } else {
         None
     };
-    let begun = Instant::now();
-    let progress = Progress::of_a_whole("looking for the fastest gait");
     let problem = LimitedProblem {
         swimmer: file.swimmer,
         bounds,
@@ -58,15 +46,79 @@ pub(super) fn within(
         torque,
         threads: threads::available(),
     };
-    let found = fastest_within(&problem, &|share| progress.at_share(share))?;
-    drop(progress);
-    let seconds = begun.elapsed().as_secs_f64();
-    unfolded(&found.gait)?;
-    if let Some(path) = &path {
-        found.gait.gait_file(&file.name).save(path)?;
+    let found = task.watched(SEARCHING, |watch| fastest_within(&problem, watch))?;
+    let gait = &found.gait;
+    unfolded(gait)?;
+    let speed = found.speed_over_length;
+    let power = found.peak_power_over_viscosity * viscosity;
+    let torques = found.peak_torques_over_viscosity.map(|one| one * viscosity);
+    // What keeps it from being faster, and of each the share of the period in which it binds.
+    let shares = found
+        .limits
+        .iter()
+        .map(|(limit, share)| (limit.word(), *share));
+    let words: Vec<&str> = shares.clone().map(|(word, _)| word).collect();
+    let shares: BTreeMap<_, _> = shares.collect();
+    let told = shares
+        .iter()
+        .map(|(limit, share)| format!("{limit} {:.1} % of the cycle", share * 100.0));
+    let told: Vec<_> = told.collect();
+    let [front, back] = found.peak_rates.map(quantity::angle);
+    let mut answer = at_pace(
+        "fastest",
+        file,
+        (speed, found.distance_over_length),
+        found.period,
+    );
+    answer
+        // Of the displacement against the cycle's mean heading.
+        .key("heading_rad", gait.heading())
+        .key("rotation_rad", gait.rotation)
+        .key("efficiency", gait.efficiency)
+        .key("limited_by", words.join(" and "))
+        .key("limit_shares", shares)
+        .key("peak_power_w", power)
+        .key("peak_rates_rad_s", found.peak_rates)
+        .key("peak_torques_n_m", torques)
+        // By what share the speed differed on half as many elements, where several limits bind.
+        .key("refinement", found.refinement)
+        // Of a faster gait that failed its certificate.
+        .key("uncertified_speed_over_length_per_s", found.uncertified)
+        .row("efficiency ξ", format!("{:.10}", gait.efficiency))
+        .row("limited by", told.join(", "))
+        .row(
+            "takes at most",
+            format!(
+                "{} mW, {front} and {back} a second, {} and {} mN m",
+                quantity::small(power * 1e3),
+                quantity::small(torques[0] * 1e3),
+                quantity::small(torques[1] * 1e3)
+            ),
+        );
+    if let Some(refinement) = found.refinement {
+        answer.row(
+            "refined",
+            format!("{refinement:.1e} of the speed, on twice as many elements"),
+        );
     }
-    output.answer(&Answer::new(file, viscosity, &found, (seconds, path)));
-    Ok(())
+    if let Some(uncertified) = found.uncertified {
+        answer.row(
+            "not certified",
+            format!(
+                "another gait is {:.4} % faster, but meets not all conditions",
+                (uncertified / speed - 1.0) * 100.0
+            ),
+        );
+    }
+    if let Some(heading) = gait.heading() {
+        answer.row(
+            "leads",
+            format!("{} off the mean heading", quantity::angle(heading)),
+        );
+    }
+    tell_arcs(&mut answer, &gait.arcs);
+    answer.key("corners", gait.corners().to_vec());
+    Ok(Found::gait(answer, task, gait, None))
 }
 
 /// What the servos of the file give.
@@ -87,125 +139,6 @@ fn torque(file: &SwimmerFile, viscosity: f64) -> Result<Torque, Failure> {
                 "no_load_rate"
             }
         ))),
-    }
-}
-
-#[derive(Debug, Serialize)]
-struct Answer {
-    #[serde(skip)]
-    name: String,
-    #[serde(flatten)]
-    pace: Pace,
-    /// Of the displacement against the cycle's mean heading.
-    heading_rad: Option<f64>,
-    rotation_rad: f64,
-    efficiency: f64,
-    /// `power`, `rate` or `torque`, or several joined by ` and `: what keeps it from being faster.
-    limited_by: String,
-    /// Of each of them, the share of the period in which it binds.
-    limit_shares: BTreeMap<&'static str, f64>,
-    peak_power_w: f64,
-    peak_rates_rad_s: [f64; 2],
-    peak_torques_n_m: [f64; 2],
-    /// By what share the speed differed on half as many elements, where several limits bind.
-    refinement: Option<f64>,
-    /// The speed of a faster gait that failed its certificate.
-    uncertified_speed_over_length_per_s: Option<f64>,
-    arcs: Vec<Arc>,
-    corners: Vec<f64>,
-    #[serde(flatten)]
-    closing: Closing,
-}
-
-impl Answer {
-    fn new(
-        file: &SwimmerFile,
-        viscosity: f64,
-        found: &Limited,
-        (seconds, path): (f64, Option<PathBuf>),
-    ) -> Self {
-        let gait = &found.gait;
-        let shares = found
-            .limits
-            .iter()
-            .map(|(limit, share)| (limit.word(), *share));
-        let words: Vec<&str> = shares.clone().map(|(word, _)| word).collect();
-        Self {
-            name: file.name.clone(),
-            pace: Pace::new(
-                file,
-                (found.speed_over_length, found.distance_over_length),
-                found.period,
-            ),
-            heading_rad: gait.heading(),
-            rotation_rad: gait.rotation,
-            efficiency: gait.efficiency,
-            limited_by: words.join(" and "),
-            limit_shares: shares.collect(),
-            peak_power_w: found.peak_power_over_viscosity * viscosity,
-            peak_rates_rad_s: found.peak_rates,
-            peak_torques_n_m: found.peak_torques_over_viscosity.map(|one| one * viscosity),
-            refinement: found.refinement,
-            uncertified_speed_over_length_per_s: found.uncertified,
-            arcs: gait.arcs.clone(),
-            corners: gait.corners().to_vec(),
-            closing: Closing::new(gait, None, seconds, path),
-        }
-    }
-}
-
-impl fmt::Display for Answer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut rows = Rows::default();
-        let limited_by: Vec<String> = self
-            .limit_shares
-            .iter()
-            .map(|(limit, share)| format!("{limit} {:.1} % of the cycle", share * 100.0))
-            .collect();
-        let [front, back] = self.peak_rates_rad_s.map(quantity::angle);
-        self.pace.rows(&mut rows);
-        rows.row("efficiency ξ", format!("{:.10}", self.efficiency))
-            .row("limited by", limited_by.join(", "))
-            .row(
-                "takes at most",
-                format!(
-                    "{} mW, {front} and {back} a second, {} and {} mN m",
-                    quantity::small(self.peak_power_w * 1e3),
-                    quantity::small(self.peak_torques_n_m[0] * 1e3),
-                    quantity::small(self.peak_torques_n_m[1] * 1e3)
-                ),
-            );
-        if let Some(refinement) = self.refinement {
-            rows.row(
-                "refined",
-                format!("{refinement:.1e} of the speed, on twice as many elements"),
-            );
-        }
-        if let Some(speed) = self.uncertified_speed_over_length_per_s {
-            rows.row(
-                "not certified",
-                format!(
-                    "another gait is {:.4} % faster, but meets not all conditions",
-                    (speed / self.pace.speed_over_length_per_s - 1.0) * 100.0
-                ),
-            );
-        }
-        if let Some(heading) = self.heading_rad {
-            rows.row(
-                "leads",
-                format!("{} off the mean heading", quantity::angle(heading)),
-            );
-        }
-        arc_rows(&mut rows, &self.arcs);
-        self.closing.rows(&mut rows);
-        write!(
-            f,
-            "{}: the fastest gait swims {} in {:.2} s, {} a second\n{rows}",
-            self.name,
-            quantity::length(self.pace.displacement_m),
-            self.pace.period_s,
-            quantity::length(self.pace.speed_m_per_s),
-        )
     }
 }
 

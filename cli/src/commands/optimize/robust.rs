@@ -1,6 +1,5 @@
 //! `--robust FIT.json` and `--gain LOW HIGH`: the gait for a robot that is known as well as it is.
 
-use std::fmt;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
@@ -8,17 +7,17 @@ use gait_optimizer::{
     Condition, Holder, Objective, OptimalGait, Over, RobustError, RobustGait, Robustness,
     Uncertainty, Values,
 };
-use serde::Serialize;
 use swimmer_files::{ArcKind, SwimmerFile};
 use swimmer_model::{Gait as _, Model};
 
-use super::answer::{Closing, Figures, Quarter};
-use super::timing::TimingAnswer;
+use super::answer::{tell_figures, tell_quarter};
+use super::timing::ServoTiming;
+use super::{Found, Task};
 use crate::arguments::gain;
 use crate::bounds::Given;
+use crate::document::{Document, object};
 use crate::failure::{Failure, Outcome};
 use crate::fit_file::load_fit;
-use crate::quantity::Rows;
 
 /// Evenly spaced instants of a cycle at which the power is looked at.
 const INSTANTS: u32 = 1024;
@@ -97,22 +96,6 @@ pub(super) fn refused(error: RobustError, bounds: &impl Given) -> Failure {
     }
 }
 
-/// A robust gait and what robustness costs and brings.
-#[derive(Debug, Serialize)]
-pub(super) struct RobustAnswer {
-    #[serde(skip)]
-    title: String,
-    /// Of the estimates' swimmer.
-    efficiency: f64,
-    #[serde(flatten)]
-    quarter: Quarter,
-    robust: Brings,
-    #[serde(flatten)]
-    figures: Option<Figures>,
-    #[serde(flatten)]
-    closing: Closing,
-}
-
 /// (max − min)/mean of the power along the gait as it is timed.
 fn power_variation(gait: &OptimalGait) -> Option<f64> {
     let model = Model::new(&gait.swimmer.of_unit_length()).ok()?;
@@ -128,168 +111,113 @@ fn power_variation(gait: &OptimalGait) -> Option<f64> {
     Some((most - least) * f64::from(INSTANTS) / powers.iter().sum::<f64>())
 }
 
-/// What robustness costs and brings, as every objective tells it.
-#[derive(Debug, Serialize)]
-pub(super) struct Brings {
-    over: &'static str,
-    quantity: &'static str,
-    /// What the robust gait brings.
-    robust: Valued,
-    /// What the nominal optimum of the same family brings.
-    nominal_optimum: Valued,
-    /// The swimmers that hold the worst case.
-    held_by: Vec<Held>,
-    /// Swimmers from which the worst case was looked for downhill.
-    worst_among: usize,
-    mean_of: usize,
-    /// The robust gait lies on another branch of optima than the nominal one.
-    off_branch: bool,
-    /// Share of the cycle in which links cross: of the robust gait with any of the gains, and of the nominal optimum.
-    largest_links_cross: f64,
-    nominal_optimum_links_cross: f64,
+/// A robust gait with the paper's symmetries, best in this quantity of this name.
+pub(super) fn robust_gait(
+    task: &Task,
+    (objective, quantity): (&str, &'static str),
+    found: RobustGait,
+    timing: &ServoTiming,
+) -> Outcome<Found> {
+    let RobustGait {
+        gait, robustness, ..
+    } = found;
+    let written = as_written(&gait);
+    let timed = timing.of(task, &written)?;
+    let mut answer = Document::new(format!("{}, most {objective}, robust", task.file.name));
+    // Of the estimates' swimmer.
+    let efficiency = match &timed {
+        Some(timed) if gait.objective == Objective::Efficiency => timed.efficiency,
+        _ => gait.efficiency,
+    };
+    answer.key("efficiency", efficiency);
+    tell_quarter(&mut answer, &gait);
+    tell_robustness(&mut answer, &robustness, quantity);
+    // The gradient of ln ξ̄ [1/rad] for the members as they are weighed: no single swimmer's shooting conditions hold. The power is
+    // that of the estimates' swimmer: one timing for all members is at constant power for none.
+    tell_figures(
+        &mut answer,
+        &gait,
+        Condition::RobustGradient,
+        power_variation,
+    );
+    Ok(Found::gait(answer, task, &written, timed))
 }
 
-#[derive(Debug, Serialize)]
-struct Valued {
-    nominal: f64,
-    worst: f64,
-    mean: f64,
-}
-
-impl From<Values> for Valued {
-    fn from(values: Values) -> Self {
-        Self {
-            nominal: values.nominal,
-            worst: values.worst,
-            mean: values.mean,
+/// Adds what robustness costs and brings, who holds the worst case, and what is other than of the nominal optimum.
+pub(super) fn tell_robustness(answer: &mut Document, found: &Robustness, quantity: &'static str) {
+    let (robust, nominal) = (&found.values, &found.nominal);
+    let [crossing, nominal_crossing] = found.links_cross;
+    let values = |values: &Values| object! {"nominal": values.nominal, "worst": values.worst, "mean": values.mean};
+    let holder = |holder: &Holder| {
+        object! {
+            "sphere_radius_m": holder.sphere_radius,
+            "chi": holder.chi,
+            "gain": holder.gain,
+            "multiplier": holder.multiplier,
         }
-    }
-}
-
-#[derive(Debug, Serialize)]
-struct Held {
-    sphere_radius_m: f64,
-    chi: f64,
-    gain: f64,
-    multiplier: f64,
-}
-
-impl From<&Holder> for Held {
-    fn from(holder: &Holder) -> Self {
-        Self {
-            sphere_radius_m: holder.sphere_radius,
-            chi: holder.chi,
-            gain: holder.gain,
-            multiplier: holder.multiplier,
-        }
-    }
-}
-
-impl Brings {
-    pub(super) fn new(found: &Robustness, quantity: &'static str) -> Self {
-        let [largest_links_cross, nominal_optimum_links_cross] = found.links_cross;
-        Self {
-            over: match found.over {
+    };
+    answer.key(
+        "robust",
+        object! {
+            "over": match found.over {
                 Over::Worst => "worst",
                 Over::Mean => "mean",
             },
-            quantity,
-            robust: found.values.into(),
-            nominal_optimum: found.nominal.into(),
-            held_by: found.held_by.iter().map(Held::from).collect(),
-            worst_among: found.members.0,
-            mean_of: found.members.1,
-            off_branch: found.off_branch,
-            largest_links_cross,
-            nominal_optimum_links_cross,
-        }
+            "quantity": quantity,
+            "robust": values(robust),
+            "nominal_optimum": values(nominal),
+            "held_by": found.held_by.iter().map(holder).collect::<Vec<_>>(),
+            "worst_among": found.members.0,
+            "mean_of": found.members.1,
+            "off_branch": found.off_branch,
+            "largest_links_cross": crossing,
+            "nominal_optimum_links_cross": nominal_crossing,
+        },
+    );
+    for (name, ours, theirs) in [
+        ("as estimated", robust.nominal, nominal.nominal),
+        ("worst case", robust.worst, nominal.worst),
+        ("mean", robust.mean, nominal.mean),
+    ] {
+        answer.row(
+            name,
+            format!(
+                "{quantity} = {ours:.8}, the nominal optimum {theirs:.8} ({:+.3} %)",
+                (ours / theirs - 1.0) * 100.0 + 0.0
+            ),
+        );
     }
-
-    /// Beside the nominal optimum, who holds the worst case, and what is other than of the nominal optimum.
-    pub(super) fn rows(&self, rows: &mut Rows) {
-        let Self {
-            robust,
-            nominal_optimum,
-            quantity,
-            ..
-        } = self;
-        for (name, ours, theirs) in [
-            ("as estimated", robust.nominal, nominal_optimum.nominal),
-            ("worst case", robust.worst, nominal_optimum.worst),
-            ("mean", robust.mean, nominal_optimum.mean),
-        ] {
-            rows.row(
-                name,
-                format!(
-                    "{quantity} = {ours:.8}, the nominal optimum {theirs:.8} ({:+.3} %)",
-                    (ours / theirs - 1.0) * 100.0 + 0.0
-                ),
-            );
-        }
-        for holder in &self.held_by {
-            let gain = if (holder.gain - 1.0).abs() < 1e-12 {
-                String::new()
-            } else {
-                format!(", gain {:.4}", holder.gain)
-            };
-            rows.row(
-                "held by",
-                format!(
-                    "r_s = {:.3} mm, χ = {:.4}{gain} (multiplier {:.3})",
-                    holder.sphere_radius_m * 1e3,
-                    holder.chi,
-                    holder.multiplier
-                ),
-            );
-        }
-        if self.off_branch {
-            rows.row(
-                "note",
-                "this gait lies on another branch than the nominal optimum, which is not the best gait near it",
-            );
-        }
-        if self.largest_links_cross > self.nominal_optimum_links_cross + 1e-6 {
-            rows.row(
-                "note",
-                format!(
-                    "its links cross on {:.1} % of the cycle at most, those of the nominal optimum on {:.1} %",
-                    self.largest_links_cross * 100.0,
-                    self.nominal_optimum_links_cross * 100.0
-                ),
-            );
-        }
+    for holder in &found.held_by {
+        let gain = if (holder.gain - 1.0).abs() < 1e-12 {
+            String::new()
+        } else {
+            format!(", gain {:.4}", holder.gain)
+        };
+        answer.row(
+            "held by",
+            format!(
+                "r_s = {:.3} mm, χ = {:.4}{gain} (multiplier {:.3})",
+                holder.sphere_radius * 1e3,
+                holder.chi,
+                holder.multiplier
+            ),
+        );
     }
-}
-
-impl RobustAnswer {
-    pub(super) fn new(
-        title: String,
-        quantity: &'static str,
-        found: &RobustGait,
-        timing: Option<TimingAnswer>,
-        (seconds, file): (f64, Option<PathBuf>),
-    ) -> Self {
-        let gait = &found.gait;
-        Self {
-            title,
-            efficiency: gait.efficiency,
-            quarter: gait.into(),
-            // The gradient of ln ξ̄ [1/rad] for the members as they are weighed: no single swimmer's shooting conditions hold. The
-            // power is that of the estimates' swimmer: one timing for all members is at constant power for none.
-            figures: Figures::of(gait, Condition::RobustGradient, power_variation),
-            robust: Brings::new(&found.robustness, quantity),
-            closing: Closing::new(gait, timing, seconds, file),
-        }
+    if found.off_branch {
+        answer.row(
+            "note",
+            "this gait lies on another branch than the nominal optimum, which is not the best gait near it",
+        );
     }
-}
-
-impl fmt::Display for RobustAnswer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut rows = Rows::default();
-        self.quarter.rows(&mut rows);
-        self.robust.rows(&mut rows);
-        self.closing.rows(&mut rows);
-        write!(f, "{}\n{rows}", self.title)
+    if crossing > nominal_crossing + 1e-6 {
+        answer.row(
+            "note",
+            format!(
+                "its links cross on {:.1} % of the cycle at most, those of the nominal optimum on {:.1} %",
+                crossing * 100.0,
+                nominal_crossing * 100.0
+            ),
+        );
     }
 }
 

@@ -1,26 +1,20 @@
 //! `swimmer optimize speed`: the fastest gait that servos can play.
 
-use std::fmt;
-use std::path::PathBuf;
-use std::time::Instant;
-
-use gait_optimizer::{Arc, Fastest, HeadingRule, SpeedError, SpeedProblem, front, robust_speed};
-use serde::Serialize;
+use gait_optimizer::{Fastest, HeadingRule, SpeedError, SpeedProblem, front, robust_speed};
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 
-use crate::arguments::{load_swimmer, rate, seconds, watts};
-use crate::bounds::WholeBounds;
-use crate::failure::{Failure, Outcome};
-use crate::output::Output;
-use crate::progress::Progress;
-use crate::quantity::{self, Rows};
-
-use super::answer::{Closing, Pace, arc_rows, unfolded};
-use super::front::{FrontAnswer, FrontFile};
+use super::answer::{at_pace, tell_arcs, unfolded};
+use super::front::FrontFile;
 use super::limited::{Limits, within};
-use super::robust::{Brings, Robustly, as_written, refused};
+use super::robust::{Robustly, as_written, refused, tell_robustness};
+use super::{Found, Objective, Task};
+use crate::arguments::{rate, seconds, watts};
+use crate::bounds::WholeBounds;
+use crate::document::Document;
+use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
-use crate::own_robot::{PlayedSpeed, servo_rates};
+use crate::own_robot::{PlayedSpeed, say_if_beyond, servo_rates};
+use crate::quantity;
 use crate::threads;
 
 /// Find the fastest gait: most net displacement per unit of time, without net rotation, with servos that turn no faster than a
@@ -38,9 +32,6 @@ use crate::threads;
 /// a servo turns round.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Speed {
-    /// purcell, robot, robot-slender or a swimmer file
-    #[arg(long, value_name = "SWIMMER")]
-    swimmer: String,
     /// No servo turns faster than this angle a second; a second one is that of joint 2
     #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2, required_unless_present_any = ["playable", "power", "torque"])]
     max_rate: Vec<f64>,
@@ -64,10 +55,10 @@ pub(crate) struct Speed {
     /// table
     #[arg(long, value_name = "FILE.svg|.csv", conflicts_with_all = ["period", "robust", "gain"])]
     front: Option<FrontFile>,
-    /// Write the gait, timed as it shall run, as a gait file
-    #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
 }
+
+/// What the progress of a search for the fastest gait says.
+pub(super) const SEARCHING: &str = "looking for the fastest gait";
 
 /// Which way a gait leads.
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
@@ -80,30 +71,32 @@ enum Heading {
     Sideways,
 }
 
-impl Speed {
-    pub(super) fn run(self, output: Output) -> Outcome {
+impl Objective for Speed {
+    const WRITES: &'static str = "Write the gait, timed as it shall run, as a gait file";
+
+    fn search(&self, task: &Task) -> Outcome<Found> {
         if let Some(front) = &self.front {
             may_be_written(&front.path)?;
         }
-        let file = load_swimmer(&self.swimmer)?;
+        let file = &task.file;
+        let bounds = self.bounds.of(file);
+        let rates = servo_rates(&self.max_rate, self.bounds.playable(), file);
         if self.power.is_some() || self.torque {
             let limits = Limits {
                 power: self.power,
-                rates: servo_rates(&self.max_rate, self.bounds.playable(), &file),
+                rates,
                 torque: self.torque,
             };
-            return within(&file, self.bounds.of(&file), &limits, self.output, output);
+            return within(task, bounds, &limits);
         }
-        let Some(rates) = servo_rates(&self.max_rate, self.bounds.playable(), &file) else {
+        let Some(rates) = rates else {
             return Err(Failure::BadInput(
                 "give --max-rate or --playable".to_owned(),
             ));
         };
-        let uncertain = self.robustly.load(&file)?;
-        let begun = Instant::now();
-        let progress = Progress::of_a_whole("looking for the fastest gait");
+        let uncertain = self.robustly.load(file)?;
         let problem = SpeedProblem {
-            bounds: self.bounds.of(&file),
+            bounds,
             heading: match self.heading {
                 Heading::Any => HeadingRule::Any,
                 Heading::Forward => HeadingRule::Forward,
@@ -113,50 +106,58 @@ impl Speed {
             threads: threads::available(),
             ..SpeedProblem::new(file.swimmer, rates)
         };
-        let watch = |share| progress.at_share(share);
-        let mut robust = None;
-        let (found, farthest) = if let Some((uncertainty, over)) = uncertain {
-            let found = robust_speed(&problem, &uncertainty, over, &watch)
-                .map_err(|error| refused(error, &self.bounds))?;
-            robust = Some(Brings::new(&found.robustness, "|d|/(L T)"));
-            (found.fastest, None)
-        } else if self.front.is_some() {
-            let front = front(&problem, &watch)?;
-            (front.fastest.clone(), Some(front))
-        } else {
-            (problem.watched(&watch)?, None)
-        };
-        drop(progress);
-        let seconds = begun.elapsed().as_secs_f64();
+        let (mut farthest, mut robustness) = (None, None);
+        let found = task.watched(SEARCHING, |watch| -> Outcome<_> {
+            if let Some((uncertainty, over)) = &uncertain {
+                let found = robust_speed(&problem, uncertainty, *over, watch)
+                    .map_err(|error| refused(error, &self.bounds))?;
+                robustness = Some(found.robustness);
+                Ok(found.fastest)
+            } else if self.front.is_some() {
+                let front = farthest.insert(front(&problem, watch)?);
+                Ok(front.fastest.clone())
+            } else {
+                Ok(problem.watched(watch)?)
+            }
+        })?;
         unfolded(&found.gait)?;
-        let gait_file = if robust.is_some() {
-            as_written(&found.gait).gait_file(&file.name)
-        } else {
-            found.gait.gait_file(&file.name)
+        let (kind, gait) = match robustness {
+            Some(_) => ("robust fastest", &as_written(&found.gait)),
+            None => ("fastest", &found.gait),
         };
-        let mut answer = Answer::new(&file, &found, seconds, self.output.clone());
-        answer.robust = robust;
-        if let Ok(curve) = AnyGait::from_file(&gait_file) {
-            let servo = self.servo(&file);
-            answer.played =
-                servo.and_then(|servo| PlayedSpeed::new(&file, servo, &curve, found.period));
-            let period = answer
-                .played
+        let mut answer = told(kind, file, &found);
+        if let Some(robustness) = &robustness {
+            tell_robustness(&mut answer, robustness, "|d|/(L T)");
+        }
+        if let Ok(curve) = AnyGait::from_file(&gait.gait_file(&file.name)) {
+            let servo = self.servo(file);
+            let played =
+                servo.and_then(|servo| PlayedSpeed::new(file, servo, &curve, found.period));
+            let period = played
                 .as_ref()
                 .map_or(found.period, |played| played.period_s);
-            crate::own_robot::say_if_beyond(&file, &curve, period);
+            say_if_beyond(file, &curve, period);
+            if let Some(played) = played {
+                answer.row(
+                    "as played",
+                    format!(
+                        "{} a second, a cycle in {:.3} s: table, ticks and servos take {:.2} %",
+                        quantity::length(played.speed_m_per_s),
+                        played.period_s,
+                        played.lost_share * 100.0
+                    ),
+                );
+                answer.key("played", played);
+            }
         }
         if let (Some(place), Some(farthest)) = (&self.front, &farthest) {
-            let length = file.swimmer.total_length();
-            answer.front = Some(place.write(farthest, &file.name, length)?);
+            place.write(farthest, file, &mut answer)?;
         }
-        if let Some(path) = &self.output {
-            gait_file.save(path)?;
-        }
-        output.answer(&answer);
-        Ok(())
+        Ok(Found::gait(answer, task, gait, None))
     }
+}
 
+impl Speed {
     /// The servos that shall play it: the file's, or the paper's where that is asked for.
     fn servo(&self, file: &SwimmerFile) -> Option<ServoFile> {
         let paper = self.bounds.playable().then(ServoFile::default);
@@ -164,140 +165,56 @@ impl Speed {
     }
 }
 
-#[derive(Debug, Serialize)]
-struct Answer {
-    #[serde(skip)]
-    name: String,
-    #[serde(flatten)]
-    pace: Pace,
-    /// Of the displacement against the cycle's mean heading.
-    heading_rad: f64,
-    rotation_rad: f64,
-    arcs: Vec<Arc>,
-    /// Fractions of the period where a servo turns round or stops.
-    corners: Vec<f64>,
-    /// Most corners of the cycles that were looked at.
-    max_corners: usize,
-    /// Closed curves that were started from, and how many led to this gait.
-    starts: usize,
-    found: usize,
-    /// The speed of a certified cycle with more corners, where one is better by more than 1e-6 of it.
-    longer_speed_over_length_per_s: Option<f64>,
-    /// The speed of a faster chain of arcs that failed its certificate.
-    uncertified_speed_over_length_per_s: Option<f64>,
-    /// Of a robust gait: what robustness costs and brings.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    robust: Option<Brings>,
-    /// What the robot of the file makes of it, as fast as it can.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    played: Option<PlayedSpeed>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    front: Option<FrontAnswer>,
-    #[serde(flatten)]
-    closing: Closing,
-}
-
-impl Answer {
-    fn new(file: &SwimmerFile, found: &Fastest, seconds: f64, output: Option<PathBuf>) -> Self {
-        let gait = &found.gait;
-        Self {
-            name: file.name.clone(),
-            pace: Pace::new(
-                file,
-                (found.speed_over_length, found.distance_over_length),
-                found.period,
-            ),
-            heading_rad: found.heading,
-            rotation_rad: gait.rotation,
-            arcs: gait.arcs.clone(),
-            corners: gait.corners().to_vec(),
-            max_corners: SpeedProblem::MAX_CORNERS,
-            starts: SpeedProblem::STARTS,
-            found: found.found,
-            longer_speed_over_length_per_s: found.longer,
-            uncertified_speed_over_length_per_s: found.uncertified,
-            robust: None,
-            played: None,
-            front: None,
-            closing: Closing::new(gait, None, seconds, output),
-        }
-    }
-}
-
-impl fmt::Display for Answer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut rows = Rows::default();
-        self.pace.rows(&mut rows);
-        rows.row(
+/// What is told of a gait of this kind before what robustness, servos and the front bring.
+fn told(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
+    let speed = found.speed_over_length;
+    let way = found.distance_over_length;
+    let mut answer = at_pace(kind, file, (speed, way), found.period);
+    answer
+        // Of the displacement against the cycle's mean heading.
+        .key("heading_rad", found.heading)
+        .key("rotation_rad", found.gait.rotation)
+        .row(
             "leads",
-            format!("{} off the mean heading", quantity::angle(self.heading_rad)),
+            format!("{} off the mean heading", quantity::angle(found.heading)),
         )
         .row(
             "found",
-            format!("from {} of {} starts", self.found, self.starts),
+            format!("from {} of {} starts", found.found, SpeedProblem::STARTS),
         );
-        arc_rows(&mut rows, &self.arcs);
-        let better = |speed: f64| {
+    tell_arcs(&mut answer, &found.gait.arcs);
+    answer
+        // Fractions of the period where a servo turns round or stops, and how many a cycle may have.
+        .key("corners", found.gait.corners().to_vec())
+        .key("max_corners", SpeedProblem::MAX_CORNERS)
+        // Closed curves that were started from, and how many led to this gait.
+        .key("starts", SpeedProblem::STARTS)
+        .key("found", found.found)
+        // Of a certified cycle with more corners, where one is better by more than 1e-6 of it.
+        .key("longer_speed_over_length_per_s", found.longer)
+        // Of a faster chain of arcs that failed its certificate.
+        .key("uncertified_speed_over_length_per_s", found.uncertified);
+    let better = |other: f64| format!("{:.4} % faster", (other / speed - 1.0) * 100.0);
+    if let Some(longer) = found.longer {
+        answer.row(
+            "longer cycle",
             format!(
-                "{:.4} % faster",
-                (speed / self.pace.speed_over_length_per_s - 1.0) * 100.0
-            )
-        };
-        if let Some(speed) = self.longer_speed_over_length_per_s {
-            rows.row(
-                "longer cycle",
-                format!(
-                    "one of more than {} corners is {}",
-                    self.max_corners,
-                    better(speed)
-                ),
-            );
-        }
-        if let Some(speed) = self.uncertified_speed_over_length_per_s {
-            rows.row(
-                "not certified",
-                format!(
-                    "another chain of arcs is {}, but meets not all conditions",
-                    better(speed)
-                ),
-            );
-        }
-        if let Some(robust) = &self.robust {
-            robust.rows(&mut rows);
-        }
-        if let Some(played) = &self.played {
-            rows.row(
-                "as played",
-                format!(
-                    "{} a second, a cycle in {:.3} s: table, ticks and servos take {:.2} %",
-                    quantity::length(played.speed_m_per_s),
-                    played.period_s,
-                    played.lost_share * 100.0
-                ),
-            );
-        }
-        if let Some(front) = &self.front {
-            rows.row(
-                "front",
-                format!(
-                    "{}: the farthest gait in {} of {} periods",
-                    front.file.display(),
-                    front.told,
-                    front.periods
-                ),
-            );
-        }
-        self.closing.rows(&mut rows);
-        write!(
-            f,
-            "{}: the {}fastest gait swims {} in {:.2} s, {} a second\n{rows}",
-            self.name,
-            if self.robust.is_some() { "robust " } else { "" },
-            quantity::length(self.pace.displacement_m),
-            self.pace.period_s,
-            quantity::length(self.pace.speed_m_per_s),
-        )
+                "one of more than {} corners is {}",
+                SpeedProblem::MAX_CORNERS,
+                better(longer)
+            ),
+        );
     }
+    if let Some(uncertified) = found.uncertified {
+        answer.row(
+            "not certified",
+            format!(
+                "another chain of arcs is {}, but meets not all conditions",
+                better(uncertified)
+            ),
+        );
+    }
+    answer
 }
 
 impl From<SpeedError> for Failure {

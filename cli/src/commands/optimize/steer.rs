@@ -1,43 +1,25 @@
 //! `swimmer optimize steer`: the fastest gaits to steer by, from one common shape.
 
-use std::fmt;
-use std::path::{Path, PathBuf};
-use std::time::Instant;
-
-use gait_optimizer::{Certificate, Joined, SpeedProblem, SteerProblem, Steering, steer};
-use serde::Serialize;
+use gait_optimizer::{Joined, SpeedProblem, SteerProblem, Steering, steer};
 use swimmer_files::SwimmerFile;
 use swimmer_model::Pose;
 
-use crate::arguments::{joint_angle, load_swimmer, rate};
+use super::{Found, Objective, Task};
+use crate::arguments::{joint_angle, rate};
 use crate::bounds::WholeBounds;
+use crate::document::Document;
 use crate::failure::{Failure, Outcome};
-use crate::new_folder::NewFolder;
-use crate::output::Output;
 use crate::own_robot::servo_rates;
 use crate::progress::Progress;
-use crate::quantity::{self, Rows};
+use crate::quantity;
 use crate::threads;
 
 /// Find the fastest gaits forward, backward, to either side and round, all through one common shape at which they join
 ///
 /// Backward, right and the turn to the right are the others run backwards, which undoes them exactly. The shape is the one of
 /// those tried at which joining costs the three least; what it costs each is told, and so is a certificate of each.
-#[derive(Debug, clap::Args)]
-pub(crate) struct Steer {
-    #[command(flatten)]
-    pub(crate) problem: SteerArguments,
-    /// Write the six gaits into this folder
-    #[arg(short, long, value_name = "DIR")]
-    output: Option<PathBuf>,
-}
-
-/// What decides which gaits are found.
 #[derive(Debug, Clone, clap::Args)]
-pub(crate) struct SteerArguments {
-    /// purcell, robot, robot-slender or a swimmer file
-    #[arg(long, value_name = "SWIMMER")]
-    pub(crate) swimmer: String,
+pub(crate) struct Steer {
     /// No servo turns faster than this angle a second; a second one is that of joint 2
     #[arg(long, value_name = "ANGLE_PER_S", value_parser = rate, num_args = 1..=2, required_unless_present = "playable")]
     max_rate: Vec<f64>,
@@ -55,7 +37,7 @@ fn shape(text: &str) -> Result<[f64; 2], String> {
     Ok([joint_angle(one.trim())?, joint_angle(two.trim())?])
 }
 
-impl SteerArguments {
+impl Steer {
     /// The rates of the servos \[rad/s\].
     ///
     /// # Errors
@@ -101,136 +83,87 @@ pub(crate) fn named(steering: &Steering) -> [(&'static str, &Joined, bool); 6] {
     ]
 }
 
-impl Steer {
-    pub(super) fn run(self, output: Output) -> Outcome {
-        let folder = self.output.as_deref().map(NewFolder::start).transpose()?;
-        let file = load_swimmer(&self.problem.swimmer)?;
-        let begun = Instant::now();
-        let steering = self.problem.find(&file)?;
-        let seconds = begun.elapsed().as_secs_f64();
-        if let Some(folder) = folder {
-            for (name, joined, backwards) in named(&steering) {
-                let path = folder.draft().join(format!("{name}.gait"));
-                joined.gait_file(&file.name, backwards).save(&path)?;
-            }
-            folder.publish()?;
-        }
-        output.answer(&Answer::new(
-            &file,
-            &steering,
-            seconds,
-            self.output.as_deref(),
+impl Objective for Steer {
+    const FOLDER: bool = true;
+    const WRITES: &'static str = "Write the six gaits into this folder";
+
+    fn search(&self, task: &Task) -> Outcome<Found> {
+        let file = &task.file;
+        let steering = task.timed(|| self.find(file))?;
+        let [one, two] = steering.shape.map(quantity::angle);
+        let mut answer = Document::new(format!(
+            "{}: six gaits that join at ({one}, {two}), the best of {} shapes",
+            file.name, steering.shapes
         ));
-        Ok(())
-    }
-}
-
-/// One of the six.
-#[derive(Debug, Serialize)]
-struct GaitAnswer {
-    name: &'static str,
-    /// What a cycle brings in the frame of the middle link at the common shape.
-    x_m: f64,
-    y_m: f64,
-    rotation_rad: f64,
-    period_s: f64,
-    /// |d|/(L T); `null` for the gaits that turn.
-    speed_over_length_per_s: Option<f64>,
-    /// |Δθ|/T of those.
-    rotation_rad_per_s: Option<f64>,
-    /// Share of the fastest gait's speed that joining takes.
-    joining_costs: f64,
-    certificate: Certificate,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    gait: Option<PathBuf>,
-}
-
-#[derive(Debug, Serialize)]
-struct Answer {
-    #[serde(skip)]
-    name: String,
-    /// Where the gaits join.
-    shape_rad: [f64; 2],
-    /// How many were tried.
-    shapes: usize,
-    /// The largest angle that the gait that turns was given, where it is kept from where the side links come near each other.
-    turning_max_angle_rad: Option<f64>,
-    gaits: Vec<GaitAnswer>,
-    seconds: f64,
-}
-
-impl Answer {
-    fn new(file: &SwimmerFile, steering: &Steering, seconds: f64, folder: Option<&Path>) -> Self {
-        let length = file.swimmer.total_length();
-        let of = |(name, joined, backwards): (&'static str, &Joined, bool)| {
-            let turns = name.starts_with("turn");
-            let [x, y, theta] = joined.net;
-            let there = Pose::new(x, y, theta);
-            let net = if backwards { there.inverse() } else { there };
-            GaitAnswer {
-                name,
-                x_m: net.x * length,
-                y_m: net.y * length,
-                rotation_rad: net.theta,
-                period_s: joined.period,
-                speed_over_length_per_s: (!turns).then_some(joined.rate),
-                rotation_rad_per_s: turns.then_some(joined.rate),
-                joining_costs: joined.cost(),
-                certificate: joined.gait.certificate.clone(),
-                gait: folder.map(|folder| folder.join(format!("{name}.gait"))),
-            }
-        };
-        Self {
-            name: file.name.clone(),
-            shape_rad: steering.shape,
-            shapes: steering.shapes,
-            turning_max_angle_rad: steering.turning_angle,
-            gaits: named(steering).map(of).into_iter().collect(),
-            seconds,
-        }
-    }
-}
-
-impl fmt::Display for Answer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut rows = Rows::default();
-        for gait in &self.gaits {
-            let fails = gait
-                .certificate
-                .checks()
-                .iter()
-                .filter(|check| !check.pass)
-                .count();
-            let certificate = match fails {
-                0 => format!("{} conditions hold", gait.certificate.checks().len()),
-                _ => format!(
-                    "{fails} of {} conditions fail",
-                    gait.certificate.checks().len()
-                ),
-            };
-            rows.row(
-                gait.name,
-                format!(
-                    "({}, {}, {}) in {:.3} s; joining costs {:.2} %; {certificate}",
-                    quantity::length(gait.x_m),
-                    quantity::length(gait.y_m),
-                    quantity::angle(gait.rotation_rad),
-                    gait.period_s,
-                    gait.joining_costs * 100.0
-                ),
-            );
-        }
-        if let Some(angle) = self.turning_max_angle_rad {
-            rows.row(
+        let gaits = named(&steering).map(|(name, joined, backwards)| {
+            let file_name = format!("{name}.gait");
+            let mut gait = Document::default();
+            tell(&mut gait, &mut answer, file, (name, joined, backwards));
+            gait.key_if("gait", task.output.map(|folder| folder.join(&file_name)));
+            (gait, (file_name, joined.gait_file(&file.name, backwards)))
+        });
+        let (told, gaits): (Vec<_>, Vec<_>) = gaits.into_iter().unzip();
+        answer
+            // Where the gaits join, and how many shapes were tried.
+            .key("shape_rad", steering.shape)
+            .key("shapes", steering.shapes)
+            // The largest that the gait that turns was given, where it is kept from where the side links come near each other.
+            .key("turning_max_angle_rad", steering.turning_angle)
+            .key("gaits", told)
+            .key("seconds", task.seconds.get());
+        if let Some(angle) = steering.turning_angle {
+            answer.row(
                 "turns within",
                 format!("{}, where side links stay apart", quantity::angle(angle)),
             );
         }
-        let [one, two] = self.shape_rad.map(quantity::angle);
-        write!(
-            f,
-            "{}: six gaits that join at ({one}, {two}), the best of {} shapes\n{rows}",
-            self.name, self.shapes
-        )
+        Ok(Found {
+            answer,
+            gaits,
+            failed: None,
+        })
     }
+}
+
+/// Adds one of the six, and its line to the answer.
+fn tell(
+    gait: &mut Document,
+    answer: &mut Document,
+    file: &SwimmerFile,
+    (name, joined, backwards): (&'static str, &Joined, bool),
+) {
+    let length = file.swimmer.total_length();
+    let turns = name.starts_with("turn");
+    let [x, y, theta] = joined.net;
+    let there = Pose::new(x, y, theta);
+    let net = if backwards { there.inverse() } else { there };
+    let certificate = &joined.gait.certificate;
+    gait.key("name", name)
+        // What a cycle brings in the frame of the middle link at the common shape.
+        .key("x_m", net.x * length)
+        .key("y_m", net.y * length)
+        .key("rotation_rad", net.theta)
+        .key("period_s", joined.period)
+        // |d|/(L T), or of those that turn |Δθ|/T.
+        .key("speed_over_length_per_s", (!turns).then_some(joined.rate))
+        .key("rotation_rad_per_s", turns.then_some(joined.rate))
+        // Share of the fastest gait's speed.
+        .key("joining_costs", joined.cost())
+        .key("certificate", certificate.clone());
+    let checks = certificate.checks();
+    let verdict = match checks.iter().filter(|check| !check.pass).count() {
+        0 => format!("{} conditions hold", checks.len()),
+        fails => format!("{fails} of {} conditions fail", checks.len()),
+    };
+    answer.row(
+        name,
+        format!(
+            "({}, {}, {}) in {:.3} s; joining costs {:.2} %; {verdict}",
+            quantity::length(net.x * length),
+            quantity::length(net.y * length),
+            quantity::angle(net.theta),
+            joined.period,
+            joined.cost() * 100.0
+        ),
+    );
 }

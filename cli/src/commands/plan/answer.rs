@@ -1,150 +1,85 @@
 //! What `swimmer plan` answers.
 
-use std::fmt;
 use std::path::PathBuf;
 
-use serde::Serialize;
+use crate::document::{Document, object};
+use crate::quantity;
 
-use crate::quantity::{self, Rows};
-
-/// How far two poses are apart.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub(super) struct Off {
-    distance_m: f64,
-    angle_rad: f64,
-}
-
-impl Off {
-    pub(super) fn new([distance_m, angle_rad]: [f64; 2]) -> Self {
-        Self {
-            distance_m,
-            angle_rad,
-        }
-    }
-}
-
-#[derive(Debug, Serialize)]
-struct StepAnswer {
-    /// The gait file, where the plan was written; else its name.
-    gait: String,
-    cycles: u32,
-    period_s: f64,
-    /// Share of the way from the common shape.
-    scale: f64,
-}
-
-#[derive(Debug, Serialize)]
-struct Place {
-    x_m: f64,
-    y_m: f64,
-    heading_rad: f64,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct Answer {
-    #[serde(skip)]
-    name: String,
-    steps: Vec<StepAnswer>,
-    duration_s: f64,
-    reached: Place,
-    /// From the target, in the model.
-    off_m: f64,
-    off_rad: f64,
-    /// From where the plan leads, where the swimmer's χ is other than in its file.
-    off_if_chi_is_5_percent_lower: Off,
-    off_if_chi_is_5_percent_higher: Off,
-    /// Chains of legs that meet the target, and those that the walls leave.
-    chains: usize,
-    chains_within_walls: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
+/// The answer. The plan's swimmer with χ 5 % lower, and higher, comes this far \[m, rad\] from where the plan leads; the gaits are
+/// named by their files, where the plan was written.
+pub(super) fn answer(
+    name: &str,
+    plan: &forecast::Plan,
+    off_if_chi_is: [[f64; 2]; 2],
+    gaits: Option<Vec<String>>,
     playlist: Option<PathBuf>,
-}
-
-impl Answer {
-    pub(super) fn new(
-        name: &str,
-        plan: &forecast::Plan,
-        [lower, higher]: [Off; 2],
-        gaits: Option<Vec<String>>,
-        playlist: Option<PathBuf>,
-    ) -> Self {
-        let gaits = gaits.unwrap_or_default();
-        let step = |(at, step): (usize, &forecast::Step)| StepAnswer {
-            gait: gaits
-                .get(at)
-                .cloned()
-                .unwrap_or_else(|| plan.word(step).to_owned()),
-            cycles: step.cycles,
-            period_s: step.period,
-            scale: step.member.scale,
-        };
-        Self {
-            name: name.to_owned(),
-            steps: plan.steps.iter().enumerate().map(step).collect(),
-            duration_s: plan.duration,
-            reached: Place {
-                x_m: plan.reached.x,
-                y_m: plan.reached.y,
-                heading_rad: plan.reached.theta,
-            },
-            off_m: plan.off[0],
-            off_rad: plan.off[1],
-            off_if_chi_is_5_percent_lower: lower,
-            off_if_chi_is_5_percent_higher: higher,
-            chains: plan.met[0],
-            chains_within_walls: plan.met[1],
-            playlist,
-        }
-    }
-}
-
-impl fmt::Display for Answer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut rows = Rows::default();
-        for step in &self.steps {
-            rows.row(
-                step.gait.as_str(),
-                format!(
-                    "{} cycles of {:.3} s, at {:.2} % of its size",
-                    step.cycles,
-                    step.period_s,
-                    step.scale * 100.0
-                ),
-            );
-        }
-        let off = |off: &Off| {
+) -> Document {
+    let gaits = gaits.unwrap_or_default();
+    let mut answer = Document::new(format!(
+        "{name}: the quickest plan found takes {:.1} s",
+        plan.duration
+    ));
+    let mut steps = Vec::new();
+    for (at, step) in plan.steps.iter().enumerate() {
+        let named = || plan.word(step).to_owned();
+        let gait = gaits.get(at).cloned().unwrap_or_else(named);
+        let (cycles, period, scale) = (step.cycles, step.period, step.member.scale);
+        answer.row(
+            gait.clone(),
             format!(
-                "{} and {} off",
-                quantity::length(off.distance_m),
-                quantity::angle(off.angle_rad)
-            )
-        };
-        rows.row(
+                "{cycles} cycles of {period:.3} s, at {:.2} % of its size",
+                scale * 100.0
+            ),
+        );
+        // The scale is the share of the way from the common shape.
+        steps.push(object! {"gait": gait, "cycles": cycles, "period_s": period, "scale": scale});
+    }
+    let reached = &plan.reached;
+    let off = |[distance, angle]: [f64; 2]| {
+        format!(
+            "{} and {} off",
+            quantity::length(distance),
+            quantity::angle(angle)
+        )
+    };
+    let off_keys =
+        |[distance, angle]: [f64; 2]| object! {"distance_m": distance, "angle_rad": angle};
+    let [lower, higher] = off_if_chi_is;
+    // Chains of legs that meet the target, and those that the walls leave.
+    let [chains, within_walls] = plan.met;
+    answer
+        .key("steps", steps)
+        .key("duration_s", plan.duration)
+        .key(
+            "reached",
+            object! {"x_m": reached.x, "y_m": reached.y, "heading_rad": reached.theta},
+        )
+        // From the target, in the model.
+        .key("off_m", plan.off[0])
+        .key("off_rad", plan.off[1])
+        .key("off_if_chi_is_5_percent_lower", off_keys(lower))
+        .key("off_if_chi_is_5_percent_higher", off_keys(higher))
+        .key("chains", chains)
+        .key("chains_within_walls", within_walls)
+        .row(
             "reaches",
             format!(
                 "({}, {}), heading {}: {:.1e} m off",
-                quantity::length(self.reached.x_m),
-                quantity::length(self.reached.y_m),
-                quantity::angle(self.reached.heading_rad),
-                self.off_m
+                quantity::length(reached.x),
+                quantity::length(reached.y),
+                quantity::angle(reached.theta),
+                plan.off[0]
             ),
         )
-        .row("χ 5 % lower", off(&self.off_if_chi_is_5_percent_lower))
-        .row("χ 5 % higher", off(&self.off_if_chi_is_5_percent_higher))
+        .row("χ 5 % lower", off(lower))
+        .row("χ 5 % higher", off(higher))
         .row(
             "found",
-            format!(
-                "{} chains meet the target, {} of them within the walls",
-                self.chains, self.chains_within_walls
-            ),
+            format!("{chains} chains meet the target, {within_walls} of them within the walls"),
         );
-        if let Some(path) = &self.playlist {
-            rows.row("written to", path.display().to_string());
-        }
-        write!(
-            f,
-            "{}: the quickest plan found takes {:.1} s\n{rows}",
-            self.name, self.duration_s
-        )
+    if let Some(path) = playlist {
+        answer.row("written to", path.display().to_string());
+        answer.key("playlist", path);
     }
+    answer
 }

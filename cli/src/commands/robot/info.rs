@@ -1,18 +1,16 @@
 //! `swimmer robot info`: who is there.
 
-use std::fmt;
-
 use link_protocol::{
     Board, Configuration, Counters, HelloReply, ResetReason, TableInfo, TangentialDrag,
 };
-use serde::Serialize;
 
 use super::access::Access;
 use super::answers::{Gait, gait_line};
 use super::port::Pace;
+use crate::document::{Document, object};
 use crate::failure::Outcome;
 use crate::output::Output;
-use crate::quantity::{self, Rows};
+use crate::quantity;
 
 /// Asks the robot who it is.
 pub(super) fn run(access: &Access, output: Output) -> Outcome {
@@ -25,7 +23,7 @@ pub(super) fn run(access: &Access, output: Output) -> Outcome {
     } else {
         None
     };
-    output.answer(&Info::new(
+    output.answer(&answer(
         robot.info(),
         crash_message,
         &configuration,
@@ -35,184 +33,145 @@ pub(super) fn run(access: &Access, output: Output) -> Outcome {
     line.close()
 }
 
-/// Who is there.
-#[derive(Debug, Serialize)]
-struct Info {
-    board: &'static str,
-    firmware: String,
-    commit: Option<String>,
-    protocol: [u8; 2],
-    schema_key: String,
-    reset_reason: &'static str,
-    /// What a crash before that start left to tell.
+/// What the robot says of itself.
+fn answer(
+    hello: &HelloReply,
     crash_message: Option<String>,
-    session: u16,
-    limits: Limits,
-    configuration: Body,
-    gait: Option<Gait>,
-    counters: Traffic,
-}
-
-#[derive(Debug, Serialize)]
-struct Limits {
-    max_angle_rad: f32,
-    max_rate_rad_s: f32,
-    pulse_us: [f64; 2],
-    knots: u16,
-}
-
-#[derive(Debug, Serialize)]
-struct Body {
-    middle_m: f32,
-    front_m: f32,
-    back_m: f32,
-    chi: f32,
-    c_t: String,
-    sphere_radius_m: f32,
-}
-
-#[derive(Debug, Serialize)]
-struct Traffic {
-    frames_ok: u32,
-    frames_bad: u32,
-    acted: u32,
-    replayed: u32,
-    superseded: u32,
-    stale: u32,
-    refused: u32,
-    dropped: u32,
-    late_ticks: u32,
-    clamped: u32,
-}
-
-impl Info {
-    fn new(
-        hello: &HelloReply,
-        crash_message: Option<String>,
-        configuration: &Configuration,
-        table: Option<&TableInfo>,
-        counters: &Counters,
-    ) -> Self {
-        let version = hello.firmware;
-        let commit = String::from_utf8_lossy(&version.commit)
-            .trim_end_matches('\0')
-            .to_owned();
-        Self {
-            board: board(hello.board),
-            firmware: format!("{}.{}.{}", version.major, version.minor, version.patch),
-            commit: (!commit.is_empty() && commit != "00000000").then_some(commit),
-            protocol: [hello.protocol_min, hello.protocol_current],
-            schema_key: format!("{:016x}", u64::from_be_bytes(hello.schema_key)),
-            reset_reason: match hello.reset_reason {
-                ResetReason::PowerOn => "power on",
-                ResetReason::Watchdog => "watchdog",
-                ResetReason::Crash => "crash",
-                ResetReason::Pin => "reset pin",
+    body: &Configuration,
+    table: Option<&TableInfo>,
+    counters: &Counters,
+) -> Document {
+    let version = hello.firmware;
+    let firmware = format!("{}.{}.{}", version.major, version.minor, version.patch);
+    let commit = String::from_utf8_lossy(&version.commit)
+        .trim_end_matches('\0')
+        .to_owned();
+    let commit = (!commit.is_empty() && commit != "00000000").then_some(commit);
+    let of_commit = commit
+        .as_deref()
+        .map_or(String::new(), |commit| format!(", commit {commit}"));
+    let reset_reason = match hello.reset_reason {
+        ResetReason::PowerOn => "power on",
+        ResetReason::Watchdog => "watchdog",
+        ResetReason::Crash => "crash",
+        ResetReason::Pin => "reset pin",
+    };
+    let limits = &hello.limits;
+    let pulse_us = [limits.pulse_min_ns, limits.pulse_max_ns].map(|ns| f64::from(ns) * 1e-3);
+    let gait = table.map(Gait::new);
+    let mut answer = Document::default();
+    answer
+        .row("board", board(hello.board))
+        .row(
+            "firmware",
+            format!(
+                "{firmware}{of_commit}, protocol {} to {}",
+                hello.protocol_min, hello.protocol_current
+            ),
+        )
+        .row(
+            "started by",
+            match &crash_message {
+                Some(message) => format!("{reset_reason}: {message}"),
+                None => reset_reason.to_owned(),
             },
-            crash_message,
-            session: hello.session,
-            limits: Limits {
-                max_angle_rad: hello.limits.max_angle,
-                max_rate_rad_s: hello.limits.max_rate,
-                pulse_us: [
-                    f64::from(hello.limits.pulse_min_ns) * 1e-3,
-                    f64::from(hello.limits.pulse_max_ns) * 1e-3,
-                ],
-                knots: hello.limits.max_knots,
+        )
+        .row(
+            "limits",
+            format!(
+                "{} and {}/s, pulses {} to {} µs, {} knots",
+                quantity::angle(f64::from(limits.max_angle)),
+                quantity::angle(f64::from(limits.max_rate)),
+                pulse_us[0],
+                pulse_us[1],
+                limits.max_knots,
+            ),
+        )
+        .key("board", board(hello.board))
+        .key("firmware", firmware)
+        .key("commit", commit)
+        .key("protocol", [hello.protocol_min, hello.protocol_current])
+        .key(
+            "schema_key",
+            format!("{:016x}", u64::from_be_bytes(hello.schema_key)),
+        )
+        .key("reset_reason", reset_reason)
+        // What a crash before that start left to tell.
+        .key("crash_message", crash_message)
+        .key("session", hello.session)
+        .key(
+            "limits",
+            object! {
+                "max_angle_rad": limits.max_angle,
+                "max_rate_rad_s": limits.max_rate,
+                "pulse_us": pulse_us,
+                "knots": limits.max_knots,
             },
-            configuration: Body {
-                middle_m: configuration.middle_m,
-                front_m: configuration.front_m,
-                back_m: configuration.back_m,
-                chi: configuration.chi,
-                c_t: match configuration.tangential_drag {
-                    TangentialDrag::LogAspect(value) => format!("2πμ / {value}"),
-                    TangentialDrag::HalfThickness(value) => {
-                        format!("per link, half thickness {value} m")
-                    }
-                    TangentialDrag::OverViscosity(value) => format!("{value} μ"),
-                },
-                sphere_radius_m: configuration.sphere_radius_m,
-            },
-            gait: table.map(Gait::new),
-            counters: Traffic {
-                frames_ok: counters.frames.ok,
-                frames_bad: counters.frames.bad(),
-                acted: counters.acted,
-                replayed: counters.replayed,
-                superseded: counters.superseded,
-                stale: counters.stale,
-                refused: counters.refused,
-                dropped: counters.dropped,
-                late_ticks: counters.late_ticks,
-                clamped: counters.clamped,
-            },
-        }
-    }
+        );
+    tell_body(&mut answer, body);
+    answer
+        .row("gait", gait_line(gait.as_ref()))
+        .key("gait", gait);
+    tell_traffic(&mut answer, counters);
+    answer
 }
 
-impl fmt::Display for Info {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let body = &self.configuration;
-        let commit = self
-            .commit
-            .as_deref()
-            .map_or(String::new(), |commit| format!(", commit {commit}"));
-        let mut rows = Rows::default();
-        rows.row("board", self.board)
-            .row(
-                "firmware",
-                format!(
-                    "{}{commit}, protocol {} to {}",
-                    self.firmware, self.protocol[0], self.protocol[1]
-                ),
-            )
-            .row(
-                "started by",
-                match &self.crash_message {
-                    Some(message) => format!("{}: {message}", self.reset_reason),
-                    None => self.reset_reason.to_owned(),
-                },
-            )
-            .row(
-                "limits",
-                format!(
-                    "{} and {}/s, pulses {} to {} µs, {} knots",
-                    quantity::angle(f64::from(self.limits.max_angle_rad)),
-                    quantity::angle(f64::from(self.limits.max_rate_rad_s)),
-                    self.limits.pulse_us[0],
-                    self.limits.pulse_us[1],
-                    self.limits.knots,
-                ),
-            )
-            .row(
-                "links",
-                format!(
-                    "{} / {} / {} mm",
-                    millimetres(body.front_m),
-                    millimetres(body.middle_m),
-                    millimetres(body.back_m)
-                ),
-            )
-            .row(
-                "drag",
-                format!(
-                    "χ = {}, c_t = {}, sphere {} mm",
-                    body.chi,
-                    body.c_t,
-                    millimetres(body.sphere_radius_m)
-                ),
-            )
-            .row("gait", gait_line(self.gait.as_ref()))
-            .row(
-                "frames",
-                format!(
-                    "{} good, {} bad",
-                    self.counters.frames_ok, self.counters.frames_bad
-                ),
-            );
-        write!(f, "{rows}")
-    }
+/// Adds the lengths and the drag that the robot counts with.
+fn tell_body(answer: &mut Document, body: &Configuration) {
+    let c_t = match body.tangential_drag {
+        TangentialDrag::LogAspect(value) => format!("2πμ / {value}"),
+        TangentialDrag::HalfThickness(value) => format!("per link, half thickness {value} m"),
+        TangentialDrag::OverViscosity(value) => format!("{value} μ"),
+    };
+    answer
+        .row(
+            "links",
+            format!(
+                "{} / {} / {} mm",
+                millimetres(body.front_m),
+                millimetres(body.middle_m),
+                millimetres(body.back_m)
+            ),
+        )
+        .row(
+            "drag",
+            format!(
+                "χ = {}, c_t = {c_t}, sphere {} mm",
+                body.chi,
+                millimetres(body.sphere_radius_m)
+            ),
+        )
+        .key(
+            "configuration",
+            object! {
+                "middle_m": body.middle_m,
+                "front_m": body.front_m,
+                "back_m": body.back_m,
+                "chi": body.chi,
+                "c_t": c_t,
+                "sphere_radius_m": body.sphere_radius_m,
+            },
+        );
+}
+
+/// Adds what came over the link.
+fn tell_traffic(answer: &mut Document, counters: &Counters) {
+    let (good, bad) = (counters.frames.ok, counters.frames.bad());
+    answer.row("frames", format!("{good} good, {bad} bad")).key(
+        "counters",
+        object! {
+            "frames_ok": good,
+            "frames_bad": bad,
+            "acted": counters.acted,
+            "replayed": counters.replayed,
+            "superseded": counters.superseded,
+            "stale": counters.stale,
+            "refused": counters.refused,
+            "dropped": counters.dropped,
+            "late_ticks": counters.late_ticks,
+            "clamped": counters.clamped,
+        },
+    );
 }
 
 fn millimetres(metres: f32) -> f64 {

@@ -1,69 +1,73 @@
 //! What is told of gaits that were followed.
 
-use std::fmt;
+use gait_optimizer::{ArcKind, Continuation, EventKind, Fold, Parameter, Point};
 
-use gait_optimizer::{ArcKind, Continuation, Event, EventKind, Fold, Parameter};
-use serde::Serialize;
-
+use crate::document::{Document, object};
 use crate::quantity;
 
-/// Gaits on the way, and what happened there.
-#[derive(Debug, Serialize)]
-pub(crate) struct Followed {
-    parameter: &'static str,
-    from: f64,
-    to: f64,
-    points: Vec<Point>,
-    events: Vec<Event>,
-    #[serde(skip)]
-    branches: usize,
-}
-
-#[derive(Debug, Serialize)]
-struct Point {
-    /// Number of the gait followed, from 0.
-    branch: usize,
-    value: f64,
-    efficiency: f64,
-    displacement_over_length: f64,
-    lateral_over_length: f64,
-    start_angle_rad: f64,
-    end_angle_rad: f64,
-    arcs: Vec<&'static str>,
-    residual: f64,
-    certified: bool,
-}
-
-impl Followed {
-    /// What was found of a parameter between these two values.
-    pub(super) fn new(parameter: Parameter, [from, to]: [f64; 2], found: &Continuation) -> Self {
-        let points: Vec<_> = found.points.iter().map(Point::new).collect();
-        Self {
-            parameter: parameter.word(),
-            from,
-            to,
-            branches: points.last().map_or(1, |point| point.branch + 1),
-            points,
-            events: found.events.clone(),
+/// Gaits on the way of a parameter between these two values, and what happened there.
+pub(super) fn followed(
+    parameter: Parameter,
+    [from, to]: [f64; 2],
+    found: &Continuation,
+) -> Document {
+    let word = parameter.word();
+    let mut answer = Document::new(format!("followed in {word} from {from} to {to}"));
+    let points: Vec<_> = found.points.iter().map(keys).collect();
+    answer
+        .key("parameter", word)
+        .key("from", from)
+        .key("to", to)
+        .key("points", points)
+        .key("events", found.events.clone());
+    let branches = found.points.last().map_or(1, |point| point.branch + 1);
+    for branch in 0..branches {
+        answer.line(format!("  gait {}", branch + 1)).line(format!(
+            "  {word:<11}  X/L            efficiency ξ     starts at   ends at     arcs"
+        ));
+        for point in found.points.iter().filter(|point| point.branch == branch) {
+            let gait = &point.gait;
+            answer.line(format!(
+                "  {:<11.7}  {:>+.9}   {:.8e}   {:<9}   {:<9}   {}",
+                point.value,
+                gait.displacement_over_length,
+                gait.efficiency,
+                quantity::angle(gait.start_angle),
+                quantity::angle(gait.end_angle),
+                arcs(point).join(" ")
+            ));
         }
     }
+    for event in &found.events {
+        answer.line(format!(
+            "  gait {} at {:.7} ± {:.0e}: {}",
+            event.branch + 1,
+            event.value,
+            event.within,
+            happened(&event.kind)
+        ));
+    }
+    answer
 }
 
-impl Point {
-    fn new(point: &gait_optimizer::Point) -> Self {
-        let gait = &point.gait;
-        Self {
-            branch: point.branch,
-            value: point.value,
-            efficiency: gait.efficiency,
-            displacement_over_length: gait.displacement_over_length,
-            lateral_over_length: gait.lateral_over_length,
-            start_angle_rad: gait.start_angle,
-            end_angle_rad: gait.end_angle,
-            arcs: gait.arcs.iter().map(|arc| arc.kind.word()).collect(),
-            residual: point.residual,
-            certified: gait.certificate.pass(),
-        }
+fn arcs(point: &Point) -> Vec<&'static str> {
+    point.gait.arcs.iter().map(|arc| arc.kind.word()).collect()
+}
+
+fn keys(point: &Point) -> Document {
+    let gait = &point.gait;
+    object! {
+        // Number of the gait followed, from 0.
+        "branch": point.branch,
+        "value": point.value,
+        "efficiency": gait.efficiency,
+        "displacement_over_length": gait.displacement_over_length,
+        "lateral_over_length": gait.lateral_over_length,
+        "start_angle_rad": gait.start_angle,
+        "end_angle_rad": gait.end_angle,
+        "arcs": arcs(point),
+        "residual": point.residual,
+        "certified": gait.certificate.pass(),
     }
 }
 
@@ -101,71 +105,5 @@ fn happened(kind: &EventKind) -> String {
         EventKind::Lost { failed } => format!("no optimum beyond: fails {failed}"),
         EventKind::Ended { reason, exponent } => format!("ends: {reason}{}", power(exponent)),
         EventKind::Reached => "followed to here".to_owned(),
-    }
-}
-
-impl fmt::Display for Followed {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "followed in {} from {} to {}",
-            self.parameter, self.from, self.to
-        )?;
-        for branch in 0..self.branches {
-            write!(
-                f,
-                "\n  gait {}\n  {:<11}  X/L            efficiency ξ     starts at   ends at     arcs",
-                branch + 1,
-                self.parameter
-            )?;
-            for point in self.points.iter().filter(|point| point.branch == branch) {
-                write!(
-                    f,
-                    "\n  {:<11.7}  {:>+.9}   {:.8e}   {:<9}   {:<9}   {}",
-                    point.value,
-                    point.displacement_over_length,
-                    point.efficiency,
-                    quantity::angle(point.start_angle_rad),
-                    quantity::angle(point.end_angle_rad),
-                    point.arcs.join(" ")
-                )?;
-            }
-        }
-        for event in &self.events {
-            write!(
-                f,
-                "\n  gait {} at {:.7} ± {:.0e}: {}",
-                event.branch + 1,
-                event.value,
-                event.within,
-                happened(&event.kind)
-            )?;
-        }
-        Ok(())
-    }
-}
-
-/// Followed gaits without an atlas.
-#[derive(Debug, Serialize)]
-pub(crate) struct Alone {
-    #[serde(skip)]
-    title: String,
-    continuation: Followed,
-    seconds: f64,
-}
-
-impl Alone {
-    pub(crate) fn new(title: String, continuation: Followed, seconds: f64) -> Self {
-        Self {
-            title,
-            continuation,
-            seconds,
-        }
-    }
-}
-
-impl fmt::Display for Alone {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.title, self.continuation)
     }
 }
