@@ -8,7 +8,7 @@ use super::super::gauge::Facet;
 use super::super::problem::Setting;
 use super::super::quadrature::Rule;
 use super::equations::{Equation, equations};
-use super::{BENDS, Curve, Draft, Phase};
+use super::{BENDS, Curve, Draft, Phase, side};
 
 /// Quadrature points of the path on an element.
 const POINTS: usize = 24;
@@ -25,8 +25,8 @@ const GONE: f64 = 1e-5;
 pub(super) enum Outcome {
     /// The curve, and the phases that it should have, node by node.
     Solved(Box<Curve>, Vec<Phase>),
-    /// The phase of this number has no length.
-    Gone(usize),
+    /// The phase of this number has no length where the method got to.
+    Gone(usize, Box<Draft>),
     /// The method does not converge.
     Lost,
 }
@@ -101,7 +101,7 @@ impl Method<'_> {
             }
             y = Some(next);
             if let Some(phase) = self.gone() {
-                return Outcome::Gone(phase);
+                return Outcome::Gone(phase, Box::new(self.so_far()));
             }
         }
         Outcome::Lost
@@ -226,25 +226,30 @@ impl Method<'_> {
         forces
     }
 
-    fn solved(mut self, look: &Look, y: &DVector<f64>) -> Outcome {
-        let wanted = self.wanted(y, look.values.len() - self.equations.len());
-        let Draft {
-            phases,
-            phase_of,
-            layout,
-            z,
-            ..
-        } = &mut self.draft;
-        let period = layout.period(z);
-        let mut until = 0.0;
-        for (number, phase) in phases.iter_mut().enumerate() {
-            phase.from = until;
-            let own = (0..layout.arcs()).filter(|&element| phase_of[element] == number);
-            until += own.map(|k| z[layout.time_index(k)]).sum::<f64>() / period;
-            phase.to = until;
+    /// The draft, its phases told where they lie by now.
+    fn so_far(mut self) -> Draft {
+        let mut begun = 0.0;
+        for number in 0..self.draft.phases.len() {
+            let elements = 0..self.draft.layout.arcs();
+            let mut own = elements.filter(|&element| self.draft.phase_of[element] == number);
+            let (layout, z) = (&self.draft.layout, &self.draft.z);
+            let time: f64 = own.clone().map(|k| z[layout.time_index(k)]).sum();
+            let place = own.next().map(|first| self.place(first, 0.5));
+            let phase = &mut self.draft.phases[number];
+            phase.from = begun;
+            begun += time / layout.period(z);
+            phase.to = begun;
+            if let Some(place) = place {
+                phase.side = side(self.setting, &phase.limits, &place.phi, &place.rate);
+            }
         }
-        let speed = look.net.distance() / period;
-        let (draft, net) = (self.draft, look.net);
+        self.draft
+    }
+
+    fn solved(self, look: &Look, y: &DVector<f64>) -> Outcome {
+        let wanted = self.wanted(y, look.values.len() - self.equations.len());
+        let (draft, net) = (self.so_far(), look.net);
+        let speed = net.distance() / draft.layout.period(&draft.z);
         Outcome::Solved(Box::new(Curve { draft, net, speed }), wanted)
     }
 }
