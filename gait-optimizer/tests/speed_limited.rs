@@ -3,10 +3,13 @@
 mod plane;
 mod speed_direct;
 
-use gait_optimizer::{Bounds, LimitedProblem, SpeedProblem, Torque, fastest_within};
+use gait_optimizer::{
+    Bounds, LimitedProblem, SpeedProblem, Torque, Verdict, certify, fastest_within,
+};
 use nalgebra::{Matrix2, Vector2};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use swimmer_files::GaitFile;
 use swimmer_model::Swimmer;
 
 use speed_direct::{Direct, Gauge};
@@ -90,4 +93,72 @@ fn nothing_is_faster_on_torque() {
         no_load_rate: 2.0,
     };
     nothing_faster(robot(None, None, Some(torque)), 6);
+}
+
+fn verdict(file: &GaitFile) -> (Verdict, String) {
+    let certificate = certify(&Swimmer::robot(), file, file.objective, &file.bounds).unwrap();
+    (certificate.verdict(), certificate.failures())
+}
+
+/// A file holds no limits, and none the less tells whether its gait is the fastest within those that it takes in full: it passes
+/// wherever it begins and whichever way it runs, does not fail for its samples, and fails for certain where it was changed.
+#[test]
+fn files_of_gaits_that_several_limits_bind_are_certified() {
+    let torque = Torque {
+        stall_over_viscosity: 5e-3,
+        no_load_rate: 2.0,
+    };
+    let problems = [
+        robot(Some(5e-3), Some([1.0; 2]), None),
+        robot(None, None, Some(torque)),
+    ];
+    let files = problems.map(|problem| {
+        let found = fastest_within(&problem, &|_| ()).unwrap();
+        found.gait.gait_file("robot")
+    });
+    for file in &files {
+        let read = GaitFile::parse(&file.to_text(), "a.gait".as_ref()).unwrap();
+        let begun = file.begun_at(file.u.partition_point(|&u| u < 1.0 / 3.0));
+        for (what, told) in [("read", read), ("back", file.reversed()), ("begun", begun)] {
+            let (said, why) = verdict(&told);
+            assert_eq!(said, Verdict::Pass, "{what}: {why}");
+        }
+        for digits in [9, 6] {
+            let scale = 10.0_f64.powi(digits);
+            let phi = file.phi.iter();
+            let phi = phi.map(|phi| phi.map(|angle| (angle * scale).round() / scale));
+            let (said, why) = verdict(&GaitFile {
+                phi: phi.collect(),
+                ..file.clone()
+            });
+            assert_ne!(said, Verdict::Fail, "{digits} digits: {why}");
+        }
+    }
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    for asked in 0..100 {
+        let file = &files[asked % 2];
+        let size = 10.0_f64.powf(rng.random_range(-4.0..-2.0));
+        let (centre, width) = (rng.random_range(0.0..1.0), rng.random_range(0.01..0.1));
+        let mut perturbed = file.clone();
+        let last = perturbed.u.len() - 1;
+        for at in 0..=last {
+            let (before, after) = (at.checked_sub(1).unwrap_or(last - 1), (at % last) + 1);
+            let along = file.phi[after] - file.phi[before];
+            let across = Vector2::new(-along.y, along.x).normalize();
+            let away = (file.u[at] - centre + 0.5).rem_euclid(1.0) - 0.5;
+            perturbed.phi[at] += match asked / 2 % 4 {
+                0 => across * (-(away / width).powi(2)).exp(),
+                1 => across * (0.5 + 0.5 * (std::f64::consts::TAU * away).sin()),
+                2 => -file.phi[at],
+                _ => across * rng.random_range(0.0..1.0),
+            } * size;
+        }
+        perturbed.phi[last] = perturbed.phi[0];
+        let (said, why) = verdict(&perturbed);
+        assert_eq!(
+            said,
+            Verdict::Fail,
+            "{asked}, size {size:e}, {width} wide at {centre}: {why}"
+        );
+    }
 }

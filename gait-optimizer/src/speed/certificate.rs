@@ -10,6 +10,7 @@ mod costate;
 mod legs;
 mod second_order;
 mod switching;
+mod taken;
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_files::{AnyGait, ArcKind, Bounds, GaitFile};
@@ -20,7 +21,7 @@ use crate::certificate::{Certificate, Check, SeenBy, again_within};
 use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::region::Region;
-pub(crate) use costate::certificate as within_limits;
+pub(crate) use costate::{certificate as within_limits, within_its_own};
 use legs::{Leg, Legs};
 use switching::Switching;
 
@@ -137,6 +138,18 @@ pub(crate) fn certificate(
         _ => checks.push(Check::at_least("arcs_least", 0.0, 3.0)),
     }
     Certificate::new(checks)
+}
+
+/// Whether a gait runs at its servos' rates; one that clearly does not was made for other limits than those.
+pub(crate) fn is_at_full_rate(
+    model: &Model<f64>,
+    region: &Region,
+    file: &GaitFile,
+    gait: &AnyGait,
+) -> bool {
+    const CLEARLY: f64 = 1e-2;
+    Legs::new((model, &[]), region, Goal::Distance, file, gait)
+        .is_none_or(|legs| legs.off_full_rate() < CLEARLY)
 }
 
 /// Closure, bounds and links.
