@@ -8,6 +8,7 @@
 //! curve alone ([`certificate`]).
 
 mod arc;
+mod bordered;
 mod candidate;
 mod certificate;
 mod chain;

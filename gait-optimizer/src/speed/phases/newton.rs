@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector, Vector4};
 
 use super::super::arc::{MOST_PARAMETERS, Place};
-use super::super::chain;
 use super::super::gauge::Facet;
 use super::super::problem::Setting;
 use super::super::quadrature::Rule;
+use super::super::{bordered, chain};
 use super::equations::{Equation, equations};
 use super::{BENDS, Curve, Draft, Phase, side};
 
@@ -87,7 +87,12 @@ impl Method<'_> {
                     return Outcome::Lost;
                 }
             }
-            let Some((step, next)) = look.newton() else {
+            let newton = bordered::step(
+                (&look.hessian, &look.gradient),
+                &look.forces,
+                (&look.slopes, &look.values),
+            );
+            let Some((step, next)) = newton else {
                 return Outcome::Lost;
             };
             if y.is_some() {
@@ -258,31 +263,5 @@ impl Look {
     fn residual(&self, y: &DVector<f64>) -> f64 {
         let dual = &self.gradient + &self.forces * y;
         dual.amax().max(self.values.amax())
-    }
-
-    /// The step, and the multipliers after it.
-    fn newton(&self) -> Option<(DVector<f64>, DVector<f64>)> {
-        let (size, count) = (self.gradient.len(), self.values.len());
-        let mut matrix = DMatrix::zeros(size + count, size + count);
-        matrix
-            .view_mut((0, 0), (size, size))
-            .copy_from(&self.hessian);
-        matrix
-            .view_mut((size, 0), (count, size))
-            .copy_from(&self.slopes);
-        matrix
-            .view_mut((0, size), (size, count))
-            .copy_from(&self.forces);
-        let mut right = DVector::zeros(size + count);
-        right.rows_mut(0, size).copy_from(&-&self.gradient);
-        right.rows_mut(size, count).copy_from(&-&self.values);
-        let all = matrix.lu().solve(&right)?;
-        let finite = all.iter().all(|value| value.is_finite());
-        finite.then(|| {
-            (
-                all.rows(0, size).into_owned(),
-                all.rows(size, count).into_owned(),
-            )
-        })
     }
 }
