@@ -196,13 +196,7 @@ pub(crate) fn samples_suffice(model: &Model<f64>, gait: &OptimalGait) -> bool {
 
 /// How far two polynomials through the samples of a cycle of most efficiency differ in its slopes, over what [`certify`] lets them.
 pub(crate) fn slopes_open(cycle: &Cycle) -> f64 {
-    let file = GaitFile {
-        arcs: cycle.arcs.clone(),
-        corners: cycle.corners.clone(),
-        u: cycle.u.clone(),
-        phi: cycle.phi.clone(),
-        ..GaitFile::default()
-    };
+    let file = cycle.file(Bounds::default());
     let (grid, shapes) = Grid::new(&file, &grid::told_by_arcs(&file));
     let [fine, coarse] = [Degree::Fine, Degree::Coarse].map(|degree| grid.slopes(&shapes, degree));
     let apart = fine

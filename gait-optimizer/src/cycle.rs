@@ -5,7 +5,7 @@
 mod trace;
 
 use nalgebra::Vector2;
-use swimmer_files::{AnyGait, ArcKind, GaitArc};
+use swimmer_files::{AnyGait, ArcKind, Bounds, GaitArc, GaitFile};
 use swimmer_model::{InvalidSamples, Model, Stroke, Tolerance, crossing_share, swim};
 
 use crate::Arc;
@@ -61,6 +61,18 @@ impl Cycle {
         Self {
             phi: self.phi.iter().map(|phi| phi * gain).collect(),
             ..self.clone()
+        }
+    }
+
+    /// As a file that tells no objective and no swimmer.
+    pub(crate) fn file(&self, bounds: Bounds) -> GaitFile {
+        GaitFile {
+            bounds,
+            arcs: self.arcs.clone(),
+            corners: self.corners.clone(),
+            u: self.u.clone(),
+            phi: self.phi.clone(),
+            ..GaitFile::default()
         }
     }
 

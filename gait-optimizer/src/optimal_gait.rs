@@ -183,11 +183,7 @@ impl OptimalGait {
             objective: self.objective,
             swimmer_name: Some(swimmer_name.to_owned()),
             swimmer_hash: Some(SwimmerHash::of(&self.swimmer)),
-            bounds: self.bounds,
-            arcs: self.cycle.arcs.clone(),
-            corners: self.cycle.corners.clone(),
-            u: self.cycle.u.clone(),
-            phi: self.cycle.phi.clone(),
+            ..self.cycle.file(self.bounds)
         }
     }
 }

@@ -145,6 +145,11 @@ fn more_power_is_never_slower_between_the_limits() {
         more_power_is_never_slower(Swimmer::purcell(), 2.6, &powers),
         0
     );
+    // Here the power hardly binds.
+    assert_eq!(
+        more_power_is_never_slower(Swimmer::robot(), 2.0, &[7.792e-3]),
+        0
+    );
 }
 
 /// Where the power begins to bind along a bound of the angles what binds is not always found: of each sweep no more than so many.

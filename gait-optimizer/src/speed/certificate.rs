@@ -28,7 +28,7 @@ use switching::Switching;
 /// What the conditions may miss, over V or its share of a switch-to-switch integral.
 const CLOSE: f64 = 1e-6;
 /// A rate may miss its limit by this share.
-const FULL: f64 = 1e-6;
+pub(crate) const FULL: f64 = 1e-6;
 /// A corner this close to a bound rests on it \[rad, or over L\].
 pub(super) const RESTS: f64 = 1e-8;
 
@@ -59,14 +59,7 @@ pub(super) fn of_cycle(
     cycle: &Cycle,
 ) -> Option<(AnyGait, Certificate)> {
     let gait = cycle.gait().ok()?;
-    let file = GaitFile {
-        bounds,
-        arcs: cycle.arcs.clone(),
-        corners: cycle.corners.clone(),
-        u: cycle.u.clone(),
-        phi: cycle.phi.clone(),
-        ..GaitFile::default()
-    };
+    let file = cycle.file(bounds);
     let of = (setting.model, setting.members);
     let certificate = certificate(of, setting.region, asked, &file, &gait);
     Some((gait, certificate))
@@ -140,16 +133,15 @@ pub(crate) fn certificate(
     Certificate::new(checks)
 }
 
-/// Whether a gait runs at its servos' rates; one that clearly does not was made for other limits than those.
-pub(crate) fn is_at_full_rate(
+/// How far, as a share, a gait's servos are from their rates; nothing for what is no gait.
+pub(crate) fn off_full_rate(
     model: &Model<f64>,
     region: &Region,
     file: &GaitFile,
     gait: &AnyGait,
-) -> bool {
-    const CLEARLY: f64 = 1e-2;
+) -> f64 {
     Legs::new((model, &[]), region, Goal::Distance, file, gait)
-        .is_none_or(|legs| legs.off_full_rate() < CLEARLY)
+        .map_or(0.0, |legs| legs.off_full_rate())
 }
 
 /// Closure, bounds and links.

@@ -1,7 +1,7 @@
 //! Where several limits bind, each on its part of the cycle, or the torque alone: from many starts to the fastest certified curve.
 
 use nalgebra::Vector2;
-use swimmer_files::{ArcKind, GaitArc, GaitFile, Objective};
+use swimmer_files::{ArcKind, GaitArc, Objective};
 use swimmer_model::{Gait, Model, Tolerance, swim};
 
 use super::super::certificate::within_limits;
@@ -225,14 +225,7 @@ impl LimitedProblem {
             (cycle, arcs) = (cycle.reversed(|phi| *phi), samples::reversed(&arcs));
         }
         let gait = cycle.gait().ok()?;
-        let file = GaitFile {
-            bounds: self.bounds,
-            arcs: cycle.arcs.clone(),
-            corners: cycle.corners.clone(),
-            u: cycle.u.clone(),
-            phi: cycle.phi.clone(),
-            ..GaitFile::default()
-        };
+        let file = cycle.file(self.bounds);
         let told = (curve.period(), curve.net.distance());
         let of = (setting.model, setting.region);
         let certificate = within_limits(of, &limits, (&file, &gait), told);
