@@ -209,7 +209,7 @@ pub(crate) fn samples_suffice(model: &Model<f64>, gait: &OptimalGait) -> bool {
 
 /// How far two polynomials through the samples of a cycle of most efficiency differ in its slopes, over what [`certify`] lets them.
 pub(crate) fn slopes_open(cycle: &Cycle) -> f64 {
-    let file = cycle.file();
+    let file = cycle.file(Bounds::default());
     let (grid, shapes) = Grid::new(&file, &grid::told_by_arcs(&file));
     let [fine, coarse] = [Degree::Fine, Degree::Coarse].map(|degree| grid.slopes(&shapes, degree));
     let apart = fine

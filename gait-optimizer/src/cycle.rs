@@ -5,7 +5,7 @@
 mod trace;
 
 use nalgebra::Vector2;
-use swimmer_files::{AnyGait, ArcKind, GaitArc, GaitFile};
+use swimmer_files::{AnyGait, ArcKind, Bounds, GaitArc, GaitFile};
 use swimmer_model::{InvalidSamples, Model, Stroke, Tolerance, crossing_share, swim};
 
 use crate::Arc;
@@ -61,9 +61,10 @@ impl Cycle {
         }
     }
 
-    /// What a file holds of it.
-    pub(crate) fn file(&self) -> GaitFile {
+    /// As a file that tells no objective and no swimmer.
+    pub(crate) fn file(&self, bounds: Bounds) -> GaitFile {
         GaitFile {
+            bounds,
             arcs: self.arcs.clone(),
             corners: self.corners.clone(),
             u: self.u.clone(),

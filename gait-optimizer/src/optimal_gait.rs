@@ -183,8 +183,7 @@ impl OptimalGait {
             objective: self.objective,
             swimmer_name: Some(swimmer_name.to_owned()),
             swimmer_hash: Some(SwimmerHash::of(&self.swimmer)),
-            bounds: self.bounds,
-            ..self.cycle.file()
+            ..self.cycle.file(self.bounds)
         }
     }
 }

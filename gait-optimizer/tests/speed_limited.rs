@@ -3,10 +3,13 @@
 mod plane;
 mod speed_direct;
 
-use gait_optimizer::{Bounds, LimitedProblem, SpeedProblem, Torque, fastest_within};
+use gait_optimizer::{
+    Bounds, LimitedProblem, SpeedProblem, Torque, Verdict, certify, fastest_within,
+};
 use nalgebra::{Matrix2, Vector2};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use swimmer_files::GaitFile;
 use swimmer_model::Swimmer;
 
 use speed_direct::{Direct, Gauge};
@@ -14,7 +17,8 @@ use speed_direct::{Direct, Gauge};
 const SIDES: usize = 24;
 
 /// The direct method from random starts reaches polygons that can be swum within all limits: none is faster than the answer, and
-/// the best is as fast but for the few percent that straight sides cost.
+/// the best is as fast but for the percent that straight sides cost, each of which takes as long as its slowest place asks for while it
+/// is climbed.
 #[track_caller]
 fn nothing_faster(problem: LimitedProblem, starts: usize) {
     let found = fastest_within(&problem, &|_| ()).unwrap();
@@ -61,7 +65,7 @@ fn nothing_faster(problem: LimitedProblem, starts: usize) {
     }
     println!("{:?}: {speed:.12}, direct {best:.12}", found.limits);
     assert!(best <= speed * (1.0 + 1e-6), "{best} {speed}");
-    assert!(best > speed * 0.95, "{best} {speed}");
+    assert!(best > speed * 0.985, "{best} {speed}");
 }
 
 fn robot(power: Option<f64>, rates: Option<[f64; 2]>, torque: Option<Torque>) -> LimitedProblem {
@@ -90,4 +94,145 @@ fn nothing_is_faster_on_torque() {
         no_load_rate: 2.0,
     };
     nothing_faster(robot(None, None, Some(torque)), 6);
+}
+
+/// Powers from where it binds alone to where it never does, with rates of 1 rad/s: more is never slower, no gait is faster than with
+/// one limit alone, and every file passes its certificate. By how many powers there was no answer.
+#[track_caller]
+fn more_power_is_never_slower(swimmer: Swimmer<f64>, max_angle: f64, powers: &[f64]) -> usize {
+    let asked = |power: Option<f64>, rates: Option<[f64; 2]>| {
+        let problem = LimitedProblem {
+            swimmer,
+            bounds: Bounds::within(max_angle),
+            ..robot(power, rates, None)
+        };
+        fastest_within(&problem, &|_| ())
+    };
+    let at_rate = asked(None, Some([1.0; 2])).unwrap().speed_over_length;
+    let on_one = asked(Some(1.0), None).unwrap().speed_over_length;
+    let (mut before, mut unanswered) = (0.0, 0);
+    for &power in powers {
+        let found = match asked(Some(power), Some([1.0; 2])) {
+            Ok(found) => found,
+            Err(error) => {
+                println!("{max_angle} {power:e}: {error}");
+                unanswered += 1;
+                continue;
+            }
+        };
+        let speed = found.speed_over_length;
+        println!(
+            "{max_angle} {power:e}: {speed:.12} {:?} {:?}",
+            found.limits, found.uncertified
+        );
+        assert!(speed >= before * (1.0 - 1e-9), "{power}");
+        assert!(
+            speed <= at_rate.min(on_one * power.sqrt()) * (1.0 + 1e-7),
+            "{power}"
+        );
+        let file = found.gait.gait_file("");
+        let certificate = certify(&swimmer, &file, file.objective, &file.bounds).unwrap();
+        assert!(certificate.pass(), "{power}: {}", certificate.failures());
+        before = speed;
+    }
+    unanswered
+}
+
+#[test]
+fn more_power_is_never_slower_between_the_limits() {
+    let powers = [0.2, 0.4, 0.5, 0.8];
+    assert_eq!(
+        more_power_is_never_slower(Swimmer::purcell(), 2.6, &powers),
+        0
+    );
+    // Here the power hardly binds.
+    assert_eq!(
+        more_power_is_never_slower(Swimmer::robot(), 2.0, &[7.792e-3]),
+        0
+    );
+}
+
+/// Where the power begins to bind along a bound of the angles what binds is not always found: of each sweep no more than so many.
+#[test]
+#[ignore = "minutes: part of the soak"]
+fn more_power_is_never_slower_over_many() {
+    for (swimmer, least) in [(Swimmer::robot(), 2e-3), (Swimmer::purcell(), 0.12)] {
+        for max_angle in [2.0, 2.6] {
+            let powers: Vec<f64> = (0..16).map(|k| least * 1.12_f64.powi(k)).collect();
+            let unanswered = more_power_is_never_slower(swimmer, max_angle, &powers);
+            println!(
+                "{max_angle}: {unanswered} of {} without an answer",
+                powers.len()
+            );
+            assert!(unanswered <= 3, "{unanswered}");
+        }
+    }
+}
+
+fn verdict(file: &GaitFile) -> (Verdict, String) {
+    let certificate = certify(&Swimmer::robot(), file, file.objective, &file.bounds).unwrap();
+    (certificate.verdict(), certificate.failures())
+}
+
+/// A file holds no limits, and none the less tells whether its gait is the fastest within those that it takes in full: it passes
+/// wherever it begins and whichever way it runs, does not fail for its samples, and fails for certain where it was changed.
+#[test]
+fn files_of_gaits_that_several_limits_bind_are_certified() {
+    let torque = Torque {
+        stall_over_viscosity: 5e-3,
+        no_load_rate: 2.0,
+    };
+    let problems = [
+        robot(Some(5e-3), Some([1.0; 2]), None),
+        robot(None, None, Some(torque)),
+    ];
+    let files = problems.map(|problem| {
+        let found = fastest_within(&problem, &|_| ()).unwrap();
+        found.gait.gait_file("robot")
+    });
+    for file in &files {
+        let read = GaitFile::parse(&file.to_text(), "a.gait".as_ref()).unwrap();
+        let begun = file.begun_at(file.u.partition_point(|&u| u < 1.0 / 3.0));
+        for (what, told) in [("read", read), ("back", file.reversed()), ("begun", begun)] {
+            let (said, why) = verdict(&told);
+            assert_eq!(said, Verdict::Pass, "{what}: {why}");
+        }
+        for digits in [9, 6] {
+            let scale = 10.0_f64.powi(digits);
+            let phi = file.phi.iter();
+            let phi = phi.map(|phi| phi.map(|angle| (angle * scale).round() / scale));
+            let (said, why) = verdict(&GaitFile {
+                phi: phi.collect(),
+                ..file.clone()
+            });
+            assert_ne!(said, Verdict::Fail, "{digits} digits: {why}");
+        }
+    }
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    for asked in 0..100 {
+        let file = &files[asked % 2];
+        let size = 10.0_f64.powf(rng.random_range(-4.0..-2.0));
+        let (centre, width) = (rng.random_range(0.0..1.0), rng.random_range(0.01..0.1));
+        let mut perturbed = file.clone();
+        let last = perturbed.u.len() - 1;
+        for at in 0..=last {
+            let (before, after) = (at.checked_sub(1).unwrap_or(last - 1), (at % last) + 1);
+            let along = file.phi[after] - file.phi[before];
+            let across = Vector2::new(-along.y, along.x).normalize();
+            let away = (file.u[at] - centre + 0.5).rem_euclid(1.0) - 0.5;
+            perturbed.phi[at] += match asked / 2 % 4 {
+                0 => across * (-(away / width).powi(2)).exp(),
+                1 => across * (0.5 + 0.5 * (std::f64::consts::TAU * away).sin()),
+                2 => -file.phi[at],
+                _ => across * rng.random_range(0.0..1.0),
+            } * size;
+        }
+        perturbed.phi[last] = perturbed.phi[0];
+        let (said, why) = verdict(&perturbed);
+        assert_eq!(
+            said,
+            Verdict::Fail,
+            "{asked}, size {size:e}, {width} wide at {centre}: {why}"
+        );
+    }
 }

@@ -10,6 +10,7 @@ mod costate;
 mod legs;
 mod second_order;
 mod switching;
+mod taken;
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_files::{AnyGait, ArcKind, Bounds, GaitFile};
@@ -20,7 +21,7 @@ use crate::certificate::{Certificate, Check, Condition, SeenBy, again_within};
 use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::region::Region;
-pub(crate) use costate::certificate as within_limits;
+pub(crate) use costate::{certificate as within_limits, within_its_own};
 use legs::{Leg, Legs};
 use switching::Switching;
 
@@ -54,14 +55,7 @@ pub(super) fn of_cycle(
     cycle: &Cycle,
 ) -> Option<(AnyGait, Certificate)> {
     let gait = cycle.gait().ok()?;
-    let file = GaitFile {
-        bounds,
-        arcs: cycle.arcs.clone(),
-        corners: cycle.corners.clone(),
-        u: cycle.u.clone(),
-        phi: cycle.phi.clone(),
-        ..GaitFile::default()
-    };
+    let file = cycle.file(bounds);
     let of = (setting.model, setting.members);
     let certificate = certificate(of, setting.region, asked, &file, &gait);
     Some((gait, certificate))
@@ -124,6 +118,17 @@ pub(crate) fn certificate(
         _ => checks.push(Condition::EnoughArcs.check(0.0)),
     }
     Certificate::new(checks)
+}
+
+/// How far, as a share, a gait's servos are from their rates; nothing for what is no gait.
+pub(crate) fn off_full_rate(
+    model: &Model<f64>,
+    region: &Region,
+    file: &GaitFile,
+    gait: &AnyGait,
+) -> f64 {
+    Legs::new((model, &[]), region, Goal::Distance, file, gait)
+        .map_or(0.0, |legs| legs.off_full_rate())
 }
 
 /// Closure, bounds and links.

@@ -24,7 +24,7 @@ const BENDS: usize = 8;
 /// Of them, those that are read off a polygon.
 const FITTED: usize = 3;
 /// Times that what binds is mended.
-const MENDS: usize = 10;
+const MENDS: usize = 24;
 /// Multipliers below this share push on a side of a polygon; corners this close to a bound rest on it.
 const PUSHES: f64 = 1e-2;
 const RESTS: f64 = 2e-3;
@@ -45,6 +45,8 @@ pub(crate) struct Phase {
     pub(crate) to: f64,
     /// By their place in [`Setting::limits`].
     pub(crate) limits: Vec<usize>,
+    /// Two limits may leave two velocities, one each side of where they touch: which; of one limit nothing.
+    side: i8,
     /// The bound that it runs along, by its place in the region.
     pub(crate) bound: Option<usize>,
     /// Bounds that its first corner rests on.
@@ -53,7 +55,24 @@ pub(crate) struct Phase {
 
 impl Phase {
     fn binds_as(&self, other: &Self) -> bool {
-        (&self.limits, self.bound) == (&other.limits, other.bound)
+        (&self.limits, self.side, self.bound) == (&other.limits, other.side, other.bound)
+    }
+}
+
+/// On which side of where two limits touch a velocity lies.
+fn side(setting: &Setting, limits: &[usize], phi: &Vector2<f64>, rate: &Vector2<f64>) -> i8 {
+    let &[one, two] = limits else {
+        return 0;
+    };
+    let (all, second) = (setting.limits(), setting.model.second_derivatives(phi));
+    let slope = |limit: usize| {
+        let slope = all[limit].level(&second, rate).slope;
+        Vector2::new(slope[2], slope[3])
+    };
+    if slope(one).perp(&slope(two)) > 0.0 {
+        1
+    } else {
+        -1
     }
 }
 
@@ -119,7 +138,13 @@ fn mended(
         let before = draft.clone();
         match newton::solve(setting, draft) {
             Outcome::Lost => return None,
-            Outcome::Gone(phase) => {
+            Outcome::Gone(phase, after) => {
+                let count = after.phases.len();
+                let [one, two] = [phase + count - 1, phase + 1].map(|at| &after.phases[at % count]);
+                // Where the velocity jumps in its place, the method has found that; else it may have gone astray.
+                let jumps = one.limits == two.limits && one.side != two.side;
+                let before = if jumps { *after } else { before };
+                phases.clone_from(&before.phases);
                 let gone = phases.remove(phase);
                 let count = phases.len();
                 if count < 2 {
@@ -135,15 +160,9 @@ fn mended(
                 next.dedup();
                 let (merged, offset) = begun(phases)?;
                 phases = merged;
-                draft = Draft::new(
-                    (
-                        &|share| before.at(share + offset),
-                        before.layout.period(&before.z),
-                    ),
-                    &phases,
-                    elements,
-                    BENDS,
-                );
+                let period = before.layout.period(&before.z);
+                let curve = |share: f64| before.at(share + offset);
+                draft = Draft::new((&curve, period), &phases, elements, BENDS);
             }
             Outcome::Solved(curve, wanted) => {
                 let (next, offset) = begun(wanted)?;
@@ -196,11 +215,11 @@ fn of_polygon(setting: &Setting, polygon: &Polygon) -> Vec<Phase> {
     };
     let mut until = 0.0;
     (0..layout.arcs())
-        .map(|side| {
-            let (before, after) = (rests(side), rests(side + 1));
+        .map(|k| {
+            let (before, after) = (rests(k), rests(k + 1));
             let bound = before.iter().copied().find(|bound| after.contains(bound));
             let mut pushes: Vec<(usize, f64)> = (0..)
-                .zip(polygon.pushes[side].iter().map(|push| push * period))
+                .zip(polygon.pushes[k].iter().map(|push| push * period))
                 .collect();
             pushes.sort_by(|(_, a), (_, b)| b.total_cmp(a));
             let most = if bound.is_some() { 1 } else { 2 };
@@ -212,12 +231,15 @@ fn of_polygon(setting: &Setting, polygon: &Polygon) -> Vec<Phase> {
                 .map(|(limit, _)| *limit)
                 .collect();
             limits.sort_unstable();
+            let [start, end] = layout.ends(z, k);
+            let side = side(setting, &limits, &(0.5 * (start + end)), &(end - start));
             let from = until;
-            until += z[layout.time_index(side)] / period;
+            until += z[layout.time_index(k)] / period;
             Phase {
                 from,
                 to: until,
                 limits,
+                side,
                 bound,
                 touches: before,
             }
@@ -286,6 +308,7 @@ fn with_touches(sides: &[Phase]) -> Vec<Phase> {
             all.push(Phase {
                 to: phase.from + width,
                 limits: pace.into_iter().collect(),
+                side: 0,
                 bound: Some(bound),
                 touches: Vec::new(),
                 ..phase.clone()

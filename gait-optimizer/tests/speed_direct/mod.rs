@@ -23,6 +23,8 @@ const LAST_BARRIER: f64 = 1e-11;
 /// Of the rotation beside its multiplier.
 const PRICE: f64 = 300.0;
 const MOST_STEPS: usize = 300;
+/// Where on a side its further limits are looked at.
+const LIMITED_AT: [f64; 3] = [0.0, 0.5, 1.0];
 
 /// The least time for a turn of the joints where W is this.
 pub(crate) type Gauge = Box<dyn Fn(&Matrix2<f64>, &Vector2<f64>) -> f64>;
@@ -100,9 +102,11 @@ impl Direct {
     pub(crate) fn limited(mut self, gauges: Vec<Gauge>) -> Self {
         self.gauges = gauges;
         for k in 0..self.sides {
-            let least = self.least_time(k, 3);
+            let shares = LIMITED_AT.into_iter();
+            let least = shares.map(|share| self.least_time(k, share));
+            let least = 1.2 * least.fold(0.0, f64::max);
             let time = &mut self.z[2 * self.sides + k];
-            *time = time.max(1.2 * least);
+            *time = time.max(least);
         }
         self
     }
@@ -119,24 +123,28 @@ impl Direct {
         )
     }
 
-    /// The least time of a side by so many looks along it.
-    fn least_time(&self, side: usize, looks: usize) -> f64 {
+    /// The least time of a side, were its shape all along what it is at this share of it.
+    fn least_time(&self, side: usize, share: f64) -> f64 {
         let [from, to] = self.ends(&self.z, side);
         let ends = Vector4::new(from.x, from.y, to.x, to.y);
         let way = to - from;
         let box_time = (way.x.abs() / self.rates[0]).max(way.y.abs() / self.rates[1]);
-        let looks = (0..looks).map(|look| look as f64 / (looks - 1) as f64);
-        let all = looks.flat_map(|share| self.gauges.iter().map(move |gauge| (share, gauge)));
-        all.map(|(share, gauge)| self.gauge(gauge, share, &ends))
-            .fold(box_time, f64::max)
+        let gauges = self.gauges.iter();
+        let times = gauges.map(|gauge| self.gauge(gauge, share, &ends));
+        times.fold(box_time, f64::max)
     }
 
-    /// |d|/T of the polygon that was climbed to, with each side in the time that its limits need all along it: what can be swum.
+    /// |d|/T of the polygon that was climbed to, run everywhere as fast as its limits let it: what can be swum.
     #[allow(dead_code, reason = "each test file is a program of its own")]
     pub(crate) fn swimmable(&self) -> f64 {
+        const LOOKS: usize = 64;
         let still = Poses::still(self.swimmers.len());
         let whole = (0..self.sides).fold(still, |pose, k| &pose * &self.along(&self.z, k));
-        let period: f64 = (0..self.sides).map(|k| self.least_time(k, 65)).sum();
+        let time = |k: usize| {
+            let looks = (0..LOOKS).map(|look| (look as f64 + 0.5) / LOOKS as f64);
+            looks.map(|share| self.least_time(k, share)).sum::<f64>() / LOOKS as f64
+        };
+        let period: f64 = (0..self.sides).map(time).sum();
         self.distance(&whole) / period * (-self.lambda * whole.first().theta).exp()
     }
 
@@ -243,7 +251,7 @@ impl Direct {
             let at = [2 * k, 2 * k + 1, next, next + 1];
             let time = 2 * self.sides + k;
             for gauge in &self.gauges {
-                for share in [0.0, 0.5, 1.0] {
+                for share in LIMITED_AT {
                     let of = |ends: &Vector4<f64>| self.gauge(gauge, share, ends);
                     all.push(Slack::of_side((z[time], time), (ends, at), of));
                 }

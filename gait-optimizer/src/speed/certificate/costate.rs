@@ -9,8 +9,8 @@ use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::{Gait as _, Model, Panel, Panels, Tolerance, swim};
 
-use super::legs::pose_at;
-use super::{RESTS, of_the_curve};
+use super::legs::{arcs, pose_at};
+use super::{RESTS, of_the_curve, taken};
 use crate::certificate::{Certificate, Check, Condition, again_within};
 use crate::momentum::Momentum;
 use crate::region::Region;
@@ -232,7 +232,7 @@ impl Costate<'_> {
 
     /// The conditions of limits, costate and multipliers.
     fn checks(&self, file: &GaitFile) -> Vec<Check> {
-        let parts = parts(file, self.gait);
+        let parts = parts(self.region, file, self.gait);
         let mut equations = Equations::default();
         let mut unknowns = Unknowns {
             rotation: equations.unknown(),
@@ -255,6 +255,10 @@ impl Costate<'_> {
             Condition::KeepsLimits.check(most - 1.0),
             Condition::TakesLimit.check(least),
         ];
+        if least < BINDS {
+            // Nothing tells the costate where no limit binds.
+            return checks;
+        }
         let Unknowns { shares, pushes, .. } = unknowns;
         let positive: Vec<usize> = shares.iter().flatten().chain(&pushes).copied().collect();
         let Some((x, residual)) = equations.solve(&positive) else {
@@ -309,10 +313,27 @@ pub(crate) fn certificate(
     Certificate::new(checks)
 }
 
+/// The same of a gait from anywhere, within the limits that it takes in full.
+pub(crate) fn within_its_own(
+    of: (&Model<f64>, &Region),
+    (file, gait): (&GaitFile, &AnyGait),
+) -> Certificate {
+    let nodes = Rule::new(NODES).nodes;
+    let places = parts(of.1, file, gait).into_iter();
+    let places = places.flat_map(|(from, to)| nodes.iter().map(move |s| from + (to - from) * s));
+    let limits = taken::limits(of.0, gait, places);
+    let end = Panels::new(of.0, gait, &Tolerance::default()).last();
+    let distance = end.map_or(f64::NAN, |panel| {
+        let pose = panel.end_pose();
+        pose.x.hypot(pose.y)
+    });
+    certificate(of, &limits, (file, gait), (1.0, distance))
+}
+
 /// The arcs, cut into parts that are short and turn little.
-fn parts(file: &GaitFile, gait: &AnyGait) -> Vec<(f64, f64)> {
-    let arcs = file.arcs.iter().filter(|arc| arc.to > arc.from);
+fn parts(region: &Region, file: &GaitFile, gait: &AnyGait) -> Vec<(f64, f64)> {
     let rates = [1.0 / LONGEST, 1.0 / TURN];
+    let arcs = arcs(region, file, gait).into_iter();
     arcs.flat_map(|arc| cut((arc.from, arc.to), |u| gait.at(u).rate, (rates, LEAST)))
         .collect()
 }

@@ -88,11 +88,7 @@ impl Legs {
         if distance.is_nan() || distance < 1e-12 {
             return None;
         }
-        let spans = if file.arcs.is_empty() {
-            between_corners(region, file, gait)
-        } else {
-            file.arcs.clone()
-        };
+        let spans = arcs(region, file, gait);
         let (points, weights) = gauss(NODES);
         let unit = Vector2::new(last.x, last.y) / distance;
         let across = Vector2::new(-unit.y, unit.x);
@@ -105,7 +101,7 @@ impl Legs {
             ensemble.iter().map(|one| one.weight * one.distance).sum()
         };
         let mut legs = Vec::with_capacity(spans.len());
-        for span in spans.iter().filter(|span| span.to > span.from) {
+        for span in &spans {
             let width = (span.to - span.from) / PANELS as f64;
             let node = |u: f64, weight: f64| {
                 let point = gait.at(u);
@@ -267,6 +263,19 @@ pub(super) fn pose_at(panels: &[Panel<f64>], u: f64) -> [f64; 3] {
         let pose = panel.pose(u);
         [pose.x, pose.y, pose.theta]
     })
+}
+
+/// The arcs of a gait: those that it tells, where they are the whole cycle.
+pub(super) fn arcs(region: &Region, file: &GaitFile, gait: &AnyGait) -> Vec<GaitArc> {
+    let told = file.arcs.iter().filter(|arc| arc.to > arc.from);
+    let until = told.clone().try_fold(0.0, |until: f64, arc| {
+        ((arc.from - until).abs() < 1e-12).then_some(arc.to)
+    });
+    if until.is_some_and(|until| (until - 1.0).abs() < 1e-12) {
+        told.copied().collect()
+    } else {
+        between_corners(region, file, gait)
+    }
 }
 
 /// The arcs of a gait that does not tell them: from corner to corner.

@@ -1,7 +1,7 @@
 //! Where several limits bind, each on its part of the cycle, or the torque alone: from many starts to the fastest certified curve.
 
 use nalgebra::Vector2;
-use swimmer_files::{ArcKind, GaitArc, GaitFile, Objective};
+use swimmer_files::{ArcKind, GaitArc, Objective};
 use swimmer_model::{Gait, Model, Tolerance, swim};
 
 use super::super::certificate::within_limits;
@@ -10,7 +10,7 @@ use super::super::interior::{self, Polygon};
 use super::super::phases::{Curve, Phase, polished};
 use super::super::problem::{Goal, HeadingRule, Setting};
 use super::super::{SpeedError, samples, selection, starts};
-use super::{Limit, Limited, LimitedError, LimitedProblem, STARTS};
+use super::{Limit, Limited, LimitedError, LimitedProblem, STARTS, Torque};
 use crate::Watch;
 use crate::cycle::Cycle;
 use crate::immobile::refuse_immobile;
@@ -34,6 +34,15 @@ const REFINED: f64 = 1e-6;
 /// Samples of an element.
 const SAMPLES: usize = 48;
 
+/// So many times the power and the torque, one after the other, have gaits to start from where the search alone finds none.
+const NEARBY: [f64; 4] = [1.15, 0.87, 1.35, 0.75];
+
+/// A curve as an answer.
+struct Found {
+    told: Limited,
+    curve: Curve,
+}
+
 impl LimitedProblem {
     /// Where several limits bind, or the torque alone.
     pub(super) fn mixed(
@@ -46,14 +55,70 @@ impl LimitedProblem {
         let region = Region::new(&self.bounds, &self.swimmer.links);
         let unit = self.unit(&model);
         let setting = self.setting(&model, &region, unit);
+        let (mut best, mut uncertified) = self.searched(&setting, singles, unit, watch);
+        let better = |best: &Option<Found>, uncertified: Option<f64>| {
+            let speed = best
+                .as_ref()
+                .map_or(0.0, |best| best.told.speed_over_length);
+            uncertified.is_some_and(|other| other > speed * (1.0 + 1e-6))
+        };
+        // Where what binds is not found, a neighbour's gait may tell it.
+        for more in NEARBY {
+            if best.is_some() && !better(&best, uncertified) {
+                break;
+            }
+            let near = self.stronger(more);
+            let there = near.searched(&near.setting(&model, &region, unit), singles, unit, &|_| ());
+            let curve = there
+                .0
+                .and_then(|found| found.curve.refined(&setting, ELEMENTS[0]));
+            let told = curve.and_then(|curve| self.told(&setting, curve, unit));
+            let known = best
+                .as_ref()
+                .map_or(0.0, |best| best.told.speed_over_length);
+            match told.filter(|found| found.told.speed_over_length > known) {
+                Some(found) if found.told.gait.certificate.pass() => best = Some(found),
+                _ => {}
+            }
+        }
+        let mut best = best.ok_or_else(|| self.no_gait(singles, uncertified))?.told;
+        let clearly = |speed: &f64| *speed > best.speed_over_length * (1.0 + 1e-6);
+        best.uncertified = uncertified.take().filter(clearly);
+        Ok(best)
+    }
+
+    /// With so many times the power and the torque.
+    fn stronger(&self, times: f64) -> Self {
+        let stronger = |torque: Torque| Torque {
+            stall_over_viscosity: torque.stall_over_viscosity * times,
+            ..torque
+        };
+        Self {
+            power_over_viscosity: self.power_over_viscosity.map(|power| power * times),
+            torque: self.torque.map(stronger),
+            ..*self
+        }
+    }
+
+    /// The fastest certified curve that starts lead to, and the speed of the fastest that fails.
+    fn searched(
+        &self,
+        setting: &Setting,
+        singles: &[Limited],
+        unit: f64,
+        watch: Watch<'_>,
+    ) -> (Option<Found>, Option<f64>) {
         let known = |index: usize| {
             let gait = singles.get(index)?.gait.gait().ok()?;
             let corner = |k: u32| gait.at((f64::from(k) + 0.25) / 16.0).phi;
-            Some(starts::within(&region, (0..16).map(corner).collect()))
+            Some(starts::within(
+                setting.region,
+                (0..16).map(corner).collect(),
+            ))
         };
         let rough = |(): &mut (), index: usize| {
-            let start = known(index).unwrap_or_else(|| starts::start(&region, 0, index));
-            interior::rough_polygon(&setting, &start)
+            let start = known(index).unwrap_or_else(|| starts::start(setting.region, 0, index));
+            interior::rough_polygon(setting, &start)
         };
         let count = STARTS + singles.len();
         let rough = in_parallel(count, self.threads, watch, || (), rough);
@@ -65,33 +130,32 @@ impl LimitedProblem {
             .take(FINISHED)
             .collect();
         let finer = |(): &mut (), index: usize| {
-            let finer = |times: &usize| interior::best_polygon(&setting, chosen[index], *times);
+            let finer = |times: &usize| interior::best_polygon(setting, chosen[index], *times);
             FINER.iter().find_map(finer)
         };
         let polygons = in_parallel(chosen.len(), self.threads, &|_| (), || (), finer);
         // A polygon is about as fast as the curve near it, so the first that is certified is the fastest but for a few.
-        let (mut best, mut uncertified) = (None::<Limited>, None::<f64>);
+        let (mut best, mut uncertified) = (None::<Found>, None::<f64>);
         for group in selection::groups(polygons.into_iter().flatten().collect()) {
-            let known = best.as_ref().map_or(0.0, |best| best.speed_over_length);
+            let known = best
+                .as_ref()
+                .map_or(0.0, |best| best.told.speed_over_length);
             if group.speed() * unit < known * (1.0 - NEAR) {
                 break;
             }
             let curves = group.chosen.iter();
-            let curves = curves.filter_map(|polygon| polished(&setting, polygon, ELEMENTS[0]));
-            for told in curves.filter_map(|curve| self.told(&setting, &curve, unit)) {
-                let speed = told.speed_over_length;
-                if !told.gait.certificate.pass() {
+            let curves = curves.filter_map(|polygon| polished(setting, polygon, ELEMENTS[0]));
+            for found in curves.filter_map(|curve| self.told(setting, curve, unit)) {
+                let speed = found.told.speed_over_length;
+                if !found.told.gait.certificate.pass() {
                     uncertified = Some(uncertified.map_or(speed, |most| most.max(speed)));
                 } else if speed > known {
-                    best = Some(told);
+                    best = Some(found);
                     break;
                 }
             }
         }
-        let mut best = best.ok_or_else(|| self.no_gait(singles, uncertified))?;
-        let clearly = |speed: &f64| *speed > best.speed_over_length * (1.0 + 1e-6);
-        best.uncertified = uncertified.filter(clearly);
-        Ok(best)
+        (best, uncertified)
     }
 
     /// The rate \[rad/s\] of about the faster joint at the straight shape: the unit of the search.
@@ -148,27 +212,20 @@ impl LimitedProblem {
     }
 
     /// A curve as an answer, on more elements; none where it cannot be had on them.
-    fn told(&self, setting: &Setting, curve: &Curve, unit: f64) -> Option<Limited> {
+    fn told(&self, setting: &Setting, curve: Curve, unit: f64) -> Option<Found> {
         let finer = curve.refined(setting, ELEMENTS[1]);
         let off = |finer: &Curve| (curve.speed / finer.speed - 1.0).abs();
         let finer = finer.filter(|finer| off(finer) < REFINED);
         let refinement = finer.as_ref().map(off);
-        let curve = finer.as_ref().unwrap_or(curve);
+        let curve = finer.unwrap_or(curve);
         let ahead = curve.net.heading().cos() >= 0.0;
         let limits = setting.limits();
-        let (mut cycle, mut arcs) = sampled(setting.region, &limits, curve);
+        let (mut cycle, mut arcs) = sampled(setting.region, &limits, &curve);
         if !ahead {
             (cycle, arcs) = (cycle.reversed(|phi| *phi), samples::reversed(&arcs));
         }
         let gait = cycle.gait().ok()?;
-        let file = GaitFile {
-            bounds: self.bounds,
-            arcs: cycle.arcs.clone(),
-            corners: cycle.corners.clone(),
-            u: cycle.u.clone(),
-            phi: cycle.phi.clone(),
-            ..GaitFile::default()
-        };
+        let file = cycle.file(self.bounds);
         let told = (curve.period(), curve.net.distance());
         let of = (setting.model, setting.region);
         let certificate = within_limits(of, &limits, (&file, &gait), told);
@@ -184,10 +241,11 @@ impl LimitedProblem {
             certificate,
         });
         let limited = self.limited(gait, told.1, told.0 / unit).ok()?;
-        Some(Limited {
+        let told = Limited {
             refinement,
             ..limited
-        })
+        };
+        Some(Found { told, curve })
     }
 }
 

@@ -92,7 +92,7 @@ fn power_and_rate_together() {
     let at_rate = alone(None, Some(rates));
     let mut before = 0.0;
     let mut kinds = Vec::new();
-    for power in [2e-3, 3.5e-3, 5e-3, 1e-2] {
+    for power in [2e-3, 3e-3, 3.5e-3, 5e-3, 6e-3, 1e-2] {
         let problem = asked(Some(power), Some(rates));
         let found = fastest_within(&problem, &|_| ());
         told(&format!("{power}"), &found);
@@ -112,7 +112,7 @@ fn power_and_rate_together() {
         before = speed;
         kinds.push(found.limits.len());
     }
-    assert_eq!(kinds, [1, 2, 2, 1]);
+    assert_eq!(kinds, [1, 2, 2, 2, 2, 1]);
 }
 
 /// Stronger and quicker servos are never slower, and the gait keeps within what they give.

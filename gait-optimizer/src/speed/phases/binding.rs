@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::super::arc::{MOST_PARAMETERS, Place};
 use super::equations::Equation;
 use super::newton::Method;
-use super::{BENDS, Draft, Phase};
+use super::{BENDS, Draft, Phase, side};
 
 /// Multipliers that are no more negative than this share, and limits overstepped by no more, are none the less in order.
 const SLIGHT: f64 = 1e-7;
@@ -149,10 +149,13 @@ impl Method<'_> {
                 let (limits, bound) = self.binding(at, &phases[number], (share, push));
                 let time = z[layout.time_index(element)];
                 let length = time * self.nodes.weights[node] / period;
+                let place = self.place(element, self.nodes.nodes[node]);
+                let side = side(self.setting, &limits, &place.phi, &place.rate);
                 cells.push(Phase {
                     from: begun,
                     to: begun + length,
                     limits,
+                    side,
                     bound,
                     touches: std::mem::take(&mut touches),
                 });

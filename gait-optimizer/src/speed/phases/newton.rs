@@ -3,12 +3,12 @@
 use nalgebra::{DMatrix, DVector, Vector4};
 
 use super::super::arc::{MOST_PARAMETERS, Place};
-use super::super::chain;
 use super::super::gauge::Facet;
 use super::super::problem::Setting;
 use super::super::quadrature::Rule;
+use super::super::{bordered, chain};
 use super::equations::{Equation, equations};
-use super::{BENDS, Curve, Draft, Phase};
+use super::{BENDS, Curve, Draft, Phase, side};
 
 /// Quadrature points of the path on an element.
 const POINTS: usize = 24;
@@ -25,8 +25,8 @@ const GONE: f64 = 1e-5;
 pub(super) enum Outcome {
     /// The curve, and the phases that it should have, node by node.
     Solved(Box<Curve>, Vec<Phase>),
-    /// The phase of this number has no length.
-    Gone(usize),
+    /// The phase of this number has no length where the method got to.
+    Gone(usize, Box<Draft>),
     /// The method does not converge.
     Lost,
 }
@@ -87,7 +87,12 @@ impl Method<'_> {
                     return Outcome::Lost;
                 }
             }
-            let Some((step, next)) = look.newton() else {
+            let newton = bordered::step(
+                (&look.hessian, &look.gradient),
+                &look.forces,
+                (&look.slopes, &look.values),
+            );
+            let Some((step, next)) = newton else {
                 return Outcome::Lost;
             };
             if y.is_some() {
@@ -101,7 +106,7 @@ impl Method<'_> {
             }
             y = Some(next);
             if let Some(phase) = self.gone() {
-                return Outcome::Gone(phase);
+                return Outcome::Gone(phase, Box::new(self.so_far()));
             }
         }
         Outcome::Lost
@@ -226,25 +231,30 @@ impl Method<'_> {
         forces
     }
 
-    fn solved(mut self, look: &Look, y: &DVector<f64>) -> Outcome {
-        let wanted = self.wanted(y, look.values.len() - self.equations.len());
-        let Draft {
-            phases,
-            phase_of,
-            layout,
-            z,
-            ..
-        } = &mut self.draft;
-        let period = layout.period(z);
-        let mut until = 0.0;
-        for (number, phase) in phases.iter_mut().enumerate() {
-            phase.from = until;
-            let own = (0..layout.arcs()).filter(|&element| phase_of[element] == number);
-            until += own.map(|k| z[layout.time_index(k)]).sum::<f64>() / period;
-            phase.to = until;
+    /// The draft, its phases told where they lie by now.
+    fn so_far(mut self) -> Draft {
+        let mut begun = 0.0;
+        for number in 0..self.draft.phases.len() {
+            let elements = 0..self.draft.layout.arcs();
+            let mut own = elements.filter(|&element| self.draft.phase_of[element] == number);
+            let (layout, z) = (&self.draft.layout, &self.draft.z);
+            let time: f64 = own.clone().map(|k| z[layout.time_index(k)]).sum();
+            let place = own.next().map(|first| self.place(first, 0.5));
+            let phase = &mut self.draft.phases[number];
+            phase.from = begun;
+            begun += time / layout.period(z);
+            phase.to = begun;
+            if let Some(place) = place {
+                phase.side = side(self.setting, &phase.limits, &place.phi, &place.rate);
+            }
         }
-        let speed = look.net.distance() / period;
-        let (draft, net) = (self.draft, look.net);
+        self.draft
+    }
+
+    fn solved(self, look: &Look, y: &DVector<f64>) -> Outcome {
+        let wanted = self.wanted(y, look.values.len() - self.equations.len());
+        let (draft, net) = (self.so_far(), look.net);
+        let speed = net.distance() / draft.layout.period(&draft.z);
         Outcome::Solved(Box::new(Curve { draft, net, speed }), wanted)
     }
 }
@@ -253,31 +263,5 @@ impl Look {
     fn residual(&self, y: &DVector<f64>) -> f64 {
         let dual = &self.gradient + &self.forces * y;
         dual.amax().max(self.values.amax())
-    }
-
-    /// The step, and the multipliers after it.
-    fn newton(&self) -> Option<(DVector<f64>, DVector<f64>)> {
-        let (size, count) = (self.gradient.len(), self.values.len());
-        let mut matrix = DMatrix::zeros(size + count, size + count);
-        matrix
-            .view_mut((0, 0), (size, size))
-            .copy_from(&self.hessian);
-        matrix
-            .view_mut((size, 0), (count, size))
-            .copy_from(&self.slopes);
-        matrix
-            .view_mut((0, size), (size, count))
-            .copy_from(&self.forces);
-        let mut right = DVector::zeros(size + count);
-        right.rows_mut(0, size).copy_from(&-&self.gradient);
-        right.rows_mut(size, count).copy_from(&-&self.values);
-        let all = matrix.lu().solve(&right)?;
-        let finite = all.iter().all(|value| value.is_finite());
-        finite.then(|| {
-            (
-                all.rows(0, size).into_owned(),
-                all.rows(size, count).into_owned(),
-            )
-        })
     }
 }

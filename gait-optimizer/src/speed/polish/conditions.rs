@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
+use super::super::bordered;
 use super::super::chain::{self, Layout, Net};
 use super::super::ensemble;
 use super::super::problem::Setting;
@@ -205,33 +206,17 @@ impl Look {
 
     /// The step, and the multipliers after it.
     pub(super) fn newton(&self) -> Option<(DVector<f64>, DVector<f64>)> {
-        let (size, count) = (self.gradient.len(), self.values.len());
         if !self.multipliers_known {
             // First the multipliers that come nearest.
             let svd = self.slopes.transpose().svd(true, true);
             let y = svd.solve(&-&self.objective, 1e-12).ok()?;
-            return Some((DVector::zeros(size), y));
+            return Some((DVector::zeros(self.gradient.len()), y));
         }
-        let mut matrix = DMatrix::zeros(size + count, size + count);
-        matrix
-            .view_mut((0, 0), (size, size))
-            .copy_from(&self.hessian);
-        matrix
-            .view_mut((size, 0), (count, size))
-            .copy_from(&self.slopes);
-        matrix
-            .view_mut((0, size), (size, count))
-            .copy_from(&self.slopes.transpose());
-        let mut right = DVector::zeros(size + count);
-        right.rows_mut(0, size).copy_from(&-&self.objective);
-        right.rows_mut(size, count).copy_from(&-&self.values);
-        let solution = matrix.lu().solve(&right)?;
-        solution.iter().all(|value| value.is_finite()).then(|| {
-            (
-                solution.rows(0, size).into_owned(),
-                solution.rows(size, count).into_owned(),
-            )
-        })
+        bordered::step(
+            (&self.hessian, &self.objective),
+            &self.slopes.transpose(),
+            (&self.slopes, &self.values),
+        )
     }
 
     /// Least eigenvalue of the second variation where all equations hold to first order, and its shift.
