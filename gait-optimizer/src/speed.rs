@@ -221,7 +221,8 @@ pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {
 
 /// The conditions of a gait from anywhere, timed as its samples are. One that leads exactly along its mean heading, or across, may
 /// have been asked to, and one that is slower than a longer or shorter one may have been given its period; it then passes as such.
-/// One whose servos are slower than their rates somewhere may have been made for other limits; where they clearly are, it was.
+/// One whose servos are slower than their rates somewhere may have been made for other limits; where they clearly are, and nearly take
+/// others in full all along, it was.
 pub(crate) fn certify_speed(
     model: &Model<f64>,
     file: &GaitFile,
@@ -232,7 +233,9 @@ pub(crate) fn certify_speed(
     let off = certificate::off_full_rate(model, region, file, gait);
     if off > Condition::FullRate.tolerance() {
         let within = certificate::within_its_own((model, region), (file, gait));
-        if within.pass() || off > CLEARLY {
+        let least = within.value(Condition::TakesLimit);
+        let takes = least.is_some_and(|least| least > 1.0 - CLEARLY);
+        if within.pass() || off > CLEARLY && takes {
             return within;
         }
     }
