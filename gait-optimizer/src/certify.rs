@@ -48,11 +48,6 @@ use symmetry::{begun_on_the_diagonal, is_symmetric};
 
 /// Directions closer than this make no corner \[rad\].
 const SMOOTH: f64 = 1e-6;
-/// A sample this close to a bound lies on it \[rad\].
-const TOUCHING: f64 = 1e-9;
-/// An arc along the links' clearance lies on it up to this \[rad\]: solvers keep a hair off the corner where tip meets tip,
-/// at which the bound has no tangent.
-const TOUCHING_CURVED: f64 = 1e-7;
 /// Slopes by polynomials of degree eight and six through the samples may differ by this, over the slope, where no condition asks
 /// for them.
 const COARSEST_WEAKLY: f64 = 1e-2;
@@ -396,7 +391,8 @@ fn touching(limits: &Limits, gait: &GaitFile) -> Vec<Along> {
     let on_bound = |pair: (&Vector2<f64>, &Vector2<f64>), u: f64| {
         let quarter = (0..3).find(|&q| u < 0.25 * (q + 1) as f64).unwrap_or(3);
         let (from, to) = (limits.at(pair.0, quarter), limits.at(pair.1, quarter));
-        let touches = |limit: &Limit| limit.margin.abs() <= TOUCHING + written;
+        let touches =
+            |limit: &Limit| limit.margin.abs() <= Condition::OnBound.tolerance() + written;
         from.iter()
             .zip(&to)
             .any(|(from, to)| touches(from) && touches(to))

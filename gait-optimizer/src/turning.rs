@@ -33,6 +33,7 @@ use swimmer_model::{Gait as _, Model, Stroke, Swimmer};
 
 pub use error::TurningError;
 
+use crate::certificate::double_area;
 use crate::certify::certified;
 use crate::cycle::{Cycle, Samples};
 use crate::height_map::legendre::gauss;
@@ -147,7 +148,7 @@ fn at_resolution(
         let found = Loop::new(&pieces, model).ok_or_else(|| no_gait(&pieces))?;
         let rotation = found.stroke.rotation;
         bridged_supremum += rotation;
-        let outside = area(&pieces) > 0.0;
+        let outside = double_area(&found.cycle.phi) > 0.0;
         if outside
             && best
                 .as_ref()
@@ -303,16 +304,6 @@ fn power_lengths(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Vec<f64> {
         lengths.push(length);
     }
     lengths
-}
-
-/// Signed area that the pieces enclose \[rad²\].
-fn area(pieces: &[Piece]) -> f64 {
-    let twice: f64 = pieces
-        .iter()
-        .flat_map(|piece| piece.points.iter().zip(piece.points.iter().skip(1)))
-        .map(|(a, b)| a.perp(b))
-        .sum();
-    0.5 * twice
 }
 
 /// A loop round a region, swum.

@@ -147,11 +147,10 @@ impl Atlas {
         if let Some(continuation) = &continuation {
             answer.line(continuation.to_string());
         }
-        let drawn = found.optima.iter().map(|one| (&one.gait, value(one)));
         let picture = fill(
             folder,
             (&file.name, &title),
-            &drawn.collect::<Vec<_>>(),
+            found.optima.iter().map(|one| (&one.gait, value(one))),
             &mut optima,
             &mut answer,
         )?;

@@ -15,17 +15,6 @@ pub(crate) fn polygon(basis: &Basis, coefficients: &DMatrix<f64>) -> Vec<Vector2
         .collect()
 }
 
-/// Twice the area that a closed polygon encloses, counter-clockwise positive.
-pub(crate) fn double_area(points: &[Vector2<f64>]) -> f64 {
-    points
-        .windows(2)
-        .map(|pair| match pair {
-            [a, b] => a.perp(b),
-            _ => 0.0,
-        })
-        .sum()
-}
-
 /// Whether a closed polygon turns once and never crosses itself.
 pub(crate) fn is_simple(points: &[Vector2<f64>]) -> bool {
     (turning_number(points).abs() - 1.0).abs() < 1e-6 && crossings(points) == 0

@@ -5,13 +5,14 @@ use swimmer_files::AnyGait;
 use swimmer_model::{Model, Stroke, Tolerance, swim};
 
 use super::barrier::Barrier;
-use super::curve::{double_area, is_simple, polygon};
+use super::curve::{is_simple, polygon};
 use super::distinct::{Outline, Symmetries, classes};
 use super::newton::{Newton, Settings, Stationary};
 use super::objective::Aim;
 use super::starts::{fitted, off_centre, start};
 use super::{Atlas, AtlasProblem, Optimum, StartCurves, Watch};
 use crate::OptimalGait;
+use crate::certificate::double_area;
 use crate::closed_curve::{Basis, Functional};
 use crate::parallel::in_parallel;
 use crate::region::Region;

@@ -17,6 +17,17 @@ pub(crate) fn simple_and_turning_once(
     ]
 }
 
+/// Twice the area that a closed polygon encloses, counter-clockwise positive.
+pub(crate) fn double_area(points: &[Vector2<f64>]) -> f64 {
+    points
+        .windows(2)
+        .map(|pair| match pair {
+            [a, b] => a.perp(b),
+            _ => 0.0,
+        })
+        .sum()
+}
+
 /// How often a closed polygon (last point = first) turns round, counter-clockwise positive.
 pub(crate) fn turning_number(points: &[Vector2<f64>]) -> f64 {
     let sides: Vec<Vector2<f64>> = points

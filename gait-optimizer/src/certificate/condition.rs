@@ -50,7 +50,8 @@ conditions! {
     NothingFolded: "side_link_on_middle_link" <= 0.0;
     /// Arcs along straight bounds lie on them \[rad\].
     OnBound: "arc_off_its_bound_rad" <= 1e-9;
-    /// Arcs along the links' clearance lie on it \[rad\].
+    /// Arcs along the links' clearance lie on it \[rad\]; solvers keep a hair off the corner where tip meets tip, at which that bound
+    /// has no tangent.
     OnClearance: "arc_off_clearance_rad" <= 1e-7;
     /// Polynomials of two degrees through the samples have the same slopes, relatively.
     SlopesKnown: "sampling_slope_error" <= 1e-5;

@@ -2,8 +2,9 @@
 
 use nalgebra::Vector2;
 
+use super::Subject;
 use super::limits::Limit;
-use super::{Subject, TOUCHING_CURVED};
+use crate::certificate::Condition;
 
 /// How far beside the curve the sides of a bound are told apart \[rad\].
 const ASIDE: f64 = 1e-6;
@@ -47,7 +48,7 @@ impl Subject<'_> {
         let rate = self.path.places.get(node)?.rate;
         // At a corner between two bounds the normal may be the other's; a bound farther away is still not followed.
         let askew = |limit: &Limit| {
-            let far = if limit.margin.abs() > TOUCHING_CURVED + self.written {
+            let far = if limit.margin.abs() > Condition::OnClearance.tolerance() + self.written {
                 1.0 + limit.margin.abs()
             } else {
                 0.0
@@ -105,7 +106,7 @@ impl Subject<'_> {
         let corner = first.normal.perp(&second.normal).abs() > 1e-3;
         let towards = (out - into) * BESIDE;
         let inside = curved(before.phi + towards, end);
-        here.margin.abs() <= TOUCHING_CURVED + self.written
+        here.margin.abs() <= Condition::OnClearance.tolerance() + self.written
             && corner
             && inside.is_some_and(|limit| limit.margin < 0.0)
     }

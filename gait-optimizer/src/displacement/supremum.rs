@@ -8,7 +8,7 @@ mod curve;
 mod excursion;
 
 use nalgebra::Vector2;
-use swimmer_files::{Bounds, GaitFile, Objective, SwimmerHash};
+use swimmer_files::{Bounds, GaitFile, SwimmerHash};
 use swimmer_model::{Model, Swimmer};
 
 use super::best::best;
@@ -309,14 +309,9 @@ impl Member {
     /// What a gait file holds of it: a gait within the bounds, for no objective. `swimmer_name` is for people.
     pub fn gait_file(&self, swimmer_name: &str) -> GaitFile {
         GaitFile {
-            objective: Objective::Unspecified,
             swimmer_name: Some(swimmer_name.to_owned()),
             swimmer_hash: Some(SwimmerHash::of(&self.swimmer)),
-            bounds: self.bounds,
-            arcs: Vec::new(),
-            corners: self.cycle.corners.clone(),
-            u: self.cycle.u.clone(),
-            phi: self.cycle.phi.clone(),
+            ..self.cycle.file(self.bounds)
         }
     }
 }

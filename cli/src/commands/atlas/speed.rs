@@ -68,13 +68,11 @@ impl Atlas {
             found.uncertified, found.longer
         ));
         let value = |one: &Fastest| format!("|d|/(L T) = {:.6} 1/s", one.speed_over_length);
-        let drawn = found.optima.iter().map(|one| (&one.gait, value(one)));
-        let drawn: Vec<_> = drawn.collect();
         let mut optima: Vec<_> = found.optima.iter().map(keys).collect();
         let picture = fill(
             folder,
             (&file.name, &title),
-            &drawn,
+            found.optima.iter().map(|one| (&one.gait, value(one))),
             &mut optima,
             &mut answer,
         )?;

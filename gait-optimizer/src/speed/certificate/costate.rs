@@ -17,10 +17,8 @@ use crate::region::Region;
 use crate::speed::gauge::{Facet, Level};
 use crate::speed::quadrature::{Rule, cut};
 
-/// What the conditions may miss, over V.
-const CLOSE: f64 = 1e-6;
-/// A limit binds where the gait takes this share of it.
-const BINDS: f64 = 1.0 - 1e-6;
+/// Multipliers below 0 by more are held there.
+const BELOW: f64 = 1e-6;
 /// Times that multipliers below 0 are held there.
 const SIGNS: usize = 6;
 /// Gauss nodes of a part of the cycle, its longest share of the period, and about the most that it turns \[rad\].
@@ -60,7 +58,7 @@ impl Equations {
     fn solve(mut self, positive: &[usize]) -> Option<(DVector<f64>, f64)> {
         let mut solution = self.least_squares(positive)?;
         for _ in 0..SIGNS {
-            let below = positive.iter().filter(|at| solution.0[**at] < -CLOSE);
+            let below = positive.iter().filter(|at| solution.0[**at] < -BELOW);
             let below: Vec<usize> = below.copied().collect();
             if below.is_empty() {
                 break;
@@ -151,7 +149,7 @@ impl Costate<'_> {
             taken: levels.iter().map(|level| level.value).fold(0.0, f64::max),
             levels: levels
                 .into_iter()
-                .filter(|level| level.value >= BINDS)
+                .filter(|level| level.value >= Condition::TakesLimit.tolerance())
                 .collect(),
             bound: self.rests(&point.phi).next(),
         }
@@ -255,7 +253,7 @@ impl Costate<'_> {
             Condition::KeepsLimits.check(most - 1.0),
             Condition::TakesLimit.check(least),
         ];
-        if least < BINDS {
+        if least < Condition::TakesLimit.tolerance() {
             // Nothing tells the costate where no limit binds.
             return checks;
         }

@@ -43,6 +43,13 @@ struct Found {
     curve: Curve,
 }
 
+impl Found {
+    /// 0 of none.
+    fn speed(of: Option<&Self>) -> f64 {
+        of.map_or(0.0, |found| found.told.speed_over_length)
+    }
+}
+
 impl LimitedProblem {
     /// Where several limits bind, or the torque alone.
     pub(super) fn mixed(
@@ -55,36 +62,32 @@ impl LimitedProblem {
         let region = Region::new(&self.bounds, &self.swimmer.links);
         let unit = self.unit(&model);
         let setting = self.setting(&model, &region, unit);
-        let (mut best, mut uncertified) = self.searched(&setting, singles, unit, watch);
-        let better = |best: &Option<Found>, uncertified: Option<f64>| {
-            let speed = best
-                .as_ref()
-                .map_or(0.0, |best| best.told.speed_over_length);
-            uncertified.is_some_and(|other| other > speed * (1.0 + 1e-6))
+        let (mut best, uncertified) = self.searched(&setting, singles, unit, watch);
+        let clearly = |uncertified: f64, best: Option<&Found>| {
+            uncertified > Found::speed(best) * (1.0 + 1e-6)
         };
         // Where what binds is not found, a neighbour's gait may tell it.
         for more in NEARBY {
-            if best.is_some() && !better(&best, uncertified) {
+            let known = best.as_ref();
+            if known.is_some() && !uncertified.is_some_and(|other| clearly(other, known)) {
                 break;
             }
             let near = self.stronger(more);
-            let there = near.searched(&near.setting(&model, &region, unit), singles, unit, &|_| ());
-            let curve = there
-                .0
-                .and_then(|found| found.curve.refined(&setting, ELEMENTS[0]));
-            let told = curve.and_then(|curve| self.told(&setting, curve, unit));
-            let known = best
-                .as_ref()
-                .map_or(0.0, |best| best.told.speed_over_length);
-            match told.filter(|found| found.told.speed_over_length > known) {
-                Some(found) if found.told.gait.certificate.pass() => best = Some(found),
-                _ => {}
-            }
+            let (there, _) =
+                near.searched(&near.setting(&model, &region, unit), singles, unit, &|_| ());
+            let curve = there.and_then(|found| found.curve.refined(&setting, ELEMENTS[0]));
+            let found = curve.and_then(|curve| self.told(&setting, curve, unit));
+            let farther = |found: &Found| {
+                Found::speed(Some(found)) > Found::speed(known)
+                    && found.told.gait.certificate.pass()
+            };
+            best = found.filter(farther).or(best);
         }
-        let mut best = best.ok_or_else(|| self.no_gait(singles, uncertified))?.told;
-        let clearly = |speed: &f64| *speed > best.speed_over_length * (1.0 + 1e-6);
-        best.uncertified = uncertified.take().filter(clearly);
-        Ok(best)
+        let best = best.ok_or_else(|| self.no_gait(singles, uncertified))?;
+        Ok(Limited {
+            uncertified: uncertified.filter(|other| clearly(*other, Some(&best))),
+            ..best.told
+        })
     }
 
     /// With so many times the power and the torque.
@@ -137,9 +140,7 @@ impl LimitedProblem {
         // A polygon is about as fast as the curve near it, so the first that is certified is the fastest but for a few.
         let (mut best, mut uncertified) = (None::<Found>, None::<f64>);
         for group in selection::groups(polygons.into_iter().flatten().collect()) {
-            let known = best
-                .as_ref()
-                .map_or(0.0, |best| best.told.speed_over_length);
+            let known = Found::speed(best.as_ref());
             if group.speed() * unit < known * (1.0 - NEAR) {
                 break;
             }
