@@ -22,7 +22,7 @@ mod stencil;
 mod symmetry;
 mod variation;
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
@@ -38,7 +38,7 @@ use crate::certificate::{
 };
 use crate::cycle::Cycle;
 use crate::region::Region;
-use crate::speed::certify_speed;
+use crate::speed::{MadeFor, certify_speed};
 pub(crate) use ascent::ways_up;
 use grid::{Along, Degree, Grid};
 use limits::{Limit, Limits};
@@ -130,7 +130,8 @@ pub fn certify(
     bounds: &Bounds,
 ) -> Result<Certificate, CertifyError> {
     let model = Model::new(&swimmer.of_unit_length())?;
-    let asked = |gait: &GaitFile| of_samples(&model, swimmer, gait, objective, bounds);
+    let made_for = Cell::new(None);
+    let asked = |gait: &GaitFile| of_samples((&model, &made_for), swimmer, gait, objective, bounds);
     AnyGait::from_file(gait)?;
     // Across whose heading a gait moves is asked of the first sample; of all else it says nothing.
     let begun = (objective != Objective::Sideways)
@@ -146,7 +147,7 @@ pub fn certify(
 
 /// As [`certify`], whatever the samples leave open.
 fn of_samples(
-    model: &Model<f64>,
+    (model, made_for): (&Model<f64>, &Cell<Option<MadeFor>>),
     swimmer: &Swimmer<f64>,
     gait: &GaitFile,
     objective: Objective,
@@ -164,7 +165,7 @@ fn of_samples(
             ..gait.clone()
         };
         let region = Region::new(bounds, &swimmer.links);
-        return Ok(certify_speed(model, &bounded, &curve, &region));
+        return Ok(certify_speed(model, (&bounded, &curve), &region, made_for));
     }
     let limits = Limits::new(bounds, &swimmer.links);
     if turning_number(&gait.phi) < 0.0 {

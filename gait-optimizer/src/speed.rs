@@ -32,6 +32,8 @@ mod structure;
 mod tests;
 mod widened;
 
+use std::cell::Cell;
+
 use swimmer_files::{AnyGait, Bounds, GaitFile};
 use swimmer_model::{Model, Swimmer};
 
@@ -219,26 +221,53 @@ pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {
     problem.watched(&|_| ())
 }
 
-/// The conditions of a gait from anywhere, timed as its samples are. One that leads exactly along its mean heading, or across, may
-/// have been asked to, and one that is slower than a longer or shorter one may have been given its period; it then passes as such.
-/// One whose servos are slower than their rates somewhere may have been made for other limits; where they clearly are, and nearly take
-/// others in full all along, it was.
+/// Whose limits a gait was made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum MadeFor {
+    /// Those of its servos' rates.
+    Rates,
+    /// Others that it takes in full.
+    Others,
+}
+
+/// The conditions of a gait from anywhere, timed as its samples are. One whose servos are slower than their rates somewhere may have
+/// been made for other limits; where they clearly are, and nearly take others in full all along, it was. That is told of the samples
+/// as they are, and kept for others of the same gait.
 pub(crate) fn certify_speed(
+    model: &Model<f64>,
+    (file, gait): (&GaitFile, &AnyGait),
+    region: &Region,
+    made_for: &Cell<Option<MadeFor>>,
+) -> Certificate {
+    const CLEARLY: f64 = 1e-2;
+    const NEARLY: f64 = 0.9;
+    let others = || certificate::within_its_own((model, region), (file, gait));
+    let rates = || certify_at_rates(model, file, gait, region);
+    match made_for.get() {
+        Some(MadeFor::Rates) => return rates(),
+        Some(MadeFor::Others) => return others(),
+        None => {}
+    }
+    let off = certificate::off_full_rate(model, region, file, gait);
+    let takes = |within: &Certificate| within.value(Condition::TakesLimit) > Some(NEARLY);
+    let meant = |within: &Certificate| within.pass() || off > CLEARLY && takes(within);
+    let slower = off > Condition::FullRate.tolerance();
+    let within = slower.then(others).filter(meant);
+    made_for.set(Some(match within {
+        Some(_) => MadeFor::Others,
+        None => MadeFor::Rates,
+    }));
+    within.unwrap_or_else(rates)
+}
+
+/// The same of one that was made for its servos' rates. One that leads exactly along its mean heading, or across, may have been asked
+/// to, and one that is slower than a longer or shorter one may have been given its period; it then passes as such.
+fn certify_at_rates(
     model: &Model<f64>,
     file: &GaitFile,
     gait: &AnyGait,
     region: &Region,
 ) -> Certificate {
-    const CLEARLY: f64 = 1e-2;
-    let off = certificate::off_full_rate(model, region, file, gait);
-    if off > Condition::FullRate.tolerance() {
-        let within = certificate::within_its_own((model, region), (file, gait));
-        let least = within.value(Condition::TakesLimit);
-        let takes = least.is_some_and(|least| least > 1.0 - CLEARLY);
-        if within.pass() || off > CLEARLY && takes {
-            return within;
-        }
-    }
     let of = |(heading, period)| {
         let asked = certificate::Asked {
             heading,

@@ -1,8 +1,11 @@
 //! Certificates from the curve alone: every optimum passes, nothing else does; and what a gait's samples cannot decide is told from
 //! what is wrong.
 
+mod changed;
+
 use std::path::Path;
 
+use changed::{Change, rounded};
 use gait_optimizer::{
     AtlasProblem, Bounds, Branch, Certificate, CertifyError, DisplacementProblem,
     EfficiencyProblem, Heading, Objective, SidewaysProblem, TurningProblem, Verdict, atlas,
@@ -276,26 +279,6 @@ fn gaits_of_short_middle_links_are_sampled_as_closely_as_is_asked() {
     assert!(certificate.pass(), "{}", certificate.failures());
 }
 
-fn rounded(file: &GaitFile, digits: i32) -> GaitFile {
-    let scale = 10.0_f64.powi(digits);
-    let round = |value: f64| (value * scale).round() / scale;
-    GaitFile {
-        u: file.u.iter().map(|&u| round(u)).collect(),
-        phi: file.phi.iter().map(|phi| phi.map(round)).collect(),
-        corners: file.corners.iter().map(|&u| round(u)).collect(),
-        arcs: file
-            .arcs
-            .iter()
-            .map(|arc| GaitArc {
-                from: round(arc.from),
-                to: round(arc.to),
-                ..*arc
-            })
-            .collect(),
-        ..file.clone()
-    }
-}
-
 fn thinned(file: &GaitFile, by: usize) -> GaitFile {
     let fixed = |u: f64| {
         file.arcs
@@ -360,29 +343,14 @@ fn perturbed_gaits_fail_for_certain() {
     let mut asked = 0;
     while asked < 100 {
         let (name, swimmer, file) = &gaits[rng.random_range(0..gaits.len())];
-        let size = 10.0_f64.powf(rng.random_range(-4.0..-2.0));
-        let (centre, width) = (rng.random_range(0.0..1.0), rng.random_range(0.01..0.1));
-        let kind = rng.random_range(0..4);
-        let mut perturbed = file.clone();
-        let last = perturbed.u.len() - 1;
-        for at in 0..=last {
-            let (before, after) = (at.checked_sub(1).unwrap_or(last - 1), (at % last) + 1);
-            let along = file.phi[after] - file.phi[before];
-            let across = Vector2::new(-along.y, along.x).normalize();
-            let away = (file.u[at] - centre + 0.5).rem_euclid(1.0) - 0.5;
-            perturbed.phi[at] += match kind {
-                0 => across * (-(away / width).powi(2)).exp(),
-                1 => across * (0.5 + 0.5 * (std::f64::consts::TAU * away).sin()),
-                2 => -file.phi[at],
-                _ => across * rng.random_range(0.0..1.0),
-            } * size;
-        }
-        perturbed.phi[last] = perturbed.phi[0];
+        let change = Change::drawn(&mut rng);
+        let kind = rng.random_range(0..Change::KINDS);
+        let perturbed = change.of(file, kind, &mut rng);
         let certificate = certify(swimmer, &perturbed, file.objective, &file.bounds).unwrap();
         assert_eq!(
             certificate.verdict(),
             Verdict::Fail,
-            "{name}, kind {kind}, size {size:e}, at {centre}, {width} wide: {}",
+            "{name}, kind {kind}, {change:?}: {}",
             certificate.failures()
         );
         asked += 1;
