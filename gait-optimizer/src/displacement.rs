@@ -16,7 +16,7 @@ use best::{best, candidates};
 pub use error::{DisplacementError, Fates};
 pub use near::displacement_near;
 use search::{Candidate, SCAN_POINTS};
-pub use supremum::{Member, Supremum, displacement_supremum};
+pub use supremum::{Member, Suprema, Supremum};
 use swimmer_files::{Bounds, Objective};
 use swimmer_model::{Model, Swimmer};
 
@@ -107,6 +107,12 @@ impl DisplacementProblem {
             ..
         } = self.bounds;
         !self.simple && !sector && (max_angle.is_some() || no_overlap)
+    }
+
+    /// Whether slits may carry a gait farther than an optimum, and have a limit.
+    fn may_have_slits(&self) -> bool {
+        let sectored = self.bounds.sector && !self.simple && self.bounds.max_angle.is_some();
+        self.may_touch() || sectored
     }
 
     /// The bounds that such gaits obey.

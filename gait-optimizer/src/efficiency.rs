@@ -257,7 +257,7 @@ fn within_bounds(
             ..free
         });
     }
-    bounded::bounded(problem, model, &free, extremal)
+    bounded::bounded(problem, model, &free, &extremal)
 }
 
 /// A free extremal as a gait of the branch, certified.

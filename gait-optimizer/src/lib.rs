@@ -102,8 +102,8 @@ pub use continuation::{
     Parameter, Point, Start, continuation, continuation_watched,
 };
 pub use displacement::{
-    DisplacementError, DisplacementProblem, Fates, Heading, Member, Supremum, displacement,
-    displacement_near, displacement_supremum,
+    DisplacementError, DisplacementProblem, Fates, Heading, Member, Suprema, Supremum,
+    displacement, displacement_near,
 };
 pub use efficiency::{
     Branch, Direct, EfficiencyError, EfficiencyFigures, EfficiencyProblem, EfficiencySeed, Method,

@@ -302,6 +302,12 @@ impl Region {
         &self.edges
     }
 
+    /// The farthest that any straight bound is from the straight shape \[rad\]: where one bounds each joint, no angle is larger.
+    pub(crate) fn reach(&self) -> f64 {
+        let offsets = self.edges.iter().map(|edge| edge.offset.abs());
+        offsets.fold(0.0, f64::max)
+    }
+
     /// All bounds: the straight ones, then the curved one. Its index is the place in this order.
     pub fn bounds(&self) -> impl Iterator<Item = Bound> + '_ {
         let straight = self.edges.iter().map(|edge| Bound::Straight(*edge));

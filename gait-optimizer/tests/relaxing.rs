@@ -7,8 +7,9 @@ mod swimmers;
 use std::collections::BTreeMap;
 
 use gait_optimizer::{
-    DisplacementError, DisplacementProblem, Heading, SidewaysProblem, TurningProblem, displacement,
-    displacement_supremum, sideways, turning,
+    AtlasProblem, Branch, DisplacementError, DisplacementProblem, EfficiencyProblem, Heading,
+    Objective, SidewaysProblem, Suprema, TurningProblem, atlas, displacement, efficiency, sideways,
+    turning,
 };
 use swimmer_files::Bounds;
 use swimmer_model::Swimmer;
@@ -33,7 +34,12 @@ impl Answer {
     }
 }
 
-fn answer(swimmer: Swimmer<f64>, bounds: Bounds, heading: Heading) -> Answer {
+fn answer(
+    suprema: &mut Suprema,
+    swimmer: Swimmer<f64>,
+    bounds: Bounds,
+    heading: Heading,
+) -> Answer {
     let problem = DisplacementProblem {
         bounds,
         heading: Some(heading),
@@ -49,7 +55,7 @@ fn answer(swimmer: Swimmer<f64>, bounds: Bounds, heading: Heading) -> Answer {
         return Answer::default();
     }
     let local = found.as_ref().ok();
-    if let Some(supremum) = displacement_supremum(&problem, local) {
+    if let Some(supremum) = suprema.of(&problem, local) {
         let best = supremum
             .members
             .last()
@@ -126,11 +132,12 @@ impl Table {
     /// All bounds of one swimmer that heads one way.
     fn fill(&mut self, name: &str, swimmer: Swimmer<f64>, heading: Heading, upper: &[f64]) {
         let mut known: BTreeMap<String, Answer> = BTreeMap::new();
+        let mut suprema = Suprema::new(1);
         let mut ask = |bounds: Bounds| {
             let key = format!("{bounds:?}");
             *known
                 .entry(key)
-                .or_insert_with(|| answer(swimmer, bounds, heading))
+                .or_insert_with(|| answer(&mut suprema, swimmer, bounds, heading))
         };
         for (kind, sector, no_overlap) in [
             ("", false, false),
@@ -274,6 +281,56 @@ fn relaxing_a_bound_never_lowers_sideways() {
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
+/// The paper's gaits of most efficiency, by branch: with its symmetries, so certified or none.
+#[test]
+#[ignore = "soak: minutes"]
+fn relaxing_a_bound_never_lowers_efficiency() {
+    for branch in [Branch::Small, Branch::Large] {
+        println!("{branch:?}");
+        let table = widened(|swimmer, bounds| {
+            let found = efficiency(&EfficiencyProblem {
+                bounds,
+                ..EfficiencyProblem::new(*swimmer, branch)
+            });
+            let reached = found.map_or(0.0, |gait| gait.efficiency);
+            Answer::optimum(reached, reached)
+        });
+        let faults = table.faults();
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+}
+
+/// The best of closed curves of any symmetry; what is best but uncertified is told.
+fn widened_atlas(objective: Objective) {
+    let table = widened(|swimmer, bounds| {
+        let found = atlas(&AtlasProblem {
+            bounds,
+            starts: 64,
+            ..AtlasProblem::new(*swimmer, objective)
+        })
+        .unwrap();
+        let best = found.optima.first().map(|best| match objective {
+            Objective::Efficiency => best.gait.efficiency,
+            _ => best.distance_over_length,
+        });
+        Answer::optimum(best.unwrap_or(0.0), found.best_uncertified.unwrap_or(0.0))
+    });
+    let faults = table.faults();
+    assert!(faults.is_empty(), "{faults:#?}");
+}
+
+#[test]
+#[ignore = "soak: an hour"]
+fn relaxing_a_bound_never_lowers_an_atlas_of_displacement() {
+    widened_atlas(Objective::Displacement);
+}
+
+#[test]
+#[ignore = "soak: an hour"]
+fn relaxing_a_bound_never_lowers_an_atlas_of_efficiency() {
+    widened_atlas(Objective::Efficiency);
+}
+
 /// The robot's own gaits, where touching its images once decided from bound to bound: no answer is lower.
 #[test]
 fn the_robots_answers_grow() {
@@ -284,7 +341,13 @@ fn the_robots_answers_grow() {
             min_angle: Some(0.1 * f64::from(step)),
             ..Bounds::default()
         };
-        let here = answer(Swimmer::robot(), bounds, Heading::Backwards).reached;
+        let here = answer(
+            &mut Suprema::new(2),
+            Swimmer::robot(),
+            bounds,
+            Heading::Backwards,
+        )
+        .reached;
         assert!(here > before, "{bounds}: {here} after {before}");
         before = here;
     }

@@ -4,7 +4,7 @@
 mod plane;
 
 use gait_optimizer::{
-    Bounds, DisplacementProblem, Heading, Member, Supremum, displacement, displacement_supremum,
+    Bounds, DisplacementProblem, Heading, Member, Suprema, Supremum, displacement,
 };
 use nalgebra::{Vector2, Vector3};
 use plane::Pose;
@@ -32,10 +32,7 @@ fn limit(problem: &DisplacementProblem) -> (f64, Supremum) {
     let local = found
         .as_ref()
         .map_or(0.0, |gait| gait.displacement_over_length.abs());
-    (
-        local,
-        displacement_supremum(problem, found.as_ref()).unwrap(),
-    )
+    (local, Suprema::new(2).of(problem, found.as_ref()).unwrap())
 }
 
 /// Three problems whose best gaits need slits: beside a bound, between two bounds, along one that keeps links apart.

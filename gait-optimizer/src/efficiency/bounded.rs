@@ -47,7 +47,7 @@ pub(super) fn bounded(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
     free: &OptimalGait,
-    start: Extremal,
+    start: &Extremal,
 ) -> Result<OptimalGait, EfficiencyError> {
     let (branch, bounds) = (problem.branch, &problem.bounds);
     let floor = start.efficiency(model) * FADED;
@@ -59,38 +59,36 @@ pub(super) fn bounded(
     };
     let farthest = free.phi().iter().map(nalgebra::Vector2::amax);
     let farthest = farthest.fold(0.0, f64::max) + 1e-6;
-    let mut reached = Tightness {
-        max_angle: farthest,
-        share: 0.0,
-    };
     let links = model.swimmer().links;
-    let fold = Clearance::fold(links.front, links.middle, path.clearance);
     let max_angle = bounds.max_angle.unwrap_or(f64::INFINITY);
-    let tight = if bounds.no_overlap {
-        max_angle.min(fold)
+    let fold = bounds
+        .no_overlap
+        .then(|| Clearance::fold(links.front, links.middle, path.clearance));
+    let folded = farthest.min(fold.unwrap_or(f64::INFINITY));
+    let tight = folded.min(max_angle);
+    let at = |max_angle: f64, share: f64| Tightness { max_angle, share };
+    // The largest angle comes in first; where that leads nowhere, last.
+    let ways = if bounds.no_overlap {
+        vec![
+            vec![at(tight, 0.0), at(tight, 1.0)],
+            vec![at(folded, 0.0), at(folded, 1.0), at(tight, 1.0)],
+        ]
     } else {
-        max_angle
+        vec![vec![at(tight, 0.0)]]
     };
-    let mut stages = Vec::new();
-    if tight < farthest {
-        stages.push(Tightness {
-            max_angle: tight,
-            share: 0.0,
-        });
-    }
-    if bounds.no_overlap {
-        stages.push(Tightness {
-            max_angle: tight.min(farthest),
-            share: 1.0,
-        });
-    }
-    let mut extremal = start;
-    for stage in stages {
-        extremal = path
-            .follow(extremal, reached, stage)
-            .map_err(|ended| branch_ends(branch, &links, &ended))?;
-        reached = stage;
-    }
+    let followed = |way: &Vec<Tightness>| {
+        let (mut extremal, mut reached) = (start.clone(), at(farthest, 0.0));
+        for &stage in way {
+            extremal = path.follow(extremal, reached, stage)?;
+            reached = stage;
+        }
+        Ok(extremal)
+    };
+    let mut ways = ways.iter().map(followed);
+    let first = ways.next().unwrap_or_else(|| Ok(start.clone()));
+    let extremal = first
+        .or_else(|ended| ways.find_map(Result::ok).ok_or(ended))
+        .map_err(|ended| branch_ends(branch, &links, &ended))?;
     let found = Found {
         extremal,
         order: 0,

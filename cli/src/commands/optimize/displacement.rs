@@ -1,8 +1,7 @@
 //! `swimmer optimize displacement`: the gait of most displacement per cycle.
 
 use gait_optimizer::{
-    DisplacementError, DisplacementProblem, Heading, displacement, displacement_supremum,
-    robust_displacement,
+    DisplacementError, DisplacementProblem, Heading, Suprema, displacement, robust_displacement,
 };
 
 use super::answer::{say_if_beyond, tell_quarter};
@@ -14,6 +13,7 @@ use super::{Found, Objective, Task};
 use crate::bounds::QuarterBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
+use crate::threads;
 
 /// Find the gait of most displacement per cycle by the maximum principle, with its certificate
 ///
@@ -54,11 +54,12 @@ impl Objective for Displacement {
         }
         let (found, supremum) = task.timed(|| {
             let found = displacement(&problem);
+            let mut suprema = Suprema::new(threads::available());
             let supremum = match &found {
-                Ok(gait) => displacement_supremum(&problem, Some(gait)),
+                Ok(gait) => suprema.of(&problem, Some(gait)),
                 Err(
                     DisplacementError::NoOptimum { .. } | DisplacementError::NotCertified { .. },
-                ) => displacement_supremum(&problem, None),
+                ) => suprema.of(&problem, None),
                 Err(_) => None,
             };
             (found, supremum)

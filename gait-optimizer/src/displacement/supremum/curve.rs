@@ -8,6 +8,7 @@ use nalgebra::Vector2;
 use swimmer_model::{Model, Pose};
 
 use crate::certificate::crossings;
+use crate::displacement::DisplacementProblem;
 use crate::momentum::{Height, Momentum};
 use crate::region::{Bound, Region};
 
@@ -41,6 +42,8 @@ const LOOK: usize = 3;
 const SWEEPS: usize = 4;
 /// Strands nearer than this share of the gap are about to pass through each other.
 const TOO_NEAR: f64 = 0.02;
+/// Corners farther beyond a bound than this share of the gap go through it.
+const ASTRAY: f64 = 0.25;
 /// Looks after which a start's own strands have come apart.
 const SETTLED: usize = 10;
 /// Strands are parts of the polygon this many gaps apart along it.
@@ -63,7 +66,19 @@ pub(super) fn right(way: &Shape) -> Shape {
     Shape::new(way.y, -way.x)
 }
 
-impl Ground<'_> {
+impl<'a> Ground<'a> {
+    pub(super) fn new(
+        problem: &DisplacementProblem,
+        model: &'a Model<f64>,
+        region: &'a Region,
+    ) -> Self {
+        Self {
+            model,
+            region,
+            sign: problem.heading().sign(),
+        }
+    }
+
     /// Poses at all corners.
     pub(super) fn poses(&self, corners: &[Shape]) -> Vec<Pose<f64>> {
         let mut pose = Pose::identity();
@@ -97,7 +112,8 @@ impl Ground<'_> {
             .0
     }
 
-    /// Climbs from a polygon until what it carries grows no more, in at most so many moves; the best one met, and what it carries.
+    /// Climbs from a polygon until what it carries grows no more, in at most so many moves; the best one met within the bounds, and
+    /// what it carries; the start and 0 of none.
     pub(super) fn climbed(
         &self,
         corners: &[Shape],
@@ -105,8 +121,12 @@ impl Ground<'_> {
         most_moves: usize,
     ) -> (Vec<Shape>, f64) {
         let mut here = corners.to_vec();
-        remesh(&mut here, mesh);
+        let mut inside = self.allows(&here);
         let mut best = (here.clone(), 0.0);
+        if self.is_member(&here, mesh) {
+            best.1 = self.carried(&here).max(0.0);
+        }
+        remesh(&mut here, mesh);
         let (mut sound, mut stride) = (here.clone(), STRIDE);
         let mut near = strands(&here, mesh.gap);
         for look in 0..most_moves / LOOK {
@@ -121,8 +141,9 @@ impl Ground<'_> {
             remesh(&mut here, mesh);
             near = strands(&here, mesh.gap);
             let too_near = look > SETTLED && nearest(&here, &near) < TOO_NEAR * mesh.gap;
-            if too_near || crossings(&here) > 0 {
-                // A strand went through another.
+            let strayed = inside && self.overstepped(&here) > ASTRAY * mesh.gap;
+            if too_near || strayed || crossings(&here) > 0 {
+                // A strand went through another, or through a bound.
                 stride *= 0.5;
                 here.clone_from(&sound);
                 near = strands(&here, mesh.gap);
@@ -131,12 +152,13 @@ impl Ground<'_> {
                 }
                 continue;
             }
+            inside = inside || self.allows(&here);
             sound.clone_from(&here);
             stride = (1.1 * stride).min(STRIDE);
             if look % WATCH == WATCH - 1 {
                 let carried = self.carried(&here);
                 let grown = carried - best.1;
-                if grown > 0.0 {
+                if grown > 0.0 && self.allows(&here) {
                     best = (here.clone(), carried);
                 }
                 if grown < GROWTH * carried.abs() {
@@ -226,15 +248,17 @@ impl Ground<'_> {
             && nearest(corners, &near) > TOO_NEAR * mesh.gap
     }
 
-    /// Whether no corner and no middle of a side oversteps a bound.
     fn allows(&self, corners: &[Shape]) -> bool {
         const SLACK: f64 = 1e-9;
+        self.overstepped(corners) < SLACK
+    }
+
+    /// The most that a corner or a middle of a side oversteps a bound.
+    fn overstepped(&self, corners: &[Shape]) -> f64 {
         let middles = corners.windows(2).map(|side| (side[0] + side[1]) * 0.5);
-        corners
-            .iter()
-            .copied()
-            .chain(middles)
-            .all(|phi| self.region.overstepped(&phi) < SLACK)
+        let places = corners.iter().copied().chain(middles);
+        let overstepped = places.map(|phi| self.region.overstepped(&phi));
+        overstepped.fold(f64::NEG_INFINITY, f64::max)
     }
 }
 

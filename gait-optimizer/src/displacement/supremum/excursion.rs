@@ -58,8 +58,7 @@ impl Ground<'_> {
             return Vec::new();
         };
         let momentum = self.momentum(end);
-        let edges = self.region.edges().iter();
-        let reach = edges.map(|edge| edge.offset.abs()).fold(0.0, f64::max);
+        let reach = self.region.reach();
         let mut seen = BTreeMap::new();
         for j in 0..whole(reach / GRID) {
             for i in -whole(reach / GRID)..whole(reach / GRID) {
