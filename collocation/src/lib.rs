@@ -29,7 +29,7 @@ mod tests;
 pub use efficiency::efficiency;
 pub use error::CollocationError;
 pub use guess::QuarterGuess;
-pub use solution::{BoundArc, CollocationNode, CollocationSolution};
+pub use solution::CollocationSolution;
 
 use gait_optimizer::region::{Bound, Region};
 use gait_optimizer::{Branch, EfficiencyProblem};
@@ -135,9 +135,16 @@ pub fn solve(
     let walls = problem.validate()?;
     let mesh = Mesh::new(problem.elements, problem.degree);
     let phi = guess.on(problem.model, &mesh, &walls)?;
-    let optimum = Newton::new(problem.model, &mesh, &walls, problem.sign, phi).run()?;
-    let again = Reintegration::new(problem.model, &mesh, &walls, &optimum.path);
-    let solution = solution::finish(problem.model, mesh, &walls, optimum, &again);
+    let path = Newton::new(problem.model, &mesh, &walls, problem.sign, phi).run()?;
+    let again = Reintegration::new(problem.model, &mesh, &walls, &path);
+    let efficiency = |x, energy| lighthill(problem.model, x, energy);
+    let solution = CollocationSolution {
+        efficiency: efficiency(path.final_x, path.final_energy),
+        efficiency_again: efficiency(again.final_x, again.final_energy),
+        overstepped: again.overstepped,
+        phi: path.phi,
+        mesh,
+    };
     let off = (solution.efficiency_again / solution.efficiency - 1.0).abs();
     if off <= TOLERANCE && again.final_x * problem.sign > 0.0 {
         return Ok(solution);
