@@ -3,8 +3,8 @@
 use nalgebra::{Matrix2xX, Vector2};
 use swimmer_files::AnyGait;
 
+use super::CollocationError;
 use super::mesh::Mesh;
-use super::{CollocationError, QuarterGuess};
 
 /// Samples of a quarter as a gait.
 const SAMPLES: usize = 256;
@@ -26,11 +26,6 @@ impl CollocationSolution {
     /// Joint angles at a time 0 … 1, on the solution's own polynomials.
     pub fn phi(&self, t: f64) -> Vector2<f64> {
         self.mesh.shape(&self.phi, t)
-    }
-
-    /// The quarter as a guess for another problem, such as a neighbouring bound.
-    pub fn guess(&self) -> QuarterGuess {
-        QuarterGuess::of(self.phi.clone())
     }
 
     /// The whole cycle, by the paper's two symmetries, smooth throughout: of a solution that keeps off the corners of its bounds.

@@ -5,7 +5,10 @@ use std::cell::Cell;
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
-use swimmer_model::{Links, Model, Swimmer, SymmetricFourier, TangentialDrag, Tolerance, swim};
+use swimmer_files::AnyGait;
+use swimmer_model::{
+    Circle, Links, Model, Swimmer, SymmetricFourier, TangentialDrag, Tolerance, swim,
+};
 
 use super::*;
 
@@ -18,9 +21,13 @@ fn robot() -> Model<f64> {
     Model::new(&Swimmer::robot()).unwrap()
 }
 
+fn circle(amplitude: f64) -> Circle<f64> {
+    Circle { amplitude }
+}
+
 fn solved(model: &Model<f64>, sign: f64, amplitude: f64) -> CollocationSolution {
     let problem = CollocationProblem::new(model, sign);
-    solve(&problem, &QuarterGuess::circle(amplitude).unwrap()).unwrap()
+    solve(&problem, &circle(amplitude)).unwrap()
 }
 
 /// Shapes of the quarter, evenly in time.
@@ -77,7 +84,7 @@ fn a_bound_that_does_not_bind_changes_nothing() {
     let model = purcell();
     let free = solved(&model, 1.0, 1.3);
     let problem = CollocationProblem::new(&model, 1.0).with_max_angle(2.4);
-    let bounded = solve(&problem, &QuarterGuess::circle(1.3).unwrap()).unwrap();
+    let bounded = solve(&problem, &circle(1.3)).unwrap();
     assert!((bounded.efficiency - free.efficiency).abs() < 1e-12);
 }
 
@@ -85,12 +92,12 @@ fn a_bound_that_does_not_bind_changes_nothing() {
 #[test]
 fn bounded_gaits_do_not_depend_on_the_mesh() {
     for model in [purcell(), robot()] {
-        let mut guess = QuarterGuess::circle(1.3).unwrap();
+        let mut guess = AnyGait::circle(1.3);
         let mut before = f64::INFINITY;
         for max in [2.8, 2.4, 2.0, 1.6, 1.2] {
             let problem = CollocationProblem::new(&model, 1.0).with_max_angle(max);
             let refined = solve(&problem, &guess).unwrap();
-            guess = refined.guess();
+            guess = refined.gait().unwrap();
             let mut even = problem;
             (even.elements, even.degree) = (150, 3);
             let even = solve(&even, &guess).unwrap();
@@ -116,7 +123,7 @@ fn links_are_kept_apart() {
         let mut problem = CollocationProblem::new(&model, -1.0);
         problem.bounds.no_overlap = true;
         problem.bounds.clearance = clearance;
-        let apart = solve(&problem, &QuarterGuess::circle(3.3).unwrap()).unwrap();
+        let apart = solve(&problem, &circle(3.3)).unwrap();
         assert!(
             apart.efficiency < before,
             "{clearance}: {}",
@@ -147,7 +154,7 @@ fn spurious_optima_are_not_returned() {
     for max in [2.4, 2.6, 2.8, 3.0] {
         let mut problem = CollocationProblem::new(&model, -1.0).with_max_angle(max);
         problem.elements = 20;
-        if let Ok(solution) = solve(&problem, &QuarterGuess::circle(3.3).unwrap()) {
+        if let Ok(solution) = solve(&problem, &circle(3.3)) {
             assert!((solution.efficiency_again / solution.efficiency - 1.0).abs() < 0.02);
             solved += 1;
         }
@@ -158,19 +165,17 @@ fn spurious_optima_are_not_returned() {
 #[test]
 fn what_is_wrong_is_said() {
     let model = purcell();
-    let circle = QuarterGuess::circle(1.3).unwrap();
-    let wrong_way = solve(&CollocationProblem::new(&model, -1.0), &circle);
+    let start = circle(1.3);
+    let wrong_way = solve(&CollocationProblem::new(&model, -1.0), &start);
     assert!(matches!(wrong_way, Err(CollocationError::WrongWay { .. })));
     let bound = CollocationProblem::new(&model, 1.0).with_max_angle(-1.0);
-    let refused = solve(&bound, &circle).unwrap_err().to_string();
+    let refused = solve(&bound, &start).unwrap_err().to_string();
     assert!(refused.contains("max_angle = -1 rad"), "{refused}");
-    assert!(matches!(
-        QuarterGuess::from_samples(&[(0.0, [1.0, 1.0]); 5]),
-        Err(CollocationError::Guess { .. })
-    ));
+    let still = solve(&CollocationProblem::new(&model, 1.0), &circle(0.0));
+    assert!(matches!(still, Err(CollocationError::Guess { .. })));
     let mut coarse = CollocationProblem::new(&model, 1.0);
     (coarse.elements, coarse.degree) = (2, 2);
-    if let Ok(solution) = solve(&coarse, &circle) {
+    if let Ok(solution) = solve(&coarse, &start) {
         assert!((solution.efficiency_again / solution.efficiency - 1.0).abs() < 0.02);
     }
 }
@@ -207,9 +212,7 @@ fn never_a_wrong_gait() {
         let gait = SymmetricFourier {
             coefficients: &series,
         };
-        if let Ok(guess) = QuarterGuess::from_gait(&gait)
-            && let Ok(solution) = solve(&problem, &guess)
-        {
+        if let Ok(solution) = solve(&problem, &gait) {
             solved.set(solved.get() + 1);
             prop_assert!((solution.efficiency_again / solution.efficiency - 1.0).abs() < 1e-4);
             let stroke = swim(&model, &solution.gait().unwrap(), &Tolerance::default());

@@ -32,18 +32,10 @@ pub struct CollocationSolution {
 }
 impl CollocationSolution {
     pub fn phi(&self, t: f64) -> Vector2<f64> {}
-    pub fn guess(&self) -> QuarterGuess {}
     pub fn gait(&self) -> Result<AnyGait, CollocationError> {}
 }
-#[derive(Debug, Clone, PartialEq)]
-pub struct QuarterGuess {}
-impl QuarterGuess {
-    pub fn from_samples(samples: &[(f64, [f64; 2])]) -> Result<Self, CollocationError> {}
-    pub fn from_gait<G: Gait<f64>>(gait: &G) -> Result<Self, CollocationError> {}
-    pub fn circle(amplitude: f64) -> Result<Self, CollocationError> {}
-}
 pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, CollocationError> {}
-pub fn solve(
+pub fn solve<G: Gait<f64> + ?Sized>(
     problem: &CollocationProblem<'_>,
-    guess: &QuarterGuess,
+    guess: &G,
 ) -> Result<CollocationSolution, CollocationError> {}
