@@ -1,18 +1,16 @@
 //! An independent direct method: the quarter gait as a polygon with one degree of freedom a node, climbed on its own swum X.
 //!
 //! Nodes slide on fixed rays across a rough start, corners along the bound they lie on, the first and last along the
-//! diagonals. A projected Newton method with all second differences climbs the final x. The pose along a side is the product
-//! of fourth-order Magnus steps in SE(2); from the model it takes A(Φ) alone, from the library's gaits only the order of arcs.
-
-mod pose;
+//! diagonals. A projected Newton method with all second differences climbs the final x. From the model it takes A(Φ) alone, from
+//! the library's gaits only the order of arcs.
 
 use gait_optimizer::{ArcKind, OptimalGait};
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_files::AnyGait;
 use swimmer_model::{Model, Swimmer, Tolerance, swim};
 
+use crate::plane::Pose;
 use crate::swimmers::Apart;
-use pose::Pose;
 
 /// A node: where it is and how it may move.
 #[derive(Debug, Clone, Copy)]
@@ -31,7 +29,6 @@ enum Way {
 }
 
 pub(crate) struct Direct {
-    swimmer: Swimmer<f64>,
     model: Model<f64>,
     sign: f64,
     max_angle: f64,
@@ -61,8 +58,7 @@ impl Direct {
             })
             .collect();
         Self {
-            swimmer: *swimmer,
-            model: Model::new(swimmer).unwrap(),
+            model: Model::new(&swimmer.of_unit_length()).unwrap(),
             sign: 1.0,
             max_angle: f64::INFINITY,
             apart: None,
@@ -81,8 +77,7 @@ impl Direct {
         let quarter = gait.u().partition_point(|&u| u < 0.25 - 1e-12);
         let samples = &gait.phi()[..=quarter];
         let mut direct = Self {
-            swimmer: gait.swimmer,
-            model: Model::new(&gait.swimmer).unwrap(),
+            model: Model::new(&gait.swimmer.of_unit_length()).unwrap(),
             sign: gait.displacement_over_length.signum(),
             max_angle: bounds.max_angle.unwrap_or(f64::INFINITY),
             apart,
@@ -169,11 +164,11 @@ impl Direct {
     /// The pose from one node to the next.
     fn side(&self, k: usize, from: Vector2<f64>, to: Vector2<f64>) -> Pose {
         if !self.on_border[k] {
-            return Pose::along(&self.model, from, to);
+            return Pose::along(&self.model, [from, to]);
         }
         let points = self.border(from, to);
         points.windows(2).fold(Pose::default(), |pose, pair| {
-            pose * Pose::along(&self.model, pair[0], pair[1])
+            pose * Pose::along(&self.model, [pair[0], pair[1]])
         })
     }
 
@@ -216,7 +211,7 @@ impl Direct {
             before.push(before[before.len() - 1] * side[1][1]);
         }
         let whole = before[count - 1];
-        let after = |k: usize| before[k].inverse() * whole;
+        let after = |k: usize| inverse(before[k]) * whole;
         // What comes up to node k + 1 when node k has moved.
         let up_to = |k: usize, step: usize| {
             let start = if k == 0 {
@@ -252,7 +247,7 @@ impl Direct {
                     next
                 }
             } else {
-                let up = up_to(i, a) * before[i + 1].inverse() * before[j - 1];
+                let up = up_to(i, a) * inverse(before[i + 1]) * before[j - 1];
                 let next = up * sides[j - 1][1][b];
                 if j + 1 < count {
                     next * sides[j][b][1]
@@ -363,7 +358,16 @@ impl Direct {
         let corners: Vec<usize> = (0..phi.len()).collect();
         let gait = AnyGait::from_samples(&u, &phi, &corners).unwrap();
         let stroke = swim(&self.model, &gait, &Tolerance::new(1e-11));
-        stroke.displacement.x / self.swimmer.total_length()
+        stroke.displacement.x
+    }
+}
+
+fn inverse(pose: Pose) -> Pose {
+    let (sin, cos) = pose.theta.sin_cos();
+    Pose {
+        x: -(cos * pose.x + sin * pose.y),
+        y: sin * pose.x - cos * pose.y,
+        theta: -pose.theta,
     }
 }
 
