@@ -33,9 +33,9 @@ pub(crate) fn multiplier(model: &Model<f64>, wall: &Wall, state: &State) -> f64 
     let free = local.plain + local.gain * momentum(state).dot(&local.curvature);
     let e = nalgebra::Vector2::new(cos, sin);
     let bound = wall.turning(&phi, &e) / local.speed;
-    // On the left of the motion lies the region where the outward gradient points right.
+    // On the left of the motion lies the region where the margin grows to the left.
     let left = nalgebra::Vector2::new(-sin, cos);
-    let side = if wall.gradient(&phi).dot(&left) < 0.0 {
+    let side = if wall.level(&phi).gradient.dot(&left) > 0.0 {
         1.0
     } else {
         -1.0
