@@ -216,7 +216,7 @@ fn certified(
     let stroke = cycle.swum(model)?;
     let certificate =
         Certificate::of_displacement(region, &trace, &cycle, displacement_over_length, &stroke);
-    let arcs = trace.samples.arcs();
+    let arcs = cycle.arcs(true);
     let links_cross = cycle.links_cross(model);
     let mut gait = OptimalGait::new(Solution {
         objective: Objective::Displacement,
