@@ -1,8 +1,8 @@
 //! How long direct collocation takes, its own re-integration included.
 
-use collocation::{CollocationProblem, QuarterGuess, solve};
+use collocation::{CollocationProblem, solve};
 use criterion::{Criterion, criterion_group, criterion_main};
-use swimmer_model::{Model, Swimmer};
+use swimmer_model::{Circle, Model, Swimmer};
 
 fn solves(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("collocation");
@@ -12,45 +12,21 @@ fn solves(criterion: &mut Criterion) {
     ) else {
         return;
     };
-    let cases = [
-        (
-            "purcell small, circle",
-            &purcell,
-            1.0,
-            QuarterGuess::circle(1.3),
-        ),
-        (
-            "purcell large, circle",
-            &purcell,
-            -1.0,
-            QuarterGuess::circle(3.3),
-        ),
-        (
-            "robot small, circle",
-            &robot,
-            1.0,
-            QuarterGuess::circle(1.3),
-        ),
-        (
-            "robot large, circle",
-            &robot,
-            -1.0,
-            QuarterGuess::circle(3.3),
-        ),
-    ];
-    for (name, model, sign, guess) in cases {
-        let Ok(guess) = guess else { continue };
+    for (name, model, sign, amplitude) in [
+        ("purcell small, circle", &purcell, 1.0, 1.3),
+        ("purcell large, circle", &purcell, -1.0, 3.3),
+        ("robot small, circle", &robot, 1.0, 1.3),
+        ("robot large, circle", &robot, -1.0, 3.3),
+    ] {
         let problem = CollocationProblem::new(model, sign);
         group.bench_function(name, |bench| {
-            bench.iter(|| solve(&problem, &guess));
+            bench.iter(|| solve(&problem, &Circle { amplitude }));
         });
     }
     let bounded = CollocationProblem::new(&robot, 1.0).with_max_angle(1.6);
-    if let Ok(guess) = QuarterGuess::circle(1.3) {
-        group.bench_function("robot small within 1.6 rad", |bench| {
-            bench.iter(|| solve(&bounded, &guess));
-        });
-    }
+    group.bench_function("robot small within 1.6 rad", |bench| {
+        bench.iter(|| solve(&bounded, &Circle { amplitude: 1.3 }));
+    });
     group.finish();
 }
 

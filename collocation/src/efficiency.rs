@@ -5,7 +5,7 @@ use gait_optimizer::{
     efficiency_from,
 };
 
-use super::{CollocationError, CollocationProblem, CollocationSolution, QuarterGuess, solve};
+use super::{CollocationError, CollocationProblem, CollocationSolution, solve};
 
 /// Circles up to this amplitude are tried \[rad\].
 const LARGEST: f64 = 5.0;
@@ -32,7 +32,7 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Collocatio
         .iter()
         .filter(|circle| circle.displacement_over_length * branch.sign() > 0.0)
         .map(|circle| {
-            let guess = QuarterGuess::circle(circle.amplitude)?;
+            let guess = SimpleShape::Circle.gait(circle.amplitude);
             let solution = solve(&CollocationProblem::new(&model, branch.sign()), &guess)?;
             polished(problem, &solution)
         })

@@ -18,8 +18,8 @@ pub enum CollocationError {
     },
     /// The guess is no quarter gait.
     #[error(
-        "the guess for direct collocation is no quarter gait: {problem}; give at least three samples in order of time, from \
-         φ₁ = φ₂ > 0 to φ₁ = −φ₂"
+        "direct collocation cannot start from this gait: {problem}; give one whose first quarter runs from φ₁ = φ₂ > 0 to \
+         φ₁ = −φ₂"
     )]
     Guess {
         /// What is wrong with it.

@@ -28,13 +28,12 @@ mod tests;
 
 pub use efficiency::efficiency;
 pub use error::CollocationError;
-pub use guess::QuarterGuess;
-pub use solution::{BoundArc, CollocationNode, CollocationSolution};
+pub use solution::CollocationSolution;
 
 use gait_optimizer::region::{Bound, Region};
 use gait_optimizer::{Branch, EfficiencyProblem};
 use swimmer_files::Bounds;
-use swimmer_model::Model;
+use swimmer_model::{Gait, Model};
 
 use mesh::Mesh;
 use newton::Newton;
@@ -111,33 +110,41 @@ fn lighthill(model: &Model<f64>, x: f64, energy: f64) -> f64 {
     model.side_drag() * model.swimmer().total_length() * x * x / energy
 }
 
-/// Solves from a guess; one that leaves the bounds is shrunk.
+/// Solves from the first quarter of a gait that starts on φ₁ = φ₂ > 0 and runs counter-clockwise; one that leaves the bounds is
+/// shrunk.
 ///
 /// # Errors
 /// [`CollocationError`]: what is wrong with the problem or the guess, where the iteration stopped, or that the
 /// mesh is too coarse. A gait that does not survive its own re-integration is never returned.
 ///
 /// ```
-/// use collocation::{CollocationProblem, QuarterGuess, solve};
-/// use swimmer_model::{Model, Swimmer};
+/// use collocation::{CollocationProblem, solve};
+/// use swimmer_model::{Circle, Model, Swimmer};
 ///
 /// let model = Model::new(&Swimmer::purcell()).unwrap();
-/// let found = solve(&CollocationProblem::new(&model, 1.0), &QuarterGuess::circle(1.3)?)?;
+/// let found = solve(&CollocationProblem::new(&model, 1.0), &Circle { amplitude: 1.3 })?;
 /// assert!((found.efficiency - 0.012364154624).abs() < 1e-10);
 /// let within = CollocationProblem::new(&model, 1.0).with_max_angle(1.2);
-/// assert!(solve(&within, &found.guess())?.efficiency < found.efficiency);
+/// assert!(solve(&within, &found.gait()?)?.efficiency < found.efficiency);
 /// # Ok::<(), collocation::CollocationError>(())
 /// ```
-pub fn solve(
+pub fn solve<G: Gait<f64> + ?Sized>(
     problem: &CollocationProblem<'_>,
-    guess: &QuarterGuess,
+    guess: &G,
 ) -> Result<CollocationSolution, CollocationError> {
     let walls = problem.validate()?;
     let mesh = Mesh::new(problem.elements, problem.degree);
-    let phi = guess.on(problem.model, &mesh, &walls)?;
-    let optimum = Newton::new(problem.model, &mesh, &walls, problem.sign, phi).run()?;
-    let again = Reintegration::new(problem.model, &mesh, &walls, &optimum.path);
-    let solution = solution::finish(problem.model, mesh, &walls, optimum, &again);
+    let phi = guess::on_mesh(guess, problem.model, &mesh, &walls)?;
+    let path = Newton::new(problem.model, &mesh, &walls, problem.sign, phi).run()?;
+    let again = Reintegration::new(problem.model, &mesh, &walls, &path);
+    let efficiency = |x, energy| lighthill(problem.model, x, energy);
+    let solution = CollocationSolution {
+        efficiency: efficiency(path.final_x, path.final_energy),
+        efficiency_again: efficiency(again.final_x, again.final_energy),
+        overstepped: again.overstepped,
+        phi: path.phi,
+        mesh,
+    };
     let off = (solution.efficiency_again / solution.efficiency - 1.0).abs();
     if off <= TOLERANCE && again.final_x * problem.sign > 0.0 {
         return Ok(solution);

@@ -8,7 +8,7 @@
 mod preconditioner;
 
 use gait_optimizer::region::Bound;
-use nalgebra::{DMatrix, DVector, Matrix2, Matrix2xX};
+use nalgebra::{DMatrix, Matrix2, Matrix2xX};
 use swimmer_model::Model;
 
 use super::guess::bind_ends;
@@ -44,16 +44,6 @@ pub(crate) struct Newton<'a> {
     multipliers: DMatrix<f64>,
 }
 
-/// What the iteration ended with.
-#[derive(Debug)]
-pub(crate) struct Optimum {
-    pub(crate) path: Path,
-    pub(crate) multipliers: DMatrix<f64>,
-    /// Costate of θ at each node for `x_f` alone; the first entry is at t = 0.
-    pub(crate) lambda_theta: DVector<f64>,
-    pub(crate) iterations: usize,
-}
-
 /// A step towards the optimum of the barrier problem.
 #[derive(Debug)]
 struct Step {
@@ -86,7 +76,7 @@ impl<'a> Newton<'a> {
     }
 
     /// Iterates to an optimum.
-    pub(crate) fn run(mut self) -> Result<Optimum, CollocationError> {
+    pub(crate) fn run(mut self) -> Result<Path, CollocationError> {
         let mut barrier = if self.walls.is_empty() {
             0.0
         } else {
@@ -112,7 +102,7 @@ impl<'a> Newton<'a> {
                 return Err(self.stalled(iteration));
             };
             if next && barrier <= LAST_BARRIER {
-                return Ok(self.done(iteration));
+                return Ok(self.path);
             } else if next {
                 barrier = (barrier * 0.1).min(barrier.powf(1.5)).max(LAST_BARRIER);
                 here = self.merit(&self.path, barrier).unwrap_or(f64::INFINITY);
@@ -125,15 +115,6 @@ impl<'a> Newton<'a> {
         CollocationError::Stalled {
             iterations,
             efficiency: lighthill(self.model, self.path.final_x, self.path.final_energy),
-        }
-    }
-
-    fn done(self, iterations: usize) -> Optimum {
-        Optimum {
-            lambda_theta: self.path.slope(self.mesh).lambda_theta,
-            path: self.path,
-            multipliers: self.multipliers,
-            iterations,
         }
     }
 
@@ -185,7 +166,7 @@ impl<'a> Newton<'a> {
 
     /// Newton's step of the barrier problem, or as much of it as is convex.
     fn step(&self, barrier: f64) -> Step {
-        let slope = self.path.slope(self.mesh).by_phi;
+        let slope = self.path.slope(self.mesh);
         let gradient = self.gradient(&slope, barrier);
         let mut preconditioner = Preconditioner::new(&self.path, self.mesh);
         let mut curvature = vec![Matrix2::zeros(); self.mesh.len()];
@@ -202,7 +183,7 @@ impl<'a> Newton<'a> {
         let product = |along: &Matrix2xX<f64>| {
             let size = DIFFERENCE / along.amax();
             let moved = Path::new(self.model, self.mesh, &self.path.phi + along * size);
-            let mut changed = (moved.slope(self.mesh).by_phi - &slope) / size;
+            let mut changed = (moved.slope(self.mesh) - &slope) / size;
             for (point, curvature) in curvature.iter().enumerate() {
                 let mut column = changed.column_mut(point);
                 column += curvature * along.column(point);

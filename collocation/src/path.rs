@@ -2,7 +2,7 @@
 //!
 //! The collocated state equations are solved, not constrained. φ̇ = u makes u the slope of the polynomials; θ then follows by
 //! quadrature, and from it x and E. So every iterate is a gait of the discretised problem, and the objective is a plain
-//! function of the shapes. The multipliers of the eliminated equations are the discrete costates, found by going back.
+//! function of the shapes, whose gradient is found by going back.
 
 use nalgebra::{DVector, Matrix2xX, Matrix3xX, Vector2, Vector3};
 use swimmer_model::{FirstDerivatives, Model};
@@ -16,21 +16,12 @@ pub(crate) struct Path {
     pub(crate) phi: Matrix2xX<f64>,
     /// φ̇.
     pub(crate) control: Matrix2xX<f64>,
-    pub(crate) theta: DVector<f64>,
+    theta: DVector<f64>,
     /// ẋ, ẏ and Ė.
     rates: Matrix3xX<f64>,
     pub(crate) physics: Vec<FirstDerivatives<f64>>,
     pub(crate) final_x: f64,
     pub(crate) final_energy: f64,
-}
-
-/// What changes of the shapes do to the objective.
-#[derive(Debug, Clone)]
-pub(crate) struct Slope {
-    /// Of ln E − 2 ln x, per shape.
-    pub(crate) by_phi: Matrix2xX<f64>,
-    /// Costate of θ at each node, for `x_f` alone.
-    pub(crate) lambda_theta: DVector<f64>,
 }
 
 impl Path {
@@ -92,12 +83,11 @@ impl Path {
         (x > 0.0 && energy > 0.0 && value.is_finite()).then_some(value)
     }
 
-    /// The objective's gradient, by going back from the last element to the first.
-    pub(crate) fn slope(&self, mesh: &Mesh) -> Slope {
+    /// The gradient of ln E − 2 ln x, per shape, by going back from the last element to the first.
+    pub(crate) fn slope(&self, mesh: &Mesh) -> Matrix2xX<f64> {
         let (degree, per_time) = (mesh.rule.degree(), mesh.elements as f64);
         let (of_x, of_energy) = (-2.0 / self.final_x, 1.0 / self.final_energy);
         let mut by_phi = Matrix2xX::zeros(self.phi.ncols());
-        let mut lambda_theta = DVector::zeros(self.phi.ncols());
         // ∂x_f/∂θ of all later elements.
         let mut later = 0.0;
         for first in mesh.firsts().rev() {
@@ -110,16 +100,16 @@ impl Path {
                 .transpose()
                 .component_mul(&weights);
             let here = (&mesh.rule.integrals * &pull / per_time).component_div(&weights);
-            lambda_theta
-                .rows_mut(first + 1, degree)
-                .copy_from(&here.add_scalar(later));
+            let by_theta = here.add_scalar(later);
             later += pull.sum();
             let mut by_rate = Matrix2xX::zeros(degree);
             for node in 0..degree {
                 let point = first + 1 + node;
                 let (weight, physics) = (weights[node], &self.physics[point]);
                 let rate = self.control.column(point);
-                let carry = self.carry(point, lambda_theta[point]) * (of_x * weight);
+                let (sin, cos) = self.theta[point].sin_cos();
+                // What `x_f` gains from the body velocity.
+                let carry = Vector3::new(cos, -sin, by_theta[node]) * (of_x * weight);
                 let energy = of_energy * weight;
                 by_rate.set_column(
                     node,
@@ -134,34 +124,6 @@ impl Path {
             let mut shapes = by_phi.columns_mut(first, degree + 1);
             shapes += by_rate * mesh.rule.slopes.transpose() * per_time;
         }
-        lambda_theta[0] = later;
-        Slope {
-            by_phi,
-            lambda_theta,
-        }
-    }
-
-    /// What `x_f` gains from the body velocity at a point.
-    pub(crate) fn carry(&self, point: usize, lambda_theta: f64) -> Vector3<f64> {
-        let (sin, cos) = self.theta[point].sin_cos();
-        Vector3::new(cos, -sin, lambda_theta)
-    }
-
-    /// x, y and E at every point.
-    pub(crate) fn travelled(&self, mesh: &Mesh) -> Matrix3xX<f64> {
-        let degree = mesh.rule.degree();
-        let mut all = Matrix3xX::zeros(self.phi.ncols());
-        for first in mesh.firsts() {
-            let rates = self.rates.columns(first + 1, degree) / mesh.elements as f64;
-            let start = all.column(first).into_owned();
-            for (mut state, moved) in all
-                .columns_mut(first + 1, degree)
-                .column_iter_mut()
-                .zip((rates * &mesh.rule.integrals).column_iter())
-            {
-                state.copy_from(&(start + moved));
-            }
-        }
-        all
+        by_phi
     }
 }

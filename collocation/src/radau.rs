@@ -78,12 +78,6 @@ impl Rule {
             .zip_map(&self.points, |weight, point| weight / (tau - point));
         &shares / shares.sum()
     }
-
-    /// What each of the d nodes counts in the value at 0 of the polynomial of degree d − 1 through them, such as the rate.
-    pub(crate) fn shares_at_start(&self) -> DVector<f64> {
-        let shares = self.barycentric.rows(1, self.degree());
-        shares / shares.sum()
-    }
 }
 
 /// 0 and the zeros of `P_d − P_{d−1}`, brought from \[−1, 1\] to \[0, 1\]: eigenvalues of the Jacobi matrix of Legendre's

@@ -4,7 +4,7 @@
 //! the discretisation lives on just that.
 
 use gait_optimizer::region::Bound;
-use nalgebra::{DVector, Matrix2xX};
+use nalgebra::Matrix2xX;
 use swimmer_model::Model;
 
 use super::mesh::Mesh;
@@ -16,8 +16,6 @@ use super::radau::HIGHEST_DEGREE;
 pub(crate) struct Reintegration {
     pub(crate) final_x: f64,
     pub(crate) final_energy: f64,
-    /// y at every point of the mesh.
-    pub(crate) y: DVector<f64>,
     /// How far it is beyond a bound between the nodes, where nothing keeps it, in rad or over L.
     pub(crate) overstepped: f64,
 }
@@ -30,7 +28,6 @@ impl Reintegration {
             column.copy_from(&mesh.shape(&path.phi, t));
         }
         let swum = Path::new(model, &fine, phi);
-        let travelled = swum.travelled(&fine).fixed_rows::<2>(0).into_owned();
         let beyond = |wall: &Bound| {
             let shapes = swum.phi.column_iter();
             shapes.fold(0.0, |most: f64, phi| {
@@ -40,7 +37,6 @@ impl Reintegration {
         Self {
             final_x: swum.final_x,
             final_energy: swum.final_energy,
-            y: mesh.times.map(|t| fine.shape(&travelled, t).y),
             overstepped: walls.iter().map(beyond).fold(0.0, f64::max),
         }
     }

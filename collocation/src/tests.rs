@@ -5,7 +5,10 @@ use std::cell::Cell;
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
-use swimmer_model::{Links, Model, Swimmer, SymmetricFourier, TangentialDrag};
+use swimmer_files::AnyGait;
+use swimmer_model::{
+    Circle, Links, Model, Swimmer, SymmetricFourier, TangentialDrag, Tolerance, swim,
+};
 
 use super::*;
 
@@ -18,9 +21,31 @@ fn robot() -> Model<f64> {
     Model::new(&Swimmer::robot()).unwrap()
 }
 
+fn circle(amplitude: f64) -> Circle<f64> {
+    Circle { amplitude }
+}
+
 fn solved(model: &Model<f64>, sign: f64, amplitude: f64) -> CollocationSolution {
     let problem = CollocationProblem::new(model, sign);
-    solve(&problem, &QuarterGuess::circle(amplitude).unwrap()).unwrap()
+    solve(&problem, &circle(amplitude)).unwrap()
+}
+
+/// Shapes of the quarter, evenly in time.
+fn shapes(solution: &CollocationSolution) -> Vec<Vector2<f64>> {
+    let times = (0..=1000).map(|step| f64::from(step) / 1000.0);
+    times.map(|t| solution.phi(t)).collect()
+}
+
+/// How often the direction turns round in a cycle, which crosses the symmetry lines square: 1 for a simple counter-clockwise curve.
+fn turns(solution: &CollocationSolution) -> f64 {
+    let shapes = shapes(solution);
+    let mut sides: Vec<Vector2<f64>> = shapes.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    sides.insert(0, Vector2::new(-1.0, 1.0));
+    sides.push(Vector2::new(-1.0, -1.0));
+    let turned = sides
+        .windows(2)
+        .map(|pair| pair[0].perp(&pair[1]).atan2(pair[0].dot(&pair[1])));
+    4.0 * turned.sum::<f64>() / std::f64::consts::TAU
 }
 
 /// The numbers of both optima of Purcell's swimmer, from circles.
@@ -32,17 +57,16 @@ fn purcell_both_gaits_from_circles() {
         "{}",
         small.efficiency
     );
-    let [phi1, phi2, _, theta, _] = small.nodes.last().unwrap().state;
-    assert!((phi1.abs() - 0.840_201_02).abs() < 1e-7 && (phi1 + phi2).abs() < 1e-14);
-    assert!((theta.abs() - 0.507_623_64).abs() < 1e-7);
-    assert!((small.nodes[0].state[0] - 1.044_257_42).abs() < 1e-7);
+    let end = small.phi(1.0);
+    assert!((end.x.abs() - 0.840_201_02).abs() < 1e-7 && end.sum().abs() < 1e-14);
+    assert!((small.phi(0.0).x - 1.044_257_42).abs() < 1e-7);
     let large = solved(&purcell(), -1.0, 3.3);
     assert!(
         (large.efficiency - 0.018_102_560_473).abs() < 1e-11,
         "{}",
         large.efficiency
     );
-    assert!((large.nodes[0].state[0] - 2.635_472_13).abs() < 1e-7);
+    assert!((large.phi(0.0).x - 2.635_472_13).abs() < 1e-7);
     assert!((large.efficiency / small.efficiency - 1.4641).abs() < 1e-4);
 }
 
@@ -55,131 +79,31 @@ fn robot_both_gaits_from_circles() {
     assert!((ratio - 1.453).abs() < 1e-3, "{ratio}");
 }
 
-/// The costates by covector mapping obey what the maximum principle says of them, though nothing enforced it between nodes.
-#[test]
-fn costates_obey_the_maximum_principle() {
-    for (model, sign, amplitude) in [
-        (purcell(), 1.0, 1.3),
-        (purcell(), -1.0, 3.3),
-        (robot(), 1.0, 1.3),
-        (robot(), -1.0, 3.3),
-    ] {
-        let solution = solved(&model, sign, amplitude);
-        let last = solution.nodes.last().unwrap();
-        let first = &solution.nodes[0];
-        let [l1, l2, l3, ..] = first.costate;
-        let scale = l1.abs();
-        assert!((l1 + l2).abs() < 1e-7 * scale, "{l1} {l2}");
-        assert!((last.costate[0] - last.costate[1]).abs() < 1e-7 * scale);
-        assert!((l3 - 2.0 * solution.final_x / solution.final_energy).abs() < 1e-12 * l3.abs());
-        let merit = solution.final_x.powi(2) / solution.final_energy;
-        let length = model.swimmer().total_length();
-        for node in &solution.nodes {
-            let [l1, l2, l3, l4, l5] = node.costate;
-            assert!((l5 + l3 * l3 / 4.0).abs() < 1e-12 * l5.abs());
-            // λ₄ = λ₃ (y − y_f), with y from another integrator.
-            assert!((l4 - l3 * (node.y - last.y)).abs() < 1e-8 * (l3 * length).abs());
-            // H ≡ x_f²/(E_f t_f).
-            let phi = Vector2::new(node.state[0], node.state[1]);
-            let u = Vector2::from(node.control);
-            let velocity = model.full_connection(&phi, node.state[3]) * u;
-            let power = u.dot(&(model.power_matrix(&phi) * u));
-            let h = l1 * u.x + l2 * u.y + l3 * velocity.x + l4 * velocity.z + l5 * power;
-            assert!(
-                (h / merit - 1.0).abs() < 1e-7,
-                "t = {}: {}",
-                node.t,
-                h / merit
-            );
-        }
-    }
-}
-
-/// λ̇ = −∂H/∂φ: the slopes of the costates' own polynomials satisfy the adjoint equation, which was never written down.
-#[test]
-fn costates_obey_the_adjoint_equation() {
-    let model = purcell();
-    let solution = solved(&model, -1.0, 3.3);
-    let rate = |node: &CollocationNode, i: usize| {
-        let [.., l3, l4, l5] = node.costate;
-        let phi = Vector2::new(node.state[0], node.state[1]);
-        let u = Vector2::from(node.control);
-        let first = model.first_derivatives(&phi);
-        let slope = first.at_heading(node.state[3]).d_phi[i] * u;
-        -(l3 * slope.x + l4 * slope.z + l5 * u.dot(&(first.d_power[i] * u)))
-    };
-    for i in 0..2 {
-        let mesh = &solution.mesh;
-        let degree = mesh.rule.degree();
-        for (k, first) in mesh.firsts().enumerate().skip(1) {
-            let nodes = &solution.nodes[first..=first + degree];
-            for j in 1..=degree {
-                let slope: f64 = mesh
-                    .rule
-                    .slopes
-                    .column(j - 1)
-                    .iter()
-                    .zip(nodes)
-                    .map(|(share, node)| share * node.costate[i] * mesh.elements as f64)
-                    .sum();
-                let exact = rate(&nodes[j], i);
-                assert!(
-                    (slope - exact).abs() < 1e-5 * solution.nodes[0].costate[0].abs(),
-                    "element {k}, t = {}: {slope} {exact}",
-                    nodes[j].t
-                );
-            }
-        }
-    }
-}
-
 #[test]
 fn a_bound_that_does_not_bind_changes_nothing() {
     let model = purcell();
     let free = solved(&model, 1.0, 1.3);
     let problem = CollocationProblem::new(&model, 1.0).with_max_angle(2.4);
-    let bounded = solve(&problem, &QuarterGuess::circle(1.3).unwrap()).unwrap();
+    let bounded = solve(&problem, &circle(1.3)).unwrap();
     assert!((bounded.efficiency - free.efficiency).abs() < 1e-12);
-    assert!(bounded.bound_arcs.is_empty());
-}
-
-/// Two resolutions of a binding bound agree; its multiplier is that of the gain in ξ per radian of `φ_max`.
-#[test]
-fn the_multiplier_is_the_price_of_the_bound() {
-    let model = purcell();
-    let at = |max: f64| {
-        let problem = CollocationProblem::new(&model, 1.0).with_max_angle(max);
-        solve(&problem, &QuarterGuess::circle(1.3).unwrap()).unwrap()
-    };
-    let here = at(1.2);
-    assert_eq!(here.bound_arcs.len(), 1, "{:?}", here.bound_arcs);
-    assert!(here.bound_arcs[0].normal[1] > 0.999);
-    let step = 1e-3;
-    let slope = (at(1.2 + step).efficiency - at(1.2 - step).efficiency) / (2.0 * step);
-    let mut price = 0.0;
-    for (node, weight) in here.nodes.iter().zip(&here.mesh.weights).skip(1) {
-        price += weight * node.bound_force[1];
-    }
-    let price = price * model.side_drag() * model.swimmer().total_length();
-    assert!((price / slope - 1.0).abs() < 1e-4, "{price} {slope}");
 }
 
 /// ξ under tightening bounds, each solved from the last, against the same problem on meshes of another degree.
 #[test]
 fn bounded_gaits_do_not_depend_on_the_mesh() {
     for model in [purcell(), robot()] {
-        let mut guess = QuarterGuess::circle(1.3).unwrap();
+        let mut guess = AnyGait::circle(1.3);
         let mut before = f64::INFINITY;
         for max in [2.8, 2.4, 2.0, 1.6, 1.2] {
             let problem = CollocationProblem::new(&model, 1.0).with_max_angle(max);
             let refined = solve(&problem, &guess).unwrap();
-            guess = refined.guess();
+            guess = refined.gait().unwrap();
             let mut even = problem;
             (even.elements, even.degree) = (150, 3);
             let even = solve(&even, &guess).unwrap();
             let off = even.efficiency / refined.efficiency - 1.0;
             assert!(off.abs() < 1e-6, "φ_max = {max}: {off:.1e}");
-            assert!((refined.turning_number - 1.0).abs() < 1e-9);
+            assert!((turns(&refined) - 1.0).abs() < 1e-9);
             assert!(refined.overstepped < 1e-5);
             assert!(refined.efficiency <= before * (1.0 + 1e-9));
             before = refined.efficiency;
@@ -193,26 +117,30 @@ fn links_are_kept_apart() {
     let model = purcell();
     let free = solved(&model, -1.0, 3.3);
     let links = model.swimmer().links;
-    assert!(
-        free.nodes
-            .iter()
-            .any(|node| { links.overlap(&Vector2::new(node.state[0], node.state[1])) > 0.0 })
-    );
+    assert!(shapes(&free).iter().any(|phi| links.overlap(phi) > 0.0));
     let mut before = free.efficiency;
     for clearance in [0.0, 0.06, 0.3] {
         let mut problem = CollocationProblem::new(&model, -1.0);
         problem.bounds.no_overlap = true;
         problem.bounds.clearance = clearance;
-        let apart = solve(&problem, &QuarterGuess::circle(3.3).unwrap()).unwrap();
+        let apart = solve(&problem, &circle(3.3)).unwrap();
         assert!(
             apart.efficiency < before,
             "{clearance}: {}",
             apart.efficiency
         );
         before = apart.efficiency;
-        assert_eq!(apart.bound_arcs[0].kind, swimmer_files::ArcKind::Clearance);
-        for step in 0..=1000 {
-            let phi = apart.phi(f64::from(step) / 1000.0);
+        let region = Region::new(&problem.bounds, &links);
+        let nearest = |phi: &Vector2<f64>| {
+            let margins = region.bounds().map(|bound| bound.smooth_level(phi).value);
+            margins.fold(f64::INFINITY, f64::min)
+        };
+        let margins = shapes(&apart)
+            .iter()
+            .map(nearest)
+            .fold(f64::INFINITY, f64::min);
+        assert!(margins < 1e-4, "{clearance}: {margins}");
+        for phi in shapes(&apart) {
             assert!(links.overlap(&phi) < 1e-4, "{clearance}: {phi:?}");
         }
     }
@@ -226,7 +154,7 @@ fn spurious_optima_are_not_returned() {
     for max in [2.4, 2.6, 2.8, 3.0] {
         let mut problem = CollocationProblem::new(&model, -1.0).with_max_angle(max);
         problem.elements = 20;
-        if let Ok(solution) = solve(&problem, &QuarterGuess::circle(3.3).unwrap()) {
+        if let Ok(solution) = solve(&problem, &circle(3.3)) {
             assert!((solution.efficiency_again / solution.efficiency - 1.0).abs() < 0.02);
             solved += 1;
         }
@@ -237,19 +165,17 @@ fn spurious_optima_are_not_returned() {
 #[test]
 fn what_is_wrong_is_said() {
     let model = purcell();
-    let circle = QuarterGuess::circle(1.3).unwrap();
-    let wrong_way = solve(&CollocationProblem::new(&model, -1.0), &circle);
+    let start = circle(1.3);
+    let wrong_way = solve(&CollocationProblem::new(&model, -1.0), &start);
     assert!(matches!(wrong_way, Err(CollocationError::WrongWay { .. })));
     let bound = CollocationProblem::new(&model, 1.0).with_max_angle(-1.0);
-    let refused = solve(&bound, &circle).unwrap_err().to_string();
+    let refused = solve(&bound, &start).unwrap_err().to_string();
     assert!(refused.contains("max_angle = -1 rad"), "{refused}");
-    assert!(matches!(
-        QuarterGuess::from_samples(&[(0.0, [1.0, 1.0]); 5]),
-        Err(CollocationError::Guess { .. })
-    ));
+    let still = solve(&CollocationProblem::new(&model, 1.0), &circle(0.0));
+    assert!(matches!(still, Err(CollocationError::Guess { .. })));
     let mut coarse = CollocationProblem::new(&model, 1.0);
     (coarse.elements, coarse.degree) = (2, 2);
-    if let Ok(solution) = solve(&coarse, &circle) {
+    if let Ok(solution) = solve(&coarse, &start) {
         assert!((solution.efficiency_again / solution.efficiency - 1.0).abs() < 0.02);
     }
 }
@@ -286,17 +212,13 @@ fn never_a_wrong_gait() {
         let gait = SymmetricFourier {
             coefficients: &series,
         };
-        if let Ok(guess) = QuarterGuess::from_gait(&gait)
-            && let Ok(solution) = solve(&problem, &guess)
-        {
+        if let Ok(solution) = solve(&problem, &gait) {
             solved.set(solved.get() + 1);
             prop_assert!((solution.efficiency_again / solution.efficiency - 1.0).abs() < 1e-4);
-            prop_assert!(solution.final_x * problem.sign > 0.0);
-            if let Some(max) = problem.bounds.max_angle {
-                for node in &solution.nodes {
-                    prop_assert!(node.state[0].abs() <= max && node.state[1].abs() <= max);
-                }
-            }
+            let stroke = swim(&model, &solution.gait().unwrap(), &Tolerance::default());
+            prop_assert!(stroke.displacement.x * problem.sign > 0.0);
+            let max = problem.bounds.max_angle.unwrap_or(f64::INFINITY);
+            prop_assert!(solution.phi.amax() <= max);
         }
         Ok(())
     });

@@ -1,9 +1,10 @@
 //! Bounded efficiency gaits: by arcs of the maximum principle and by direct collocation, which share no equations but A and W.
 
-use collocation::{CollocationProblem, QuarterGuess, solve};
+use collocation::{CollocationProblem, solve};
 use gait_optimizer::{
     ArcKind, Bounds, Branch, EfficiencyError, EfficiencyProblem, OptimalGait, efficiency,
 };
+use swimmer_files::AnyGait;
 use swimmer_model::{Model, Swimmer};
 
 fn bounded(
@@ -27,20 +28,14 @@ fn by_collocation(swimmer: Swimmer<f64>, gait: &OptimalGait, max_angle: f64) -> 
     let sign = gait.displacement_over_length.signum();
     let problem = CollocationProblem::new(&model, sign).with_max_angle(max_angle);
     // Every eighth sample, to two digits: a guess, no more.
-    let quarter: Vec<_> = gait
+    let (u, phi): (Vec<_>, Vec<_>) = gait
         .u()
         .iter()
         .zip(gait.phi())
-        .filter(|(u, _)| **u <= 0.25)
         .step_by(8)
-        .map(|(u, phi)| {
-            (
-                *u,
-                [phi.x, phi.y].map(|angle| (angle * 100.0).round() / 100.0),
-            )
-        })
-        .collect();
-    let guess = QuarterGuess::from_samples(&quarter).unwrap();
+        .map(|(u, phi)| (*u, phi.map(|angle| (angle * 100.0).round() / 100.0)))
+        .unzip();
+    let guess = AnyGait::from_samples(&u, &phi, &[]).unwrap();
     solve(&problem, &guess).unwrap().efficiency
 }
 

@@ -73,6 +73,27 @@ impl Cycle {
         }
     }
 
+    /// The arcs with their joint angles; where the cycle is symmetric, those of its first quarter tell all.
+    pub(crate) fn arcs(&self, symmetric: bool) -> Vec<Arc> {
+        let until = if symmetric { 0.25 } else { 1.0 };
+        let at = |u: f64, close: f64| {
+            let index = self.u.partition_point(|&place| place < u - close);
+            let phi = self.phi.get(index);
+            phi.map_or([f64::NAN; 2], |phi| [phi.x, phi.y])
+        };
+        let arcs = self.arcs.iter().filter(|arc| arc.from < until - 1e-9);
+        arcs.map(|arc| Arc {
+            kind: arc.kind,
+            from: at(arc.from, 1e-12),
+            to: if arc.to > until + 1e-9 {
+                at(until, 1e-9)
+            } else {
+                at(arc.to, 1e-12)
+            },
+        })
+        .collect()
+    }
+
     pub(crate) fn gait(&self) -> Result<AnyGait, InvalidSamples> {
         let corners: Vec<usize> = self
             .corners
@@ -109,17 +130,6 @@ impl Samples {
             from: self.place(from),
             to: self.place(to),
         })
-    }
-
-    /// The arcs with their joint angles.
-    pub(crate) fn arcs(&self) -> Vec<Arc> {
-        let at = |i: usize| self.phi.get(i).map_or([f64::NAN; 2], |phi| [phi.x, phi.y]);
-        let arcs = self.arcs.iter().map(|&(kind, from, to)| Arc {
-            kind,
-            from: at(from),
-            to: at(to),
-        });
-        arcs.collect()
     }
 
     /// The cycle of a closed curve.

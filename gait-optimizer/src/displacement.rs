@@ -3,7 +3,6 @@
 mod best;
 mod error;
 pub(crate) mod flow;
-pub(crate) mod height;
 mod near;
 mod search;
 mod start_family;
@@ -217,13 +216,13 @@ fn certified(
     (bounds, region): (&Bounds, &Region),
     candidate: &Candidate,
 ) -> Option<OptimalGait> {
-    let trace = traced(problem, model, region, candidate, problem.quarter_samples)?;
+    let trace = traced(model, region, candidate, problem.quarter_samples)?;
     let cycle = trace.cycle();
     let displacement_over_length = 4.0 * candidate.quarter.end[2];
     let stroke = cycle.swum(model)?;
     let certificate =
         Certificate::of_displacement(region, &trace, &cycle, displacement_over_length, &stroke);
-    let arcs = trace.samples.arcs();
+    let arcs = cycle.arcs(true);
     let links_cross = cycle.links_cross(model);
     let mut gait = OptimalGait::new(Solution {
         objective: Objective::Displacement,
@@ -246,19 +245,13 @@ fn certified(
 
 /// A candidate's quarter, sampled; none where it cannot be traced.
 fn traced(
-    problem: &DisplacementProblem,
     model: &Model<f64>,
     region: &Region,
     candidate: &Candidate,
     samples: usize,
 ) -> Option<QuarterTrace> {
-    let extremal = height::Extremal {
-        model,
-        sign: problem.heading().sign(),
-        final_y: candidate.final_y,
-    };
     let legs: Vec<_> = search::lasting(candidate.quarter.legs()).copied().collect();
-    QuarterTrace::new(extremal, region, &legs, samples)
+    QuarterTrace::new((model, candidate.momentum), region, &legs, samples)
 }
 
 #[cfg(test)]

@@ -229,8 +229,8 @@ impl Extremal {
         samples: usize,
     ) -> Option<Vec<nalgebra::Vector2<f64>>> {
         let parts = if self.class == Class::Quarter { 4 } else { 1 };
-        let sampled = sampled::Sampled::new(model, &self.solved.chain, samples / parts)?;
-        Some(sampled.cycle(self.class).phi)
+        let cycle = sampled::sampled(model, self.class, &self.solved.chain, samples / parts);
+        Some(cycle?.phi)
     }
 
     /// λ₃ = p·x̂ in the frame of the first shape: the sign of X for a quarter.

@@ -4,16 +4,17 @@
 //! With p dual to the net displacement and c to the net rotation, the momentum in the middle link's own frame is
 //! `μ = (p_x cos θ + p_y sin θ, −p_x sin θ + p_y cos θ, p_x y − p_y x + c)`; its third part is the paper's λ₄ (there
 //! p = (λ₃, 0) and `c = −λ₃ y_f`). A small push of the curve to the right of its motion gains the height h = μ · F(Φ) a unit of
-//! area, F = dA + \[A₁, A₂\]; h is minus the paper's `F = F₁ λ₃ + F₂ λ₄`.
+//! area, F = dA + \[A₁, A₂\]; h is minus the paper's `F = F₁ λ₃ + F₂ λ₄`. It holds on bounds too, and unlike `λ₄ = −F₁/F₂` it is
+//! regular on φ₁ = −φ₂.
 
 mod arc;
 mod motion;
+#[cfg(test)]
+mod tests;
 
 use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
 use swimmer_model::{Model, SecondDerivatives};
 
-#[cfg(test)]
-pub(crate) use arc::pose_rates;
 pub(crate) use arc::{Flow, State, pose, shape};
 pub(crate) use motion::{Motion, Track};
 

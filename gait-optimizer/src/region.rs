@@ -148,10 +148,7 @@ impl Bound {
 
     /// Unit vector along the bound with the region on its left. Off the bound: along the curve of equal margin.
     pub(crate) fn tangent(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        match self {
-            Self::Straight(edge) => edge.counter_clockwise(),
-            Self::Clearance(clearance) => clearance.deciding_level(phi).tangent(),
-        }
+        self.level(phi).tangent()
     }
 
     /// A shape on the bound near this one: the nearest one of an edge; for the clearance along the margin's gradient, to

@@ -202,7 +202,7 @@ pub fn robust_displacement(
         found => found?,
     };
     let values = ensemble.values(&family, &found.point, sign);
-    let (cycle, arcs) = cycle::of_arcs(&ensemble.nominal.model, &family, &found.point);
+    let cycle = cycle::of_arcs(&ensemble.nominal.model, &family, &found.point);
     let mut checks = certificate::of_arcs(&family, &found.point, &found.weighted);
     checks.extend(certificate::of_curve(
         &cycle,
@@ -224,7 +224,7 @@ pub fn robust_displacement(
         Objective::Displacement,
         (&swimmer, problem.bounds),
         &ensemble,
-        (cycle, arcs),
+        cycle,
         checks,
         robustness,
     )
@@ -279,8 +279,8 @@ pub fn robust_efficiency(
     let values = ensemble.values(&family, &found.point, 1.0);
     let nominal = ensemble.values(&family, &family.start(), 1.0);
     let cycle_of = |x| cycle::of_series(&FourierFamily::gait(x));
-    let (cycle, arcs) = cycle_of(&found.point);
-    let (optimum, _) = cycle_of(&family.start());
+    let cycle = cycle_of(&found.point);
+    let optimum = cycle_of(&family.start());
     let by = certificate::overstepped(&cycle, bounds, &swimmer.links);
     if by > 1e-10 {
         let bounds = *bounds;
@@ -303,7 +303,7 @@ pub fn robust_efficiency(
         Objective::Efficiency,
         (&swimmer, *bounds),
         &ensemble,
-        (cycle, arcs),
+        cycle,
         checks,
         robustness,
     )
@@ -316,7 +316,7 @@ fn finish(
     objective: Objective,
     (swimmer, bounds): (&Swimmer<f64>, Bounds),
     ensemble: &Ensemble<'_>,
-    (cycle, arcs): (Cycle, Vec<crate::Arc>),
+    cycle: Cycle,
     checks: Vec<crate::Check>,
     robustness: Robustness,
 ) -> Result<RobustGait, RobustError> {
@@ -337,7 +337,7 @@ fn finish(
             swimmer: *swimmer,
             bounds,
             symmetric: true,
-            arcs,
+            arcs: cycle.arcs(true),
             cycle,
             stroke,
             links_cross,

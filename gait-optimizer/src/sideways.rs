@@ -29,7 +29,7 @@ use crate::optimal_gait::Solution;
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
 use crate::{
-    Arc, AtlasProblem, DisplacementError, DisplacementProblem, Heading, OptimalGait, Watch,
+    AtlasProblem, DisplacementError, DisplacementProblem, Heading, OptimalGait, Watch,
     atlas_watched, displacement,
 };
 use square::turned;
@@ -161,15 +161,8 @@ pub fn sideways_watched(
 /// The gait of a swimmer that was turned end for end, as the swimmer itself runs it; none where it is not certified.
 fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sideways> {
     let model = Model::new(&problem.swimmer.of_unit_length()).ok()?;
-    let turned = |[one, two]: [f64; 2]| [-two, -one];
-    let theirs = &found.gait;
-    let arcs = theirs.arcs.iter().rev().map(|arc| Arc {
-        kind: arc.kind,
-        from: turned(arc.to),
-        to: turned(arc.from),
-    });
-    let cycle = theirs.turned_end_for_end();
-    let gait = certified(gait((problem, &model), (cycle, arcs.collect()))?);
+    let cycle = found.gait.turned_end_for_end();
+    let gait = certified(gait((problem, &model), cycle)?);
     gait.certificate.pass().then(|| Sideways {
         lateral_over_length: gait.lateral_over_length,
         gait,
@@ -178,17 +171,14 @@ fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sid
 }
 
 /// A cycle as a gait, not yet certified; none where it cannot be swum.
-fn gait(
-    (problem, model): (&SidewaysProblem, &Model<f64>),
-    (cycle, arcs): (Cycle, Vec<Arc>),
-) -> Option<OptimalGait> {
+fn gait((problem, model): (&SidewaysProblem, &Model<f64>), cycle: Cycle) -> Option<OptimalGait> {
     Some(OptimalGait::new(Solution {
         objective: Objective::Sideways,
         swimmer: problem.swimmer,
         bounds: problem.bounds,
         symmetric: false,
         links_cross: cycle.links_cross(model),
-        arcs,
+        arcs: cycle.arcs(false),
         stroke: cycle.swum(model)?,
         cycle,
         certificate: Certificate::unasked(),
@@ -235,7 +225,7 @@ fn sampled_as_asked(
     found.extend(
         on_bound::candidates(&model, &region, problem.samples)
             .into_iter()
-            .filter_map(|trace| gait((problem, &model), (trace.cycle, trace.arcs))),
+            .filter_map(|cycle| gait((problem, &model), cycle)),
     );
     found.sort_by(|a, b| across(b).total_cmp(&across(a)));
     let count = found.len();

@@ -38,7 +38,7 @@ use crate::certify::certified;
 use crate::cycle::{Cycle, Samples};
 use crate::height_map::legendre::gauss;
 use crate::height_map::{Level, LevelSearch, level_seeds};
-use crate::optimal_gait::{Arc, Solution};
+use crate::optimal_gait::Solution;
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
 use crate::{Certificate, OptimalGait};
@@ -308,7 +308,6 @@ fn power_lengths(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Vec<f64> {
 
 /// A loop round a region, swum.
 struct Loop {
-    arcs: Vec<Arc>,
     cycle: Cycle,
     stroke: Stroke<f64>,
 }
@@ -316,10 +315,8 @@ struct Loop {
 impl Loop {
     /// None where the pieces make no gait.
     fn new(pieces: &[Piece], model: &Model<f64>) -> Option<Self> {
-        let samples = sampled(pieces, model)?;
-        let cycle = samples.closed();
+        let cycle = sampled(pieces, model)?.closed();
         Some(Self {
-            arcs: samples.arcs(),
             stroke: cycle.swum(model)?,
             cycle,
         })
@@ -331,7 +328,7 @@ impl Loop {
             swimmer: problem.swimmer,
             bounds,
             symmetric: false,
-            arcs: self.arcs,
+            arcs: self.cycle.arcs(false),
             links_cross: self.cycle.links_cross(model),
             cycle: self.cycle,
             stroke: self.stroke,

@@ -6,7 +6,7 @@ mod plane;
 use gait_optimizer::{
     Bounds, DisplacementProblem, Heading, Member, Suprema, Supremum, displacement,
 };
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector2;
 use plane::Pose;
 use swimmer_files::AnyGait;
 use swimmer_model::{Model, Swimmer, Tolerance, swim};
@@ -101,31 +101,6 @@ fn members_are_gaits_that_grow() {
     }
 }
 
-/// The pose along a straight side: exponentials of A at the middles of short steps.
-fn along(model: &Model<f64>, from: Shape, to: Shape) -> Pose {
-    let way = to - from;
-    let count = (1..1000)
-        .find(|&count| way.norm() <= 0.01 * f64::from(count))
-        .unwrap_or(1000);
-    let steps = f64::from(count);
-    (0..count).fold(Pose::default(), |pose, k| {
-        let middle = from + way * ((f64::from(k) + 0.5) / steps);
-        let body: Vector3<f64> = model.local_connection(&middle) * way / steps;
-        let half = 0.5 * body.z;
-        let sinc = if half.abs() < 1e-9 {
-            1.0
-        } else {
-            half.sin() / half
-        };
-        let (sin, cos) = half.sin_cos();
-        pose * Pose {
-            x: sinc * (cos * body.x - sin * body.y),
-            y: sinc * (sin * body.x + cos * body.y),
-            theta: body.z,
-        }
-    })
-}
-
 /// Moves one corner at a time across the polygon, where that carries farther and the polygon stays a gait's quarter: nothing is
 /// known of heights, gaps or slits.
 struct PatternSearch<'a> {
@@ -138,7 +113,7 @@ impl PatternSearch<'_> {
     fn sides(&self) -> Vec<Pose> {
         let sides = self.corners.windows(2);
         sides
-            .map(|side| along(&self.model, side[0], side[1]))
+            .map(|side| Pose::along(&self.model, [side[0], side[1]]))
             .collect()
     }
 
@@ -167,7 +142,7 @@ impl PatternSearch<'_> {
                     self.corners[k] + across * t,
                     self.corners[k + 1],
                 ];
-                let fresh = [along(&self.model, a, b), along(&self.model, b, c)];
+                let fresh = [[a, b], [b, c]].map(|side| Pose::along(&self.model, side));
                 let here = before * sides[k - 1] * sides[k] * after[k + 1];
                 let there = before * fresh[0] * fresh[1] * after[k + 1];
                 let free = || {

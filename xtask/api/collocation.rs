@@ -1,12 +1,5 @@
 // What `collocation` offers, without bodies and documentation: written by `cargo xtask api`, not by hand, and never compiled.
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BoundArc {
-    pub kind: ArcKind,
-    pub normal: [f64; 2],
-    pub from: f64,
-    pub to: f64,
-}
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CollocationError {
     Problem { name: &'static str, value: f64, problem: &'static str },
@@ -18,15 +11,6 @@ pub enum CollocationError {
     Spurious { efficiency: f64, again: f64, points: usize },
 }
 impl From<InvalidProblem> for CollocationError {}
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CollocationNode {
-    pub t: f64,
-    pub state: [f64; 5],
-    pub control: [f64; 2],
-    pub costate: [f64; 5],
-    pub bound_force: [f64; 2],
-    pub y: f64,
-}
 #[derive(Debug, Clone, Copy)]
 pub struct CollocationProblem<'a> {
     pub model: &'a Model<f64>,
@@ -42,30 +26,16 @@ impl<'a> CollocationProblem<'a> {
 }
 #[derive(Debug, Clone)]
 pub struct CollocationSolution {
-    pub nodes: Vec<CollocationNode>,
-    pub bound_arcs: Vec<BoundArc>,
-    pub final_x: f64,
-    pub final_energy: f64,
     pub efficiency: f64,
     pub efficiency_again: f64,
-    pub turning_number: f64,
     pub overstepped: f64,
-    pub iterations: usize,
 }
 impl CollocationSolution {
     pub fn phi(&self, t: f64) -> Vector2<f64> {}
-    pub fn guess(&self) -> QuarterGuess {}
     pub fn gait(&self) -> Result<AnyGait, CollocationError> {}
 }
-#[derive(Debug, Clone, PartialEq)]
-pub struct QuarterGuess {}
-impl QuarterGuess {
-    pub fn from_samples(samples: &[(f64, [f64; 2])]) -> Result<Self, CollocationError> {}
-    pub fn from_gait<G: Gait<f64>>(gait: &G) -> Result<Self, CollocationError> {}
-    pub fn circle(amplitude: f64) -> Result<Self, CollocationError> {}
-}
 pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, CollocationError> {}
-pub fn solve(
+pub fn solve<G: Gait<f64> + ?Sized>(
     problem: &CollocationProblem<'_>,
-    guess: &QuarterGuess,
+    guess: &G,
 ) -> Result<CollocationSolution, CollocationError> {}

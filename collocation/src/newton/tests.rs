@@ -39,7 +39,7 @@ fn gradient_and_hessian_are_exact() {
         newton.center(barrier);
         newton
     };
-    let gradient = |newton: &Newton<'_>| newton.gradient(&newton.path.slope(&mesh).by_phi, barrier);
+    let gradient = |newton: &Newton<'_>| newton.gradient(&newton.path.slope(&mesh), barrier);
     let phi = somewhere(&mesh, 1.3);
     let newton = make(phi.clone());
     let step = newton.step(barrier);

@@ -17,7 +17,7 @@ use super::sections::guesses;
 use super::starts::through;
 use crate::certify::{certified, ways_up};
 use crate::closed_curve::Functional;
-use crate::loops::{Closed, LoopTrace, close};
+use crate::loops::{Closed, close, traced};
 use crate::optimal_gait::Solution;
 use crate::region::Region;
 use crate::{Certificate, Condition, DisplacementProblem, Heading, OptimalGait};
@@ -110,22 +110,18 @@ impl Displacement<'_> {
     /// A closed loop as a gait, not yet certified.
     fn gait(&self, closed: &Closed) -> Option<OptimalGait> {
         let (problem, model) = (self.problem, self.model);
-        let trace = LoopTrace::new(model, closed, problem.samples)?;
-        let stroke = trace.cycle.swum(model)?;
-        let links_cross = trace.cycle.links_cross(model);
+        let cycle = traced(model, closed, problem.samples)?;
+        let stroke = cycle.swum(model)?;
+        let links_cross = cycle.links_cross(model);
         let symmetric =
-            Outline::new(&trace.cycle.phi).is_symmetric() && stroke.displacement.y.abs() < 1e-8;
+            Outline::new(&cycle.phi).is_symmetric() && stroke.displacement.y.abs() < 1e-8;
         Some(OptimalGait::new(Solution {
             objective: Objective::Displacement,
             swimmer: problem.swimmer,
             bounds: problem.bounds,
             symmetric,
-            arcs: if symmetric {
-                trace.quarter_arcs()
-            } else {
-                trace.arcs.clone()
-            },
-            cycle: trace.cycle,
+            arcs: cycle.arcs(symmetric),
+            cycle,
             stroke,
             links_cross,
             certificate: Certificate::unasked(),

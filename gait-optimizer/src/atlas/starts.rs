@@ -80,22 +80,12 @@ pub(crate) fn off_centre(basis: &Basis, barrier: &Barrier, index: usize) -> DMat
 /// A gait's cycle as a series of the basis's order, shrunk into the barrier.
 pub(crate) fn fitted(gait: &OptimalGait, basis: &Basis, barrier: &Barrier) -> DMatrix<f64> {
     const SAMPLES: usize = 512;
-    let mut curve = DMatrix::zeros(2, basis.functions());
-    if let Ok(any) = gait.gait() {
-        let mut here = vec![(0.0, 0.0); basis.functions()];
-        for k in 0..SAMPLES {
-            let u = k as f64 / SAMPLES as f64;
-            let phi = any.at(u).phi;
-            basis.at(u, &mut here);
-            for (j, (value, _)) in here.iter().enumerate() {
-                let weight = if j == 0 { 1.0 } else { 2.0 } / SAMPLES as f64;
-                curve[(0, j)] += weight * value * phi.x;
-                curve[(1, j)] += weight * value * phi.y;
-            }
-        }
-    }
-    shrink_into(&mut curve, basis, barrier);
-    curve
+    let u = (0..=SAMPLES).map(|k| k as f64 / SAMPLES as f64);
+    let points: Vec<_> = match gait.gait() {
+        Ok(gait) => u.map(|u| (u, gait.at(u).phi)).collect(),
+        Err(_) => Vec::new(),
+    };
+    through(&points, basis, barrier)
 }
 
 /// A closed curve through these shapes, each with its u from 0 to 1, as a series of the basis's order, shrunk into the barrier.

@@ -161,10 +161,7 @@ impl Neighbours<'_> {
         let turned = DVector::from_iterator(size, turned);
         let reach = pushes.iter().map(|push| variation.turned(push, f64::abs));
         let reach = reach.fold(0.0, f64::max);
-        let mut hessian = DMatrix::zeros(size, size);
-        for (k, push) in pushes.iter().enumerate() {
-            hessian.set_column(k, &variation.of_gradient(push, &pushes));
-        }
+        let hessian = variation.of_gradients(&pushes);
         let hessian = 0.5 * (&hessian + hessian.transpose());
         if !hessian.iter().all(|entry| entry.is_finite()) {
             return None;

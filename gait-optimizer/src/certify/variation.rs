@@ -4,7 +4,7 @@
 //! linearly, connection and power by their exact derivatives; so the change of the gradient is one walk along the nodes, and
 //! needs no model beyond the second derivatives at the unpushed shapes.
 
-use nalgebra::{DVector, Matrix3x2, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3x2, Vector2, Vector3};
 use swimmer_model::SecondDerivatives;
 
 use super::grid::{Degree, Grid};
@@ -28,6 +28,8 @@ pub(super) struct Variation<'a> {
     momentum: Momentum,
     /// What each node counts for in an integral round the curve.
     weights: Vec<f64>,
+    /// At every node μ, the curvature, and its derivatives by both angles.
+    locals: Vec<[Vector3<f64>; 4]>,
 }
 
 /// How pushes change the gain to first order: what each node's push, and its slope, is multiplied by.
@@ -59,9 +61,17 @@ impl<'a> Variation<'a> {
             Gain::Sideways => Vector2::new(0.0, d.y.signum()),
             Gain::Turning => Vector2::zeros(),
         };
+        let momentum = Momentum { p, c: rotation };
+        let places = path.places.iter().zip(seconds);
+        let locals = places.map(|(place, second)| {
+            let [along1, along2] = second.d_curvature();
+            let mu = momentum.at(&place.pose);
+            [mu, place.first.curvature(), along1, along2]
+        });
         Self {
             weights: grid.weights(degree),
-            momentum: Momentum { p, c: rotation },
+            locals: locals.collect(),
+            momentum,
             grid,
             path,
             seconds,
@@ -73,28 +83,43 @@ impl<'a> Variation<'a> {
     /// First variation of Δθ under a push of the curve, each part of it taken as told.
     pub(super) fn turned(&self, push: &Push, part: fn(f64) -> f64) -> f64 {
         let places = self.path.places.iter().zip(&push.by);
-        let turned = places.zip(&self.weights).map(|((place, by), weight)| {
-            weight * part(place.first.curvature().z * by.perp(&place.rate))
+        let places = places.zip(self.locals.iter().zip(&self.weights));
+        let turned = places.map(|((place, by), ([_, curvature, ..], weight))| {
+            weight * part(curvature.z * by.perp(&place.rate))
         });
         turned.sum()
     }
 
-    /// How a push of the curve changes the gradient of the gain in each of the `pushes`.
-    pub(super) fn of_gradient(&self, push: &Push, pushes: &[Push]) -> DVector<f64> {
+    /// How the gradient of the gain in each of the `pushes` changes with each.
+    pub(super) fn of_gradients(&self, pushes: &[Push]) -> DMatrix<f64> {
+        let lengthened: Vec<f64> = match self.gain {
+            Gain::Efficiency => pushes.iter().map(|push| self.lengthened(push)).collect(),
+            _ => vec![0.0; pushes.len()],
+        };
+        let columns = pushes
+            .iter()
+            .map(|push| self.of_gradient(push, pushes, &lengthened));
+        DMatrix::from_columns(&columns.collect::<Vec<_>>())
+    }
+
+    /// How a push of the curve changes the gradient of the gain in each of the `pushes`, that gain so much of ∮√P.
+    fn of_gradient(&self, push: &Push, pushes: &[Push], lengthened: &[f64]) -> DVector<f64> {
         let poses = self.pose_changes(push);
         let end = poses.last().copied().unwrap_or_default();
         let p = self.momentum_change(&end.xy());
         let mut change = self.of_height(push, &poses, &p);
-        let longer = (self.gain == Gain::Efficiency).then(|| self.of_length(push, &mut change));
-        let sum = |other: &Push| {
+        let longer = if self.gain == Gain::Efficiency {
+            self.of_length(push, &mut change)
+        } else {
+            0.0
+        };
+        let sum = |(other, lengthened): (&Push, &f64)| {
             let by_push = change.by_push.iter().zip(&other.by);
             let by_slope = change.by_slope.iter().zip(&other.slopes);
             let inside = by_push.chain(by_slope).map(|(by, push)| by.dot(push));
-            inside.sum::<f64>()
-                + self.at_the_ends(push, other, (&end, &p))
-                + longer.map_or(0.0, |rate| rate * self.lengthened(other))
+            inside.sum::<f64>() + self.at_the_ends(push, other, (&end, &p)) + longer * lengthened
         };
-        DVector::from_iterator(pushes.len(), pushes.iter().map(sum))
+        DVector::from_iterator(pushes.len(), pushes.iter().zip(lengthened).map(sum))
     }
 
     /// How x, y and θ change at every node.
@@ -162,15 +187,14 @@ impl<'a> Variation<'a> {
     /// Of the height times the area that is swept.
     fn of_height(&self, push: &Push, poses: &[Vector3<f64>], p: &Vector2<f64>) -> Change {
         let mut by_push = Vec::with_capacity(push.by.len());
-        let places = self.path.places.iter().zip(self.seconds).zip(poses);
+        let places = self.path.places.iter().zip(&self.locals).zip(poses);
         let pushes = push.by.iter().zip(&push.slopes).zip(&self.weights);
-        for (((place, second), pose), ((by, slope), weight)) in places.zip(pushes) {
-            let mu = self.momentum.at(&place.pose);
-            let curvature = place.first.curvature();
-            let [along1, along2] = second.d_curvature();
-            let higher = self.mu_change(place, pose, p).dot(&curvature)
+        for (((place, [mu, curvature, along1, along2]), pose), ((by, slope), weight)) in
+            places.zip(pushes)
+        {
+            let higher = self.mu_change(place, pose, p).dot(curvature)
                 + mu.dot(&(along1 * by.x + along2 * by.y));
-            let swept = place.rate * higher + slope * mu.dot(&curvature);
+            let swept = place.rate * higher + slope * mu.dot(curvature);
             by_push.push(Vector2::new(swept.y, -swept.x) * *weight);
         }
         Change {
@@ -322,8 +346,7 @@ mod tests {
         .collect();
         for gain in [Gain::Displacement, Gain::Efficiency, Gain::Turning] {
             let variation = Variation::new(&grid, &path, &seconds, Degree::Fine, (gain, ROTATION));
-            for (one, push) in pushes.iter().enumerate() {
-                let exact = variation.of_gradient(push, &pushes);
+            for (one, exact) in variation.of_gradients(&pushes).column_iter().enumerate() {
                 for (other, exact) in exact.iter().enumerate() {
                     let h = 1e-3;
                     let at = |a: f64, b: f64| {

@@ -3,18 +3,19 @@
 mod second_variation;
 
 use nalgebra::Vector2;
+use swimmer_model::Model;
 
 use super::{Cycle, Samples};
 use crate::arcs::{Leg, SMOOTH, Trace};
 use crate::certificate::{Check, Condition};
-use crate::displacement::height::Extremal;
-use crate::momentum::{Motion, State, pose, shape};
+use crate::momentum::{Momentum, Motion, State, pose, shape};
 use crate::region::Region;
 use second_variation::{Push, SecondVariation};
 
 /// Numbers gathered along the trace, for the certificate.
 struct Evidence<'a> {
-    extremal: Extremal<'a>,
+    model: &'a Model<f64>,
+    momentum: Momentum,
     region: &'a Region,
     /// x at the end.
     final_x: f64,
@@ -47,7 +48,7 @@ pub(crate) struct QuarterTrace {
 impl QuarterTrace {
     /// Traces the arcs of a quarter. None where an integration fails, or there are no arcs.
     pub(crate) fn new(
-        extremal: Extremal<'_>,
+        of: (&Model<f64>, Momentum),
         region: &Region,
         legs: &[Leg],
         samples: usize,
@@ -56,9 +57,8 @@ impl QuarterTrace {
         let start = [z[0], z[1], z[2], z[3], z[4], 0.0];
         let route = legs.iter().map(|leg| (leg.motion, leg.to[5] - leg.from[5]));
         let route: Vec<_> = route.collect();
-        let of = (extremal.model, extremal.momentum());
         let trace = Trace::new(of, start, &route, &[], samples)?;
-        let mut conditions = conditions(extremal, region, &trace)?;
+        let mut conditions = conditions(of, region, &trace)?;
         let ends = trace.arcs.iter().filter_map(|(_, states)| states.last());
         let gaps = ends.zip(legs).map(|(end, leg)| shape(end) - shape(&leg.to));
         let retraced = gaps.map(|gap| gap.norm()).fold(0.0, f64::max);
@@ -88,11 +88,16 @@ impl QuarterTrace {
 }
 
 /// The conditions of paper section IV.
-fn conditions(extremal: Extremal<'_>, region: &Region, trace: &Trace) -> Option<Vec<Check>> {
+fn conditions(
+    (model, momentum): (&Model<f64>, Momentum),
+    region: &Region,
+    trace: &Trace,
+) -> Option<Vec<Check>> {
     let first = trace.arcs.first()?.1.first()?;
     let last = trace.arcs.last()?.1.last()?;
     let mut evidence = Evidence {
-        extremal,
+        model,
+        momentum,
         region,
         final_x: last[2],
         h_u: 0.0,
@@ -122,12 +127,17 @@ fn conditions(extremal: Extremal<'_>, region: &Region, trace: &Trace) -> Option<
             before = Some((phi, height, push));
         }
     }
-    let starts = costate(&extremal, first);
-    let ends = costate(&extremal, last) + h_u;
+    // λ₁ and λ₂ with which `H_u = 0` at a state.
+    let costate = |z: &State| {
+        let connection = model.local_connection(&shape(z));
+        -connection.tr_mul(&momentum.at(&pose(z)))
+    };
+    let starts = costate(first);
+    let ends = costate(last) + h_u;
     let off_lines = (first[0] - first[1]).abs().max((last[0] + last[1]).abs());
     let mut checks = vec![
         Condition::OnSymmetryLines.check(off_lines),
-        Condition::FinalLambda4.check((last[3] - extremal.final_y).abs()),
+        Condition::FinalLambda4.check(momentum.at(&pose(last)).z.abs()),
         Condition::StartTransversality.check(starts.sum().abs()),
         Condition::EndTransversality.check((ends.x - ends.y).abs()),
         Condition::StationaryQuarter.check(evidence.h_u),
@@ -149,9 +159,9 @@ fn conditions(extremal: Extremal<'_>, region: &Region, trace: &Trace) -> Option<
 impl Evidence<'_> {
     /// Takes in one state of an arc; the height there, and what a push does to the displacement, where pushes are free.
     fn evaluate(&mut self, motion: &Motion, z: &State) -> (f64, Option<Push>) {
-        let (phi, pose, extremal) = (shape(z), pose(z), self.extremal);
-        let second = extremal.model.second_derivatives(&phi);
-        let height = extremal.momentum().height(&second, &pose);
+        let (phi, pose) = (shape(z), pose(z));
+        let second = self.model.second_derivatives(&phi);
+        let height = self.momentum.height(&second, &pose);
         self.overstepped = self.overstepped.max(self.region.overstepped(&phi));
         let slope = height.gradient.norm();
         self.steepest = self.steepest.max(slope);
@@ -170,7 +180,7 @@ impl Evidence<'_> {
         let least = self.legendre_clebsch.unwrap_or(f64::INFINITY);
         self.legendre_clebsch = Some(least.min(left));
         let push = Push::new(
-            extremal.sign,
+            self.momentum.p.x,
             &second.first.curvature(),
             pose[2],
             self.final_x - pose[0],
@@ -187,10 +197,4 @@ impl Evidence<'_> {
                 .step(&before, &after, step);
         }
     }
-}
-
-/// λ₁ and λ₂ with which `H_u = 0` at a state.
-fn costate(extremal: &Extremal<'_>, z: &State) -> Vector2<f64> {
-    let connection = extremal.model.local_connection(&shape(z));
-    -connection.tr_mul(&extremal.momentum().at(&pose(z)))
 }

@@ -11,6 +11,7 @@ use super::start_family::{StartFamily, families, families_on_the_diagonal};
 use super::{DisplacementError, DisplacementProblem, Fates, certified, traced};
 use crate::certificate::turning_number;
 use crate::certify::samples_suffice;
+use crate::momentum::Motion;
 use crate::region::Region;
 use crate::{Condition, OptimalGait};
 
@@ -38,7 +39,7 @@ pub(super) fn candidates<'a>(
         touch,
         scan_points,
     };
-    let bare = search(Touch::Ends).extremal(0.0);
+    let bare = search(Touch::Ends).flow(0.0, Motion::Singular);
     let off_the_diagonal = families(bare, bounds, region);
     let (mut found, seen) = search(Touch::Ends).candidates(&off_the_diagonal);
     let fates = seen.fates;
@@ -91,7 +92,7 @@ impl Extremals<'_> {
         carried.sort_by(farther);
         carried.iter().find_map(|candidate| {
             // Most that carry far wind several times, which a few samples tell.
-            let few = traced(problem, model, within.1, candidate, 32)?.cycle();
+            let few = traced(model, within.1, candidate, 32)?.cycle();
             if (turning_number(&few.phi) - 1.0).abs() > 0.5 {
                 return None;
             }

@@ -4,7 +4,6 @@ mod quarter;
 
 use swimmer_files::ArcKind;
 
-use super::height::Extremal;
 use crate::arcs::{EndCondition, Event, Leg, TracedArc, Tracer};
 use crate::momentum::{Flow, Motion, State, Track, shape};
 use crate::region::{Bound, Edge, Region};
@@ -36,23 +35,21 @@ pub(crate) struct TraceOptions {
     pub(crate) began: f64,
 }
 
-/// Follows arcs from a state until the quarter is over, leaving bounds where the multiplier falls to zero.
+/// Follows arcs from a state on the first one until the quarter is over, leaving bounds where the multiplier falls to zero.
 pub(crate) fn follow(
-    extremal: Extremal<'_>,
+    first: Flow<'_>,
     region: &Region,
     start: State,
-    first: Motion,
     options: TraceOptions,
 ) -> Quarter {
-    arcs(extremal, region, start, first, options, true)
+    arcs(first, region, start, options, true)
 }
 
-/// Follows the bounds from a state on one of them, never leaving them.
+/// Follows the bounds from a state on the first one, never leaving them.
 pub(crate) fn along_bounds(
-    extremal: Extremal<'_>,
+    first: Flow<'_>,
     region: &Region,
     start: State,
-    first: Track,
     (control, touch): (StepControl, Touch),
 ) -> Quarter {
     let options = TraceOptions {
@@ -61,26 +58,18 @@ pub(crate) fn along_bounds(
         touched: false,
         began: start[0] + start[1],
     };
-    arcs(
-        extremal,
-        region,
-        start,
-        Motion::Along(first),
-        options,
-        false,
-    )
+    arcs(first, region, start, options, false)
 }
 
 fn arcs(
-    extremal: Extremal<'_>,
+    first: Flow<'_>,
     region: &Region,
     start: State,
-    first: Motion,
     options: TraceOptions,
     leaves: bool,
 ) -> Quarter {
     let still = Leg {
-        motion: first,
+        motion: first.motion,
         from: start,
         to: start,
         length: 0.0,
@@ -92,15 +81,11 @@ fn arcs(
         fate: Fate::TooManyArcs,
         end: start,
     };
-    let mut motion = first;
+    let mut motion = first.motion;
     while let Some(leg) = quarter.legs.get_mut(quarter.count) {
         let ends = Ends { region };
         let tracer = Tracer {
-            flow: Flow {
-                model: extremal.model,
-                momentum: extremal.momentum(),
-                motion,
-            },
+            flow: Flow { motion, ..first },
             region,
             control: options.control,
             leaves,

@@ -8,6 +8,7 @@ use super::search::{SCAN_POINTS, Search};
 use super::start_family::{StartFamily, families};
 use super::{DisplacementProblem, certified};
 use crate::OptimalGait;
+use crate::momentum::Motion;
 use crate::region::Region;
 
 /// The optimum of a problem that lies near the optimum of a neighbouring one (another swimmer or other bounds, a little changed),
@@ -51,7 +52,8 @@ pub fn displacement_near(
         .arcs
         .iter()
         .position(|arc| arc.kind == ArcKind::Singular);
-    let found = families(search.extremal(0.0), &problem.bounds, &region)
+    let flow = search.flow(0.0, Motion::Singular);
+    let found = families(flow, &problem.bounds, &region)
         .iter()
         .filter_map(|family| {
             let along_bounds = matches!(family, StartFamily::Bounds { .. });

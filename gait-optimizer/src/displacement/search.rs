@@ -5,14 +5,14 @@
 //! one `y_f`, so the place fixes the whole extremal, and a scan over the family with a scalar root search on
 //! `λ₄(t_f) = 0` finds every quarter gait without a guess. One more candidate never leaves the bound at all.
 
+use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use super::Fates;
 use super::flow::{Fate, Quarter, Touch, TraceOptions, follow};
-use super::height::Extremal;
 use super::start_family::{Place, StartFamily};
 use crate::arcs::Leg;
-use crate::momentum::{Motion, State, pose, shape};
+use crate::momentum::{Flow, Momentum, Motion, State, shape};
 use crate::numerics::root;
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
@@ -21,7 +21,7 @@ use crate::runge_kutta::StepControl;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Candidate {
     pub(crate) quarter: Quarter,
-    pub(crate) final_y: f64,
+    pub(crate) momentum: Momentum,
 }
 
 /// The shooting problem.
@@ -289,12 +289,10 @@ impl<'a> Search<'a> {
             // Again from the start: the multiplier itself must fall to zero at p.
             StartFamily::Bounds { .. } | StartFamily::EndLine { .. } => {
                 let start = family.start()?;
-                let extremal = self.extremal(final_y);
                 let whole = follow(
-                    extremal,
+                    self.flow(final_y, start.motion),
                     self.region,
                     start.state,
-                    start.motion,
                     self.options(FINE, &start.state, family.begins_straight()),
                 );
                 let left = whole
@@ -307,7 +305,7 @@ impl<'a> Search<'a> {
         };
         self.ended(&whole).then_some(Candidate {
             quarter: whole,
-            final_y,
+            momentum: self.momentum(final_y),
         })
     }
 
@@ -318,20 +316,22 @@ impl<'a> Search<'a> {
         }
         let final_y = family.end()?[3];
         let start = family.start()?;
-        let extremal = self.extremal(final_y);
         let quarter = follow(
-            extremal,
+            self.flow(final_y, start.motion),
             self.region,
             start.state,
-            start.motion,
             self.options(FINE, &start.state, false),
         );
         let stayed = quarter
             .legs()
             .iter()
             .all(|leg| leg.motion != Motion::Singular);
-        (self.ended(&quarter) && stayed && (quarter.end[3] - final_y).abs() < 1e-10)
-            .then_some(Candidate { quarter, final_y })
+        (self.ended(&quarter) && stayed && (quarter.end[3] - final_y).abs() < 1e-10).then_some(
+            Candidate {
+                quarter,
+                momentum: self.momentum(final_y),
+            },
+        )
     }
 
     /// `λ₄(t_f)` over λ₃ of the extremal that leaves a family at p, where that extremal ends.
@@ -353,10 +353,9 @@ impl<'a> Search<'a> {
         let place = self.place(family, p, control)?;
         let final_y = family.final_y(self.model, &place, p)?;
         let Place { state, motion } = place;
-        let (phi, pose) = (shape(&state), pose(&state));
-        let extremal = self.extremal(final_y);
-        let (height, ..) = extremal.momentum().evaluate(self.model, &phi, &pose);
-        let direction = height.singular_direction();
+        let phi = shape(&state);
+        let singular = self.flow(final_y, Motion::Singular);
+        let direction = singular.direction(&state);
         let inwards = match motion {
             Motion::Singular => direction.y - direction.x,
             Motion::Along(track) => track.inwards(&phi).dot(&direction),
@@ -365,10 +364,9 @@ impl<'a> Search<'a> {
         (inwards > 0.0).then(|| {
             (
                 follow(
-                    extremal,
+                    singular,
                     self.region,
                     state,
-                    Motion::Singular,
                     self.options(control, &began, family.touched()),
                 ),
                 final_y,
@@ -394,14 +392,24 @@ impl<'a> Search<'a> {
     /// A place, one step of tolerance closer than what is followed from there.
     fn place(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<Place> {
         let coarse = control.tolerance > MIDDLING.tolerance;
-        family.place(self.extremal(0.0), p, if coarse { MIDDLING } else { FINE })
+        let flow = self.flow(0.0, Motion::Singular);
+        family.place(flow, p, if coarse { MIDDLING } else { FINE })
     }
 
-    pub(super) fn extremal(&self, final_y: f64) -> Extremal<'a> {
-        Extremal {
+    /// The paper's multipliers λ₃ and `λ₄ = λ₃ (y − y_f)`, `y_f` over L.
+    fn momentum(&self, final_y: f64) -> Momentum {
+        Momentum {
+            p: Vector2::new(self.sign, 0.0),
+            c: -self.sign * final_y,
+        }
+    }
+
+    /// An arc of an extremal with this `y_f`.
+    pub(super) fn flow(&self, final_y: f64, motion: Motion) -> Flow<'a> {
+        Flow {
             model: self.model,
-            sign: self.sign,
-            final_y,
+            momentum: self.momentum(final_y),
+            motion,
         }
     }
 }

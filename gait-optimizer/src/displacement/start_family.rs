@@ -8,7 +8,6 @@ use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Model;
 
 use super::flow::{Fate, Touch, TraceOptions, along_bounds, follow, is_end_line};
-use super::height::Extremal;
 use super::search::{FINE, lasting};
 use crate::arcs::Leg;
 use crate::momentum::{Flow, Momentum, Motion, State, Track, pose, shape};
@@ -49,11 +48,7 @@ pub(crate) struct Place {
 }
 
 /// All families of a region.
-pub(crate) fn families(
-    extremal: Extremal<'_>,
-    bounds: &Bounds,
-    region: &Region,
-) -> Vec<StartFamily> {
+pub(crate) fn families(flow: Flow<'_>, bounds: &Bounds, region: &Region) -> Vec<StartFamily> {
     let mut families = vec![StartFamily::StartLine {
         low: bounds.min_angle.unwrap_or(0.0),
         high: bounds.max_angle.unwrap_or(PI).min(PI),
@@ -77,7 +72,9 @@ pub(crate) fn families(
                 Piece::Tips
             };
         }
-        let way = along_bounds(extremal, region, state, track, (FINE, Touch::Ends));
+        let motion = Motion::Along(track);
+        let along = Flow { motion, ..flow };
+        let way = along_bounds(along, region, state, (FINE, Touch::Ends));
         let stretches = stretches(way.legs());
         if way.fate == Fate::Ended && !stretches.is_empty() {
             families.push(StartFamily::Bounds { stretches });
@@ -90,7 +87,7 @@ pub(crate) fn families(
 /// they meet it, and those outwards from the straight shape. Quarters leave them to go round shapes about the straight one
 /// that the other bounds do not meet, or to leave those shapes out.
 pub(crate) fn families_on_the_diagonal(
-    extremal: Extremal<'_>,
+    flow: Flow<'_>,
     region: &Region,
     families: &[StartFamily],
     touch: Touch,
@@ -103,16 +100,17 @@ pub(crate) fn families_on_the_diagonal(
         .then(|| straight_shape(region, index))
         .flatten();
     let ways = on_bounds.chain(straight).filter_map(|start| {
-        let Motion::Along(track) = start.motion else {
-            return None;
+        let along = Flow {
+            motion: start.motion,
+            ..flow
         };
-        let way = along_bounds(extremal, region, start.state, track, (FINE, touch));
+        let way = along_bounds(along, region, start.state, (FINE, touch));
         let mut stretches = stretches(way.legs());
         let touching = stretches
             .iter()
             .position(|stretch| stretch.track.index == index)?;
         stretches.truncate(touching + 1);
-        let turn = turn(extremal, region, stretches.last()?)?;
+        let turn = turn(flow, region, stretches.last()?)?;
         Some(StartFamily::EndLine { stretches, turn })
     });
     ways.collect()
@@ -130,15 +128,15 @@ fn straight_shape(region: &Region, index: usize) -> Option<Place> {
 
 /// Where the multiplier of φ₁ = −φ₂ falls to zero along a stretch of that line. Its curvature has no θ component, so it is the
 /// same place for every λ₄.
-fn turn(extremal: Extremal<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
+fn turn(flow: Flow<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
     let options = TraceOptions {
         control: FINE,
         touch: Touch::Ends,
         touched: true,
         began: 0.0,
     };
-    let along = Motion::Along(stretch.track);
-    let way = follow(extremal, region, stretch.from, along, options);
+    let motion = Motion::Along(stretch.track);
+    let way = follow(Flow { motion, ..flow }, region, stretch.from, options);
     match way.legs() {
         [first, next, ..] if next.motion == Motion::Singular => Some(first.to),
         _ => None,
@@ -212,13 +210,8 @@ impl StartFamily {
         first.is_some_and(|first| is_end_line(first.track.wall.edge()))
     }
 
-    /// The state at a place; `extremal` only carries the model. None outside the family.
-    pub(crate) fn place(
-        &self,
-        extremal: Extremal<'_>,
-        p: f64,
-        control: StepControl,
-    ) -> Option<Place> {
+    /// The state at a place; `flow` only carries the model. None outside the family.
+    pub(crate) fn place(&self, flow: Flow<'_>, p: f64, control: StepControl) -> Option<Place> {
         match self {
             Self::StartLine { .. } => Some(Place {
                 state: [p, p, 0.0, 0.0, 0.0, 0.0],
@@ -229,11 +222,7 @@ impl StartFamily {
                     .iter()
                     .find(|stretch| p >= stretch.span[0] && p <= stretch.span[1])?;
                 let motion = Motion::Along(stretch.track);
-                let drive = Flow {
-                    model: extremal.model,
-                    momentum: extremal.momentum(),
-                    motion,
-                };
+                let drive = Flow { motion, ..flow };
                 let start = Point::new(&drive, stretch.from);
                 let state = advance(&drive, start, p - stretch.span[0], control)?.z;
                 Some(Place { state, motion })

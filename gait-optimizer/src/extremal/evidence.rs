@@ -11,6 +11,7 @@ use super::equations::{Motion, STATE, State, momentum, shape};
 use super::shooting::Chain;
 use super::structure::multiplier;
 use super::wall::{Wall, Walls};
+use crate::momentum::Momentum;
 use crate::runge_kutta::{Point, StepControl, System, advance};
 
 /// The largest deviations along a chain.
@@ -44,18 +45,12 @@ const CONTROL: StepControl = StepControl {
 struct Equations<'a> {
     model: &'a Model<f64>,
     wall: Option<(&'a Wall, f64)>,
-    p: Vector2<f64>,
-    c: f64,
+    momentum: Momentum,
 }
 
 impl Equations<'_> {
     fn body_momentum(&self, s: &Plain) -> Vector3<f64> {
-        let (sin, cos) = s[4].sin_cos();
-        Vector3::new(
-            self.p.x * cos + self.p.y * sin,
-            self.p.y * cos - self.p.x * sin,
-            self.p.x * s[3] - self.p.y * s[2] + self.c,
-        )
+        self.momentum.at(&[s[2], s[3], s[4]])
     }
 
     /// The control: from `H_u = 0`, or along the bound at constant power.
@@ -105,7 +100,10 @@ impl System<7> for Equations<'_> {
 /// Follows a chain again; none where that fails.
 pub(crate) fn follow(model: &Model<f64>, walls: &Walls, chain: &Chain) -> Option<Evidence> {
     let first = momentum(chain.states.first()?);
-    let (p, c) = (Vector2::new(first.x, first.y), first.z);
+    let constants = Momentum {
+        p: first.xy(),
+        c: first.z,
+    };
     let mut evidence = Evidence {
         off_extremal: 0.0,
         power: [1.0; 2],
@@ -126,8 +124,7 @@ pub(crate) fn follow(model: &Model<f64>, walls: &Walls, chain: &Chain) -> Option
                 Motion::Free => None,
                 Motion::Along(wall) => Some((wall, state[2])),
             },
-            p,
-            c,
+            momentum: constants,
         };
         let mut here = start(&equations, state, &pose);
         let share = arc.length / arc.pieces as f64;
@@ -148,7 +145,7 @@ pub(crate) fn follow(model: &Model<f64>, walls: &Walls, chain: &Chain) -> Option
                     .max(gap)
                     .max(if kinked { 0.0 } else { turned });
             let off = equations.body_momentum(&here) - momentum(&next);
-            evidence.momentum = evidence.momentum.max(off.amax() / p.norm());
+            evidence.momentum = evidence.momentum.max(off.amax() / constants.p.norm());
         }
     }
     evidence.displacement = Vector2::new(pose[0], pose[1]);

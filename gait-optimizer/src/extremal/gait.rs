@@ -5,7 +5,7 @@ use swimmer_files::{AnyGait, Bounds, Objective};
 use swimmer_model::{Gait, Model, Stroke, Swimmer, Tolerance, crossing_share, swim};
 
 use super::evidence::{Evidence, follow};
-use super::sampled::Sampled;
+use super::sampled::sampled;
 use super::shooting::Class;
 use super::wall::Walls;
 use super::{Extremal, Unpolished};
@@ -38,16 +38,15 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
     let lost = || Unpolished::Trace;
     let evidence = follow(model, &walls, chain).ok_or_else(lost)?;
     let mut samples = order.samples / parts;
-    let (sampled, cycle, curve, variation) = loop {
-        let sampled = Sampled::new(model, chain, samples).ok_or_else(lost)?;
-        let cycle = sampled.cycle(class);
+    let (cycle, curve, variation) = loop {
+        let cycle = sampled(model, class, chain, samples).ok_or_else(lost)?;
         let curve = cycle.gait().map_err(|_| lost())?;
         let variation = power_variation(model, &cycle.u, &curve);
         // The power varies by the third power of the samples' distance, slopes are open by the sixth.
         let off = (variation / Condition::ConstantPowerOfSamples.tolerance()).cbrt();
         let off = off.max(slopes_open(&cycle).powf(1.0 / 6.0));
         if off <= 1.0 || samples * parts > MOST_SAMPLES {
-            break (sampled, cycle, curve, variation);
+            break (cycle, curve, variation);
         }
         samples = more(samples, off);
     };
@@ -59,7 +58,7 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
         swimmer: *order.swimmer,
         bounds: *order.bounds,
         symmetric: class == Class::Quarter,
-        arcs: sampled.arcs(),
+        arcs: cycle.arcs(class == Class::Quarter),
         cycle,
         stroke,
         links_cross,

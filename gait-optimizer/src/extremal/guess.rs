@@ -109,7 +109,9 @@ impl Trajectory {
     }
 
     /// Every sample: its power length and state.
-    pub(crate) fn rows(&self) -> impl Iterator<Item = (f64, &State)> {
+    pub(crate) fn rows(
+        &self,
+    ) -> impl DoubleEndedIterator<Item = (f64, &State)> + ExactSizeIterator {
         self.length.iter().copied().zip(&self.states)
     }
 

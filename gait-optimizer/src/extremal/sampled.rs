@@ -5,83 +5,57 @@ use swimmer_model::Model;
 
 use super::equations::{Motion, shape};
 use super::flow::flowed;
-use super::shooting::{Chain, Class, Entry};
-use crate::Arc;
+use super::shooting::{Chain, Class, Entry, Stretch};
 use crate::cycle::{Cycle, Samples};
-
-/// A chain at equal steps of power length, arc by arc. Where an arc begins is a corner: the curvature jumps there (the direction
-/// too at a corner of the forbidden shapes), and no interpolation shall reach across.
-#[derive(Debug, Clone)]
-pub(crate) struct Sampled {
-    samples: Samples,
-    /// Whether the first sample is a kink.
-    starts_bent: bool,
-}
 
 /// Fewest samples of a piece.
 const FEWEST: usize = 4;
 
-impl Sampled {
-    /// None where an arc cannot be followed.
-    pub(crate) fn new(model: &Model<f64>, chain: &Chain, samples: usize) -> Option<Self> {
-        let total = chain.length();
-        let mut sampled = Self {
-            samples: Samples::default(),
-            starts_bent: chain
-                .arcs
-                .first()
-                .is_some_and(|arc| matches!(arc.entry, Entry::Corner(_))),
+/// The full cycle of a chain at so many equal steps of power length, arc by arc. Where an arc begins is a corner: the curvature
+/// jumps there (the direction too at a corner of the forbidden shapes), and no interpolation shall reach across. None where an arc
+/// cannot be followed.
+pub(crate) fn sampled(
+    model: &Model<f64>,
+    class: Class,
+    chain: &Chain,
+    samples: usize,
+) -> Option<Cycle> {
+    let total = chain.length();
+    let bent = |arc: &Stretch| matches!(arc.entry, Entry::Corner(_));
+    let starts_bent = chain.arcs.first().is_some_and(bent);
+    let mut out = Samples::default();
+    let mut states = chain.states.iter();
+    let mut from = 0.0;
+    let mut last = None;
+    for (index, arc) in chain.arcs.iter().enumerate() {
+        let share = arc.length / arc.pieces as f64;
+        let count = (FEWEST..samples)
+            .find(|&count| count as f64 * total >= samples as f64 * share)
+            .unwrap_or(FEWEST);
+        let kind = match &arc.motion {
+            Motion::Free => ArcKind::Regular,
+            Motion::Along(wall) => wall.kind(),
         };
-        let mut from = 0.0;
-        let mut before = None;
-        let mut last = None;
-        for (index, arc, state) in chain.pieces() {
-            let share = arc.length / arc.pieces as f64;
-            let count = (FEWEST..samples)
-                .find(|&count| count as f64 * total >= samples as f64 * share)
-                .unwrap_or(FEWEST);
-            if before != Some(index) {
-                before = Some(index);
-                let kind = match &arc.motion {
-                    Motion::Free => ArcKind::Regular,
-                    Motion::Along(wall) => wall.kind(),
-                };
-                if index > 0 || sampled.starts_bent || chain.arcs.len() > 1 {
-                    sampled.samples.corners.push(sampled.samples.phi.len());
-                }
-                sampled
-                    .samples
-                    .arcs
-                    .push((kind, sampled.samples.phi.len(), 0));
-            }
-            let mut here = *state;
+        let first = out.phi.len();
+        if index > 0 || starts_bent || chain.arcs.len() > 1 {
+            out.corners.push(first);
+        }
+        for _ in 0..arc.pieces {
+            let mut here = *states.next()?;
             for step in 0..count {
-                let along = from + share * step as f64 / count as f64;
-                sampled.samples.along.push(along);
-                sampled.samples.phi.push(shape(&here));
+                out.along.push(from + share * step as f64 / count as f64);
+                out.phi.push(shape(&here));
                 here = flowed(model, &arc.motion, &here, share / count as f64)?.0;
             }
             from += share;
-            if let Some(arc) = sampled.samples.arcs.last_mut() {
-                arc.2 = sampled.samples.phi.len();
-            }
             last = Some(shape(&here));
         }
-        sampled.samples.along.push(total);
-        sampled.samples.phi.push(last?);
-        Some(sampled)
+        out.arcs.push((kind, first, out.phi.len()));
     }
-
-    /// The arcs with their joint angles.
-    pub(crate) fn arcs(&self) -> Vec<Arc> {
-        self.samples.arcs()
-    }
-
-    /// The full cycle.
-    pub(crate) fn cycle(&self, class: Class) -> Cycle {
-        match class {
-            Class::Quarter => self.samples.unfolded([!self.starts_bent, true]),
-            Class::Closed { .. } => self.samples.closed(),
-        }
-    }
+    out.along.push(total);
+    out.phi.push(last?);
+    Some(match class {
+        Class::Quarter => out.unfolded([!starts_bent, true]),
+        Class::Closed { .. } => out.closed(),
+    })
 }

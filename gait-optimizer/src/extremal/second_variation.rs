@@ -12,7 +12,7 @@ use swimmer_model::Model;
 
 use super::equations::{Motion, State, momentum, rate, shape};
 use super::flow::flowed;
-use super::shooting::{Chain, Class, Entry};
+use super::shooting::{Chain, Class, Entry, Stretch};
 
 /// Elements of the whole chain, about.
 const ELEMENTS: f64 = 160.0;
@@ -27,64 +27,46 @@ struct Element {
 /// The elements of the free arcs and of the bounds, and the number of nodes.
 fn mesh(model: &Model<f64>, class: Class, chain: &Chain) -> Option<(Vec<Element>, usize)> {
     let total = chain.length();
-    let mut elements = Vec::new();
-    let mut count = 0;
-    let arcs = chain.arcs.len();
-    let whole_round = arcs == 1
-        && matches!(class, Class::Closed { .. })
-        && matches!(chain.arcs.first()?.entry, Entry::Smooth);
-    let mut of_arc = vec![0; arcs];
-    for (index, ..) in chain.pieces() {
-        *of_arc.get_mut(index)? += 1;
-    }
-    let mut piece_of_arc = 0;
-    let mut last_index = None;
-    let mut previous: Option<usize> = None;
-    for (index, arc, state) in chain.pieces() {
-        piece_of_arc = if last_index == Some(index) {
-            piece_of_arc + 1
-        } else {
-            0
-        };
-        let opens = last_index != Some(index);
-        last_index = Some(index);
+    let quarter = class == Class::Quarter;
+    let last = chain.arcs.len().checked_sub(1)?;
+    let smooth = |arc: &Stretch| matches!(arc.entry, Entry::Smooth);
+    let whole_round = last == 0 && !quarter && chain.arcs.iter().all(smooth);
+    let (mut elements, mut count) = (Vec::new(), 0);
+    let mut new_node = || {
+        count += 1;
+        Some(count - 1)
+    };
+    let mut states = chain.states.iter();
+    for (index, arc) in chain.arcs.iter().enumerate() {
         let free = matches!(arc.motion, Motion::Free);
         let share = arc.length / arc.pieces as f64;
         let parts = (1..400_usize)
             .find(|&n| n as f64 * total >= ELEMENTS * share)
             .unwrap_or(400);
         let length = share / parts as f64;
-        if opens {
-            // The first node: free at a symmetry line and on a closed curve without contact, held elsewhere.
-            let open = whole_round
-                || (class == Class::Quarter && index == 0 && matches!(arc.entry, Entry::Smooth));
-            previous = (free && open).then(|| {
-                count += 1;
-                count - 1
-            });
-        }
-        let mut middle = flowed(model, &arc.motion, state, 0.5 * length)?.0;
-        for part in 0..parts {
-            if part > 0 {
-                middle = flowed(model, &arc.motion, &middle, length)?.0;
+        // Nodes at ends are free at a symmetry line and on a closed curve without contact, held elsewhere.
+        let opens = whole_round || quarter && index == 0 && smooth(arc);
+        let mut previous = if free && opens { new_node() } else { None };
+        for piece in 1..=arc.pieces {
+            let mut middle = flowed(model, &arc.motion, states.next()?, 0.5 * length)?.0;
+            for part in 1..=parts {
+                if part > 1 {
+                    middle = flowed(model, &arc.motion, &middle, length)?.0;
+                }
+                let ends = piece == arc.pieces && part == parts;
+                let next = match ends {
+                    _ if !free => None,
+                    true if whole_round => Some(0),
+                    true if !(quarter && index == last) => None,
+                    _ => new_node(),
+                };
+                elements.push(Element {
+                    state: middle,
+                    length,
+                    nodes: [previous, next],
+                });
+                previous = next;
             }
-            let ends = part + 1 == parts && piece_of_arc + 1 == *of_arc.get(index)?;
-            let next = if !free {
-                None
-            } else if !ends || (class == Class::Quarter && index + 1 == arcs) {
-                count += 1;
-                Some(count - 1)
-            } else if whole_round {
-                Some(0)
-            } else {
-                None
-            };
-            elements.push(Element {
-                state: middle,
-                length,
-                nodes: [previous, next],
-            });
-            previous = next;
         }
     }
     Some((elements, count))

@@ -33,9 +33,9 @@ pub(crate) fn multiplier(model: &Model<f64>, wall: &Wall, state: &State) -> f64 
     let free = local.plain + local.gain * momentum(state).dot(&local.curvature);
     let e = nalgebra::Vector2::new(cos, sin);
     let bound = wall.turning(&phi, &e) / local.speed;
-    // On the left of the motion lies the region where the outward gradient points right.
+    // On the left of the motion lies the region where the margin grows to the left.
     let left = nalgebra::Vector2::new(-sin, cos);
-    let side = if wall.gradient(&phi).dot(&left) < 0.0 {
+    let side = if wall.level(&phi).gradient.dot(&left) > 0.0 {
         1.0
     } else {
         -1.0
@@ -51,7 +51,7 @@ pub(crate) fn next_structure(
     chain: &Chain,
 ) -> Option<(Chain, Class)> {
     let total = chain.length();
-    let samples = Samples::new(model, chain)?;
+    let samples = Samples::new(model, class, chain)?;
     let least = SHORTEST * total;
     let mut spans: Vec<Span> = Vec::new();
     let mut changed = false;
@@ -77,12 +77,12 @@ pub(crate) fn next_structure(
             from = to;
             continue;
         }
-        let rows = || samples.rows.iter().filter(move |row| row.0 == index);
+        let rows = || samples.of_arc(index);
         match &arc.motion {
             Motion::Along(wall) => {
-                let pushed = runs(rows().map(|(_, at, state)| {
+                let pushed = runs(rows().map(|(at, state)| {
                     let push = multiplier(model, wall, state);
-                    (*at, (push >= PULL).then_some(*wall))
+                    (at, (push >= PULL).then_some(*wall))
                 }));
                 changed |= pushed.len() != 1
                     || pushed
@@ -99,11 +99,11 @@ pub(crate) fn next_structure(
                 }
             }
             Motion::Free => {
-                let over = runs(rows().map(|(_, at, state)| {
+                let over = runs(rows().map(|(at, state)| {
                     let beyond = walls
                         .nearest(&shape(state))
                         .filter(|(_, depth)| *depth > OVERSTEP);
-                    (*at, beyond.map(|(wall, _)| wall))
+                    (at, beyond.map(|(wall, _)| wall))
                 }));
                 changed |= !over.is_empty();
                 let next = chain.arcs.get(index + 1).or(match class {
@@ -112,7 +112,7 @@ pub(crate) fn next_structure(
                 });
                 let to_corner = next.is_some_and(|next| matches!(next.entry, Entry::Corner(_)));
                 let edges = [(matches!(entry, Entry::Corner(_)), from), (to_corner, to)];
-                let mut contacts = contacts(walls, class, over, edges, |at| samples.at(at));
+                let mut contacts = contacts(walls, class, over, edges, |at| samples.swum.at(at));
                 match contacts.first_mut() {
                     // A bound that is met right at the corner.
                     Some(first) if edges[0].0 && first.from - from < least => first.entry = entry,
@@ -132,7 +132,7 @@ pub(crate) fn next_structure(
         }
         from = to;
     }
-    let round = |length: f64| samples.round(class, total, length);
+    let round = |length: f64| samples.swum.at(length);
     changed.then(|| rebuilt(class, &joined(spans, least), total, round))
 }
 
@@ -140,7 +140,7 @@ pub(crate) fn next_structure(
 /// an arc along a bound. Near such a change of structure the shooting of the longer chain is singular.
 pub(crate) fn simpler(model: &Model<f64>, class: Class, chain: &Chain) -> Option<(Chain, Class)> {
     let total = chain.length();
-    let samples = Samples::new(model, chain)?;
+    let samples = Samples::new(model, class, chain)?;
     let motion = |index: usize| chain.arcs.get(index).map(|arc| arc.motion);
     let (out, _) = chain
         .arcs
@@ -180,7 +180,7 @@ pub(crate) fn simpler(model: &Model<f64>, class: Class, chain: &Chain) -> Option
             _ => {}
         }
     }
-    let round = |length: f64| samples.round(class, total, length);
+    let round = |length: f64| samples.swum.at(length);
     Some(rebuilt(class, &spans, total, round))
 }
 

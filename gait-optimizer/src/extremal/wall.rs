@@ -1,35 +1,20 @@
 //! Walls as an extremal runs along them, and all walls of a full cycle.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Links;
 
 pub(crate) use crate::region::Wall;
-use crate::region::{Bound, Clearance, Edge, Piece, Region};
+use crate::region::{Bound, Clearance, Edge, Level, Piece, Region};
 
 impl Wall {
-    /// How far beyond the bound a shape is, in rad or (between links) over L; negative inside.
-    pub(crate) fn value(&self, phi: &Vector2<f64>) -> f64 {
-        -self.level(phi).value
-    }
-
-    /// Gradient of [`Wall::value`]; points out.
-    pub(crate) fn gradient(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        -self.level(phi).gradient
-    }
-
-    /// Second derivatives of [`Wall::value`].
-    pub(crate) fn hessian(&self, phi: &Vector2<f64>) -> Matrix2<f64> {
-        -self.level(phi).hessian
-    }
-
     /// dψ over the arc length of a curve that keeps tangent to the bound.
     pub(crate) fn turning(&self, phi: &Vector2<f64>, e: &Vector2<f64>) -> f64 {
         match self {
             Self::Straight(_) => 0.0,
             Self::Curved(..) => {
-                let normal = Vector2::new(-e.y, e.x);
-                -e.dot(&(self.hessian(phi) * e)) / self.gradient(phi).dot(&normal)
+                let level = self.level(phi);
+                -e.dot(&(level.hessian * e)) / level.gradient.dot(&Vector2::new(-e.y, e.x))
             }
         }
     }
@@ -48,12 +33,14 @@ impl Wall {
             return (0.0, [0.0; 3]);
         }
         let n = Vector2::new(-e.y, e.x);
-        let (gradient, hessian) = (self.gradient(phi), self.hessian(phi));
+        let Level {
+            gradient, hessian, ..
+        } = self.level(phi);
         let (bend, across) = (e.dot(&(hessian * e)), gradient.dot(&n));
         let turning = -bend / across;
         let by_joint = |axis: Vector2<f64>| {
-            let ahead = self.hessian(&(phi + axis * STEP));
-            let behind = self.hessian(&(phi - axis * STEP));
+            let ahead = self.level(&(phi + axis * STEP)).hessian;
+            let behind = self.level(&(phi - axis * STEP)).hessian;
             let bend_by = e.dot(&((ahead - behind) * e)) / (2.0 * STEP);
             let across_by = (hessian * n).dot(&axis);
             -(bend_by + turning * across_by) / across
@@ -77,7 +64,7 @@ impl Wall {
 
     /// The tangent's direction nearest to ψ.
     pub(crate) fn tangent(&self, phi: &Vector2<f64>, psi: f64) -> f64 {
-        let gradient = self.gradient(phi);
+        let gradient = self.level(phi).gradient;
         let along = gradient.y.atan2(gradient.x) + std::f64::consts::FRAC_PI_2;
         let halves: f64 = (psi - along) / std::f64::consts::PI;
         along + halves.round() * std::f64::consts::PI

@@ -4,19 +4,10 @@ use swimmer_model::Model;
 
 use super::flow::ClosedOrbit;
 use super::shooting::Closed;
-use crate::Arc;
 use crate::arcs::{ByPower, Leg, Trace};
 use crate::cycle::Cycle;
 use crate::momentum::{Flow, Momentum, Motion, State, pose};
 use crate::runge_kutta::{Point, StepControl, advance, locate};
-
-/// A loop, sampled.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct LoopTrace {
-    pub(crate) cycle: Cycle,
-    /// Of the cycle, in order.
-    pub(crate) arcs: Vec<Arc>,
-}
 
 const CONTROL: StepControl = StepControl {
     tolerance: 1e-13,
@@ -27,115 +18,88 @@ const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
 /// Arcs below this share of the cycle are crossings of a corner, not arcs.
 const LASTING: f64 = 1e-9;
 
-impl LoopTrace {
-    /// Traces a loop with about this many samples, from where it crosses φ₁ = φ₂ > 0 farthest out, or from its own start.
-    pub(crate) fn new(model: &Model<f64>, closed: &Closed, samples: usize) -> Option<Self> {
-        let total = closed.orbit.end[5];
-        let legs = lasting(&closed.orbit);
-        let home = Self::home(model, closed, &legs);
-        let (first, state) = home.unwrap_or((0, legs.first()?.from));
-        let momentum = closed.momentum.seen_from(&pose(&state));
-        let mut route: Vec<(Motion, f64)> = Vec::with_capacity(legs.len() + 1);
-        let leg = legs.get(first)?;
-        route.push((leg.motion, leg.to[5] - state[5]));
-        for leg in legs.iter().skip(first + 1).chain(legs.iter().take(first)) {
-            route.push((leg.motion, leg.to[5] - leg.from[5]));
-        }
-        route.push((leg.motion, state[5] - leg.from[5]));
-        // The first and the last leg may be parts of one.
-        route.retain(|(_, length)| *length > LASTING * total);
-        // An arc that was cut where the orbit began is whole.
-        route.dedup_by(|next, leg| {
-            let whole = next.0 == Motion::Singular && leg.0 == Motion::Singular;
-            leg.1 += if whole { next.1 } else { 0.0 };
-            whole
+/// Traces a loop with about this many samples, from where it crosses φ₁ = φ₂ > 0 farthest out, or from its own start.
+pub(crate) fn traced(model: &Model<f64>, closed: &Closed, samples: usize) -> Option<Cycle> {
+    let total = closed.orbit.end[5];
+    let legs = lasting(&closed.orbit);
+    let home = home(model, closed, &legs);
+    let (first, state) = home.unwrap_or((0, legs.first()?.from));
+    let momentum = closed.momentum.seen_from(&pose(&state));
+    let mut route: Vec<(Motion, f64)> = Vec::with_capacity(legs.len() + 1);
+    let leg = legs.get(first)?;
+    route.push((leg.motion, leg.to[5] - state[5]));
+    for leg in legs.iter().skip(first + 1).chain(legs.iter().take(first)) {
+        route.push((leg.motion, leg.to[5] - leg.from[5]));
+    }
+    route.push((leg.motion, state[5] - leg.from[5]));
+    // The first and the last leg may be parts of one.
+    route.retain(|(_, length)| *length > LASTING * total);
+    // An arc that was cut where the orbit began is whole.
+    route.dedup_by(|next, leg| {
+        let whole = next.0 == Motion::Singular && leg.0 == Motion::Singular;
+        leg.1 += if whole { next.1 } else { 0.0 };
+        whole
+    });
+    let start = [state[0], state[1], 0.0, 0.0, 0.0, 0.0];
+    Some(
+        Trace::new((model, momentum), start, &route, &QUARTERS, samples)?
+            .samples(true)
+            .closed(),
+    )
+}
+
+/// Traces an orbit from its own start.
+pub(crate) fn traced_from_start(
+    model: &Model<f64>,
+    momentum: Momentum,
+    orbit: &ClosedOrbit,
+    samples: usize,
+) -> Option<Cycle> {
+    let legs = lasting(orbit);
+    let start = legs.first()?.from;
+    let route: Vec<(Motion, f64)> = legs
+        .iter()
+        .map(|leg| (leg.motion, leg.to[5] - leg.from[5]))
+        .collect();
+    Some(
+        Trace::new((model, momentum), start, &route, &QUARTERS, samples)?
+            .samples(true)
+            .closed(),
+    )
+}
+
+/// Where the loop crosses φ₁ = φ₂ > 0: the leg, and the state there.
+fn home(model: &Model<f64>, closed: &Closed, legs: &[Leg]) -> Option<(usize, State)> {
+    const LOOKS: usize = 48;
+    let mut best: Option<(usize, State)> = None;
+    for (index, leg) in legs.iter().enumerate() {
+        let system = ByPower(Flow {
+            model,
+            momentum: closed.momentum,
+            motion: leg.motion,
         });
-        let start = [state[0], state[1], 0.0, 0.0, 0.0, 0.0];
-        Self::along((model, momentum), start, &route, samples)
-    }
-
-    /// Traces an orbit from its own start.
-    pub(crate) fn from_start(
-        model: &Model<f64>,
-        momentum: Momentum,
-        orbit: &ClosedOrbit,
-        samples: usize,
-    ) -> Option<Self> {
-        let legs = lasting(orbit);
-        let start = legs.first()?.from;
-        let route: Vec<(Motion, f64)> = legs
-            .iter()
-            .map(|leg| (leg.motion, leg.to[5] - leg.from[5]))
-            .collect();
-        Self::along((model, momentum), start, &route, samples)
-    }
-
-    /// Where the loop crosses φ₁ = φ₂ > 0: the leg, and the state there.
-    fn home(model: &Model<f64>, closed: &Closed, legs: &[Leg]) -> Option<(usize, State)> {
-        const LOOKS: usize = 48;
-        let mut best: Option<(usize, State)> = None;
-        for (index, leg) in legs.iter().enumerate() {
-            let system = ByPower(Flow {
-                model,
-                momentum: closed.momentum,
-                motion: leg.motion,
-            });
-            let step = (leg.to[5] - leg.from[5]) / LOOKS as f64;
-            let mut here = Point::new(&system, leg.from);
-            for _ in 0..LOOKS {
-                let there = advance(&system, here, step, CONTROL)?;
-                let off = |z: &State| z[0] - z[1];
-                if off(&here.z) * off(&there.z) <= 0.0 && here.z[0] + here.z[1] > 0.0 {
-                    let at = Self::crossing(&system, &here, step)?;
-                    if best.is_none_or(|(_, state)| at[0] > state[0]) {
-                        best = Some((index, at));
-                    }
+        let step = (leg.to[5] - leg.from[5]) / LOOKS as f64;
+        let mut here = Point::new(&system, leg.from);
+        for _ in 0..LOOKS {
+            let there = advance(&system, here, step, CONTROL)?;
+            let off = |z: &State| z[0] - z[1];
+            if off(&here.z) * off(&there.z) <= 0.0 && here.z[0] + here.z[1] > 0.0 {
+                let at = crossing(&system, &here, step)?;
+                if best.is_none_or(|(_, state)| at[0] > state[0]) {
+                    best = Some((index, at));
                 }
-                here = there;
             }
+            here = there;
         }
-        best
     }
+    best
+}
 
-    fn crossing(system: &ByPower<'_>, from: &Point<6>, step: f64) -> Option<State> {
-        let side = if from.z[0] < from.z[1] { -1.0 } else { 1.0 };
-        let off = |at: &Point<6>| (side * (at.z[0] - at.z[1]), side * (at.rate[0] - at.rate[1]));
-        let at = |length| advance(system, *from, length, CONTROL);
-        locate([0.5 * step, step], 1e-15, at, off).map(|(there, _)| there.z)
-    }
-
-    /// The arcs of the first quarter: all there is to say of a loop with the paper's two symmetries.
-    pub(crate) fn quarter_arcs(&self) -> Vec<Arc> {
-        let end = self
-            .cycle
-            .u
-            .iter()
-            .position(|&u| (u - 0.25).abs() < 1e-9)
-            .and_then(|index| self.cycle.phi.get(index));
-        let arcs = self.arcs.iter().zip(&self.cycle.arcs);
-        arcs.filter(|(_, place)| place.from < 0.25 - 1e-9)
-            .map(|(arc, place)| match end {
-                Some(end) if place.to > 0.25 + 1e-9 => Arc {
-                    to: [end.x, end.y],
-                    ..*arc
-                },
-                _ => *arc,
-            })
-            .collect()
-    }
-
-    fn along(
-        of: (&Model<f64>, Momentum),
-        start: State,
-        route: &[(Motion, f64)],
-        samples: usize,
-    ) -> Option<Self> {
-        let samples = Trace::new(of, start, route, &QUARTERS, samples)?.samples(true);
-        Some(Self {
-            arcs: samples.arcs(),
-            cycle: samples.closed(),
-        })
-    }
+fn crossing(system: &ByPower<'_>, from: &Point<6>, step: f64) -> Option<State> {
+    let side = if from.z[0] < from.z[1] { -1.0 } else { 1.0 };
+    let off = |at: &Point<6>| (side * (at.z[0] - at.z[1]), side * (at.rate[0] - at.rate[1]));
+    let at = |length| advance(system, *from, length, CONTROL);
+    locate([0.5 * step, step], 1e-15, at, off).map(|(there, _)| there.z)
 }
 
 /// Arcs that last.

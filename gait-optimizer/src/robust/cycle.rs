@@ -5,7 +5,6 @@ use swimmer_files::{ArcKind, GaitArc};
 use swimmer_model::{Gait, Model, SymmetricFourier};
 
 use super::arcs::Arcs;
-use crate::Arc;
 use crate::cycle::{Cycle, Samples};
 
 /// Samples of an arc.
@@ -15,8 +14,8 @@ const CYCLE: u32 = 1024;
 /// Directions this close in angle \[rad\] make no corner.
 const SMOOTH: f64 = 1e-6;
 
-/// The cycle of a displacement gait, at constant power of the nominal swimmer, with the quarter's arcs.
-pub(super) fn of_arcs(model: &Model<f64>, family: &Arcs, x: &DVector<f64>) -> (Cycle, Vec<Arc>) {
+/// The cycle of a displacement gait, at constant power of the nominal swimmer.
+pub(super) fn of_arcs(model: &Model<f64>, family: &Arcs, x: &DVector<f64>) -> Cycle {
     let nodes = family.nodes();
     let curves = family.curves(x);
     let mut quarter = Samples::default();
@@ -55,26 +54,14 @@ pub(super) fn of_arcs(model: &Model<f64>, family: &Arcs, x: &DVector<f64>) -> (C
     let [begins_across, ends_across] = [1.0, -1.0].map(|sign| {
         move |slope: &Vector2<f64>| (slope.x + sign * slope.y).abs() < SMOOTH * slope.norm()
     });
-    let arcs = family
-        .kinds()
-        .zip(&curves)
-        .filter_map(|(kind, curve)| {
-            Some(Arc {
-                kind,
-                from: (*curve.phi.first()?).into(),
-                to: (*curve.phi.last()?).into(),
-            })
-        })
-        .collect();
-    let cycle = quarter.unfolded([
+    quarter.unfolded([
         square[0].is_some_and(begins_across),
         square[1].is_some_and(ends_across),
-    ]);
-    (cycle, arcs)
+    ])
 }
 
 /// The cycle of a series, timed as it is.
-pub(super) fn of_series(gait: &SymmetricFourier<Vec<[f64; 2]>>) -> (Cycle, Vec<Arc>) {
+pub(super) fn of_series(gait: &SymmetricFourier<Vec<[f64; 2]>>) -> Cycle {
     let u: Vec<f64> = (0..=CYCLE)
         .map(|i| f64::from(i) / f64::from(CYCLE))
         .collect();
@@ -82,12 +69,7 @@ pub(super) fn of_series(gait: &SymmetricFourier<Vec<[f64; 2]>>) -> (Cycle, Vec<A
     if let (Some(first), Some(last)) = (phi.first().copied(), phi.last_mut()) {
         *last = first;
     }
-    let arcs = vec![Arc {
-        kind: ArcKind::Regular,
-        from: gait.at(0.0).phi.into(),
-        to: gait.at(0.25).phi.into(),
-    }];
-    let cycle = Cycle {
+    Cycle {
         u,
         phi,
         corners: Vec::new(),
@@ -96,6 +78,5 @@ pub(super) fn of_series(gait: &SymmetricFourier<Vec<[f64; 2]>>) -> (Cycle, Vec<A
             from: 0.0,
             to: 1.0,
         }],
-    };
-    (cycle, arcs)
+    }
 }

@@ -6,7 +6,8 @@
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use crate::loops::{ClosedOrbit, Launch, LoopTrace};
+use crate::cycle::Cycle;
+use crate::loops::{ClosedOrbit, Launch, traced_from_start};
 use crate::momentum::{Momentum, Motion, Track};
 use crate::numerics::{halved, root};
 use crate::region::{Bound, Edge, Region};
@@ -35,7 +36,7 @@ struct Start {
 }
 
 /// All loops that close, traced.
-pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) -> Vec<LoopTrace> {
+pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) -> Vec<Cycle> {
     let mut found = Vec::new();
     for start in starts(model, region) {
         for sign in [1.0, -1.0] {
@@ -48,7 +49,7 @@ pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) ->
             for rotation in family.roots() {
                 let trace = family.shoot(rotation, FINE).and_then(|orbit| {
                     let momentum = family.momentum(rotation);
-                    LoopTrace::from_start(model, momentum, &orbit, samples)
+                    traced_from_start(model, momentum, &orbit, samples)
                 });
                 found.extend(trace);
             }

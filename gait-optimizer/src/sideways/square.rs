@@ -4,10 +4,10 @@ use swimmer_files::GaitFile;
 use swimmer_model::{Gait, Model, Tolerance, trajectory};
 
 use super::SidewaysProblem;
+use crate::OptimalGait;
 use crate::cycle::Cycle;
 use crate::numerics::halved;
 use crate::simple_shapes::top;
-use crate::{Arc, OptimalGait};
 
 /// Instants that headings are looked at.
 const LOOKS: usize = 720;
@@ -43,8 +43,7 @@ pub(super) fn turned(
         top(&less_along, (least.0 - width, least.0 + width), 1e-13)
     };
     let cycle = begun_at(gait, &any, start.rem_euclid(1.0));
-    let arcs = arcs(&cycle);
-    super::gait((problem, model), (cycle, arcs))
+    super::gait((problem, model), cycle)
 }
 
 /// d · heading at one instant.
@@ -83,23 +82,4 @@ pub(super) fn begun_at(gait: &OptimalGait, curve: &impl Gait<f64>, start: f64) -
         corners,
         arcs,
     }
-}
-
-fn arcs(cycle: &Cycle) -> Vec<Arc> {
-    let at = |u: f64| {
-        let index = cycle.u.partition_point(|&place| place < u - 1e-12);
-        cycle
-            .phi
-            .get(index)
-            .map_or([f64::NAN; 2], |phi| [phi.x, phi.y])
-    };
-    cycle
-        .arcs
-        .iter()
-        .map(|arc| Arc {
-            kind: arc.kind,
-            from: at(arc.from),
-            to: at(arc.to),
-        })
-        .collect()
 }

@@ -32,7 +32,7 @@ fn the_robot_moves_sideways_without_turning() {
     let heading = found.gait.heading().unwrap();
     let cycle = super::square::begun_at(&found.gait, &found.gait.gait().unwrap(), 0.3);
     let unit = Model::new(&found.gait.swimmer.of_unit_length()).unwrap();
-    let later = super::gait((&problem(Swimmer::robot()), &unit), (cycle, Vec::new())).unwrap();
+    let later = super::gait((&problem(Swimmer::robot()), &unit), cycle).unwrap();
     let off = later.heading().unwrap() - heading;
     assert!(off.abs() < 1e-6, "{heading} and {off:.1e}");
 }

@@ -1,18 +1,16 @@
 //! An independent direct method: the quarter gait as a polygon with one degree of freedom a node, climbed on its own swum X.
 //!
 //! Nodes slide on fixed rays across a rough start, corners along the bound they lie on, the first and last along the
-//! diagonals. A projected Newton method with all second differences climbs the final x. The pose along a side is the product
-//! of fourth-order Magnus steps in SE(2); from the model it takes A(Φ) alone, from the library's gaits only the order of arcs.
-
-mod pose;
+//! diagonals. A projected Newton method with all second differences climbs the final x. From the model it takes A(Φ) alone, from
+//! the library's gaits only the order of arcs.
 
 use gait_optimizer::{ArcKind, OptimalGait};
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_files::AnyGait;
 use swimmer_model::{Model, Swimmer, Tolerance, swim};
 
+use crate::plane::Pose;
 use crate::swimmers::Apart;
-use pose::Pose;
 
 /// A node: where it is and how it may move.
 #[derive(Debug, Clone, Copy)]
@@ -31,7 +29,6 @@ enum Way {
 }
 
 pub(crate) struct Direct {
-    swimmer: Swimmer<f64>,
     model: Model<f64>,
     sign: f64,
     max_angle: f64,
@@ -61,8 +58,7 @@ impl Direct {
             })
             .collect();
         Self {
-            swimmer: *swimmer,
-            model: Model::new(swimmer).unwrap(),
+            model: Model::new(&swimmer.of_unit_length()).unwrap(),
             sign: 1.0,
             max_angle: f64::INFINITY,
             apart: None,
@@ -81,8 +77,7 @@ impl Direct {
         let quarter = gait.u().partition_point(|&u| u < 0.25 - 1e-12);
         let samples = &gait.phi()[..=quarter];
         let mut direct = Self {
-            swimmer: gait.swimmer,
-            model: Model::new(&gait.swimmer).unwrap(),
+            model: Model::new(&gait.swimmer.of_unit_length()).unwrap(),
             sign: gait.displacement_over_length.signum(),
             max_angle: bounds.max_angle.unwrap_or(f64::INFINITY),
             apart,
@@ -169,11 +164,11 @@ impl Direct {
     /// The pose from one node to the next.
     fn side(&self, k: usize, from: Vector2<f64>, to: Vector2<f64>) -> Pose {
         if !self.on_border[k] {
-            return Pose::along(&self.model, from, to);
+            return Pose::along(&self.model, [from, to]);
         }
         let points = self.border(from, to);
         points.windows(2).fold(Pose::default(), |pose, pair| {
-            pose * Pose::along(&self.model, pair[0], pair[1])
+            pose * Pose::along(&self.model, [pair[0], pair[1]])
         })
     }
 
@@ -211,73 +206,38 @@ impl Direct {
                 })
             })
             .collect();
-        let mut before = vec![Pose::default()];
-        for side in &sides {
-            before.push(before[before.len() - 1] * side[1][1]);
+        // From each node to the end.
+        let mut after = vec![Pose::default(); count];
+        for k in (0..count - 1).rev() {
+            after[k] = sides[k][1][1] * after[k + 1];
         }
-        let whole = before[count - 1];
-        let after = |k: usize| before[k].inverse() * whole;
-        // What comes up to node k + 1 when node k has moved.
-        let up_to = |k: usize, step: usize| {
-            let start = if k == 0 {
-                Pose::default()
-            } else {
-                before[k - 1] * sides[k - 1][1][step]
-            };
-            if k + 1 < count {
-                start * sides[k][step][1]
-            } else {
-                start
-            }
-        };
-        let end = |k: usize| {
-            if k + 1 < count {
-                after(k + 1)
-            } else {
-                Pose::default()
-            }
-        };
-        let alone = |k: usize, step: usize| self.sign * (up_to(k, step) * end(k)).x;
-        let both = |i: usize, j: usize, a: usize, b: usize| {
-            let pose = if j == i + 1 {
-                let start = if i == 0 {
-                    Pose::default()
-                } else {
-                    before[i - 1] * sides[i - 1][1][a]
-                };
-                let next = start * sides[i][a][b];
-                if j + 1 < count {
-                    next * sides[j][b][1]
-                } else {
-                    next
-                }
-            } else {
-                let up = up_to(i, a) * before[i + 1].inverse() * before[j - 1];
-                let next = up * sides[j - 1][1][b];
-                if j + 1 < count {
-                    next * sides[j][b][1]
-                } else {
-                    next
-                }
-            };
-            self.sign * (pose * end(j)).x
-        };
-        let here = self.sign * whole.x;
         let mut gradient = DVector::zeros(count);
         let mut second = DMatrix::zeros(count, count);
+        // Up to the node before i.
+        let mut before = Pose::default();
         for i in 0..count {
-            let (minus, plus) = (alone(i, 0), alone(i, 2));
-            gradient[i] = (plus - minus) / (2.0 * H);
-            second[(i, i)] = (plus - 2.0 * here + minus) / (H * H);
-            for j in i + 1..count {
-                let mixed = (both(i, j, 2, 2) - both(i, j, 2, 0) - both(i, j, 0, 2)
-                    + both(i, j, 0, 0))
-                    / (4.0 * H * H);
-                second[(i, j)] = mixed;
-                second[(j, i)] = mixed;
+            for (a, way) in [(0, -1.0), (2, 1.0)] {
+                // Up to the node before j, with node i moved.
+                let begun = i.checked_sub(1).map(|side| before * sides[side][1][a]);
+                let (mut up, mut from) = (begun.unwrap_or_default(), a);
+                for j in i + 1..count {
+                    for (b, other) in [(0, -1.0), (2, 1.0)] {
+                        let rest = sides.get(j).map(|side| side[b][1] * after[j + 1]);
+                        let whole = up * sides[j - 1][from][b] * rest.unwrap_or_default();
+                        second[(i, j)] += way * other * whole.x / (4.0 * H * H);
+                    }
+                    up = up * sides[j - 1][from][1];
+                    from = 1;
+                }
+                gradient[i] += way * up.x / (2.0 * H);
+                second[(i, i)] += (up.x - after[0].x) / (H * H);
+            }
+            if i > 0 {
+                before = before * sides[i - 1][1][1];
             }
         }
-        (gradient, second)
+        second.fill_lower_triangle_with_upper_triangle();
+        (gradient * self.sign, second * self.sign)
     }
 
     /// Climbs until the moves are below 1e-8; returns X over L, signed, swum by the model.
@@ -363,7 +323,7 @@ impl Direct {
         let corners: Vec<usize> = (0..phi.len()).collect();
         let gait = AnyGait::from_samples(&u, &phi, &corners).unwrap();
         let stroke = swim(&self.model, &gait, &Tolerance::new(1e-11));
-        stroke.displacement.x / self.swimmer.total_length()
+        stroke.displacement.x
     }
 }
 

@@ -39,15 +39,16 @@ fn the_second_variation_agrees_with_the_neighbours() {
                         touch: Touch::Ends,
                         scan_points: SCAN_POINTS,
                     };
-                    for family in families(search.extremal(0.0), &bounds, &region) {
+                    let flow = search.flow(0.0, Motion::Singular);
+                    for family in families(flow, &bounds, &region) {
                         let (found, _) = search.candidates(std::slice::from_ref(&family));
                         for candidate in found {
                             let Some(gain) = neighbour_gain(&search, &family, &candidate) else {
                                 continue;
                             };
                             let legs: Vec<_> = lasting(candidate.quarter.legs()).copied().collect();
-                            let extremal = search.extremal(candidate.final_y);
-                            let trace = QuarterTrace::new(extremal, &region, &legs, 256).unwrap();
+                            let of = (&model, candidate.momentum);
+                            let trace = QuarterTrace::new(of, &region, &legs, 256).unwrap();
                             let conditions = Certificate::new(trace.conditions);
                             let least = conditions.value(Condition::NoConjugatePoint).unwrap();
                             if gain < 0.0 {

@@ -207,9 +207,10 @@ fn joint(
 fn on_wall(equations: &mut Equations, start: &Start<'_>) {
     if let Motion::Along(wall) = &start.arc.motion {
         let phi = shape(start.state);
-        let gradient = wall.gradient(&phi);
+        let level = wall.level(&phi);
+        let gradient = level.gradient;
         equations.add(
-            wall.value(&phi),
+            level.value,
             [(start.column, gradient.x), (start.column + 1, gradient.y)],
         );
     }
@@ -220,8 +221,9 @@ fn tangent(equations: &mut Equations, start: &Start<'_>) {
     if let Motion::Along(wall) = &start.arc.motion {
         let phi = shape(start.state);
         let (sin, cos) = start.state[2].sin_cos();
-        let gradient = wall.gradient(&phi);
-        let by_shape = wall.hessian(&phi) * Vector2::new(cos, sin);
+        let level = wall.level(&phi);
+        let gradient = level.gradient;
+        let by_shape = level.hessian * Vector2::new(cos, sin);
         equations.add(
             gradient.x * cos + gradient.y * sin,
             [

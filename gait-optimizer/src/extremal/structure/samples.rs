@@ -2,8 +2,9 @@
 
 use swimmer_model::Model;
 
-use crate::extremal::equations::{STATE, State};
+use crate::extremal::equations::State;
 use crate::extremal::flow::flowed;
+use crate::extremal::guess::Trajectory;
 use crate::extremal::shooting::{Chain, Class};
 
 /// Samples of a piece when it is examined.
@@ -11,40 +12,59 @@ const LOOKS: usize = 24;
 
 /// States all along a chain.
 pub(super) struct Samples {
-    /// Number of the arc, power length from the chain's start, state.
-    pub(super) rows: Vec<(usize, f64, State)>,
+    /// Number of the arc that each belongs to.
+    arcs: Vec<usize>,
+    pub(super) swum: Trajectory,
 }
 
 impl Samples {
-    pub(super) fn new(model: &Model<f64>, chain: &Chain) -> Option<Self> {
-        let mut rows = Vec::new();
+    pub(super) fn new(model: &Model<f64>, class: Class, chain: &Chain) -> Option<Self> {
+        let turn = match class {
+            Class::Closed { turn, .. } => turn,
+            Class::Quarter => 0.0,
+        };
+        let (mut arcs, mut length, mut states) = (Vec::new(), Vec::new(), Vec::new());
         let mut from = 0.0;
         for (index, arc, state) in chain.pieces() {
             let share = (arc.length / arc.pieces as f64).max(0.0);
             let mut here = *state;
-            rows.push((index, from, here));
-            for look in 1..=LOOKS {
-                here = flowed(model, &arc.motion, &here, share / LOOKS as f64)?.0;
-                rows.push((index, from + share * look as f64 / LOOKS as f64, here));
+            for look in 0..=LOOKS {
+                if look > 0 {
+                    here = flowed(model, &arc.motion, &here, share / LOOKS as f64)?.0;
+                }
+                arcs.push(index);
+                length.push(from + share * look as f64 / LOOKS as f64);
+                states.push(here);
             }
             from += share;
         }
-        Some(Self { rows })
+        let swum = Trajectory {
+            length,
+            states,
+            turn,
+        };
+        Some(Self { arcs, swum })
+    }
+
+    /// The samples of an arc: power length from the chain's start, and state.
+    pub(super) fn of_arc(&self, index: usize) -> impl DoubleEndedIterator<Item = (f64, &State)> {
+        let first = self.arcs.partition_point(|arc| *arc < index);
+        let last = self.arcs.partition_point(|arc| *arc <= index);
+        self.swum.rows().take(last).skip(first)
     }
 
     /// Whether a curve bends round the corner where an arc begins, and not away from it. The forbidden shapes lie beyond
     /// the corner, so the bend is to that side; a quarter is bent against its mirror image.
     pub(super) fn bends_round(&self, chain: &Chain, class: Class, index: usize) -> bool {
-        let first = |number: usize| self.rows.iter().find(|row| row.0 == number);
-        let last = |number: usize| self.rows.iter().rev().find(|row| row.0 == number);
-        let Some((.., start)) = first(index) else {
+        let last = |number: usize| Some(self.of_arc(number).next_back()?.1[2]);
+        let Some((_, start)) = self.of_arc(index).next() else {
             return false;
         };
         let before = match (index.checked_sub(1), class) {
-            (Some(before), _) => last(before).map(|row| row.2[2]),
+            (Some(before), _) => last(before),
             (None, Class::Quarter) => Some(1.5 * std::f64::consts::PI - start[2]),
             (None, Class::Closed { turn, .. }) => {
-                last(chain.arcs.len().saturating_sub(1)).map(|row| row.2[2] - turn)
+                last(chain.arcs.len().saturating_sub(1)).map(|psi| psi - turn)
             }
         };
         let Some(before) = before else {
@@ -54,37 +74,5 @@ impl Samples {
         // Positive where the corner points to the left of the motion, away from the origin.
         let left = -start[0] * mean.sin() + start[1] * mean.cos();
         (start[2] - before) * left >= 0.0
-    }
-
-    /// The state at a power length that may go beyond the end of a closed curve.
-    pub(super) fn round(&self, class: Class, total: f64, length: f64) -> State {
-        match class {
-            Class::Closed { turn, .. } if length > total => {
-                let mut state = self.at(length - total);
-                state[2] += turn;
-                state
-            }
-            _ => self.at(length),
-        }
-    }
-
-    /// The state at a power length, from the sample before by linear interpolation.
-    pub(super) fn at(&self, length: f64) -> State {
-        let after = self
-            .rows
-            .partition_point(|row| row.1 <= length)
-            .clamp(1, self.rows.len().saturating_sub(1).max(1));
-        let pick = |i: usize| {
-            self.rows
-                .get(i)
-                .map_or((0.0, [0.0; STATE]), |row| (row.1, row.2))
-        };
-        let ((from, low), (to, high)) = (pick(after - 1), pick(after));
-        let share = if to > from {
-            (length - from) / (to - from)
-        } else {
-            0.0
-        };
-        std::array::from_fn(|i| low[i] + share * (high[i] - low[i]))
     }
 }
