@@ -684,6 +684,16 @@ pub struct Steering {
     pub shapes: usize,
     pub turning_angle: Option<f64>,
 }
+#[derive(Debug, Default)]
+pub struct Suprema {}
+impl Suprema {
+    pub fn new(threads: usize) -> Self {}
+    pub fn of(
+        &mut self,
+        problem: &DisplacementProblem,
+        found: Option<&OptimalGait>,
+    ) -> Option<Supremum> {}
+}
 #[derive(Debug, Clone, PartialEq)]
 pub struct Supremum {
     pub over_length: f64,
@@ -791,10 +801,6 @@ pub fn displacement_near(
     problem: &DisplacementProblem,
     neighbour: &OptimalGait,
 ) -> Option<OptimalGait> {}
-pub fn displacement_supremum(
-    problem: &DisplacementProblem,
-    found: Option<&OptimalGait>,
-) -> Option<Supremum> {}
 pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, EfficiencyError> {}
 pub fn efficiency_from(
     problem: &EfficiencyProblem,

@@ -229,7 +229,7 @@ fn tighter(problem: &DisplacementProblem) -> Option<DisplacementProblem> {
     let bounds = problem.bounds;
     let region = Region::new(&bounds, &problem.swimmer.links);
     let next = (bounds.min_angle.unwrap_or(0.0) / RUNG + 1.0 + 1e-6).floor() * RUNG;
-    (next < region.reach()).then(|| DisplacementProblem {
+    (next < region.reach()).then_some(DisplacementProblem {
         bounds: Bounds {
             min_angle: Some(next),
             ..bounds
