@@ -27,7 +27,7 @@ use swimmer_model::{Model, Swimmer};
 
 use crate::extremal::Walls;
 use crate::immobile::refuse_immobile;
-use crate::problem::{GaitClass, InvalidProblem, validated};
+use crate::problem::{GaitClass, InvalidProblem, tightened, validated};
 use crate::region::Region;
 use crate::{Immobile, OptimalGait};
 
@@ -222,11 +222,7 @@ pub fn atlas_watched(problem: &AtlasProblem, watch: Watch<'_>) -> Result<Atlas, 
     };
     let mut found = of(problem);
     // Length has no price: where narrower slits carry farther there is no optimum, but what is one within tighter bounds is a gait.
-    let tighter = problem.bounds.max_angle.map(|angle| Bounds {
-        max_angle: Some(angle - TIGHTER),
-        ..problem.bounds
-    });
-    let tighter = tighter.and_then(|bounds| {
+    let tighter = tightened(&problem.bounds).and_then(|bounds| {
         let tighter = of(&AtlasProblem { bounds, ..*problem });
         Some(tighter.optima.first()?.distance_over_length)
     });
@@ -236,9 +232,6 @@ pub fn atlas_watched(problem: &AtlasProblem, watch: Watch<'_>) -> Result<Atlas, 
     found.best_uncertified = beyond.reduce(f64::max);
     Ok(found)
 }
-
-/// \[rad\]
-const TIGHTER: f64 = 0.1;
 
 #[cfg(test)]
 mod tests;

@@ -334,6 +334,7 @@ fn relaxing_a_bound_never_lowers_an_atlas_of_efficiency() {
 /// The robot's own gaits, where touching its images once decided from bound to bound: no answer is lower.
 #[test]
 fn the_robots_answers_grow() {
+    let mut suprema = Suprema::new(2);
     let mut before = 0.0;
     for step in (2..18).rev() {
         let bounds = Bounds {
@@ -341,15 +342,53 @@ fn the_robots_answers_grow() {
             min_angle: Some(0.1 * f64::from(step)),
             ..Bounds::default()
         };
-        let here = answer(
-            &mut Suprema::new(2),
-            Swimmer::robot(),
-            bounds,
-            Heading::Backwards,
-        )
-        .reached;
+        let here = answer(&mut suprema, Swimmer::robot(), bounds, Heading::Backwards).reached;
         assert!(here > before, "{bounds}: {here} after {before}");
         before = here;
     }
     assert!((before - 0.161_9).abs() < 5e-4, "{before}");
+}
+
+/// Gaits of a slit that narrow bounds alone lead to: from rung to rung, without crossing links, they carry ever farther.
+#[test]
+fn purcells_suprema_grow_as_the_least_angle_falls() {
+    let mut suprema = Suprema::new(2);
+    let mut before = 0.0;
+    for tenth in [11, 10, 9] {
+        let bounds = Bounds {
+            max_angle: Some(2.8),
+            min_angle: Some(0.1 * f64::from(tenth)),
+            no_overlap: true,
+            ..Bounds::default()
+        };
+        let here = answer(&mut suprema, Swimmer::purcell(), bounds, Heading::Backwards);
+        assert!(
+            !here.exists && here.reached > before,
+            "{bounds}: {here:?} after {before}"
+        );
+        before = here.reached;
+    }
+    assert!(before > 0.256, "{before}");
+}
+
+/// A wider bound has no optimum near the tighter one's, which is told; bounds that leave nothing tighter are bounds all the same.
+#[test]
+fn an_atlas_knows_what_tighter_bounds_bring() {
+    let of = |swimmer: Swimmer<f64>, max_angle: f64, starts: usize| {
+        let problem = AtlasProblem {
+            bounds: Bounds::within(max_angle),
+            starts,
+            ..AtlasProblem::new(swimmer, Objective::Displacement)
+        };
+        atlas(&problem).unwrap()
+    };
+    let unlike = swimmers::random(20_261_123, 1)[0].swimmer;
+    let tight = of(unlike, 2.3, 64).optima[0].distance_over_length;
+    let wide = of(unlike, 2.4, 64);
+    assert!(wide.optima[0].distance_over_length < 0.8 * tight);
+    assert!(
+        wide.best_uncertified.unwrap() >= tight * (1.0 - 1e-6),
+        "{tight}"
+    );
+    assert!(!of(Swimmer::robot(), 0.05, 4).optima.is_empty());
 }

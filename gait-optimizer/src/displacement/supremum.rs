@@ -3,7 +3,7 @@
 //! Without a price on length a gait may reach shapes off all bounds along a slit, out and back. Of closed curves that do not touch
 //! themselves the limit is none, so there is no optimum: narrower slits carry farther. A direct method climbs polygons whose
 //! strands are held a gap apart ([`curve`]); as the gap is halved they give a growing sequence of gaits and its limit.
-
+//!
 //! No climb finds every kind of gait from its own starts, but what is far off within wide bounds is near within tight ones. So
 //! the leading joint's least angle is lowered rung by rung, from as tight as it can be, and what carries farthest on a rung is
 //! where climbs of the next one start, beside their own: relaxing that bound lowers no answer.
@@ -20,6 +20,7 @@ use swimmer_model::Model;
 use super::DisplacementProblem;
 use crate::OptimalGait;
 use crate::parallel::in_parallel;
+use crate::problem::tightened;
 use crate::region::Region;
 use curve::{Ground, Mesh};
 use kinds::{Kind, across, distinct, explored};
@@ -176,15 +177,11 @@ impl Rung {
     fn new(problem: DisplacementProblem, model: &Model<f64>) -> Self {
         let region = Region::new(&problem.bounds, &problem.swimmer.links);
         let met = kinds::met(&problem, model, &region);
-        // Where no least angle is asked for there may be no rung below that has the gaits of a smaller largest one.
-        let smaller = problem
-            .bounds
-            .max_angle
-            .filter(|_| problem.bounds.min_angle.is_none());
-        let smaller = smaller.map(|max| problem.with_max_angle(max - RUNG));
-        let beside = smaller.map(|smaller| {
-            let region = Region::new(&smaller.bounds, &smaller.swimmer.links);
-            kinds::met(&smaller, model, &region)
+        // Rungs run in the least angle alone: what a smaller largest angle leads to is met here, where they end.
+        let smaller = tightened(&problem.bounds).filter(|bounds| bounds.min_angle.is_none());
+        let beside = smaller.map(|bounds| {
+            let region = Region::new(&bounds, &problem.swimmer.links);
+            kinds::met(&DisplacementProblem { bounds, ..problem }, model, &region)
         });
         let ground = Ground::new(&problem, model, &region);
         let gaits = met.iter().chain(beside.iter().flatten());

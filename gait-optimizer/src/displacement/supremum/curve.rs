@@ -248,6 +248,7 @@ impl<'a> Ground<'a> {
             && nearest(corners, &near) > TOO_NEAR * mesh.gap
     }
 
+    /// Whether no corner and no middle of a side oversteps a bound.
     fn allows(&self, corners: &[Shape]) -> bool {
         const SLACK: f64 = 1e-9;
         self.overstepped(corners) < SLACK
