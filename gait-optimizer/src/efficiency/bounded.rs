@@ -67,27 +67,26 @@ pub(super) fn bounded(
     let folded = farthest.min(fold.unwrap_or(f64::INFINITY));
     let tight = folded.min(max_angle);
     let at = |max_angle: f64, share: f64| Tightness { max_angle, share };
-    // The largest angle comes in first; where that leads nowhere, last.
-    let ways = if bounds.no_overlap {
-        vec![
-            vec![at(tight, 0.0), at(tight, 1.0)],
-            vec![at(folded, 0.0), at(folded, 1.0), at(tight, 1.0)],
-        ]
-    } else {
-        vec![vec![at(tight, 0.0)]]
-    };
-    let followed = |way: &Vec<Tightness>| {
+    let links_kept = f64::from(u8::from(bounds.no_overlap));
+    let followed = |way: &[Tightness]| {
         let (mut extremal, mut reached) = (start.clone(), at(farthest, 0.0));
         for &stage in way {
-            extremal = path.follow(extremal, reached, stage)?;
-            reached = stage;
+            if stage != reached {
+                extremal = path.follow(extremal, reached, stage)?;
+                reached = stage;
+            }
         }
         Ok(extremal)
     };
-    let mut ways = ways.iter().map(followed);
-    let first = ways.next().unwrap_or_else(|| Ok(start.clone()));
-    let extremal = first
-        .or_else(|ended| ways.find_map(Result::ok).ok_or(ended))
+    // The largest angle comes in first; where that leads nowhere, last.
+    let angle_last = || {
+        let way = [at(folded, 0.0), at(folded, 1.0), at(tight, 1.0)];
+        (bounds.no_overlap && tight < folded)
+            .then(|| followed(&way).ok())
+            .flatten()
+    };
+    let extremal = followed(&[at(tight, 0.0), at(tight, links_kept)])
+        .or_else(|ended| angle_last().ok_or(ended))
         .map_err(|ended| branch_ends(branch, &links, &ended))?;
     let found = Found {
         extremal,
