@@ -164,6 +164,13 @@ pub enum EventKind {
         #[serde(rename = "other_branch")]
         by: usize,
     },
+    /// From here on it is an optimum only among gaits with its symmetries (`alone`), or it is one among all closed curves again.
+    /// A mesh tells that, from below: it may lie a little earlier.
+    Symmetry {
+        /// Only among those.
+        #[serde(rename = "optimal_among_symmetric_alone")]
+        alone: bool,
+    },
     /// There is a gait, but it is no optimum any more.
     Lost {
         /// The conditions that it fails.

@@ -214,6 +214,14 @@ impl Extremal {
         *self.ascents.get_or_init(count)
     }
 
+    /// The same among closed curves of any symmetry.
+    pub(crate) fn ascents_without_symmetry(&self, model: &Model<f64>) -> Option<usize> {
+        match self.class {
+            Class::Quarter => second_variation::ascents_without_symmetry(model, &self.solved.chain),
+            Class::Closed { .. } => self.ascents(model),
+        }
+    }
+
     /// Lighthill's efficiency ξ = `c_t/|p|²` of a swimmer with L = 1.
     pub(crate) fn efficiency(&self, model: &Model<f64>) -> f64 {
         let first = self.solved.chain.states.first();

@@ -3,7 +3,7 @@
 #[expect(dead_code, reason = "simple gaits are held against displacement only")]
 mod swimmers;
 
-use gait_optimizer::{Branch, EfficiencyProblem, efficiency};
+use gait_optimizer::{Branch, EfficiencyProblem, Objective, certify, efficiency};
 use swimmer_files::AnyGait;
 use swimmer_model::{Model, Tolerance, swim};
 
@@ -27,6 +27,10 @@ fn every_swimmer_gets_a_certified_gait_or_a_reason() {
                 }
             };
             assert!(gait.certificate.pass());
+            let file = gait.gait_file("");
+            let certificate =
+                certify(&swimmer, &file, Objective::Efficiency, &gait.bounds).unwrap();
+            assert!(certificate.pass(), "{i}: {}", certificate.failures());
             // The samples of the real swimmer, not of the scaled one, swum by the model alone.
             let stroke = swim(&model, &gait.gait().unwrap(), &Tolerance::new(1e-11));
             let again = stroke.efficiency_constant_power() / gait.efficiency;
@@ -45,9 +49,14 @@ fn every_swimmer_gets_a_certified_gait_or_a_reason() {
             }
         }
     }
-    // Large spheres bend the large gaits until they cross themselves: 10 of the 128.
+    // Large spheres bend the large gaits until they cross themselves: 10 of the 128. Of 9 with short middle links or next to no
+    // displacement the large gait is a saddle among curves without its symmetries.
+    let saddles = refused
+        .iter()
+        .filter(|why| why.contains("lie near are better"));
+    assert_eq!(saddles.count(), 9, "{}", refused.join("\n"));
     assert!(
-        refused.len() <= 12,
+        refused.len() <= 20,
         "{} refused:\n{}",
         refused.len(),
         refused.join("\n")

@@ -4,7 +4,8 @@ use swimmer_model::{Links, Model, Swimmer, TangentialDrag, Tolerance, swim, traj
 
 use super::{AtlasError, AtlasProblem, InvalidProblem, atlas};
 use crate::certify::{certified, ways_up};
-use crate::{Condition, OptimalGait};
+use crate::efficiency::best_symmetric;
+use crate::{Branch, Condition, EfficiencyProblem, OptimalGait};
 
 fn problem(swimmer: Swimmer<f64>) -> AtlasProblem {
     AtlasProblem {
@@ -161,6 +162,40 @@ fn the_search_goes_on_from_a_saddle() {
     assert_eq!(ascents, Some(0.0));
     // The saddle has 0.001178.
     assert!(best.distance_over_length > 0.0013 && best.found >= 4);
+}
+
+/// The large gait of long side links is the best with its symmetries, and no optimum: a gait without them lies near and is better.
+#[test]
+fn a_saddle_of_efficiency_is_not_listed_but_what_lies_beside_it() {
+    let swimmer = Swimmer {
+        links: Links {
+            middle: 0.4,
+            front: 1.0,
+            back: 1.0,
+        },
+        chi: 2.6,
+        ..Swimmer::purcell()
+    };
+    let saddle = best_symmetric(&EfficiencyProblem::new(swimmer, Branch::Large)).unwrap();
+    let failed = saddle.certificate.failures();
+    assert!(
+        failed.starts_with("ascent_directions_without_symmetry = 1") && !failed.contains(','),
+        "{failed}"
+    );
+    let found = atlas(&AtlasProblem {
+        starts: 24,
+        order: 8,
+        ..AtlasProblem::new(swimmer, Objective::Efficiency)
+    })
+    .unwrap();
+    let listed = |gait: &OptimalGait| (gait.efficiency / saddle.efficiency - 1.0).abs() < 1e-6;
+    assert!(!found.optima.iter().any(|one| listed(&one.gait)));
+    let beside = found.optima.iter().find(|one| {
+        let gait = &one.gait;
+        one.simple && !gait.symmetric && gait.displacement_over_length < 0.0
+    });
+    let better = beside.unwrap().gait.efficiency / saddle.efficiency;
+    assert!((1.05..1.5).contains(&better), "{better}");
 }
 
 #[test]

@@ -5,10 +5,11 @@ use swimmer_model::{Gait, Model};
 use super::branch_point::BranchPoint;
 use super::follow::Family;
 use super::{ContinuationProblem, OtherSide, Start};
+use crate::EfficiencyProblem;
+use crate::efficiency::best_symmetric;
 use crate::extremal::continuation::{alike, mirrored, other_side, within_walls};
 use crate::extremal::gait::{Order, gait};
 use crate::extremal::{Extremal, Walls, polish, polish_chain};
-use crate::{EfficiencyProblem, efficiency};
 
 pub(super) struct Efficiency<'a> {
     pub(super) problem: &'a ContinuationProblem,
@@ -73,7 +74,7 @@ impl Family for Efficiency<'_> {
         let value = self.problem.from;
         let gait = match start {
             Start::Gait(gait) => (**gait).clone(),
-            Start::Efficiency(branch) => efficiency(&EfficiencyProblem {
+            Start::Efficiency(branch) => best_symmetric(&EfficiencyProblem {
                 bounds: self.problem.bounds_at(value),
                 ..EfficiencyProblem::new(self.problem.swimmer_at(value), *branch)
             })
@@ -84,7 +85,7 @@ impl Family for Efficiency<'_> {
         };
         let curve = gait.gait().map_err(|error| error.to_string())?;
         let kept = self.polished(value, &curve, gait.symmetric)?;
-        if kept.gait.certificate.pass() {
+        if kept.holds() {
             Ok(kept)
         } else {
             Err(format!(

@@ -194,12 +194,19 @@ impl<F: Family> Walk<'_, F> {
     /// Takes a gait for the next one; false where the branch ends in it.
     fn accepts(&mut self, found: BranchPoint<F::Held>) -> bool {
         let mut from = self.here.clone();
-        if !found.gait.certificate.pass() {
-            let (last, next) = self.parted(&from, &found, |kept| kept.gait.certificate.pass());
+        if !found.holds() {
+            let (last, next) = self.parted(&from, &found, BranchPoint::holds);
             let (value, within) = between(last.value, next.value);
             let failed = next.gait.certificate.failures();
             self.event(value, within, EventKind::Lost { failed });
             return self.resumes();
+        }
+        let passes = |kept: &BranchPoint<F::Held>| kept.gait.certificate.pass();
+        if passes(&from) != passes(&found) {
+            let alone = passes(&from);
+            let (last, next) = self.parted(&from, &found, |kept| passes(kept) == alone);
+            let (value, within) = between(last.value, next.value);
+            self.event(value, within, EventKind::Symmetry { alone });
         }
         for _ in 0..MOST_CHANGES {
             if from.arcs() == found.arcs() {

@@ -1,7 +1,7 @@
 //! Why there is no efficiency gait to return.
 
 use super::{Branch, Reached};
-use crate::{Immobile, InvalidProblem};
+use crate::{Immobile, InvalidProblem, OptimalGait};
 
 /// Why there is no efficiency gait to return.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -103,6 +103,17 @@ pub enum EfficiencyError {
         /// What was asked for.
         definition: &'static str,
     },
+    /// The best gait with the paper's symmetries is a saddle among all closed curves.
+    #[error(
+        "the {branch} gait with the paper's two symmetries is no optimum: curves without them that lie near are better; `swimmer \
+         atlas --objective efficiency` finds those"
+    )]
+    Saddle {
+        /// Which gait.
+        branch: Branch,
+        /// The gait, whose certificate fails in that alone.
+        gait: Box<OptimalGait>,
+    },
     /// An extremal was found, but it fails its certificate.
     #[error(
         "the {branch} gait found does not meet all conditions of an optimum, so it is not returned; try other bounds"
@@ -121,6 +132,7 @@ impl EfficiencyError {
     /// How far the search for a gait came: of several reasons the farthest is told.
     pub(super) fn distance(&self) -> u8 {
         match self {
+            Self::Saddle { .. } => 5,
             Self::NotCertified { .. } => 4,
             Self::NotConverged { .. } => 3,
             Self::CrossesItself { .. } => 2,
@@ -160,6 +172,12 @@ impl EfficiencyError {
                  residual of 1e-10"
             ),
             Self::OtherBranch { efficiency, .. } => format!("its efficiency is {efficiency:.9e}"),
+            Self::Saddle { gait, .. } => format!(
+                "it has efficiency {:.9e} and X/L = {:.6}; it fails {}",
+                gait.efficiency,
+                gait.displacement_over_length,
+                gait.certificate.failures()
+            ),
             Self::NotCertified {
                 efficiency, failed, ..
             } => format!("its efficiency is {efficiency:.9e}; it fails {failed}"),

@@ -120,10 +120,12 @@ fn certificate(
     if walls.nearest(&Vector2::zeros()).is_some() {
         checks.push(Condition::KeepsWalls.check(evidence.overstepped));
     }
-    let ascents = extremal
-        .ascents(model)
-        .map_or(f64::NAN, |count| count as f64);
-    checks.push(Condition::NoAscent.check(ascents));
+    let none_of = |ascents: Option<usize>| ascents.map_or(f64::NAN, |count| count as f64);
+    checks.push(Condition::NoAscent.check(none_of(extremal.ascents(model))));
+    if extremal.class == Class::Quarter {
+        let ascents = none_of(extremal.ascents_without_symmetry(model));
+        checks.push(Condition::NoAscentWithoutSymmetry.check(ascents));
+    }
     Certificate::new(checks)
 }
 

@@ -7,14 +7,16 @@
 //! closed curve δθ must vanish at the end. On quarters both drop out. ν is piecewise linear, so the count is a bound from
 //! below that settles as the mesh gets finer.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 use swimmer_model::Model;
 
-use super::equations::{Motion, State, momentum, rate, shape};
+use super::equations::{Motion, State, Turning, momentum, shape};
 use super::flow::flowed;
 use super::shooting::{Chain, Class, Entry, Stretch};
 
-/// Elements of the whole chain, about.
+/// Elements of the whole mesh, about.
 const ELEMENTS: f64 = 160.0;
 
 /// One element of the mesh: the state in its middle, its length, and its two nodes (none where the curve is held).
@@ -25,7 +27,13 @@ struct Element {
 }
 
 /// The elements of the free arcs and of the bounds, and the number of nodes.
-fn mesh(model: &Model<f64>, class: Class, chain: &Chain) -> Option<(Vec<Element>, usize)> {
+struct Mesh {
+    elements: Vec<Element>,
+    nodes: usize,
+}
+
+/// Of a chain in about so many elements.
+fn mesh(model: &Model<f64>, class: Class, chain: &Chain, most: f64) -> Option<Mesh> {
     let total = chain.length();
     let quarter = class == Class::Quarter;
     let last = chain.arcs.len().checked_sub(1)?;
@@ -41,7 +49,7 @@ fn mesh(model: &Model<f64>, class: Class, chain: &Chain) -> Option<(Vec<Element>
         let free = matches!(arc.motion, Motion::Free);
         let share = arc.length / arc.pieces as f64;
         let parts = (1..400_usize)
-            .find(|&n| n as f64 * total >= ELEMENTS * share)
+            .find(|&n| n as f64 * total >= most * share)
             .unwrap_or(400);
         let length = share / parts as f64;
         // Nodes at ends are free at a symmetry line and on a closed curve without contact, held elsewhere.
@@ -69,12 +77,90 @@ fn mesh(model: &Model<f64>, class: Class, chain: &Chain) -> Option<(Vec<Element>
             }
         }
     }
-    Some((elements, count))
+    Some(Mesh {
+        elements,
+        nodes: count,
+    })
+}
+
+impl Mesh {
+    /// The mesh of a quarter with its three images: every second one is run backwards.
+    fn unfolded(&self) -> Self {
+        let ends = [
+            self.elements.first().and_then(|first| first.nodes[0]),
+            self.elements.last().and_then(|last| last.nodes[1]),
+        ];
+        let (mut elements, mut nodes) = (Vec::with_capacity(4 * self.elements.len()), 0);
+        // The nodes on the symmetry lines are shared: φ₁ = φ₂ > 0, φ₁ = −φ₂, and both again.
+        let mut on_lines: [Option<usize>; 4] = [None; 4];
+        for quarter in 0..4 {
+            let backwards = quarter % 2 == 1;
+            let mut images = vec![None; self.nodes];
+            let lines = [quarter, (quarter + 1) % 4];
+            let [from, to] = if backwards { [1, 0] } else { [0, 1] };
+            let mut image = |node: Option<usize>| {
+                let node = node?;
+                let line = [from, to].into_iter().zip(lines);
+                let line = line
+                    .filter(|&(end, _)| ends[end] == Some(node))
+                    .map(|(_, line)| line)
+                    .next();
+                let known = match line {
+                    Some(line) => &mut on_lines[line],
+                    None => images.get_mut(node)?,
+                };
+                Some(*known.get_or_insert_with(|| {
+                    nodes += 1;
+                    nodes - 1
+                }))
+            };
+            let mut add = |element: &Element| {
+                let [mut before, mut after] = element.nodes;
+                if backwards {
+                    (before, after) = (after, before);
+                }
+                elements.push(Element {
+                    state: reflected(&element.state, quarter),
+                    length: element.length,
+                    nodes: [image(before), image(after)],
+                });
+            };
+            if backwards {
+                self.elements.iter().rev().for_each(&mut add);
+            } else {
+                self.elements.iter().for_each(&mut add);
+            }
+        }
+        Self { elements, nodes }
+    }
+}
+
+/// The state of a quarter's image in another quarter: shapes reflected in the lines φ₁ = ±φ₂, the momentum as its body is.
+fn reflected([phi1, phi2, psi, x, y, theta]: &State, quarter: usize) -> State {
+    match quarter {
+        1 => [-phi2, -phi1, FRAC_PI_2 - psi, *x, *y, -theta],
+        2 => [-phi1, -phi2, psi + PI, *x, -y, -theta],
+        3 => [*phi2, *phi1, -FRAC_PI_2 - psi, *x, -y, *theta],
+        _ => [*phi1, *phi2, *psi, *x, *y, *theta],
+    }
 }
 
 /// How many directions raise the efficiency to second order; none where the arcs cannot be followed.
 pub(crate) fn ascent_directions(model: &Model<f64>, class: Class, chain: &Chain) -> Option<usize> {
-    let (elements, count) = mesh(model, class, chain)?;
+    let mesh = mesh(model, class, chain, ELEMENTS)?;
+    let closed = matches!(class, Class::Closed { .. });
+    ascents_of(model, &mesh, chain, closed)
+}
+
+/// The same of a quarter's whole cycle among closed curves of any symmetry.
+pub(crate) fn ascents_without_symmetry(model: &Model<f64>, quarter: &Chain) -> Option<usize> {
+    let mesh = mesh(model, Class::Quarter, quarter, 0.25 * ELEMENTS)?;
+    ascents_of(model, &mesh.unfolded(), quarter, true)
+}
+
+fn ascents_of(model: &Model<f64>, mesh: &Mesh, chain: &Chain, closed: bool) -> Option<usize> {
+    let Mesh { elements, nodes } = mesh;
+    let count = *nodes;
     if count == 0 {
         return Some(0);
     }
@@ -85,39 +171,44 @@ pub(crate) fn ascent_directions(model: &Model<f64>, class: Class, chain: &Chain)
     let first = momentum(chain.states.first()?);
     let p = Vector2::new(first.x, first.y);
     let (mut theta, mut gone) = (0.0_f64, Vector2::zeros());
-    let mut gains = Vec::with_capacity(elements.len());
-    for element in &elements {
-        let local = Local::new(model, &element.state);
+    let locals = elements.iter().map(|one| Local::new(model, &one.state));
+    let locals: Vec<Local> = locals.collect();
+    let gain = |local: &Local, length: f64| {
+        0.5 * length * (local.momentum.x * local.body.x + local.momentum.y * local.body.y)
+    };
+    let gains = locals.iter().zip(elements);
+    let mut ahead: f64 = gains.map(|(local, one)| gain(local, one.length)).sum();
+    for (local, element) in locals.iter().zip(elements) {
         let length = element.length;
-        // δθ in the middle, from what came before and half of this element.
-        let mut middle = turned.clone();
-        for (node, (value, slope)) in element.weights() {
-            let by = local.by_node(value, slope);
-            middle[node] += 0.5 * length * by.heading;
-            turned[node] += length * by.heading;
-        }
+        let here = gain(local, length);
+        ahead -= here;
         let nodes: Vec<(usize, Node)> = element
             .weights()
             .map(|(node, (value, slope))| (node, local.by_node(value, slope)))
             .collect();
+        // δθ in the middle, from what came before and half of this element.
+        let before = turned.clone();
+        let mut middle = turned.clone();
+        for (node, by) in &nodes {
+            middle[*node] += 0.5 * length * by.heading;
+            turned[*node] += length * by.heading;
+        }
         for (i, a) in &nodes {
+            // −½ μ_xy·ξ δθ², of here and of all that lies ahead.
+            let turn = length * a.heading;
             for (j, b) in &nodes {
-                form[(*i, *j)] += length * local.pair(a, b);
+                let both = turn * length * b.heading * (ahead + 0.25 * here);
+                form[(*i, *j)] += length * local.pair(a, b) - both;
             }
             // 2 δθ μ_xy·J δξ, made symmetric.
-            let cross = length * local.turned_momentum(&a.body);
-            for (node, heading) in middle.iter().enumerate() {
-                form[(*i, node)] += 0.5 * cross * heading;
-                form[(node, *i)] += 0.5 * cross * heading;
+            let cross = 0.5 * length * local.turned_momentum(&a.body);
+            let turn = turn * (ahead + 0.5 * here);
+            for (node, (middle, before)) in middle.iter().zip(before.iter()).enumerate() {
+                let part = cross * middle - turn * before;
+                form[(*i, node)] += part;
+                form[(node, *i)] += part;
             }
         }
-        let gain = local.momentum.x * local.body.x + local.momentum.y * local.body.y;
-        // What comes later turns nothing yet.
-        let active = middle.iter().rposition(|&turn| turn != 0.0);
-        let active = active.map_or(0, |last| last + 1);
-        let so_far = middle.rows(0, active);
-        form.view_mut((0, 0), (active, active))
-            .ger(-0.5 * length * gain, &so_far, &so_far, 1.0);
         // The lateral displacement that follows: along p turned by a quarter.
         let body = Vector2::new(local.body.x, local.body.y);
         let heading = theta + 0.5 * length * local.body.z;
@@ -138,11 +229,11 @@ pub(crate) fn ascent_directions(model: &Model<f64>, class: Class, chain: &Chain)
         );
         theta += length * local.body.z;
         gone += out * length;
-        gains.push(gain);
     }
-    if let Class::Closed { .. } = class {
+    if closed {
         // S (δd_⊥/|d|)²; the forms here are halves of second derivatives.
-        let weight = 0.5 * chain.length() / gone.norm_squared();
+        let length: f64 = elements.iter().map(|element| element.length).sum();
+        let weight = 0.5 * length / gone.norm_squared();
         form.ger(weight, &aside, &aside, 1.0);
         return Some(positive(&on_kernel(form, &turned)));
     }
@@ -221,16 +312,18 @@ struct Local {
 impl Local {
     fn new(model: &Model<f64>, state: &State) -> Self {
         let second = model.second_derivatives(&shape(state));
-        let rates = rate(model, &Motion::Free, state);
+        let momentum = momentum(state);
+        let turning = Turning::of(&second.first, state[2]);
         let (sin, cos) = state[2].sin_cos();
-        let control = Vector2::new(rates[0], rates[1]);
+        let control = Vector2::new(cos, sin) / turning.speed;
+        let bend = turning.plain + turning.gain * momentum.dot(&turning.curvature);
         Self {
             body: second.first.connection * control,
             second,
-            momentum: momentum(state),
+            momentum,
             control,
             normal: Vector2::new(-sin, cos),
-            normal_rate: Vector2::new(cos, sin) * -rates[2],
+            normal_rate: Vector2::new(cos, sin) * -bend,
         }
     }
 

@@ -2,8 +2,9 @@
 
 use super::equations::Motion;
 use super::*;
+use crate::{Branch, EfficiencyError, EfficiencyProblem, efficiency};
 use swimmer_files::Bounds;
-use swimmer_model::{Swimmer, SymmetricFourier};
+use swimmer_model::{Links, Swimmer, SymmetricFourier};
 
 /// A curve to start from, cut to a few digits, and the efficiency of the optimum nearby (none where it is not published).
 struct Case {
@@ -125,6 +126,42 @@ fn a_saddle_has_ways_up() {
     assert!((saddle.efficiency(&model) - 0.005_709_875_641).abs() < 1e-11);
     assert!(saddle.ascents(&model).unwrap() > 0);
     assert_eq!(from_ellipse([1.2, 1.2]).ascents(&model), Some(0));
+}
+
+/// A quarter unfolded is the cycle: it has as many ascents as the closed curve that is shot whole.
+#[test]
+fn a_quarter_knows_the_ascents_without_its_symmetry() {
+    for case in cases() {
+        let model = case.model();
+        let [quarter, closed] = [true, false]
+            .map(|quarter| polish(&model, &Walls::default(), &case.gait(), quarter).unwrap());
+        let counts = [
+            quarter.ascents(&model),
+            quarter.ascents_without_symmetry(&model),
+            closed.ascents(&model),
+        ];
+        assert_eq!(counts, [Some(0); 3]);
+    }
+    let long_sides = Swimmer {
+        links: Links {
+            middle: 0.4,
+            front: 1.0,
+            back: 1.0,
+        },
+        chi: 2.6,
+        ..Swimmer::purcell()
+    };
+    let model = Model::new(&long_sides.of_unit_length()).unwrap();
+    let large = EfficiencyProblem::new(long_sides, Branch::Large);
+    let Err(EfficiencyError::Saddle { gait, .. }) = efficiency(&large) else {
+        panic!("a saddle");
+    };
+    let curve = gait.gait().unwrap();
+    let [quarter, closed] =
+        [true, false].map(|quarter| polish(&model, &Walls::default(), &curve, quarter).unwrap());
+    assert_eq!(quarter.ascents(&model), Some(0));
+    assert_eq!(quarter.ascents_without_symmetry(&model), Some(1));
+    assert_eq!(closed.ascents(&model), Some(1));
 }
 
 /// Continuation in the bound to just before the fold of the robot's large gait, and the other extremal that it meets there:

@@ -102,6 +102,12 @@ fn happened(kind: &EventKind) -> String {
         ),
         EventKind::Merger { with } => format!("becomes gait {}", with + 1),
         EventKind::Overtaken { by } => format!("gait {} becomes the better one", by + 1),
+        EventKind::Symmetry { alone: true } => {
+            "from here on curves without its symmetries are better".to_owned()
+        }
+        EventKind::Symmetry { alone: false } => {
+            "from here on no curve without its symmetries is better".to_owned()
+        }
         EventKind::Lost { failed } => format!("no optimum beyond: fails {failed}"),
         EventKind::Ended { reason, exponent } => format!("ends: {reason}{}", power(exponent)),
         EventKind::Reached => "followed to here".to_owned(),
