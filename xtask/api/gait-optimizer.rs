@@ -211,6 +211,7 @@ pub enum EfficiencyError {
         start_angle: f64,
         definition: &'static str,
     },
+    Saddle { branch: Branch, gait: Box<OptimalGait> },
     NotCertified { branch: Branch, efficiency: f64, failed: String },
 }
 impl EfficiencyError {
@@ -257,6 +258,7 @@ pub enum EventKind {
     Jump { exponent: Option<f64>, apart: f64 },
     Merger { with: usize },
     Overtaken { by: usize },
+    Symmetry { alone: bool },
     Lost { failed: String },
     Ended { exponent: Option<f64>, reason: String },
     Reached,
