@@ -141,6 +141,11 @@ impl Certificate {
         self
     }
 
+    /// Whether all holds among gaits with the paper's symmetries; among all closed curves it may be a saddle.
+    pub(crate) fn holds_among_symmetric(&self) -> bool {
+        self.holds_but(&[Condition::NoAscentWithoutSymmetry])
+    }
+
     /// Whether all hold, these excepted.
     pub(crate) fn holds_but(&self, excepted: &[Condition]) -> bool {
         let mut checks = self.checks.iter();

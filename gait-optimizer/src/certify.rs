@@ -194,15 +194,6 @@ pub(crate) fn certified(gait: OptimalGait) -> OptimalGait {
     }
 }
 
-/// Whether the samples of a gait that an optimiser made are as close as [`certify`] asks for.
-pub(crate) fn samples_suffice(model: &Model<f64>, gait: &OptimalGait) -> bool {
-    let file = gait.gait_file("");
-    let subject = Subject::new(model, &file, Limits::new(&gait.bounds, &gait.swimmer.links));
-    sampling(gait.objective, subject.openness())
-        .iter()
-        .all(|check| check.pass)
-}
-
 /// How far two polynomials through the samples of a cycle of most efficiency differ in its slopes, over what [`certify`] lets them.
 pub(crate) fn slopes_open(cycle: &Cycle) -> f64 {
     let file = cycle.file(Bounds::default());
@@ -325,7 +316,7 @@ impl<'a> Subject<'a> {
             &gait.phi
         };
         checks.extend(simple_and_turning_once(&gait.phi, simple).map(at_samples));
-        if self.limits.need_quarters() {
+        if self.limits.region.is_of_quarters() {
             let off = if self.symmetric { 0.0 } else { 1.0 };
             let seen_by = if coarse {
                 SeenBy::Spacing

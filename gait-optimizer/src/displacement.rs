@@ -142,6 +142,8 @@ impl DisplacementProblem {
 /// out and back along itself. Slits along the diagonals are found; others are not, and what is returned may carry less far
 /// than a gait that is no optimum: [`OptimalGait::outdone_over_length`].
 ///
+/// A gait that is the best of its symmetry and a saddle among all closed curves is none: it fails its certificate.
+///
 /// # Errors
 /// [`DisplacementError`]: what is wrong with the problem, or why it has no optimum.
 ///
@@ -155,6 +157,19 @@ impl DisplacementProblem {
 /// # Ok::<(), gait_optimizer::DisplacementError>(())
 /// ```
 pub fn displacement(problem: &DisplacementProblem) -> Result<OptimalGait, DisplacementError> {
+    let gait = best_symmetric(problem)?;
+    if gait.certificate.pass() {
+        Ok(gait)
+    } else {
+        let gait = Box::new(gait);
+        Err(DisplacementError::Saddle { gait })
+    }
+}
+
+/// The same, be it a saddle among all closed curves.
+pub(crate) fn best_symmetric(
+    problem: &DisplacementProblem,
+) -> Result<OptimalGait, DisplacementError> {
     let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
     let links = &problem.swimmer.links;

@@ -316,10 +316,7 @@ fn accepted(
 
 /// A gait that no other with the paper's symmetries outdoes nearby.
 fn certified(branch: Branch, gait: OptimalGait) -> Result<OptimalGait, EfficiencyError> {
-    if gait
-        .certificate
-        .holds_but(&[Condition::NoAscentWithoutSymmetry])
-    {
+    if gait.certificate.holds_among_symmetric() {
         return Ok(gait);
     }
     Err(EfficiencyError::NotCertified {

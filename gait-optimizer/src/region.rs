@@ -326,6 +326,12 @@ impl Region {
         self.edges.iter().any(|edge| edge.kind == ArcKind::Diagonal)
     }
 
+    /// Whether some bounds are told of a quarter, so that they mean something for gaits with the paper's symmetries only.
+    pub(crate) fn is_of_quarters(&self) -> bool {
+        let of_quarter = |edge: &Edge| matches!(edge.kind, ArcKind::Lower | ArcKind::Diagonal);
+        self.edges.iter().any(of_quarter)
+    }
+
     /// Largest overstepping of any bound at a shape (rad, or over L for the clearance); negative where all hold.
     pub(crate) fn overstepped(&self, phi: &Vector2<f64>) -> f64 {
         self.bounds()

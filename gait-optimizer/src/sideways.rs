@@ -291,6 +291,9 @@ fn touching(problem: &SidewaysProblem) -> Vec<(Option<OptimalGait>, f64)> {
         Err(DisplacementError::NoOptimum {
             outdone: Some(far), ..
         }) => Some((None, far.abs())),
+        Err(DisplacementError::Saddle { gait }) => {
+            Some((None, gait.displacement_over_length.abs()))
+        }
         Err(_) => None,
     };
     [Heading::Forwards, Heading::Backwards]

@@ -6,7 +6,8 @@ mod swimmers;
 
 use direct::Direct;
 use gait_optimizer::{
-    ArcKind, DisplacementError, DisplacementProblem, InvalidProblem, OptimalGait, displacement,
+    ArcKind, DisplacementError, DisplacementProblem, InvalidProblem, OptimalGait, Verdict, certify,
+    displacement,
 };
 use swimmer_files::{Bounds, GaitFile};
 use swimmer_model::{Links, Swimmer, TangentialDrag, Tolerance, swim};
@@ -375,7 +376,7 @@ fn the_papers_gaits_without_crossing_links() {
 /// that swims as it says, or a reason where none of them goes forwards.
 #[test]
 fn random_swimmers() {
-    let mut found = 0;
+    let (mut found, mut saddles) = (0, 0);
     let mut wrong = Vec::new();
     for case in swimmers::random(20_260_703, 200) {
         let best = best_simple_displacement(&case);
@@ -388,6 +389,9 @@ fn random_swimmers() {
                 found += 1;
                 let x = gait.displacement_over_length;
                 assert!(gait.certificate.pass(), "{}", case.name);
+                let file = gait.gait_file("");
+                let certificate = certify(&case.swimmer, &file, gait.objective, &gait.bounds);
+                assert!(certificate.unwrap().pass(), "{}", case.name);
                 let model = swimmer_model::Model::new(&case.swimmer).unwrap();
                 let stroke = swim(&model, &gait.gait().unwrap(), &Tolerance::new(1e-11));
                 let swum = stroke.displacement_over_length();
@@ -399,10 +403,23 @@ fn random_swimmers() {
             Err(error @ DisplacementError::NoOptimum { .. }) if best <= 0.0 => {
                 assert!(!error.to_string().is_empty());
             }
+            Err(DisplacementError::Saddle { gait }) => {
+                // Told by the samples alone, too.
+                let file = gait.gait_file("");
+                let certificate = certify(&case.swimmer, &file, gait.objective, &case.bounds);
+                assert_eq!(
+                    certificate.unwrap().verdict(),
+                    Verdict::Fail,
+                    "{}",
+                    case.name
+                );
+                saddles += 1;
+            }
             Err(error) => wrong.push(format!("{}: {error}; {best}", case.name)),
         }
     }
-    println!("{found} of 200 with a gait");
+    println!("{found} of 200 with a gait, {saddles} with a saddle");
+    assert!(saddles <= 1, "{saddles}");
     assert!(found > 120, "{found}");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

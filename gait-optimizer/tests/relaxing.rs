@@ -49,12 +49,19 @@ fn answer(
     if let Err(error) = &found
         && !matches!(
             error,
-            DisplacementError::NoOptimum { .. } | DisplacementError::NotCertified { .. }
+            DisplacementError::NoOptimum { .. }
+                | DisplacementError::NotCertified { .. }
+                | DisplacementError::Saddle { .. }
         )
     {
         return Answer::default();
     }
-    let local = found.as_ref().ok();
+    // A saddle among all closed curves is a gait all the same, and the best of its symmetry.
+    let local = match &found {
+        Ok(gait) => Some(gait),
+        Err(DisplacementError::Saddle { gait }) => Some(&**gait),
+        Err(_) => None,
+    };
     if let Some(supremum) = suprema.of(&problem, local) {
         let best = supremum
             .members

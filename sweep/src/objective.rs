@@ -169,6 +169,7 @@ impl From<DisplacementError> for Missing {
                     displacement_over_length,
                     ..
                 } => Some(displacement_over_length.abs()),
+                DisplacementError::Saddle { gait } => Some(gait.displacement_over_length.abs()),
                 _ => None,
             },
         }

@@ -170,6 +170,7 @@ pub enum DisplacementError {
     Immobile(Immobile),
     NoUnboundedOptimum { fates: Fates },
     NoOptimum { heading: Heading, fates: Fates, outdone: Option<f64> },
+    Saddle { gait: Box<OptimalGait> },
     NotCertified { displacement_over_length: f64, failed: String },
 }
 impl DisplacementError {

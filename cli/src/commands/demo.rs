@@ -319,9 +319,9 @@ impl<'a> Round<'a> {
             ..DisplacementProblem::new(fitted.swimmer).with_max_angle(bound)
         };
         let best = displacement(&problem).map_err(|error| match error {
-            DisplacementError::NoOptimum { .. } | DisplacementError::NotCertified { .. } => {
-                Refused::Here(error.into())
-            }
+            DisplacementError::NoOptimum { .. }
+            | DisplacementError::Saddle { .. }
+            | DisplacementError::NotCertified { .. } => Refused::Here(error.into()),
             error => Refused::Everywhere(error.into()),
         })?;
         let gait = best.gait().map_err(|error| {

@@ -17,6 +17,7 @@ use super::sections::guesses;
 use super::starts::through;
 use crate::certify::{certified, ways_up};
 use crate::closed_curve::Functional;
+use crate::displacement::best_symmetric;
 use crate::loops::{Closed, close, traced};
 use crate::optimal_gait::Solution;
 use crate::region::Region;
@@ -55,7 +56,7 @@ impl MultiStart for Displacement<'_> {
             .flat_map(|heading| [(heading, true), (heading, false)]);
         classes
             .filter_map(|(heading, simple)| {
-                crate::displacement(&DisplacementProblem {
+                best_symmetric(&DisplacementProblem {
                     bounds: problem.bounds,
                     heading: Some(heading),
                     simple,

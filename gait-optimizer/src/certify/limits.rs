@@ -36,11 +36,6 @@ impl Limits {
         }
     }
 
-    /// Whether the bounds are told of a quarter, so that they mean something for gaits with the paper's symmetries only.
-    pub(super) fn need_quarters(&self) -> bool {
-        self.bounds.min_angle.is_some() || self.bounds.sector
-    }
-
     /// All bounds at a shape in one quarter of the cycle (0 to 3), always in the same order.
     pub(super) fn at(&self, phi: &Vector2<f64>, quarter: usize) -> Vec<Limit> {
         let limit = |bound: crate::region::Bound| {

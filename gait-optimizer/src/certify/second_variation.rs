@@ -36,8 +36,9 @@ pub(super) struct Neighbours<'a> {
     pub(super) symmetric: bool,
 }
 
-/// Half waves all round, and the fewest of a free stretch.
-const HALF_WAVES: f64 = 48.0;
+/// Half waves all round, and the fewest of a free stretch. Where effort counts, kinks are dear; where it does not, the best push need not
+/// vanish towards bounds, which sines come to slowly.
+const HALF_WAVES: [f64; 2] = [48.0, 96.0];
 const FEWEST: usize = 3;
 /// Places this close in u are the same.
 const SAME: f64 = 1e-9;
@@ -81,7 +82,7 @@ impl Subject<'_> {
         };
         let mut checks = Vec::new();
         if self.symmetric
-            && !self.limits.need_quarters()
+            && !self.limits.region.is_of_quarters()
             && let Some(of_any) = of(false)
         {
             checks.push(Check {
@@ -209,6 +210,7 @@ impl Neighbours<'_> {
             };
             nodes().map(push).collect()
         };
+        let half_waves = HALF_WAVES[usize::from(self.gain != Gain::Efficiency)];
         let stretches = self.stretches(slopes);
         let stretches = stretches.iter().filter(|stretch| {
             // Of images one is enough.
@@ -216,7 +218,7 @@ impl Neighbours<'_> {
             !self.symmetric || middle <= 0.25 + SAME || middle >= 1.0 - SAME
         });
         stretches
-            .flat_map(Stretch::waves)
+            .flat_map(|stretch| stretch.waves(half_waves))
             .map(|wave| pushes(&wave))
             .filter(|wave| wave.iter().any(|push| push.norm() > 1e-3))
             .collect()
@@ -281,9 +283,10 @@ struct Wave<'a> {
 }
 
 impl Stretch {
-    fn waves(&self) -> Vec<Wave<'_>> {
+    /// With so many half waves in a period.
+    fn waves(&self, half_waves: f64) -> Vec<Wave<'_>> {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some tens
-        let most = ((HALF_WAVES * self.width).round() as usize).max(FEWEST);
+        let most = ((half_waves * self.width).round() as usize).max(FEWEST);
         let wave = |halves: usize, phase: f64| Wave {
             stretch: self,
             halves,

@@ -2,8 +2,8 @@
 
 use swimmer_files::{ArcKind, Objective};
 
+use crate::OptimalGait;
 use crate::atlas::distinct::{Outline, Symmetries};
-use crate::{Condition, OptimalGait};
 
 /// In one step a curve may move this far \[rad\], and the logarithm of its gain change by this much.
 const MOST_MOVE: f64 = 0.15;
@@ -38,8 +38,7 @@ impl<H> BranchPoint<H> {
 
     /// Whether it is an optimum, at least among gaits with its symmetries.
     pub(super) fn holds(&self) -> bool {
-        let excepted = [Condition::NoAscentWithoutSymmetry];
-        self.gait.certificate.holds_but(&excepted)
+        self.gait.certificate.holds_among_symmetric()
     }
 
     /// What the gait is optimal for.

@@ -35,7 +35,7 @@ impl Displacement<'_> {
         // An optimum before an extremal that is none.
         let far = |kept: &BranchPoint<()>| {
             let apart = kept.apart(&place);
-            if kept.gait.certificate.pass() || apart > 0.05 {
+            if kept.holds() || apart > 0.05 {
                 apart
             } else {
                 apart + 0.05
@@ -60,6 +60,12 @@ fn kept(value: f64, gait: OptimalGait) -> BranchPoint<()> {
     BranchPoint::new(value, gait, residual.unwrap_or(f64::NAN), ())
 }
 
+/// Those that are optima, at least among gaits with their symmetries.
+fn optima(value: f64, all: Vec<OptimalGait>) -> impl Iterator<Item = BranchPoint<()>> {
+    let all = all.into_iter().map(move |gait| kept(value, gait));
+    all.filter(BranchPoint::holds)
+}
+
 impl Family for Displacement<'_> {
     type Held = ();
 
@@ -70,9 +76,9 @@ impl Family for Displacement<'_> {
         match start {
             Start::Displacement { heading, rank } => {
                 let all = self.all(value, (*heading, true))?;
-                let mut optima = all.into_iter().filter(|gait| gait.certificate.pass());
-                let gait = optima.nth(*rank);
-                gait.map(|gait| kept(value, gait))
+                let mut optima = optima(value, all);
+                optima
+                    .nth(*rank)
                     .ok_or_else(|| format!("there are no {} optima", rank + 1))
             }
             Start::Gait(gait) if gait.symmetric => self.nearest(value, gait),
@@ -95,10 +101,7 @@ impl Family for Displacement<'_> {
         let all = self
             .all(value, (Some(heading(&last.gait)), !last.gait.bounds.sector))
             .ok()?;
-        let optima = all.into_iter().filter(|gait| gait.certificate.pass());
-        optima
-            .map(|gait| kept(value, gait))
-            .min_by(|a, b| a.apart(last).total_cmp(&b.apart(last)))
+        optima(value, all).min_by(|a, b| a.apart(last).total_cmp(&b.apart(last)))
     }
 
     fn other_side(&self, _: &BranchPoint<()>, _: &BranchPoint<()>) -> Option<OtherSide> {

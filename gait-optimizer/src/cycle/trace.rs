@@ -10,7 +10,7 @@ use crate::arcs::{Leg, SMOOTH, Trace};
 use crate::certificate::{Check, Condition};
 use crate::momentum::{Momentum, Motion, State, pose, shape};
 use crate::region::Region;
-use second_variation::{Push, SecondVariation};
+use second_variation::{Push, SecondVariation, Stretch, is_maximum_without_symmetry};
 
 /// Numbers gathered along the trace, for the certificate.
 struct Evidence<'a> {
@@ -29,8 +29,8 @@ struct Evidence<'a> {
     legendre_clebsch: Option<f64>,
     /// Largest gradient of the height along the quarter: the scale of that slope.
     steepest: f64,
-    /// None without singular arcs.
-    second_variation: Option<SecondVariation>,
+    /// Stretches of singular arcs, on which pushes are free.
+    free: Vec<Stretch>,
     /// Largest overstepping of a bound \[rad\].
     overstepped: f64,
 }
@@ -105,7 +105,7 @@ fn conditions(
         multiplier: None,
         legendre_clebsch: None,
         steepest: 0.0,
-        second_variation: None,
+        free: Vec::new(),
         overstepped: f64::NEG_INFINITY,
     };
     // λ₁, λ₂ from H_u = 0 at the start. On a free arc their equations leave Ḣ_u = h (Φ̇₂, −Φ̇₁); along a bound the multiplier
@@ -121,7 +121,9 @@ fn conditions(
             {
                 let way = phi - from;
                 h_u += Vector2::new(way.y, -way.x) * (0.5 * (lower + height));
-                evidence.vary(last, push, way.norm());
+                evidence
+                    .free
+                    .extend(last.zip(push).map(|(last, push)| (last, push, way.norm())));
             }
             evidence.h_u = evidence.h_u.max(h_u.norm());
             before = Some((phi, height, push));
@@ -148,8 +150,16 @@ fn conditions(
     checks.extend(clebsch.map(|least| Condition::GrowsInwardsSteeply.check(least)));
     let pushes = evidence.multiplier;
     checks.extend(pushes.map(|least| Condition::HeightOnBound.check(least)));
-    let form = evidence.second_variation;
-    checks.extend(form.map(|form| Condition::NoConjugatePoint.check(form.least)));
+    if !evidence.free.is_empty() {
+        let least = SecondVariation::of(&evidence.free).least;
+        checks.push(Condition::NoConjugatePoint.check(least));
+        // Bounds that are told of a quarter mean something for gaits with its symmetries only.
+        if !region.is_of_quarters() {
+            let best = is_maximum_without_symmetry(&evidence.free, 4.0 * evidence.final_x);
+            let ascents = if best { 0.0 } else { 1.0 };
+            checks.push(Condition::NoAscentWithoutSymmetry.check(ascents));
+        }
+    }
     if region.bounds().next().is_some() {
         checks.push(Condition::KeepsBounds.check(evidence.overstepped));
     }
@@ -187,14 +197,5 @@ impl Evidence<'_> {
             left,
         );
         (height.value, Some(push))
-    }
-
-    /// Takes in the stretch between two samples of a singular arc.
-    fn vary(&mut self, before: Option<Push>, after: Option<Push>, step: f64) {
-        if let (Some(before), Some(after)) = (before, after) {
-            self.second_variation
-                .get_or_insert_default()
-                .step(&before, &after, step);
-        }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use nalgebra::Vector2;
 use swimmer_files::Bounds;
 use swimmer_model::Model;
 
@@ -9,11 +10,11 @@ use super::flow::Touch;
 use super::search::{Candidate, FINER_SCAN, SCAN_POINTS, Search, Seen};
 use super::start_family::{StartFamily, families, families_on_the_diagonal};
 use super::{DisplacementError, DisplacementProblem, Fates, certified, traced};
+use crate::certificate::Verdict;
 use crate::certificate::turning_number;
-use crate::certify::samples_suffice;
 use crate::momentum::Motion;
 use crate::region::Region;
-use crate::{Condition, OptimalGait};
+use crate::{Condition, OptimalGait, certify};
 
 /// What a search within some bounds came to.
 pub(super) struct Extremals<'a> {
@@ -102,7 +103,7 @@ impl Extremals<'_> {
     }
 }
 
-/// The best gait that certifies within these bounds, which may be tighter than the problem's, and carries farther than `least`,
+/// The best gait with the paper's symmetries that certifies among such within these bounds, which may be tighter than the problem's, and carries farther than `least`,
 /// over L; and what else was seen there.
 pub(super) fn best<'a>(
     problem: &DisplacementProblem,
@@ -118,7 +119,7 @@ pub(super) fn best<'a>(
             let Some(gait) = certified(problem, model, within, candidate) else {
                 continue;
             };
-            if gait.certificate.pass() {
+            if gait.certificate.holds_among_symmetric() {
                 let mut finer = finely_sampled(problem, model, within, (candidate, gait));
                 finer.extremals = Some(seen.found.len());
                 return (Ok(finer), seen);
@@ -156,15 +157,16 @@ fn is_gait(gait: &OptimalGait) -> bool {
         Condition::StartTransversality,
         Condition::EndTransversality,
         Condition::NoConjugatePoint,
+        Condition::NoAscentWithoutSymmetry,
     ])
 }
 
 /// Most samples of a quarter, as a multiple of those asked for.
 const FINEST: usize = 16;
 
-/// Samples this close to each other \[rad\] are not asked further: gaits with steps of 0.1 rad pass, and asking costs as much as
-/// finding the gait.
-const CLOSE: f64 = 0.08;
+/// Gaits with shorter sides and smaller bends between them \[rad\] are not asked: they pass, and asking costs as much as finding the
+/// gait.
+const CLOSE: [f64; 2] = [0.08, 0.1];
 
 /// The gait with as many samples as its own certificate needs when it is worked out from the samples alone; as it is where no
 /// number of them will do.
@@ -174,24 +176,44 @@ pub(super) fn finely_sampled(
     within: (&Bounds, &Region),
     (candidate, gait): (&Candidate, OptimalGait),
 ) -> OptimalGait {
-    let steps = gait.phi().windows(2).filter_map(|pair| match pair {
-        [from, to] => Some((to - from).norm()),
-        _ => None,
-    });
-    if steps.fold(0.0, f64::max) < CLOSE {
+    if longest_and_sharpest(&gait)
+        .iter()
+        .zip(CLOSE)
+        .all(|(found, close)| *found < close)
+    {
         return gait;
     }
     let mut finer = *problem;
     let mut sampled = gait.clone();
-    while !samples_suffice(model, &sampled) {
+    while leaves_open(&sampled) {
         finer.quarter_samples *= 2;
         if finer.quarter_samples > FINEST * problem.quarter_samples {
             return gait;
         }
         match certified(&finer, model, within, candidate) {
-            Some(again) if again.certificate.pass() => sampled = again,
+            Some(again) if again.certificate.holds_among_symmetric() => sampled = again,
             _ => return gait,
         }
     }
     sampled
+}
+
+/// The longest side of a gait's polygon, and the largest angle between two but at corners \[rad\].
+fn longest_and_sharpest(gait: &OptimalGait) -> [f64; 2] {
+    let sides = gait.phi().windows(2).map(|pair| pair[1] - pair[0]);
+    let sides: Vec<_> = sides.collect();
+    let bends = sides.windows(2).zip(gait.u().iter().skip(1));
+    let bends = bends.filter(|(_, u)| !gait.corners().contains(u));
+    let bends = bends.map(|(pair, _)| pair[0].perp(&pair[1]).atan2(pair[0].dot(&pair[1])).abs());
+    [
+        sides.iter().map(Vector2::norm).fold(0.0, f64::max),
+        bends.fold(0.0, f64::max),
+    ]
+}
+
+/// Whether samples alone leave open what [`certify`] asks.
+fn leaves_open(gait: &OptimalGait) -> bool {
+    let file = gait.gait_file("");
+    let certificate = certify(&gait.swimmer, &file, gait.objective, &gait.bounds);
+    certificate.is_ok_and(|certificate| certificate.verdict() == Verdict::Undecided)
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::Heading;
-use crate::{Immobile, InvalidProblem};
+use crate::{Immobile, InvalidProblem, OptimalGait};
 
 /// What became of the extremals that the search sent out.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -76,6 +76,15 @@ pub enum DisplacementError {
         /// X over L of a gait within the bounds that is no extremal; none where the search saw no such gait.
         outdone: Option<f64>,
     },
+    /// The best gait with the paper's symmetries is a saddle among all closed curves.
+    #[error(
+        "the best gait with the paper's two symmetries is no optimum: curves without them that lie near carry farther; `swimmer atlas \
+         --objective displacement` finds those"
+    )]
+    Saddle {
+        /// The gait, whose certificate fails in that alone.
+        gait: Box<OptimalGait>,
+    },
     /// Extremals were found, but the best of them fails its certificate.
     #[error(
         "the best gait found (X/L = {displacement_over_length:.6}) does not meet all conditions of an optimum, so it is not \
@@ -98,6 +107,11 @@ impl DisplacementError {
                  ends with lambda4 = 0: {fates}"
             )),
             Self::NoOptimum { fates, .. } => Some(fates.to_string()),
+            Self::Saddle { gait } => Some(format!(
+                "it carries X/L = {:.6}; it fails {}",
+                gait.displacement_over_length,
+                gait.certificate.failures()
+            )),
             Self::NotCertified { failed, .. } => Some(format!("it fails {failed}")),
             _ => None,
         }

@@ -57,6 +57,7 @@ impl Objective for Displacement {
             let mut suprema = Suprema::new(threads::available());
             let supremum = match &found {
                 Ok(gait) => suprema.of(&problem, Some(gait)),
+                Err(DisplacementError::Saddle { gait }) => suprema.of(&problem, Some(gait)),
                 Err(
                     DisplacementError::NoOptimum { .. } | DisplacementError::NotCertified { .. },
                 ) => suprema.of(&problem, None),
