@@ -154,6 +154,29 @@ fn more_power_is_never_slower_between_the_limits() {
     );
 }
 
+/// Quicker servos are never slower on the same power, and a time runs as fast for everybody: with s times the rates and s² times the
+/// power the same gait is s times as fast.
+#[test]
+fn a_higher_rate_is_never_slower() {
+    let speed = |power: f64, rate: f64| {
+        let found = fastest_within(&robot(Some(power), Some([rate; 2]), None), &|_| ()).unwrap();
+        println!(
+            "{power} {rate}: {:.12} {:?}",
+            found.speed_over_length, found.limits
+        );
+        assert_eq!(found.limits.len(), 2);
+        found.speed_over_length
+    };
+    let rates = [0.9, 1.0, 1.1, 1.25];
+    let speeds = rates.map(|rate| speed(5e-3, rate));
+    assert!(
+        speeds.windows(2).all(|pair| pair[1] > pair[0]),
+        "{speeds:?}"
+    );
+    let scaled = speed(5e-3 * 1.3_f64.powi(2), 1.3) / 1.3;
+    assert!((scaled / speeds[1] - 1.0).abs() < 1e-10, "{scaled}");
+}
+
 /// The same from where the power alone binds to where it never does: red while some powers have no answer.
 #[test]
 #[ignore = "minutes: part of the soak"]

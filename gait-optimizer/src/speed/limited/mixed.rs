@@ -34,21 +34,10 @@ const REFINED: f64 = 1e-6;
 /// Samples of an element.
 const SAMPLES: usize = 48;
 
-/// So many times the power and the torque, one after the other, have gaits to start from where the search alone finds none.
-const NEARBY: [f64; 4] = [1.15, 0.87, 1.35, 0.75];
-
-/// A curve as an answer.
-struct Found {
-    told: Limited,
-    curve: Curve,
-}
-
-impl Found {
-    /// 0 of none.
-    fn speed(of: Option<&Self>) -> f64 {
-        of.map_or(0.0, |found| found.told.speed_over_length)
-    }
-}
+/// So many times the power and the torque, one after the other, tell what binds where a polygon alone does not; from there it goes
+/// on by steps of their logarithms that are not shorter than this.
+const NEARBY: [f64; 4] = [1.1, 0.91, 1.25, 0.8];
+const LEAST_STEP: f64 = 1e-2;
 
 impl LimitedProblem {
     /// Where several limits bind, or the torque alone.
@@ -62,31 +51,15 @@ impl LimitedProblem {
         let region = Region::new(&self.bounds, &self.swimmer.links);
         let unit = self.unit(&model);
         let setting = self.setting(&model, &region, unit);
-        let (mut best, uncertified) = self.searched(&setting, singles, unit, watch);
-        let clearly = |uncertified: f64, best: Option<&Found>| {
-            uncertified > Found::speed(best) * (1.0 + 1e-6)
-        };
-        // Where what binds is not found, a neighbour's gait may tell it.
-        for more in NEARBY {
-            let known = best.as_ref();
-            if known.is_some() && !uncertified.is_some_and(|other| clearly(other, known)) {
-                break;
-            }
-            let near = self.stronger(more);
-            let (there, _) =
-                near.searched(&near.setting(&model, &region, unit), singles, unit, &|_| ());
-            let curve = there.and_then(|found| found.curve.refined(&setting, ELEMENTS[0]));
-            let found = curve.and_then(|curve| self.told(&setting, curve, unit));
-            let farther = |found: &Found| {
-                Found::speed(Some(found)) > Found::speed(known)
-                    && found.told.gait.certificate.pass()
-            };
-            best = found.filter(farther).or(best);
-        }
+        let (best, uncertified) = self.searched(&setting, singles, unit, watch);
         let best = best.ok_or_else(|| self.no_gait(singles, uncertified))?;
+        // What is faster than with one limit alone is a polygon's error.
+        let speeds = singles.iter().map(|one| one.speed_over_length);
+        let most = speeds.fold(f64::INFINITY, f64::min);
+        let clearly = |other: &f64| (best.speed_over_length * (1.0 + 1e-6)..=most).contains(other);
         Ok(Limited {
-            uncertified: uncertified.filter(|other| clearly(*other, Some(&best))),
-            ..best.told
+            uncertified: uncertified.filter(clearly),
+            ..best
         })
     }
 
@@ -110,7 +83,7 @@ impl LimitedProblem {
         singles: &[Limited],
         unit: f64,
         watch: Watch<'_>,
-    ) -> (Option<Found>, Option<f64>) {
+    ) -> (Option<Limited>, Option<f64>) {
         let known = |index: usize| {
             let gait = singles.get(index)?.gait.gait().ok()?;
             let corner = |k: u32| gait.at((f64::from(k) + 0.25) / 16.0).phi;
@@ -138,18 +111,25 @@ impl LimitedProblem {
         };
         let polygons = in_parallel(chosen.len(), self.threads, &|_| (), || (), finer);
         // A polygon is about as fast as the curve near it, so the first that is certified is the fastest but for a few.
-        let (mut best, mut uncertified) = (None::<Found>, None::<f64>);
+        let (mut best, mut uncertified) = (None::<Limited>, None::<f64>);
+        let mut fails = |speed: f64| {
+            uncertified = Some(uncertified.map_or(speed, |most: f64| most.max(speed)));
+        };
         for group in selection::groups(polygons.into_iter().flatten().collect()) {
-            let known = Found::speed(best.as_ref());
+            let known = best.as_ref().map_or(0.0, |best| best.speed_over_length);
             if group.speed() * unit < known * (1.0 - NEAR) {
                 break;
             }
             let curves = group.chosen.iter();
-            let curves = curves.filter_map(|polygon| polished(setting, polygon, ELEMENTS[0]));
+            let curves = curves.filter_map(|polygon| self.near(setting, polygon, unit));
+            let mut curves = curves.peekable();
+            if curves.peek().is_none() {
+                fails(group.speed() * unit * (1.0 - NEAR));
+            }
             for found in curves.filter_map(|curve| self.told(setting, curve, unit)) {
-                let speed = found.told.speed_over_length;
-                if !found.told.gait.certificate.pass() {
-                    uncertified = Some(uncertified.map_or(speed, |most| most.max(speed)));
+                let speed = found.speed_over_length;
+                if !found.gait.certificate.pass() {
+                    fails(speed);
                 } else if speed > known {
                     best = Some(found);
                     break;
@@ -157,6 +137,29 @@ impl LimitedProblem {
             }
         }
         (best, uncertified)
+    }
+
+    /// The curve near a polygon. Where what binds is not found, that of a stronger or weaker swimmer tells it: it is followed.
+    fn near(&self, setting: &Setting, polygon: &Polygon, unit: f64) -> Option<Curve> {
+        let at = |log_times: f64| {
+            let stronger = self.stronger(log_times.exp());
+            stronger.setting(setting.model, setting.region, unit)
+        };
+        let followed = |times: &f64| {
+            let (mut here, mut step) = (times.ln(), -times.ln());
+            let mut curve = polished(&at(here), polygon, ELEMENTS[0])?;
+            while here != 0.0 && step.abs() >= LEAST_STEP {
+                let whole = step.abs() >= here.abs();
+                let next = if whole { 0.0 } else { here + step };
+                match curve.near(&at(next), ELEMENTS[0]) {
+                    Some(there) => (curve, here) = (there, next),
+                    None => step *= 0.5,
+                }
+            }
+            (here == 0.0).then_some(curve)
+        };
+        let own = polished(setting, polygon, ELEMENTS[0]);
+        own.or_else(|| NEARBY.iter().find_map(followed))
     }
 
     /// The rate \[rad/s\] of about the faster joint at the straight shape: the unit of the search.
@@ -213,7 +216,7 @@ impl LimitedProblem {
     }
 
     /// A curve as an answer, on more elements; none where it cannot be had on them.
-    fn told(&self, setting: &Setting, curve: Curve, unit: f64) -> Option<Found> {
+    fn told(&self, setting: &Setting, curve: Curve, unit: f64) -> Option<Limited> {
         let finer = curve.refined(setting, ELEMENTS[1]);
         let off = |finer: &Curve| (curve.speed / finer.speed - 1.0).abs();
         let finer = finer.filter(|finer| off(finer) < REFINED);
@@ -242,11 +245,10 @@ impl LimitedProblem {
             certificate,
         });
         let limited = self.limited(gait, told.1, told.0 / unit).ok()?;
-        let told = Limited {
+        Some(Limited {
             refinement,
             ..limited
-        };
-        Some(Found { told, curve })
+        })
     }
 }
 
