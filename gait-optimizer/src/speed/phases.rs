@@ -111,13 +111,6 @@ impl Curve {
         self.draft.phase_of.iter().copied().zip(ends)
     }
 
-    /// The fastest curve nearby, on about so many elements, with what binds between those of before.
-    pub(crate) fn near(&self, setting: &Setting, elements: usize) -> Option<Self> {
-        let phases = self.phases().iter().cloned();
-        let phases = phases.map(|phase| Phase { parts: 1, ..phase }).collect();
-        self.cut(setting, phases, elements)
-    }
-
     /// The same on about so many elements, and on more where they miss their limits.
     pub(crate) fn refined(&self, setting: &Setting, elements: usize) -> Option<Self> {
         let mut phases = self.phases().to_vec();
@@ -139,9 +132,8 @@ impl Curve {
 
 /// The fastest curve near a polygon, on about so many elements; none where there is none.
 pub(crate) fn polished(setting: &Setting, polygon: &Polygon, elements: usize) -> Option<Curve> {
-    let place = |share: f64| along(polygon, share);
     let (phases, offset) = begun(with_touches(&of_polygon(setting, polygon)))?;
-    let curve = |share: f64| place(share + offset);
+    let curve = |share: f64| polygon.at(share + offset);
     let draft = Draft::new(
         setting,
         (&curve, polygon.period()),
@@ -233,21 +225,6 @@ fn lengthen(phases: &mut [Phase], phase: usize) {
         phases[phase + 1].from += more;
         phases[phase].to += more;
     }
-}
-
-/// A polygon at a share of its period, modulo 1.
-fn along(polygon: &Polygon, share: f64) -> Vector2<f64> {
-    let Polygon { layout, z, .. } = polygon;
-    let mut left = share.rem_euclid(1.0) * layout.period(z);
-    for side in 0..layout.arcs() {
-        let time = z[layout.time_index(side)];
-        if left <= time {
-            let [from, to] = layout.ends(z, side);
-            return from + (to - from) * (left / time);
-        }
-        left -= time;
-    }
-    layout.corner(z, 0)
 }
 
 /// One phase a side of a polygon: what pushes against it.

@@ -10,7 +10,7 @@ use super::super::interior::{self, Polygon};
 use super::super::phases::{Curve, Phase, polished};
 use super::super::problem::{Goal, HeadingRule, Setting};
 use super::super::{SpeedError, samples, selection, starts};
-use super::{Limit, Limited, LimitedError, LimitedProblem, STARTS, Torque};
+use super::{Limit, Limited, LimitedError, LimitedProblem, STARTS};
 use crate::Watch;
 use crate::cycle::Cycle;
 use crate::immobile::refuse_immobile;
@@ -24,20 +24,17 @@ const ELEMENTS: [usize; 2] = [8, 16];
 const HOPELESS: f64 = 0.95;
 const FINISHED: usize = 8;
 /// A polygon may be slower than the curve near it by this share.
-const NEAR: f64 = 2e-3;
+const NEAR: f64 = 1e-3;
 /// Sides of a finished polygon for each of a rough one, tried in this order.
 const FINER: [usize; 3] = [4, 3, 2];
+/// The same for each side of a finished polygon near which no curve is found.
+const FINER_STILL: usize = 2;
 /// A limit that is none, in the units of the search.
 const NONE: f64 = 1e3;
 /// A curve on more elements that differs by more than this share of its speed is another one.
 const REFINED: f64 = 1e-6;
 /// Samples of an element.
 const SAMPLES: usize = 48;
-
-/// So many times the power and the torque, one after the other, tell what binds where a polygon alone does not; from there it goes
-/// on by steps of their logarithms that are not shorter than this.
-const NEARBY: [f64; 4] = [1.1, 0.91, 1.25, 0.8];
-const LEAST_STEP: f64 = 1e-2;
 
 impl LimitedProblem {
     /// Where several limits bind, or the torque alone.
@@ -61,19 +58,6 @@ impl LimitedProblem {
             uncertified: uncertified.filter(clearly),
             ..best
         })
-    }
-
-    /// With so many times the power and the torque.
-    fn stronger(&self, times: f64) -> Self {
-        let stronger = |torque: Torque| Torque {
-            stall_over_viscosity: torque.stall_over_viscosity * times,
-            ..torque
-        };
-        Self {
-            power_over_viscosity: self.power_over_viscosity.map(|power| power * times),
-            torque: self.torque.map(stronger),
-            ..*self
-        }
     }
 
     /// The fastest certified curve that starts lead to, and the speed of the fastest that fails.
@@ -121,7 +105,7 @@ impl LimitedProblem {
                 break;
             }
             let curves = group.chosen.iter();
-            let curves = curves.filter_map(|polygon| self.near(setting, polygon, unit));
+            let curves = curves.filter_map(|polygon| near(setting, polygon));
             let mut curves = curves.peekable();
             if curves.peek().is_none() {
                 fails(group.speed() * unit * (1.0 - NEAR));
@@ -137,29 +121,6 @@ impl LimitedProblem {
             }
         }
         (best, uncertified)
-    }
-
-    /// The curve near a polygon. Where what binds is not found, that of a stronger or weaker swimmer tells it: it is followed.
-    fn near(&self, setting: &Setting, polygon: &Polygon, unit: f64) -> Option<Curve> {
-        let at = |log_times: f64| {
-            let stronger = self.stronger(log_times.exp());
-            stronger.setting(setting.model, setting.region, unit)
-        };
-        let followed = |times: &f64| {
-            let (mut here, mut step) = (times.ln(), -times.ln());
-            let mut curve = polished(&at(here), polygon, ELEMENTS[0])?;
-            while here != 0.0 && step.abs() >= LEAST_STEP {
-                let whole = step.abs() >= here.abs();
-                let next = if whole { 0.0 } else { here + step };
-                match curve.near(&at(next), ELEMENTS[0]) {
-                    Some(there) => (curve, here) = (there, next),
-                    None => step *= 0.5,
-                }
-            }
-            (here == 0.0).then_some(curve)
-        };
-        let own = polished(setting, polygon, ELEMENTS[0]);
-        own.or_else(|| NEARBY.iter().find_map(followed))
     }
 
     /// The rate \[rad/s\] of about the faster joint at the straight shape: the unit of the search.
@@ -250,6 +211,13 @@ impl LimitedProblem {
             ..limited
         })
     }
+}
+
+/// The curve near a polygon; where it does not tell what binds, one of more sides does.
+fn near(setting: &Setting, polygon: &Polygon) -> Option<Curve> {
+    let finer = || interior::best_polygon(setting, polygon, FINER_STILL);
+    let polished = |polygon: &Polygon| polished(setting, polygon, ELEMENTS[0]);
+    polished(polygon).or_else(|| polished(&finer()?))
 }
 
 /// A curve as one cycle of samples, each phase with its own.

@@ -11,6 +11,8 @@ use super::{BENDS, Draft, PUT_IN, Phase, side};
 const SLIGHT: f64 = 1e-7;
 /// The same at an end of an element, where they are extrapolated to.
 const AT_ENDS: f64 = 3e-6;
+/// A limit is met where no more than this share of it is left.
+const MET: f64 = 1e-6;
 const NODES: usize = BENDS + 1;
 
 /// Multipliers by what they belong to.
@@ -122,12 +124,13 @@ impl Method<'_> {
             BENDS => Some(self.place(element, 1.0)),
             _ => None,
         };
-        let over = |limit: usize| {
-            let at = |place: &Place<MOST_PARAMETERS>| {
-                let power = self.setting.model.power_matrix(&place.phi);
-                self.limits[limit].value(&power, &place.rate) / time - 1.0
-            };
-            end.iter().map(at).fold(at(&place), f64::max)
+        let over = |limit: usize, place: &Place<MOST_PARAMETERS>| {
+            let power = self.setting.model.power_matrix(&place.phi);
+            self.limits[limit].value(&power, &place.rate) / time - 1.0
+        };
+        let most_over = |limit: usize| {
+            let of_end = end.iter().map(|end| over(limit, end));
+            of_end.fold(over(limit, &place), f64::max)
         };
         let bound = if phase.bound.is_some() {
             phase.bound.filter(|_| push > -SLIGHT)
@@ -141,8 +144,8 @@ impl Method<'_> {
         limits.sort_by(|a, b| share[*b].total_cmp(&share[*a]));
         let most = if bound.is_some() { 1 } else { 2 };
         limits.truncate(most);
-        let others = all.filter(|limit| share[*limit].is_nan());
-        let worst = others.map(|limit| (over(limit), limit));
+        let mut others = all.filter(|limit| share[*limit].is_nan());
+        let worst = others.clone().map(|limit| (most_over(limit), limit));
         let worst = worst.max_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((_, enters)) = worst.filter(|(over, _)| *over > SLIGHT) {
             if limits.len() == most {
@@ -150,6 +153,9 @@ impl Method<'_> {
                 limits.swap_remove(leaves);
             }
             limits.push(enters);
+        } else if let Some(end) = end.filter(|_| limits.len() < phase.limits.len()) {
+            // One that is met where another leaves takes its place: the costate left over is between it and the one that stays.
+            limits.extend(others.find(|limit| over(*limit, &end).abs() < MET));
         }
         if limits.is_empty() {
             limits.clone_from(&phase.limits);
