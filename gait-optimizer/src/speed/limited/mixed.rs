@@ -220,7 +220,8 @@ fn near(setting: &Setting, polygon: &Polygon) -> Option<Curve> {
     polished(polygon).or_else(|| polished(&finer()?))
 }
 
-/// A curve as one cycle of samples, each phase with its own.
+/// A curve as one cycle of samples, each phase with its own, from the corner of the most φ₂ and half as much φ₁ on: of symmetric gaits
+/// that is one.
 fn sampled(region: &Region, limits: &[Facet], curve: &Curve) -> (Cycle, Vec<Arc>) {
     let mut cycle = Cycle {
         u: Vec::new(),
@@ -229,22 +230,32 @@ fn sampled(region: &Region, limits: &[Facet], curve: &Curve) -> (Cycle, Vec<Arc>
         arcs: Vec::new(),
     };
     let mut arcs = Vec::new();
-    for (number, phase) in curve.phases().iter().enumerate() {
+    let phases = curve.phases();
+    let far = |number: &usize| {
+        let phi = curve.at(phases[*number].from);
+        phi.y + 0.5 * phi.x
+    };
+    let first = (0..phases.len()).max_by(|a, b| far(a).total_cmp(&far(b)));
+    let first = first.unwrap_or(0);
+    let begun = phases[first].from;
+    let since = |share: f64| (share - begun).rem_euclid(1.0);
+    for number in (0..phases.len()).map(|k| (first + k) % phases.len()) {
+        let phase = &phases[number];
         let kind = kind(region, limits, phase);
-        cycle.corners.push(phase.from);
+        cycle.corners.push(since(phase.from));
         let mut from = phase.from;
         for (_, until) in curve.elements().filter(|(of, _)| *of == number) {
             for step in 0..SAMPLES {
-                let u = from + (until - from) * step as f64 / SAMPLES as f64;
-                cycle.u.push(u);
-                cycle.phi.push(curve.at(u));
+                let share = from + (until - from) * step as f64 / SAMPLES as f64;
+                cycle.u.push(since(share));
+                cycle.phi.push(curve.at(share));
             }
             from = until;
         }
         cycle.arcs.push(GaitArc {
             kind,
-            from: phase.from,
-            to: phase.to,
+            from: since(phase.from),
+            to: since(phase.to),
         });
         arcs.push(Arc {
             kind,
