@@ -82,14 +82,15 @@ pub(crate) fn best_polygon(setting: &Setting, rough: &Polygon, times: usize) -> 
     // as each other.
     let even = !setting.beyond.is_empty();
     let time = rough.period() / n as f64;
+    let part = 1.0 / times as f64;
     for corner in 0..n {
-        let (side, share) = (corner / times, (corner % times) as f64 / times as f64);
+        let (side, share) = (corner / times, (corner % times) as f64 * part);
         let [from, to] = rough.layout.ends(&rough.z, side);
-        let own = rough.z[rough.layout.time_index(side)] / times as f64;
         let (phi, time) = if even {
             (rough.at(corner as f64 / n as f64), time)
         } else {
-            (from + (to - from) * share, own)
+            let own = rough.z[rough.layout.time_index(side)];
+            (from + (to - from) * share, part * own)
         };
         z[2 * corner] = phi.x;
         z[2 * corner + 1] = phi.y;
