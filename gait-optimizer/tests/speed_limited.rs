@@ -4,6 +4,8 @@ mod changed;
 mod plane;
 mod speed_direct;
 
+use std::time::Instant;
+
 use changed::{Change, rounded};
 use gait_optimizer::{
     Bounds, LimitedProblem, SpeedProblem, Torque, Verdict, certify, fastest_within,
@@ -114,6 +116,7 @@ fn more_power_is_never_slower(swimmer: Swimmer<f64>, max_angle: f64, powers: &[f
     let on_one = asked(Some(1.0), None).unwrap().speed_over_length;
     let (mut before, mut unanswered) = (0.0, 0);
     for &power in powers {
+        let begun = Instant::now();
         let found = match asked(Some(power), Some([1.0; 2])) {
             Ok(found) => found,
             Err(error) => {
@@ -124,8 +127,10 @@ fn more_power_is_never_slower(swimmer: Swimmer<f64>, max_angle: f64, powers: &[f
         };
         let speed = found.speed_over_length;
         println!(
-            "{max_angle} {power:e}: {speed:.12} {:?} {:?}",
-            found.limits, found.uncertified
+            "{max_angle} {power:e}: {speed:.12} {:?} {:?} in {:.1} s",
+            found.limits,
+            found.uncertified,
+            begun.elapsed().as_secs_f64()
         );
         assert!(speed >= before * (1.0 - 1e-9), "{power}");
         assert!(
@@ -154,7 +159,72 @@ fn more_power_is_never_slower_between_the_limits() {
     );
 }
 
-/// The same from where the power alone binds to where it never does: red while some powers have no answer.
+/// Quicker servos are never slower on the same power, and a time runs as fast for everybody: with s times the rates and s² times the
+/// power the same gait is s times as fast.
+#[track_caller]
+fn a_higher_rate_is_never_slower(swimmer: Swimmer<f64>, power: f64, rates: &[f64]) {
+    let speed = |power: f64, rate: f64| {
+        let problem = LimitedProblem {
+            swimmer,
+            ..robot(Some(power), Some([rate; 2]), None)
+        };
+        let found = fastest_within(&problem, &|_| ()).unwrap();
+        println!(
+            "{power} {rate}: {:.12} {:?}",
+            found.speed_over_length, found.limits
+        );
+        assert_eq!(found.limits.len(), 2);
+        assert!(found.gait.certificate.pass());
+        found.speed_over_length
+    };
+    let speeds: Vec<f64> = rates.iter().map(|rate| speed(power, *rate)).collect();
+    assert!(
+        speeds.windows(2).all(|pair| pair[1] > pair[0]),
+        "{speeds:?}"
+    );
+    let scaled = speed(power * 1.3_f64.powi(2), rates[0] * 1.3) / 1.3;
+    assert!((scaled / speeds[0] - 1.0).abs() < 1e-10, "{scaled}");
+}
+
+#[test]
+fn a_higher_rate_is_never_slower_on_the_same_power() {
+    a_higher_rate_is_never_slower(Swimmer::robot(), 5e-3, &[0.9, 1.0, 1.25]);
+    a_higher_rate_is_never_slower(Swimmer::purcell(), 0.4, &[0.85, 1.0, 1.2]);
+}
+
+/// The same where power and rate take turns a dozen times.
+#[test]
+#[ignore = "minutes: part of the soak"]
+fn a_higher_rate_is_never_slower_over_many() {
+    for (swimmer, power, least) in [
+        (Swimmer::robot(), 3e-3, 0.7),
+        (Swimmer::purcell(), 0.4, 0.75),
+    ] {
+        let rates: Vec<f64> = (0..10).map(|k| least * 1.05_f64.powi(k)).collect();
+        a_higher_rate_is_never_slower(swimmer, power, &rates);
+    }
+}
+
+/// Stronger servos are never slower, and the weakest are as fast as they are strong: they never come near the rate at which they give
+/// nothing.
+#[test]
+fn weak_servos_are_as_fast_as_they_are_strong() {
+    let speeds = [1e-5, 3.4e-4, 1e-3].map(|stall_over_viscosity| {
+        let torque = Torque {
+            stall_over_viscosity,
+            no_load_rate: 2.0,
+        };
+        let found = fastest_within(&robot(None, None, Some(torque)), &|_| ()).unwrap();
+        println!("{stall_over_viscosity}: {:.12}", found.speed_over_length);
+        assert!(found.gait.certificate.pass());
+        found.speed_over_length / stall_over_viscosity
+    });
+    // Each is slower than in proportion, for what its rate takes of its torque.
+    assert!(speeds[0] > speeds[1] && speeds[1] > speeds[2], "{speeds:?}");
+    assert!(speeds[2] > 0.8 * speeds[0], "{speeds:?}");
+}
+
+/// From where the power alone binds to where it never does.
 #[test]
 #[ignore = "minutes: part of the soak"]
 fn more_power_is_never_slower_over_many() {

@@ -24,6 +24,21 @@ pub(crate) struct Polygon {
 }
 
 impl Polygon {
+    /// The shape at a share of the period, modulo 1.
+    pub(crate) fn at(&self, share: f64) -> Vector2<f64> {
+        let Self { layout, z, .. } = self;
+        let mut left = share.rem_euclid(1.0) * layout.period(z);
+        for side in 0..layout.arcs() {
+            let time = z[layout.time_index(side)];
+            if left <= time {
+                let [from, to] = layout.ends(z, side);
+                return from + (to - from) * (left / time);
+            }
+            left -= time;
+        }
+        layout.corner(z, 0)
+    }
+
     pub(crate) fn period(&self) -> f64 {
         self.layout.period(&self.z)
     }
@@ -34,6 +49,8 @@ const FIRST_BARRIER: f64 = 1e-2;
 const ROUGH_BARRIER: f64 = 1e-4;
 const LAST_BARRIER: f64 = 1e-8;
 const MOST_STEPS: usize = 150;
+/// Times the mean of all sides that one of a finished polygon may take where more than rates limit it.
+const LONGEST: f64 = 1.5;
 /// No farther than this share of the way to any limit.
 const SHARE: f64 = 0.995;
 /// Quadrature points on a side.
@@ -53,41 +70,49 @@ pub(crate) fn rough_polygon(setting: &Setting, start: &[Vector2<f64>]) -> Option
         let [from, to] = layout.ends(&z, side);
         z[layout.time_index(side)] = 1.3 * setting.least_time(&from, &to) + 1e-3;
     }
-    Method::new(setting, layout).solve(z, [FIRST_BARRIER, ROUGH_BARRIER])
+    Method::new(setting, layout, f64::INFINITY).solve(z, [FIRST_BARRIER, ROUGH_BARRIER])
 }
 
 /// The best polygon of so many times as many sides near a rough one.
 pub(crate) fn best_polygon(setting: &Setting, rough: &Polygon, times: usize) -> Option<Polygon> {
-    let n = rough.layout.arcs();
-    let layout = Layout::new(vec![Shape::Straight; times * n]);
+    let n = times * rough.layout.arcs();
+    let layout = Layout::new(vec![Shape::Straight; n]);
     let mut z = DVector::zeros(layout.size);
+    // Limits that are all flat have corners, which stay where they are. Else most of a cycle is smooth: its sides take about as long
+    // as each other.
+    let even = !setting.beyond.is_empty();
+    let time = rough.period() / n as f64;
     let part = 1.0 / times as f64;
-    for side in 0..n {
+    for corner in 0..n {
+        let (side, share) = (corner / times, (corner % times) as f64 * part);
         let [from, to] = rough.layout.ends(&rough.z, side);
-        for k in 0..times {
-            let (corner, share) = (times * side + k, k as f64 * part);
-            let phi = from + (to - from) * share;
-            z[2 * corner] = phi.x;
-            z[2 * corner + 1] = phi.y;
-            z[layout.time_index(corner)] = part * rough.z[rough.layout.time_index(side)];
-        }
+        let (phi, time) = if even {
+            (rough.at(corner as f64 / n as f64), time)
+        } else {
+            let own = rough.z[rough.layout.time_index(side)];
+            (from + (to - from) * share, part * own)
+        };
+        z[2 * corner] = phi.x;
+        z[2 * corner + 1] = phi.y;
+        z[layout.time_index(corner)] = time;
     }
-    // What is limited by the shape may be tighter where the sides' new middles are.
-    if !setting.beyond.is_empty() {
-        for side in 0..times * n {
-            let [from, to] = layout.ends(&z, side);
-            let least = 1.01 * setting.least_time(&from, &to);
-            let time = &mut z[layout.time_index(side)];
-            *time = time.max(least);
-        }
+    // What is limited by the shape may be tighter where the new sides are.
+    for side in (0..n).filter(|_| even) {
+        let [from, to] = layout.ends(&z, side);
+        let least = 1.01 * setting.least_time(&from, &to);
+        let time = &mut z[layout.time_index(side)];
+        *time = time.max(least);
     }
-    Method::new(setting, layout).solve(z, [ROUGH_BARRIER, LAST_BARRIER])
+    let longest = if even { LONGEST * time } else { f64::INFINITY };
+    Method::new(setting, layout, longest).solve(z, [ROUGH_BARRIER, LAST_BARRIER])
 }
 
 struct Method<'a> {
     setting: &'a Setting<'a>,
     rule: Rule,
     layout: Layout,
+    /// No side takes more time.
+    longest: f64,
 }
 
 /// Where the iteration stands.
@@ -128,12 +153,17 @@ struct Direction {
 }
 
 impl<'a> Method<'a> {
-    fn new(setting: &'a Setting<'a>, layout: Layout) -> Self {
+    fn new(setting: &'a Setting<'a>, layout: Layout, longest: f64) -> Self {
         Self {
             setting,
             rule: Rule::new(POINTS),
             layout,
+            longest,
         }
+    }
+
+    fn inequalities(&self, z: &DVector<f64>) -> Vec<Inequality> {
+        limits::inequalities(self.setting, (&self.layout, self.longest), z)
     }
 
     /// How far the first corner is from where gaits join.
@@ -143,7 +173,7 @@ impl<'a> Method<'a> {
     }
 
     fn merit(&self, z: &DVector<f64>, barrier: f64, penalty: f64) -> f64 {
-        let inequalities = limits::inequalities(self.setting, &self.layout, z);
+        let inequalities = self.inequalities(z);
         if inequalities
             .iter()
             .any(|one| one.value.is_nan() || one.value <= 0.0)
@@ -160,7 +190,7 @@ impl<'a> Method<'a> {
     }
 
     fn solve(self, z: DVector<f64>, [first, last]: [f64; 2]) -> Option<Polygon> {
-        let inequalities = limits::inequalities(self.setting, &self.layout, &z);
+        let inequalities = self.inequalities(&z);
         if !inequalities.iter().all(|one| one.value > 0.0) {
             return None;
         }
@@ -226,7 +256,7 @@ impl<'a> Method<'a> {
             }));
         }
         Some(Look {
-            inequalities: limits::inequalities(self.setting, &self.layout, z),
+            inequalities: self.inequalities(z),
             jets,
             net,
             values,
@@ -335,7 +365,7 @@ impl<'a> Method<'a> {
                 for (y, d) in here.y.iter_mut().zip(&direction.y) {
                     *y += length * d;
                 }
-                let now = limits::inequalities(self.setting, &self.layout, &here.z);
+                let now = self.inequalities(&here.z);
                 let steps = here.pushes.iter_mut().zip(&direction.pushes);
                 for ((push, d), one) in steps.zip(&now) {
                     *push += direction.dual_longest * d;
@@ -352,10 +382,12 @@ impl<'a> Method<'a> {
 
     fn finish(&self, here: &Iterate, net: chain::Net) -> Polygon {
         let count = 4 + self.setting.beyond.len();
-        let of_sides = here.pushes.chunks(count).take(self.layout.arcs());
+        let more = usize::from(self.longest.is_finite());
+        let of_sides = here.pushes.chunks(count + more).take(self.layout.arcs());
+        let of_sides = of_sides.map(|own| own[..count].to_vec());
         Polygon {
             layout: self.layout.clone(),
-            pushes: of_sides.map(<[f64]>::to_vec).collect(),
+            pushes: of_sides.collect(),
             speed: self.setting.measure(&net) / self.layout.period(&here.z),
             z: here.z.clone(),
         }

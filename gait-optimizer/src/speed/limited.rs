@@ -86,7 +86,8 @@ pub struct Limited {
     pub peak_torques_over_viscosity: [f64; 2],
     /// By what share the speed differed on half as many elements, where several limits bind and it could be had on both.
     pub refinement: Option<f64>,
-    /// |d|/(L T) of a faster gait that failed its certificate: none where the answer is the fastest that was met.
+    /// |d|/(L T) of a faster gait that failed its certificate, or at least of what a faster polygon lies near where none was found:
+    /// none where the answer is the fastest that was met.
     pub uncertified: Option<f64>,
     /// The gait, timed as it shall run, with its certificate.
     pub gait: OptimalGait,

@@ -6,18 +6,17 @@
 //! node, what should bind instead.
 
 mod binding;
+mod draft;
 mod equations;
 mod newton;
 
-use nalgebra::{DVector, Vector2};
+use nalgebra::Vector2;
 
+use self::draft::Draft;
 use self::newton::Outcome;
-use super::arc::Shape;
-use super::certificate::least_squares;
-use super::chain::{Layout, Net};
+use super::chain::Net;
 use super::interior::Polygon;
 use super::problem::Setting;
-use super::quadrature::{cut, legendre};
 
 /// Coefficients of each joint's angle on an element.
 const BENDS: usize = 8;
@@ -28,15 +27,17 @@ const MENDS: usize = 24;
 /// Multipliers below this share push on a side of a polygon; corners this close to a bound rest on it.
 const PUSHES: f64 = 1e-2;
 const RESTS: f64 = 2e-3;
-/// A turn of the direction by 1 rad counts as much as this share of the period; it is looked at over so short a share.
-const TURNS: f64 = 1.0 / 8.0;
-const STEP: f64 = 1e-5;
-/// A phase of one limit is cut into this part of all elements at least.
-const FREE: usize = 8;
 /// Phases of a smaller share of the period are left out.
 const SHORTEST: f64 = 1e-5;
 /// Share of the period of a phase along a bound that is put in where a corner rests on it.
 const PUT_IN: f64 = 4e-3;
+/// Times that a phase which loses its length is begun again with more.
+const LENGTHENED: usize = 2;
+/// Limits may be missed by this share of them between their nodes; with finer elements the error falls by about this power.
+const OFF: f64 = 1e-9;
+const ORDER: f64 = 7.0;
+/// Parts that an element is cut into at most.
+const MOST_PARTS: usize = 4;
 
 /// A part of the cycle on which the same limits bind, from one share of the period to another.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,6 +52,8 @@ pub(crate) struct Phase {
     pub(crate) bound: Option<usize>,
     /// Bounds that its first corner rests on.
     pub(crate) touches: Vec<usize>,
+    /// Elements that it is cut into at least.
+    parts: usize,
 }
 
 impl Phase {
@@ -86,7 +89,7 @@ pub(crate) struct Curve {
 
 impl Curve {
     pub(crate) fn period(&self) -> f64 {
-        self.draft.layout.period(&self.draft.z)
+        self.draft.period()
     }
 
     pub(crate) fn phases(&self) -> &[Phase] {
@@ -108,21 +111,36 @@ impl Curve {
         self.draft.phase_of.iter().copied().zip(ends)
     }
 
-    /// The same on about so many elements, with what binds between those of before.
+    /// The same on about so many elements, and on more where they miss their limits.
     pub(crate) fn refined(&self, setting: &Setting, elements: usize) -> Option<Self> {
-        let phases = self.phases().to_vec();
-        let curve = |share: f64| self.at(share);
-        let draft = Draft::new((&curve, self.period()), &phases, elements, BENDS);
+        let mut phases = self.phases().to_vec();
+        for (number, phase) in phases.iter_mut().enumerate() {
+            let phase_of = self.draft.phase_of.iter();
+            let own = phase_of.filter(|of| **of == number).count();
+            let off = self.draft.off_limits(setting, number);
+            let enough = |times: &usize| off < OFF * (*times as f64).powf(ORDER);
+            phase.parts = own * (1..MOST_PARTS).find(enough).unwrap_or(MOST_PARTS);
+        }
+        self.cut(setting, phases, elements)
+    }
+
+    fn cut(&self, setting: &Setting, phases: Vec<Phase>, elements: usize) -> Option<Self> {
+        let draft = self.draft.cut(setting, &phases, elements);
         mended(setting, phases, draft, elements)
     }
 }
 
 /// The fastest curve near a polygon, on about so many elements; none where there is none.
 pub(crate) fn polished(setting: &Setting, polygon: &Polygon, elements: usize) -> Option<Curve> {
-    let place = |share: f64| along(polygon, share);
     let (phases, offset) = begun(with_touches(&of_polygon(setting, polygon)))?;
-    let curve = |share: f64| place(share + offset);
-    let draft = Draft::new((&curve, polygon.period()), &phases, elements, FITTED);
+    let curve = |share: f64| polygon.at(share + offset);
+    let draft = Draft::new(
+        setting,
+        (&curve, polygon.period()),
+        &phases,
+        elements,
+        FITTED,
+    );
     mended(setting, phases, draft, elements)
 }
 
@@ -133,74 +151,80 @@ fn mended(
     mut draft: Draft,
     elements: usize,
 ) -> Option<Curve> {
-    let mut best = None;
+    // Where a phase lost its length first, and how often one has been lengthened since; none is before anything was solved.
+    let mut lost: Option<(Draft, usize)> = None;
+    let mut lengthened = LENGTHENED;
+    // What was solved and should bind otherwise: to come back to it is to go round.
+    let mut solved: Vec<Vec<Phase>> = Vec::new();
     for _ in 0..MENDS {
         let before = draft.clone();
-        match newton::solve(setting, draft) {
-            Outcome::Lost => return None,
-            Outcome::Gone(phase, after) => {
-                let count = after.phases.len();
-                let [one, two] = [phase + count - 1, phase + 1].map(|at| &after.phases[at % count]);
+        let outcome = newton::solve(setting, draft);
+        match outcome {
+            Outcome::Lost if lost.is_none() => return None,
+            Outcome::Gone(phase, _) if lengthened < LENGTHENED && !jumps(&before, phase) => {
+                lengthen(&mut phases, phase);
+                lengthened += 1;
+                draft = before.cut(setting, &phases, elements);
+                lost = lost.or(Some((before, phase)));
+            }
+            Outcome::Lost | Outcome::Gone(..) => {
                 // Where the velocity jumps in its place, the method has found that; else it may have gone astray.
-                let jumps = one.limits == two.limits && one.side != two.side;
-                let before = if jumps { *after } else { before };
-                phases.clone_from(&before.phases);
-                let gone = phases.remove(phase);
-                let count = phases.len();
-                if count < 2 {
-                    return best;
-                }
-                match phases.get_mut(phase) {
-                    Some(next) => next.from = gone.from,
-                    None => phases[count - 1].to = gone.to,
-                }
-                let next = &mut phases[phase % count].touches;
-                next.extend(gone.touches.into_iter().chain(gone.bound));
-                next.sort_unstable();
-                next.dedup();
-                let (merged, offset) = begun(phases)?;
+                let (from, phase) = match (lost.take(), outcome) {
+                    (None, Outcome::Gone(phase, after)) if jumps(&before, phase) => (*after, phase),
+                    (Some(first), _) => first,
+                    (None, Outcome::Gone(phase, _)) => (before, phase),
+                    (None, _) => return None,
+                };
+                let (merged, offset) = from.without(phase)?;
                 phases = merged;
-                let period = before.layout.period(&before.z);
-                let curve = |share: f64| before.at(share + offset);
-                draft = Draft::new((&curve, period), &phases, elements, BENDS);
+                let curve = |share: f64| from.at(share + offset);
+                draft = Draft::new(setting, (&curve, from.period()), &phases, elements, BENDS);
             }
             Outcome::Solved(curve, wanted) => {
+                (lost, lengthened) = (None, 0);
                 let (next, offset) = begun(wanted)?;
-                let same = next.len() == curve.phases().len()
-                    && next
-                        .iter()
-                        .zip(curve.phases())
-                        .all(|(one, other)| one.binds_as(other) && one.touches == other.touches);
-                if same {
+                if alike(&next, curve.phases()) {
                     return Some(*curve);
                 }
-                draft = Draft::new(
-                    (&|share| curve.at(share + offset), curve.period()),
-                    &next,
-                    elements,
-                    BENDS,
-                );
+                if solved.iter().any(|before| alike(&next, before)) {
+                    return None;
+                }
+                solved.push(curve.phases().to_vec());
+                let place = |share: f64| curve.at(share + offset);
+                draft = Draft::new(setting, (&place, curve.period()), &next, elements, BENDS);
                 phases = next;
-                best = Some(*curve);
             }
         }
     }
-    best
+    None
 }
 
-/// A polygon at a share of its period, modulo 1.
-fn along(polygon: &Polygon, share: f64) -> Vector2<f64> {
-    let Polygon { layout, z, .. } = polygon;
-    let mut left = share.rem_euclid(1.0) * layout.period(z);
-    for side in 0..layout.arcs() {
-        let time = z[layout.time_index(side)];
-        if left <= time {
-            let [from, to] = layout.ends(z, side);
-            return from + (to - from) * (left / time);
-        }
-        left -= time;
+/// Whether the same binds in the same order.
+fn alike(phases: &[Phase], others: &[Phase]) -> bool {
+    let same = |(one, other): (&Phase, &Phase)| one.binds_as(other) && one.touches == other.touches;
+    phases.len() == others.len() && phases.iter().zip(others).all(same)
+}
+
+/// Whether the velocity jumps between the neighbours of a phase, which bind alike.
+fn jumps(draft: &Draft, phase: usize) -> bool {
+    let count = draft.phases.len();
+    let [one, two] = [phase + count - 1, phase + 1].map(|at| &draft.phases[at % count]);
+    one.limits == two.limits && one.side != two.side
+}
+
+/// Gives a phase its own length from each of its neighbours, as far as they have it.
+fn lengthen(phases: &mut [Phase], phase: usize) {
+    let length = phases[phase].to - phases[phase].from;
+    if let Some(before) = phase.checked_sub(1) {
+        let more = length.min(0.4 * (phases[before].to - phases[before].from));
+        phases[before].to -= more;
+        phases[phase].from -= more;
     }
-    layout.corner(z, 0)
+    if phase + 1 < phases.len() {
+        let more = length.min(0.4 * (phases[phase + 1].to - phases[phase + 1].from));
+        phases[phase + 1].from += more;
+        phases[phase].to += more;
+    }
 }
 
 /// One phase a side of a polygon: what pushes against it.
@@ -242,6 +266,7 @@ fn of_polygon(setting: &Setting, polygon: &Polygon) -> Vec<Phase> {
                 side,
                 bound,
                 touches: before,
+                parts: 1,
             }
         })
         .collect()
@@ -323,86 +348,4 @@ fn with_touches(sides: &[Phase]) -> Vec<Phase> {
         phase.to += offset;
     }
     all
-}
-
-/// A curve to start from: phases cut into elements.
-#[derive(Debug, Clone)]
-struct Draft {
-    phases: Vec<Phase>,
-    phase_of: Vec<usize>,
-    /// Where in the period each element began, and its share; those of a phase keep their ratios.
-    spans: Vec<(f64, f64)>,
-    layout: Layout,
-    z: DVector<f64>,
-}
-
-impl Draft {
-    /// Of about so many elements, or more where phases are many, the first bends of each fitted to a curve over the share of the period.
-    fn new(
-        (curve, period): (&dyn Fn(f64) -> Vector2<f64>, f64),
-        phases: &[Phase],
-        elements: usize,
-        fitted: usize,
-    ) -> Self {
-        let mut phase_of = Vec::new();
-        let mut spans = Vec::new();
-        for (number, phase) in phases.iter().enumerate() {
-            let way = |share: f64| curve(share + STEP) - curve(share - STEP);
-            let rates = [elements as f64, elements as f64 * TURNS];
-            // Where the direction is free, errors of the speed are of second order in those of the costate.
-            let free = phase.limits.len() == 1;
-            let least = if free { elements.div_ceil(FREE) } else { 1 };
-            let parts = cut((phase.from, phase.to), way, (rates, least));
-            phase_of.extend(parts.iter().map(|_| number));
-            spans.extend(parts.into_iter().map(|(from, to)| (from, to - from)));
-        }
-        let layout = Layout::new(vec![Shape::Free { bends: BENDS }; spans.len()]);
-        let mut z = DVector::zeros(layout.size);
-        for (element, &(from, length)) in spans.iter().enumerate() {
-            let corner = curve(from);
-            z[2 * element] = corner.x;
-            z[2 * element + 1] = corner.y;
-            z[layout.time_index(element)] = length * period;
-        }
-        for (element, &(from, length)) in spans.iter().enumerate() {
-            let [start, end] = layout.ends(&z, element);
-            for joint in 0..2 {
-                let rows: Vec<(Vec<f64>, f64)> = (1..24)
-                    .map(|k| {
-                        let s = f64::from(k) / 24.0;
-                        let hump = s * (1.0 - s);
-                        let values = legendre(fitted, 2.0 * s - 1.0);
-                        let row = values.iter().take(fitted).map(|p| hump * p).collect();
-                        let straight = start + (end - start) * s;
-                        (row, (curve(from + length * s) - straight)[joint])
-                    })
-                    .collect();
-                let (bends, _) = least_squares(&rows, fitted);
-                let at = layout.bends_index(element) + BENDS * joint;
-                z.rows_mut(at, fitted).copy_from_slice(&bends);
-            }
-        }
-        Self {
-            phases: phases.to_vec(),
-            phase_of,
-            spans,
-            layout,
-            z,
-        }
-    }
-
-    /// The shape at a share of the period, modulo 1.
-    fn at(&self, share: f64) -> Vector2<f64> {
-        let mut left = share.rem_euclid(1.0) * self.layout.period(&self.z);
-        for element in 0..self.layout.arcs() {
-            let time = self.z[self.layout.time_index(element)];
-            if left <= time {
-                let ends = self.layout.ends(&self.z, element);
-                let bends = self.layout.bends(&self.z, element);
-                return self.layout.shapes[element].at(&ends, bends, left / time);
-            }
-            left -= time;
-        }
-        self.layout.corner(&self.z, 0)
-    }
 }

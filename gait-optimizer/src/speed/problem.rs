@@ -19,6 +19,9 @@ pub(crate) enum Goal {
     Rotation,
 }
 
+/// Where along a straight way limits are looked at: the nodes of a Gauss rule.
+pub(super) const ALONG: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+
 /// Which way the gait shall lead, against its mean heading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum HeadingRule {
@@ -72,15 +75,15 @@ impl Setting<'_> {
         (way.x.abs() / self.rates[0]).max(way.y.abs() / self.rates[1])
     }
 
-    /// About the least time from a shape to one nearby.
+    /// The least time of a straight way from one shape to another, were the same limit the tightest all along.
     pub(crate) fn least_time(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
         let way = to - from;
-        if self.beyond.is_empty() {
-            return self.time(&way);
-        }
-        let power = self.model.power_matrix(&(0.5 * (from + to)));
-        let beyond = self.beyond.iter().map(|limit| limit.value(&power, &way));
-        beyond.fold(self.time(&way), f64::max)
+        let powers = ALONG.map(|s| self.model.power_matrix(&(from + way * s)));
+        let mean = |limit: &Facet| {
+            let along = powers.iter().map(|power| limit.value(power, &way));
+            along.sum::<f64>() / ALONG.len() as f64
+        };
+        self.beyond.iter().map(mean).fold(self.time(&way), f64::max)
     }
 
     /// Everything that limits the servos: four rates, then the rest.

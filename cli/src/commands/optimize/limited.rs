@@ -6,7 +6,7 @@ use gait_optimizer::{LimitedError, LimitedProblem, Torque, fastest_within};
 use swimmer_files::{Bounds, SwimmerFile};
 
 use super::answer::{at_pace, tell_arcs, unfolded};
-use super::speed::SEARCHING;
+use super::speed::{SEARCHING, tell_as_played};
 use super::{Found, Task};
 use crate::failure::{Failure, Outcome};
 use crate::quantity;
@@ -118,6 +118,7 @@ pub(super) fn within(task: &Task, bounds: Bounds, limits: &Limits) -> Outcome<Fo
     }
     tell_arcs(&mut answer, &gait.arcs);
     answer.key("corners", gait.corners().to_vec());
+    tell_as_played(&mut answer, file, file.servo, (gait, found.period));
     Ok(Found::gait(answer, task, gait, None))
 }
 

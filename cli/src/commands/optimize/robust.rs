@@ -10,7 +10,7 @@ use gait_optimizer::{
 use swimmer_files::{ArcKind, SwimmerFile};
 use swimmer_model::{Gait as _, Model};
 
-use super::answer::{tell_figures, tell_quarter};
+use super::answer::{say_if_beyond, tell_figures, tell_quarter};
 use super::timing::ServoTiming;
 use super::{Found, Task};
 use crate::arguments::gain;
@@ -122,6 +122,7 @@ pub(super) fn robust_gait(
         gait, robustness, ..
     } = found;
     let written = as_written(&gait);
+    say_if_beyond(task, &gait);
     let timed = timing.of(task, &written)?;
     let mut answer = Document::new(format!("{}, most {objective}, robust", task.file.name));
     // Of the estimates' swimmer.

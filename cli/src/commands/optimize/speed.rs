@@ -1,6 +1,8 @@
 //! `swimmer optimize speed`: the fastest gait that servos can play.
 
-use gait_optimizer::{Fastest, HeadingRule, SpeedError, SpeedProblem, front, robust_speed};
+use gait_optimizer::{
+    Fastest, HeadingRule, OptimalGait, SpeedError, SpeedProblem, front, robust_speed,
+};
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 
 use super::answer::{at_pace, tell_arcs, unfolded};
@@ -129,27 +131,10 @@ impl Objective for Speed {
         if let Some(robustness) = &robustness {
             tell_robustness(&mut answer, robustness, "|d|/(L T)");
         }
-        if let Ok(curve) = AnyGait::from_file(&gait.gait_file(&file.name)) {
-            let servo = self.servo(file);
-            let played =
-                servo.and_then(|servo| PlayedSpeed::new(file, servo, &curve, found.period));
-            let period = played
-                .as_ref()
-                .map_or(found.period, |played| played.period_s);
-            say_if_beyond(file, &curve, period);
-            if let Some(played) = played {
-                answer.row(
-                    "as played",
-                    format!(
-                        "{} a second, a cycle in {:.3} s: table, ticks and servos take {:.2} %",
-                        quantity::length(played.speed_m_per_s),
-                        played.period_s,
-                        played.lost_share * 100.0
-                    ),
-                );
-                answer.key("played", played);
-            }
-        }
+        let servo = file
+            .servo
+            .or(self.bounds.playable().then(ServoFile::default));
+        tell_as_played(&mut answer, file, servo, (gait, found.period));
         if let (Some(place), Some(farthest)) = (&self.front, &farthest) {
             place.write(farthest, file, &mut answer)?;
         }
@@ -157,11 +142,30 @@ impl Objective for Speed {
     }
 }
 
-impl Speed {
-    /// The servos that shall play it: the file's, or the paper's where that is asked for.
-    fn servo(&self, file: &SwimmerFile) -> Option<ServoFile> {
-        let paper = self.bounds.playable().then(ServoFile::default);
-        file.servo.or(paper)
+/// Adds how a gait of this period is played by these servos, and says where it is beyond the robot of the file.
+pub(super) fn tell_as_played(
+    answer: &mut Document,
+    file: &SwimmerFile,
+    servo: Option<ServoFile>,
+    (gait, period): (&OptimalGait, f64),
+) {
+    let Ok(curve) = AnyGait::from_file(&gait.gait_file(&file.name)) else {
+        return;
+    };
+    let played = servo.and_then(|servo| PlayedSpeed::new(file, servo, &curve, period));
+    let period = played.as_ref().map_or(period, |played| played.period_s);
+    say_if_beyond(file, &curve, (period * 1e3).ceil() / 1e3);
+    if let Some(played) = played {
+        answer.row(
+            "as played",
+            format!(
+                "{} a second, a cycle in {:.3} s: table, ticks and servos take {:.2} %",
+                quantity::length(played.speed_m_per_s),
+                played.period_s,
+                played.lost_share * 100.0
+            ),
+        );
+        answer.key("played", played);
     }
 }
 

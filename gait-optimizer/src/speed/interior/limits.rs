@@ -1,9 +1,9 @@
 //! The limits of a polygon: rates of its sides and what else limits their servos, bounds of its corners.
 
-use nalgebra::{DVector, Matrix4};
+use nalgebra::{DVector, Matrix4, Vector4};
 
 use super::super::chain::Layout;
-use super::super::problem::Setting;
+use super::super::problem::{ALONG, Setting};
 use crate::region::Bound;
 
 /// One inequality, `value ≥ 0`, with the entries of its slope.
@@ -32,11 +32,11 @@ impl Inequality {
     }
 }
 
-/// All limits of a polygon: of each side four of its rates, then what else limits it, in the order of [`Setting::limits`]; then
-/// those of each corner.
+/// All limits of a polygon: of each side four of its rates, then what else limits it, in the order of [`Setting::limits`], and
+/// that it takes no longer than `longest`, if anything does; then those of each corner.
 pub(super) fn inequalities(
     setting: &Setting,
-    layout: &Layout,
+    (layout, longest): (&Layout, f64),
     z: &DVector<f64>,
 ) -> Vec<Inequality> {
     let mut all = Vec::with_capacity(10 * layout.arcs());
@@ -54,17 +54,31 @@ pub(super) fn inequalities(
         if setting.beyond.is_empty() {
             continue;
         }
-        // As if the shape were the middle one all along.
         let [a, b] = layout.ends(z, side);
-        let middle = setting.model.second_derivatives(&(0.5 * (a + b)));
+        let places = ALONG.map(|s| (s, setting.model.second_derivatives(&(a + (b - a) * s))));
         for limit in &setting.beyond {
-            let level = limit.level(&middle, &(b - a));
-            let ends = Matrix4::from_fn(|i, j| match (i < 2, i % 2 == j % 2) {
-                (_, false) => 0.0,
-                (true, true) => 0.5,
-                (false, true) => f64::from(u8::from(j >= 2)) * 2.0 - 1.0,
-            });
-            let slope = -ends.transpose() * level.slope;
+            let mut value = z[time];
+            let (mut slope, mut curved) = (Vector4::zeros(), Matrix4::zeros());
+            for (s, place) in &places {
+                let level = limit.level(place, &(b - a));
+                // Shape and way by both ends.
+                let ends = Matrix4::from_fn(|i, j| match (i % 2 == j % 2, i < 2, j < 2) {
+                    (false, ..) => 0.0,
+                    (true, true, true) => 1.0 - s,
+                    (true, true, false) => *s,
+                    (true, false, first) => {
+                        if first {
+                            -1.0
+                        } else {
+                            1.0
+                        }
+                    }
+                });
+                let weight = 1.0 / ALONG.len() as f64;
+                value -= level.value * weight;
+                slope -= ends.transpose() * level.slope * weight;
+                curved -= ends.transpose() * level.curved * ends * weight;
+            }
             let slope = [
                 (from, slope[0]),
                 (from + 1, slope[1]),
@@ -72,8 +86,10 @@ pub(super) fn inequalities(
                 (to + 1, slope[3]),
                 (time, 1.0),
             ];
-            let curved = -ends.transpose() * level.curved * ends;
-            all.push(Inequality::new(z[time] - level.value, &slope, Some(curved)));
+            all.push(Inequality::new(value, &slope, Some(curved)));
+        }
+        if longest.is_finite() {
+            all.push(Inequality::new(longest - z[time], &[(time, -1.0)], None));
         }
     }
     for corner in 0..layout.arcs() {

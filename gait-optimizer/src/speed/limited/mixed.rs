@@ -10,7 +10,7 @@ use super::super::interior::{self, Polygon};
 use super::super::phases::{Curve, Phase, polished};
 use super::super::problem::{Goal, HeadingRule, Setting};
 use super::super::{SpeedError, samples, selection, starts};
-use super::{Limit, Limited, LimitedError, LimitedProblem, STARTS, Torque};
+use super::{Limit, Limited, LimitedError, LimitedProblem, STARTS};
 use crate::Watch;
 use crate::cycle::Cycle;
 use crate::immobile::refuse_immobile;
@@ -24,31 +24,17 @@ const ELEMENTS: [usize; 2] = [8, 16];
 const HOPELESS: f64 = 0.95;
 const FINISHED: usize = 8;
 /// A polygon may be slower than the curve near it by this share.
-const NEAR: f64 = 2e-3;
+const NEAR: f64 = 1e-3;
 /// Sides of a finished polygon for each of a rough one, tried in this order.
 const FINER: [usize; 3] = [4, 3, 2];
+/// The same for each side of a finished polygon near which no curve is found.
+const FINER_STILL: usize = 2;
 /// A limit that is none, in the units of the search.
 const NONE: f64 = 1e3;
 /// A curve on more elements that differs by more than this share of its speed is another one.
 const REFINED: f64 = 1e-6;
 /// Samples of an element.
 const SAMPLES: usize = 48;
-
-/// So many times the power and the torque, one after the other, have gaits to start from where the search alone finds none.
-const NEARBY: [f64; 4] = [1.15, 0.87, 1.35, 0.75];
-
-/// A curve as an answer.
-struct Found {
-    told: Limited,
-    curve: Curve,
-}
-
-impl Found {
-    /// 0 of none.
-    fn speed(of: Option<&Self>) -> f64 {
-        of.map_or(0.0, |found| found.told.speed_over_length)
-    }
-}
 
 impl LimitedProblem {
     /// Where several limits bind, or the torque alone.
@@ -62,45 +48,16 @@ impl LimitedProblem {
         let region = Region::new(&self.bounds, &self.swimmer.links);
         let unit = self.unit(&model);
         let setting = self.setting(&model, &region, unit);
-        let (mut best, uncertified) = self.searched(&setting, singles, unit, watch);
-        let clearly = |uncertified: f64, best: Option<&Found>| {
-            uncertified > Found::speed(best) * (1.0 + 1e-6)
-        };
-        // Where what binds is not found, a neighbour's gait may tell it.
-        for more in NEARBY {
-            let known = best.as_ref();
-            if known.is_some() && !uncertified.is_some_and(|other| clearly(other, known)) {
-                break;
-            }
-            let near = self.stronger(more);
-            let (there, _) =
-                near.searched(&near.setting(&model, &region, unit), singles, unit, &|_| ());
-            let curve = there.and_then(|found| found.curve.refined(&setting, ELEMENTS[0]));
-            let found = curve.and_then(|curve| self.told(&setting, curve, unit));
-            let farther = |found: &Found| {
-                Found::speed(Some(found)) > Found::speed(known)
-                    && found.told.gait.certificate.pass()
-            };
-            best = found.filter(farther).or(best);
-        }
+        let (best, uncertified) = self.searched(&setting, singles, unit, watch);
         let best = best.ok_or_else(|| self.no_gait(singles, uncertified))?;
+        // What is faster than with one limit alone is a polygon's error.
+        let speeds = singles.iter().map(|one| one.speed_over_length);
+        let most = speeds.fold(f64::INFINITY, f64::min);
+        let clearly = |other: &f64| (best.speed_over_length * (1.0 + 1e-6)..=most).contains(other);
         Ok(Limited {
-            uncertified: uncertified.filter(|other| clearly(*other, Some(&best))),
-            ..best.told
+            uncertified: uncertified.filter(clearly),
+            ..best
         })
-    }
-
-    /// With so many times the power and the torque.
-    fn stronger(&self, times: f64) -> Self {
-        let stronger = |torque: Torque| Torque {
-            stall_over_viscosity: torque.stall_over_viscosity * times,
-            ..torque
-        };
-        Self {
-            power_over_viscosity: self.power_over_viscosity.map(|power| power * times),
-            torque: self.torque.map(stronger),
-            ..*self
-        }
     }
 
     /// The fastest certified curve that starts lead to, and the speed of the fastest that fails.
@@ -110,7 +67,7 @@ impl LimitedProblem {
         singles: &[Limited],
         unit: f64,
         watch: Watch<'_>,
-    ) -> (Option<Found>, Option<f64>) {
+    ) -> (Option<Limited>, Option<f64>) {
         let known = |index: usize| {
             let gait = singles.get(index)?.gait.gait().ok()?;
             let corner = |k: u32| gait.at((f64::from(k) + 0.25) / 16.0).phi;
@@ -138,18 +95,25 @@ impl LimitedProblem {
         };
         let polygons = in_parallel(chosen.len(), self.threads, &|_| (), || (), finer);
         // A polygon is about as fast as the curve near it, so the first that is certified is the fastest but for a few.
-        let (mut best, mut uncertified) = (None::<Found>, None::<f64>);
+        let (mut best, mut uncertified) = (None::<Limited>, None::<f64>);
+        let mut fails = |speed: f64| {
+            uncertified = Some(uncertified.map_or(speed, |most: f64| most.max(speed)));
+        };
         for group in selection::groups(polygons.into_iter().flatten().collect()) {
-            let known = Found::speed(best.as_ref());
+            let known = best.as_ref().map_or(0.0, |best| best.speed_over_length);
             if group.speed() * unit < known * (1.0 - NEAR) {
                 break;
             }
             let curves = group.chosen.iter();
-            let curves = curves.filter_map(|polygon| polished(setting, polygon, ELEMENTS[0]));
+            let curves = curves.filter_map(|polygon| near(setting, polygon));
+            let mut curves = curves.peekable();
+            if curves.peek().is_none() {
+                fails(group.speed() * unit * (1.0 - NEAR));
+            }
             for found in curves.filter_map(|curve| self.told(setting, curve, unit)) {
-                let speed = found.told.speed_over_length;
-                if !found.told.gait.certificate.pass() {
-                    uncertified = Some(uncertified.map_or(speed, |most| most.max(speed)));
+                let speed = found.speed_over_length;
+                if !found.gait.certificate.pass() {
+                    fails(speed);
                 } else if speed > known {
                     best = Some(found);
                     break;
@@ -213,7 +177,7 @@ impl LimitedProblem {
     }
 
     /// A curve as an answer, on more elements; none where it cannot be had on them.
-    fn told(&self, setting: &Setting, curve: Curve, unit: f64) -> Option<Found> {
+    fn told(&self, setting: &Setting, curve: Curve, unit: f64) -> Option<Limited> {
         let finer = curve.refined(setting, ELEMENTS[1]);
         let off = |finer: &Curve| (curve.speed / finer.speed - 1.0).abs();
         let finer = finer.filter(|finer| off(finer) < REFINED);
@@ -242,15 +206,22 @@ impl LimitedProblem {
             certificate,
         });
         let limited = self.limited(gait, told.1, told.0 / unit).ok()?;
-        let told = Limited {
+        Some(Limited {
             refinement,
             ..limited
-        };
-        Some(Found { told, curve })
+        })
     }
 }
 
-/// A curve as one cycle of samples, each phase with its own.
+/// The curve near a polygon; where it does not tell what binds, one of more sides does.
+fn near(setting: &Setting, polygon: &Polygon) -> Option<Curve> {
+    let finer = || interior::best_polygon(setting, polygon, FINER_STILL);
+    let polished = |polygon: &Polygon| polished(setting, polygon, ELEMENTS[0]);
+    polished(polygon).or_else(|| polished(&finer()?))
+}
+
+/// A curve as one cycle of samples, each phase with its own, from the corner of the most φ₂ and half as much φ₁ on: of symmetric gaits
+/// that is one.
 fn sampled(region: &Region, limits: &[Facet], curve: &Curve) -> (Cycle, Vec<Arc>) {
     let mut cycle = Cycle {
         u: Vec::new(),
@@ -259,22 +230,32 @@ fn sampled(region: &Region, limits: &[Facet], curve: &Curve) -> (Cycle, Vec<Arc>
         arcs: Vec::new(),
     };
     let mut arcs = Vec::new();
-    for (number, phase) in curve.phases().iter().enumerate() {
+    let phases = curve.phases();
+    let far = |number: &usize| {
+        let phi = curve.at(phases[*number].from);
+        phi.y + 0.5 * phi.x
+    };
+    let first = (0..phases.len()).max_by(|a, b| far(a).total_cmp(&far(b)));
+    let first = first.unwrap_or(0);
+    let begun = phases[first].from;
+    let since = |share: f64| (share - begun).rem_euclid(1.0);
+    for number in (0..phases.len()).map(|k| (first + k) % phases.len()) {
+        let phase = &phases[number];
         let kind = kind(region, limits, phase);
-        cycle.corners.push(phase.from);
+        cycle.corners.push(since(phase.from));
         let mut from = phase.from;
         for (_, until) in curve.elements().filter(|(of, _)| *of == number) {
             for step in 0..SAMPLES {
-                let u = from + (until - from) * step as f64 / SAMPLES as f64;
-                cycle.u.push(u);
-                cycle.phi.push(curve.at(u));
+                let share = from + (until - from) * step as f64 / SAMPLES as f64;
+                cycle.u.push(since(share));
+                cycle.phi.push(curve.at(share));
             }
             from = until;
         }
         cycle.arcs.push(GaitArc {
             kind,
-            from: phase.from,
-            to: phase.to,
+            from: since(phase.from),
+            to: since(phase.to),
         });
         arcs.push(Arc {
             kind,

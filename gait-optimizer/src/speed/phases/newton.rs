@@ -21,6 +21,9 @@ const AT_REST: f64 = 1e-9;
 /// An element loses no more than this share of its time in a step; a phase that is shorter than so much of the period has gone.
 const SHRINKS: f64 = 0.7;
 const GONE: f64 = 1e-5;
+/// A step that would turn velocities to the other side at these places on elements is halved, at most so many times.
+const SIDED_AT: [f64; 3] = [0.01, 0.5, 0.99];
+const HALVINGS: usize = 5;
 
 pub(super) enum Outcome {
     /// The curve, and the phases that it should have, node by node.
@@ -96,13 +99,7 @@ impl Method<'_> {
                 return Outcome::Lost;
             };
             if y.is_some() {
-                let elements = self.draft.layout.arcs();
-                // No element loses more than so much of its time in a step.
-                let times = 2 * elements..3 * elements;
-                let shrinks = times.map(|at| -step[at] / (SHRINKS * self.draft.z[at]));
-                let most = (step.rows(0, 3 * elements).amax() / STRIDE).max(1.0);
-                let scale = 1.0 / shrinks.fold(most, f64::max);
-                self.draft.z += step * scale;
+                self.go(&step);
             }
             y = Some(next);
             if let Some(phase) = self.gone() {
@@ -110,6 +107,34 @@ impl Method<'_> {
             }
         }
         Outcome::Lost
+    }
+
+    /// Goes along a step, as far as no element loses more than so much of its time, and as velocities stay on their sides.
+    fn go(&mut self, step: &DVector<f64>) {
+        let elements = self.draft.layout.arcs();
+        let times = 2 * elements..3 * elements;
+        let shrinks = times.map(|at| -step[at] / (SHRINKS * self.draft.z[at]));
+        let most = (step.rows(0, 3 * elements).amax() / STRIDE).max(1.0);
+        let mut scale = 1.0 / shrinks.fold(most, f64::max);
+        let (begun, sided) = (self.draft.z.clone(), self.sided());
+        for _ in 0..HALVINGS {
+            self.draft.z = &begun + step * scale;
+            if self.sided() >= sided {
+                break;
+            }
+            scale *= 0.5;
+        }
+    }
+
+    /// In how many places it is the phase's one of two velocities, where two limits leave these.
+    fn sided(&self) -> usize {
+        let places = self.draft.phase_of.iter().enumerate();
+        let places = places.flat_map(|(element, number)| SIDED_AT.map(|s| (element, number, s)));
+        let sided = places.filter(|&(element, number, s)| {
+            let (phase, place) = (&self.draft.phases[*number], self.place(element, s));
+            side(self.setting, &phase.limits, &place.phi, &place.rate) == phase.side
+        });
+        sided.count()
     }
 
     /// The phase that has lost its length.
