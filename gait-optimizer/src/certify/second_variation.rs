@@ -215,7 +215,7 @@ impl Neighbours<'_> {
         let stretches = stretches.iter().filter(|stretch| {
             // Of images one is enough.
             let middle = (stretch.from + 0.5 * stretch.width).rem_euclid(1.0);
-            !self.symmetric || middle <= 0.25 + SAME || middle >= 1.0 - SAME
+            !self.symmetric || stretch.closed || middle <= 0.25 + SAME || middle >= 1.0 - SAME
         });
         stretches
             .flat_map(|stretch| stretch.waves(half_waves))
