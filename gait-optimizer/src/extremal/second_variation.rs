@@ -91,44 +91,39 @@ impl Mesh {
             self.elements.last().and_then(|last| last.nodes[1]),
         ];
         let (mut elements, mut nodes) = (Vec::with_capacity(4 * self.elements.len()), 0);
-        // The nodes on the symmetry lines are shared: φ₁ = φ₂ > 0, φ₁ = −φ₂, and both again.
-        let mut on_lines: [Option<usize>; 4] = [None; 4];
+        // Nodes on the symmetry lines are shared: φ₁ = φ₂ > 0, φ₁ = −φ₂ < 0, and opposite.
+        let mut on_lines = [None; 4];
         for quarter in 0..4 {
             let backwards = quarter % 2 == 1;
-            let mut images = vec![None; self.nodes];
-            let lines = [quarter, (quarter + 1) % 4];
-            let [from, to] = if backwards { [1, 0] } else { [0, 1] };
-            let mut image = |node: Option<usize>| {
-                let node = node?;
-                let line = [from, to].into_iter().zip(lines);
-                let line = line
-                    .filter(|&(end, _)| ends[end] == Some(node))
-                    .map(|(_, line)| line)
-                    .next();
-                let known = match line {
-                    Some(line) => &mut on_lines[line],
-                    None => images.get_mut(node)?,
+            let mut inside = vec![None; self.nodes];
+            let mut image = |node: usize| {
+                let known = match ends.iter().position(|end| *end == Some(node)) {
+                    Some(end) => {
+                        &mut on_lines[(quarter + usize::from((end == 1) != backwards)) % 4]
+                    }
+                    None => &mut inside[node],
                 };
-                Some(*known.get_or_insert_with(|| {
+                *known.get_or_insert_with(|| {
                     nodes += 1;
                     nodes - 1
-                }))
+                })
             };
-            let mut add = |element: &Element| {
-                let [mut before, mut after] = element.nodes;
+            for at in 0..self.elements.len() {
+                let at = if backwards {
+                    self.elements.len() - 1 - at
+                } else {
+                    at
+                };
+                let element = &self.elements[at];
+                let mut own = element.nodes;
                 if backwards {
-                    (before, after) = (after, before);
+                    own.reverse();
                 }
                 elements.push(Element {
                     state: reflected(&element.state, quarter),
                     length: element.length,
-                    nodes: [image(before), image(after)],
+                    nodes: own.map(|node| node.map(&mut image)),
                 });
-            };
-            if backwards {
-                self.elements.iter().rev().for_each(&mut add);
-            } else {
-                self.elements.iter().for_each(&mut add);
             }
         }
         Self { elements, nodes }

@@ -13,7 +13,7 @@
 //! the start on leaves L − q-terms with `q̇ = (a − q c)²/L` (a Cholesky factorisation of the form in the limit of fine
 //! steps); δ² < 0 for all v as long as q stays finite. With q = U/W this is the linear system
 //! `(U, W)˙ = (−a c U + a² W, −c² U + a c W)/L` from (0, 1), and W = 0 is a conjugate point. Along bounds nothing changes.
-
+//!
 //! [`is_maximum_without_symmetry`] asks the same of the whole cycle and of pushes of any kind that turn nothing, ∫ a v = 0. With d
 //! for `x_f` they also move the end sideways by ∫ c v, and
 //!
@@ -133,9 +133,13 @@ pub(crate) fn is_maximum_without_symmetry(quarter: &[Stretch], d: f64) -> bool {
     let kappa = Vector2::new(0.0, 1.0);
     for number in 0..4 {
         let backwards = number % 2 == 1;
-        let forth = (0..quarter.len()).filter(|_| !backwards);
-        let back = (0..quarter.len()).rev().filter(|_| backwards);
-        for (before, after, length) in forth.chain(back).filter_map(|at| quarter.get(at)) {
+        for at in 0..quarter.len() {
+            let at = if backwards {
+                quarter.len() - 1 - at
+            } else {
+                at
+            };
+            let (before, after, length) = quarter[at];
             let [before, after] = [before, after].map(|push| push.in_quarter(number, d));
             let middle = |value: fn(&Push) -> f64| 0.5 * (value(&before) + value(&after));
             let (a, c) = (middle(|push| push.turn), middle(|push| push.shift));
