@@ -214,12 +214,9 @@ impl Extremal {
         *self.ascents.get_or_init(count)
     }
 
-    /// The same among closed curves of any symmetry.
+    /// The same of a quarter's cycle among closed curves of any symmetry.
     pub(crate) fn ascents_without_symmetry(&self, model: &Model<f64>) -> Option<usize> {
-        match self.class {
-            Class::Quarter => second_variation::ascents_without_symmetry(model, &self.solved.chain),
-            Class::Closed { .. } => self.ascents(model),
-        }
+        second_variation::ascents_without_symmetry(model, &self.solved.chain)
     }
 
     /// Lighthill's efficiency ξ = `c_t/|p|²` of a swimmer with L = 1.

@@ -43,9 +43,7 @@ fn every_swimmer_gets_a_certified_gait_or_a_reason() {
                 }
             };
             assert!(gait.certificate.pass());
-            let file = gait.gait_file("");
-            let certificate =
-                certify(&swimmer, &file, Objective::Efficiency, &gait.bounds).unwrap();
+            let certificate = certified(&swimmer, &gait);
             assert!(certificate.pass(), "{i}: {}", certificate.failures());
             // The samples of the real swimmer, not of the scaled one, swum by the model alone.
             let stroke = swim(&model, &gait.gait().unwrap(), &Tolerance::new(1e-11));

@@ -56,7 +56,7 @@ fn without_symmetry_the_robot_swims_more_efficiently_within_its_bounds() {
 fn no_certified_gait_is_lost() {
     let bounds = Bounds::within(3.5);
     let swimmer = Swimmer::purcell();
-    let known = crate::displacement::best_symmetric(&crate::DisplacementProblem {
+    let known = crate::displacement(&crate::DisplacementProblem {
         bounds,
         heading: Some(crate::Heading::Backwards),
         simple: true,
@@ -168,15 +168,7 @@ fn the_search_goes_on_from_a_saddle() {
 /// The large gait of long side links is the best with its symmetries, and no optimum: a gait without them lies near and is better.
 #[test]
 fn a_saddle_of_efficiency_is_not_listed_but_what_lies_beside_it() {
-    let swimmer = Swimmer {
-        links: Links {
-            middle: 0.4,
-            front: 1.0,
-            back: 1.0,
-        },
-        chi: 2.6,
-        ..Swimmer::purcell()
-    };
+    let swimmer = swimmer(0.4, 2.6);
     let saddle = best_symmetric(&EfficiencyProblem::new(swimmer, Branch::Large)).unwrap();
     let failed = saddle.certificate.failures();
     assert!(

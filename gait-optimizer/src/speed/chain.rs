@@ -56,6 +56,20 @@ impl Layout {
         (0..self.arcs()).map(|arc| z[self.time_index(arc)]).sum()
     }
 
+    /// The shape at a share of the period, modulo 1.
+    pub(crate) fn at(&self, z: &DVector<f64>, share: f64) -> Vector2<f64> {
+        let mut left = share.rem_euclid(1.0) * self.period(z);
+        for arc in 0..self.arcs() {
+            let time = z[self.time_index(arc)];
+            if left <= time {
+                let (ends, bends) = (self.ends(z, arc), self.bends(z, arc));
+                return self.shapes[arc].at(&ends, bends, left / time);
+            }
+            left -= time;
+        }
+        self.corner(z, 0)
+    }
+
     pub(crate) fn ends(&self, z: &DVector<f64>, arc: usize) -> [Vector2<f64>; 2] {
         [self.corner(z, arc), self.corner(z, arc + 1)]
     }

@@ -26,17 +26,7 @@ pub(crate) struct Polygon {
 impl Polygon {
     /// The shape at a share of the period, modulo 1.
     pub(crate) fn at(&self, share: f64) -> Vector2<f64> {
-        let Self { layout, z, .. } = self;
-        let mut left = share.rem_euclid(1.0) * layout.period(z);
-        for side in 0..layout.arcs() {
-            let time = z[layout.time_index(side)];
-            if left <= time {
-                let [from, to] = layout.ends(z, side);
-                return from + (to - from) * (left / time);
-            }
-            left -= time;
-        }
-        layout.corner(z, 0)
+        self.layout.at(&self.z, share)
     }
 
     pub(crate) fn period(&self) -> f64 {

@@ -121,11 +121,7 @@ impl Curve {
             let enough = |times: &usize| off < OFF * (*times as f64).powf(ORDER);
             phase.parts = own * (1..MOST_PARTS).find(enough).unwrap_or(MOST_PARTS);
         }
-        self.cut(setting, phases, elements)
-    }
-
-    fn cut(&self, setting: &Setting, phases: Vec<Phase>, elements: usize) -> Option<Self> {
-        let draft = self.draft.cut(setting, &phases, elements);
+        let draft = self.draft.cut(setting, (&phases, 0.0), elements);
         mended(setting, phases, draft, elements)
     }
 }
@@ -164,7 +160,7 @@ fn mended(
             Outcome::Gone(phase, _) if lengthened < LENGTHENED && !jumps(&before, phase) => {
                 lengthen(&mut phases, phase);
                 lengthened += 1;
-                draft = before.cut(setting, &phases, elements);
+                draft = before.cut(setting, (&phases, 0.0), elements);
                 lost = lost.or(Some((before, phase)));
             }
             Outcome::Lost | Outcome::Gone(..) => {
@@ -177,8 +173,7 @@ fn mended(
                 };
                 let (merged, offset) = from.without(phase)?;
                 phases = merged;
-                let curve = |share: f64| from.at(share + offset);
-                draft = Draft::new(setting, (&curve, from.period()), &phases, elements, BENDS);
+                draft = from.cut(setting, (&phases, offset), elements);
             }
             Outcome::Solved(curve, wanted) => {
                 (lost, lengthened) = (None, 0);
@@ -190,8 +185,7 @@ fn mended(
                     return None;
                 }
                 solved.push(curve.phases().to_vec());
-                let place = |share: f64| curve.at(share + offset);
-                draft = Draft::new(setting, (&place, curve.period()), &next, elements, BENDS);
+                draft = curve.draft.cut(setting, (&next, offset), elements);
                 phases = next;
             }
         }

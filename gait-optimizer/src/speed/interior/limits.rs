@@ -66,13 +66,8 @@ pub(super) fn inequalities(
                     (false, ..) => 0.0,
                     (true, true, true) => 1.0 - s,
                     (true, true, false) => *s,
-                    (true, false, first) => {
-                        if first {
-                            -1.0
-                        } else {
-                            1.0
-                        }
-                    }
+                    (true, false, true) => -1.0,
+                    (true, false, false) => 1.0,
                 });
                 let weight = 1.0 / ALONG.len() as f64;
                 value -= level.value * weight;

@@ -133,9 +133,14 @@ impl Draft {
             .fold(0.0, f64::max)
     }
 
-    /// The same curve with other borders of its phases.
-    pub(super) fn cut(&self, setting: &Setting, phases: &[Phase], elements: usize) -> Self {
-        let curve = |share: f64| self.at(share);
+    /// The same curve with other borders of its phases, told from this share of its period on.
+    pub(super) fn cut(
+        &self,
+        setting: &Setting,
+        (phases, from): (&[Phase], f64),
+        elements: usize,
+    ) -> Self {
+        let curve = |share: f64| self.at(share + from);
         Self::new(setting, (&curve, self.period()), phases, elements, BENDS)
     }
 
@@ -160,17 +165,7 @@ impl Draft {
 
     /// The shape at a share of the period, modulo 1.
     pub(super) fn at(&self, share: f64) -> Vector2<f64> {
-        let mut left = share.rem_euclid(1.0) * self.period();
-        for element in 0..self.layout.arcs() {
-            let time = self.z[self.layout.time_index(element)];
-            if left <= time {
-                let ends = self.layout.ends(&self.z, element);
-                let bends = self.layout.bends(&self.z, element);
-                return self.layout.shapes[element].at(&ends, bends, left / time);
-            }
-            left -= time;
-        }
-        self.layout.corner(&self.z, 0)
+        self.layout.at(&self.z, share)
     }
 }
 
