@@ -32,7 +32,7 @@ pub(crate) struct QuarterBounds {
 
 #[derive(Debug, Clone, Copy, clap::Args)]
 struct LinkBounds {
-    /// Links may not cross
+    /// Links may not cross; a side link keeps 1e-6 rad off the middle one, on which it would lie at 180°
     #[arg(long)]
     no_overlap: bool,
     /// Keep the centre lines of the side links this far apart, in metres; implies --no-overlap

@@ -135,12 +135,6 @@ impl Certificate {
         self.checks.iter().all(|check| check.pass)
     }
 
-    /// The same without a condition.
-    pub(crate) fn without(mut self, condition: Condition) -> Self {
-        self.checks.retain(|check| check.condition != condition);
-        self
-    }
-
     /// Whether all holds among gaits with the paper's symmetries; among all closed curves it may be a saddle.
     pub(crate) fn holds_among_symmetric(&self) -> bool {
         self.holds_but(&[Condition::NoAscentWithoutSymmetry])

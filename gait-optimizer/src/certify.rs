@@ -180,8 +180,7 @@ fn of_samples(
     certify_turned(model, gait, objective, limits, &curve)
 }
 
-/// A gait that an optimiser made, with the certificate that its file has, but for side links that lie on the middle one: such a gait
-/// is the limit of those that keep off, which whoever asked for it is told in other words.
+/// A gait that an optimiser made, with the certificate that its file has.
 pub(crate) fn certified(gait: OptimalGait) -> OptimalGait {
     let file = gait.gait_file("");
     let certificate = certify(&gait.swimmer, &file, gait.objective, &gait.bounds);
@@ -189,7 +188,7 @@ pub(crate) fn certified(gait: OptimalGait) -> OptimalGait {
     let nothing = |_| Certificate::new(vec![Condition::Closed.check(f64::NAN)]);
     let certificate = certificate.unwrap_or_else(nothing);
     OptimalGait {
-        certificate: certificate.without(Condition::NothingFolded),
+        certificate,
         ..gait
     }
 }

@@ -191,6 +191,41 @@ fn a_sliver_between_bounds_leads_nowhere() {
     assert!(slivers > 0);
 }
 
+/// Where only links that may not cross bound the angles, gaits run along where a side link all but lies on the middle one: a hair
+/// off it, so that nothing crosses and what is listed passes.
+#[test]
+fn gaits_that_fold_a_link_keep_it_off_the_middle_one() {
+    let long_sides = Swimmer {
+        links: Links {
+            middle: 0.6,
+            front: 1.0,
+            back: 1.0,
+        },
+        ..Swimmer::purcell()
+    };
+    let bounds = Bounds::default().apart(0.0);
+    let mut folded = 0;
+    for swimmer in [Swimmer::purcell(), long_sides] {
+        for objective in [Objective::Displacement, Objective::Efficiency] {
+            let found = atlas(&AtlasProblem {
+                bounds,
+                starts: 6,
+                order: 4,
+                ..AtlasProblem::new(swimmer, objective)
+            })
+            .unwrap();
+            for one in found.optima.iter().filter(|one| one.simple) {
+                let certificate = certificate(&swimmer, &one.gait.gait_file(""));
+                assert!(certificate.pass(), "{}", certificate.failures());
+                assert!(one.gait.links_cross <= 0.0);
+                let widest = one.gait.phi().iter().map(Vector2::amax);
+                folded += usize::from(widest.fold(0.0, f64::max) > std::f64::consts::PI - 1e-3);
+            }
+        }
+    }
+    assert!(folded > 0);
+}
+
 #[test]
 fn circles_and_squares_fail() {
     for swimmer in [Swimmer::purcell(), Swimmer::robot()] {

@@ -59,17 +59,19 @@ impl Clearance {
     }
 
     /// The largest |φ| \[rad\] at which a link of length `side` stays `distance` away from the joint of the other side
-    /// link, `middle` away: at most π.
+    /// link, `middle` away, and a hair off the middle link: flat on it they cross.
     pub(crate) fn fold(side: f64, middle: f64, distance: f64) -> f64 {
         use std::f64::consts::PI;
-        if side * side >= middle * middle - distance * distance {
+        const HAIR: f64 = 1e-6;
+        let free = if side * side >= middle * middle - distance * distance {
             PI - (distance / middle).clamp(0.0, 1.0).asin()
         } else if side > middle - distance {
             let cos = (distance * distance - middle * middle - side * side) / (2.0 * middle * side);
             cos.clamp(-1.0, 1.0).acos()
         } else {
             PI
-        }
+        };
+        free.min(PI - HAIR)
     }
 
     /// Which piece decides at a shape.

@@ -164,7 +164,8 @@ fn tip_touches_tip() {
     }
 }
 
-/// Links too short to reach each other leave no curved bound, and a fold only where the tip comes near the other joint.
+/// Links too short to reach each other leave no curved bound, and a fold only where the tip comes near the other joint, or a hair before
+/// a link lies on the middle one.
 #[test]
 fn links_too_short_to_cross() {
     let links = Links {
@@ -175,7 +176,7 @@ fn links_too_short_to_cross() {
     let region = Region::new(&bounds(0.1), &links);
     assert_eq!(region.bounds().count(), 4);
     for edge in region.edges() {
-        assert!((edge.offset - PI).abs() < 1e-15);
+        assert!((edge.offset - (PI - 1e-6)).abs() < 1e-15);
     }
     let near = Region::new(
         &bounds(0.2),
@@ -184,7 +185,7 @@ fn links_too_short_to_cross() {
             ..links
         },
     );
-    assert!(near.edges().iter().any(|edge| edge.offset < PI));
+    assert!(near.edges().iter().any(|edge| edge.offset < PI - 1e-3));
     assert_eq!(near.bounds().count(), 5);
     assert!(matches!(curved(&near), Bound::Clearance(_)));
 }

@@ -8,7 +8,6 @@ use swimmer_files::{AnyGait, SwimmerFile};
 use super::timing::Timed;
 use super::{Found, Task};
 use crate::document::Document;
-use crate::failure::{Failure, Outcome};
 use crate::own_robot::PERIOD_S;
 use crate::quantity;
 
@@ -139,20 +138,4 @@ pub(super) fn say_if_beyond(task: &Task, gait: &OptimalGait) {
     if let Ok(curve) = AnyGait::from_file(&gait.gait_file(&task.file.name)) {
         crate::own_robot::say_if_beyond(&task.file, &curve, PERIOD_S);
     }
-}
-
-/// Refuses a gait that was to keep its links from crossing and lies with a side link folded on the middle one: the bound has
-/// no best gait then, only ones that come ever nearer to it.
-///
-/// # Errors
-/// [`Failure::Tried`].
-pub(super) fn unfolded(gait: &OptimalGait) -> Outcome {
-    if !gait.bounds.no_overlap || gait.links_cross <= 0.0 {
-        return Ok(());
-    }
-    Err(Failure::Tried(format!(
-        "the best gait whose links do not cross does not exist: those that come near to it run ever closer to |φ| = 180°, where a \
-         side link lies on the middle one ({}); bound the joints (--max-angle 160deg) or keep the links apart (--clearance 0.005)",
-        quantity::crossing(gait.links_cross)
-    )))
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use gait_optimizer::{LimitedError, LimitedProblem, Torque, fastest_within};
 use swimmer_files::{Bounds, SwimmerFile};
 
-use super::answer::{at_pace, tell_arcs, unfolded};
+use super::answer::{at_pace, tell_arcs};
 use super::speed::{SEARCHING, tell_as_played};
 use super::{Found, Task};
 use crate::failure::{Failure, Outcome};
@@ -48,7 +48,6 @@ pub(super) fn within(task: &Task, bounds: Bounds, limits: &Limits) -> Outcome<Fo
     };
     let found = task.watched(SEARCHING, |watch| fastest_within(&problem, watch))?;
     let gait = &found.gait;
-    unfolded(gait)?;
     let speed = found.speed_over_length;
     let power = found.peak_power_over_viscosity * viscosity;
     let torques = found.peak_torques_over_viscosity.map(|one| one * viscosity);

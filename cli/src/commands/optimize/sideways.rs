@@ -2,7 +2,7 @@
 
 use gait_optimizer::{SidewaysError, SidewaysProblem, sideways_watched};
 
-use super::answer::{say_if_beyond, unfolded};
+use super::answer::say_if_beyond;
 use super::{Found, Objective, Task};
 use crate::bounds::WholeBounds;
 use crate::document::Document;
@@ -34,7 +34,6 @@ impl Objective for Sideways {
             sideways_watched(&problem, watch)
         })?;
         let gait = &found.gait;
-        unfolded(gait)?;
         say_if_beyond(task, gait);
         let signed = |value: f64| (value * 1e9).round() / 1e9 + 0.0;
         let mut answer = Document::new(format!(

@@ -5,7 +5,7 @@ use gait_optimizer::{
 };
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 
-use super::answer::{at_pace, tell_arcs, unfolded};
+use super::answer::{at_pace, tell_arcs};
 use super::front::FrontFile;
 use super::limited::{Limits, within};
 use super::robust::{Robustly, as_written, refused, tell_robustness};
@@ -122,7 +122,6 @@ impl Objective for Speed {
                 Ok(problem.watched(watch)?)
             }
         })?;
-        unfolded(&found.gait)?;
         let (kind, gait) = match robustness {
             Some(_) => ("robust fastest", &as_written(&found.gait)),
             None => ("fastest", &found.gait),

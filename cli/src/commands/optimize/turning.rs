@@ -2,7 +2,7 @@
 
 use gait_optimizer::{TurningError, TurningProblem, turning};
 
-use super::answer::{say_if_beyond, tell_arcs, unfolded};
+use super::answer::{say_if_beyond, tell_arcs};
 use super::{Found, Objective, Task};
 use crate::bounds::WholeBounds;
 use crate::document::Document;
@@ -29,7 +29,6 @@ impl Objective for Turning {
         };
         let found = task.timed(|| turning(&problem))?;
         let gait = &found.gait;
-        unfolded(gait)?;
         say_if_beyond(task, gait);
         let mut answer = Document::new(format!(
             "{}, most rotation, {}",
