@@ -27,6 +27,7 @@ use swimmer_model::{Model, Swimmer};
 
 use crate::extremal::Walls;
 use crate::immobile::refuse_immobile;
+use crate::parallel::Watch;
 use crate::problem::{GaitClass, InvalidProblem, tightened, validated};
 use crate::region::Region;
 use crate::{Immobile, OptimalGait};
@@ -158,9 +159,6 @@ pub enum AtlasError {
         order: usize,
     },
 }
-
-/// Is told the share of the work that is done, 0 to 1, from any thread; it may begin again from 0.
-pub type Watch<'a> = &'a (dyn Fn(f64) + Sync);
 
 /// Makes an atlas.
 ///

@@ -6,8 +6,6 @@ mod condition;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use swimmer_model::Stroke;
 
-use crate::cycle::{Cycle, QuarterTrace};
-use crate::region::Region;
 pub use condition::Condition;
 
 pub(crate) use closed_curve::{crossings, double_area, simple_and_turning_once, turning_number};
@@ -185,27 +183,6 @@ impl Certificate {
             })
             .collect();
         words.join(", ")
-    }
-
-    /// The conditions of paper section IV for a quarter gait, and those of the full cycle. Lengths are over L. The arcs tell them
-    /// at once; to read them off the samples, as [`certify`](crate::certify()) does, takes longer than the search.
-    pub(crate) fn of_displacement(
-        region: &Region,
-        trace: &QuarterTrace,
-        cycle: &Cycle,
-        displacement_over_length: f64,
-        stroke: &Stroke<f64>,
-    ) -> Self {
-        let mut checks = trace.conditions.clone();
-        // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
-        let curve = if region.has_diagonals() {
-            &trace.samples.phi
-        } else {
-            &cycle.phi
-        };
-        checks.extend(simple_and_turning_once(&cycle.phi, curve));
-        checks.extend(swum_again(stroke, displacement_over_length));
-        Self { checks }
     }
 }
 

@@ -1,15 +1,21 @@
-//! From a quarter gait to the full cycle: traced again at constant power with its costates, then mirrored twice.
+//! A full cycle at constant power, sampled: of a closed curve, or of a quarter mirrored twice.
 //!
 //! A gait with the paper's two symmetries is mapped onto itself, run backwards, by reflection in φ₁ = φ₂ and in φ₁ = −φ₂.
-
-mod trace;
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, ArcKind, Bounds, GaitArc, GaitFile};
 use swimmer_model::{InvalidSamples, Model, Stroke, Tolerance, crossing_share, swim};
 
-use crate::Arc;
-pub(crate) use trace::QuarterTrace;
+/// One arc of a gait.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Arc {
+    /// What it runs along.
+    pub kind: ArcKind,
+    /// Joint angles where it starts \[rad\].
+    pub from: [f64; 2],
+    /// Joint angles where it ends \[rad\].
+    pub to: [f64; 2],
+}
 
 /// A full cycle, sampled.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,6 +7,7 @@ mod near;
 mod search;
 mod start_family;
 mod supremum;
+mod trace;
 
 use std::fmt;
 
@@ -18,12 +19,13 @@ use search::{Candidate, SCAN_POINTS};
 pub use supremum::{Member, Suprema, Supremum};
 use swimmer_files::{Bounds, Objective};
 use swimmer_model::{Model, Swimmer};
+use trace::QuarterTrace;
 
-use crate::cycle::QuarterTrace;
+use crate::certificate::{Certificate, simple_and_turning_once, swum_again};
 use crate::immobile::refuse_immobile;
+use crate::optimal_gait::OptimalGait;
 use crate::optimal_gait::Solution;
 use crate::problem::{GaitClass, InvalidProblem, validated};
-use crate::{Certificate, OptimalGait};
 
 /// Which way a counter-clockwise gait shall carry the swimmer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -235,8 +237,16 @@ fn certified(
     let cycle = trace.cycle();
     let displacement_over_length = 4.0 * candidate.quarter.end[2];
     let stroke = cycle.swum(model)?;
-    let certificate =
-        Certificate::of_displacement(region, &trace, &cycle, displacement_over_length, &stroke);
+    // The arcs tell their conditions at once; to read them off the samples, as `certify` does, takes longer than the search.
+    let mut checks = trace.conditions.clone();
+    // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
+    let curve = if region.has_diagonals() {
+        &trace.samples.phi
+    } else {
+        &cycle.phi
+    };
+    checks.extend(simple_and_turning_once(&cycle.phi, curve));
+    checks.extend(swum_again(&stroke, displacement_over_length));
     let arcs = cycle.arcs(true);
     let links_cross = cycle.links_cross(model);
     let mut gait = OptimalGait::new(Solution {
@@ -248,7 +258,7 @@ fn certified(
         cycle,
         stroke,
         links_cross,
-        certificate,
+        certificate: Certificate::new(checks),
     });
     // The arcs know these closer than the samples do.
     gait.displacement_over_length = displacement_over_length;

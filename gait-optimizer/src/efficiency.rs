@@ -15,11 +15,11 @@ use std::fmt;
 use swimmer_files::{AnyGait, Bounds};
 use swimmer_model::{Model, Swimmer};
 
-use crate::OptimalGait;
 use crate::certificate::{Condition, crossings, simple_and_turning_once};
 use crate::extremal::gait::{Order, gait};
 use crate::extremal::{Extremal, Unpolished, Walls, polish};
 use crate::immobile::refuse_immobile;
+use crate::optimal_gait::{EfficiencyFigures, OptimalGait};
 use crate::problem::{GaitClass, InvalidProblem, validated};
 pub use bounded::Reached;
 pub(crate) use chain::starts;
@@ -137,19 +137,6 @@ impl EfficiencyProblem {
     pub fn validated(&self) -> Result<Model<f64>, InvalidProblem> {
         validated(&self.swimmer, &self.bounds, GaitClass::Symmetric)
     }
-}
-
-/// Numbers that only an efficiency gait has.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EfficiencyFigures {
-    /// Max-norm of the shooting conditions: gaps between pieces and at both ends, angles in rad, momenta over |p|.
-    pub residual: f64,
-    /// (max − min)/mean of the power along the extremal.
-    pub power_variation: f64,
-    /// What led to the guess that was shot from: [`Method::word`], or the name of the method that a [`Direct`] gait is from.
-    pub method: &'static str,
-    /// ξ of the curve that was shot from, where it is the result of a direct method of its own.
-    pub direct_efficiency: Option<f64>,
 }
 
 /// The most efficient gait of a branch. With several local optima on it, the most efficient.

@@ -12,7 +12,6 @@
 //! | `problem` | what every problem has to be before anything is searched |
 //! | `displacement` | the problem, the search for the quarter gait, the result |
 //! | `momentum` | the multipliers as a momentum that the body carries, and the height: what a push of the curve gains; the flow of an arc |
-//! | `displacement::height` | the paper's switching function F of a quarter, what the costate equations need |
 //! | `height_map` | height functions in minimum-perturbation coordinates, their zero-level curves, the area rule |
 //! | `atlas` | multi-start over closed curves of any symmetry, and which of them are one gait |
 //! | `batch` | A and W at many shapes at once |
@@ -23,14 +22,15 @@
 //! | [`region`] | the bounds: straight ones of the joint angles, and the curved one that keeps the side links apart |
 //! | `arcs` | an arc of most displacement, integrated until an event ends it, and chains followed once more; of quarters and of closed curves |
 //! | `displacement::flow` | what follows an arc of a quarter, and where quarters end |
+//! | `displacement::trace` | a quarter traced once more, with the conditions that its arcs tell |
 //! | `displacement::start_family` | where singular arcs may begin: φ₁ = φ₂, and chains of bounds from there |
 //! | `efficiency` | the small and the large Lighthill gait: Fourier series, then `extremal`, bounds followed |
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs, second-order test |
-//! | `cycle` | from a quarter to the full cycle, at constant power |
+//! | `cycle` | a full cycle at constant power, of a closed curve or of a quarter mirrored twice |
 //! | `speed` | the fastest gait of servos with a limit on rate, power or both |
 //! | `turning` | the simple closed gait that turns most: round a region of the curvature |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
-//! | `certificate` | every condition with its key and tolerance, checks, and those that a quarter's arcs tell |
+//! | `certificate` | every condition with its key and tolerance, and checks |
 //! | `certify` | conditions asked of any closed curve, from its samples alone: the certificate of turning, sideways and atlas gaits |
 //! | [`closed_forms`] | formulas of the paper's appendix, mended |
 //! | `simple_shapes` | circles and squares over their amplitude |
@@ -91,9 +91,7 @@ mod simple_shapes;
 mod speed;
 mod turning;
 
-pub use atlas::{
-    Atlas, AtlasError, AtlasProblem, Optimum, StartCurves, Watch, atlas, atlas_watched,
-};
+pub use atlas::{Atlas, AtlasError, AtlasProblem, Optimum, StartCurves, atlas, atlas_watched};
 pub use batch::{Batch, ConnectionsAndPowers, ManyFirstDerivatives};
 pub use certificate::{Certificate, Check, Condition, Verdict};
 pub use certify::{CertifyError, certify};
@@ -101,20 +99,22 @@ pub use continuation::{
     Continuation, ContinuationError, ContinuationProblem, Event, EventKind, Fold, OtherSide,
     Parameter, Point, Start, continuation, continuation_watched,
 };
+pub use cycle::Arc;
 pub use displacement::{
     DisplacementError, DisplacementProblem, Fates, Heading, Member, Suprema, Supremum,
     displacement, displacement_near,
 };
 pub use efficiency::{
-    Branch, Direct, EfficiencyError, EfficiencyFigures, EfficiencyProblem, EfficiencySeed, Method,
-    Reached, efficiency, efficiency_from,
+    Branch, Direct, EfficiencyError, EfficiencyProblem, EfficiencySeed, Method, Reached,
+    efficiency, efficiency_from,
 };
 pub use extremal::{Polish, Unpolished, Unsolved, polish_efficiency};
 pub use height_map::{
     AreaRule, Convergence, Frame, Grid, HeightMap, HeightMapError, LevelCurve, Row,
 };
 pub use immobile::Immobile;
-pub use optimal_gait::{Arc, OptimalGait};
+pub use optimal_gait::{EfficiencyFigures, OptimalGait};
+pub use parallel::Watch;
 pub use problem::InvalidProblem;
 pub use robust::{
     Holder, Over, RobustError, RobustGait, RobustSpeed, Robustness, Uncertainty, Values,

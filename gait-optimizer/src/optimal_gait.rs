@@ -1,22 +1,23 @@
 //! What an optimisation returns: the gait, its numbers and its proof.
 
 use nalgebra::Vector2;
-use swimmer_files::{AnyGait, ArcKind, Bounds, GaitArc, GaitFile, Objective, SwimmerHash};
+use swimmer_files::{AnyGait, Bounds, GaitArc, GaitFile, Objective, SwimmerHash};
 use swimmer_model::{InvalidSamples, Model, Stroke, Swimmer, Tolerance, trajectory, wrapped_angle};
 
-use crate::Certificate;
-use crate::EfficiencyFigures;
-use crate::cycle::Cycle;
+use crate::certificate::Certificate;
+use crate::cycle::{Arc, Cycle};
 
-/// One arc of a gait.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Arc {
-    /// What it runs along.
-    pub kind: ArcKind,
-    /// Joint angles where it starts \[rad\].
-    pub from: [f64; 2],
-    /// Joint angles where it ends \[rad\].
-    pub to: [f64; 2],
+/// Numbers that only an efficiency gait has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EfficiencyFigures {
+    /// Max-norm of the shooting conditions: gaps between pieces and at both ends, angles in rad, momenta over |p|.
+    pub residual: f64,
+    /// (max − min)/mean of the power along the extremal.
+    pub power_variation: f64,
+    /// What led to the guess that was shot from: [`Method::word`](crate::Method::word), or the name of the method that a [`Direct`](crate::Direct) gait is from.
+    pub method: &'static str,
+    /// ξ of the curve that was shot from, where it is the result of a direct method of its own.
+    pub direct_efficiency: Option<f64>,
 }
 
 /// An optimal gait with its certificate.

@@ -2,7 +2,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::Watch;
+/// Is told the share of the work that is done, 0 to 1, from any thread; it may begin again from 0.
+pub type Watch<'a> = &'a (dyn Fn(f64) + Sync);
 
 /// Runs `job` for 0 … count − 1; each thread has its own room, made by `room`. The results are in order. `watch` is told what
 /// share of the jobs is done.

@@ -10,11 +10,11 @@ use super::distinct::{Outline, Symmetries, classes};
 use super::newton::{Newton, Settings, Stationary};
 use super::objective::Aim;
 use super::starts::{fitted, off_centre, start};
-use super::{Atlas, AtlasProblem, Optimum, StartCurves, Watch};
+use super::{Atlas, AtlasProblem, Optimum, StartCurves};
 use crate::OptimalGait;
 use crate::certificate::double_area;
 use crate::closed_curve::{Basis, Functional};
-use crate::parallel::in_parallel;
+use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
 
 /// Coarse curves this near to each other \[rad\], with values this near, are one.

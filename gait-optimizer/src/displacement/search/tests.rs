@@ -1,7 +1,7 @@
 use super::*;
 use crate::certificate::{Certificate, Condition};
-use crate::cycle::QuarterTrace;
 use crate::displacement::start_family::families;
+use crate::displacement::trace::QuarterTrace;
 use swimmer_files::Bounds;
 use swimmer_model::{Links, Swimmer, TangentialDrag};
 

@@ -12,9 +12,9 @@ use super::super::problem::{Goal, HeadingRule, Setting};
 use super::super::{SpeedError, samples, selection, starts};
 use super::{Limit, Limited, LimitedError, LimitedProblem, STARTS};
 use crate::Watch;
-use crate::cycle::Cycle;
+use crate::cycle::{Arc, Cycle};
 use crate::immobile::refuse_immobile;
-use crate::optimal_gait::{Arc, OptimalGait, Solution};
+use crate::optimal_gait::{OptimalGait, Solution};
 use crate::parallel::in_parallel;
 use crate::region::Region;
 

@@ -1,13 +1,13 @@
-//! A quarter gait traced once more at equal steps of power length: the evidence.
+//! A quarter gait traced once more at equal steps of power length: its samples, and the conditions of paper section IV.
 
 mod second_variation;
 
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use super::{Cycle, Samples};
 use crate::arcs::{Leg, SMOOTH, Trace};
 use crate::certificate::{Check, Condition};
+use crate::cycle::{Cycle, Samples};
 use crate::momentum::{Momentum, Motion, State, pose, shape};
 use crate::region::Region;
 use second_variation::{Push, SecondVariation, Stretch, is_maximum_without_symmetry};
