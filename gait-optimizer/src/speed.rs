@@ -44,11 +44,10 @@ use crate::region::Region;
 use crate::{Certificate, Condition, Immobile, Watch};
 
 pub(crate) use candidate::mended;
-pub(crate) use ensemble::speed_of;
 pub use error::SpeedError;
 pub use front::{Front, front};
 pub use limited::{Limit, Limited, LimitedError, LimitedProblem, Torque, fastest_within};
-pub(crate) use polish::Polished;
+pub(crate) use polish::{Polished, speed_of};
 use problem::Goal;
 pub use problem::HeadingRule;
 pub(crate) use problem::Setting;

@@ -5,7 +5,8 @@ use swimmer_model::Model;
 
 use super::Subject;
 use super::limits::Limits;
-use super::second_variation::{Ascents, Gain, Neighbours};
+use super::second_variation::{Ascents, Neighbours};
+use super::variation::Gain;
 use crate::OptimalGait;
 use crate::certificate::turning_number;
 

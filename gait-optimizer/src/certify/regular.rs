@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 
 use super::grid::Along;
 use super::path::Path;
-use super::second_variation::Gain;
+use super::variation::Gain;
 use super::{Degree, Openness, Subject, lesser, worse};
 use crate::certificate::{Check, Condition};
 use crate::momentum::Momentum;

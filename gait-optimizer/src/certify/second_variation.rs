@@ -10,21 +10,8 @@ use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::Subject;
 use super::grid::{Along, Degree, Node};
-use super::variation::{Push, Variation};
+use super::variation::{Gain, Push, Variation};
 use crate::certificate::{Check, Condition};
-
-/// What is maximised, as far as the Hessian is concerned.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Gain {
-    /// |d|, without net rotation.
-    Displacement,
-    /// ln |d| − ln S, without net rotation.
-    Efficiency,
-    /// |Y|, across the heading at the start, without net rotation.
-    Sideways,
-    /// ± Δθ.
-    Turning,
-}
 
 /// A curve and what it is optimal for.
 pub(super) struct Neighbours<'a> {

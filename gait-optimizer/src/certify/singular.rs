@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use swimmer_files::Objective;
 
 use super::grid::Along;
-use super::second_variation::Gain;
+use super::variation::Gain;
 use super::{Degree, Openness, Subject, lesser, worse};
 use crate::certificate::{Check, Condition};
 use crate::momentum::Momentum;

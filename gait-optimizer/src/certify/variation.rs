@@ -9,8 +9,20 @@ use swimmer_model::SecondDerivatives;
 
 use super::grid::{Degree, Grid};
 use super::path::{Path, Place};
-use super::second_variation::Gain;
 use crate::momentum::Momentum;
+
+/// What is maximised, as far as the Hessian is concerned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Gain {
+    /// |d|, without net rotation.
+    Displacement,
+    /// ln |d| − ln S, without net rotation.
+    Efficiency,
+    /// |Y|, across the heading at the start, without net rotation.
+    Sideways,
+    /// ± Δθ.
+    Turning,
+}
 
 /// A push at every node \[rad\], and its slope there.
 pub(super) struct Push {

@@ -13,6 +13,12 @@ pub(crate) use quarter::{Fate, MOST_ARCS, Quarter};
 /// Longest curve of a quarter \[rad\].
 const LONGEST_CURVE: f64 = 40.0;
 
+/// As closely as an extremal is followed that shall be an answer.
+pub(super) const FINE: StepControl = StepControl {
+    tolerance: 1e-13,
+    longest: 0.3,
+};
+
 /// What a quarter does where it first meets φ₁ = −φ₂.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Touch {
@@ -33,6 +39,11 @@ pub(crate) struct TraceOptions {
     pub(crate) touched: bool,
     /// φ₁ + φ₂ where the quarter began.
     pub(crate) began: f64,
+}
+
+/// Legs that have a length.
+pub(super) fn lasting(legs: &[Leg]) -> impl Iterator<Item = &Leg> {
+    legs.iter().filter(|leg| leg.to[5] > leg.from[5])
 }
 
 /// Follows arcs from a state on the first one until the quarter is over, leaving bounds where the multiplier falls to zero.

@@ -9,9 +9,8 @@ use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use super::Fates;
-use super::flow::{Fate, Quarter, Touch, TraceOptions, follow};
+use super::flow::{FINE, Fate, Quarter, Touch, TraceOptions, follow, lasting};
 use super::start_family::{Place, StartFamily};
-use crate::arcs::Leg;
 use crate::momentum::{Flow, Momentum, Motion, State, shape};
 use crate::numerics::root;
 use crate::region::Region;
@@ -59,10 +58,6 @@ const NEAR: f64 = 1e-3;
 const MIDDLING: StepControl = StepControl {
     tolerance: 1e-9,
     longest: 0.5,
-};
-pub(super) const FINE: StepControl = StepControl {
-    tolerance: 1e-13,
-    longest: 0.3,
 };
 /// Halvings of an interval at whose ends different arcs follow each other, or of which only one end has an extremal that ends.
 const HALVINGS: usize = 10;
@@ -429,11 +424,6 @@ impl Miss {
             heads: sign * quarter.end[2] > 0.0,
         }
     }
-}
-
-/// Legs that have a length.
-pub(crate) fn lasting(legs: &[Leg]) -> impl Iterator<Item = &Leg> {
-    legs.iter().filter(|leg| leg.to[5] > leg.from[5])
 }
 
 #[cfg(test)]

@@ -7,8 +7,7 @@ use swimmer_files::{ArcKind, Bounds};
 
 use swimmer_model::Model;
 
-use super::flow::{Fate, Touch, TraceOptions, along_bounds, follow, is_end_line};
-use super::search::{FINE, lasting};
+use super::flow::{FINE, Fate, Touch, TraceOptions, along_bounds, follow, is_end_line, lasting};
 use crate::arcs::Leg;
 use crate::momentum::{Flow, Momentum, Motion, State, Track, pose, shape};
 use crate::region::{Bound, Piece, Region, Wall};

@@ -13,6 +13,9 @@ const NEARLY: f64 = 1e-4;
 /// A corner may overstep a bound by this \[rad, or over L\].
 const OVERSTEPPED: f64 = 1e-10;
 
+/// First guesses of a singular arc, over half of any new arc's.
+const LENGTHS: [f64; 3] = [1.0, 3.0, 9.0];
+
 /// The chain that a rough polygon leads to.
 pub(crate) fn candidate(setting: &Setting, rough: &Polygon) -> Option<Polished> {
     let polygon = best_polygon(setting, rough, 2)?;
@@ -65,6 +68,33 @@ pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished
         links = next;
     }
     None
+}
+
+/// The chain with short singular arcs at the corners of extreme arcs, between themselves or with arcs along bounds, where that is
+/// faster; none where it is nowhere.
+pub(super) fn bent(setting: &Setting, chain: &Polished) -> Option<Polished> {
+    let mut best: Option<Polished> = None;
+    let mut corner = 0;
+    loop {
+        let here = best.as_ref().unwrap_or(chain);
+        if corner >= here.links.len() {
+            return best;
+        }
+        let short = widened::SHORT * here.layout.period(&here.z);
+        let better = |links: Vec<Link>| {
+            mended(setting, links).filter(|bent| {
+                bent.speed > here.speed * (1.0 + 1e-14) && bent.links.len() > here.links.len()
+            })
+        };
+        let faster = LENGTHS.into_iter().find_map(|length| {
+            widened::with_singular(&here.links, corner, length * short).and_then(better)
+        });
+        if faster.is_some() {
+            best = faster;
+            corner += 1;
+        }
+        corner += 1;
+    }
 }
 
 /// Whether an arc runs along what holds a corner.

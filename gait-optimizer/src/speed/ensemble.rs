@@ -3,25 +3,16 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::chain::{self, Layout, Weights};
-use super::polish::{POINTS, Polished};
 use super::quadrature::Rule;
 use crate::member::Member;
 
 /// A chain as the servos of a member turn it: all but the times is angles.
-fn turned(layout: &Layout, z: &DVector<f64>, gain: f64) -> DVector<f64> {
+pub(super) fn turned(layout: &Layout, z: &DVector<f64>, gain: f64) -> DVector<f64> {
     let mut turned = z * gain;
     for arc in 0..layout.arcs() {
         turned[layout.time_index(arc)] = z[layout.time_index(arc)];
     }
     turned
-}
-
-/// |d|/(L T) of one of them.
-pub(crate) fn speed_of(chain: &Polished, member: &Member) -> f64 {
-    let Polished { layout, z, .. } = chain;
-    let turned = turned(layout, z, member.gain);
-    let (_, net) = layout.net(&member.model, &Rule::new(POINTS), &turned);
-    net.distance() / layout.period(z)
 }
 
 /// Gradient and second derivatives of −ln Σ wₖ |dₖ|; of no members nothing.

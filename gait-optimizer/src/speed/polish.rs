@@ -6,9 +6,11 @@ use nalgebra::DVector;
 
 use self::conditions::{Conditions, Equation, Look, equations};
 use super::chain::{Layout, Net};
+use super::ensemble::turned;
 use super::problem::Setting;
 use super::quadrature::Rule;
 use super::structure::Link;
+use crate::member::Member;
 
 /// A chain that meets all equations of its arcs.
 #[derive(Debug, Clone)]
@@ -33,6 +35,14 @@ const FOLDS: usize = 4;
 const ROUNDING: f64 = 2e-12;
 /// Bends of a singular arc.
 pub(crate) const BENDS: usize = 8;
+
+/// |d|/(L T) of a chain, played to one swimmer of many.
+pub(crate) fn speed_of(chain: &Polished, member: &Member) -> f64 {
+    let Polished { layout, z, .. } = chain;
+    let turned = turned(layout, z, member.gain);
+    let (_, net) = layout.net(&member.model, &Rule::new(POINTS), &turned);
+    net.distance() / layout.period(z)
+}
 
 /// Polishes a chain; none where Newton's method does not converge.
 pub(crate) fn polish(setting: &Setting, links: &[Link]) -> Option<Polished> {

@@ -6,14 +6,14 @@ use std::ops::Range;
 use swimmer_files::Objective;
 use swimmer_model::{Tolerance, swim, wrapped_angle};
 
-use super::candidate;
+use super::candidate::{bent, candidate};
 use super::certificate::{Asked, of_cycle};
 use super::interior::Polygon;
 use super::polish::Polished;
 use super::problem::Setting;
 use super::samples;
 use super::selection::Group;
-use super::{Fastest, SpeedAtlas, SpeedError, SpeedProblem, widened};
+use super::{Fastest, SpeedAtlas, SpeedError, SpeedProblem};
 use crate::Watch;
 use crate::optimal_gait::{OptimalGait, Solution};
 use crate::parallel::in_parallel;
@@ -114,7 +114,7 @@ impl<'a> Search<'a> {
         let passes = |answer: &Fastest| answer.gait.certificate.pass();
         let first = told(problem, setting, chain, fast).filter(passes);
         // Where the polygon had no corner left for a short singular arc the certificate shows it.
-        let bent = || told(problem, setting, &widened::bent(setting, chain)?, fast).filter(passes);
+        let bent = || told(problem, setting, &bent(setting, chain)?, fast).filter(passes);
         let mut answer = first.or_else(bent)?;
         // Two of one group stand for the same starts.
         let here = chains.iter().filter(|(one, _)| alike(one, chain));
@@ -140,7 +140,7 @@ impl<'a> Search<'a> {
             || (),
             |(), index| {
                 let (polygon, group) = jobs[index];
-                Some((candidate::candidate(self.setting, polygon)?, group))
+                Some((candidate(self.setting, polygon)?, group))
             },
         );
         self.chains.extend(finished.into_iter().flatten());

@@ -13,12 +13,12 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{Model, Tolerance, swim};
 
-use super::candidate::{candidate, mended};
+use super::candidate::{bent, candidate, mended};
 use super::certificate::{Asked, of_cycle};
 use super::interior::rough_polygon;
 use super::polish::Polished;
 use super::problem::{Goal, HeadingRule, Setting};
-use super::{SpeedError, SpeedProblem, samples, selection, starts, validate, widened};
+use super::{SpeedError, SpeedProblem, samples, selection, starts, validate};
 use crate::cycle::{Arc, Cycle};
 use crate::immobile::refuse_immobile;
 use crate::optimal_gait::{OptimalGait, Solution};
@@ -227,7 +227,7 @@ fn certified(setting: &Setting, chain: &Polished) -> Option<Polished> {
     if passes(chain) {
         return Some(chain.clone());
     }
-    widened::bent(setting, chain).filter(passes)
+    bent(setting, chain).filter(passes)
 }
 
 /// Whether all holds that makes a chain a gait of its kind within its bounds and rates, optimal or not.

@@ -2,16 +2,12 @@
 
 use nalgebra::Vector2;
 
-use super::candidate::mended;
-use super::polish::Polished;
 use super::problem::Setting;
 use super::structure::{Hold, Link, Motion, remove};
 use crate::region::Bound;
 
 /// Half of a new arc's first guess, over the period.
-const SHORT: f64 = 3e-3;
-/// First guesses of a singular arc, over that.
-const LENGTHS: [f64; 3] = [1.0, 3.0, 9.0];
+pub(super) const SHORT: f64 = 3e-3;
 
 /// Puts an arc along the bound in place of every corner that rests on one, between arcs that do not run along bounds.
 ///
@@ -113,36 +109,9 @@ pub(super) fn without_backwards(links: &mut Vec<Link>) -> bool {
     }
 }
 
-/// The chain with short singular arcs at the corners of extreme arcs, between themselves or with arcs along bounds, where that is
-/// faster; none where it is nowhere.
-pub(super) fn bent(setting: &Setting, chain: &Polished) -> Option<Polished> {
-    let mut best: Option<Polished> = None;
-    let mut corner = 0;
-    loop {
-        let here = best.as_ref().unwrap_or(chain);
-        if corner >= here.links.len() {
-            return best;
-        }
-        let short = SHORT * here.layout.period(&here.z);
-        let better = |links: Vec<Link>| {
-            mended(setting, links).filter(|bent| {
-                bent.speed > here.speed * (1.0 + 1e-14) && bent.links.len() > here.links.len()
-            })
-        };
-        let faster = LENGTHS
-            .into_iter()
-            .find_map(|length| with_singular(&here.links, corner, length * short).and_then(better));
-        if faster.is_some() {
-            best = faster;
-            corner += 1;
-        }
-        corner += 1;
-    }
-}
-
 /// The arcs with a singular one at a corner between two arcs of which one is extreme and the other extreme or along a bound; none
 /// where it is another corner.
-fn with_singular(links: &[Link], corner: usize, short: f64) -> Option<Vec<Link>> {
+pub(super) fn with_singular(links: &[Link], corner: usize, short: f64) -> Option<Vec<Link>> {
     let before = (corner + links.len() - 1) % links.len();
     let (old, new) = (links[before].motion, links[corner].motion);
     if links[corner].anchored {
