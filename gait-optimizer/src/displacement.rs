@@ -21,7 +21,6 @@ use swimmer_model::{Model, Swimmer};
 
 use crate::cycle::QuarterTrace;
 use crate::immobile::refuse_immobile;
-use crate::optimal_gait::Solution;
 use crate::problem::{GaitClass, InvalidProblem, validated};
 use crate::{Certificate, OptimalGait};
 
@@ -237,25 +236,16 @@ fn certified(
     let stroke = cycle.swum(model)?;
     let certificate =
         Certificate::of_displacement(region, &trace, &cycle, displacement_over_length, &stroke);
-    let arcs = cycle.arcs(true);
-    let links_cross = cycle.links_cross(model);
-    let mut gait = OptimalGait::new(Solution {
-        objective: Objective::Displacement,
-        swimmer: problem.swimmer,
-        bounds: *bounds,
-        symmetric: true,
-        arcs,
-        cycle,
-        stroke,
-        links_cross,
+    let of = (Objective::Displacement, &problem.swimmer, bounds);
+    Some(OptimalGait {
+        // The arcs know these closer than the samples do.
+        displacement_over_length,
+        displacement: displacement_over_length * problem.swimmer.total_length(),
+        start_angle: trace.start().x,
+        end_angle: trace.end().y,
         certificate,
-    });
-    // The arcs know these closer than the samples do.
-    gait.displacement_over_length = displacement_over_length;
-    gait.displacement = displacement_over_length * problem.swimmer.total_length();
-    gait.start_angle = trace.start().x;
-    gait.end_angle = trace.end().y;
-    Some(gait)
+        ..OptimalGait::of_cycle(of, true, cycle, &stroke)
+    })
 }
 
 /// A candidate's quarter, sampled; none where it cannot be traced.

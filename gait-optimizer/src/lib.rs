@@ -109,7 +109,6 @@ pub use efficiency::{
     Branch, Direct, EfficiencyError, EfficiencyFigures, EfficiencyProblem, EfficiencySeed, Method,
     Reached, efficiency, efficiency_from,
 };
-pub use extremal::{Polish, Unpolished, Unsolved, polish_efficiency};
 pub use height_map::{
     AreaRule, Convergence, Frame, Grid, HeightMap, HeightMapError, LevelCurve, Row,
 };

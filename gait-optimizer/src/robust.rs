@@ -43,7 +43,6 @@ use swimmer_model::Swimmer;
 
 use crate::cycle::Cycle;
 use crate::immobile::refuse_immobile;
-use crate::optimal_gait::Solution;
 use crate::{Branch, Certificate, DisplacementProblem, Heading, OptimalGait, displacement};
 use arcs::Arcs;
 use ensemble::{Ensemble, Found};
@@ -330,19 +329,11 @@ fn finish(
             failed: certificate.failures(),
         });
     }
-    let links_cross = cycle.links_cross(nominal);
     Ok(RobustGait {
-        gait: OptimalGait::new(Solution {
-            objective,
-            swimmer: *swimmer,
-            bounds,
-            symmetric: true,
-            arcs: cycle.arcs(true),
-            cycle,
-            stroke,
-            links_cross,
+        gait: OptimalGait {
             certificate,
-        }),
+            ..OptimalGait::of_cycle((objective, swimmer, &bounds), true, cycle, &stroke)
+        },
         robustness,
     })
 }

@@ -22,10 +22,9 @@ use swimmer_model::{Model, Swimmer};
 
 pub use error::SidewaysError;
 
-use crate::certificate::{Certificate, Verdict};
+use crate::certificate::Verdict;
 use crate::certify::certified;
 use crate::cycle::Cycle;
-use crate::optimal_gait::Solution;
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
 use crate::{
@@ -172,17 +171,9 @@ fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sid
 
 /// A cycle as a gait, not yet certified; none where it cannot be swum.
 fn gait((problem, model): (&SidewaysProblem, &Model<f64>), cycle: Cycle) -> Option<OptimalGait> {
-    Some(OptimalGait::new(Solution {
-        objective: Objective::Sideways,
-        swimmer: problem.swimmer,
-        bounds: problem.bounds,
-        symmetric: false,
-        links_cross: cycle.links_cross(model),
-        arcs: cycle.arcs(false),
-        stroke: cycle.swum(model)?,
-        cycle,
-        certificate: Certificate::unasked(),
-    }))
+    let stroke = cycle.swum(model)?;
+    let of = (Objective::Sideways, &problem.swimmer, &problem.bounds);
+    Some(OptimalGait::of_cycle(of, false, cycle, &stroke))
 }
 
 /// As [`sideways`], from one end, with as many samples as the certificates ask for.
