@@ -178,12 +178,7 @@ fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     let off = |phi: &Vector2<f64>| phi.x - phi.y;
     let mut first: Option<(usize, usize, Vector2<f64>)> = None;
     for (number, piece) in round.iter().enumerate() {
-        for (at, (a, b)) in piece
-            .points
-            .iter()
-            .zip(piece.points.iter().skip(1))
-            .enumerate()
-        {
+        for (at, [a, b]) in piece.points.array_windows().enumerate() {
             if (off(a) >= 0.0) == (off(b) >= 0.0) || a.sum() + b.sum() < 1e-6 {
                 continue;
             }
@@ -227,11 +222,8 @@ fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     });
     // Cut at a corner, one of both parts is nothing.
     pieces.retain(|piece| {
-        piece
-            .points
-            .iter()
-            .zip(piece.points.iter().skip(1))
-            .any(|(a, b)| (b - a).norm() > 1e-9)
+        let mut sides = piece.points.array_windows();
+        sides.any(|[a, b]| (b - a).norm() > 1e-9)
     });
     pieces
 }
@@ -253,7 +245,7 @@ fn sampled(pieces: &[Piece], model: &Model<f64>) -> Option<Samples> {
         samples.corners.remove(0);
     }
     samples.along.push(0.0);
-    for (a, b) in samples.phi.iter().zip(samples.phi.iter().skip(1)) {
+    for [a, b] in samples.phi.array_windows() {
         samples.along.push(samples.along.last()? + (b - a).norm());
     }
     let by_chord = samples.closed();
@@ -289,7 +281,7 @@ const SHARP: f64 = 0.05;
 fn power_lengths(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Vec<f64> {
     let (nodes, weights) = gauss(4);
     let (mut length, mut lengths) = (0.0, vec![0.0]);
-    for (a, b) in u.iter().zip(u.iter().skip(1)) {
+    for [a, b] in u.array_windows() {
         for (s, w) in nodes.iter().zip(&weights) {
             let point = gait.at(a + 0.5 * (s + 1.0) * (b - a));
             let power = point

@@ -27,11 +27,9 @@ impl Outline {
     pub(crate) fn new(polygon: &[Vector2<f64>]) -> Self {
         let mut lengths = vec![0.0];
         let mut total = 0.0;
-        for pair in polygon.windows(2) {
-            if let [a, b] = pair {
-                total += (b - a).norm();
-                lengths.push(total);
-            }
+        for [a, b] in polygon.array_windows() {
+            total += (b - a).norm();
+            lengths.push(total);
         }
         let at = |length: f64| {
             let after = lengths

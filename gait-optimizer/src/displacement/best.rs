@@ -200,11 +200,10 @@ pub(super) fn finely_sampled(
 
 /// The longest side of a gait's polygon, and the largest angle between two but at corners \[rad\].
 fn longest_and_sharpest(gait: &OptimalGait) -> [f64; 2] {
-    let sides = gait.phi().windows(2).map(|pair| pair[1] - pair[0]);
-    let sides: Vec<_> = sides.collect();
-    let bends = sides.windows(2).zip(gait.u().iter().skip(1));
+    let sides: Vec<_> = gait.phi().array_windows().map(|[a, b]| b - a).collect();
+    let bends = sides.array_windows().zip(gait.u().iter().skip(1));
     let bends = bends.filter(|(_, u)| !gait.corners().contains(u));
-    let bends = bends.map(|(pair, _)| pair[0].perp(&pair[1]).atan2(pair[0].dot(&pair[1])).abs());
+    let bends = bends.map(|([a, b], _)| a.perp(b).atan2(a.dot(b)).abs());
     [
         sides.iter().map(Vector2::norm).fold(0.0, f64::max),
         bends.fold(0.0, f64::max),

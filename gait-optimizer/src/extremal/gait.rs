@@ -122,8 +122,8 @@ fn certificate(
 /// (max − min)/mean of the power in the middle of the samples' intervals.
 fn power_variation(model: &Model<f64>, u: &[f64], gait: &AnyGait) -> f64 {
     let (mut least, mut most, mut sum) = (f64::INFINITY, 0.0_f64, 0.0);
-    for pair in u.windows(2) {
-        let middle = gait.at(0.5 * pair.iter().sum::<f64>());
+    for [from, to] in u.array_windows() {
+        let middle = gait.at(0.5 * (from + to));
         let power = middle
             .rate
             .dot(&(model.power_matrix(&middle.phi) * middle.rate));

@@ -6,10 +6,7 @@ use swimmer_files::Objective;
 
 fn within(swimmer: Swimmer<f64>, max: f64) -> SpeedProblem {
     SpeedProblem {
-        bounds: Bounds {
-            max_angle: Some(max),
-            ..Bounds::default()
-        },
+        bounds: Bounds::within(max),
         starts: 12,
         threads: 2,
         ..SpeedProblem::new(swimmer, [1.0; 2])
