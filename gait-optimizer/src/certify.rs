@@ -183,11 +183,9 @@ fn of_samples(
 /// A gait that an optimiser made, with the certificate that its file has, but for side links that lie on the middle one: such a gait
 /// is the limit of those that keep off, which whoever asked for it is told in other words.
 pub(crate) fn certified(gait: OptimalGait) -> OptimalGait {
-    let file = gait.gait_file("");
-    let certificate = certify(&gait.swimmer, &file, gait.objective, &gait.bounds);
     // Of what makes no closed curve nothing holds.
     let nothing = |_| Certificate::new(vec![Condition::Closed.check(f64::NAN)]);
-    let certificate = certificate.unwrap_or_else(nothing);
+    let certificate = gait.certify().unwrap_or_else(nothing);
     OptimalGait {
         certificate: certificate.without(Condition::NothingFolded),
         ..gait

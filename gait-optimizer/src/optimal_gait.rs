@@ -4,9 +4,8 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, ArcKind, Bounds, GaitArc, GaitFile, Objective, SwimmerHash};
 use swimmer_model::{InvalidSamples, Model, Stroke, Swimmer, Tolerance, trajectory, wrapped_angle};
 
-use crate::Certificate;
-use crate::EfficiencyFigures;
 use crate::cycle::Cycle;
+use crate::{Certificate, CertifyError, EfficiencyFigures, certify};
 
 /// One arc of a gait.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -191,6 +190,24 @@ impl OptimalGait {
     /// Never for a gait that this crate made; see [`AnyGait::from_file`].
     pub fn gait(&self) -> Result<AnyGait, InvalidSamples> {
         self.cycle.gait()
+    }
+
+    /// The certificate that its file has, from the samples alone; see [`certify()`](crate::certify()).
+    ///
+    /// # Errors
+    /// Never for a gait that this crate made.
+    ///
+    /// ```
+    /// use gait_optimizer::{DisplacementProblem, displacement};
+    /// use swimmer_model::Swimmer;
+    ///
+    /// let gait = displacement(&DisplacementProblem::new(Swimmer::purcell()))?;
+    /// assert!(gait.certify().unwrap().pass());
+    /// # Ok::<(), gait_optimizer::DisplacementError>(())
+    /// ```
+    pub fn certify(&self) -> Result<Certificate, CertifyError> {
+        let file = self.gait_file("");
+        certify(&self.swimmer, &file, self.objective, &self.bounds)
     }
 
     /// What a gait file holds of it; `swimmer_name` is for people.

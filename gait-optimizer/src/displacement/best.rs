@@ -10,11 +10,10 @@ use super::flow::Touch;
 use super::search::{Candidate, FINER_SCAN, SCAN_POINTS, Search, Seen};
 use super::start_family::{StartFamily, families, families_on_the_diagonal};
 use super::{DisplacementError, DisplacementProblem, Fates, certified, traced};
-use crate::certificate::Verdict;
-use crate::certificate::turning_number;
+use crate::certificate::{Verdict, turning_number};
 use crate::momentum::Motion;
 use crate::region::Region;
-use crate::{Condition, OptimalGait, certify};
+use crate::{Condition, OptimalGait};
 
 /// What a search within some bounds came to.
 pub(super) struct Extremals<'a> {
@@ -210,9 +209,8 @@ fn longest_and_sharpest(gait: &OptimalGait) -> [f64; 2] {
     ]
 }
 
-/// Whether samples alone leave open what [`certify`] asks.
+/// Whether samples alone leave open what [`certify`](crate::certify()) asks.
 fn leaves_open(gait: &OptimalGait) -> bool {
-    let file = gait.gait_file("");
-    let certificate = certify(&gait.swimmer, &file, gait.objective, &gait.bounds);
+    let certificate = gait.certify();
     certificate.is_ok_and(|certificate| certificate.verdict() == Verdict::Undecided)
 }
