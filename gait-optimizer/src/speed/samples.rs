@@ -38,12 +38,7 @@ pub(crate) fn cycle_from(setting: &Setting, polished: &Polished, sign: f64, firs
     } = polished;
     let n = links.len();
     let period = layout.period(z);
-    let mut cycle = Cycle {
-        u: Vec::new(),
-        phi: Vec::new(),
-        corners: Vec::new(),
-        arcs: Vec::new(),
-    };
+    let mut cycle = Cycle::default();
     let mut begun = 0.0;
     for k in (0..n).map(|k| (first + k) % n) {
         let share = links[k].time / period;
