@@ -10,7 +10,9 @@ use crate::cycle::{Cycle, QuarterTrace};
 use crate::region::Region;
 pub use condition::Condition;
 
-pub(crate) use closed_curve::{crossings, double_area, simple_and_turning_once, turning_number};
+pub(crate) use closed_curve::{
+    crossings, double_area, simple_and_turning_once, to_side, turning_number,
+};
 
 /// One condition, asked.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

@@ -22,6 +22,17 @@ pub(crate) fn double_area(points: &[Vector2<f64>]) -> f64 {
     points.array_windows().map(|[a, b]| a.perp(b)).sum()
 }
 
+/// Distance of a point from a side.
+pub(crate) fn to_side(point: &Vector2<f64>, a: &Vector2<f64>, b: &Vector2<f64>) -> f64 {
+    let side = b - a;
+    let share = ((point - a).dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
+    if share.is_finite() {
+        (point - a - side * share).norm()
+    } else {
+        (point - a).norm()
+    }
+}
+
 /// How often a closed polygon (last point = first) turns round, counter-clockwise positive.
 pub(crate) fn turning_number(points: &[Vector2<f64>]) -> f64 {
     let sides = points.array_windows().map(|[a, b]| b - a);

@@ -137,21 +137,19 @@ impl Grid {
 
     /// Slope dΦ/du at every node.
     pub(super) fn slopes(&self, shapes: &[Vector2<f64>], degree: Degree) -> Vec<Vector2<f64>> {
-        let rules = self
-            .nodes
-            .iter()
-            .map(|node| node.slope_and_bend[degree as usize][0]);
-        rules
-            .map(|rule| rule.added(Vector2::zeros(), shapes))
-            .collect()
+        self.derived(shapes, degree, 0)
     }
 
     /// Bend d²Φ/du² at every node.
     pub(super) fn bends(&self, shapes: &[Vector2<f64>], degree: Degree) -> Vec<Vector2<f64>> {
+        self.derived(shapes, degree, 1)
+    }
+
+    fn derived(&self, shapes: &[Vector2<f64>], degree: Degree, of: usize) -> Vec<Vector2<f64>> {
         let rules = self
             .nodes
             .iter()
-            .map(|node| node.slope_and_bend[degree as usize][1]);
+            .map(|node| node.slope_and_bend[degree as usize][of]);
         rules
             .map(|rule| rule.added(Vector2::zeros(), shapes))
             .collect()
