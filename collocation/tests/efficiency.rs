@@ -35,10 +35,7 @@ fn both_ways_find_the_same_gaits() {
 #[test]
 fn a_bound_is_followed_from_either() {
     let problem = EfficiencyProblem {
-        bounds: Bounds {
-            max_angle: Some(1.2),
-            ..Bounds::default()
-        },
+        bounds: Bounds::within(1.2),
         ..EfficiencyProblem::new(Swimmer::robot(), Branch::Small)
     };
     let (shot, ours) = (

@@ -29,12 +29,7 @@ fn robot() -> &'static (Model<f64>, [Family; 2]) {
 }
 
 fn joined_at(shape: [f64; 2]) -> Family {
-    let bounds = Bounds {
-        max_angle: Some(2.8),
-        no_overlap: true,
-        clearance: 0.0025,
-        ..Bounds::default()
-    };
+    let bounds = Bounds::within(2.8).apart(0.0025);
     let problem = SteerProblem {
         of: SpeedProblem {
             bounds,

@@ -1,7 +1,7 @@
-//! How long a Lighthill gait takes, from swimmer to certificate, with no guess.
+//! How long a Lighthill gait takes, from swimmer to certificate, with no guess, free or followed to a bound.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use gait_optimizer::{Branch, EfficiencyProblem, efficiency};
+use gait_optimizer::{Bounds, Branch, EfficiencyProblem, efficiency};
 use swimmer_model::Swimmer;
 
 fn gaits(criterion: &mut Criterion) {
@@ -14,6 +14,13 @@ fn gaits(criterion: &mut Criterion) {
             });
         }
     }
+    let bounded = EfficiencyProblem {
+        bounds: Bounds::within(1.6),
+        ..EfficiencyProblem::new(Swimmer::robot(), Branch::Small)
+    };
+    group.bench_function("robot, small, 1.6 rad", |bench| {
+        bench.iter(|| efficiency(&bounded));
+    });
     group.finish();
 }
 

@@ -10,10 +10,7 @@ fn gaits(criterion: &mut Criterion) {
     for (name, swimmer) in [("robot", Swimmer::robot()), ("purcell", Swimmer::purcell())] {
         for starts in [SpeedProblem::GUESSES, SpeedProblem::STARTS] {
             let problem = SpeedProblem {
-                bounds: Bounds {
-                    max_angle: Some(2.8),
-                    ..Bounds::default()
-                },
+                bounds: Bounds::within(2.8),
                 starts,
                 ..SpeedProblem::new(swimmer, [1.0; 2])
             };

@@ -74,21 +74,18 @@ pub(crate) struct Tracer<'a, C> {
     pub(crate) longest: f64,
 }
 
-/// An arc traced.
-pub(crate) struct TracedArc<E> {
-    pub(crate) end: State,
-    /// Of its curve in the (φ₁, φ₂) plane \[rad\].
-    pub(crate) length: f64,
-    /// None where steps fail or the chain grows too long.
-    pub(crate) event: Option<Event<E>>,
-}
-
 /// Most steps of an arc: where steps shrink to nothing the zero of the height has no direction.
 const MOST_STEPS: usize = 600;
 
 impl<C: EndCondition> Tracer<'_, C> {
-    /// Integrates until the first event.
-    pub(crate) fn arc(&self, start: State) -> TracedArc<C::End> {
+    /// Integrates until the first event; none where steps fail or the chain grows too long.
+    pub(crate) fn arc(&self, start: State) -> (Leg, Option<Event<C::End>>) {
+        let leg = |to: State, length: f64| Leg {
+            motion: self.flow.motion,
+            from: start,
+            to,
+            length,
+        };
         let mut here = Point::new(&self.flow, start);
         let mut watched = self.watch(&here);
         let mut length = 0.0;
@@ -110,22 +107,14 @@ impl<C: EndCondition> Tracer<'_, C> {
                 first_event((&watched, &after), step.length, counts, precedes)
             {
                 let (end, at) = self.located(&here, event, at, step.length);
-                return TracedArc {
-                    end,
-                    length: length + at,
-                    event: Some(event),
-                };
+                return (leg(end, length + at), Some(event));
             }
             here = step.end;
             watched = after;
             length += step.length;
             try_length = step.next;
         }
-        TracedArc {
-            end: here.z,
-            length,
-            event: None,
-        }
+        (leg(here.z, length), None)
     }
 
     /// Every event's value and slope at a point.

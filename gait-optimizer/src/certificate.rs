@@ -8,7 +8,9 @@ use swimmer_model::Stroke;
 
 pub use condition::Condition;
 
-pub(crate) use closed_curve::{crossings, double_area, simple_and_turning_once, turning_number};
+pub(crate) use closed_curve::{
+    crossings, double_area, simple_and_turning_once, to_side, turning_number,
+};
 
 /// One condition, asked.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

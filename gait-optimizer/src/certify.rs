@@ -180,13 +180,31 @@ fn of_samples(
     certify_turned(model, gait, objective, limits, &curve)
 }
 
+impl OptimalGait {
+    /// The certificate that its file has, from the samples alone; see [`certify()`](crate::certify()).
+    ///
+    /// # Errors
+    /// Never for a gait that this crate made.
+    ///
+    /// ```
+    /// use gait_optimizer::{DisplacementProblem, displacement};
+    /// use swimmer_model::Swimmer;
+    ///
+    /// let gait = displacement(&DisplacementProblem::new(Swimmer::purcell()))?;
+    /// assert!(gait.certify().unwrap().pass());
+    /// # Ok::<(), gait_optimizer::DisplacementError>(())
+    /// ```
+    pub fn certify(&self) -> Result<Certificate, CertifyError> {
+        let file = self.gait_file("");
+        certify(&self.swimmer, &file, self.objective, &self.bounds)
+    }
+}
+
 /// A gait that an optimiser made, with the certificate that its file has.
 pub(crate) fn certified(gait: OptimalGait) -> OptimalGait {
-    let file = gait.gait_file("");
-    let certificate = certify(&gait.swimmer, &file, gait.objective, &gait.bounds);
     // Of what makes no closed curve nothing holds.
     let nothing = |_| Certificate::new(vec![Condition::Closed.check(f64::NAN)]);
-    let certificate = certificate.unwrap_or_else(nothing);
+    let certificate = gait.certify().unwrap_or_else(nothing);
     OptimalGait {
         certificate,
         ..gait
@@ -379,9 +397,9 @@ fn lesser(a: f64, b: f64) -> f64 {
 /// Which intervals between knots lie on a bound, for a gait that does not tell.
 fn touching(limits: &Limits, gait: &GaitFile) -> Vec<Along> {
     let written = 2.0 * Rounding::of(gait).phi;
-    let on_bound = |pair: (&Vector2<f64>, &Vector2<f64>), u: f64| {
+    let on_bound = |[a, b]: &[Vector2<f64>; 2], u: f64| {
         let quarter = (0..3).find(|&q| u < 0.25 * (q + 1) as f64).unwrap_or(3);
-        let (from, to) = (limits.at(pair.0, quarter), limits.at(pair.1, quarter));
+        let (from, to) = (limits.at(a, quarter), limits.at(b, quarter));
         let touches =
             |limit: &Limit| limit.margin.abs() <= Condition::OnBound.tolerance() + written;
         from.iter()
@@ -389,10 +407,9 @@ fn touching(limits: &Limits, gait: &GaitFile) -> Vec<Along> {
             .any(|(from, to)| touches(from) && touches(to))
     };
     gait.phi
-        .iter()
-        .zip(gait.phi.iter().skip(1))
-        .zip(gait.u.iter().zip(gait.u.iter().skip(1)))
-        .map(|(pair, (&from, &to))| {
+        .array_windows()
+        .zip(gait.u.array_windows())
+        .map(|(pair, &[from, to])| {
             if on_bound(pair, f64::midpoint(from, to)) {
                 Along::Bound
             } else {

@@ -352,44 +352,27 @@ impl ContinuationProblem {
     }
 }
 
-/// Follows every start from the first value of the parameter to the last, or to where its branch ends.
+/// Follows every start from the first value of the parameter to the last, or to where its branch ends, while somebody watches.
 ///
 /// # Errors
 /// [`ContinuationError`]: what is wrong with the problem, or that there is no gait to begin with. A branch that ends on the
 /// way is no error but an event.
 ///
 /// ```
+/// use std::sync::Mutex;
 /// use gait_optimizer::{Branch, ContinuationProblem, Parameter, Start, continuation};
 /// use swimmer_model::Swimmer;
 ///
 /// let way = [2.0, 2.1];
 /// let start = Start::Efficiency(Branch::Small);
-/// let problem = ContinuationProblem { steps: 1, ..ContinuationProblem::new(Swimmer::purcell(), Parameter::Chi, way, start) };
-/// let followed = continuation(&problem).unwrap();
+/// let problem = ContinuationProblem { steps: 2, ..ContinuationProblem::new(Swimmer::purcell(), Parameter::Chi, way, start) };
+/// let shares = Mutex::new(Vec::new());
+/// let followed = continuation(&problem, &|share| shares.lock().unwrap().push(share)).unwrap();
 /// let ends: Vec<f64> = followed.points.iter().map(|point| point.value).collect();
 /// assert!(ends.contains(&2.0) && ends.contains(&2.1), "{ends:?}");
-/// ```
-pub fn continuation(problem: &ContinuationProblem) -> Result<Continuation, ContinuationError> {
-    continuation_watched(problem, &|_| ())
-}
-
-/// As [`continuation()`], while somebody watches.
-///
-/// # Errors
-/// As [`continuation()`].
-///
-/// ```
-/// use std::sync::Mutex;
-/// use gait_optimizer::{Branch, ContinuationProblem, Parameter, Start, continuation_watched};
-/// use swimmer_model::Swimmer;
-///
-/// let start = Start::Efficiency(Branch::Small);
-/// let problem = ContinuationProblem { steps: 2, ..ContinuationProblem::new(Swimmer::purcell(), Parameter::Chi, [2.0, 2.1], start) };
-/// let shares = Mutex::new(Vec::new());
-/// continuation_watched(&problem, &|share| shares.lock().unwrap().push(share)).unwrap();
 /// assert!(shares.into_inner().unwrap().is_sorted());
 /// ```
-pub fn continuation_watched(
+pub fn continuation(
     problem: &ContinuationProblem,
     watch: Watch<'_>,
 ) -> Result<Continuation, ContinuationError> {
@@ -405,9 +388,9 @@ fn all<F: Family>(
     family: &F,
     watch: Watch<'_>,
 ) -> Result<Continuation, ContinuationError> {
-    let mut tracks: Vec<Track<F::Held>> = Vec::with_capacity(problem.starts.len());
+    let mut tracks: Vec<Track> = Vec::with_capacity(problem.starts.len());
     for (branch, start) in problem.starts.iter().enumerate() {
-        let first: BranchPoint<F::Held> =
+        let first: BranchPoint =
             family
                 .start(start)
                 .map_err(|reason| ContinuationError::NoStart {

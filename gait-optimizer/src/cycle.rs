@@ -18,7 +18,7 @@ pub struct Arc {
 }
 
 /// A full cycle, sampled.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Cycle {
     /// Fractions of the period, 0 to 1, proportional to ∫√P.
     pub(crate) u: Vec<f64>,

@@ -24,7 +24,6 @@ use trace::QuarterTrace;
 use crate::certificate::{Certificate, simple_and_turning_once, swum_again};
 use crate::immobile::refuse_immobile;
 use crate::optimal_gait::OptimalGait;
-use crate::optimal_gait::Solution;
 use crate::problem::{GaitClass, InvalidProblem, validated};
 
 /// Which way a counter-clockwise gait shall carry the swimmer.
@@ -247,25 +246,16 @@ fn certified(
     };
     checks.extend(simple_and_turning_once(&cycle.phi, curve));
     checks.extend(swum_again(&stroke, displacement_over_length));
-    let arcs = cycle.arcs(true);
-    let links_cross = cycle.links_cross(model);
-    let mut gait = OptimalGait::new(Solution {
-        objective: Objective::Displacement,
-        swimmer: problem.swimmer,
-        bounds: *bounds,
-        symmetric: true,
-        arcs,
-        cycle,
-        stroke,
-        links_cross,
+    let of = (Objective::Displacement, &problem.swimmer, bounds);
+    Some(OptimalGait {
+        // The arcs know these closer than the samples do.
+        displacement_over_length,
+        displacement: displacement_over_length * problem.swimmer.total_length(),
+        start_angle: trace.start().x,
+        end_angle: trace.end().y,
         certificate: Certificate::new(checks),
-    });
-    // The arcs know these closer than the samples do.
-    gait.displacement_over_length = displacement_over_length;
-    gait.displacement = displacement_over_length * problem.swimmer.total_length();
-    gait.start_angle = trace.start().x;
-    gait.end_angle = trace.end().y;
-    Some(gait)
+        ..OptimalGait::of_cycle(of, true, cycle, &stroke)
+    })
 }
 
 /// A candidate's quarter, sampled; none where it cannot be traced.

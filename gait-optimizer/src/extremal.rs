@@ -15,7 +15,7 @@
 //! | `second_variation` | along how many directions the efficiency grows to second order |
 //! | `gait` | the gait with its certificate |
 //!
-//! [`polish_efficiency`] is the way in: any closed curve near an optimum, and bounds.
+//! [`polish`] is the way in: any closed curve near an optimum, and bounds.
 
 pub(crate) mod continuation;
 mod elimination;
@@ -32,15 +32,11 @@ pub(crate) mod wall;
 
 use std::sync::OnceLock;
 
-use swimmer_files::Bounds;
-use swimmer_model::{Gait, InvalidSwimmer, Model, Swimmer};
-
-use crate::OptimalGait;
+use swimmer_model::{Gait, Model};
 
 use equations::shape;
 use guess::Trajectory;
-pub use shooting::Unsolved;
-use shooting::{Class, Solved, solve};
+use shooting::{Class, Solved, Unsolved, solve};
 use structure::{next_structure, of_curve};
 pub(crate) use wall::Walls;
 
@@ -57,94 +53,22 @@ pub(crate) struct Extremal {
 }
 
 /// Why a curve could not be polished.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Unpolished {
-    /// The swimmer's parameters are out of range.
-    #[error("cannot polish a gait of this swimmer: {0}")]
-    Swimmer(#[from] InvalidSwimmer),
-    /// The curve goes nowhere, or cannot be swum.
+#[derive(Debug, Clone, thiserror::Error)]
+pub(crate) enum Unpolished {
     #[error("the curve to polish goes nowhere")]
     NoGuess,
-    /// The shooting did not converge.
     #[error("shooting over {arcs} arcs did not converge: {reason}")]
-    Shooting {
-        /// How many arcs the last structure had.
-        arcs: usize,
-        /// What went wrong.
-        reason: Unsolved,
-    },
-    /// The finished arcs cannot be followed again.
+    Shooting { arcs: usize, reason: Unsolved },
     #[error("the arcs found cannot be followed again")]
     Trace,
-    /// Structure after structure.
-    #[error("{structures} arc structures were tried and each asked for another one")]
-    Structure {
-        /// How many.
-        structures: usize,
-    },
+    #[error("{MOST_STRUCTURES} arc structures were tried and each asked for another one")]
+    Structure,
 }
 
-/// What a curve shall be polished for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Polish {
-    /// The swimmer; its side links may differ, unless the gait shall be symmetric.
-    pub swimmer: Swimmer<f64>,
-    /// Bounds on the shapes: the largest angle and crossing links.
-    pub bounds: Bounds,
-    /// Whether the gait has the paper's two symmetries and starts on φ₁ = φ₂ > 0: then only a quarter of it is shot.
-    pub symmetric: bool,
-    /// Samples of the gait's cycle, at least.
-    pub samples: usize,
-}
-
-impl Polish {
-    /// Closed curves of any symmetry, without bounds, with 1024 samples.
-    pub fn new(swimmer: Swimmer<f64>) -> Self {
-        Self {
-            swimmer,
-            bounds: Bounds::default(),
-            symmetric: false,
-            samples: 1024,
-        }
-    }
-}
-
-/// Polishes a closed curve to a gait that satisfies the maximum principle for Lighthill's efficiency to rounding: the arcs are
-/// read off the curve, shot, and changed until they are right. Curves that turn more than once or cross themselves are
-/// gaits too; whether the gait found is still the one that was meant is for the caller to compare.
-///
-/// The certificate may still fail: an extremal can be a saddle (`ascent_directions`), and a curve with a net rotation of a
-/// full turn repeats its momenta too (`net_rotation_rad`).
-///
-/// # Errors
-/// [`Unpolished`]: the swimmer makes no sense, the curve goes nowhere, or no extremal is near.
-///
-/// ```
-/// use gait_optimizer::{Branch, EfficiencyProblem, Polish, efficiency, polish_efficiency};
-/// use swimmer_model::Swimmer;
-///
-/// let small = efficiency(&EfficiencyProblem::new(Swimmer::purcell(), Branch::Small)).unwrap();
-/// let again = polish_efficiency(&Polish::new(Swimmer::purcell()), &small.gait().unwrap()).unwrap();
-/// assert!((again.efficiency - small.efficiency).abs() < 1e-11);
-/// ```
-pub fn polish_efficiency<G: Gait<f64> + ?Sized>(
-    polish_for: &Polish,
-    gait: &G,
-) -> Result<OptimalGait, Unpolished> {
-    let model = Model::new(&polish_for.swimmer.of_unit_length())?;
-    let walls = Walls::new(&polish_for.bounds, &polish_for.swimmer.links);
-    let extremal = polish(&model, &walls, gait, polish_for.symmetric)?;
-    let order = gait::Order {
-        swimmer: &polish_for.swimmer,
-        model: &model,
-        bounds: &polish_for.bounds,
-        samples: polish_for.samples.clamp(16, 1 << 16),
-    };
-    gait::gait(&order, &extremal)
-}
-
-/// Polishes a closed curve (or, for a gait with the paper's two symmetries that starts on φ₁ = φ₂, its quarter) to an
-/// extremal of the efficiency.
+/// Polishes a closed curve (or, for a gait with the paper's two symmetries that starts on φ₁ = φ₂, its quarter) to an extremal that
+/// satisfies the maximum principle for Lighthill's efficiency to rounding: the arcs are read off the curve, shot, and changed until
+/// they are right. Curves that turn more than once or cross themselves are gaits too; whether the one found is still the one that was
+/// meant is for the caller to compare. It may be a saddle.
 pub(crate) fn polish<G: Gait<f64> + ?Sized>(
     model: &Model<f64>,
     walls: &Walls,
@@ -187,9 +111,7 @@ pub(crate) fn polish_chain(
             Some(next) => (chain, class) = next,
         }
     }
-    Err(Unpolished::Structure {
-        structures: MOST_STRUCTURES,
-    })
+    Err(Unpolished::Structure)
 }
 
 /// The free quarter near a guess, without a look at bounds; none where Newton's method finds none.

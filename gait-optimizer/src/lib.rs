@@ -97,7 +97,7 @@ pub use certificate::{Certificate, Check, Condition, Verdict};
 pub use certify::{CertifyError, certify};
 pub use continuation::{
     Continuation, ContinuationError, ContinuationProblem, Event, EventKind, Fold, OtherSide,
-    Parameter, Point, Start, continuation, continuation_watched,
+    Parameter, Point, Start, continuation,
 };
 pub use cycle::Arc;
 pub use displacement::{
@@ -108,7 +108,6 @@ pub use efficiency::{
     Branch, Direct, EfficiencyError, EfficiencyProblem, EfficiencySeed, Method, Reached,
     efficiency, efficiency_from,
 };
-pub use extremal::{Polish, Unpolished, Unsolved, polish_efficiency};
 pub use height_map::{
     AreaRule, Convergence, Frame, Grid, HeightMap, HeightMapError, LevelCurve, Row,
 };
@@ -120,7 +119,7 @@ pub use robust::{
     Holder, Over, RobustError, RobustGait, RobustSpeed, Robustness, Uncertainty, Values,
     robust_displacement, robust_efficiency, robust_speed,
 };
-pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways, sideways_watched};
+pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways};
 pub use simple_shapes::{BestAmplitude, SimpleShape, best_amplitudes};
 pub use speed::{
     Fastest, Front, HeadingRule, Joined, Limit, Limited, LimitedError, LimitedProblem, SpeedAtlas,

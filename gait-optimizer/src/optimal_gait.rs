@@ -78,28 +78,44 @@ pub(crate) struct Solution {
 }
 
 impl OptimalGait {
-    /// A gait with the numbers that follow from its cycle.
     pub(crate) fn new(solution: Solution) -> Self {
+        let of = (solution.objective, &solution.swimmer, &solution.bounds);
         let Solution { stroke, cycle, .. } = solution;
+        Self {
+            arcs: solution.arcs,
+            links_cross: solution.links_cross,
+            certificate: solution.certificate,
+            ..Self::of_cycle(of, solution.symmetric, cycle, &stroke)
+        }
+    }
+
+    /// A gait with the numbers that follow from its cycle, swum by the model of the swimmer with L = 1; no condition is asked yet.
+    pub(crate) fn of_cycle(
+        (objective, swimmer, bounds): (Objective, &Swimmer<f64>, &Bounds),
+        symmetric: bool,
+        cycle: Cycle,
+        stroke: &Stroke<f64>,
+    ) -> Self {
+        let model = Model::new(&swimmer.of_unit_length());
         let over_length = stroke.displacement_over_length();
         let first = cycle.phi.first().copied().unwrap_or_default();
         let quarter = cycle.u.partition_point(|&u| u < 0.25 - 1e-12);
         let last = cycle.phi.get(quarter).copied().unwrap_or_default();
         Self {
-            objective: solution.objective,
-            swimmer: solution.swimmer,
-            bounds: solution.bounds,
+            objective,
+            swimmer: *swimmer,
+            bounds: *bounds,
             displacement_over_length: over_length.x,
-            displacement: over_length.x * solution.swimmer.total_length(),
+            displacement: over_length.x * swimmer.total_length(),
             lateral_over_length: over_length.y,
             rotation: stroke.rotation,
             efficiency: stroke.efficiency_constant_power(),
-            symmetric: solution.symmetric,
+            symmetric,
             start_angle: first.x,
             end_angle: last.y,
-            arcs: solution.arcs,
-            links_cross: solution.links_cross,
-            certificate: solution.certificate,
+            arcs: cycle.arcs(symmetric),
+            links_cross: model.map_or(f64::NAN, |model| cycle.links_cross(&model)),
+            certificate: Certificate::unasked(),
             efficiency_figures: None,
             outdone_over_length: None,
             extremals: None,

@@ -38,18 +38,17 @@ mod tests;
 mod uncertainty;
 mod worst;
 
-use swimmer_files::{Bounds, Objective};
+use swimmer_files::Bounds;
 use swimmer_model::Swimmer;
 
 use crate::cycle::Cycle;
 use crate::immobile::refuse_immobile;
-use crate::optimal_gait::Solution;
-use crate::{Branch, Certificate, DisplacementProblem, Heading, OptimalGait, displacement};
+use crate::{Branch, Certificate, DisplacementProblem, OptimalGait, displacement};
 use arcs::Arcs;
 use ensemble::{Ensemble, Found};
 pub use error::RobustError;
 use fourier::FourierFamily;
-use newton::Design;
+use newton::{Design, Family};
 pub use speed::{RobustSpeed, robust_speed};
 pub use uncertainty::Uncertainty;
 
@@ -121,12 +120,12 @@ impl Robustness {
         ensemble: &Ensemble<'_>,
         design: &D,
         found: &Found<D::Point>,
-        (over, values, nominal): (Over, Values, Values),
+        (over, nominal): (Over, Values),
         [cycle, optimum]: [&Cycle; 2],
     ) -> Self {
         let mut robustness = Self {
             over,
-            values,
+            values: ensemble.values(design, &found.point),
             nominal,
             held_by: found.held_by.clone(),
             members: ensemble.counts(),
@@ -170,10 +169,7 @@ pub fn robust_displacement(
         simple: true,
         ..*problem
     };
-    let ensemble = Ensemble::new(&problem.swimmer, uncertainty)?;
-    if problem.bounds.no_overlap && uncertainty.gain_is_open() {
-        return Err(RobustError::Clearance);
-    }
+    let ensemble = Ensemble::new(&problem.swimmer, &problem.bounds, uncertainty)?;
     let of = |swimmer| {
         displacement(&DisplacementProblem {
             swimmer,
@@ -182,16 +178,10 @@ pub fn robust_displacement(
     };
     let swimmer = uncertainty.nominal(&problem.swimmer);
     let optimum = of(swimmer)?;
-    let backwards = optimum.displacement_over_length < 0.0;
-    let sign = if backwards {
-        Heading::Backwards
-    } else {
-        Heading::Forwards
-    }
-    .sign();
+    let sign = optimum.displacement_over_length.signum();
     let mut family = Arcs::around(&optimum, sign)?;
     let start = family.solve(&family.start(), &[(ensemble.nominal, 1.0)])?;
-    let nominal = ensemble.values(&family, &start, sign);
+    let nominal = ensemble.values(&family, &start);
     let found = match ensemble.find(&family, over) {
         // Where the arcs of the nominal optimum do not lead to the best worst case, those of the worst swimmer's own may.
         Err(error @ RobustError::NotConverged { .. }) if over == Over::Worst => {
@@ -201,32 +191,14 @@ pub fn robust_displacement(
         }
         found => found?,
     };
-    let values = ensemble.values(&family, &found.point, sign);
-    let cycle = cycle::of_arcs(&ensemble.nominal.model, &family, &found.point);
-    let mut checks = certificate::of_arcs(&family, &found.point, &found.weighted);
-    checks.extend(certificate::of_curve(
-        &cycle,
-        &problem.bounds,
-        &swimmer.links,
-    ));
-    checks.extend(certificate::of_symmetry(&cycle, &ensemble.nominal.model));
-    checks.extend(certificate::swum_again(
+    let of = (&swimmer, &problem.bounds);
+    certified(
         &ensemble,
-        &cycle,
-        (&values, sign),
+        &family,
         &found,
-        1.0,
-        |stroke| sign * stroke.displacement.x,
-    ));
-    let told = (over, values, nominal);
-    let robustness = Robustness::new(&ensemble, &family, &found, told, [&cycle, &optimum.cycle]);
-    finish(
-        Objective::Displacement,
-        (&swimmer, problem.bounds),
-        &ensemble,
-        cycle,
-        checks,
-        robustness,
+        (over, nominal),
+        of,
+        &optimum.cycle,
     )
 }
 
@@ -268,81 +240,65 @@ pub fn robust_efficiency(
             problem: "efficiency knows no lower bound and no sector; leave them out",
         });
     }
-    let ensemble = Ensemble::new(swimmer, uncertainty)?;
-    if bounds.no_overlap && uncertainty.gain_is_open() {
-        return Err(RobustError::Clearance);
-    }
+    let ensemble = Ensemble::new(swimmer, bounds, uncertainty)?;
     let swimmer = uncertainty.nominal(swimmer);
     refuse_immobile(&ensemble.nominal.model, bounds)?;
     let family = FourierFamily::around(&ensemble.nominal, order, branch)?;
     let found = ensemble.find(&family, over)?;
-    let values = ensemble.values(&family, &found.point, 1.0);
-    let nominal = ensemble.values(&family, &family.start(), 1.0);
-    let cycle_of = |x| cycle::of_series(&FourierFamily::gait(x));
-    let cycle = cycle_of(&found.point);
-    let optimum = cycle_of(&family.start());
-    let by = certificate::overstepped(&cycle, bounds, &swimmer.links);
+    let cycle = |x| family.cycle(&ensemble.nominal.model, x);
+    let by = certificate::overstepped(&cycle(&found.point), bounds, &swimmer.links);
     if by > 1e-10 {
         let bounds = *bounds;
         return Err(RobustError::Bound { by, bounds });
     }
-    let mut checks = certificate::of_series(&found.point, &found.weighted);
-    checks.extend(certificate::of_curve(&cycle, bounds, &swimmer.links));
-    checks.extend(certificate::of_symmetry(&cycle, &ensemble.nominal.model));
-    checks.extend(certificate::swum_again(
-        &ensemble,
-        &cycle,
-        (&values, 1.0),
-        &found,
-        values.nominal.abs(),
-        swimmer_model::Stroke::efficiency,
-    ));
-    let told = (over, values, nominal);
-    let robustness = Robustness::new(&ensemble, &family, &found, told, [&cycle, &optimum]);
-    finish(
-        Objective::Efficiency,
-        (&swimmer, *bounds),
-        &ensemble,
-        cycle,
-        checks,
-        robustness,
-    )
+    let (start, of) = (family.start(), (&swimmer, bounds));
+    let told = (over, ensemble.values(&family, &start));
+    certified(&ensemble, &family, &found, told, of, &cycle(&start))
 }
 
 /// Highest order of a Fourier gait.
 const MOST_ORDER: usize = 12;
 
-fn finish(
-    objective: Objective,
-    (swimmer, bounds): (&Swimmer<f64>, Bounds),
+/// A gait found, with what its robustness costs beside the nominal `optimum`; an error where its certificate fails.
+fn certified<F: Family>(
     ensemble: &Ensemble<'_>,
-    cycle: Cycle,
-    checks: Vec<crate::Check>,
-    robustness: Robustness,
+    family: &F,
+    found: &Found<F::Point>,
+    told: (Over, Values),
+    (swimmer, bounds): (&Swimmer<f64>, &Bounds),
+    optimum: &Cycle,
 ) -> Result<RobustGait, RobustError> {
     let nominal = &ensemble.nominal.model;
-    let stroke = cycle.swum(nominal).ok_or(RobustError::Structure {
-        problem: "the robust gait's samples cannot be swum",
-    })?;
+    let cycle = family.cycle(nominal, &found.point);
+    let robustness = Robustness::new(ensemble, family, found, told, [&cycle, optimum]);
+    let values = &robustness.values;
+    let scale = if F::RELATIVE {
+        values.nominal.abs()
+    } else {
+        1.0
+    };
+    let mut checks = family.conditions(&found.point, &found.weighted);
+    checks.extend(certificate::of_curve(&cycle, bounds, &swimmer.links));
+    checks.extend(certificate::of_symmetry(&cycle, nominal));
+    let values = (values, scale);
+    checks.extend(certificate::swum_again(
+        ensemble, family, found, &cycle, values,
+    ));
     let certificate = Certificate::new(checks);
     if !certificate.pass() {
         return Err(RobustError::NotCertified {
             failed: certificate.failures(),
         });
     }
-    let links_cross = cycle.links_cross(nominal);
+    let stroke = cycle.swum(nominal).ok_or(RobustError::Structure {
+        problem: "the robust gait's samples cannot be swum",
+    })?;
+    let of = (F::OBJECTIVE, swimmer, bounds);
     Ok(RobustGait {
-        gait: OptimalGait::new(Solution {
-            objective,
-            swimmer: *swimmer,
-            bounds,
-            symmetric: true,
-            arcs: cycle.arcs(true),
-            cycle,
-            stroke,
-            links_cross,
+        gait: OptimalGait {
             certificate,
-        }),
+            ..OptimalGait::of_cycle(of, true, cycle, &stroke)
+        },
         robustness,
     })
 }

@@ -22,10 +22,9 @@ use swimmer_model::{Model, Swimmer};
 
 pub use error::SidewaysError;
 
-use crate::certificate::{Certificate, Verdict};
+use crate::certificate::Verdict;
 use crate::certify::certified;
 use crate::cycle::Cycle;
-use crate::optimal_gait::Solution;
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
 use crate::{
@@ -85,45 +84,25 @@ pub struct Sideways {
 /// A loop with a bridge to its start is not simple, so there need not be a farthest one, and the answer can fall as a bound
 /// B is widened: from the corner (B, −B) of Purcell's swimmer an extremal runs along the bound at 1.005 rad and none does at
 /// 1.01, where the next best loop carries .026 L and that one carried .034. What bridges would bring is
-/// [`Sideways::bridged_supremum_over_length`].
+/// [`Sideways::bridged_supremum_over_length`]. Somebody may watch.
 ///
 /// # Errors
 /// [`SidewaysError`]: what is wrong with the problem, or that there is no such gait.
 ///
 /// ```
-/// use gait_optimizer::{Bounds, SidewaysProblem, sideways};
-/// use swimmer_model::Swimmer;
-///
-/// let bounds = Bounds::within(1.2);
-/// let found = sideways(&SidewaysProblem { bounds, ..SidewaysProblem::new(Swimmer::purcell()) })?;
-/// assert!(found.lateral_over_length > 0.0 && found.gait.rotation.abs() < 1e-8);
-/// # Ok::<(), gait_optimizer::SidewaysError>(())
-/// ```
-pub fn sideways(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {
-    sideways_watched(problem, &|_| ())
-}
-
-/// As [`sideways()`], while somebody watches.
-///
-/// # Errors
-/// As [`sideways()`].
-///
-/// ```
 /// use std::sync::Mutex;
-/// use gait_optimizer::{Bounds, SidewaysProblem, sideways_watched};
+/// use gait_optimizer::{Bounds, SidewaysProblem, sideways};
 /// use swimmer_model::Swimmer;
 ///
 /// let bounds = Bounds::within(1.2);
 /// let shares = Mutex::new(Vec::new());
 /// let problem = SidewaysProblem { bounds, ..SidewaysProblem::new(Swimmer::purcell()) };
-/// sideways_watched(&problem, &|share| shares.lock().unwrap().push(share))?;
+/// let found = sideways(&problem, &|share| shares.lock().unwrap().push(share))?;
+/// assert!(found.lateral_over_length > 0.0 && found.gait.rotation.abs() < 1e-8);
 /// assert!(shares.into_inner().unwrap().iter().all(|share| (0.0..=1.0).contains(share)));
 /// # Ok::<(), gait_optimizer::SidewaysError>(())
 /// ```
-pub fn sideways_watched(
-    problem: &SidewaysProblem,
-    watch: Watch<'_>,
-) -> Result<Sideways, SidewaysError> {
+pub fn sideways(problem: &SidewaysProblem, watch: Watch<'_>) -> Result<Sideways, SidewaysError> {
     let ours = from_this_end(problem, watch);
     let links = problem.swimmer.links;
     let alike = (links.front - links.back).abs() <= 1e-12 * links.front.abs();
@@ -172,17 +151,9 @@ fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sid
 
 /// A cycle as a gait, not yet certified; none where it cannot be swum.
 fn gait((problem, model): (&SidewaysProblem, &Model<f64>), cycle: Cycle) -> Option<OptimalGait> {
-    Some(OptimalGait::new(Solution {
-        objective: Objective::Sideways,
-        swimmer: problem.swimmer,
-        bounds: problem.bounds,
-        symmetric: false,
-        links_cross: cycle.links_cross(model),
-        arcs: cycle.arcs(false),
-        stroke: cycle.swum(model)?,
-        cycle,
-        certificate: Certificate::unasked(),
-    }))
+    let stroke = cycle.swum(model)?;
+    let of = (Objective::Sideways, &problem.swimmer, &problem.bounds);
+    Some(OptimalGait::of_cycle(of, false, cycle, &stroke))
 }
 
 /// As [`sideways`], from one end, with as many samples as the certificates ask for.

@@ -70,13 +70,9 @@ pub fn best_amplitudes(
     };
     let place = |i: u32| largest * f64::from(i) / f64::from(SCAN);
     let gains: Vec<f64> = (1..=SCAN).map(|i| gain(place(i))).collect();
-    let tops = gains
-        .windows(3)
-        .zip(2..)
-        .filter_map(|(three, i)| match *three {
-            [before, here, after] => (here > before && here >= after).then_some(i),
-            _ => None,
-        });
+    let is_top = |[before, here, after]: [f64; 3]| here > before && here >= after;
+    let places = gains.array_windows().zip(2..);
+    let tops = places.filter_map(|(three, i)| is_top(*three).then_some(i));
     tops.map(|i| {
         let amplitude = top(&gain, (place(i - 1), place(i + 1)), CLOSE);
         let stroke = shape.swum(model, amplitude);

@@ -29,19 +29,18 @@ mod walk;
 
 use nalgebra::{DMatrix, Vector2};
 use swimmer_files::{AnyGait, ArcKind, Bounds, Objective};
-use swimmer_model::{Gait as _, Model, Stroke, Swimmer};
+use swimmer_model::{Gait as _, Model, Swimmer};
 
 pub use error::TurningError;
 
+use crate::OptimalGait;
 use crate::certificate::double_area;
 use crate::certify::certified;
-use crate::cycle::{Cycle, Samples};
+use crate::cycle::Samples;
 use crate::height_map::legendre::gauss;
 use crate::height_map::{Level, LevelSearch, level_seeds};
-use crate::optimal_gait::Solution;
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
-use crate::{Certificate, OptimalGait};
 use border::Border;
 use piece::{Piece, close_up};
 use walk::{Domain, curvature};
@@ -142,25 +141,22 @@ fn at_resolution(
     });
     let rounds = domain.rounds(&search, seeds)?;
     let mut bridged_supremum = 0.0;
-    let mut best: Option<Loop> = None;
+    let of = (Objective::Turning, &problem.swimmer, &bounds);
+    let mut best: Option<OptimalGait> = None;
     for round in &rounds {
         let pieces = begun_on_diagonal(round, &border, &level);
-        let found = Loop::new(&pieces, model).ok_or_else(|| no_gait(&pieces))?;
-        let rotation = found.stroke.rotation;
-        bridged_supremum += rotation;
-        let outside = double_area(&found.cycle.phi) > 0.0;
-        if outside
-            && best
-                .as_ref()
-                .is_none_or(|most| rotation > most.stroke.rotation)
-        {
+        let found = gait(of, &pieces, model).ok_or_else(|| no_gait(&pieces))?;
+        bridged_supremum += found.rotation;
+        let outside = double_area(found.phi()) > 0.0;
+        let least = best
+            .as_ref()
+            .map_or(f64::NEG_INFINITY, |most| most.rotation);
+        if outside && found.rotation > least {
             best = Some(found);
         }
     }
-    let best = best.ok_or(TurningError::NoRegion)?;
-    let gait = certified(best.gait(problem, bounds, model));
     Ok(Turning {
-        gait,
+        gait: certified(best.ok_or(TurningError::NoRegion)?),
         bridged_supremum,
         regions: rounds.len(),
     })
@@ -182,12 +178,7 @@ fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     let off = |phi: &Vector2<f64>| phi.x - phi.y;
     let mut first: Option<(usize, usize, Vector2<f64>)> = None;
     for (number, piece) in round.iter().enumerate() {
-        for (at, (a, b)) in piece
-            .points
-            .iter()
-            .zip(piece.points.iter().skip(1))
-            .enumerate()
-        {
+        for (at, [a, b]) in piece.points.array_windows().enumerate() {
             if (off(a) >= 0.0) == (off(b) >= 0.0) || a.sum() + b.sum() < 1e-6 {
                 continue;
             }
@@ -231,11 +222,8 @@ fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     });
     // Cut at a corner, one of both parts is nothing.
     pieces.retain(|piece| {
-        piece
-            .points
-            .iter()
-            .zip(piece.points.iter().skip(1))
-            .any(|(a, b)| (b - a).norm() > 1e-9)
+        let mut sides = piece.points.array_windows();
+        sides.any(|[a, b]| (b - a).norm() > 1e-9)
     });
     pieces
 }
@@ -257,7 +245,7 @@ fn sampled(pieces: &[Piece], model: &Model<f64>) -> Option<Samples> {
         samples.corners.remove(0);
     }
     samples.along.push(0.0);
-    for (a, b) in samples.phi.iter().zip(samples.phi.iter().skip(1)) {
+    for [a, b] in samples.phi.array_windows() {
         samples.along.push(samples.along.last()? + (b - a).norm());
     }
     let by_chord = samples.closed();
@@ -293,7 +281,7 @@ const SHARP: f64 = 0.05;
 fn power_lengths(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Vec<f64> {
     let (nodes, weights) = gauss(4);
     let (mut length, mut lengths) = (0.0, vec![0.0]);
-    for (a, b) in u.iter().zip(u.iter().skip(1)) {
+    for [a, b] in u.array_windows() {
         for (s, w) in nodes.iter().zip(&weights) {
             let point = gait.at(a + 0.5 * (s + 1.0) * (b - a));
             let power = point
@@ -306,33 +294,13 @@ fn power_lengths(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Vec<f64> {
     lengths
 }
 
-/// A loop round a region, swum.
-struct Loop {
-    cycle: Cycle,
-    stroke: Stroke<f64>,
-}
-
-impl Loop {
-    /// None where the pieces make no gait.
-    fn new(pieces: &[Piece], model: &Model<f64>) -> Option<Self> {
-        let cycle = sampled(pieces, model)?.closed();
-        Some(Self {
-            stroke: cycle.swum(model)?,
-            cycle,
-        })
-    }
-
-    fn gait(self, problem: &TurningProblem, bounds: Bounds, model: &Model<f64>) -> OptimalGait {
-        OptimalGait::new(Solution {
-            objective: Objective::Turning,
-            swimmer: problem.swimmer,
-            bounds,
-            symmetric: false,
-            arcs: self.cycle.arcs(false),
-            links_cross: self.cycle.links_cross(model),
-            cycle: self.cycle,
-            stroke: self.stroke,
-            certificate: Certificate::unasked(),
-        })
-    }
+/// A loop round a region, not yet certified; none where the pieces make no gait.
+fn gait(
+    of: (Objective, &Swimmer<f64>, &Bounds),
+    pieces: &[Piece],
+    model: &Model<f64>,
+) -> Option<OptimalGait> {
+    let cycle = sampled(pieces, model)?.closed();
+    let stroke = cycle.swum(model)?;
+    Some(OptimalGait::of_cycle(of, false, cycle, &stroke))
 }

@@ -8,8 +8,8 @@ use std::path::Path;
 use changed::{Change, rounded};
 use gait_optimizer::{
     AtlasProblem, Bounds, Branch, Certificate, CertifyError, DisplacementProblem,
-    EfficiencyProblem, Heading, Objective, SidewaysProblem, TurningProblem, Verdict, atlas,
-    certify, displacement, efficiency, sideways, turning,
+    EfficiencyProblem, Heading, Objective, OptimalGait, SidewaysProblem, TurningProblem, Verdict,
+    atlas, certify, displacement, efficiency, sideways, turning,
 };
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
@@ -21,11 +21,27 @@ fn certificate(swimmer: &Swimmer<f64>, file: &GaitFile) -> Certificate {
     certify(swimmer, file, file.objective, &file.bounds).unwrap()
 }
 
+/// A gait's name, whose it is and its file.
+type Told = (String, Swimmer<f64>, GaitFile);
+
+fn told(gait: &OptimalGait) -> Told {
+    let OptimalGait {
+        swimmer,
+        objective,
+        bounds,
+        displacement,
+        ..
+    } = gait;
+    let file = gait.gait_file("one");
+    let name = format!("{swimmer:?} {objective} {bounds} {displacement:.3} m");
+    (name, *swimmer, file)
+}
+
 /// Optima of three objectives, bounds of every kind.
-fn gaits() -> Vec<(String, Swimmer<f64>, GaitFile)> {
+fn gaits() -> Vec<Told> {
     let mut gaits = Vec::new();
-    for (name, swimmer) in [("purcell", Swimmer::purcell()), ("robot", Swimmer::robot())] {
-        for (max, min, sector, no_overlap) in [
+    for swimmer in [Swimmer::purcell(), Swimmer::robot()] {
+        for (max_angle, min_angle, sector, no_overlap) in [
             (None, None, false, false),
             (Some(2.8), None, false, false),
             (Some(1.2), None, false, false),
@@ -34,56 +50,39 @@ fn gaits() -> Vec<(String, Swimmer<f64>, GaitFile)> {
             (Some(2.8), None, false, true),
         ] {
             let bounds = Bounds {
-                max_angle: max,
-                min_angle: min,
+                max_angle,
+                min_angle,
                 sector,
                 no_overlap,
                 ..Bounds::default()
             };
-            for heading in [Heading::Forwards, Heading::Backwards] {
-                let problem = DisplacementProblem {
+            gaits.extend([Heading::Forwards, Heading::Backwards].map(|heading| {
+                displacement(&DisplacementProblem {
                     bounds,
                     heading: Some(heading),
                     ..DisplacementProblem::new(swimmer)
-                };
-                if let Ok(gait) = displacement(&problem) {
-                    gaits.push((
-                        format!("{name} displacement {bounds} {heading:?}"),
-                        swimmer,
-                        gait.gait_file(name),
-                    ));
-                }
-            }
-            if min.is_some() || sector {
+                })
+                .ok()
+            }));
+            if min_angle.is_some() || sector {
                 continue;
             }
-            for branch in [Branch::Small, Branch::Large] {
-                let problem = EfficiencyProblem {
+            gaits.extend([Branch::Small, Branch::Large].map(|branch| {
+                efficiency(&EfficiencyProblem {
                     bounds,
                     ..EfficiencyProblem::new(swimmer, branch)
-                };
-                if let Ok(gait) = efficiency(&problem) {
-                    gaits.push((
-                        format!("{name} efficiency {bounds} {branch}"),
-                        swimmer,
-                        gait.gait_file(name),
-                    ));
-                }
-            }
-            if let Ok(found) = turning(&TurningProblem { swimmer, bounds }) {
-                gaits.push((
-                    format!("{name} turning {bounds}"),
-                    swimmer,
-                    found.gait.gait_file(name),
-                ));
-            }
+                })
+                .ok()
+            }));
+            let found = turning(&TurningProblem { swimmer, bounds });
+            gaits.push(found.ok().map(|found| found.gait));
         }
     }
-    gaits
+    gaits.iter().flatten().map(told).collect()
 }
 
 /// Gaits along the bound that keeps links apart, past its corner, and bent round that.
-fn more_gaits() -> Vec<(String, Swimmer<f64>, GaitFile)> {
+fn more_gaits() -> [Told; 3] {
     let apart = Bounds::within(2.8).apart(0.0);
     let sector = Bounds {
         sector: true,
@@ -105,8 +104,7 @@ fn more_gaits() -> Vec<(String, Swimmer<f64>, GaitFile)> {
         backwards(Swimmer::robot(), sector).unwrap(),
         bent.unwrap(),
     ]
-    .map(|gait| (gait.bounds.to_string(), gait.swimmer, gait.gait_file("one")))
-    .to_vec()
+    .map(|gait| told(&gait))
 }
 
 /// Pushed in by a thousandth of a radian, so that no bound notices.
@@ -154,14 +152,9 @@ fn every_optimum_passes_and_with_a_bump_fails() {
             passes("clockwise", &file.reversed());
         }
         if file.objective == Objective::Displacement {
-            let arcs = Vec::new();
-            passes(
-                "silent",
-                &GaitFile {
-                    arcs,
-                    ..file.clone()
-                },
-            );
+            let mut silent = file.clone();
+            silent.arcs.clear();
+            passes("silent", &silent);
         }
         if file.objective == Objective::Efficiency && free {
             // What is best for efficiency is not best for displacement.
@@ -230,10 +223,8 @@ fn gaits_that_fold_a_link_keep_it_off_the_middle_one() {
 fn circles_and_squares_fail() {
     for swimmer in [Swimmer::purcell(), Swimmer::robot()] {
         for amplitude in [0.3, 1.2, 1.633_162_5, 3.0] {
-            for gait in [
-                AnyGait::circle(amplitude),
-                AnyGait::circle(amplitude).reversed_if(true),
-            ] {
+            for clockwise in [false, true] {
+                let gait = AnyGait::circle(amplitude).reversed_if(clockwise);
                 for objective in [
                     Objective::Displacement,
                     Objective::Efficiency,
@@ -263,10 +254,7 @@ fn sparse_samples_are_enough_or_say_so() {
     let few: Vec<usize> = (0..file.u.len()).step_by(16).collect();
     let sparse = GaitFile {
         u: few.iter().map(|&i| file.u[i]).collect(),
-        phi: few
-            .iter()
-            .map(|&i| file.phi[i])
-            .collect::<Vec<Vector2<f64>>>(),
+        phi: few.iter().map(|&i| file.phi[i]).collect(),
         arcs: Vec::new(),
         ..file
     };
@@ -295,22 +283,19 @@ fn gaits_of_short_middle_links_are_sampled_as_closely_as_is_asked() {
     for middle in [0.02, 0.05, 0.1, 1.0] {
         let swimmer = with(middle);
         let gait = displacement(&DisplacementProblem::new(swimmer)).unwrap();
-        let file = gait.gait_file("short");
-        let certificate = certify(&swimmer, &file, file.objective, &file.bounds).unwrap();
+        let certificate = gait.certify().unwrap();
         assert!(certificate.pass(), "{middle}: {}", certificate.failures());
-        finer += usize::from(file.u.len() > 1024);
+        finer += usize::from(gait.u().len() > 1024);
     }
     assert_eq!(finer, 2);
     let swimmer = with(0.1);
-    let gait = sideways(&SidewaysProblem {
+    let problem = SidewaysProblem {
         bounds: Bounds::within(2.5),
         starts: 6,
         ..SidewaysProblem::new(swimmer)
-    })
-    .unwrap()
-    .gait;
-    let file = gait.gait_file("short");
-    let certificate = certify(&swimmer, &file, file.objective, &file.bounds).unwrap();
+    };
+    let gait = sideways(&problem, &|_| ()).unwrap().gait;
+    let certificate = gait.certify().unwrap();
     assert!(certificate.pass(), "{}", certificate.failures());
 }
 

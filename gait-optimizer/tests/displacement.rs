@@ -6,7 +6,7 @@ mod swimmers;
 
 use direct::Direct;
 use gait_optimizer::{
-    ArcKind, DisplacementError, DisplacementProblem, InvalidProblem, OptimalGait, Verdict, certify,
+    ArcKind, DisplacementError, DisplacementProblem, InvalidProblem, OptimalGait, Verdict,
     displacement,
 };
 use swimmer_files::{Bounds, GaitFile};
@@ -389,9 +389,7 @@ fn random_swimmers() {
                 found += 1;
                 let x = gait.displacement_over_length;
                 assert!(gait.certificate.pass(), "{}", case.name);
-                let file = gait.gait_file("");
-                let certificate = certify(&case.swimmer, &file, gait.objective, &gait.bounds);
-                assert!(certificate.unwrap().pass(), "{}", case.name);
+                assert!(gait.certify().unwrap().pass(), "{}", case.name);
                 let model = swimmer_model::Model::new(&case.swimmer).unwrap();
                 let stroke = swim(&model, &gait.gait().unwrap(), &Tolerance::new(1e-11));
                 let swum = stroke.displacement_over_length();
@@ -405,14 +403,8 @@ fn random_swimmers() {
             }
             Err(DisplacementError::Saddle { gait }) => {
                 // Told by the samples alone, too.
-                let file = gait.gait_file("");
-                let certificate = certify(&case.swimmer, &file, gait.objective, &case.bounds);
-                assert_eq!(
-                    certificate.unwrap().verdict(),
-                    Verdict::Fail,
-                    "{}",
-                    case.name
-                );
+                let verdict = gait.certify().unwrap().verdict();
+                assert_eq!(verdict, Verdict::Fail, "{}", case.name);
                 saddles += 1;
             }
             Err(error) => wrong.push(format!("{}: {error}; {best}", case.name)),

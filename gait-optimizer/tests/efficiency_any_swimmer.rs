@@ -3,18 +3,9 @@
 #[expect(dead_code, reason = "simple gaits are held against displacement only")]
 mod swimmers;
 
-use gait_optimizer::{
-    Branch, Certificate, EfficiencyError, EfficiencyProblem, Objective, OptimalGait, Verdict,
-    certify, efficiency,
-};
+use gait_optimizer::{Branch, EfficiencyError, EfficiencyProblem, Verdict, efficiency};
 use swimmer_files::AnyGait;
-use swimmer_model::{Model, Swimmer, Tolerance, swim};
-
-/// By the gait's file alone.
-fn certified(swimmer: &Swimmer<f64>, gait: &OptimalGait) -> Certificate {
-    let file = gait.gait_file("");
-    certify(swimmer, &file, Objective::Efficiency, &gait.bounds).unwrap()
-}
+use swimmer_model::{Model, Tolerance, swim};
 
 #[test]
 fn every_swimmer_gets_a_certified_gait_or_a_reason() {
@@ -29,7 +20,7 @@ fn every_swimmer_gets_a_certified_gait_or_a_reason() {
                 Ok(gait) => gait,
                 Err(error) => {
                     if let EfficiencyError::Saddle { gait, .. } = &error {
-                        let certificate = certified(&swimmer, gait);
+                        let certificate = gait.certify().unwrap();
                         println!("{i}: {}", certificate.failures());
                         assert_eq!(certificate.verdict(), Verdict::Fail, "{i}");
                         saddles += 1;
@@ -43,7 +34,7 @@ fn every_swimmer_gets_a_certified_gait_or_a_reason() {
                 }
             };
             assert!(gait.certificate.pass());
-            let certificate = certified(&swimmer, &gait);
+            let certificate = gait.certify().unwrap();
             assert!(certificate.pass(), "{i}: {}", certificate.failures());
             // The samples of the real swimmer, not of the scaled one, swum by the model alone.
             let stroke = swim(&model, &gait.gait().unwrap(), &Tolerance::new(1e-11));

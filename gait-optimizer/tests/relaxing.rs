@@ -273,12 +273,12 @@ fn relaxing_a_bound_never_lowers_turning() {
 #[ignore = "soak: a quarter of an hour"]
 fn relaxing_a_bound_never_lowers_sideways() {
     let table = widened(|swimmer, bounds| {
-        let found = sideways(&SidewaysProblem {
+        let problem = SidewaysProblem {
             bounds,
             starts: 16,
             ..SidewaysProblem::new(*swimmer)
-        });
-        let Ok(found) = found else {
+        };
+        let Ok(found) = sideways(&problem, &|_| ()) else {
             return Answer::default();
         };
         let optimum = found.lateral_over_length;

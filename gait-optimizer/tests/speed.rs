@@ -13,10 +13,7 @@ use speed_direct::Direct;
 
 fn problem(swimmer: Swimmer<f64>, max_angle: f64, starts: usize) -> SpeedProblem {
     SpeedProblem {
-        bounds: Bounds {
-            max_angle: Some(max_angle),
-            ..Bounds::default()
-        },
+        bounds: Bounds::within(max_angle),
         starts,
         threads: 2,
         ..SpeedProblem::new(swimmer, [1.0; 2])

@@ -28,10 +28,7 @@ fn none_faster(swimmer: &Swimmer<f64>, name: &str, gait: &AnyGait, max_angle: Op
     let (reach, period) = reach_and_period(gait);
     let speed = stroke.displacement.norm() / period;
     let fastest = fastest(&SpeedProblem {
-        bounds: Bounds {
-            max_angle: Some(max_angle.unwrap_or(reach + 1e-6)),
-            ..Bounds::default()
-        },
+        bounds: Bounds::within(max_angle.unwrap_or(reach + 1e-6)),
         threads: 2,
         ..SpeedProblem::new(*swimmer, [1.0; 2])
     })
@@ -106,10 +103,7 @@ fn no_gait_of_the_efficiency_atlas_is_faster() {
     for (who, swimmer) in [("robot", Swimmer::robot()), ("purcell", Swimmer::purcell())] {
         for max_angle in [2.0, 2.4, 2.6, 2.8, 3.0] {
             let found = atlas(&AtlasProblem {
-                bounds: Bounds {
-                    max_angle: Some(max_angle),
-                    ..Bounds::default()
-                },
+                bounds: Bounds::within(max_angle),
                 threads: 2,
                 ..AtlasProblem::new(swimmer, Objective::Efficiency)
             })

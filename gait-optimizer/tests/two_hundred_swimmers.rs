@@ -97,14 +97,6 @@ fn most_efficient(case: &Case, branch: Branch) -> Answer {
     Answer::Gaits(vec![gait.into()])
 }
 
-fn small(case: &Case) -> Answer {
-    most_efficient(case, Branch::Small)
-}
-
-fn large(case: &Case) -> Answer {
-    most_efficient(case, Branch::Large)
-}
-
 fn most_turning(case: &Case) -> Answer {
     match turning(&TurningProblem {
         swimmer: case.swimmer,
@@ -126,11 +118,12 @@ fn most_turning(case: &Case) -> Answer {
 
 /// With few starts.
 fn most_sideways(case: &Case) -> Answer {
-    match sideways(&SidewaysProblem {
+    let problem = SidewaysProblem {
         bounds: case.bounds,
         starts: 4,
         ..SidewaysProblem::new(case.swimmer)
-    }) {
+    };
+    match sideways(&problem, &|_| ()) {
         Ok(found) => {
             let own = found.gait.lateral_over_length.abs() - found.lateral_over_length;
             if own.abs() > 1e-12 || found.lateral_over_length <= 0.0 {
@@ -184,14 +177,6 @@ fn small_atlas(case: &Case, objective: Objective) -> Answer {
             })
             .collect(),
     )
-}
-
-fn displacement_atlas(case: &Case) -> Answer {
-    small_atlas(case, Objective::Displacement)
-}
-
-fn efficiency_atlas(case: &Case) -> Answer {
-    small_atlas(case, Objective::Efficiency)
 }
 
 /// With few starts.
@@ -288,7 +273,7 @@ fn faults(case: &Case, gait: &OptimalGait) -> Vec<String> {
 
 /// Asks for the gaits of `every`-th of the swimmers, prints what comes, and fails where anything is wrong, or where `certify`
 /// refuses the file of a gait that its solver certifies.
-fn ask(objective: &str, every: usize, solve: fn(&Case) -> Answer) {
+fn ask((objective, solve): Kind, every: usize) {
     let (mut certified, mut gaits, mut asked) = (0, 0, 0);
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
     let (mut wrong, mut refusals) = (Vec::new(), Vec::new());
@@ -363,58 +348,51 @@ fn ask(objective: &str, every: usize, solve: fn(&Case) -> Answer) {
     );
 }
 
+/// A kind of gait and who is asked for it.
+type Kind = (&'static str, fn(&Case) -> Answer);
+const SMALL: Kind = ("small", |case| most_efficient(case, Branch::Small));
+const LARGE: Kind = ("large", |case| most_efficient(case, Branch::Large));
+const TURNING: Kind = ("turning", most_turning);
+const SIDEWAYS: Kind = ("sideways", most_sideways);
+const SPEED: Kind = ("speed", fastest_gait);
+const FAR: Kind = ("displacement atlas", |case| {
+    small_atlas(case, Objective::Displacement)
+});
+const THRIFTY: Kind = ("efficiency atlas", |case| {
+    small_atlas(case, Objective::Efficiency)
+});
+
 /// One swimmer in so many, for every change; primes, so that bounds of all kinds are among them.
 #[test]
 fn some_of_each() {
-    ask("small", 29, small);
-    ask("large", 41, large);
-    ask("turning", 13, most_turning);
-    ask("sideways", 99, most_sideways);
-    ask("speed", 67, fastest_gait);
-    ask("displacement atlas", 67, displacement_atlas);
-    ask("efficiency atlas", 67, efficiency_atlas);
+    ask(SMALL, 29);
+    ask(LARGE, 41);
+    ask(TURNING, 13);
+    ask(SIDEWAYS, 99);
+    ask(SPEED, 67);
+    ask(FAR, 67);
+    ask(THRIFTY, 67);
+}
+
+/// Every swimmer asked for a kind of gait: minutes each, part of the soak.
+macro_rules! of_all {
+    ($($name:ident: $kind:expr;)*) => { $(
+        #[test]
+        #[ignore = "minutes: part of the soak"]
+        fn $name() {
+            ask($kind, 1);
+        }
+    )* };
 }
 
 // `certify` refuses none of the files: sharp turns are sampled as closely as its slopes ask for. For three swimmers (115, 117, 144) the
 // few starts here find saddles alone, which the atlas does not list; more starts find optima.
-#[test]
-#[ignore = "minutes: part of the soak"]
-fn small_gaits_of_all() {
-    ask("small", 1, small);
-}
-
-#[test]
-#[ignore = "minutes: part of the soak"]
-fn large_gaits_of_all() {
-    ask("large", 1, large);
-}
-
-#[test]
-#[ignore = "a minute: part of the soak"]
-fn turning_gaits_of_all() {
-    ask("turning", 1, most_turning);
-}
-
-#[test]
-#[ignore = "minutes: part of the soak"]
-fn fastest_gaits_of_all() {
-    ask("speed", 1, fastest_gait);
-}
-
-#[test]
-#[ignore = "minutes: part of the soak"]
-fn sideways_gaits_of_all() {
-    ask("sideways", 1, most_sideways);
-}
-
-#[test]
-#[ignore = "minutes: part of the soak"]
-fn displacement_atlases_of_all() {
-    ask("displacement atlas", 1, displacement_atlas);
-}
-
-#[test]
-#[ignore = "minutes: part of the soak"]
-fn efficiency_atlases_of_all() {
-    ask("efficiency atlas", 1, efficiency_atlas);
+of_all! {
+    small_gaits_of_all: SMALL;
+    large_gaits_of_all: LARGE;
+    turning_gaits_of_all: TURNING;
+    fastest_gaits_of_all: SPEED;
+    sideways_gaits_of_all: SIDEWAYS;
+    displacement_atlases_of_all: FAR;
+    efficiency_atlases_of_all: THRIFTY;
 }

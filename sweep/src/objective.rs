@@ -299,17 +299,17 @@ impl Solve for Solver {
             })
             .map(|found| of_gait(found.gait))
             .map_err(|error| error.to_string().into()),
-            Aim::Sideways => sideways(&SidewaysProblem {
-                bounds: design.bounds,
-                starts: self
-                    .starts
-                    .map_or(SidewaysProblem::new(design.swimmer).starts, |starts| {
-                        starts as usize
-                    }),
-                ..SidewaysProblem::new(design.swimmer)
-            })
-            .map(|found| of_gait(found.gait))
-            .map_err(|error| error.to_string().into()),
+            Aim::Sideways => {
+                let usual = SidewaysProblem::new(design.swimmer);
+                let problem = SidewaysProblem {
+                    bounds: design.bounds,
+                    starts: self.starts.map_or(usual.starts, |starts| starts as usize),
+                    ..usual
+                };
+                sideways(&problem, &|_| ())
+                    .map(|found| of_gait(found.gait))
+                    .map_err(|error| error.to_string().into())
+            }
             Aim::Stub => Ok(stub(key)),
         }
     }

@@ -5,7 +5,7 @@
 mod displacement;
 mod efficiency;
 
-use gait_optimizer::{BestAmplitude, Bounds, Condition, Objective, OptimalGait, certify};
+use gait_optimizer::{BestAmplitude, Condition, OptimalGait};
 use serde::Serialize;
 
 use super::study::Study;
@@ -110,28 +110,17 @@ pub fn rows(study: &Study) -> Vec<Row> {
 
 /// How many conditions a gait fails when only its samples are known; NaN where it cannot be asked.
 fn failed_checks(gait: &OptimalGait) -> f64 {
-    let file = gait.gait_file("");
-    certify(&gait.swimmer, &file, gait.objective, &gait.bounds).map_or(f64::NAN, |certificate| {
-        certificate
-            .checks()
-            .iter()
-            .filter(|check| !check.pass)
-            .count() as f64
+    gait.certify().map_or(f64::NAN, |certificate| {
+        let checks = certificate.checks().iter();
+        checks.filter(|check| !check.pass).count() as f64
     })
 }
 
 /// One number of that certificate.
 fn value_of(gait: &OptimalGait, condition: Condition) -> f64 {
-    let file = gait.gait_file("");
-    certify(
-        &gait.swimmer,
-        &file,
-        Objective::Efficiency,
-        &Bounds::default(),
-    )
-    .ok()
-    .and_then(|certificate| certificate.value(condition))
-    .unwrap_or(f64::NAN)
+    let certificate = gait.certify().ok();
+    let value = certificate.and_then(|certificate| certificate.value(condition));
+    value.unwrap_or(f64::NAN)
 }
 
 /// The first best amplitude.

@@ -528,16 +528,6 @@ pub struct Point {
     pub residual: f64,
 }
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Polish {
-    pub swimmer: Swimmer<f64>,
-    pub bounds: Bounds,
-    pub symmetric: bool,
-    pub samples: usize,
-}
-impl Polish {
-    pub fn new(swimmer: Swimmer<f64>) -> Self {}
-}
-#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reached {
     pub max_angle: f64,
     pub tips_meet: Option<[f64; 2]>,
@@ -741,22 +731,6 @@ impl Uncertainty {
     pub fn none(sphere_radius: f64, chi: f64) -> Self {}
     pub fn validate(&self) -> Result<(), RobustError> {}
 }
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum Unpolished {
-    Swimmer(InvalidSwimmer),
-    NoGuess,
-    Shooting { arcs: usize, reason: Unsolved },
-    Trace,
-    Structure { structures: usize },
-}
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Unsolved {
-    Lost,
-    Singular,
-    Stuck { residual: f64 },
-    Malformed,
-}
-impl std::fmt::Display for Unsolved {}
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Values {
     pub nominal: f64,
@@ -814,10 +788,6 @@ pub fn fastest_within(
     problem: &LimitedProblem,
     watch: Watch<'_>,
 ) -> Result<Limited, LimitedError> {}
-pub fn polish_efficiency<G: Gait<f64> + ?Sized>(
-    polish_for: &Polish,
-    gait: &G,
-) -> Result<OptimalGait, Unpolished> {}
 pub fn robust_displacement(
     problem: &DisplacementProblem,
     uncertainty: &Uncertainty,

@@ -24,12 +24,7 @@ fn somewhere(mesh: &Mesh, amplitude: f64) -> Matrix2xX<f64> {
 fn gradient_and_hessian_are_exact() {
     let model = Model::new(&Swimmer::purcell()).unwrap();
     let mesh = Mesh::new(5, 4);
-    let bounds = Bounds {
-        max_angle: Some(1.7),
-        no_overlap: true,
-        clearance: 0.1,
-        ..Bounds::default()
-    };
+    let bounds = Bounds::within(1.7).apart(0.1);
     let walls: Vec<_> = Region::new(&bounds, &model.swimmer().links)
         .bounds()
         .collect();

@@ -36,17 +36,10 @@ impl Gap {
             phi: Vector2::zeros(),
         };
         let links = single(links);
-        let length: f64 = way
-            .vertices()
-            .windows(2)
-            .map(|pair| match pair {
-                [from, to] => (to - from).norm(),
-                _ => 0.0,
-            })
-            .sum();
+        let sides = || way.vertices().array_windows();
+        let length: f64 = sides().map(|[from, to]| (to - from).norm()).sum();
         let step = LOOK.max(length / MOST_LOOKS);
-        for pair in way.vertices().windows(2) {
-            let [from, to] = pair else { continue };
+        for [from, to] in sides() {
             let looks = ((to - from).norm() / step).ceil().max(1.0);
             let mut look = 0.0;
             while look <= looks {

@@ -23,6 +23,15 @@ pub enum Kind {
 impl Kind {
     /// In the order of [`Family::gaits`].
     pub const ALL: [Self; 3] = [Self::Forward, Self::Left, Self::Turn];
+
+    /// Run forwards, at this scale.
+    pub(super) fn of_scale(self, scale: f64) -> Member {
+        Member {
+            kind: self,
+            backwards: false,
+            scale,
+        }
+    }
 }
 
 /// A member of a family.
@@ -124,13 +133,8 @@ impl Nets {
         let way_in = family.way_in(model);
         let of = |kind: Kind| {
             let at = |&scale: &f64| {
-                let member = Member {
-                    kind,
-                    backwards: false,
-                    scale,
-                };
                 let after = |cycles| {
-                    let step = Step::new(family, servos, member, cycles);
+                    let step = Step::new(family, servos, kind.of_scale(scale), cycles);
                     let tables = tables(&[step.repeated(family)])?;
                     Ok(leads_to(model, &played(&tables, servos)) * way_in)
                 };
@@ -163,11 +167,7 @@ impl Nets {
     pub(super) fn least(&self, family: &Family, wanted: &Pose<f64>) -> f64 {
         let (mut speed, mut rate) = (0.0_f64, 0.0_f64);
         for (kind, (_, period)) in Kind::ALL.into_iter().zip(&family.gaits) {
-            let net = self.of(&Member {
-                kind,
-                backwards: false,
-                scale: 1.0,
-            });
+            let net = self.of(&kind.of_scale(1.0));
             speed = speed.max(net.position().norm() / period);
             rate = rate.max(net.theta.abs() / period);
         }
@@ -180,12 +180,7 @@ impl Nets {
         let (mut below, mut above) = (SMALLEST, 1.0);
         for _ in 0..24 {
             let middle = 0.5 * (below + above);
-            let member = Member {
-                kind,
-                backwards: false,
-                scale: middle,
-            };
-            if self.share(&member) < share {
+            if self.share(&kind.of_scale(middle)) < share {
                 below = middle;
             } else {
                 above = middle;
@@ -196,14 +191,7 @@ impl Nets {
 
     /// The share of what a cycle brings at full size that one of this member does, along what that is.
     pub(super) fn share(&self, member: &Member) -> f64 {
-        let of = |scale| {
-            self.of(&Member {
-                backwards: false,
-                scale,
-                ..*member
-            })
-        };
-        let (full, here) = (of(1.0), of(member.scale));
+        let [full, here] = [1.0, member.scale].map(|scale| self.of(&member.kind.of_scale(scale)));
         match member.kind {
             Kind::Turn => here.theta / full.theta,
             Kind::Forward | Kind::Left => {

@@ -131,12 +131,7 @@ impl<'a> Sweeps<'a> {
             } else {
                 LARGEST * RATIO.powi(power)
             };
-            let member = Member {
-                backwards: false,
-                scale,
-                ..*member
-            };
-            Swept::new(self.room.model, self.family, &member)
+            Swept::new(self.room.model, self.family, &member.kind.of_scale(scale))
         });
         let net = self.nets.of(member);
         let mut pose = *pose;

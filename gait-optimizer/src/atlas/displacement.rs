@@ -19,9 +19,8 @@ use crate::certify::{certified, ways_up};
 use crate::closed_curve::Functional;
 use crate::displacement::best_symmetric;
 use crate::loops::{Closed, close, traced};
-use crate::optimal_gait::Solution;
 use crate::region::Region;
-use crate::{Certificate, Condition, DisplacementProblem, Heading, OptimalGait};
+use crate::{Condition, DisplacementProblem, Heading, OptimalGait};
 
 /// Gaits that gain less than this over another, over L, are not on the way up from it.
 const HIGHER: f64 = 1e-9;
@@ -113,19 +112,9 @@ impl Displacement<'_> {
         let (problem, model) = (self.problem, self.model);
         let cycle = traced(model, closed, problem.samples)?;
         let stroke = cycle.swum(model)?;
-        let links_cross = cycle.links_cross(model);
         let symmetric =
             Outline::new(&cycle.phi).is_symmetric() && stroke.displacement.y.abs() < 1e-8;
-        Some(OptimalGait::new(Solution {
-            objective: Objective::Displacement,
-            swimmer: problem.swimmer,
-            bounds: problem.bounds,
-            symmetric,
-            arcs: cycle.arcs(symmetric),
-            cycle,
-            stroke,
-            links_cross,
-            certificate: Certificate::unasked(),
-        }))
+        let of = (Objective::Displacement, &problem.swimmer, &problem.bounds);
+        Some(OptimalGait::of_cycle(of, symmetric, cycle, &stroke))
     }
 }

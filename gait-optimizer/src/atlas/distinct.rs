@@ -6,6 +6,8 @@
 
 use nalgebra::Vector2;
 
+use crate::certificate::to_side;
+
 /// Points that a curve is compared at.
 const POINTS: usize = 96;
 
@@ -27,11 +29,9 @@ impl Outline {
     pub(crate) fn new(polygon: &[Vector2<f64>]) -> Self {
         let mut lengths = vec![0.0];
         let mut total = 0.0;
-        for pair in polygon.windows(2) {
-            if let [a, b] = pair {
-                total += (b - a).norm();
-                lengths.push(total);
-            }
+        for [a, b] in polygon.array_windows() {
+            total += (b - a).norm();
+            lengths.push(total);
         }
         let at = |length: f64| {
             let after = lengths
@@ -74,7 +74,7 @@ impl Outline {
             .map(|point| {
                 sides
                     .clone()
-                    .map(|(a, b)| to_segment(point, a, b))
+                    .map(|(a, b)| to_side(point, a, b))
                     .fold(f64::INFINITY, f64::min)
             })
             .fold(0.0, f64::max)
@@ -109,16 +109,6 @@ impl Outline {
         let mirrored = self.mapped(|phi| Vector2::new(phi.y, phi.x));
         let turned = self.mapped(|phi| -Vector2::new(phi.y, phi.x));
         self.distance(&mirrored).max(self.distance(&turned))
-    }
-}
-
-fn to_segment(point: &Vector2<f64>, a: &Vector2<f64>, b: &Vector2<f64>) -> f64 {
-    let side = b - a;
-    let share = ((point - a).dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
-    if share.is_finite() {
-        (point - a - side * share).norm()
-    } else {
-        (point - a).norm()
     }
 }
 

@@ -96,7 +96,7 @@ pub(crate) fn through(
 ) -> DMatrix<f64> {
     let mut curve = DMatrix::zeros(2, basis.functions());
     let mut here = vec![(0.0, 0.0); basis.functions()];
-    for (&(from, a), &(to, b)) in points.iter().zip(points.iter().skip(1)) {
+    for &[(from, a), (to, b)] in points.array_windows() {
         for (u, phi) in [(from, a), (to, b)] {
             basis.at(u, &mut here);
             for (j, (value, _)) in here.iter().enumerate() {

@@ -19,22 +19,24 @@ pub(crate) fn simple_and_turning_once(
 
 /// Twice the area that a closed polygon encloses, counter-clockwise positive.
 pub(crate) fn double_area(points: &[Vector2<f64>]) -> f64 {
-    points
-        .windows(2)
-        .map(|pair| match pair {
-            [a, b] => a.perp(b),
-            _ => 0.0,
-        })
-        .sum()
+    points.array_windows().map(|[a, b]| a.perp(b)).sum()
+}
+
+/// Distance of a point from a side.
+pub(crate) fn to_side(point: &Vector2<f64>, a: &Vector2<f64>, b: &Vector2<f64>) -> f64 {
+    let side = b - a;
+    let share = ((point - a).dot(&side) / side.norm_squared()).clamp(0.0, 1.0);
+    if share.is_finite() {
+        (point - a - side * share).norm()
+    } else {
+        (point - a).norm()
+    }
 }
 
 /// How often a closed polygon (last point = first) turns round, counter-clockwise positive.
 pub(crate) fn turning_number(points: &[Vector2<f64>]) -> f64 {
-    let sides: Vec<Vector2<f64>> = points
-        .windows(2)
-        .filter_map(|pair| Some(pair.get(1)? - pair.first()?))
-        .filter(|side| side.norm() > 0.0)
-        .collect();
+    let sides = points.array_windows().map(|[a, b]| b - a);
+    let sides: Vec<Vector2<f64>> = sides.filter(|side| side.norm() > 0.0).collect();
     let turns = sides
         .iter()
         .zip(sides.iter().cycle().skip(1))
@@ -44,10 +46,7 @@ pub(crate) fn turning_number(points: &[Vector2<f64>]) -> f64 {
 
 /// How many pairs of sides of a polygon cross; where it is closed its last point is the first.
 pub(crate) fn crossings(points: &[Vector2<f64>]) -> usize {
-    let sides: Vec<[Vector2<f64>; 2]> = points
-        .windows(2)
-        .filter_map(|pair| Some([*pair.first()?, *pair.get(1)?]))
-        .collect();
+    let sides: Vec<[Vector2<f64>; 2]> = points.array_windows().copied().collect();
     // Sorted by their left ends, a side can only cross those that start before it ends.
     let mut order: Vec<(f64, f64, usize)> = sides
         .iter()

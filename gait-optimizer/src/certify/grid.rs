@@ -93,10 +93,8 @@ impl Grid {
             pieces: Vec::with_capacity(cut.len()),
         };
         let mut shapes = Vec::with_capacity(last + 2 * cut.len());
-        for pair in cut.windows(2) {
-            if let [from, to] = *pair
-                && let (Some(u), Some(phi)) = (file.u.get(from..=to), file.phi.get(from..=to))
-            {
+        for &[from, to] in cut.array_windows() {
+            if let (Some(u), Some(phi)) = (file.u.get(from..=to), file.phi.get(from..=to)) {
                 grid.append(u, along.get(from).copied().unwrap_or(Along::Free));
                 shapes.extend_from_slice(phi);
             }
@@ -139,21 +137,19 @@ impl Grid {
 
     /// Slope dΦ/du at every node.
     pub(super) fn slopes(&self, shapes: &[Vector2<f64>], degree: Degree) -> Vec<Vector2<f64>> {
-        let rules = self
-            .nodes
-            .iter()
-            .map(|node| node.slope_and_bend[degree as usize][0]);
-        rules
-            .map(|rule| rule.added(Vector2::zeros(), shapes))
-            .collect()
+        self.derived(shapes, degree, 0)
     }
 
     /// Bend d²Φ/du² at every node.
     pub(super) fn bends(&self, shapes: &[Vector2<f64>], degree: Degree) -> Vec<Vector2<f64>> {
+        self.derived(shapes, degree, 1)
+    }
+
+    fn derived(&self, shapes: &[Vector2<f64>], degree: Degree, of: usize) -> Vec<Vector2<f64>> {
         let rules = self
             .nodes
             .iter()
-            .map(|node| node.slope_and_bend[degree as usize][1]);
+            .map(|node| node.slope_and_bend[degree as usize][of]);
         rules
             .map(|rule| rule.added(Vector2::zeros(), shapes))
             .collect()
@@ -231,10 +227,8 @@ fn knot(file: &GaitFile, u: f64) -> Option<usize> {
 
 /// What each interval between knots runs along, as the file's arcs tell.
 pub(super) fn told_by_arcs(file: &GaitFile) -> Vec<Along> {
-    let middles = file.u.windows(2).map(|pair| match *pair {
-        [from, to] => f64::midpoint(from, to),
-        _ => 0.0,
-    });
+    let intervals = file.u.array_windows();
+    let middles = intervals.map(|&[from, to]| f64::midpoint(from, to));
     let along = |u: f64| {
         let arc = file.arcs.iter().find(|arc| arc.from <= u && u <= arc.to);
         match arc.map(|arc| arc.kind) {

@@ -85,14 +85,11 @@ impl Path {
         for (place, theta) in places.iter_mut().zip(&headings) {
             place.heading = theta.sin_cos();
         }
-        let velocities: Vec<Vector2<f64>> = body
-            .iter()
-            .zip(&places)
-            .map(|(body, place)| {
-                let (sin, cos) = place.heading;
-                Vector2::new(cos * body.x - sin * body.y, sin * body.x + cos * body.y)
-            })
-            .collect();
+        let velocities = body.iter().zip(&places).map(|(body, place)| {
+            let (sin, cos) = place.heading;
+            Vector2::new(cos * body.x - sin * body.y, sin * body.x + cos * body.y)
+        });
+        let velocities: Vec<Vector2<f64>> = velocities.collect();
         let positions = grid.integrals(&velocities, Vector2::zeros(), degree);
         for ((place, position), theta) in places.iter_mut().zip(&positions).zip(&headings) {
             place.pose = [position.x, position.y, *theta];

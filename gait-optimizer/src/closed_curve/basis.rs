@@ -115,6 +115,12 @@ impl Basis {
             .sum()
     }
 
+    /// Value and slope over a panel of every function at a node.
+    pub(super) fn at_node(&self, node: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let (values, slopes) = (self.values.column(node), self.slopes.column(node));
+        (0..self.functions()).map(move |j| (values[j], slopes[j]))
+    }
+
     /// Value and derivative by u of every function at a fraction of the cycle.
     pub(crate) fn at(&self, u: f64, out: &mut [(f64, f64)]) {
         match self.kind {

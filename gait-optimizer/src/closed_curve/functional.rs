@@ -194,11 +194,7 @@ impl<'a> Functional<'a> {
         ) * cost;
         let (phi, rate): (Matrix2x3<f64>, Matrix2x3<f64>) =
             (by_phi.transpose(), by_slope.transpose());
-        let (values, slopes) = (
-            self.basis.values.column(node),
-            self.basis.slopes.column(node),
-        );
-        for (j, (&value, &rise)) in values.iter().zip(slopes.iter()).enumerate() {
+        for (j, (value, rise)) in self.basis.at_node(node).enumerate() {
             let part = phi * value + rate * rise;
             let energy = cost_by_phi * value + cost_by_slope * rise;
             for joint in 0..2 {

@@ -66,12 +66,8 @@ impl Functional<'_> {
             weight * first.connection[(2, 0)],
             weight * first.connection[(2, 1)],
         ];
-        let (values, slopes) = (
-            self.basis.values.column(node),
-            self.basis.slopes.column(node),
-        );
         let mut out = work.turn.column_mut(node);
-        for (j, (&value, &rise)) in values.iter().zip(slopes.iter()).enumerate() {
+        for (j, (value, rise)) in self.basis.at_node(node).enumerate() {
             out[2 * j] = value * by_phi[0] + rise * by_slope[0];
             out[2 * j + 1] = value * by_phi[1] + rise * by_slope[1];
         }
@@ -92,11 +88,7 @@ impl Functional<'_> {
         });
         let a = &first.connection;
         let by_slope = [weigh(a[(0, 0)], a[(1, 0)]), weigh(a[(0, 1)], a[(1, 1)])];
-        let (values, slopes) = (
-            self.basis.values.column(node),
-            self.basis.slopes.column(node),
-        );
-        for (j, (&value, &rise)) in values.iter().zip(slopes.iter()).enumerate() {
+        for (j, (value, rise)) in self.basis.at_node(node).enumerate() {
             for joint in 0..2 {
                 work.partner[(node, 2 * j + joint)] = value * by_phi[joint]
                     + rise * by_slope[joint]
@@ -133,18 +125,13 @@ impl Functional<'_> {
         // Row: joint angle; column: slope.
         let phi_slope = Matrix2::from_columns(&[mixed(0), mixed(1)]).transpose();
         let slope_slope = second.first.power * (2.0 * cost);
-        let (values, slopes) = (
-            self.basis.values.column(node),
-            self.basis.slopes.column(node),
-        );
-        for (k, (&value_k, &rise_k)) in values.iter().zip(slopes.iter()).enumerate() {
+        for (k, (value_k, rise_k)) in self.basis.at_node(node).enumerate() {
             if value_k == 0.0 && rise_k == 0.0 {
                 continue;
             }
             let by_value = phi_phi * value_k + phi_slope * rise_k;
             let by_rise = phi_slope.transpose() * value_k + slope_slope * rise_k;
-            for (j, (&value_j, &rise_j)) in values.iter().zip(slopes.iter()).enumerate().take(k + 1)
-            {
+            for (j, (value_j, rise_j)) in self.basis.at_node(node).enumerate().take(k + 1) {
                 let block = by_value * value_j + by_rise * rise_j;
                 work.hessian[(2 * j, 2 * k)] += block.m11;
                 work.hessian[(2 * j, 2 * k + 1)] += block.m12;

@@ -11,7 +11,7 @@ const SAME_GAIN: f64 = 1e-7;
 /// How often the place of a meeting is halved.
 const MOST_HALVINGS: usize = 24;
 
-fn same<H>(a: &BranchPoint<H>, b: &BranchPoint<H>) -> bool {
+fn same(a: &BranchPoint, b: &BranchPoint) -> bool {
     (a.gain() - b.gain()).abs() <= SAME_GAIN * a.gain().max(b.gain()) && a.apart(b) < SAME_PLACE
 }
 
@@ -19,7 +19,7 @@ fn same<H>(a: &BranchPoint<H>, b: &BranchPoint<H>) -> bool {
 pub(super) fn meetings<F: Family>(
     problem: &ContinuationProblem,
     family: &F,
-    tracks: &[Track<F::Held>],
+    tracks: &[Track],
 ) -> Vec<Event> {
     let mut events = Vec::new();
     for (first, one) in tracks.iter().enumerate() {
@@ -33,16 +33,16 @@ pub(super) fn meetings<F: Family>(
 fn meeting<F: Family>(
     problem: &ContinuationProblem,
     family: &F,
-    [(first, one), (second, two)]: [(usize, &Track<F::Held>); 2],
+    [(first, one), (second, two)]: [(usize, &Track); 2],
     events: &mut Vec<Event>,
 ) {
     // After a jump two points share a value: the later one counts.
-    let at = |track: &Track<F::Held>, value: f64| {
+    let at = |track: &Track, value: f64| {
         let found = track.kept.iter().rev();
         let mut found = found.filter(|kept| kept.value.to_bits() == value.to_bits());
         found.next().cloned()
     };
-    let mut last: Option<[BranchPoint<F::Held>; 2]> = None;
+    let mut last: Option<[BranchPoint; 2]> = None;
     for number in 0..=problem.steps {
         let value = stop(problem, number);
         let (Some(a), Some(b)) = (at(one, value), at(two, value)) else {
@@ -88,9 +88,9 @@ fn meeting<F: Family>(
 fn halved<F: Family>(
     problem: &ContinuationProblem,
     family: &F,
-    mut last: [BranchPoint<F::Held>; 2],
+    mut last: [BranchPoint; 2],
     mut beyond: f64,
-    has: impl Fn(&[BranchPoint<F::Held>; 2]) -> bool,
+    has: impl Fn(&[BranchPoint; 2]) -> bool,
 ) -> (f64, f64) {
     for _ in 0..MOST_HALVINGS {
         let here = last[0].value;

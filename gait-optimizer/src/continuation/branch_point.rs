@@ -4,6 +4,7 @@ use swimmer_files::{ArcKind, Objective};
 
 use crate::OptimalGait;
 use crate::atlas::distinct::{Outline, Symmetries};
+use crate::extremal::Extremal;
 
 /// In one step a curve may move this far \[rad\], and the logarithm of its gain change by this much.
 const MOST_MOVE: f64 = 0.15;
@@ -11,24 +12,30 @@ const MOST_CHANGE: f64 = 0.15;
 /// How many numbers of a gait it is measured with.
 pub(super) const FIGURES: usize = 4;
 
-/// A gait at a value of the parameter, with what its family needs for the next one.
+/// A gait at a value of the parameter.
 #[derive(Debug, Clone)]
-pub(super) struct BranchPoint<H> {
+pub(super) struct BranchPoint {
     pub(super) value: f64,
     pub(super) gait: OptimalGait,
     pub(super) residual: f64,
-    pub(super) held: H,
+    /// Its arcs, from which the next one is shot, where it is one of most efficiency.
+    pub(super) extremal: Option<Extremal>,
     outline: Outline,
 }
 
-impl<H> BranchPoint<H> {
-    pub(super) fn new(value: f64, gait: OptimalGait, residual: f64, held: H) -> Self {
+impl BranchPoint {
+    pub(super) fn new(
+        value: f64,
+        gait: OptimalGait,
+        residual: f64,
+        extremal: Option<Extremal>,
+    ) -> Self {
         Self {
             value,
             outline: Outline::new(gait.phi()),
             gait,
             residual,
-            held,
+            extremal,
         }
     }
 

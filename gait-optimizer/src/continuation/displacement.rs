@@ -2,7 +2,7 @@
 
 use super::branch_point::BranchPoint;
 use super::follow::Family;
-use super::{ContinuationProblem, OtherSide, Start};
+use super::{ContinuationProblem, Start};
 use crate::displacement::{DisplacementProblem, Heading, every};
 use crate::{Condition, OptimalGait};
 
@@ -28,12 +28,12 @@ impl Displacement<'_> {
         .map_err(|error| error.to_string())
     }
 
-    fn nearest(&self, value: f64, to: &OptimalGait) -> Result<BranchPoint<()>, String> {
+    fn nearest(&self, value: f64, to: &OptimalGait) -> Result<BranchPoint, String> {
         let place = kept(0.0, to.clone());
         let all = self.all(value, (Some(heading(to)), !to.bounds.sector))?;
         let found = all.into_iter().map(|gait| kept(value, gait));
         // An optimum before an extremal that is none.
-        let far = |kept: &BranchPoint<()>| {
+        let far = |kept: &BranchPoint| {
             let apart = kept.apart(&place);
             if kept.holds() || apart > 0.05 {
                 apart
@@ -55,23 +55,21 @@ fn heading(gait: &OptimalGait) -> Heading {
     }
 }
 
-fn kept(value: f64, gait: OptimalGait) -> BranchPoint<()> {
+fn kept(value: f64, gait: OptimalGait) -> BranchPoint {
     let residual = gait.certificate.value(Condition::FinalLambda4);
-    BranchPoint::new(value, gait, residual.unwrap_or(f64::NAN), ())
+    BranchPoint::new(value, gait, residual.unwrap_or(f64::NAN), None)
 }
 
 /// Those that are optima, at least among gaits with their symmetries.
-fn optima(value: f64, all: Vec<OptimalGait>) -> impl Iterator<Item = BranchPoint<()>> {
+fn optima(value: f64, all: Vec<OptimalGait>) -> impl Iterator<Item = BranchPoint> {
     let all = all.into_iter().map(move |gait| kept(value, gait));
     all.filter(BranchPoint::holds)
 }
 
 impl Family for Displacement<'_> {
-    type Held = ();
-
     const JUMPS: bool = true;
 
-    fn start(&self, start: &Start) -> Result<BranchPoint<()>, String> {
+    fn start(&self, start: &Start) -> Result<BranchPoint, String> {
         let value = self.problem.from;
         match start {
             Start::Displacement { heading, rank } => {
@@ -91,20 +89,16 @@ impl Family for Displacement<'_> {
     fn next(
         &self,
         value: f64,
-        here: &BranchPoint<()>,
-        _: Option<&BranchPoint<()>>,
-    ) -> Result<BranchPoint<()>, String> {
+        here: &BranchPoint,
+        _: Option<&BranchPoint>,
+    ) -> Result<BranchPoint, String> {
         self.nearest(value, &here.gait)
     }
 
-    fn optimum(&self, value: f64, last: &BranchPoint<()>) -> Option<BranchPoint<()>> {
+    fn optimum(&self, value: f64, last: &BranchPoint) -> Option<BranchPoint> {
         let all = self
             .all(value, (Some(heading(&last.gait)), !last.gait.bounds.sector))
             .ok()?;
         optima(value, all).min_by(|a, b| a.apart(last).total_cmp(&b.apart(last)))
-    }
-
-    fn other_side(&self, _: &BranchPoint<()>, _: &BranchPoint<()>) -> Option<OtherSide> {
-        None
     }
 }

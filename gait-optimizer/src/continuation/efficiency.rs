@@ -36,7 +36,7 @@ impl Efficiency<'_> {
         value: f64,
         model: &Model<f64>,
         extremal: Extremal,
-    ) -> Result<BranchPoint<Extremal>, String> {
+    ) -> Result<BranchPoint, String> {
         let (swimmer, bounds) = (
             self.problem.swimmer_at(value),
             self.problem.bounds_at(value),
@@ -49,7 +49,7 @@ impl Efficiency<'_> {
         };
         let gait = gait(&order, &extremal).map_err(|error| error.to_string())?;
         let residual = extremal.solved.residual;
-        Ok(BranchPoint::new(value, gait, residual, extremal))
+        Ok(BranchPoint::new(value, gait, residual, Some(extremal)))
     }
 
     fn polished<G: Gait<f64> + ?Sized>(
@@ -57,7 +57,7 @@ impl Efficiency<'_> {
         value: f64,
         curve: &G,
         quarter: bool,
-    ) -> Result<BranchPoint<Extremal>, String> {
+    ) -> Result<BranchPoint, String> {
         let model = self.model(value)?;
         let extremal = polish(&model, &self.walls(value), curve, quarter)
             .map_err(|error| error.to_string())?;
@@ -66,11 +66,9 @@ impl Efficiency<'_> {
 }
 
 impl Family for Efficiency<'_> {
-    type Held = Extremal;
-
     const JUMPS: bool = false;
 
-    fn start(&self, start: &Start) -> Result<BranchPoint<Extremal>, String> {
+    fn start(&self, start: &Start) -> Result<BranchPoint, String> {
         let value = self.problem.from;
         let gait = match start {
             Start::Gait(gait) => (**gait).clone(),
@@ -98,25 +96,22 @@ impl Family for Efficiency<'_> {
     fn next(
         &self,
         value: f64,
-        here: &BranchPoint<Extremal>,
-        before: Option<&BranchPoint<Extremal>>,
-    ) -> Result<BranchPoint<Extremal>, String> {
+        here: &BranchPoint,
+        before: Option<&BranchPoint>,
+    ) -> Result<BranchPoint, String> {
         let (model, walls) = (self.model(value)?, self.walls(value));
-        let chain = &here.held.solved.chain;
+        let extremal = here.extremal.as_ref().ok_or("it is no efficiency gait")?;
+        let chain = &extremal.solved.chain;
         let secant = before.and_then(|before| {
             let factor = (value - here.value) / (here.value - before.value);
-            let last = &before.held.solved.chain;
+            let last = &before.extremal.as_ref()?.solved.chain;
             (alike(last, chain) && factor > 0.0 && factor <= FARTHEST)
                 .then(|| mirrored(last, chain, factor))
         });
         let mut reason = String::new();
         for guess in secant.into_iter().chain([chain.clone()]) {
-            match polish_chain(
-                &model,
-                &walls,
-                here.held.class,
-                within_walls(&walls, &guess),
-            ) {
+            let guess = within_walls(&walls, &guess);
+            match polish_chain(&model, &walls, extremal.class, guess) {
                 Ok(extremal) => return self.kept(value, &model, extremal),
                 Err(error) => reason = error.to_string(),
             }
@@ -129,17 +124,9 @@ impl Family for Efficiency<'_> {
         self.polished(value, &curve, false).map_err(|_| reason)
     }
 
-    fn optimum(&self, _: f64, _: &BranchPoint<Extremal>) -> Option<BranchPoint<Extremal>> {
-        None
-    }
-
-    fn other_side(
-        &self,
-        before: &BranchPoint<Extremal>,
-        last: &BranchPoint<Extremal>,
-    ) -> Option<OtherSide> {
+    fn other_side(&self, before: &BranchPoint, last: &BranchPoint) -> Option<OtherSide> {
         let model = self.model(before.value).ok()?;
-        let other = other_side(&model, &before.held, &last.held)?;
+        let other = other_side(&model, before.extremal.as_ref()?, last.extremal.as_ref()?)?;
         Some(OtherSide {
             value: before.value,
             efficiency: other.efficiency(&model),

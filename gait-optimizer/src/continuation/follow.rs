@@ -26,41 +26,34 @@ const MOST_BEFORE: usize = 12;
 
 /// How the gaits of one objective are found.
 pub(super) trait Family {
-    /// What is kept of a gait for the next one.
-    type Held: Clone;
-
     /// Whether a branch that ends goes on with the nearest other gait.
     const JUMPS: bool;
 
     /// The first gait.
-    fn start(&self, start: &Start) -> Result<BranchPoint<Self::Held>, String>;
+    fn start(&self, start: &Start) -> Result<BranchPoint, String>;
 
     /// A gait near the last one (and the one before it), at another value.
     fn next(
         &self,
         value: f64,
-        here: &BranchPoint<Self::Held>,
-        before: Option<&BranchPoint<Self::Held>>,
-    ) -> Result<BranchPoint<Self::Held>, String>;
+        here: &BranchPoint,
+        before: Option<&BranchPoint>,
+    ) -> Result<BranchPoint, String>;
 
     /// The optimum nearest to a gait that is none any more, where one shall be followed instead.
-    fn optimum(
-        &self,
-        value: f64,
-        last: &BranchPoint<Self::Held>,
-    ) -> Option<BranchPoint<Self::Held>>;
+    fn optimum(&self, _value: f64, _last: &BranchPoint) -> Option<BranchPoint> {
+        None
+    }
 
     /// The extremal that a branch meets where it ends.
-    fn other_side(
-        &self,
-        before: &BranchPoint<Self::Held>,
-        last: &BranchPoint<Self::Held>,
-    ) -> Option<OtherSide>;
+    fn other_side(&self, _before: &BranchPoint, _last: &BranchPoint) -> Option<OtherSide> {
+        None
+    }
 }
 
 /// A branch.
-pub(super) struct Track<H> {
-    pub(super) kept: Vec<BranchPoint<H>>,
+pub(super) struct Track {
+    pub(super) kept: Vec<BranchPoint>,
     pub(super) events: Vec<Event>,
 }
 
@@ -76,22 +69,22 @@ pub(super) fn smallest(problem: &ContinuationProblem) -> f64 {
 }
 
 /// Why a step failed.
-enum Refused<H> {
-    Another(Box<BranchPoint<H>>),
+enum Refused {
+    Another(Box<BranchPoint>),
     Nothing(String),
 }
 
 /// A gait that may be the next one, and how far off it is over what a step may change.
-type Tried<H> = Result<(BranchPoint<H>, f64), Refused<H>>;
+type Tried = Result<(BranchPoint, f64), Refused>;
 
 /// Follows one branch.
 pub(super) fn follow<F: Family>(
     problem: &ContinuationProblem,
     family: &F,
     branch: usize,
-    first: BranchPoint<F::Held>,
+    first: BranchPoint,
     watch: Watch<'_>,
-) -> Track<F::Held> {
+) -> Track {
     Walk {
         problem,
         family,
@@ -118,13 +111,13 @@ struct Walk<'a, F: Family> {
     gaits: usize,
     /// First point since the last jump.
     since: usize,
-    track: Track<F::Held>,
-    here: BranchPoint<F::Held>,
-    before: Option<BranchPoint<F::Held>>,
+    track: Track,
+    here: BranchPoint,
+    before: Option<BranchPoint>,
 }
 
 impl<F: Family> Walk<'_, F> {
-    fn run(mut self, watch: Watch<'_>) -> Track<F::Held> {
+    fn run(mut self, watch: Watch<'_>) -> Track {
         let smallest = smallest(self.problem);
         let whole = (self.problem.to - self.problem.from) / self.problem.steps as f64;
         let mut step = whole;
@@ -180,7 +173,7 @@ impl<F: Family> Walk<'_, F> {
         });
     }
 
-    fn tried(&mut self, value: f64) -> Tried<F::Held> {
+    fn tried(&mut self, value: f64) -> Tried {
         self.gaits = self.gaits.saturating_sub(1);
         match self.family.next(value, &self.here, self.before.as_ref()) {
             Ok(found) => match self.here.off(&found) {
@@ -192,7 +185,7 @@ impl<F: Family> Walk<'_, F> {
     }
 
     /// Takes a gait for the next one; false where the branch ends in it.
-    fn accepts(&mut self, found: BranchPoint<F::Held>) -> bool {
+    fn accepts(&mut self, found: BranchPoint) -> bool {
         let mut from = self.here.clone();
         if !found.holds() {
             let (last, next) = self.parted(&from, &found, BranchPoint::holds);
@@ -201,7 +194,7 @@ impl<F: Family> Walk<'_, F> {
             self.event(value, within, EventKind::Lost { failed });
             return self.resumes();
         }
-        let passes = |kept: &BranchPoint<F::Held>| kept.gait.certificate.pass();
+        let passes = |kept: &BranchPoint| kept.gait.certificate.pass();
         if passes(&from) != passes(&found) {
             let alone = passes(&from);
             let (last, next) = self.parted(&from, &found, |kept| passes(kept) == alone);
@@ -229,10 +222,10 @@ impl<F: Family> Walk<'_, F> {
     /// Two gaits close by, of which the first still has a property of `from` and the second has not.
     fn parted(
         &mut self,
-        from: &BranchPoint<F::Held>,
-        to: &BranchPoint<F::Held>,
-        has: impl Fn(&BranchPoint<F::Held>) -> bool,
-    ) -> (BranchPoint<F::Held>, BranchPoint<F::Held>) {
+        from: &BranchPoint,
+        to: &BranchPoint,
+        has: impl Fn(&BranchPoint) -> bool,
+    ) -> (BranchPoint, BranchPoint) {
         let (mut last, mut next) = (from.clone(), to.clone());
         while (next.value - last.value).abs() > smallest(self.problem) && self.gaits > 0 {
             self.gaits -= 1;
@@ -256,7 +249,7 @@ impl<F: Family> Walk<'_, F> {
     }
 
     /// No step goes on from here; true where another gait does.
-    fn stops(&mut self, refused: Refused<F::Held>, step: f64) -> bool {
+    fn stops(&mut self, refused: Refused, step: f64) -> bool {
         let exponent = self.exponent();
         let other = self.other_side();
         let (value, within) = between(self.here.value, self.here.value + step);
@@ -286,7 +279,7 @@ impl<F: Family> Walk<'_, F> {
     }
 
     /// Goes on from another gait that is further off than a step may lead.
-    fn lands(&mut self, found: BranchPoint<F::Held>) {
+    fn lands(&mut self, found: BranchPoint) {
         let (apart, exponent) = (self.here.apart(&found), self.exponent());
         let (value, within) = between(self.here.value, found.value);
         self.event(value, within, EventKind::Jump { apart, exponent });
@@ -321,7 +314,7 @@ impl<F: Family> Walk<'_, F> {
     }
 
     /// The end of a gap in which there is no optimum, nearest to here.
-    fn nearest(&self, found: BranchPoint<F::Held>) -> BranchPoint<F::Held> {
+    fn nearest(&self, found: BranchPoint) -> BranchPoint {
         let (mut none, mut nearest) = (self.here.value, found);
         for _ in 0..MOST_HALVINGS {
             if (nearest.value - none).abs() <= smallest(self.problem) {
@@ -337,7 +330,7 @@ impl<F: Family> Walk<'_, F> {
     }
 
     /// An event: the arcs are others.
-    fn changes(&mut self, last: &BranchPoint<F::Held>, next: &BranchPoint<F::Held>) {
+    fn changes(&mut self, last: &BranchPoint, next: &BranchPoint) {
         let (value, within) = between(last.value, next.value);
         let kind = EventKind::Structure {
             before: last.arcs(),

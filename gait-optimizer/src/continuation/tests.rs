@@ -52,7 +52,7 @@ fn folds_are_found_and_proven() {
             steps: 5,
             ..ContinuationProblem::new(swimmer, parameter, range, large())
         };
-        let found = continuation(&problem).unwrap();
+        let found = continuation(&problem, &|_| ()).unwrap();
         let (value, fold) = only(&found, fold);
         assert!((value - place).abs() < 2e-6, "{value}");
         let other = fold.other.unwrap();
@@ -102,7 +102,7 @@ fn the_end_of_a_branch_is_the_gait_found_there_directly() {
             Start::Efficiency(Branch::Small),
         )
     };
-    let found = continuation(&problem).unwrap();
+    let found = continuation(&problem, &|_| ()).unwrap();
     for branch in [0, 1] {
         let last = found.points.iter().rfind(|p| p.branch == branch).unwrap();
         assert!((last.value - 1.5).abs() < 1e-15);
@@ -124,7 +124,7 @@ fn arcs_change_where_a_bound_reaches_the_start() {
         steps: 10,
         ..ContinuationProblem::new(Swimmer::robot(), Parameter::MaxAngle, [2.0, 1.0], FARTHEST)
     };
-    let found = continuation(&problem).unwrap();
+    let found = continuation(&problem, &|_| ()).unwrap();
     let (event, before, after) = only(&found, |event| match &event.kind {
         EventKind::Structure { before, after } => Some((event, before, after)),
         _ => None,
@@ -169,7 +169,7 @@ fn the_better_of_two_gaits_changes() {
             Start::Efficiency(small),
         )
     };
-    let found = continuation(&problem).unwrap();
+    let found = continuation(&problem, &|_| ()).unwrap();
     let (branch, by, value) = only(&found, |event| match event.kind {
         EventKind::Overtaken { by } => Some((event.branch, by, event.value)),
         _ => None,
@@ -189,12 +189,8 @@ fn the_better_of_two_gaits_changes() {
 fn nonsense_is_refused() {
     let problem = |parameter, range| {
         let start = Start::Efficiency(Branch::Small);
-        continuation(&ContinuationProblem::new(
-            Swimmer::purcell(),
-            parameter,
-            range,
-            start,
-        ))
+        let problem = ContinuationProblem::new(Swimmer::purcell(), parameter, range, start);
+        continuation(&problem, &|_| ())
     };
     for (parameter, range) in [
         (Parameter::Chi, [2.0, 2.0]),
@@ -222,7 +218,7 @@ fn a_jump_is_not_hidden() {
             FARTHEST,
         )
     };
-    let found = continuation(&problem).unwrap();
+    let found = continuation(&problem, &|_| ()).unwrap();
     let end = only(&found, |event| match event.kind {
         EventKind::Lost { .. } | EventKind::Ended { .. } => Some(event.value),
         _ => None,

@@ -10,11 +10,10 @@ use super::flow::Touch;
 use super::search::{Candidate, FINER_SCAN, SCAN_POINTS, Search, Seen};
 use super::start_family::{StartFamily, families, families_on_the_diagonal};
 use super::{DisplacementError, DisplacementProblem, Fates, certified, traced};
-use crate::certificate::Verdict;
-use crate::certificate::turning_number;
+use crate::certificate::{Verdict, turning_number};
 use crate::momentum::Motion;
 use crate::region::Region;
-use crate::{Condition, OptimalGait, certify};
+use crate::{Condition, OptimalGait};
 
 /// What a search within some bounds came to.
 pub(super) struct Extremals<'a> {
@@ -200,20 +199,18 @@ pub(super) fn finely_sampled(
 
 /// The longest side of a gait's polygon, and the largest angle between two but at corners \[rad\].
 fn longest_and_sharpest(gait: &OptimalGait) -> [f64; 2] {
-    let sides = gait.phi().windows(2).map(|pair| pair[1] - pair[0]);
-    let sides: Vec<_> = sides.collect();
-    let bends = sides.windows(2).zip(gait.u().iter().skip(1));
+    let sides: Vec<_> = gait.phi().array_windows().map(|[a, b]| b - a).collect();
+    let bends = sides.array_windows().zip(gait.u().iter().skip(1));
     let bends = bends.filter(|(_, u)| !gait.corners().contains(u));
-    let bends = bends.map(|(pair, _)| pair[0].perp(&pair[1]).atan2(pair[0].dot(&pair[1])).abs());
+    let bends = bends.map(|([a, b], _)| a.perp(b).atan2(a.dot(b)).abs());
     [
         sides.iter().map(Vector2::norm).fold(0.0, f64::max),
         bends.fold(0.0, f64::max),
     ]
 }
 
-/// Whether samples alone leave open what [`certify`] asks.
+/// Whether samples alone leave open what [`certify`](crate::certify()) asks.
 fn leaves_open(gait: &OptimalGait) -> bool {
-    let file = gait.gait_file("");
-    let certificate = certify(&gait.swimmer, &file, gait.objective, &gait.bounds);
+    let certificate = gait.certify();
     certificate.is_ok_and(|certificate| certificate.verdict() == Verdict::Undecided)
 }

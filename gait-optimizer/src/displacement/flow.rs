@@ -4,7 +4,7 @@ mod quarter;
 
 use swimmer_files::ArcKind;
 
-use crate::arcs::{EndCondition, Event, Leg, TracedArc, Tracer};
+use crate::arcs::{EndCondition, Event, Leg, Tracer};
 use crate::momentum::{Flow, Motion, State, Track, shape};
 use crate::region::{Bound, Edge, Region};
 use crate::runge_kutta::{Point, StepControl, System};
@@ -34,6 +34,8 @@ pub(crate) enum Touch {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TraceOptions {
     pub(crate) control: StepControl,
+    /// Whether bounds are left where the multiplier falls to zero.
+    pub(crate) leaves: bool,
     pub(crate) touch: Touch,
     /// Whether the quarter has touched φ₁ = −φ₂ before the state that is followed from.
     pub(crate) touched: bool,
@@ -46,38 +48,12 @@ pub(super) fn lasting(legs: &[Leg]) -> impl Iterator<Item = &Leg> {
     legs.iter().filter(|leg| leg.to[5] > leg.from[5])
 }
 
-/// Follows arcs from a state on the first one until the quarter is over, leaving bounds where the multiplier falls to zero.
+/// Follows arcs from a state on the first one until the quarter is over.
 pub(crate) fn follow(
     first: Flow<'_>,
     region: &Region,
     start: State,
     options: TraceOptions,
-) -> Quarter {
-    arcs(first, region, start, options, true)
-}
-
-/// Follows the bounds from a state on the first one, never leaving them.
-pub(crate) fn along_bounds(
-    first: Flow<'_>,
-    region: &Region,
-    start: State,
-    (control, touch): (StepControl, Touch),
-) -> Quarter {
-    let options = TraceOptions {
-        control,
-        touch,
-        touched: false,
-        began: start[0] + start[1],
-    };
-    arcs(first, region, start, options, false)
-}
-
-fn arcs(
-    first: Flow<'_>,
-    region: &Region,
-    start: State,
-    options: TraceOptions,
-    leaves: bool,
 ) -> Quarter {
     let still = Leg {
         motion: first.motion,
@@ -99,18 +75,14 @@ fn arcs(
             flow: Flow { motion, ..first },
             region,
             control: options.control,
-            leaves,
+            leaves: options.leaves,
             ends: &ends,
             before: 0.0,
             longest: LONGEST_CURVE,
         };
-        let TracedArc { end, length, event } = tracer.arc(quarter.end);
-        *leg = Leg {
-            motion,
-            from: quarter.end,
-            to: end,
-            length,
-        };
+        let event;
+        (*leg, event) = tracer.arc(quarter.end);
+        let end = leg.to;
         quarter.end = end;
         quarter.count += 1;
         let at_the_end = event == Some(Event::End(End::Antidiagonal));

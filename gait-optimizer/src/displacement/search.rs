@@ -284,16 +284,9 @@ impl<'a> Search<'a> {
             // Again from the start: the multiplier itself must fall to zero at p.
             StartFamily::Bounds { .. } | StartFamily::EndLine { .. } => {
                 let start = family.start()?;
-                let whole = follow(
-                    self.flow(final_y, start.motion),
-                    self.region,
-                    start.state,
-                    self.options(FINE, &start.state, family.begins_straight()),
-                );
-                let left = whole
-                    .legs()
-                    .iter()
-                    .find(|leg| leg.motion == Motion::Singular)?;
+                let whole = self.whole(&start, final_y, family.begins_straight());
+                let mut legs = whole.legs().iter();
+                let left = legs.find(|leg| leg.motion == Motion::Singular)?;
                 let place = self.place(family, p, FINE)?.state;
                 ((shape(&left.from) - shape(&place)).norm() < 1e-6).then_some(whole)?
             }
@@ -310,23 +303,22 @@ impl<'a> Search<'a> {
             return None; // which would be no loop
         }
         let final_y = family.end()?[3];
-        let start = family.start()?;
-        let quarter = follow(
-            self.flow(final_y, start.motion),
-            self.region,
-            start.state,
-            self.options(FINE, &start.state, false),
-        );
-        let stayed = quarter
-            .legs()
-            .iter()
-            .all(|leg| leg.motion != Motion::Singular);
-        (self.ended(&quarter) && stayed && (quarter.end[3] - final_y).abs() < 1e-10).then_some(
-            Candidate {
-                quarter,
-                momentum: self.momentum(final_y),
-            },
-        )
+        let quarter = self.whole(&family.start()?, final_y, false);
+        let mut legs = quarter.legs().iter();
+        let stayed = legs.all(|leg| leg.motion != Motion::Singular);
+        let candidate = Candidate {
+            quarter,
+            momentum: self.momentum(final_y),
+        };
+        let on_the_end = (quarter.end[3] - final_y).abs() < 1e-10;
+        (self.ended(&quarter) && stayed && on_the_end).then_some(candidate)
+    }
+
+    /// The quarter that begins at a place.
+    fn whole(&self, start: &Place, final_y: f64, touched: bool) -> Quarter {
+        let flow = self.flow(final_y, start.motion);
+        let options = self.options(FINE, &start.state, touched);
+        follow(flow, self.region, start.state, options)
     }
 
     /// `λ₄(t_f)` over λ₃ of the extremal that leaves a family at p, where that extremal ends.
@@ -356,23 +348,15 @@ impl<'a> Search<'a> {
             Motion::Along(track) => track.inwards(&phi).dot(&direction),
         };
         let began = family.start().map_or(state, |start| start.state);
-        (inwards > 0.0).then(|| {
-            (
-                follow(
-                    singular,
-                    self.region,
-                    state,
-                    self.options(control, &began, family.touched()),
-                ),
-                final_y,
-            )
-        })
+        let options = self.options(control, &began, family.touched());
+        (inwards > 0.0).then(|| (follow(singular, self.region, state, options), final_y))
     }
 
     /// From a state of a quarter that began in another.
     fn options(&self, control: StepControl, began: &State, touched: bool) -> TraceOptions {
         TraceOptions {
             control,
+            leaves: true,
             touch: self.touch,
             touched,
             began: began[0] + began[1],

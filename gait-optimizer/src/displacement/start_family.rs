@@ -7,7 +7,7 @@ use swimmer_files::{ArcKind, Bounds};
 
 use swimmer_model::Model;
 
-use super::flow::{FINE, Fate, Touch, TraceOptions, along_bounds, follow, is_end_line, lasting};
+use super::flow::{FINE, Fate, Quarter, Touch, TraceOptions, follow, is_end_line, lasting};
 use crate::arcs::Leg;
 use crate::momentum::{Flow, Momentum, Motion, State, Track, pose, shape};
 use crate::region::{Bound, Piece, Region, Wall};
@@ -71,9 +71,11 @@ pub(crate) fn families(flow: Flow<'_>, bounds: &Bounds, region: &Region) -> Vec<
                 Piece::Tips
             };
         }
-        let motion = Motion::Along(track);
-        let along = Flow { motion, ..flow };
-        let way = along_bounds(along, region, state, (FINE, Touch::Ends));
+        let start = Place {
+            state,
+            motion: Motion::Along(track),
+        };
+        let way = along_bounds(flow, region, start, Touch::Ends);
         let stretches = stretches(way.legs());
         if way.fate == Fate::Ended && !stretches.is_empty() {
             families.push(StartFamily::Bounds { stretches });
@@ -99,11 +101,7 @@ pub(crate) fn families_on_the_diagonal(
         .then(|| straight_shape(region, index))
         .flatten();
     let ways = on_bounds.chain(straight).filter_map(|start| {
-        let along = Flow {
-            motion: start.motion,
-            ..flow
-        };
-        let way = along_bounds(along, region, start.state, (FINE, touch));
+        let way = along_bounds(flow, region, start, touch);
         let mut stretches = stretches(way.legs());
         let touching = stretches
             .iter()
@@ -113,6 +111,19 @@ pub(crate) fn families_on_the_diagonal(
         Some(StartFamily::EndLine { stretches, turn })
     });
     ways.collect()
+}
+
+/// Follows the bounds from a place on the first one, never leaving them.
+fn along_bounds(flow: Flow<'_>, region: &Region, start: Place, touch: Touch) -> Quarter {
+    let Place { state, motion } = start;
+    let options = TraceOptions {
+        control: FINE,
+        leaves: false,
+        touch,
+        touched: false,
+        began: state[0] + state[1],
+    };
+    follow(Flow { motion, ..flow }, region, state, options)
 }
 
 /// Where quarters begin that leave the straight shape along φ₁ = −φ₂; none where the bounds do not allow it.
@@ -130,6 +141,7 @@ fn straight_shape(region: &Region, index: usize) -> Option<Place> {
 fn turn(flow: Flow<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
     let options = TraceOptions {
         control: FINE,
+        leaves: true,
         touch: Touch::Ends,
         touched: true,
         began: 0.0,

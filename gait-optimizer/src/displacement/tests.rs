@@ -1,5 +1,4 @@
 use super::*;
-use crate::certify;
 use swimmer_files::ArcKind;
 use swimmer_model::Links;
 use swimmer_model::TangentialDrag;
@@ -76,8 +75,7 @@ fn gaits_that_touch_their_images_certify_from_their_file() {
         let touches = gait.arcs.iter().any(runs_along);
         touching += usize::from(touches);
         assert_eq!(gait.bounds.sector, touches);
-        let file = gait.gait_file("a swimmer");
-        let certificate = certify(&swimmer, &file, file.objective, &file.bounds).unwrap();
+        let certificate = gait.certify().unwrap();
         assert!(
             certificate.pass(),
             "{max_angle}: {}",

@@ -25,13 +25,9 @@ pub(crate) fn best_circles(model: &Model<f64>, sign: f64) -> Vec<f64> {
     let worth: Vec<f64> = (0..count)
         .map(|i| sign * objective.value(&[amplitude(i); 2]).ratio())
         .collect();
-    let tops = worth
-        .windows(3)
-        .zip(1..)
-        .filter_map(|(three, i)| match *three {
-            [before, here, after] => (here > 0.0 && here >= before && here > after).then_some(i),
-            _ => None,
-        });
+    let is_top = |[before, here, after]: [f64; 3]| here > 0.0 && here >= before && here > after;
+    let places = worth.array_windows().zip(1..);
+    let tops = places.filter_map(|(three, i)| is_top(*three).then_some(i));
     tops.map(amplitude).collect()
 }
 

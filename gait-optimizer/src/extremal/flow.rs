@@ -3,7 +3,7 @@
 use swimmer_model::Model;
 
 use super::equations::{Motion, RATES, STATE, State, linear, rate};
-use crate::runge_kutta::{Point, StepControl, System, advance};
+use crate::runge_kutta::{Point, StepControl, advance};
 
 /// Entries of a state with q and the sensitivities of both.
 const WIDE: usize = RATES + RATES * STATE;
@@ -29,38 +29,21 @@ const CONTROL: StepControl = StepControl {
     longest: f64::INFINITY,
 };
 
-struct Variational<'a> {
-    model: &'a Model<f64>,
-    motion: &'a Motion,
-}
-
-impl System<WIDE> for Variational<'_> {
-    fn rate(&self, z: &[f64; WIDE]) -> [f64; WIDE] {
-        let local = linear(self.model, self.motion, &state(z));
-        let mut out = [0.0; WIDE];
-        let (rates, slopes) = out.split_at_mut(RATES);
-        rates.copy_from_slice(&local.rate);
-        let (_, sensitivity) = z.split_at(RATES);
-        for (row, by) in slopes.chunks_exact_mut(STATE).zip(&local.by_state) {
-            for (factor, from) in by.iter().zip(sensitivity.chunks_exact(STATE)) {
-                for (value, part) in row.iter_mut().zip(from) {
-                    *value += factor * part;
-                }
+/// Rates of the state, of q and of their sensitivities.
+fn variational(model: &Model<f64>, motion: &Motion, z: &[f64; WIDE]) -> [f64; WIDE] {
+    let local = linear(model, motion, &state(z));
+    let mut out = [0.0; WIDE];
+    let (rates, slopes) = out.split_at_mut(RATES);
+    rates.copy_from_slice(&local.rate);
+    let (_, sensitivity) = z.split_at(RATES);
+    for (row, by) in slopes.chunks_exact_mut(STATE).zip(&local.by_state) {
+        for (factor, from) in by.iter().zip(sensitivity.chunks_exact(STATE)) {
+            for (value, part) in row.iter_mut().zip(from) {
+                *value += factor * part;
             }
         }
-        out
     }
-}
-
-struct Plain<'a> {
-    model: &'a Model<f64>,
-    motion: &'a Motion,
-}
-
-impl System<RATES> for Plain<'_> {
-    fn rate(&self, z: &[f64; RATES]) -> [f64; RATES] {
-        rate(self.model, self.motion, &state(z))
-    }
+    out
 }
 
 fn state(z: &[f64]) -> State {
@@ -81,18 +64,13 @@ pub(crate) fn mapped(
         z[i] = *value;
         z[RATES + i * STATE + i] = 1.0;
     }
-    let system = Variational { model, motion };
+    let sign = if length < 0.0 { -1.0 } else { 1.0 };
+    let system = |z: &[f64; WIDE]| variational(model, motion, z).map(|value| sign * value);
     let control = StepControl {
         tolerance,
         ..CONTROL
     };
-    let end = if length >= 0.0 {
-        advance(&system, Point::new(&system, z), length, control)?
-    } else {
-        let back = |z: &[f64; WIDE]| system.rate(z).map(|value| -value);
-        advance(&back, Point::new(&back, z), -length, control)?
-    };
-    let sign = if length < 0.0 { -1.0 } else { 1.0 };
+    let end = advance(&system, Point::new(&system, z), length.abs(), control)?;
     let mut by_start = [[0.0; STATE]; RATES];
     for (row, from) in by_start.iter_mut().zip(end.z[RATES..].chunks_exact(STATE)) {
         row.copy_from_slice(from);
@@ -112,7 +90,7 @@ pub(crate) fn flowed(
     start: &State,
     length: f64,
 ) -> Option<(State, f64)> {
-    let system = Plain { model, motion };
+    let system = |z: &[f64; RATES]| rate(model, motion, &state(z));
     let mut z = [0.0; RATES];
     for (value, from) in z.iter_mut().zip(start) {
         *value = *from;

@@ -2,16 +2,16 @@
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, Objective};
-use swimmer_model::{Gait, Model, Stroke, Swimmer, Tolerance, crossing_share, swim};
+use swimmer_model::{Gait, Model, Stroke, Swimmer, Tolerance, swim};
 
 use super::evidence::{Evidence, follow};
 use super::sampled::sampled;
 use super::shooting::Class;
 use super::wall::Walls;
 use super::{Extremal, Unpolished};
+use crate::OptimalGait;
 use crate::certificate::{Certificate, Condition};
 use crate::certify::slopes_open;
-use crate::optimal_gait::{OptimalGait, Solution};
 
 /// Samples of a cycle are not made more beyond this.
 const MOST_SAMPLES: usize = 8192;
@@ -52,32 +52,22 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
     };
     let stroke = swim(model, &curve, &Tolerance::new(1e-12));
     let certificate = certificate(model, extremal, &walls, (&evidence, &stroke), variation);
-    let links_cross = crossing_share(&model.swimmer().links, &curve).of_cycle;
-    let mut gait = OptimalGait::new(Solution {
-        objective: Objective::Efficiency,
-        swimmer: *order.swimmer,
-        bounds: *order.bounds,
-        symmetric: class == Class::Quarter,
-        arcs: cycle.arcs(class == Class::Quarter),
-        cycle,
-        stroke,
-        links_cross,
+    let symmetric = class == Class::Quarter;
+    let [x, y] = if symmetric {
+        [4.0 * evidence.displacement.x, 0.0]
+    } else {
+        evidence.displacement.into()
+    };
+    let of = (Objective::Efficiency, order.swimmer, order.bounds);
+    Ok(OptimalGait {
+        // The arcs know these closer than the samples do.
+        efficiency: extremal.efficiency(model),
+        displacement_over_length: x,
+        lateral_over_length: y,
+        displacement: x * order.swimmer.total_length(),
         certificate,
-    });
-    // The arcs know these closer than the samples do.
-    gait.efficiency = extremal.efficiency(model);
-    match class {
-        Class::Quarter => {
-            gait.displacement_over_length = 4.0 * evidence.displacement.x;
-            gait.lateral_over_length = 0.0;
-        }
-        Class::Closed { .. } => {
-            gait.displacement_over_length = evidence.displacement.x;
-            gait.lateral_over_length = evidence.displacement.y;
-        }
-    }
-    gait.displacement = gait.displacement_over_length * order.swimmer.total_length();
-    Ok(gait)
+        ..OptimalGait::of_cycle(of, symmetric, cycle, &stroke)
+    })
 }
 
 /// So many samples that they should suffice where they are too far apart by this factor.
@@ -132,8 +122,8 @@ fn certificate(
 /// (max − min)/mean of the power in the middle of the samples' intervals.
 fn power_variation(model: &Model<f64>, u: &[f64], gait: &AnyGait) -> f64 {
     let (mut least, mut most, mut sum) = (f64::INFINITY, 0.0_f64, 0.0);
-    for pair in u.windows(2) {
-        let middle = gait.at(0.5 * pair.iter().sum::<f64>());
+    for [from, to] in u.array_windows() {
+        let middle = gait.at(0.5 * (from + to));
         let power = middle
             .rate
             .dot(&(model.power_matrix(&middle.phi) * middle.rate));

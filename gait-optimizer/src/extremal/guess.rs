@@ -42,8 +42,8 @@ impl Trajectory {
             .zip(&rates)
             .map(|(point, rate)| rate.dot(&(model.power_matrix(&point.phi) * rate)).sqrt())
             .collect();
-        for pair in speeds.windows(2) {
-            so_far += 0.5 * (pair.first()? + pair.last()?) / SAMPLES as f64;
+        for [from, to] in speeds.array_windows() {
+            so_far += 0.5 * (from + to) / SAMPLES as f64;
             length.push(so_far);
         }
         let end = points.last()?;
@@ -84,10 +84,8 @@ impl Trajectory {
     /// The multiplier of rotation with which the turning of the curve is met best, in the least-squares sense.
     fn fitted_rotation(&self, model: &Model<f64>, free: impl Fn(&Vector2<f64>) -> bool) -> f64 {
         let (mut top, mut bottom) = (0.0, 0.0);
-        for (states, lengths) in self.states.windows(2).zip(self.length.windows(2)) {
-            let ([before, after], [from, to]) = (states, lengths) else {
-                continue;
-            };
+        let intervals = self.states.array_windows().zip(self.length.array_windows());
+        for ([before, after], [from, to]) in intervals {
             let step = to - from;
             let phi = Vector2::new(0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1]));
             if step <= 0.0 || !free(&phi) {

@@ -29,32 +29,16 @@ pub(crate) struct Solved {
 }
 
 /// Why an iteration gave up.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Unsolved {
-    /// An extremal could not be integrated from the guess.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub(crate) enum Unsolved {
+    #[error("an extremal cannot be integrated from the guess")]
     Lost,
-    /// The Jacobian is singular.
+    #[error("the conditions are singular")]
     Singular,
-    /// No step made the residual smaller.
-    Stuck {
-        /// The smallest that was reached.
-        residual: f64,
-    },
-    /// The chain has no unknowns or does not fit together.
+    #[error("no step makes the residual of {residual:.1e} smaller")]
+    Stuck { residual: f64 },
+    #[error("the arcs do not fit together")]
     Malformed,
-}
-
-impl std::fmt::Display for Unsolved {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Lost => f.write_str("an extremal cannot be integrated from the guess"),
-            Self::Singular => f.write_str("the conditions are singular"),
-            Self::Stuck { residual } => {
-                write!(f, "no step makes the residual of {residual:.1e} smaller")
-            }
-            Self::Malformed => f.write_str("the arcs do not fit together"),
-        }
-    }
 }
 
 /// Where the iteration is satisfied.

@@ -67,12 +67,7 @@ pub(crate) fn next_structure(
             changed = true;
             // The corner stays with the arc that follows.
             if let Entry::Corner(_) = entry {
-                spans.push(Span {
-                    motion: Motion::Free,
-                    entry,
-                    from,
-                    to: from,
-                });
+                spans.push(Span::bend(entry, from));
             }
             from = to;
             continue;
@@ -116,15 +111,7 @@ pub(crate) fn next_structure(
                 match contacts.first_mut() {
                     // A bound that is met right at the corner.
                     Some(first) if edges[0].0 && first.from - from < least => first.entry = entry,
-                    _ if edges[0].0 => contacts.insert(
-                        0,
-                        Span {
-                            motion: Motion::Free,
-                            entry,
-                            from,
-                            to: from,
-                        },
-                    ),
+                    _ if edges[0].0 => contacts.insert(0, Span::bend(entry, from)),
                     _ => {}
                 }
                 spans.extend(contacts);
@@ -172,11 +159,9 @@ pub(crate) fn simpler(model: &Model<f64>, class: Class, chain: &Chain) -> Option
         match (arc.motion, spans.last_mut()) {
             (Motion::Along(_), Some(last)) if merges => last.to = to,
             (Motion::Along(_), _) if index != out => spans.push(span),
-            _ if matches!(arc.entry, Entry::Corner(_)) => spans.push(Span {
-                motion: Motion::Free,
-                to: span.from,
-                ..span
-            }),
+            _ if matches!(arc.entry, Entry::Corner(_)) => {
+                spans.push(Span::bend(arc.entry, span.from));
+            }
             _ => {}
         }
     }

@@ -2,7 +2,7 @@
 
 use super::equations::Motion;
 use super::*;
-use crate::{Branch, EfficiencyError, EfficiencyProblem, efficiency};
+use crate::{Branch, EfficiencyError, EfficiencyProblem, OptimalGait, efficiency};
 use swimmer_files::Bounds;
 use swimmer_model::{Links, Swimmer, SymmetricFourier};
 
@@ -83,13 +83,7 @@ fn a_bound_is_followed_where_it_pushes_and_a_loose_one_changes_nothing() {
     let case = &cases()[0];
     let model = case.model();
     let at = |max_angle: f64, quarter: bool| {
-        let walls = Walls::new(
-            &Bounds {
-                max_angle: Some(max_angle),
-                ..Bounds::default()
-            },
-            &case.swimmer.links,
-        );
+        let walls = Walls::new(&Bounds::within(max_angle), &case.swimmer.links);
         polish(&model, &walls, &case.gait(), quarter).unwrap()
     };
     let free = at(2.0, true);
@@ -193,6 +187,25 @@ fn an_optimum_has_no_ascent_and_the_saddle_beyond_a_fold_has_one() {
     assert_eq!(ascents(&other), 1);
 }
 
+/// The gait that a curve is polished to.
+fn polished(
+    swimmer: &Swimmer<f64>,
+    bounds: &Bounds,
+    curve: &impl Gait<f64>,
+    quarter: bool,
+) -> OptimalGait {
+    let model = &Model::new(&swimmer.of_unit_length()).unwrap();
+    let walls = Walls::new(bounds, &swimmer.links);
+    let extremal = polish(model, &walls, curve, quarter).unwrap();
+    let order = gait::Order {
+        swimmer,
+        model,
+        bounds,
+        samples: 1024,
+    };
+    gait::gait(&order, &extremal).unwrap()
+}
+
 /// Free and bounded closed curves, found without using their symmetries, certified.
 #[test]
 fn closed_gaits_are_certified() {
@@ -202,18 +215,10 @@ fn closed_gaits_are_certified() {
             max_angle,
             ..Bounds::default()
         };
-        let polish_for = Polish {
-            bounds,
-            ..Polish::new(case.swimmer)
-        };
-        let gait = polish_efficiency(&polish_for, &case.gait()).unwrap();
+        let [quarter, gait] =
+            [true, false].map(|quarter| polished(&case.swimmer, &bounds, &case.gait(), quarter));
         assert!(gait.certificate.pass(), "{}", gait.certificate.failures());
         assert!(!gait.symmetric);
-        let quarter = Polish {
-            symmetric: true,
-            ..polish_for
-        };
-        let quarter = polish_efficiency(&quarter, &case.gait()).unwrap();
         assert!((gait.efficiency / quarter.efficiency - 1.0).abs() < 1e-11);
         let distance = gait
             .displacement_over_length
@@ -225,21 +230,13 @@ fn closed_gaits_are_certified() {
 /// Round both corners where the tips meet, as a closed curve: the gait of the quarter, from its own samples.
 #[test]
 fn a_closed_gait_bends_round_the_forbidden_shapes() {
-    use crate::{Branch, EfficiencyProblem, efficiency};
-    let bounds = Bounds {
-        no_overlap: true,
-        ..Bounds::default()
-    };
+    let (swimmer, bounds) = (Swimmer::purcell(), Bounds::default().apart(0.0));
     let quarter = efficiency(&EfficiencyProblem {
         bounds,
-        ..EfficiencyProblem::new(Swimmer::purcell(), Branch::Large)
+        ..EfficiencyProblem::new(swimmer, Branch::Large)
     })
     .unwrap();
-    let polish_for = Polish {
-        bounds,
-        ..Polish::new(Swimmer::purcell())
-    };
-    let closed = polish_efficiency(&polish_for, &quarter.gait().unwrap()).unwrap();
+    let closed = polished(&swimmer, &bounds, &quarter.gait().unwrap(), false);
     assert!(
         closed.certificate.pass(),
         "{}",

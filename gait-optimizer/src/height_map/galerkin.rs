@@ -20,21 +20,19 @@ const RESIDUAL: f64 = 1e-15;
 /// They need about twenty rounds; more than this would only stir rounding.
 const ROUNDS: usize = 200;
 
-/// Rows of the connection times D at the Gauss points, so that lengths and slopes are those of the square \[−1, 1\]².
-struct Rows {
-    x: [Field; 2],
-    y: [Field; 2],
-    theta: [Field; 2],
-}
-
-/// A function for each of b_x and b_y.
+/// A function for each of b_x and b_y, or for each joint.
 type Pair = [Field; 2];
+
+/// Rows x, y, θ of the connection times D at the Gauss points, so that lengths and slopes are those of the square \[−1, 1\]².
+type Rows = [Pair; 3];
 
 /// Solves both problems for a swimmer with L = 1.
 pub(super) fn solve(model: &Model<f64>, half_width: f64, order: usize) -> Coefficients {
     let space = Space::new(order, order + MORE_POINTS);
-    let rows = Rows::at(model, half_width, &space);
-    let theta = poisson(&space, [&rows.theta[0], &rows.theta[1]]);
+    let rows = rows(model, half_width, &space);
+    let [t1, t2] = &rows[2];
+    // Minimises ∫|a + ∇b|², without mean.
+    let theta = divided(&space, &space.test_slopes([t1, t2]), 0.0) * -1.0;
     let [x, y] = place(&space, &rows);
     let mut coefficients = Coefficients {
         rows: [x, y, theta].map(|row| space.in_legendre(&row)),
@@ -43,37 +41,24 @@ pub(super) fn solve(model: &Model<f64>, half_width: f64, order: usize) -> Coeffi
     coefficients
 }
 
-impl Rows {
-    fn at(model: &Model<f64>, half_width: f64, space: &Space) -> Self {
-        let count = space.nodes.len();
-        let zero = || [DMatrix::zeros(count, count), DMatrix::zeros(count, count)];
-        let mut rows = Self {
-            x: zero(),
-            y: zero(),
-            theta: zero(),
-        };
-        // Column by column, as matrices are stored.
-        let shape = |number: usize| {
-            let (s1, s2) = (space.nodes[number % count], space.nodes[number / count]);
-            Vector2::new(s1, s2) * half_width
-        };
-        let phi = (0..count * count).map(shape);
-        Batch::of(model).each(Connection, phi, |number, a| {
-            let a = a * half_width;
-            for joint in 0..2 {
-                rows.x[joint][number] = a[(0, joint)];
-                rows.y[joint][number] = a[(1, joint)];
-                rows.theta[joint][number] = a[(2, joint)];
+fn rows(model: &Model<f64>, half_width: f64, space: &Space) -> Rows {
+    let count = space.nodes.len();
+    let zero = || [DMatrix::zeros(count, count), DMatrix::zeros(count, count)];
+    let mut rows = [zero(), zero(), zero()];
+    // Column by column, as matrices are stored.
+    let shape = |number: usize| {
+        let (s1, s2) = (space.nodes[number % count], space.nodes[number / count]);
+        Vector2::new(s1, s2) * half_width
+    };
+    let phi = (0..count * count).map(shape);
+    Batch::of(model).each(Connection, phi, |number, a| {
+        for (k, row) in rows.iter_mut().enumerate() {
+            for (joint, row) in row.iter_mut().enumerate() {
+                row[number] = a[(k, joint)] * half_width;
             }
-        });
-        rows
-    }
-}
-
-/// The function without mean that minimises ∫|a + ∇b|².
-fn poisson(space: &Space, a: [&Field; 2]) -> Field {
-    let load = space.test_slopes(a);
-    divided(space, &load, 0.0) * -1.0
+        }
+    });
+    rows
 }
 
 /// Solves (−Δ + shift) b = load; without a shift, up to a constant.
@@ -91,10 +76,10 @@ fn divided(space: &Space, load: &Field, shift: f64) -> Field {
 
 /// b_x and b_y: they minimise ∫|a^x + ∇b_x − a^θ b_y|² + |a^y + ∇b_y + a^θ b_x|².
 fn place(space: &Space, rows: &Rows) -> Pair {
-    let [t1, t2] = &rows.theta;
+    let [on_x, on_y, [t1, t2]] = rows;
     let turning = t1.component_mul(t1) + t2.component_mul(t2);
     let shift = space.mean(&turning);
-    let load = adjoint(space, rows, [&rows.x, &rows.y]).map(|row| -row);
+    let load = adjoint(space, rows, [on_x, on_y]).map(|row| -row);
     let precondition = |r: &Pair| [divided(space, &r[0], shift), divided(space, &r[1], shift)];
     // Conjugate gradients, preconditioned.
     let mut b = [
@@ -111,14 +96,9 @@ fn place(space: &Space, rows: &Rows) -> Pair {
             break;
         }
         let (x, y) = (space.sample(&direction[0]), space.sample(&direction[1]));
-        let gone = |k: usize| {
-            [
-                &x.slopes[k] - rows.theta[k].component_mul(&y.value),
-                &y.slopes[k] + rows.theta[k].component_mul(&x.value),
-            ]
-        };
-        let ([x1, y1], [x2, y2]) = (gone(0), gone(1));
-        let image = adjoint(space, rows, [&[x1, x2], &[y1, y2]]);
+        let along_x = [0, 1].map(|k| &x.slopes[k] - rows[2][k].component_mul(&y.value));
+        let along_y = [0, 1].map(|k| &y.slopes[k] + rows[2][k].component_mul(&x.value));
+        let image = adjoint(space, rows, [&along_x, &along_y]);
         let step = rho / dot(&direction, &image);
         for k in 0..2 {
             b[k] += &direction[k] * step;
@@ -135,10 +115,9 @@ fn place(space: &Space, rows: &Rows) -> Pair {
 }
 
 /// For each pair of basis functions (ψ, 0) and (0, ψ): ∫ of the given rows against ∇ψ + a^θ ⊗ J ψ.
-fn adjoint(space: &Space, rows: &Rows, [x, y]: [&[Field; 2]; 2]) -> Pair {
-    let along = |row: &[Field; 2]| {
-        rows.theta[0].component_mul(&row[0]) + rows.theta[1].component_mul(&row[1])
-    };
+fn adjoint(space: &Space, rows: &Rows, [x, y]: [&Pair; 2]) -> Pair {
+    let [t1, t2] = &rows[2];
+    let along = |row: &Pair| t1.component_mul(&row[0]) + t2.component_mul(&row[1]);
     [
         space.test(&along(y), [&x[0], &x[1]]),
         space.test(&-along(x), [&y[0], &y[1]]),
@@ -167,7 +146,8 @@ impl Coefficients {
         let (mut inner, mut all) = (0.0_f64, 0.0_f64);
         for (row, old) in self.rows.iter().zip(&before.rows) {
             let change = &now * row * now.transpose() - &then * old * then.transpose();
-            for ((i, j), value) in indexed(&change) {
+            for (k, value) in change.iter().enumerate() {
+                let (i, j) = (k % places.len(), k / places.len());
                 // `max` would pass over NaN.
                 let value = if value.is_nan() {
                     f64::INFINITY
@@ -191,13 +171,4 @@ impl Coefficients {
         // The constant p₀p₀ is ½.
         self.rows[2][(0, 0)] -= 2.0 * at_zero;
     }
-}
-
-/// The entries of a matrix with their places.
-fn indexed(field: &Field) -> impl Iterator<Item = ((usize, usize), f64)> {
-    let rows = field.nrows().max(1);
-    field
-        .iter()
-        .enumerate()
-        .map(move |(k, value)| ((k % rows, k / rows), *value))
 }

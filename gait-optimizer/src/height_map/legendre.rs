@@ -27,7 +27,8 @@ pub(crate) fn gauss(count: usize) -> (Vec<f64>, Vec<f64>) {
         let mut s = -((i as f64 + 0.75) / (n + 0.5) * std::f64::consts::PI).cos();
         let mut slope = 1.0;
         for _ in 0..6 {
-            let (value, below) = pair(count, s);
+            let values = legendre(count, s);
+            let (value, below) = (values[count], values[count - 1]);
             slope = n * (below - s * value) / (1.0 - s * s);
             s -= value / slope;
         }
@@ -36,14 +37,16 @@ pub(crate) fn gauss(count: usize) -> (Vec<f64>, Vec<f64>) {
     (0..count).map(node).unzip()
 }
 
-/// `P_n` and `P_{n−1}` at `s`.
-fn pair(n: usize, s: f64) -> (f64, f64) {
+/// `P_0` … `P_most` at `x`.
+pub(crate) fn legendre(most: usize, x: f64) -> Vec<f64> {
+    let mut values = Vec::with_capacity(most + 1);
     let (mut below, mut here) = (0.0, 1.0);
-    for k in 0..n {
+    for k in 0..=most {
+        values.push(here);
         let k = k as f64;
-        (below, here) = (here, ((2.0 * k + 1.0) * s * here - k * below) / (k + 1.0));
+        (below, here) = (here, ((2.0 * k + 1.0) * x * here - k * below) / (k + 1.0));
     }
-    (here, below)
+    values
 }
 
 #[cfg(test)]

@@ -7,6 +7,8 @@
 
 use nalgebra::{DMatrix, Vector2};
 
+use crate::certificate::to_side;
+
 /// A function of the joint angles with its gradient.
 pub(crate) struct Level<F>(pub(crate) F);
 
@@ -385,11 +387,8 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
 
 /// Whether a point lies within `distance` of a polyline.
 pub(crate) fn passes(points: &[Vector2<f64>], point: &Vector2<f64>, distance: f64) -> bool {
-    points.iter().zip(points.iter().skip(1)).any(|(a, b)| {
-        let along = b - a;
-        let t = ((point - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-        (a + along * t - point).norm() <= distance
-    })
+    let mut sides = points.array_windows();
+    sides.any(|[a, b]| to_side(point, a, b) <= distance)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use crate::arcs::{EndCondition, Event, Leg, TracedArc, Tracer};
+use crate::arcs::{EndCondition, Event, Leg, Tracer};
 use crate::momentum::{Flow, Momentum, Motion, State, Track, shape};
 use crate::region::Region;
 use crate::runge_kutta::{Point, StepControl, exact_step};
@@ -90,18 +90,12 @@ impl Launch<'_> {
                 before: travelled,
                 longest: LONGEST,
             };
-            let TracedArc { end, length, event } = tracer.arc(orbit.end);
-            let event = event?;
-            orbit.legs.push(Leg {
-                motion,
-                from: orbit.end,
-                to: end,
-                length,
-            });
-            orbit.end = end;
-            travelled += length;
-            let phi = shape(&end);
-            match event {
+            let (leg, event) = tracer.arc(orbit.end);
+            orbit.legs.push(leg);
+            orbit.end = leg.to;
+            travelled += leg.length;
+            let phi = shape(&leg.to);
+            match event? {
                 Event::End(Returned) => return Some(orbit),
                 Event::HeightGone => {
                     let returned = motion.bound().map(ReturnCondition::Exit) == Some(self.until)

@@ -41,11 +41,7 @@ pub(crate) fn traced(model: &Model<f64>, closed: &Closed, samples: usize) -> Opt
         whole
     });
     let start = [state[0], state[1], 0.0, 0.0, 0.0, 0.0];
-    Some(
-        Trace::new((model, momentum), start, &route, &QUARTERS, samples)?
-            .samples(true)
-            .closed(),
-    )
+    cycle((model, momentum), start, &route, samples)
 }
 
 /// Traces an orbit from its own start.
@@ -57,15 +53,23 @@ pub(crate) fn traced_from_start(
 ) -> Option<Cycle> {
     let legs = lasting(orbit);
     let start = legs.first()?.from;
-    let route: Vec<(Motion, f64)> = legs
-        .iter()
-        .map(|leg| (leg.motion, leg.to[5] - leg.from[5]))
-        .collect();
-    Some(
-        Trace::new((model, momentum), start, &route, &QUARTERS, samples)?
-            .samples(true)
-            .closed(),
+    let route = legs.iter().map(|leg| (leg.motion, leg.to[5] - leg.from[5]));
+    cycle(
+        (model, momentum),
+        start,
+        &route.collect::<Vec<_>>(),
+        samples,
     )
+}
+
+fn cycle(
+    of: (&Model<f64>, Momentum),
+    start: State,
+    route: &[(Motion, f64)],
+    samples: usize,
+) -> Option<Cycle> {
+    let trace = Trace::new(of, start, route, &QUARTERS, samples)?;
+    Some(trace.samples(true).closed())
 }
 
 /// Where the loop crosses φ₁ = φ₂ > 0: the leg, and the state there.

@@ -10,14 +10,16 @@
 //! [`crate::displacement()`] gives the arcs and the start; Newton's method does the rest.
 
 use nalgebra::{DVector, Vector2};
-use swimmer_files::ArcKind;
-use swimmer_model::Gait;
+use swimmer_files::{ArcKind, Objective};
+use swimmer_model::{Gait, Model, Stroke};
 
-use super::RobustError;
-use super::newton::{Design, newton};
+use super::newton::{Design, Family, newton};
 use super::nodes::Nodes;
 use super::quarter::{ArcCurve, Trajectory};
+use super::{RobustError, cycle};
 use crate::OptimalGait;
+use crate::certificate::{Check, Condition};
+use crate::cycle::Cycle;
 use crate::member::Member;
 
 /// Degree of the polynomial of an arc: of one of several, and of one that is the whole quarter.
@@ -138,56 +140,50 @@ impl Arcs {
         }
         heights
     }
-
-    /// What the certificate asks of a solution.
-    pub(super) fn evidence(&self, x: &DVector<f64>, members: &[(Member, f64)]) -> Evidence {
-        let arcs = self.curves(x);
-        let heights = self.heights(&arcs, members);
-        let mut evidence = Evidence {
-            free_height: 0.0,
-            multiplier: None,
-            legendre_clebsch: f64::INFINITY,
-        };
-        let swum: Vec<_> = members
-            .iter()
-            .filter(|(_, weight)| *weight != 0.0)
-            .map(|(one, weight)| (one, *weight, Trajectory::new(one, &self.nodes, &arcs)))
-            .collect();
-        let mut index = 0;
-        for (leg, arc) in self.legs.iter().zip(&arcs) {
-            for (phi, slope) in arc.phi.iter().zip(&arc.slope) {
-                let height = heights.get(index).copied().unwrap_or(f64::NAN);
-                if matches!(leg, Leg::Bound(_)) {
-                    let least = evidence.multiplier.unwrap_or(f64::INFINITY);
-                    evidence.multiplier = Some(least.min(height));
-                } else {
-                    evidence.free_height = evidence.free_height.max(height.abs());
-                    let outward = Vector2::new(slope.y, -slope.x).normalize();
-                    let falls: f64 = swum
-                        .iter()
-                        .map(|(member, weight, swum)| {
-                            let height = swum.height(member, index, phi);
-                            -self.sign * weight * height.gradient.dot(&outward)
-                        })
-                        .sum();
-                    evidence.legendre_clebsch = evidence.legendre_clebsch.min(falls);
-                }
-                index += 1;
-            }
-        }
-        evidence
-    }
 }
 
-/// Numbers of the ensemble maximum principle.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Evidence {
-    /// Largest |h̄| on free arcs.
-    pub(super) free_height: f64,
-    /// Least h̄ along bounds.
-    pub(super) multiplier: Option<f64>,
-    /// Least fall of h̄ outwards on free arcs; it must be positive for a maximum (generalised Legendre–Clebsch).
-    pub(super) legendre_clebsch: f64,
+impl Family for Arcs {
+    const OBJECTIVE: Objective = Objective::Displacement;
+    const RELATIVE: bool = false;
+
+    fn cycle(&self, model: &Model<f64>, x: &DVector<f64>) -> Cycle {
+        cycle::of_arcs(model, self, x)
+    }
+
+    /// h̄ vanishes on free arcs and falls outwards there (generalised Legendre–Clebsch), and pushes against bounds.
+    fn conditions(&self, x: &DVector<f64>, members: &[(Member, f64)]) -> Vec<Check> {
+        let arcs = self.curves(x);
+        let heights = self.heights(&arcs, members);
+        let weighed = members.iter().filter(|(_, weight)| *weight != 0.0);
+        let swum: Vec<_> = weighed
+            .map(|(one, weight)| (one, *weight, Trajectory::new(one, &self.nodes, &arcs)))
+            .collect();
+        let mut multiplier: Option<f64> = None;
+        let (mut largest, mut falls) = (0.0_f64, f64::INFINITY);
+        let mut heights = heights.into_iter().enumerate();
+        for (leg, arc) in self.legs.iter().zip(&arcs) {
+            let nodes = arc.phi.iter().zip(&arc.slope);
+            for ((phi, slope), (index, height)) in nodes.zip(&mut heights) {
+                if matches!(leg, Leg::Bound(_)) {
+                    multiplier = Some(multiplier.unwrap_or(f64::INFINITY).min(height));
+                    continue;
+                }
+                largest = largest.max(height.abs());
+                let outward = Vector2::new(slope.y, -slope.x).normalize();
+                let members = swum.iter().map(|(member, weight, swum)| {
+                    let height = swum.height(member, index, phi);
+                    -self.sign * weight * height.gradient.dot(&outward)
+                });
+                falls = falls.min(members.sum());
+            }
+        }
+        let mut checks = vec![
+            Condition::RobustHeight.check(largest),
+            Condition::RobustGrowsInwards.check(falls),
+        ];
+        checks.extend(multiplier.map(|least| Condition::RobustOnBound.check(least)));
+        checks
+    }
 }
 
 impl Design for Arcs {
@@ -204,6 +200,14 @@ impl Design for Arcs {
     fn value(&self, x: &DVector<f64>, member: &Member) -> f64 {
         let arcs = self.curves(x);
         self.sign * Trajectory::new(member, &self.nodes, &arcs).displacement
+    }
+
+    fn swum(&self, _: &DVector<f64>, stroke: &Stroke<f64>) -> f64 {
+        self.sign * stroke.displacement.x
+    }
+
+    fn unit(&self) -> f64 {
+        self.sign
     }
 
     fn solve(

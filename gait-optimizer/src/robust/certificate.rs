@@ -1,41 +1,16 @@
-//! What a robust gait's certificate holds: first-order conditions of the weighted objective, second-order ones, bounds, the
-//! curve itself, and every value swum again by the model's own integration.
+//! What a robust gait's certificate holds beside the conditions of its family: bounds, the curve itself, and every value swum again
+//! by the model's own integration.
 
-use nalgebra::DVector;
 use swimmer_files::Bounds;
 use swimmer_model::{Links, Model, Stroke};
 
 use super::Values;
-use super::arcs::Arcs;
 use super::ensemble::{Ensemble, Found};
-use super::fourier::FourierFamily;
+use super::newton::Design;
 use crate::certificate::{Check, Condition, simple_and_turning_once};
 use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::region::Region;
-
-/// The ensemble maximum principle.
-pub(super) fn of_arcs(family: &Arcs, x: &DVector<f64>, members: &[(Member, f64)]) -> Vec<Check> {
-    let evidence = family.evidence(x, members);
-    let mut checks = vec![
-        Condition::RobustHeight.check(evidence.free_height),
-        Condition::RobustGrowsInwards.check(evidence.legendre_clebsch),
-    ];
-    checks.extend(
-        evidence
-            .multiplier
-            .map(|least| Condition::RobustOnBound.check(least)),
-    );
-    checks
-}
-
-/// Stationary, and a maximum.
-pub(super) fn of_series(x: &DVector<f64>, members: &[(Member, f64)]) -> Vec<Check> {
-    vec![
-        Condition::RobustGradient.check(FourierFamily::gradient_norm(x, members)),
-        Condition::RobustCurvature.check(FourierFamily::largest_curvature(x, members)),
-    ]
-}
 
 /// Bounds kept, a simple curve that turns once.
 pub(super) fn of_curve(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) -> Vec<Check> {
@@ -72,19 +47,18 @@ pub(super) fn of_symmetry(cycle: &Cycle, nominal: &Model<f64>) -> [Check; 2] {
 
 /// All values swum again by the model's own integration, and looked for again among all swimmers; and who holds the worst case is as
 /// badly off as the worst. What they may be off by is over `scale`.
-pub(super) fn swum_again<P>(
+pub(super) fn swum_again<D: Design>(
     ensemble: &Ensemble<'_>,
+    design: &D,
+    found: &Found<D::Point>,
     cycle: &Cycle,
-    (values, sign): (&Values, f64),
-    found: &Found<P>,
-    scale: f64,
-    value: impl Fn(&Stroke<f64>) -> f64,
+    (values, scale): (&Values, f64),
 ) -> Vec<Check> {
     let swum = |member: &Member| {
         let swum = cycle.turned(member.gain).swum(&member.model);
-        swum.map_or(f64::NAN, |stroke| value(&stroke))
+        swum.map_or(f64::NAN, |stroke| design.swum(&found.point, &stroke))
     };
-    let again = ensemble.brings(swum, sign);
+    let again = ensemble.brings(swum, design.unit());
     let mut checks: Vec<Check> = [
         (Condition::NominalSwumAgain, again.nominal - values.nominal),
         (Condition::WorstSwumAgain, again.worst - values.worst),
@@ -95,7 +69,7 @@ pub(super) fn swum_again<P>(
     if !found.held_by.is_empty() {
         let holders = found.weighted.iter();
         let (least, apart) = holders.fold((f64::INFINITY, 0.0_f64), |(least, apart), one| {
-            let off = (swum(&one.0) - sign * values.worst).abs() / scale;
+            let off = (design.unit() * swum(&one.0) - values.worst).abs() / scale;
             (one.1.min(least), if off <= apart { apart } else { off })
         });
         checks.push(Condition::WorstCaseMultiplier.check(least));

@@ -1,5 +1,6 @@
 //! All swimmers that are left open: what a gait brings with them, and the gait that is best for their mean or their worst.
 
+use swimmer_files::Bounds;
 use swimmer_model::{InvalidSwimmer, Swimmer};
 
 use super::newton::Design;
@@ -45,9 +46,13 @@ const SMALLEST_STEP: f64 = 0.05;
 impl<'a> Ensemble<'a> {
     pub(super) fn new(
         swimmer: &'a Swimmer<f64>,
+        bounds: &Bounds,
         uncertainty: &'a Uncertainty,
     ) -> Result<Self, RobustError> {
         uncertainty.validate()?;
+        if bounds.no_overlap && uncertainty.gain_is_open() {
+            return Err(RobustError::Clearance);
+        }
         let grid = uncertainty.grid().into_iter();
         let grid = grid.map(|place| Ok((place, uncertainty.at(swimmer, place).member()?)));
         let normal = uncertainty.normal(swimmer).into_iter();
@@ -192,19 +197,19 @@ impl<'a> Ensemble<'a> {
         })
     }
 
-    /// What a gait brings, signed.
-    pub(super) fn values<D: Design>(&self, design: &D, point: &D::Point, sign: f64) -> Values {
-        self.brings(|member| design.value(point, member), sign)
+    /// What a gait brings.
+    pub(super) fn values<D: Design>(&self, design: &D, point: &D::Point) -> Values {
+        self.brings(|member| design.value(point, member), design.unit())
     }
 
-    /// The same of any value.
-    pub(super) fn brings(&self, value: impl Fn(&Member) -> f64, sign: f64) -> Values {
+    /// The same of any value in this unit.
+    pub(super) fn brings(&self, value: impl Fn(&Member) -> f64, unit: f64) -> Values {
         let mean = self.normal.iter();
         let mean: f64 = mean.map(|(member, weight)| value(member) * weight).sum();
         Values {
-            nominal: sign * value(&self.nominal),
-            worst: sign * self.lowest(&value).map_or(f64::NAN, |lowest| lowest.value),
-            mean: sign * mean,
+            nominal: unit * value(&self.nominal),
+            worst: unit * self.lowest(&value).map_or(f64::NAN, |lowest| lowest.value),
+            mean: unit * mean,
         }
     }
 

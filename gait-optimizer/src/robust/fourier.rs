@@ -5,11 +5,13 @@
 //! search, exact derivatives and all.
 
 use nalgebra::{DMatrix, DVector};
-use swimmer_model::SymmetricFourier;
+use swimmer_model::{Model, Stroke, SymmetricFourier};
 
-use super::RobustError;
-use super::newton::Design;
+use super::newton::{Design, Family};
+use super::{RobustError, cycle};
 use crate::Branch;
+use crate::certificate::{Check, Condition};
+use crate::cycle::Cycle;
 use crate::efficiency::{Objective, starts};
 use crate::member::Member;
 use crate::numerics::damped;
@@ -95,16 +97,26 @@ impl FourierFamily {
             hessian,
         }
     }
+}
 
-    /// |∇ξ̄|/ξ̄ at a design.
-    pub(super) fn gradient_norm(x: &DVector<f64>, members: &[(Member, f64)]) -> f64 {
-        Self::weighted(x, members).gradient.norm()
+impl Family for FourierFamily {
+    const OBJECTIVE: swimmer_files::Objective = swimmer_files::Objective::Efficiency;
+    const RELATIVE: bool = true;
+
+    fn cycle(&self, _: &Model<f64>, x: &DVector<f64>) -> Cycle {
+        cycle::of_series(&Self::gait(x))
     }
 
-    /// Largest curvature of ln ξ̄ at a design, over the magnitude of the steepest: negative at a strict maximum.
-    pub(super) fn largest_curvature(x: &DVector<f64>, members: &[(Member, f64)]) -> f64 {
-        let eigenvalues = Self::weighted(x, members).hessian.symmetric_eigenvalues();
-        eigenvalues.max() / eigenvalues.amax()
+    /// Stationary, and a maximum: the largest curvature over the magnitude of the steepest.
+    fn conditions(&self, x: &DVector<f64>, members: &[(Member, f64)]) -> Vec<Check> {
+        let Weighted {
+            gradient, hessian, ..
+        } = Self::weighted(x, members);
+        let curvatures = hessian.symmetric_eigenvalues();
+        vec![
+            Condition::RobustGradient.check(gradient.norm()),
+            Condition::RobustCurvature.check(curvatures.max() / curvatures.amax()),
+        ]
     }
 }
 
@@ -119,6 +131,10 @@ impl Design for FourierFamily {
         let turned = x * member.gain;
         let value = Self::objective(x, member).value(turned.as_slice());
         (2.0 * value.objective).exp()
+    }
+
+    fn swum(&self, _: &DVector<f64>, stroke: &Stroke<f64>) -> f64 {
+        stroke.efficiency()
     }
 
     /// Newton's ascent on ln ξ̄: along each principal direction uphill, by the distance that its curvature tells.

@@ -1,8 +1,12 @@
 //! Newton's method with a Jacobian by differences, and what a family of gaits must offer to be designed robustly.
 
 use nalgebra::{DMatrix, DVector};
+use swimmer_files::Objective;
+use swimmer_model::{Model, Stroke};
 
 use super::RobustError;
+use crate::certificate::Check;
+use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::numerics::damped;
 
@@ -17,12 +21,33 @@ pub(super) trait Design {
     /// The objective of a member; larger is better.
     fn value(&self, point: &Self::Point, member: &Member) -> f64;
 
+    /// The same of a gait swum by the model's own integration.
+    fn swum(&self, point: &Self::Point, stroke: &Stroke<f64>) -> f64;
+
+    /// Its unit, and its sign, in what is told.
+    fn unit(&self) -> f64 {
+        1.0
+    }
+
     /// The stationary point of the weighted sum near `start`.
     fn solve(
         &self,
         start: &Self::Point,
         members: &[(Member, f64)],
     ) -> Result<Self::Point, RobustError>;
+}
+
+/// A family of gaits with the paper's symmetries.
+pub(super) trait Family: Design {
+    const OBJECTIVE: Objective;
+    /// Whether values swum again are compared relatively.
+    const RELATIVE: bool;
+
+    /// At constant power of this model, or as the family times it.
+    fn cycle(&self, model: &Model<f64>, point: &Self::Point) -> Cycle;
+
+    /// First- and second-order conditions of the weighted sum.
+    fn conditions(&self, point: &Self::Point, members: &[(Member, f64)]) -> Vec<Check>;
 }
 
 const STEPS: usize = 40;

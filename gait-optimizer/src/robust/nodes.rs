@@ -3,7 +3,9 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{DMatrix, Vector2};
+use nalgebra::{DMatrix, DVector, Vector2};
+
+use crate::height_map::legendre::gauss;
 
 /// A rule of `degree + 1` nodes.
 #[derive(Debug, Clone)]
@@ -17,42 +19,59 @@ pub(super) struct Nodes {
 impl Nodes {
     pub(super) fn new(degree: usize) -> Self {
         let n = degree.max(2);
-        let angle = |j: usize| PI * (n - j) as f64 / n as f64;
-        let half = |j: usize| if j == 0 || j == n { 0.5 } else { 1.0 };
-        // Coefficient k of the polynomial in T_k, from the values at the nodes.
-        let coefficients = DMatrix::from_fn(n + 1, n + 1, |k, j| {
-            2.0 / n as f64 * half(k) * half(j) * (k as f64 * angle(j)).cos()
-        });
-        let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let slopes = DMatrix::from_fn(n + 1, n + 1, |j, k| {
-            let order = k as f64;
-            let slope = if j == n {
-                order * order
-            } else if j == 0 {
-                -sign(k) * order * order
-            } else {
-                order * (order * angle(j)).sin() / angle(j).sin()
-            };
-            2.0 * slope
-        });
-        let areas = DMatrix::from_fn(n + 1, n + 1, |j, k| {
-            let t = |k: usize| (k as f64 * angle(j)).cos();
-            let order = k as f64;
-            let primitive = match k {
-                0 => t(1) + 1.0,
-                1 => (t(2) - 1.0) / 4.0,
-                _ => {
-                    (t(k + 1) + sign(k)) / (2.0 * (order + 1.0))
-                        - (t(k - 1) + sign(k)) / (2.0 * (order - 1.0))
+        let place: Vec<f64> = (0..=n)
+            .map(|j| 0.5 * (1.0 - (PI * j as f64 / n as f64).cos()))
+            .collect();
+        let mut nodes = Self {
+            derivative: DMatrix::zeros(n + 1, n + 1),
+            integral: DMatrix::zeros(n + 1, n + 1),
+            place,
+        };
+        let (points, weights) = gauss(n / 2 + 1);
+        for (j, &at) in nodes.place.iter().enumerate() {
+            // The derivative of a constant is zero.
+            let others = (0..=n).filter(|&k| k != j);
+            for k in others {
+                let slope = nodes.weight(k) / nodes.weight(j) / (at - nodes.place[k]);
+                nodes.derivative[(j, k)] = slope;
+                nodes.derivative[(j, j)] -= slope;
+            }
+            for (s, weight) in points.iter().zip(&weights) {
+                let shares = nodes.shares(0.5 * at * (s + 1.0));
+                for (k, share) in shares.into_iter().enumerate() {
+                    nodes.integral[(j, k)] += 0.5 * at * weight * share;
                 }
-            };
-            0.5 * primitive
-        });
-        Self {
-            place: (0..=n).map(|j| 0.5 * (1.0 + angle(j).cos())).collect(),
-            derivative: slopes * &coefficients,
-            integral: areas * coefficients,
+            }
         }
+        nodes
+    }
+
+    /// Of the barycentric form.
+    fn weight(&self, j: usize) -> f64 {
+        let half = if j == 0 || j + 1 == self.count() {
+            0.5
+        } else {
+            1.0
+        };
+        if j.is_multiple_of(2) { half } else { -half }
+    }
+
+    /// How much the value at each node counts in the polynomial's at t.
+    fn shares(&self, t: f64) -> Vec<f64> {
+        let terms = self.place.iter().enumerate();
+        let mut terms: Vec<f64> = terms
+            .map(|(j, place)| self.weight(j) / (t - place))
+            .collect();
+        if let Some(here) = self
+            .place
+            .iter()
+            .position(|place| (t - place).abs() < 1e-15)
+        {
+            terms.fill(0.0);
+            terms[here] = 1.0;
+        }
+        let whole: f64 = terms.iter().sum();
+        terms.iter().map(|term| term / whole).collect()
     }
 
     pub(super) fn count(&self) -> usize {
@@ -61,57 +80,27 @@ impl Nodes {
 
     /// The derivative of a curve at the nodes.
     pub(super) fn slopes(&self, values: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
-        self.derivative
-            .row_iter()
-            .map(|row| {
-                row.iter()
-                    .zip(values)
-                    .fold(Vector2::zeros(), |sum, (weight, value)| {
-                        sum + value * *weight
-                    })
-            })
-            .collect()
+        let rows = self.derivative.row_iter();
+        rows.map(|row| {
+            row.iter()
+                .zip(values)
+                .map(|(weight, value)| value * *weight)
+                .sum()
+        })
+        .collect()
     }
 
     /// The integral from 0 to each node.
     pub(super) fn integrals(&self, values: &[f64]) -> Vec<f64> {
-        self.integral
-            .row_iter()
-            .map(|row| {
-                row.iter()
-                    .zip(values)
-                    .map(|(weight, value)| weight * value)
-                    .sum()
-            })
-            .collect()
+        (&self.integral * DVector::from_column_slice(values))
+            .data
+            .into()
     }
 
-    /// The integral from 0 to 1.
-    pub(super) fn whole(&self, values: impl Iterator<Item = f64>) -> f64 {
-        let last = self.integral.nrows().saturating_sub(1);
-        self.integral
-            .row(last)
-            .iter()
-            .zip(values)
-            .map(|(weight, value)| weight * value)
-            .sum()
-    }
-
-    /// The polynomial at t, in barycentric form.
+    /// The polynomial at t.
     pub(super) fn value(&self, values: &[Vector2<f64>], t: f64) -> Vector2<f64> {
-        let last = self.place.len().saturating_sub(1);
-        let (mut above, mut below) = (Vector2::zeros(), 0.0);
-        for (j, (place, value)) in self.place.iter().zip(values).enumerate() {
-            let apart = t - place;
-            if apart.abs() < 1e-15 {
-                return *value;
-            }
-            let half = if j == 0 || j == last { 0.5 } else { 1.0 };
-            let weight = if j.is_multiple_of(2) { half } else { -half } / apart;
-            above += value * weight;
-            below += weight;
-        }
-        above / below
+        let shares = self.shares(t).into_iter().zip(values);
+        shares.map(|(share, value)| value * share).sum()
     }
 }
 
@@ -135,8 +124,6 @@ mod tests {
         for (&t, area) in nodes.place.iter().zip(nodes.integrals(&second)) {
             assert!((area - ((2.0 * t).exp() - 1.0) / 2.0).abs() < 1e-13);
         }
-        let whole = nodes.whole(curve.iter().map(|value| value.x));
-        assert!((whole - (1.0 / 6.0 - 0.5)).abs() < 1e-14);
         let between = nodes.value(&curve, 0.377);
         assert!((between.y - (2.0 * 0.377_f64).exp()).abs() < 1e-13);
     }

@@ -41,25 +41,15 @@ impl Trajectory {
                 .zip(&arc.slope)
                 .map(|(phi, slope)| model.local_connection(&(phi * *gain)) * slope * *gain)
                 .collect();
-            let column =
-                |of: fn(&Vector3<f64>) -> f64| -> Vec<f64> { body.iter().map(of).collect() };
-            let turned: Vec<f64> = nodes
-                .integrals(&column(|twist| twist.z))
-                .into_iter()
-                .map(|turn| theta + turn)
-                .collect();
-            let rates: Vec<(f64, f64)> = body
-                .iter()
-                .zip(&turned)
-                .map(|(twist, theta)| {
-                    let (sin, cos) = theta.sin_cos();
-                    (cos * twist.x - sin * twist.y, sin * twist.x + cos * twist.y)
-                })
-                .collect();
-            let rise: Vec<f64> = rates.iter().map(|rate| rate.1).collect();
-            swum.y
-                .extend(nodes.integrals(&rise).into_iter().map(|step| y + step));
-            x += nodes.whole(rates.iter().map(|rate| rate.0));
+            let turning: Vec<f64> = body.iter().map(|twist| twist.z).collect();
+            let turned = nodes.integrals(&turning).into_iter();
+            let turned: Vec<f64> = turned.map(|turn| theta + turn).collect();
+            let rates = body.iter().zip(&turned);
+            let rates = rates.map(|(twist, theta)| crate::closed_curve::turned(*theta, twist));
+            let (along, across): (Vec<f64>, Vec<f64>) = rates.map(|rate| (rate.x, rate.y)).unzip();
+            x += nodes.integrals(&along).last().copied().unwrap_or(0.0);
+            let rise = nodes.integrals(&across).into_iter();
+            swum.y.extend(rise.map(|step| y + step));
             (y, theta) = (
                 swum.y.last().copied().unwrap_or(y),
                 turned.last().copied().unwrap_or(theta),

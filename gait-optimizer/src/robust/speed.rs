@@ -1,5 +1,7 @@
 //! Speed: the fastest gait for the worst swimmer, or in the mean, under the servos' rates.
 
+use swimmer_model::Stroke;
+
 use super::ensemble::Ensemble;
 use super::newton::Design;
 use super::{Over, RobustError, Robustness, Uncertainty, certificate};
@@ -22,6 +24,8 @@ pub struct RobustSpeed {
 struct Chains<'a> {
     setting: &'a Setting<'a>,
     start: Polished,
+    /// The faster servo's rate.
+    fast: f64,
 }
 
 impl Design for Chains<'_> {
@@ -33,6 +37,14 @@ impl Design for Chains<'_> {
 
     fn value(&self, chain: &Polished, member: &Member) -> f64 {
         speed_of(chain, member)
+    }
+
+    fn swum(&self, chain: &Polished, stroke: &Stroke<f64>) -> f64 {
+        stroke.displacement.norm() / chain.layout.period(&chain.z)
+    }
+
+    fn unit(&self) -> f64 {
+        self.fast
     }
 
     /// Newton's method on all conditions, the arcs mended where they no longer fit.
@@ -73,7 +85,7 @@ fn turns_nobody(ensemble: &Ensemble<'_>, cycle: &Cycle) -> Result<f64, RobustErr
 ///
 /// let purcell = Swimmer::purcell();
 /// let problem = SpeedProblem {
-///     bounds: Bounds { max_angle: Some(2.0), ..Bounds::default() },
+///     bounds: Bounds::within(2.0),
 ///     starts: 3,
 ///     ..SpeedProblem::new(purcell, [1.0; 2])
 /// };
@@ -87,10 +99,7 @@ pub fn robust_speed(
     over: Over,
     watch: Watch<'_>,
 ) -> Result<RobustSpeed, RobustError> {
-    let ensemble = Ensemble::new(&problem.swimmer, uncertainty)?;
-    if problem.bounds.no_overlap && uncertainty.gain_is_open() {
-        return Err(RobustError::Clearance);
-    }
+    let ensemble = Ensemble::new(&problem.swimmer, &problem.bounds, uncertainty)?;
     let problem = &SpeedProblem {
         swimmer: uncertainty.nominal(&problem.swimmer),
         ..*problem
@@ -105,37 +114,28 @@ pub fn robust_speed(
     let design = Chains {
         start: mended(&setting, optimum.links.clone()).ok_or_else(lost)?,
         setting: &setting,
+        fast: problem.rates[0].max(problem.rates[1]),
     };
     let found = ensemble.find(&design, over)?;
-    let fast = problem.rates[0].max(problem.rates[1]);
-    let values = ensemble.values(&design, &found.point, fast);
-    let nominal = ensemble.values(&design, &design.start, fast);
     let weighed = Setting {
         members: &found.weighted,
         ..setting.clone()
     };
-    let mut fastest = told(problem, &weighed, &found.point, fast).ok_or_else(lost)?;
+    let mut fastest = told(problem, &weighed, &found.point, design.fast).ok_or_else(lost)?;
     fastest.found = optimum.found;
-    let cycle = fastest.gait.cycle.clone();
-    fastest.gait.certificate = fastest.gait.certificate.with(certificate::swum_again(
-        &ensemble,
-        &cycle,
-        (&values, 1.0),
-        &found,
-        values.nominal,
-        |stroke| stroke.displacement.norm() / fastest.period,
-    ));
-    fastest.gait.certificate = fastest.gait.certificate.with(vec![
-        Condition::NobodyTurns.check(turns_nobody(&ensemble, &cycle)?),
-    ]);
-    if !fastest.gait.certificate.pass() {
+    let nominal = ensemble.values(&design, &design.start);
+    let gait = &mut fastest.gait;
+    let cycles = [&gait.cycle, &optimum.gait.cycle];
+    let robustness = Robustness::new(&ensemble, &design, &found, (over, nominal), cycles);
+    let values = (&robustness.values, robustness.values.nominal);
+    let mut checks = certificate::swum_again(&ensemble, &design, &found, &gait.cycle, values);
+    checks.push(Condition::NobodyTurns.check(turns_nobody(&ensemble, &gait.cycle)?));
+    gait.certificate = gait.certificate.clone().with(checks);
+    if !gait.certificate.pass() {
         return Err(RobustError::NotCertified {
-            failed: fastest.gait.certificate.failures(),
+            failed: gait.certificate.failures(),
         });
     }
-    let said = (over, values, nominal);
-    let cycles = [&cycle, &optimum.gait.cycle];
-    let robustness = Robustness::new(&ensemble, &design, &found, said, cycles);
     Ok(RobustSpeed {
         fastest,
         robustness,

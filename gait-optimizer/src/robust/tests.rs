@@ -169,7 +169,8 @@ fn fourier_gradients_are_exact() {
         gain: 0.97,
         ..member
     };
-    let norm = FourierFamily::gradient_norm(&x, &[(member, 1.0)]);
+    let checks = family.conditions(&x, &[(member, 1.0)]);
+    let norm = checks[0].value;
     let value = |x: &DVector<f64>| family.value(x, &member).ln();
     let slopes = (0..2).map(|i| {
         let at = |step: f64| {
@@ -389,10 +390,7 @@ fn a_branch_that_ends_is_told() {
 
 fn fast(max_angle: f64) -> crate::SpeedProblem {
     crate::SpeedProblem {
-        bounds: Bounds {
-            max_angle: Some(max_angle),
-            ..Bounds::default()
-        },
+        bounds: Bounds::within(max_angle),
         starts: 6,
         ..crate::SpeedProblem::new(Swimmer::robot(), [1.0; 2])
     }

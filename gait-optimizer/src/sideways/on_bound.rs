@@ -151,7 +151,7 @@ impl Family<'_> {
         let place = |k: u32| RANGE * (2.0 * f64::from(k) / f64::from(LOOKS) - 1.0);
         let misses: Vec<Option<f64>> = (0..=LOOKS).map(|k| self.miss(place(k), COARSE)).collect();
         let mut roots = Vec::new();
-        for (k, pair) in (0..LOOKS).zip(misses.windows(2)) {
+        for (k, pair) in (0..LOOKS).zip(misses.array_windows()) {
             if let [Some(a), Some(b)] = pair
                 && a * b <= 0.0
             {

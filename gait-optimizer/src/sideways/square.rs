@@ -26,9 +26,8 @@ pub(super) fn turned(
         let (sin, cos) = point.pose.theta.sin_cos();
         along.push((point.u, d.0 * cos + d.1 * sin));
     });
-    let crossing = along
-        .windows(2)
-        .find(|pair| matches!(pair, [a, b] if a.1 * b.1 <= 0.0));
+    let mut looks = along.array_windows();
+    let crossing = looks.find(|[a, b]| a.1 * b.1 <= 0.0);
     let start = if let Some([low, high]) = crossing {
         let [low, high] = halved([low.0, high.0], 60, |u| {
             along_at(model, &any, u, d) * low.1 > 0.0

@@ -14,7 +14,7 @@ fn problem(swimmer: Swimmer<f64>) -> SidewaysProblem {
 
 #[test]
 fn the_robot_moves_sideways_without_turning() {
-    let found = sideways(&problem(Swimmer::robot())).unwrap();
+    let found = sideways(&problem(Swimmer::robot()), &|_| ()).unwrap();
     assert!(found.gait.certificate.pass());
     assert_eq!(found.gait.objective, Objective::Sideways);
     // Gait (b) turns its heading by 0.92028 rad either way (`swimmer simulate`), X/L = 0.0796979722.
@@ -41,12 +41,12 @@ fn the_robot_moves_sideways_without_turning() {
 #[test]
 fn a_wider_bound_leaves_purcells_swimmer_no_less() {
     let within = |max_angle: f64| {
-        let found = sideways(&SidewaysProblem {
+        let problem = SidewaysProblem {
             bounds: Bounds::within(max_angle),
             starts: 4,
             ..SidewaysProblem::new(Swimmer::purcell())
-        });
-        found.unwrap().lateral_over_length
+        };
+        sideways(&problem, &|_| ()).unwrap().lateral_over_length
     };
     let (tight, wide) = (within(3.1), within(3.5));
     println!("{tight} {wide}");
@@ -59,17 +59,16 @@ fn front_and_back_are_names() {
     let of = |front: f64, back: f64| {
         let mut swimmer = Swimmer::purcell();
         (swimmer.links.front, swimmer.links.back) = (front, back);
-        let found = sideways(&SidewaysProblem {
+        let problem = SidewaysProblem {
             starts: 4,
             ..problem(swimmer)
-        });
-        let found = found.unwrap();
+        };
+        let found = sideways(&problem, &|_| ()).unwrap();
         let model = Model::new(&swimmer).unwrap();
         let stroke = swim(&model, &found.gait.gait().unwrap(), &Tolerance::default());
         let across = stroke.displacement_over_length().y;
         assert!((across - found.lateral_over_length).abs() < 1e-8);
-        let file = found.gait.gait_file("a swimmer");
-        let certificate = crate::certify(&swimmer, &file, file.objective, &file.bounds).unwrap();
+        let certificate = found.gait.certify().unwrap();
         assert!(certificate.pass(), "{}", certificate.failures());
         across
     };
@@ -83,5 +82,5 @@ fn senseless_problems_are_refused() {
     let mut bad = problem(Swimmer::purcell());
     bad.bounds.sector = true;
     let quarter = SidewaysError::Problem(InvalidProblem::QuarterBound { name: "sector" }.into());
-    assert_eq!(sideways(&bad), Err(quarter));
+    assert_eq!(sideways(&bad, &|_| ()), Err(quarter));
 }

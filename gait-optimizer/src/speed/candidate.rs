@@ -99,20 +99,16 @@ pub(super) fn bent(setting: &Setting, chain: &Polished) -> Option<Polished> {
 
 /// Whether an arc runs along what holds a corner.
 fn follows(motion: &Motion, hold: &Hold) -> bool {
-    let Hold::On(held, _) = hold;
-    matches!(motion, Motion::Straight { bound, .. } | Motion::Curved { bound, .. } if bound == held)
+    motion.bound().is_some_and(|bound| bound.0 == hold.0)
 }
 
 /// Holds a corner at the bounds that it oversteps; whether there are any.
 fn overstepped(setting: &Setting, link: &mut Link) -> bool {
     let mut any = false;
     for (index, bound) in setting.region.bounds().enumerate() {
-        let held = link
-            .held
-            .iter()
-            .any(|hold| matches!(hold, Hold::On(at, _) if *at == index));
+        let held = link.held.iter().any(|hold| hold.0 == index);
         if !held && bound.margin(&link.corner) < -OVERSTEPPED {
-            link.held.push(Hold::On(index, bound.piece(&link.corner)));
+            link.held.push(Hold(index, bound.piece(&link.corner)));
             any = true;
         }
     }

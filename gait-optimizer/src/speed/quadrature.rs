@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::height_map::legendre::gauss;
+pub(crate) use crate::height_map::legendre::legendre;
 
 /// Nodes, weights, and the weights of the integrals from 0 to each node.
 #[derive(Debug, Clone)]
@@ -75,18 +76,6 @@ pub(crate) fn cut(
     (0..count)
         .map(|part| (border(part), border(part + 1)))
         .collect()
-}
-
-/// `P_0` … `P_most` at `x`.
-pub(crate) fn legendre(most: usize, x: f64) -> Vec<f64> {
-    let mut values = Vec::with_capacity(most + 1);
-    let (mut below, mut here) = (0.0, 1.0);
-    for k in 0..=most {
-        values.push(here);
-        let k = k as f64;
-        (below, here) = (here, ((2.0 * k + 1.0) * x * here - k * below) / (k + 1.0));
-    }
-    values
 }
 
 #[cfg(test)]

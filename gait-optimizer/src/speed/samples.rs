@@ -19,7 +19,7 @@ const TIED: f64 = 1e-6;
 
 /// The cycle timed at the servos' rates, from the corner farthest along φ₁ = φ₂ (of equals the one of the largest φ₁). With `sign`
 /// −1 the mirrored swimmer's.
-pub(crate) fn cycle(setting: &Setting, polished: &Polished, sign: f64) -> (Cycle, Vec<Arc>) {
+pub(crate) fn cycle(setting: &Setting, polished: &Polished, sign: f64) -> Cycle {
     let links = &polished.links;
     let n = links.len();
     let corner = |k: usize| links[k].corner * sign;
@@ -32,24 +32,13 @@ pub(crate) fn cycle(setting: &Setting, polished: &Polished, sign: f64) -> (Cycle
 }
 
 /// The same from the corner of this number.
-pub(crate) fn cycle_from(
-    setting: &Setting,
-    polished: &Polished,
-    sign: f64,
-    first: usize,
-) -> (Cycle, Vec<Arc>) {
+pub(crate) fn cycle_from(setting: &Setting, polished: &Polished, sign: f64, first: usize) -> Cycle {
     let Polished {
         links, layout, z, ..
     } = polished;
     let n = links.len();
     let period = layout.period(z);
-    let mut cycle = Cycle {
-        u: Vec::new(),
-        phi: Vec::new(),
-        corners: Vec::new(),
-        arcs: Vec::new(),
-    };
-    let mut arcs = Vec::with_capacity(n);
+    let mut cycle = Cycle::default();
     let mut begun = 0.0;
     for k in (0..n).map(|k| (first + k) % n) {
         let share = links[k].time / period;
@@ -79,18 +68,13 @@ pub(crate) fn cycle_from(
             from,
             to: begun / period,
         });
-        arcs.push(Arc {
-            kind,
-            from: (ends[0] * sign).into(),
-            to: (ends[1] * sign).into(),
-        });
     }
     cycle.u.push(1.0);
     cycle.phi.extend(cycle.phi.first().copied());
     if let Some(last) = cycle.arcs.last_mut() {
         last.to = 1.0;
     }
-    (cycle, arcs)
+    cycle
 }
 
 /// The same arcs run backwards.

@@ -15,7 +15,7 @@ use super::samples;
 use super::selection::Group;
 use super::{Fastest, SpeedAtlas, SpeedError, SpeedProblem};
 use crate::Watch;
-use crate::optimal_gait::{OptimalGait, Solution};
+use crate::optimal_gait::OptimalGait;
 use crate::parallel::in_parallel;
 
 /// Of the time, about, until all rough polygons are there.
@@ -221,9 +221,9 @@ pub(crate) fn told(
     let forward = wrapped_angle(ahead + half_turn);
     let sign = if forward < -1e-9 { -1.0 } else { 1.0 };
     let heading = sign * forward;
-    let (mut cycle, mut arcs) = samples::cycle(setting, chain, sign);
+    let mut cycle = samples::cycle(setting, chain, sign);
     if backward {
-        (cycle, arcs) = (cycle.reversed(|phi| *phi), samples::reversed(&arcs));
+        cycle = cycle.reversed(|phi| *phi);
     }
     let asked = Asked {
         heading: problem.heading,
@@ -232,27 +232,19 @@ pub(crate) fn told(
     };
     let (gait, certificate) = of_cycle(setting, asked, problem.bounds, &cycle)?;
     let stroke = swim(setting.model, &gait, &Tolerance::default());
-    let distance = chain.net.distance();
-    let period = chain.layout.period(&chain.z);
+    let of = (Objective::Speed, &problem.swimmer, &problem.bounds);
     Some(Fastest {
         speed_over_length: chain.speed * fast,
-        distance_over_length: distance,
-        period: period / fast,
+        distance_over_length: chain.net.distance(),
+        period: chain.layout.period(&chain.z) / fast,
         heading,
         found: 0,
         longer: None,
         uncertified: None,
         links: chain.links.clone(),
-        gait: OptimalGait::new(Solution {
-            objective: Objective::Speed,
-            swimmer: problem.swimmer,
-            bounds: problem.bounds,
-            symmetric: false,
-            links_cross: cycle.links_cross(setting.model),
-            arcs,
-            cycle,
-            stroke,
+        gait: OptimalGait {
             certificate,
-        }),
+            ..OptimalGait::of_cycle(of, false, cycle, &stroke)
+        },
     })
 }

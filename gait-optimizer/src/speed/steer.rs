@@ -19,9 +19,9 @@ use super::interior::rough_polygon;
 use super::polish::Polished;
 use super::problem::{Goal, HeadingRule, Setting};
 use super::{SpeedError, SpeedProblem, samples, selection, starts, validate};
-use crate::cycle::{Arc, Cycle};
+use crate::cycle::Cycle;
 use crate::immobile::refuse_immobile;
-use crate::optimal_gait::{OptimalGait, Solution};
+use crate::optimal_gait::OptimalGait;
 use crate::parallel::in_parallel;
 use crate::region::Region;
 use crate::{Certificate, Condition, Watch};
@@ -222,7 +222,7 @@ fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Ve
 fn certified(setting: &Setting, chain: &Polished) -> Option<Polished> {
     let passes = |chain: &Polished| {
         let told = cycle(setting, chain, Bounds::default());
-        told.is_some_and(|told| told.certificate.pass())
+        told.is_some_and(|(.., certificate)| certificate.pass())
     };
     if passes(chain) {
         return Some(chain.clone());
@@ -243,8 +243,8 @@ fn is_gait(setting: &Setting, chain: &Polished) -> bool {
         Condition::FullRate,
         Condition::Heading,
     ];
-    cycle(setting, chain, Bounds::default()).is_some_and(|told| {
-        let checks = told.certificate.checks().iter();
+    cycle(setting, chain, Bounds::default()).is_some_and(|(.., certificate)| {
+        let checks = certificate.checks().iter();
         checks
             .filter(|check| OF_A_GAIT.contains(&check.condition))
             .all(|check| check.pass)
@@ -256,25 +256,22 @@ fn near(setting: &Setting, neighbour: &Polished) -> Option<Polished> {
     mended(setting, neighbour.links.clone()).filter(|chain| is_gait(setting, chain))
 }
 
-/// A chain's cycle from the common shape, the way that leads forward, left or turns left.
-struct Told {
-    cycle: Cycle,
-    arcs: Vec<Arc>,
-    gait: AnyGait,
-    certificate: Certificate,
-}
-
-fn cycle(setting: &Setting, chain: &Polished, bounds: Bounds) -> Option<Told> {
+/// A chain's cycle from the common shape, the way that leads forward, left or turns left, as a gait with its certificate.
+fn cycle(
+    setting: &Setting,
+    chain: &Polished,
+    bounds: Bounds,
+) -> Option<(Cycle, AnyGait, Certificate)> {
     let mut links = chain.links.iter();
     let first = links.position(|link| link.anchored).unwrap_or(0);
-    let (mut cycle, mut arcs) = samples::cycle_from(setting, chain, 1.0, first);
+    let mut cycle = samples::cycle_from(setting, chain, 1.0, first);
     let backward = match (setting.goal, setting.heading) {
         (Goal::Rotation, _) => chain.net.rotation < 0.0,
         (Goal::Distance, HeadingRule::Sideways) => chain.net.heading().sin() < 0.0,
         (Goal::Distance, _) => chain.net.heading().cos() < 0.0,
     };
     if backward {
-        (cycle, arcs) = (cycle.reversed(|phi| *phi), samples::reversed(&arcs));
+        cycle = cycle.reversed(|phi| *phi);
     }
     let asked = Asked {
         heading: setting.heading,
@@ -283,12 +280,7 @@ fn cycle(setting: &Setting, chain: &Polished, bounds: Bounds) -> Option<Told> {
         ..Asked::default()
     };
     let (gait, certificate) = of_cycle(setting, asked, bounds, &cycle)?;
-    Some(Told {
-        cycle,
-        arcs,
-        gait,
-        certificate,
-    })
+    Some((cycle, gait, certificate))
 }
 
 /// A joined chain as an answer; `fast` is the faster servo's rate, `unjoined` the speed of the fastest gait that need not join.
@@ -298,34 +290,19 @@ fn told(
     chain: &Polished,
     (fast, unjoined): (f64, f64),
 ) -> Option<Joined> {
-    let Told {
-        cycle,
-        arcs,
-        gait,
-        certificate,
-    } = cycle(setting, chain, problem.bounds)?;
+    let (cycle, gait, certificate) = cycle(setting, chain, problem.bounds)?;
     let stroke = swim(setting.model, &gait, &Tolerance::default());
-    let net = [
-        stroke.displacement.x,
-        stroke.displacement.y,
-        stroke.rotation,
-    ];
+    let [x, y] = stroke.displacement.into();
+    // It is the fastest only of those that join.
+    let of = (Objective::Unspecified, &problem.swimmer, &problem.bounds);
     Some(Joined {
         rate: chain.speed * fast,
         unjoined_rate: unjoined * fast,
         period: chain.layout.period(&chain.z) / fast,
-        net,
-        gait: OptimalGait::new(Solution {
-            // It is the fastest only of those that join.
-            objective: Objective::Unspecified,
-            swimmer: problem.swimmer,
-            bounds: problem.bounds,
-            symmetric: false,
-            links_cross: cycle.links_cross(setting.model),
-            arcs,
-            cycle,
-            stroke,
+        net: [x, y, stroke.rotation],
+        gait: OptimalGait {
             certificate,
-        }),
+            ..OptimalGait::of_cycle(of, false, cycle, &stroke)
+        },
     })
 }

@@ -44,12 +44,24 @@ pub(crate) struct Link {
     pub(crate) between: Vec<Vector2<f64>>,
 }
 
-/// What holds a corner.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Hold {
-    /// A bound; of the clearance, this piece of it.
-    On(usize, Option<Piece>),
+impl Link {
+    /// Without bends.
+    pub(crate) fn new(corner: Vector2<f64>, held: Vec<Hold>, motion: Motion, time: f64) -> Self {
+        Self {
+            corner,
+            held,
+            anchored: false,
+            motion,
+            time,
+            bends: Vec::new(),
+            between: Vec::new(),
+        }
+    }
 }
+
+/// The bound that holds a corner, by its place in the region; of the clearance, a piece of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Hold(pub(crate) usize, pub(crate) Option<Piece>);
 
 /// Multipliers above this push.
 const PUSHES: f64 = 1e-4;
@@ -74,8 +86,8 @@ impl Motion {
     /// The bound that it runs along.
     pub(crate) fn bound(&self) -> Option<Hold> {
         match *self {
-            Self::Straight { bound, .. } => Some(Hold::On(bound, None)),
-            Self::Curved { bound, piece, .. } => Some(Hold::On(bound, Some(piece))),
+            Self::Straight { bound, .. } => Some(Hold(bound, None)),
+            Self::Curved { bound, piece, .. } => Some(Hold(bound, Some(piece))),
             Self::Extreme(_) | Self::Singular { .. } => None,
         }
     }
@@ -140,13 +152,8 @@ pub(crate) fn arcs(setting: &Setting, polygon: &Polygon) -> Option<Vec<Link>> {
                 last.between.push(corner);
             }
             _ => links.push(Link {
-                between: Vec::new(),
-                corner,
-                held: held[k].clone(),
                 anchored: anchored(k),
-                motion,
-                time,
-                bends: Vec::new(),
+                ..Link::new(corner, held[k].clone(), motion, time)
             }),
         }
     }
@@ -199,19 +206,9 @@ fn cut_corners(links: &mut Vec<Link>) {
             links[at].time -= cut;
             links[next].time -= cut;
             links[next].corner = to;
-            links[next].held = vec![Hold::On(second_bound, None)];
-            links.insert(
-                at + 1,
-                Link {
-                    corner: from,
-                    held: vec![Hold::On(first_bound, None)],
-                    anchored: false,
-                    motion: Motion::Extreme(ways),
-                    time: cut,
-                    bends: Vec::new(),
-                    between: Vec::new(),
-                },
-            );
+            links[next].held = vec![Hold(second_bound, None)];
+            let held = vec![Hold(first_bound, None)];
+            links.insert(at + 1, Link::new(from, held, Motion::Extreme(ways), cut));
         }
         at += 1;
     }
@@ -284,7 +281,7 @@ pub(crate) fn holds(setting: &Setting, phi: &Vector2<f64>, within: f64) -> Vec<H
         .bounds()
         .enumerate()
         .filter(|(_, bound)| bound.margin(phi) < within)
-        .map(|(index, bound)| Hold::On(index, bound.piece(phi)))
+        .map(|(index, bound)| Hold(index, bound.piece(phi)))
         .collect()
 }
 
@@ -309,8 +306,8 @@ fn motion(setting: &Setting, polygon: &Polygon, side: usize, from: &[Hold], to: 
     let way = way[pace].signum();
     let both = from
         .iter()
-        .find(|Hold::On(bound, _)| to.iter().any(|Hold::On(other, _)| other == bound));
-    if let Some(&Hold::On(bound, piece)) = both {
+        .find(|hold| to.iter().any(|other| other.0 == hold.0));
+    if let Some(&Hold(bound, piece)) = both {
         return match setting.region.bound(bound) {
             Some(Bound::Clearance(clearance)) => Motion::Curved {
                 bound,

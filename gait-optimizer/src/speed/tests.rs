@@ -6,10 +6,7 @@ use swimmer_files::Objective;
 
 fn within(swimmer: Swimmer<f64>, max: f64) -> SpeedProblem {
     SpeedProblem {
-        bounds: Bounds {
-            max_angle: Some(max),
-            ..Bounds::default()
-        },
+        bounds: Bounds::within(max),
         starts: 12,
         threads: 2,
         ..SpeedProblem::new(swimmer, [1.0; 2])
@@ -19,6 +16,13 @@ fn within(swimmer: Swimmer<f64>, max: f64) -> SpeedProblem {
 fn certified(found: &Fastest) {
     let certificate = &found.gait.certificate;
     assert!(certificate.pass(), "{}", certificate.failures());
+}
+
+/// As found, and by its file alone.
+fn certified_twice(found: &Fastest) {
+    certified(found);
+    let again = found.gait.certify().unwrap();
+    assert!(again.pass(), "{}", again.failures());
 }
 
 #[test]
@@ -80,12 +84,9 @@ fn a_clearance_is_followed() {
     problem.bounds.no_overlap = true;
     problem.bounds.clearance = 0.02;
     let found = fastest(&problem).unwrap();
-    certified(&found);
+    certified_twice(&found);
     let along = |arc: &crate::Arc| arc.kind == swimmer_files::ArcKind::Clearance;
     assert!(found.gait.arcs.iter().any(along));
-    let file = found.gait.gait_file("");
-    let again = certify(&problem.swimmer, &file, Objective::Speed, &problem.bounds).unwrap();
-    assert!(again.pass(), "{}", again.failures());
 }
 
 /// The file alone tells the same, at any rate; a circle, a square and the gait made smaller by a hundredth do not pass.
@@ -97,12 +98,11 @@ fn the_certificate_is_that_of_the_curve() {
         ..problem
     })
     .unwrap();
-    certified(&found);
+    certified_twice(&found);
     let of = |file: &GaitFile| {
         certify(&problem.swimmer, file, Objective::Speed, &problem.bounds).unwrap()
     };
     let file = found.gait.gait_file("");
-    assert!(of(&file).pass(), "{}", of(&file).failures());
     assert!(of(&file).value(Condition::NoBetterCorners).unwrap() > 0.0);
     for curve in [AnyGait::circle(1.6), AnyGait::square(1.4)] {
         let certificate = of(&GaitFile::sampled(&curve, 1024));
@@ -146,7 +146,7 @@ fn sideways_the_fastest_is_certified() {
         ..within(Swimmer::robot(), 2.8)
     };
     let found = fastest(&problem).unwrap();
-    certified(&found);
+    certified_twice(&found);
     assert!((found.speed_over_length - 0.007_373_297_394_7).abs() < 1e-12);
     assert!(
         found.uncertified.is_none(),
@@ -154,9 +154,6 @@ fn sideways_the_fastest_is_certified() {
         found.speed_over_length,
         found.uncertified
     );
-    let file = found.gait.gait_file("");
-    let again = certify(&problem.swimmer, &file, Objective::Speed, &problem.bounds).unwrap();
-    assert!(again.pass(), "{}", again.failures());
 }
 
 /// The farthest in the fastest gait's own period is that gait; in another period it is slower, and H is dD/dT.
@@ -170,11 +167,8 @@ fn the_farthest_in_a_period() {
             ..problem
         })
         .unwrap();
-        certified(&found);
+        certified_twice(&found);
         assert!((found.period - period).abs() < 1e-9);
-        let file = found.gait.gait_file("");
-        let again = certify(&problem.swimmer, &file, Objective::Speed, &problem.bounds).unwrap();
-        assert!(again.pass(), "{}", again.failures());
         found
     };
     let same = at(free.period);

@@ -34,7 +34,7 @@ pub(super) fn along_bounds(setting: &Setting, links: &mut Vec<Link>) {
             continue;
         };
         let (from, to) = (link.corner - way * short, link.corner + way * short);
-        links.push(short_arc(from, link.held.clone(), motion, 2.0 * short));
+        links.push(Link::new(from, link.held.clone(), motion, 2.0 * short));
         links.push(Link {
             corner: to,
             anchored: false,
@@ -50,7 +50,7 @@ fn along(
     hold: Hold,
     [before, at, after]: [Vector2<f64>; 3],
 ) -> Option<(Motion, Vector2<f64>)> {
-    let Hold::On(bound, piece) = hold;
+    let Hold(bound, piece) = hold;
     let of = setting.region.bound(bound)?;
     let inwards = of.gradient(&at);
     if inwards.dot(&(before - at)) <= 0.0 || inwards.dot(&(after - at)) <= 0.0 {
@@ -144,26 +144,7 @@ pub(super) fn with_singular(links: &[Link], corner: usize, short: f64) -> Option
     longer[corner].time -= ahead;
     longer[corner].corner = at + off(corner, ahead);
     longer[corner].held = to;
-    longer.insert(
-        corner,
-        short_arc(
-            at - off(before, back),
-            from,
-            Motion::Singular { pace, way },
-            back + ahead,
-        ),
-    );
+    let (start, motion) = (at - off(before, back), Motion::Singular { pace, way });
+    longer.insert(corner, Link::new(start, from, motion, back + ahead));
     Some(longer)
-}
-
-fn short_arc(corner: Vector2<f64>, held: Vec<Hold>, motion: Motion, time: f64) -> Link {
-    Link {
-        corner,
-        held,
-        anchored: false,
-        motion,
-        time,
-        bends: Vec::new(),
-        between: Vec::new(),
-    }
 }

@@ -65,12 +65,8 @@ fn ended(
 ) {
     close_up(points, end, gap);
     let piece = std::mem::replace(points, vec![end]);
-    let length: f64 = piece
-        .iter()
-        .zip(piece.iter().skip(1))
-        .map(|(a, b)| (b - a).norm())
-        .sum();
-    if length > 1e-9 {
+    let sides = piece.array_windows().map(|[a, b]| (b - a).norm());
+    if sides.sum::<f64>() > 1e-9 {
         pieces.push(Piece {
             kind,
             points: piece,

@@ -62,7 +62,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
         })?;
         let mut rounds: Vec<Vec<Piece>> = Vec::new();
         let mut unused: Vec<usize> = (0..crossings.len())
-            .filter(|&i| crossings.get(i).is_some_and(|crossing| crossing.leaves))
+            .filter(|&i| crossings[i].leaves)
             .collect();
         while let Some(&first) = unused.first() {
             let mut round = Vec::new();
@@ -78,18 +78,18 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
                     break;
                 }
                 if !unused.contains(&at) {
-                    return Err(TurningError::lost(
-                        crossings
-                            .get(at)
-                            .map_or(Vector2::zeros(), |crossing| crossing.phi),
-                        "two regions share an edge",
-                    ));
+                    let place = crossings[at].phi;
+                    return Err(TurningError::lost(place, "two regions share an edge"));
                 }
             }
             rounds.push(round);
         }
-        if crossings.is_empty() && self.border_is_positive() {
-            rounds.push(self.whole_border());
+        if crossings.is_empty() {
+            let (points, first) = (&self.border.points, self.border.points[0]);
+            if self.sign(&first.phi) > 0 {
+                let gap = 0.3 * self.step;
+                rounds.push(pieces_of(first.phi, first.track, points, first.phi, gap));
+            }
         }
         // What the walks from the border did not meet is closed.
         let mut seeds = seeds;
@@ -123,15 +123,15 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
         let count = points.len();
         let start = signs.iter().position(|&sign| sign != 0)?;
         let mut crossings = Vec::new();
-        let (mut last, mut last_sign) = (start, *signs.get(start)?);
+        let (mut last, mut last_sign) = (start, signs[start]);
         for k in 1..=count {
             let i = (start + k) % count;
-            let sign = *signs.get(i)?;
+            let sign = signs[i];
             if sign == 0 {
                 continue;
             }
             if sign != last_sign {
-                crossings.push(self.crossing(last, i, last_sign > 0)?);
+                crossings.push(self.crossing(last, i, last_sign > 0));
             }
             (last, last_sign) = (i, sign);
         }
@@ -140,26 +140,21 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
     }
 
     /// The crossing between two points of different sign; points between them, if any, are zeros.
-    fn crossing(&self, last: usize, next: usize, leaves: bool) -> Option<Crossing> {
+    fn crossing(&self, last: usize, next: usize, leaves: bool) -> Crossing {
         let points = &self.border.points;
-        let count = points.len();
-        if (last + 1) % count != next {
-            let zero = (last + 1) % count;
-            return Some(Crossing {
-                phi: points.get(zero)?.phi,
-                after: zero,
-                leaves,
-            });
+        let after = (last + 1) % points.len();
+        if after != next {
+            let phi = points[after].phi;
+            return Crossing { phi, after, leaves };
         }
-        let (a, b) = (points.get(last)?, points.get(next)?);
+        let (a, b) = (&points[last], &points[next]);
         let before = |share| (self.value(&Border::between(a, b, share)) > 0.0) == leaves;
         let [_, share] = halved([0.0, 1.0], HALVINGS, before);
-        let phi = Border::between(a, b, share);
-        Some(Crossing {
-            phi,
+        Crossing {
+            phi: Border::between(a, b, share),
             after: last,
             leaves,
-        })
+        }
     }
 
     /// From a crossing inland along zero-level curves to the crossing where they meet the border again.
@@ -168,32 +163,24 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
         crossings: &[Crossing],
         from: usize,
     ) -> Result<(Vec<Piece>, usize), TurningError> {
-        let none = || TurningError::lost(Vector2::zeros(), "there is no such crossing");
-        let crossing = crossings.get(from).ok_or_else(none)?;
-        let begin = self
-            .level
-            .corrected(&crossing.phi, None, 1e-6)
-            .ok_or_else(|| {
-                TurningError::lost(crossing.phi, "zero-level curves cross on the bound")
-            })?;
+        let phi = crossings[from].phi;
+        let lost = |what| TurningError::lost(phi, what);
+        let begin = self.level.corrected(&phi, None, 1e-6);
+        let begin = begin.ok_or_else(|| lost("zero-level curves cross on the bound"))?;
         let begin = OnCurve {
-            phi: crossing.phi,
+            phi,
             ..positive_left(begin)
         };
         let (mut pieces, end) = self.inland(begin, None)?;
-        let end = end.ok_or_else(none)?;
+        let end = end.ok_or_else(|| lost("a zero-level curve does not end"))?;
+        let gap = |i: usize| (crossings[i].phi - end).norm();
         let arrived = (0..crossings.len())
-            .filter_map(|i| {
-                let crossing = crossings.get(i)?;
-                (!crossing.leaves).then_some((i, (crossing.phi - end).norm()))
-            })
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .filter(|&(_, gap)| gap < ARRIVED)
-            .ok_or_else(|| TurningError::lost(end, "a zero-level curve touches the bound"))?
-            .0;
-        let met = crossings.get(arrived).ok_or_else(none)?.phi;
-        let last = pieces.last_mut().ok_or_else(none)?;
-        close_up(&mut last.points, met, 0.3 * self.step);
+            .filter(|&i| !crossings[i].leaves && gap(i) < ARRIVED)
+            .min_by(|&a, &b| gap(a).total_cmp(&gap(b)))
+            .ok_or_else(|| TurningError::lost(end, "a zero-level curve touches the bound"))?;
+        if let Some(last) = pieces.last_mut() {
+            close_up(&mut last.points, crossings[arrived].phi, 0.3 * self.step);
+        }
         Ok((pieces, arrived))
     }
 
@@ -279,14 +266,9 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
         crossings: &[Crossing],
         from: usize,
     ) -> Result<(Vec<Piece>, usize), TurningError> {
-        let none = || TurningError::lost(Vector2::zeros(), "there is no such crossing");
         let points = &self.border.points;
-        let count = points.len();
         let to = (from + 1) % crossings.len();
-        let (begin, end) = (
-            crossings.get(from).ok_or_else(none)?,
-            crossings.get(to).ok_or_else(none)?,
-        );
+        let (begin, end) = (&crossings[from], &crossings[to]);
         if !end.leaves {
             return Err(TurningError::lost(
                 end.phi,
@@ -295,29 +277,14 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
         }
         let mut ahead = Vec::new();
         let mut i = begin.after;
-        while i != end.after && ahead.len() <= count {
-            i = (i + 1) % count;
-            ahead.push(*points.get(i).ok_or_else(none)?);
+        while i != end.after && ahead.len() <= points.len() {
+            i = (i + 1) % points.len();
+            ahead.push(points[i]);
         }
         // What ends at the crossing runs along the bound of the point before it.
-        let track = points.get(begin.after).ok_or_else(none)?.track;
+        let track = points[begin.after].track;
         let pieces = pieces_of(begin.phi, track, &ahead, end.phi, 0.3 * self.step);
         Ok((pieces, to))
-    }
-
-    fn border_is_positive(&self) -> bool {
-        self.border
-            .points
-            .first()
-            .is_some_and(|point| self.sign(&point.phi) > 0)
-    }
-
-    fn whole_border(&self) -> Vec<Piece> {
-        let points = &self.border.points;
-        let Some(first) = points.first() else {
-            return Vec::new();
-        };
-        pieces_of(first.phi, first.track, points, first.phi, 0.3 * self.step)
     }
 
     /// A walk that never meets the border.

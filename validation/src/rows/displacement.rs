@@ -108,11 +108,8 @@ pub(super) fn height_maps(study: &Study) -> Vec<Computed> {
     let apart = gait.phi().iter().map(|shape| {
         curves
             .iter()
-            .flat_map(|curve| curve.points.windows(2))
-            .map(|side| match side {
-                [a, b] => distance(shape, a, b),
-                _ => f64::INFINITY,
-            })
+            .flat_map(|curve| curve.points.array_windows())
+            .map(|[a, b]| distance(shape, a, b))
             .fold(f64::INFINITY, f64::min)
     });
     let joining = |map: &HeightMap| {
@@ -145,8 +142,7 @@ fn joins_both_lines(points: &[Vector2<f64>]) -> bool {
         End,
         Other,
     }
-    let crossed = points.windows(2).filter_map(|side| {
-        let [a, b] = side else { return None };
+    let crossed = points.array_windows().filter_map(|[a, b]| {
         let across = |value: fn(&Vector2<f64>) -> f64| (value(a) < 0.0) != (value(b) < 0.0);
         if across(|p| p.x - p.y) {
             Some(if a.x + a.y > 0.0 {

@@ -5,7 +5,7 @@ mod answer;
 use clap::ValueEnum;
 use gait_optimizer::{
     Atlas as Found, Bounds, Branch, ContinuationError, ContinuationProblem, Objective, Parameter,
-    Start, continuation_watched,
+    Start, continuation,
 };
 use swimmer_model::Swimmer;
 
@@ -100,7 +100,7 @@ impl Order {
             steps: self.steps,
             samples: 512,
         };
-        let found = continuation_watched(&asked, &|share| progress.at_share(share))?;
+        let found = continuation(&asked, &|share| progress.at_share(share))?;
         Ok(followed(parameter, [from, to], &found))
     }
 

@@ -1,6 +1,6 @@
 //! `swimmer optimize sideways`: the gait that moves most across its heading, without turning.
 
-use gait_optimizer::{SidewaysError, SidewaysProblem, sideways_watched};
+use gait_optimizer::{SidewaysError, SidewaysProblem, sideways};
 
 use super::answer::say_if_beyond;
 use super::{Found, Objective, Task};
@@ -30,9 +30,7 @@ impl Objective for Sideways {
             threads: threads::available(),
             ..SidewaysProblem::new(task.file.swimmer)
         };
-        let found = task.watched("looking for loops", |watch| {
-            sideways_watched(&problem, watch)
-        })?;
+        let found = task.watched("looking for loops", |watch| sideways(&problem, watch))?;
         let gait = &found.gait;
         say_if_beyond(task, gait);
         let signed = |value: f64| (value * 1e9).round() / 1e9 + 0.0;

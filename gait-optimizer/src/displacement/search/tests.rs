@@ -26,10 +26,7 @@ fn the_second_variation_agrees_with_the_neighbours() {
                 }
                 .of_unit_length();
                 let model = Model::new(&swimmer).unwrap();
-                let bounds = Bounds {
-                    max_angle: Some(max_angle),
-                    ..Bounds::default()
-                };
+                let bounds = Bounds::within(max_angle);
                 let region = Region::new(&bounds, &swimmer.links);
                 for sign in [1.0, -1.0] {
                     let search = Search {

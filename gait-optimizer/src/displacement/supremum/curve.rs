@@ -83,11 +83,9 @@ impl<'a> Ground<'a> {
     pub(super) fn poses(&self, corners: &[Shape]) -> Vec<Pose<f64>> {
         let mut pose = Pose::identity();
         let mut poses = vec![pose];
-        for side in corners.windows(2) {
-            if let [from, to] = side {
-                pose = pose * along(self.model, from, to);
-                poses.push(pose);
-            }
+        for [from, to] in corners.array_windows() {
+            pose = pose * along(self.model, from, to);
+            poses.push(pose);
         }
         poses
     }
@@ -256,7 +254,7 @@ impl<'a> Ground<'a> {
 
     /// The most that a corner or a middle of a side oversteps a bound.
     fn overstepped(&self, corners: &[Shape]) -> f64 {
-        let middles = corners.windows(2).map(|side| (side[0] + side[1]) * 0.5);
+        let middles = corners.array_windows().map(|[a, b]| (a + b) * 0.5);
         let places = corners.iter().copied().chain(middles);
         let overstepped = places.map(|phi| self.region.overstepped(&phi));
         overstepped.fold(f64::NEG_INFINITY, f64::max)
@@ -348,8 +346,8 @@ fn crossing([[a, b], [c, d]]: &[[Shape; 2]; 2]) -> Option<Shape> {
 fn strands(corners: &[Shape], gap: f64) -> Vec<(usize, usize)> {
     let reach = gap * (1.0 + 2.0 * STRIDE * LOOK as f64 + 0.5);
     let mut way = vec![0.0];
-    for side in corners.windows(2) {
-        way.push(way[way.len() - 1] + (side[1] - side[0]).norm());
+    for [from, to] in corners.array_windows() {
+        way.push(way[way.len() - 1] + (to - from).norm());
     }
     let mut near = Vec::new();
     for side in 0..corners.len().saturating_sub(1) {

@@ -39,8 +39,7 @@ impl Member {
         let mut quarter = corners.to_vec();
         quarter.dedup_by(|a, b| (*a - *b).norm() < 1e-12);
         let mut along = vec![0.0];
-        for side in quarter.windows(2) {
-            let [from, to] = side else { continue };
+        for [from, to] in quarter.array_windows() {
             let way = to - from;
             let (_, power) = model.connection_and_power(&((from + to) * 0.5));
             let length = way.dot(&(power * way)).max(0.0).sqrt();

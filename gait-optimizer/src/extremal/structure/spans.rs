@@ -39,7 +39,7 @@ pub(super) fn contacts(
         if (next.is_some() || (from_start && !edges[0].0))
             && let Some(corner) = walls.corner(&shape(&at(place)))
         {
-            spans.push(Span::bend(corner, place));
+            spans.push(Span::bend(Entry::Corner(corner), place));
             continue;
         }
         let (middle, half) = (0.5 * (run.from + run.to), 0.25 * (run.to - run.from));
@@ -109,7 +109,7 @@ pub(super) fn held(
             });
         } else {
             let place = if comes_along { first.to } else { last.from };
-            spans.push(Span::bend(corner, place));
+            spans.push(Span::bend(Entry::Corner(corner), place));
         }
     }
     spans
@@ -126,10 +126,10 @@ fn starts_quarter(class: Class, run: &Run) -> bool {
 
 impl Span {
     /// A free arc begins with a bend round a corner.
-    fn bend(corner: nalgebra::Vector2<f64>, place: f64) -> Self {
+    pub(super) fn bend(entry: Entry, place: f64) -> Self {
         Self {
             motion: Motion::Free,
-            entry: Entry::Corner(corner),
+            entry,
             from: place,
             to: place,
         }

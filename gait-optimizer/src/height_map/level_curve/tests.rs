@@ -28,8 +28,8 @@ fn circles_are_closed_and_on_the_level() {
     let length = |curve: &LevelCurve| -> f64 {
         curve
             .points
-            .windows(2)
-            .map(|pair| (pair[1] - pair[0]).norm())
+            .array_windows()
+            .map(|[a, b]| (b - a).norm())
             .sum()
     };
     let mut lengths: Vec<f64> = curves.iter().map(length).collect();

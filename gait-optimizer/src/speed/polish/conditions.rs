@@ -187,16 +187,14 @@ impl Conditions<'_> {
 
 /// Value, slope and bend of what holds a corner.
 fn held(setting: &Setting, hold: &Hold, phi: &Vector2<f64>) -> Option<Level> {
-    match *hold {
-        Hold::On(index, piece) => match (setting.region.bound(index)?, piece) {
-            (Bound::Clearance(clearance), Some(piece)) => Some(clearance.level(piece, phi)),
-            (bound, _) => Some(Level {
-                value: bound.margin(phi),
-                gradient: bound.gradient(phi),
-                hessian: Matrix2::zeros(),
-            }),
+    Some(match (setting.region.bound(hold.0)?, hold.1) {
+        (Bound::Clearance(clearance), Some(piece)) => clearance.level(piece, phi),
+        (bound, _) => Level {
+            value: bound.margin(phi),
+            gradient: bound.gradient(phi),
+            hessian: Matrix2::zeros(),
         },
-    }
+    })
 }
 
 impl Look {

@@ -7,6 +7,7 @@ use super::super::polish::Polished;
 use super::super::problem::Setting;
 use super::{chains, near};
 use crate::Watch;
+use crate::numerics::halved;
 use crate::region::Region;
 
 /// The common shape stays this far within the bounds \[rad, or over L\].
@@ -41,15 +42,7 @@ pub(super) fn free_of_links(region: &Region, bounds: &Bounds) -> Option<f64> {
             })
         })
     };
-    let (mut inside, mut outside) = (0.0, region.horizon);
-    for _ in 0..60 {
-        let middle = 0.5 * (inside + outside);
-        if clear(middle) {
-            inside = middle;
-        } else {
-            outside = middle;
-        }
-    }
+    let [inside, _] = halved([0.0, region.horizon], 60, clear);
     Some(inside - MARGIN)
 }
 

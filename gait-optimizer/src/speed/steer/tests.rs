@@ -5,12 +5,7 @@ use crate::Condition;
 use swimmer_model::{Gait as _, Swimmer};
 
 fn robot(shape: Option<[f64; 2]>) -> SteerProblem {
-    let bounds = Bounds {
-        max_angle: Some(2.8),
-        no_overlap: true,
-        clearance: 0.0025,
-        ..Bounds::default()
-    };
+    let bounds = Bounds::within(2.8).apart(0.0025);
     SteerProblem {
         of: SpeedProblem {
             bounds,

@@ -96,7 +96,9 @@ pub(super) fn optimize(_: &mut Lab, bytes: &[u8]) -> Outcome {
                 ..SidewaysProblem::new(swimmer)
             };
             Found::new(
-                &sideways(&problem).map_err(|why| why.to_string())?.gait,
+                &sideways(&problem, &|_| ())
+                    .map_err(|why| why.to_string())?
+                    .gait,
                 &file.name,
             )
         }
