@@ -39,12 +39,11 @@ fn shapes(solution: &CollocationSolution) -> Vec<Vector2<f64>> {
 /// How often the direction turns round in a cycle, which crosses the symmetry lines square: 1 for a simple counter-clockwise curve.
 fn turns(solution: &CollocationSolution) -> f64 {
     let shapes = shapes(solution);
-    let mut sides: Vec<Vector2<f64>> = shapes.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mut sides: Vec<Vector2<f64>> = shapes.array_windows().map(|[a, b]| b - a).collect();
     sides.insert(0, Vector2::new(-1.0, 1.0));
     sides.push(Vector2::new(-1.0, -1.0));
-    let turned = sides
-        .windows(2)
-        .map(|pair| pair[0].perp(&pair[1]).atan2(pair[0].dot(&pair[1])));
+    let pairs = sides.array_windows();
+    let turned = pairs.map(|[a, b]| a.perp(b).atan2(a.dot(b)));
     4.0 * turned.sum::<f64>() / std::f64::consts::TAU
 }
 

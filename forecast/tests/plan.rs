@@ -49,10 +49,10 @@ fn joined_at(shape: [f64; 2]) -> Family {
 
 /// Classical Runge–Kutta along straight ways of the joints.
 fn swum(model: &Model<f64>, mut pose: Vector3<f64>, way: &[Vector2<f64>]) -> Vector3<f64> {
-    for pair in way.windows(2) {
-        let turn = pair[1] - pair[0];
+    for [from, to] in way.array_windows() {
+        let turn = to - from;
         let slope = |u: f64, pose: &Vector3<f64>| {
-            let body = model.local_connection(&(pair[0] + turn * u)) * turn;
+            let body = model.local_connection(&(from + turn * u)) * turn;
             let (sin, cos) = pose.z.sin_cos();
             Vector3::new(
                 cos * body.x - sin * body.y,

@@ -168,15 +168,12 @@ fn of_samples(
         return Ok(certify_speed(model, (&bounded, &curve), &region, made_for));
     }
     let limits = Limits::new(bounds, &swimmer.links);
-    if turning_number(&gait.phi) < 0.0 {
-        return certify_turned(
-            model,
-            &gait.reversed(),
-            objective,
-            limits,
-            &curve.reversed_if(true),
-        );
-    }
+    let clockwise = turning_number(&gait.phi) < 0.0;
+    let reversed = clockwise.then(|| gait.reversed());
+    let (gait, curve) = (
+        reversed.as_ref().unwrap_or(gait),
+        curve.reversed_if(clockwise),
+    );
     certify_turned(model, gait, objective, limits, &curve)
 }
 

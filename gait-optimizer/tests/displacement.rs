@@ -28,21 +28,13 @@ fn kinds(gait: &OptimalGait) -> Vec<ArcKind> {
 #[test]
 fn purcell_without_bounds() {
     let gait = optimum(&DisplacementProblem::new(Swimmer::purcell()));
-    assert!(
-        (gait.displacement_over_length - 0.103_532_240_0).abs() < 1e-9,
-        "{}",
-        gait.displacement_over_length
-    );
-    assert!(
-        (gait.start_angle - 1.411_723_71).abs() < 5e-9,
-        "{}",
-        gait.start_angle
-    );
-    assert!(
-        (gait.end_angle - 0.769_169_94).abs() < 5e-9,
-        "{}",
-        gait.end_angle
-    );
+    for (found, known, within) in [
+        (gait.displacement_over_length, 0.103_532_240_0, 1e-9),
+        (gait.start_angle, 1.411_723_71, 5e-9),
+        (gait.end_angle, 0.769_169_94, 5e-9),
+    ] {
+        assert!((found - known).abs() < within, "{found} {known}");
+    }
     assert!((gait.displacement - 3.0 * gait.displacement_over_length).abs() < 1e-15);
     assert_eq!(kinds(&gait), [ArcKind::Singular]);
     assert!(gait.corners().is_empty());
@@ -55,6 +47,23 @@ fn papers_b() -> DisplacementProblem {
         simple: true,
         ..DisplacementProblem::new(Swimmer::robot()).with_max_angle(2.8)
     }
+}
+
+/// With the lower bound of gait (c).
+fn lower_bound(mut problem: DisplacementProblem) -> DisplacementProblem {
+    problem.bounds.min_angle = Some(1.5);
+    problem
+}
+
+/// In the sector, as gait (d).
+fn sectored(mut problem: DisplacementProblem) -> DisplacementProblem {
+    problem.bounds.sector = true;
+    problem
+}
+
+fn apart(mut problem: DisplacementProblem, clearance: f64) -> DisplacementProblem {
+    problem.bounds = problem.bounds.apart(clearance);
+    problem
 }
 
 /// The limit of simple gaits carries farther than any of them.
@@ -112,10 +121,8 @@ fn a_tightening_bound() {
         let gait = bounded(max);
         assert!(gait.displacement_over_length <= last + 1e-12, "{max}");
         last = gait.displacement_over_length;
-        assert!(
-            gait.phi().iter().all(|phi| phi.amax() <= max + 1e-12),
-            "{max}"
-        );
+        let mut shapes = gait.phi().iter();
+        assert!(shapes.all(|phi| phi.amax() <= max + 1e-12), "{max}");
     }
     let square = bounded(0.5);
     assert_eq!(kinds(&square), [ArcKind::Upper]);
@@ -159,14 +166,7 @@ fn the_direct_method_climbs_to_gait_a_from_a_circle() {
 #[test]
 fn the_direct_method_climbs_back_to_every_gait() {
     let robot = DisplacementProblem::new(Swimmer::robot()).with_max_angle(2.8);
-    let (mut lower, mut sector) = (robot, robot);
-    lower.bounds.min_angle = Some(1.5);
-    sector.bounds.sector = true;
-    let apart = |mut problem: DisplacementProblem, clearance| {
-        problem.bounds.no_overlap = true;
-        problem.bounds.clearance = clearance;
-        problem
-    };
+    let [lower, sector] = [lower_bound(robot), sectored(robot)];
     let problems = [
         ("a", DisplacementProblem::new(Swimmer::purcell())),
         ("b", robot),
@@ -216,13 +216,18 @@ fn the_samples_are_a_gait_at_constant_power() {
 #[test]
 fn the_optimum_does_not_depend_on_units() {
     let mut large = Swimmer::robot();
-    large.links.middle *= 10.0;
-    large.links.front *= 10.0;
-    large.links.back *= 10.0;
-    large.sphere_radius *= 10.0;
-    let small = optimum(&DisplacementProblem::new(Swimmer::robot()).with_max_angle(2.8));
-    let large = optimum(&DisplacementProblem::new(large).with_max_angle(2.8));
-    assert!((small.displacement_over_length - large.displacement_over_length).abs() < 1e-12);
+    let Links {
+        middle,
+        front,
+        back,
+    } = &mut large.links;
+    for length in [middle, front, back, &mut large.sphere_radius] {
+        *length *= 10.0;
+    }
+    let [small, large] = [Swimmer::robot(), large].map(|swimmer| {
+        optimum(&DisplacementProblem::new(swimmer).with_max_angle(2.8)).displacement_over_length
+    });
+    assert!((small - large).abs() < 1e-12);
 }
 
 #[test]
@@ -320,9 +325,7 @@ fn a_grid_of_swimmers_and_bounds() {
 #[test]
 fn lower_bound_and_sector() {
     let within = DisplacementProblem::new(Swimmer::robot()).with_max_angle(2.8);
-    let mut problem = within;
-    problem.bounds.min_angle = Some(1.5);
-    let c = optimum(&problem);
+    let c = optimum(&lower_bound(within));
     assert_eq!(
         kinds(&c)[1..],
         [
@@ -333,9 +336,7 @@ fn lower_bound_and_sector() {
             ArcKind::Upper
         ]
     );
-    let mut problem = within;
-    problem.bounds.sector = true;
-    let d = optimum(&problem);
+    let d = optimum(&sectored(within));
     assert!(kinds(&d).contains(&ArcKind::Diagonal), "{:?}", d.arcs);
 }
 
@@ -343,22 +344,15 @@ fn lower_bound_and_sector() {
 #[test]
 fn the_papers_gaits_without_crossing_links() {
     let within = papers_b();
-    let mut lower = within;
-    lower.bounds.min_angle = Some(1.5);
-    let mut sector = within;
-    sector.bounds.sector = true;
-    let apart = |mut problem: DisplacementProblem, clearance| {
-        problem.bounds.no_overlap = true;
-        problem.bounds.clearance = clearance;
-        optimum(&problem)
-    };
+    let [lower, sector] = [lower_bound(within), sectored(within)];
     let b = optimum(&within).displacement_over_length;
-    assert!((apart(within, 0.0).displacement_over_length - b).abs() < 1e-13);
+    let kept = optimum(&apart(within, 0.0)).displacement_over_length;
+    assert!((kept - b).abs() < 1e-13);
     let mut last = [f64::NEG_INFINITY; 2];
     for clearance in [0.0, 0.002, 0.005, 0.01, 0.02] {
         for (problem, last) in [lower, sector].into_iter().zip(&mut last) {
             let free = optimum(&problem).displacement_over_length;
-            let gait = apart(problem, clearance);
+            let gait = optimum(&apart(problem, clearance));
             assert!(gait.certificate.pass());
             assert!(kinds(&gait).contains(&ArcKind::Clearance));
             assert!(gait.links_cross.abs() < 1e-15, "{}", gait.links_cross);

@@ -50,7 +50,7 @@ fn cross([a, b]: [Shape; 2], [c, d]: [Shape; 2]) -> bool {
 }
 
 fn is_simple(corners: &[Shape]) -> bool {
-    let sides: Vec<[Shape; 2]> = corners.windows(2).map(|side| [side[0], side[1]]).collect();
+    let sides: Vec<[Shape; 2]> = corners.array_windows().copied().collect();
     (0..sides.len()).all(|i| (i + 2..sides.len()).all(|j| !cross(sides[i], sides[j])))
 }
 
@@ -64,9 +64,9 @@ fn is_within(problem: &DisplacementProblem, corners: &[Shape]) -> bool {
         ..
     } = problem.bounds;
     let links = problem.swimmer.links;
-    corners.windows(2).all(|side| {
+    corners.array_windows().all(|[from, to]| {
         (0..=4).all(|k| {
-            let phi = side[0] + (side[1] - side[0]) * (f64::from(k) / 4.0);
+            let phi = from + (to - from) * (f64::from(k) / 4.0);
             phi.amax() <= max_angle.unwrap() + SLACK
                 && phi.y >= min_angle.unwrap_or(0.0) - SLACK
                 && phi.y >= phi.x.abs() - SLACK
@@ -82,12 +82,8 @@ fn members_are_gaits_that_grow() {
         let model = Model::new(&problem.swimmer).unwrap();
         let mut before = local;
         for member in &supremum.members {
-            let file = member.gait_file("purcell");
-            let stroke = swim(
-                &model,
-                &AnyGait::from_file(&file).unwrap(),
-                &Tolerance::new(1e-11),
-            );
+            let gait = AnyGait::from_file(&member.gait_file("purcell")).unwrap();
+            let stroke = swim(&model, &gait, &Tolerance::new(1e-11));
             let carried = stroke.displacement.x / problem.swimmer.total_length();
             assert!((carried - member.displacement_over_length).abs() < 1e-9);
             assert!(stroke.rotation.abs() < 1e-9);
@@ -111,18 +107,13 @@ struct PatternSearch<'a> {
 
 impl PatternSearch<'_> {
     fn sides(&self) -> Vec<Pose> {
-        let sides = self.corners.windows(2);
-        sides
-            .map(|side| Pose::along(&self.model, [side[0], side[1]]))
-            .collect()
+        let sides = self.corners.array_windows();
+        sides.map(|side| Pose::along(&self.model, *side)).collect()
     }
 
     fn carried(&self) -> f64 {
-        -4.0 * self
-            .sides()
-            .into_iter()
-            .fold(Pose::default(), |a, b| a * b)
-            .x
+        let whole = self.sides().into_iter().fold(Pose::default(), |a, b| a * b);
+        -4.0 * whole.x
     }
 
     fn sweep(&mut self, step: f64) {

@@ -39,29 +39,19 @@ fn purcell_and_robot() {
         let have = turning.gait.rotation;
         assert!((have - rotation).abs() < 1e-9, "{have} {rotation}");
     };
-    close(
-        &found(Swimmer::purcell(), Bounds::within(2.0)),
-        0.590_238_913_2,
-    );
-    close(
-        &found(Swimmer::purcell(), Bounds::within(2.8)),
-        1.479_779_773_5,
-    );
-    close(
-        &found(Swimmer::robot(), Bounds::within(2.8)),
-        0.396_738_842_3,
-    );
+    for (swimmer, max_angle, rotation) in [
+        (Swimmer::purcell(), 2.0, 0.590_238_913_2),
+        (Swimmer::purcell(), 2.8, 1.479_779_773_5),
+        (Swimmer::robot(), 2.8, 0.396_738_842_3),
+    ] {
+        close(&found(swimmer, Bounds::within(max_angle)), rotation);
+    }
     // Where links must not cross, the region round φ₁ = φ₂ loses its core, and the one round the straight shape wins.
     let playable = found(Swimmer::robot(), Bounds::within(2.8).apart(0.0));
     close(&playable, 0.254_612_354_9);
     assert!(playable.gait.links_cross.abs() < 1e-12);
-    assert!(
-        playable
-            .gait
-            .phi()
-            .iter()
-            .all(|phi| phi.amax() <= 2.8 + 1e-12)
-    );
+    let mut shapes = playable.gait.phi().iter();
+    assert!(shapes.all(|phi| phi.amax() <= 2.8 + 1e-12));
 }
 
 /// The curvature of θ where it is positive, summed over the nodes of a grid.
@@ -124,10 +114,10 @@ fn the_rotation_is_the_area_integral_and_no_circle_inside_turns_more() {
         };
         let node = 0.5 * 0.6_f64.sqrt();
         let mut enclosed = 0.0;
-        for pair in gait.u().windows(2) {
-            let step = pair[1] - pair[0];
+        for [from, to] in gait.u().array_windows() {
+            let step = to - from;
             for (place, weight) in [(0.5 - node, 5.0), (0.5, 8.0), (0.5 + node, 5.0)] {
-                let point = curve.at(pair[0] + place * step);
+                let point = curve.at(from + place * step);
                 enclosed += weight / 18.0 * step * potential(&point.phi) * point.rate.y;
             }
         }
@@ -137,11 +127,10 @@ fn the_rotation_is_the_area_integral_and_no_circle_inside_turns_more() {
         for (i, j) in (0..81).map(|k| (k % 9 + 1, k / 9 + 1)) {
             let place = |k: i32| bounds.max_angle.unwrap() * (0.2 * f64::from(k) - 1.0);
             let centre = Vector2::new(place(i), place(j));
-            let sides = gait.phi().windows(2);
-            let crossed = sides.filter(|side| {
-                let along = (centre.y - side[0].y) / (side[1].y - side[0].y);
-                (side[0].y > centre.y) != (side[1].y > centre.y)
-                    && centre.x < side[0].x + along * (side[1].x - side[0].x)
+            let sides = gait.phi().array_windows();
+            let crossed = sides.filter(|[a, b]| {
+                let along = (centre.y - a.y) / (b.y - a.y);
+                (a.y > centre.y) != (b.y > centre.y) && centre.x < a.x + along * (b.x - a.x)
             });
             if crossed.count() % 2 == 0 {
                 continue;
@@ -196,13 +185,8 @@ fn the_gait_file_swims_the_same_and_is_certified_from_its_samples() {
 fn without_a_bound_joints_stay_within_a_half_turn() {
     let turning = found(Swimmer::robot(), Bounds::default());
     assert_eq!(turning.gait.bounds, Bounds::within(std::f64::consts::PI));
-    assert!(
-        turning
-            .gait
-            .phi()
-            .iter()
-            .all(|phi| phi.amax() < std::f64::consts::PI + 1e-9)
-    );
+    let mut shapes = turning.gait.phi().iter();
+    assert!(shapes.all(|phi| phi.amax() < std::f64::consts::PI + 1e-9));
 }
 
 #[test]

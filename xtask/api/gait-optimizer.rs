@@ -484,6 +484,7 @@ impl OptimalGait {
     pub fn corners(&self) -> &[f64] {}
     pub fn cycle_arcs(&self) -> &[GaitArc] {}
     pub fn gait(&self) -> Result<AnyGait, InvalidSamples> {}
+    pub fn certify(&self) -> Result<Certificate, CertifyError> {}
     pub fn gait_file(&self, swimmer_name: &str) -> GaitFile {}
 }
 #[derive(Debug, Clone, PartialEq)]
@@ -766,9 +767,6 @@ pub fn certify(
 ) -> Result<Certificate, CertifyError> {}
 pub fn continuation(
     problem: &ContinuationProblem,
-) -> Result<Continuation, ContinuationError> {}
-pub fn continuation_watched(
-    problem: &ContinuationProblem,
     watch: Watch<'_>,
 ) -> Result<Continuation, ContinuationError> {}
 pub fn displacement(
@@ -806,8 +804,7 @@ pub fn robust_speed(
     over: Over,
     watch: Watch<'_>,
 ) -> Result<RobustSpeed, RobustError> {}
-pub fn sideways(problem: &SidewaysProblem) -> Result<Sideways, SidewaysError> {}
-pub fn sideways_watched(
+pub fn sideways(
     problem: &SidewaysProblem,
     watch: Watch<'_>,
 ) -> Result<Sideways, SidewaysError> {}

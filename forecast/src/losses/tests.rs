@@ -15,13 +15,30 @@ fn ideal() -> ServoFile {
     }
 }
 
-fn told(gait: &AnyGait, servos: Servos, period: f64, knots: usize) -> Forecast {
+/// Pulses in whole nanoseconds.
+fn fine(file: ServoFile) -> Servos {
+    Servos {
+        file,
+        pulse_step_ns: 0,
+    }
+}
+
+fn asked(
+    gait: &AnyGait,
+    servos: Servos,
+    period: f64,
+    knots: usize,
+) -> Result<Forecast, ForecastError> {
     let played = Played {
         servos,
         period,
         knots,
     };
-    forecast(&robot(), gait, &played).unwrap()
+    forecast(&robot(), gait, &played)
+}
+
+fn told(gait: &AnyGait, servos: Servos, period: f64, knots: usize) -> Forecast {
+    asked(gait, servos, period, knots).unwrap()
 }
 
 fn stage(forecast: &Forecast, stage: Stage) -> Loss {
@@ -49,19 +66,13 @@ fn losses_sum_to_the_whole() {
 fn a_dead_band_shrinks_the_gait() {
     let model = robot();
     let (amplitude, band) = (1.0, 0.1);
-    let servos = Servos {
-        file: ServoFile {
-            dead_band: band,
-            ..ServoFile::default()
-        },
-        pulse_step_ns: 0,
-    };
+    let servos = fine(ServoFile {
+        dead_band: band,
+        ..ServoFile::default()
+    });
     let forecast = told(&AnyGait::circle(amplitude), servos, 30.0, 512);
-    let smaller = swim(
-        &model,
-        &AnyGait::circle(amplitude - band),
-        &Tolerance::default(),
-    );
+    let circle = AnyGait::circle(amplitude - band);
+    let smaller = swim(&model, &circle, &Tolerance::default());
     let (designed, played) = forecast.ends().unwrap();
     // The play operator cuts the turning points off: between the smaller circle and the whole one, nearer to the former.
     let x = played.displacement.x;
@@ -78,18 +89,15 @@ fn a_dead_band_shrinks_the_gait() {
 #[test]
 fn interpolation_losses_fall_at_fourth_order() {
     let gait = AnyGait::circle(1.4);
-    let servos = Servos {
-        file: ideal(),
-        pulse_step_ns: 0,
-    };
+    let servos = fine(ideal());
     let loss = |knots| stage(&told(&gait, servos, 30.0, knots), Stage::Interpolated).loss;
     let losses = [12, 24, 48, 96].map(loss);
     assert!(
         losses[0].abs() > 1e-6,
         "a coarse table's loss is seen: {losses:?}"
     );
-    for pair in losses.windows(2) {
-        let order = (pair[0] / pair[1]).log2();
+    for [before, after] in losses.array_windows() {
+        let order = (before / after).log2();
         assert!((3.7..4.4).contains(&order), "{order} {losses:?}");
     }
 }
@@ -99,10 +107,7 @@ fn interpolation_losses_fall_at_fourth_order() {
 fn a_coarse_table_by_another_integration() {
     let model = robot();
     let gait = AnyGait::circle(1.4);
-    let servos = Servos {
-        file: ideal(),
-        pulse_step_ns: 0,
-    };
+    let servos = fine(ideal());
     let told = stage(&told(&gait, servos, 30.0, 16), Stage::Rounded);
     let table = gait_player::GaitTable::from_fn(16, |u| gait.at(u).phi.into()).unwrap();
     let shape = |i: usize| {
@@ -129,10 +134,7 @@ fn a_coarse_table_by_another_integration() {
 
 #[test]
 fn good_servos_lose_nothing() {
-    let servos = Servos {
-        file: ideal(),
-        pulse_step_ns: 0,
-    };
+    let servos = fine(ideal());
     let forecast = told(&AnyGait::circle(1.0), servos, 200.0, 512);
     let share = forecast.share(forecast.total_loss()).unwrap();
     assert!(share.abs() < 1e-4, "{share}");
@@ -148,24 +150,17 @@ fn good_servos_lose_nothing() {
 /// Slow servos lag behind and cut the gait: seen in the stage of the rate, and the robot would not play it.
 #[test]
 fn slow_servos_are_told() {
-    let servos = Servos {
-        file: ServoFile {
-            max_rate: 0.2,
-            dead_band: 0.0,
-            ..ServoFile::default()
-        },
-        pulse_step_ns: 0,
-    };
+    let servos = fine(ServoFile {
+        max_rate: 0.2,
+        dead_band: 0.0,
+        ..ServoFile::default()
+    });
     let forecast = told(&AnyGait::circle(1.2), servos, 30.0, 512);
     assert!(stage(&forecast, Stage::RateLimited).loss > 0.02 * forecast.stages[0].displacement.x);
     assert!(forecast.verdict.min_period > 30.0);
     assert!(forecast.verdict.refused.is_some());
-    assert!(
-        forecast
-            .warnings()
-            .iter()
-            .any(|text| text.contains("refuse"))
-    );
+    let warnings = forecast.warnings();
+    assert!(warnings.iter().any(|text| text.contains("refuse")));
 }
 
 #[test]
@@ -192,37 +187,19 @@ fn close_links_are_told() {
 #[test]
 fn what_no_robot_plays_is_refused() {
     let servos = Servos::on_the_robot(ServoFile::default());
-    let with = |gait: AnyGait, period, knots| {
-        forecast(
-            &robot(),
-            &gait,
-            &Played {
-                servos,
-                period,
-                knots,
-            },
-        )
+    let with = |amplitude, period, knots| {
+        asked(&AnyGait::circle(amplitude), servos, period, knots).unwrap_err()
     };
-    assert!(matches!(
-        with(AnyGait::circle(2.9), 30.0, 512),
-        Err(ForecastError::Range { .. })
-    ));
-    assert!(matches!(
-        with(AnyGait::circle(1.0), 1e9, 512),
-        Err(ForecastError::Period { .. })
-    ));
-    assert!(matches!(
-        with(AnyGait::circle(1.0), f64::NAN, 512),
-        Err(ForecastError::Period { .. })
-    ));
-    assert!(matches!(
-        with(AnyGait::circle(1.0), 30.0, 513),
-        Err(ForecastError::Table(_))
-    ));
-    assert!(matches!(
-        with(AnyGait::circle(1.0), 30.0, 1),
-        Err(ForecastError::Table(_))
-    ));
+    let range = with(2.9, 30.0, 512);
+    assert!(matches!(range, ForecastError::Range { .. }));
+    for period in [1e9, f64::NAN] {
+        let refused = with(1.0, period, 512);
+        assert!(matches!(refused, ForecastError::Period { .. }));
+    }
+    for knots in [513, 1] {
+        let refused = with(1.0, 30.0, knots);
+        assert!(matches!(refused, ForecastError::Table(_)));
+    }
 }
 
 proptest! {

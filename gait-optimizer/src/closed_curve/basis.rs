@@ -117,8 +117,9 @@ impl Basis {
 
     /// Value and slope over a panel of every function at a node.
     pub(super) fn at_node(&self, node: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
-        let (values, slopes) = (self.values.column(node), self.slopes.column(node));
-        (0..self.functions()).map(move |j| (values[j], slopes[j]))
+        let own = node * self.functions()..(node + 1) * self.functions();
+        let [values, slopes] = [&self.values, &self.slopes].map(|all| &all.as_slice()[own.clone()]);
+        values.iter().copied().zip(slopes.iter().copied())
     }
 
     /// Value and derivative by u of every function at a fraction of the cycle.

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use swimmer_model::Model;
 
-use super::fourier::{Ends, Maximum, Objective, best_circles, best_ellipses, climb, series};
+use super::fourier::{FARTHEST, Maximum, Objective, best_circles, best_ellipses, climb, series};
 use super::{Branch, EfficiencyError, Method};
 use crate::certificate::crossings;
 use crate::extremal::guess::quarter_of_curve;
@@ -21,8 +21,6 @@ pub(crate) struct Found {
     pub(crate) direct_efficiency: Option<f64>,
 }
 
-/// Joint angles beyond this are not followed \[rad\].
-const FARTHEST: f64 = 9.0;
 /// Orders of the series, the panels of the quarter, the gain that a climb stops at, and the numbers of pieces that are shot from
 /// there.
 const LADDER: [(usize, usize, f64, &[usize]); 10] = [
@@ -157,17 +155,14 @@ impl<'a> Ladder<'a> {
         let mut objective = Objective::new(self.model, order, panels);
         let mut from = self.coefficients.clone();
         from.resize(2 * order, 0.0);
-        let ends = Ends {
-            least_gain,
-            farthest: FARTHEST,
-        };
-        let maximum = climb(&mut objective, &from, ends).ok_or(EfficiencyError::RunsAway {
-            branch: self.branch,
-            amplitude: self.amplitude,
-            order,
-            efficiency: self.efficiency,
-            farthest: FARTHEST,
-        })?;
+        let maximum =
+            climb(&mut objective, &from, least_gain).ok_or(EfficiencyError::RunsAway {
+                branch: self.branch,
+                amplitude: self.amplitude,
+                order,
+                efficiency: self.efficiency,
+                farthest: FARTHEST,
+            })?;
         self.coefficients.clone_from(&maximum.coefficients);
         self.efficiency = maximum.value.efficiency();
         Ok(maximum)

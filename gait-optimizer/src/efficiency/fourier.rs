@@ -6,7 +6,7 @@ mod objective;
 use nalgebra::DMatrix;
 use swimmer_model::Model;
 
-pub(crate) use ascent::{Ends, Maximum, climb};
+pub(crate) use ascent::{FARTHEST, Maximum, climb};
 pub(crate) use objective::{Objective, series};
 
 /// Panels of the quarter that circles and ellipses are looked at in.

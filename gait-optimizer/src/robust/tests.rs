@@ -45,43 +45,30 @@ fn without_an_interval_it_is_the_nominal_optimum() {
     for over in [Over::Worst, Over::Mean] {
         let robust = robust_displacement(&bounded(), &exact, over).unwrap();
         // Collocation and shooting share nothing but the maximum principle.
-        let off = robust.robustness.values.nominal - nominal.displacement_over_length;
+        let values = robust.robustness.values;
+        let off = values.nominal - nominal.displacement_over_length;
         assert!(off.abs() < 1e-10, "{off:e}");
         assert!((robust.gait.start_angle - nominal.start_angle).abs() < 1e-6);
         assert!((robust.gait.end_angle - nominal.end_angle).abs() < 1e-6);
         assert_eq!(
-            (
-                robust.robustness.values.worst,
-                robust.robustness.values.mean
-            ),
-            (
-                robust.robustness.values.nominal,
-                robust.robustness.values.nominal
-            )
+            (values.worst, values.mean),
+            (values.nominal, values.nominal)
         );
     }
     let free = DisplacementProblem::new(Swimmer::purcell());
     let purcell = robust_displacement(&free, &Uncertainty::none(0.0, 2.0), Over::Worst).unwrap();
-    assert!(
-        (purcell.robustness.values.nominal - 0.103_532_240_0).abs() < 1e-10,
-        "{}",
-        purcell.robustness.values.nominal
-    );
+    let known = purcell.robustness.values.nominal;
+    assert!((known - 0.103_532_240_0).abs() < 1e-10, "{known}");
 }
 
 #[test]
 fn robustness_pays_where_it_is_asked_for() {
     let worst = robust_displacement(&bounded(), &fit(), Over::Worst).unwrap();
     let mean = robust_displacement(&bounded(), &fit(), Over::Mean).unwrap();
-    assert!(
-        worst.robustness.values.worst > worst.robustness.nominal.worst + 1e-7,
-        "{worst:?}"
-    );
-    assert!(mean.robustness.values.mean > mean.robustness.nominal.mean + 1e-8);
-    assert!(
-        worst.robustness.values.worst >= mean.robustness.values.worst
-            && mean.robustness.values.mean >= worst.robustness.values.mean
-    );
+    let (a, b) = (&worst.robustness, &mean.robustness);
+    assert!(a.values.worst > a.nominal.worst + 1e-7, "{worst:?}");
+    assert!(b.values.mean > b.nominal.mean + 1e-8);
+    assert!(a.values.worst >= b.values.worst && b.values.mean >= a.values.mean);
     for robust in [&worst, &mean] {
         assert!(robust.robustness.values.nominal <= robust.robustness.nominal.nominal + 1e-12);
         assert!(robust.gait.certificate.pass());
@@ -92,21 +79,13 @@ fn robustness_pays_where_it_is_asked_for() {
     let mut least = f64::INFINITY;
     for i in 0..=steps {
         for j in 0..=steps {
-            let (a, b) = (
-                f64::from(i) / f64::from(steps),
-                f64::from(j) / f64::from(steps),
-            );
-            least = least.min(displacement_of(
-                &gait,
-                &with(0.064 + 0.0104 * a, 3.3 + 0.6 * b),
-            ));
+            let [r, chi] = [i, j].map(|k| f64::from(k) / f64::from(steps));
+            let swimmer = with(0.064 + 0.0104 * r, 3.3 + 0.6 * chi);
+            least = least.min(displacement_of(&gait, &swimmer));
         }
     }
-    assert!(
-        (least - worst.robustness.values.worst).abs() < 1e-8,
-        "{least} {}",
-        worst.robustness.values.worst
-    );
+    let told = a.values.worst;
+    assert!((least - told).abs() < 1e-8, "{least} {told}");
 }
 
 /// A gait with a bump on each quarter.
@@ -139,16 +118,12 @@ fn no_neighbour_has_a_better_mean() {
     let robust = robust_displacement(&bounded(), &fit(), Over::Mean).unwrap();
     let members = fit().normal(&Swimmer::robot());
     let mean = |gait: &dyn Gait<f64>| -> f64 {
-        members
-            .iter()
-            .map(|(swimmer, weight)| {
-                let model = Model::new(&swimmer.swimmer).unwrap();
-                weight
-                    * swim(&model, gait, &Tolerance::new(1e-11))
-                        .displacement_over_length()
-                        .x
-            })
-            .sum()
+        let of = |(possible, weight): &(uncertainty::Possible, f64)| {
+            let model = Model::new(&possible.swimmer).unwrap();
+            let stroke = swim(&model, gait, &Tolerance::new(1e-11));
+            weight * stroke.displacement_over_length().x
+        };
+        members.iter().map(of).sum()
     };
     let gait = robust.gait.gait().unwrap();
     let best = mean(&gait);
@@ -195,56 +170,30 @@ fn fourier_gradients_are_exact() {
 fn purcells_small_gait_comes_out_of_the_series() {
     let exact = Uncertainty::none(0.0, 2.0);
     let robust = |order| {
-        robust_efficiency(
-            &Swimmer::purcell(),
-            (Branch::Small, order),
-            &Bounds::default(),
-            &exact,
-            Over::Mean,
-        )
-        .unwrap()
+        let (purcell, free) = (Swimmer::purcell(), Bounds::default());
+        robust_efficiency(&purcell, (Branch::Small, order), &free, &exact, Over::Mean).unwrap()
     };
-    let (third, sixth) = (robust(3), robust(6));
+    let [third, sixth] = [3, 6].map(robust);
+    let (less, best) = (third.robustness.values, sixth.robustness.values);
     let optimum = 0.012_364_154_624;
-    assert!(
-        third.robustness.values.nominal < sixth.robustness.values.nominal
-            && sixth.robustness.values.nominal <= optimum
-    );
-    assert!(
-        sixth.robustness.values.nominal / optimum > 1.0 - 1e-5,
-        "{}",
-        sixth.robustness.values.nominal
-    );
+    assert!(less.nominal < best.nominal && best.nominal <= optimum);
+    assert!(best.nominal / optimum > 1.0 - 1e-5, "{}", best.nominal);
     assert!((sixth.gait.efficiency / optimum - 1.0).abs() < 1e-5);
-    assert!(
-        (sixth.robustness.values.worst, sixth.robustness.values.mean)
-            == (
-                sixth.robustness.values.nominal,
-                sixth.robustness.values.nominal
-            )
-    );
+    assert_eq!((best.worst, best.mean), (best.nominal, best.nominal));
 }
 
 #[test]
 fn robust_efficiency_pays_too() {
     for branch in [Branch::Small, Branch::Large] {
         let robust = |over| {
-            robust_efficiency(
-                &Swimmer::robot(),
-                (branch, 3),
-                &Bounds::default(),
-                &fit(),
-                over,
-            )
-            .unwrap()
+            let (robot, free) = (Swimmer::robot(), Bounds::default());
+            robust_efficiency(&robot, (branch, 3), &free, &fit(), over).unwrap()
         };
-        let (worst, mean) = (robust(Over::Worst), robust(Over::Mean));
-        assert!(
-            worst.robustness.values.worst > worst.robustness.nominal.worst,
-            "{worst:?}"
-        );
-        assert!(mean.robustness.values.mean > mean.robustness.nominal.mean);
-        assert!(worst.robustness.values.nominal < worst.robustness.nominal.nominal);
+        let [worst, mean] = [Over::Worst, Over::Mean].map(robust);
+        let (a, b) = (&worst.robustness, &mean.robustness);
+        assert!(a.values.worst > a.nominal.worst, "{worst:?}");
+        assert!(b.values.mean > b.nominal.mean);
+        assert!(a.values.nominal < a.nominal.nominal);
         assert!(worst.gait.certificate.pass() && mean.gait.certificate.pass());
     }
 }
@@ -313,25 +262,17 @@ fn the_worst_of_an_ellipse_is_a_minimum() {
 #[test]
 fn nonsense_is_refused() {
     let efficiency = |order, max_angle, uncertainty: &Uncertainty| {
-        robust_efficiency(
-            &Swimmer::robot(),
-            (Branch::Large, order),
-            &Bounds {
-                max_angle,
-                ..Bounds::default()
-            },
-            uncertainty,
-            Over::Mean,
-        )
+        let bounds = Bounds {
+            max_angle,
+            ..Bounds::default()
+        };
+        let large = (Branch::Large, order);
+        robust_efficiency(&Swimmer::robot(), large, &bounds, uncertainty, Over::Mean)
     };
-    assert!(matches!(
-        efficiency(0, None, &fit()),
-        Err(RobustError::Order { .. })
-    ));
-    assert!(matches!(
-        efficiency(99, None, &fit()),
-        Err(RobustError::Order { .. })
-    ));
+    for order in [0, 99] {
+        let refused = efficiency(order, None, &fit());
+        assert!(matches!(refused, Err(RobustError::Order { .. })));
+    }
     assert!(matches!(
         efficiency(2, Some(2.0), &Uncertainty::none(0.0692, 3.598)),
         Err(RobustError::Bound { .. })
@@ -372,20 +313,13 @@ fn nonsense_is_refused() {
 #[test]
 fn a_branch_that_ends_is_told() {
     let on = |order| {
-        robust_efficiency(
-            &Swimmer::robot(),
-            (Branch::Small, order),
-            &Bounds::default(),
-            &fit(),
-            Over::Worst,
-        )
-        .unwrap()
+        let (robot, small, free) = (Swimmer::robot(), (Branch::Small, order), Bounds::default());
+        let found = robust_efficiency(&robot, small, &free, &fit(), Over::Worst);
+        found.unwrap().robustness
     };
-    assert!(!on(3).robustness.off_branch);
+    assert!(!on(3).off_branch);
     let off = on(4);
-    assert!(
-        off.robustness.off_branch && off.robustness.values.worst > off.robustness.nominal.worst
-    );
+    assert!(off.off_branch && off.values.worst > off.nominal.worst);
 }
 
 fn fast(max_angle: f64) -> crate::SpeedProblem {

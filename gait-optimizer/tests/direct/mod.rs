@@ -167,9 +167,9 @@ impl Direct {
             return Pose::along(&self.model, [from, to]);
         }
         let points = self.border(from, to);
-        points.windows(2).fold(Pose::default(), |pose, pair| {
-            pose * Pose::along(&self.model, [pair[0], pair[1]])
-        })
+        let sides = points.array_windows();
+        let poses = sides.map(|side| Pose::along(&self.model, *side));
+        poses.fold(Pose::default(), |pose, side| pose * side)
     }
 
     fn border(&self, from: Vector2<f64>, to: Vector2<f64>) -> Vec<Vector2<f64>> {
@@ -349,18 +349,16 @@ fn spread(
     intervals: usize,
 ) -> Vec<Vector2<f64>> {
     let nearest = |place: Vector2<f64>| {
-        (0..samples.len())
-            .min_by(|&a, &b| {
-                (samples[a] - place)
-                    .norm()
-                    .total_cmp(&(samples[b] - place).norm())
-            })
+        let apart = |k: usize| (samples[k] - place).norm();
+        let places = 0..samples.len();
+        places
+            .min_by(|&a, &b| apart(a).total_cmp(&apart(b)))
             .unwrap()
     };
     let arc = &samples[nearest(from)..=nearest(to)];
     let mut way = vec![0.0];
-    for side in arc.windows(2) {
-        way.push(way[way.len() - 1] + (side[1] - side[0]).norm());
+    for [from, to] in arc.array_windows() {
+        way.push(way[way.len() - 1] + (to - from).norm());
     }
     let whole = way[way.len() - 1];
     (0..=intervals)

@@ -63,9 +63,7 @@ fn gaits() -> Vec<GaitFile> {
         }),
         within(Bounds {
             sector: true,
-            no_overlap: true,
-            clearance: 0.005,
-            ..at_most
+            ..at_most.apart(0.005)
         }),
     ]
 }

@@ -15,30 +15,31 @@ const MOST_STEPS: usize = 80;
 /// Longest step of one coefficient \[rad\].
 const LONGEST: f64 = 0.35;
 
-/// Where a climb ends.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Ends {
-    /// A promised gain in ln(X/S) below this is not worth a step.
-    pub(crate) least_gain: f64,
-    /// A curve with joint angles beyond this has run away \[rad\].
-    pub(crate) farthest: f64,
-}
+/// A curve with joint angles beyond this has run away \[rad\].
+pub(crate) const FARTHEST: f64 = 9.0;
 
-/// Climbs from these coefficients; X keeps its sign. None where the curve runs away or the climb does not end.
-pub(crate) fn climb(objective: &mut Objective<'_>, start: &[f64], ends: Ends) -> Option<Maximum> {
+/// Climbs from these coefficients to where a step promises to gain less than `least_gain` in ln(X/S); X keeps its sign. None where the
+/// curve runs away or the climb does not end.
+pub(crate) fn climb(
+    objective: &mut Objective<'_>,
+    start: &[f64],
+    least_gain: f64,
+) -> Option<Maximum> {
     let mut here = start.to_vec();
     let mut damping = 0.0_f64;
     for _ in 0..MOST_STEPS {
         let expansion = objective.expansion(&here);
         let value = expansion.value;
-        if !value.objective.is_finite() || farthest_point(&here) > ends.farthest {
+        if !value.objective.is_finite() || farthest_point(&here) > FARTHEST {
             return None;
         }
         let bend = -&expansion.hessian;
         let scale = bend.diagonal().amax().max(1e-6);
-        let finished = |coefficients: Vec<f64>, value: Value| Maximum {
-            coefficients,
-            value,
+        let finished = |coefficients| {
+            Some(Maximum {
+                coefficients,
+                value,
+            })
         };
         let mut next = None;
         for _ in 0..60 {
@@ -46,8 +47,8 @@ pub(crate) fn climb(objective: &mut Objective<'_>, start: &[f64], ends: Ends) ->
                 damping = (damping * 4.0).max(1e-9 * scale);
                 continue;
             };
-            if promise < ends.least_gain {
-                return Some(finished(here, value));
+            if promise < least_gain {
+                return finished(here);
             }
             if step.amax() > LONGEST {
                 damping = (damping * 3.0).max(1e-6 * scale);
@@ -68,7 +69,7 @@ pub(crate) fn climb(objective: &mut Objective<'_>, start: &[f64], ends: Ends) ->
             }
             // What is left is below the rounding of the objective.
             if promise < 1e-13 {
-                return Some(finished(here, value));
+                return finished(here);
             }
             damping = (damping * 4.0).max(1e-6 * scale);
         }
