@@ -2,58 +2,34 @@
 
 mod changed;
 mod plane;
-mod speed_direct;
+mod speed_curved;
 
 use std::time::Instant;
 
 use changed::{Change, rounded};
-use gait_optimizer::{
-    Bounds, LimitedProblem, SpeedProblem, Torque, Verdict, certify, fastest_within,
-};
-use nalgebra::{Matrix2, Vector2};
+use gait_optimizer::{Bounds, LimitedProblem, Torque, Verdict, certify, fastest_within};
+use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use swimmer_files::GaitFile;
 use swimmer_model::Swimmer;
 
-use speed_direct::{Direct, Gauge};
+use speed_curved::Curved;
 
-const SIDES: usize = 24;
+const ELEMENTS: usize = 40;
 
-/// The direct method from random starts reaches polygons that can be swum within all limits: none is faster than the answer, and
-/// the best is as fast but for the percent that straight sides cost, each of which takes as long as its slowest place asks for while it
-/// is climbed.
+/// The direct method from random starts reaches curves that can be swum within all limits: none is faster than the answer, and the best
+/// is as fast but for what a corner within an element costs.
 #[track_caller]
 fn nothing_faster(problem: LimitedProblem, starts: usize) {
     let found = fastest_within(&problem, &|_| ()).unwrap();
     let speed = found.speed_over_length;
-    let volume = problem.swimmer.total_length().powi(3);
-    let gauges = || {
-        let mut gauges: Vec<Gauge> = Vec::new();
-        if let Some(power) = problem.power_over_viscosity.map(|power| power / volume) {
-            gauges.push(Box::new(move |w, v| (v.dot(&(w * v)) / power).sqrt()));
-        }
-        if let Some(torque) = problem.torque {
-            for (joint, of_torque, of_rate) in
-                (0..8).map(|k| (k % 2, [1.0, -1.0][k / 2 % 2], [1.0, -1.0][k / 4]))
-            {
-                let stall = torque.stall_over_viscosity / volume;
-                gauges.push(Box::new(move |w: &Matrix2<f64>, v: &Vector2<f64>| {
-                    of_torque * (w * v)[joint] / stall + of_rate * v[joint] / torque.no_load_rate
-                }));
-            }
-        }
-        gauges
-    };
-    let asked = SpeedProblem {
-        bounds: problem.bounds,
-        ..SpeedProblem::new(problem.swimmer, problem.rates.unwrap_or([1e3; 2]))
-    };
     let max_angle = problem.bounds.max_angle.unwrap();
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     let mut best = 0.0_f64;
     for start in 0..starts {
         let mut draw = |largest: f64| rng.random_range(-largest..largest);
+        // Ellipses of any place, size and tilt; the first is nearly a circle.
         let centre = Vector2::new(draw(0.6), draw(0.6));
         let size = 0.55 + draw(0.35);
         let turn = if start == 0 { 0.0 } else { draw(0.5) };
@@ -61,15 +37,17 @@ fn nothing_faster(problem: LimitedProblem, starts: usize) {
             let circle = Vector2::new(s.cos(), (s + turn).sin()) * size;
             (circle + centre * (1.0 - size)) * max_angle
         };
-        let mut direct = Direct::new(&asked, SIDES, curve).limited(gauges());
-        if direct.climb().is_some() {
-            println!("  {:.12} of {speed:.12}", direct.swimmable());
-            best = best.max(direct.swimmable());
-        }
+        let climbed = Curved::new(&problem, ELEMENTS, curve).climb(speed);
+        println!("  {climbed:.12} of {speed:.12}");
+        best = best.max(climbed);
     }
-    println!("{:?}: {speed:.12}, direct {best:.12}", found.limits);
-    assert!(best <= speed * (1.0 + 1e-6), "{best} {speed}");
-    assert!(best > speed * 0.985, "{best} {speed}");
+    let off = best / speed - 1.0;
+    println!(
+        "{:?}: {speed:.12}, direct {best:.12}: {off:.1e}",
+        found.limits
+    );
+    assert!(off < 1e-6, "{best} {speed}");
+    assert!(off > -1e-5, "{best} {speed}");
 }
 
 fn robot(power: Option<f64>, rates: Option<[f64; 2]>, torque: Option<Torque>) -> LimitedProblem {
@@ -88,7 +66,7 @@ fn robot(power: Option<f64>, rates: Option<[f64; 2]>, torque: Option<Torque>) ->
 
 #[test]
 fn nothing_is_faster_on_power_and_rate() {
-    nothing_faster(robot(Some(5e-3), Some([1.0; 2]), None), 6);
+    nothing_faster(robot(Some(5e-3), Some([1.0; 2]), None), 2);
 }
 
 #[test]
@@ -97,7 +75,28 @@ fn nothing_is_faster_on_torque() {
         stall_over_viscosity: 5e-3,
         no_load_rate: 2.0,
     };
-    nothing_faster(robot(None, None, Some(torque)), 6);
+    nothing_faster(robot(None, None, Some(torque)), 2);
+}
+
+/// On all of them, on weak servos, and of another swimmer, from more starts.
+#[test]
+#[ignore = "minutes: part of the soak"]
+fn nothing_is_faster_anywhere() {
+    let torque = |stall_over_viscosity: f64| {
+        Some(Torque {
+            stall_over_viscosity,
+            no_load_rate: 2.0,
+        })
+    };
+    nothing_faster(robot(Some(5e-3), Some([1.0; 2]), None), 10);
+    nothing_faster(robot(Some(5e-3), Some([1.0; 2]), torque(5e-3)), 10);
+    nothing_faster(robot(None, None, torque(1e-3)), 30);
+    let purcell = |power: Option<f64>, torque: Option<Torque>| LimitedProblem {
+        swimmer: Swimmer::purcell(),
+        ..robot(power, Some([1.0; 2]), torque)
+    };
+    nothing_faster(purcell(Some(0.4), None), 10);
+    nothing_faster(purcell(Some(0.4), torque(0.4)), 10);
 }
 
 /// Powers from where it binds alone to where it never does, with rates of 1 rad/s: more is never slower, no gait is faster than with

@@ -3,7 +3,7 @@
 
 use std::ops::Mul;
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 use swimmer_model::Model;
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -28,50 +28,59 @@ impl Mul for Pose {
 
 /// Longest step \[rad\].
 const STEP: f64 = 0.15;
+/// Of 15.
+const ROOT: f64 = 3.872_983_346_207_417;
 
 impl Pose {
-    /// Steps of the Gauss method of order six, explicit here as the rates depend on the shape and θ alone.
+    /// Where a Gauss step of order six asks for rates, and what they weigh.
+    pub(crate) const NODES: [f64; 3] = [0.5 - ROOT / 10.0, 0.5, 0.5 + ROOT / 10.0];
+    pub(crate) const WEIGHTS: [f64; 3] = [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0];
+    const UP_TO: [[f64; 3]; 3] = [
+        [
+            5.0 / 36.0,
+            2.0 / 9.0 - ROOT / 15.0,
+            5.0 / 36.0 - ROOT / 30.0,
+        ],
+        [
+            5.0 / 36.0 + ROOT / 24.0,
+            2.0 / 9.0,
+            5.0 / 36.0 - ROOT / 24.0,
+        ],
+        [
+            5.0 / 36.0 + ROOT / 30.0,
+            2.0 / 9.0 + ROOT / 15.0,
+            5.0 / 36.0,
+        ],
+    ];
+
+    /// One Gauss step with these rates of the body, explicit here as they depend on the shape alone.
+    pub(crate) fn stepped(rates: &[Vector3<f64>; 3]) -> Self {
+        let turned = |weights: &[f64; 3]| -> f64 {
+            let turned = weights.iter().zip(rates);
+            turned.map(|(weight, rate)| weight * rate.z).sum()
+        };
+        let mut pose = Self::default();
+        for (rate, (weight, row)) in rates.iter().zip(Self::WEIGHTS.iter().zip(&Self::UP_TO)) {
+            let (sin, cos) = turned(row).sin_cos();
+            pose.x += weight * (cos * rate.x - sin * rate.y);
+            pose.y += weight * (sin * rate.x + cos * rate.y);
+        }
+        pose.theta = turned(&Self::WEIGHTS);
+        pose
+    }
+
+    /// Along a straight side.
+    #[allow(dead_code, reason = "each test file is a program of its own")]
     pub(crate) fn along(model: &Model<f64>, [from, to]: [Vector2<f64>; 2]) -> Self {
-        let root = 15.0_f64.sqrt();
-        let nodes = [0.5 - root / 10.0, 0.5, 0.5 + root / 10.0];
-        let weights = [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0];
-        let up_to = [
-            [
-                5.0 / 36.0,
-                2.0 / 9.0 - root / 15.0,
-                5.0 / 36.0 - root / 30.0,
-            ],
-            [
-                5.0 / 36.0 + root / 24.0,
-                2.0 / 9.0,
-                5.0 / 36.0 - root / 24.0,
-            ],
-            [
-                5.0 / 36.0 + root / 30.0,
-                2.0 / 9.0 + root / 15.0,
-                5.0 / 36.0,
-            ],
-        ];
         let way = to - from;
         let count = (1..1000)
             .find(|&count| way.norm() <= STEP * f64::from(count))
             .unwrap_or(1000);
         let step = way / f64::from(count);
-        (0..count).fold(Self::default(), |mut pose, i| {
+        (0..count).fold(Self::default(), |pose, i| {
             let begun = from + step * f64::from(i);
-            let rates = nodes.map(|s| model.connection_and_power(&(begun + step * s)).0 * step);
-            for (rate, (weight, row)) in rates.iter().zip(weights.iter().zip(&up_to)) {
-                let turned: f64 = row.iter().zip(&rates).map(|(w, rate)| w * rate.z).sum();
-                let (sin, cos) = (pose.theta + turned).sin_cos();
-                pose.x += weight * (cos * rate.x - sin * rate.y);
-                pose.y += weight * (sin * rate.x + cos * rate.y);
-            }
-            pose.theta += rates
-                .iter()
-                .zip(&weights)
-                .map(|(r, w)| w * r.z)
-                .sum::<f64>();
-            pose
+            let rate = |s: f64| model.connection_and_power(&(begun + step * s)).0 * step;
+            pose * Self::stepped(&Self::NODES.map(rate))
         })
     }
 }

@@ -1,13 +1,11 @@
-//! The limits of a polygon: no servo faster than it can, no corner beyond the bounds, all linear; and any others of its sides.
+//! The limits of a polygon: no servo faster than it can, no corner beyond the bounds. All are linear.
 
-use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
+use nalgebra::{DMatrix, DVector};
 
 /// A limit, `value ≥ 0`, with the entries of its slope.
 pub(super) struct Slack {
     pub(super) value: f64,
-    slopes: Vec<(usize, f64)>,
-    /// Second derivatives by the ends of its side.
-    curved: Option<Matrix4<f64>>,
+    slopes: [(usize, f64); 3],
 }
 
 impl Slack {
@@ -20,54 +18,16 @@ impl Slack {
     }
 
     pub(super) fn add(&self, sum: &mut DVector<f64>, weight: f64) {
-        for &(at, slope) in &self.slopes {
+        for (at, slope) in self.slopes {
             sum[at] += weight * slope;
         }
     }
 
     pub(super) fn stiffen(&self, matrix: &mut DMatrix<f64>, weight: f64) {
-        for &(i, a) in &self.slopes {
-            for &(j, b) in &self.slopes {
+        for (i, a) in self.slopes {
+            for (j, b) in self.slopes {
                 matrix[(i, j)] += weight * a * b;
             }
-        }
-    }
-
-    /// Adds what its curvature makes of its multiplier.
-    pub(super) fn bend(&self, matrix: &mut DMatrix<f64>, push: f64) {
-        let Some(curved) = self.curved else { return };
-        for (i, &(row, _)) in self.slopes.iter().take(4).enumerate() {
-            for (j, &(column, _)) in self.slopes.iter().take(4).enumerate() {
-                matrix[(row, column)] -= push * curved[(i, j)];
-            }
-        }
-    }
-
-    /// `time − G` for a function of the ends of a side, which these are the coordinates of; by differences.
-    pub(super) fn of_side(
-        (time, at_time): (f64, usize),
-        (ends, at): (Vector4<f64>, [usize; 4]),
-        gauge: impl Fn(&Vector4<f64>) -> f64,
-    ) -> Self {
-        const STEP: f64 = 1e-4;
-        let unit = |i: usize| Vector4::ith(i, STEP);
-        let here = gauge(&ends);
-        let both = std::array::from_fn::<_, 4, _>(|i| {
-            [gauge(&(ends + unit(i))), gauge(&(ends - unit(i)))]
-        });
-        let mut slopes: Vec<(usize, f64)> = (0..4)
-            .map(|i| (at[i], -(both[i][0] - both[i][1]) / (2.0 * STEP)))
-            .collect();
-        slopes.push((at_time, 1.0));
-        let curved = Matrix4::from_fn(|i, j| {
-            let [up, down] = [1.0, -1.0].map(|sign| gauge(&(ends + (unit(i) + unit(j)) * sign)));
-            let apart: f64 = both[i].iter().chain(&both[j]).sum();
-            -(up + down + 2.0 * here - apart) / (2.0 * STEP * STEP)
-        });
-        Self {
-            value: time - here,
-            slopes,
-            curved: Some(curved),
         }
     }
 }
@@ -86,14 +46,12 @@ pub(super) fn slacks(
             for sign in [1.0, -1.0] {
                 all.push(Slack {
                     value: rate * z[time] - sign * (z[to] - z[from]),
-                    slopes: vec![(time, rate), (to, -sign), (from, sign)],
-                    curved: None,
+                    slopes: [(time, rate), (to, -sign), (from, sign)],
                 });
                 if max_angle.is_finite() {
                     all.push(Slack {
                         value: max_angle - sign * z[from],
-                        slopes: vec![(from, -sign)],
-                        curved: None,
+                        slopes: [(from, -sign), (from, 0.0), (from, 0.0)],
                     });
                 }
             }

@@ -1,15 +1,14 @@
 //! An independent direct method for the fastest gait: a polygon whose corners and times are free.
 //!
-//! Of many swimmers with one gait it climbs the weighted sum of displacements. From the model it takes A(Φ)
-//! alone, and W(Φ) for whatever else than rates limits a side ([`Direct::limited`]). Slopes are differences of the swum polygon, second derivatives differences of the
-//! slopes; nothing is known of arcs, heights or switching functions. Limits by a primal–dual barrier, the rotation by an
+//! Of many swimmers with one gait it climbs the weighted sum of displacements. From the model it takes A(Φ) alone. Slopes
+//! are differences of the swum polygon, second derivatives differences of the slopes; nothing is known of arcs, heights or switching functions. Limits by a primal–dual barrier, the rotation by an
 //! augmented Lagrangian. Where the fastest gait is a polygon, so where it has no singular arc, this is exact.
 
 mod limits;
 mod swum;
 
 use gait_optimizer::SpeedProblem;
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector4};
+use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_model::{Model, Swimmer};
 
 use limits::{Slack, longest};
@@ -23,15 +22,7 @@ const LAST_BARRIER: f64 = 1e-11;
 /// Of the rotation beside its multiplier.
 const PRICE: f64 = 300.0;
 const MOST_STEPS: usize = 300;
-/// Where on a side its further limits are looked at.
-const LIMITED_AT: [f64; 3] = [0.0, 0.5, 1.0];
-
-/// The least time for a turn of the joints where W is this.
-pub(crate) type Gauge = Box<dyn Fn(&Matrix2<f64>, &Vector2<f64>) -> f64>;
-
 pub(crate) struct Direct {
-    /// Of each side at its ends and in its middle.
-    gauges: Vec<Gauge>,
     /// Whose rotation vanishes, then the others; each with what its servos turn over what they are told.
     swimmers: Vec<(Model<f64>, f64)>,
     /// Of their displacements.
@@ -60,7 +51,6 @@ impl Direct {
     ) -> Self {
         let max_angle = problem.bounds.max_angle.unwrap_or(f64::INFINITY);
         let mut direct = Self {
-            gauges: Vec::new(),
             swimmers: vec![(Model::new(&problem.swimmer.of_unit_length()).unwrap(), 1.0)],
             weights: vec![1.0],
             rates: problem.rates,
@@ -86,7 +76,6 @@ impl Direct {
 
     /// For the displacements of these swimmers with these gains and weights; that of the problem's does not count, but it does not
     /// rotate.
-    #[allow(dead_code, reason = "each test file is a program of its own")]
     pub(crate) fn of(mut self, members: &[(Swimmer<f64>, f64, f64)]) -> Self {
         self.weights = vec![0.0];
         for (swimmer, gain, weight) in members {
@@ -95,57 +84,6 @@ impl Direct {
             self.weights.push(*weight);
         }
         self
-    }
-
-    /// The same with further limits.
-    #[allow(dead_code, reason = "each test file is a program of its own")]
-    pub(crate) fn limited(mut self, gauges: Vec<Gauge>) -> Self {
-        self.gauges = gauges;
-        for k in 0..self.sides {
-            let shares = LIMITED_AT.into_iter();
-            let least = shares.map(|share| self.least_time(k, share));
-            let least = 1.2 * least.fold(0.0, f64::max);
-            let time = &mut self.z[2 * self.sides + k];
-            *time = time.max(least);
-        }
-        self
-    }
-
-    fn gauge(&self, gauge: &Gauge, share: f64, ends: &Vector4<f64>) -> f64 {
-        let (from, to) = (
-            Vector2::new(ends[0], ends[1]),
-            Vector2::new(ends[2], ends[3]),
-        );
-        let phi = from + (to - from) * share;
-        gauge(
-            &self.swimmers[0].0.connection_and_power(&phi).1,
-            &(to - from),
-        )
-    }
-
-    /// The least time of a side, were its shape all along what it is at this share of it.
-    fn least_time(&self, side: usize, share: f64) -> f64 {
-        let [from, to] = self.ends(&self.z, side);
-        let ends = Vector4::new(from.x, from.y, to.x, to.y);
-        let way = to - from;
-        let box_time = (way.x.abs() / self.rates[0]).max(way.y.abs() / self.rates[1]);
-        let gauges = self.gauges.iter();
-        let times = gauges.map(|gauge| self.gauge(gauge, share, &ends));
-        times.fold(box_time, f64::max)
-    }
-
-    /// |d|/T of the polygon that was climbed to, run everywhere as fast as its limits let it: what can be swum.
-    #[allow(dead_code, reason = "each test file is a program of its own")]
-    pub(crate) fn swimmable(&self) -> f64 {
-        const LOOKS: usize = 64;
-        let still = Poses::still(self.swimmers.len());
-        let whole = (0..self.sides).fold(still, |pose, k| &pose * &self.along(&self.z, k));
-        let time = |k: usize| {
-            let looks = (0..LOOKS).map(|look| (look as f64 + 0.5) / LOOKS as f64);
-            looks.map(|share| self.least_time(k, share)).sum::<f64>() / LOOKS as f64
-        };
-        let period: f64 = (0..self.sides).map(time).sum();
-        self.distance(&whole) / period * (-self.lambda * whole.first().theta).exp()
     }
 
     fn ends(&self, z: &DVector<f64>, side: usize) -> [Vector2<f64>; 2] {
@@ -243,21 +181,7 @@ impl Direct {
     }
 
     fn slacks(&self, z: &DVector<f64>) -> Vec<Slack> {
-        let mut all = limits::slacks(z, self.sides, self.rates, self.max_angle);
-        for k in 0..self.sides {
-            let [from, to] = self.ends(z, k);
-            let ends = Vector4::new(from.x, from.y, to.x, to.y);
-            let next = 2 * ((k + 1) % self.sides);
-            let at = [2 * k, 2 * k + 1, next, next + 1];
-            let time = 2 * self.sides + k;
-            for gauge in &self.gauges {
-                for share in LIMITED_AT {
-                    let of = |ends: &Vector4<f64>| self.gauge(gauge, share, ends);
-                    all.push(Slack::of_side((z[time], time), (ends, at), of));
-                }
-            }
-        }
-        all
+        limits::slacks(z, self.sides, self.rates, self.max_angle)
     }
 
     fn merit(&self, z: &DVector<f64>, barrier: f64) -> f64 {
@@ -301,7 +225,6 @@ impl Direct {
             let mut matrix = self.second(&mut sides);
             for (slack, push) in slacks.iter().zip(&pushes) {
                 slack.stiffen(&mut matrix, push / slack.value);
-                slack.bend(&mut matrix, *push);
             }
             let step = loop {
                 let mut damped = matrix.clone();
