@@ -26,11 +26,11 @@ use swimmer_files::{Bounds, Objective};
 use swimmer_model::{Model, Swimmer};
 
 use crate::extremal::Walls;
-use crate::immobile::refuse_immobile;
+use crate::immobile::{Immobile, refuse_immobile};
+use crate::optimal_gait::OptimalGait;
 use crate::parallel::Watch;
 use crate::problem::{GaitClass, InvalidProblem, tightened, validated};
 use crate::region::Region;
-use crate::{Immobile, OptimalGait};
 
 /// Which curves an atlas starts from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -31,12 +31,12 @@ use swimmer_model::{
     swim,
 };
 
-use crate::OptimalGait;
 use crate::certificate::{
     Certificate, Check, Condition, SHARE, SWUM_AGAIN, SeenBy, simple_and_turning_once,
     turning_number,
 };
 use crate::cycle::Cycle;
+use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
 use crate::speed::{MadeFor, certify_speed};
 pub(crate) use ascent::ways_up;

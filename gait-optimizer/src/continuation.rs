@@ -28,7 +28,9 @@ use swimmer_files::{ArcKind, Bounds, Objective};
 use swimmer_model::{InvalidSwimmer, Swimmer};
 
 use crate::displacement::Heading;
-use crate::{Branch, OptimalGait, Watch};
+use crate::efficiency::Branch;
+use crate::optimal_gait::OptimalGait;
+use crate::parallel::Watch;
 use branch_point::BranchPoint;
 use follow::{Family, Track};
 pub use parameter::Parameter;

@@ -41,9 +41,12 @@ mod worst;
 use swimmer_files::Bounds;
 use swimmer_model::Swimmer;
 
+use crate::certificate::Certificate;
 use crate::cycle::Cycle;
+use crate::displacement::{DisplacementProblem, displacement};
+use crate::efficiency::Branch;
 use crate::immobile::refuse_immobile;
-use crate::{Branch, Certificate, DisplacementProblem, OptimalGait, displacement};
+use crate::optimal_gait::OptimalGait;
 use arcs::Arcs;
 use ensemble::{Ensemble, Found};
 pub use error::RobustError;

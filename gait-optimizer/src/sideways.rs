@@ -22,15 +22,15 @@ use swimmer_model::{Model, Swimmer};
 
 pub use error::SidewaysError;
 
+use crate::atlas::{AtlasProblem, atlas_watched};
 use crate::certificate::Verdict;
 use crate::certify::certified;
 use crate::cycle::Cycle;
+use crate::displacement::{DisplacementError, DisplacementProblem, Heading, displacement};
+use crate::optimal_gait::OptimalGait;
+use crate::parallel::Watch;
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
-use crate::{
-    AtlasProblem, DisplacementError, DisplacementProblem, Heading, OptimalGait, Watch,
-    atlas_watched, displacement,
-};
 use square::turned;
 
 /// What to steer, and how.
@@ -186,7 +186,7 @@ fn sampled_as_asked(
     };
     let loops = atlas_watched(&asked, watch)?;
     let model = validated(&problem.swimmer, &problem.bounds, GaitClass::Closed)
-        .map_err(crate::AtlasError::from)?;
+        .map_err(crate::atlas::AtlasError::from)?;
     let region = Region::new(&problem.bounds, &problem.swimmer.links);
     let across = |gait: &OptimalGait| gait.lateral_over_length.abs();
     let optima = loops.optima.iter().map(|optimum| &optimum.gait);

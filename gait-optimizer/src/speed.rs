@@ -37,11 +37,11 @@ use std::cell::Cell;
 use swimmer_files::{AnyGait, Bounds, GaitFile};
 use swimmer_model::{Model, Swimmer};
 
-use crate::immobile::refuse_immobile;
+use crate::certificate::{Certificate, Condition};
+use crate::immobile::{Immobile, refuse_immobile};
 use crate::optimal_gait::OptimalGait;
-use crate::parallel::in_parallel;
+use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
-use crate::{Certificate, Condition, Immobile, Watch};
 
 pub(crate) use candidate::mended;
 pub use error::SpeedError;

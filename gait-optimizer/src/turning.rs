@@ -33,12 +33,12 @@ use swimmer_model::{Gait as _, Model, Swimmer};
 
 pub use error::TurningError;
 
-use crate::OptimalGait;
 use crate::certificate::double_area;
 use crate::certify::certified;
 use crate::cycle::Samples;
 use crate::height_map::legendre::gauss;
 use crate::height_map::{Level, LevelSearch, level_seeds};
+use crate::optimal_gait::OptimalGait;
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
 use border::Border;

@@ -15,12 +15,13 @@ use super::newton::{Settings, Stationary};
 use super::pipeline::{MultiStart, distance};
 use super::sections::guesses;
 use super::starts::through;
+use crate::certificate::Condition;
 use crate::certify::{certified, ways_up};
 use crate::closed_curve::Functional;
-use crate::displacement::best_symmetric;
+use crate::displacement::{DisplacementProblem, Heading, best_symmetric};
 use crate::loops::{Closed, close, traced};
+use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
-use crate::{Condition, DisplacementProblem, Heading, OptimalGait};
 
 /// Gaits that gain less than this over another, over L, are not on the way up from it.
 const HIGHER: f64 = 1e-9;

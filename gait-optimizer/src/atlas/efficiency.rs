@@ -10,11 +10,11 @@ use super::newton::{Settings, Stationary};
 use super::pipeline::MultiStart;
 use crate::certificate::{Certificate, Condition};
 use crate::closed_curve::Functional;
-use crate::efficiency::best_symmetric;
+use crate::efficiency::{Branch, EfficiencyProblem, best_symmetric};
 use crate::extremal::gait::{Order, gait};
 use crate::extremal::{Walls, polish};
 use crate::numerics::halved;
-use crate::{Branch, EfficiencyProblem, OptimalGait};
+use crate::optimal_gait::OptimalGait;
 
 pub(super) struct Efficiency<'a> {
     pub(super) problem: &'a AtlasProblem,

@@ -11,9 +11,9 @@ use super::newton::{Newton, Settings, Stationary};
 use super::objective::Aim;
 use super::starts::{fitted, off_centre, start};
 use super::{Atlas, AtlasProblem, Optimum, StartCurves};
-use crate::OptimalGait;
 use crate::certificate::double_area;
 use crate::closed_curve::{Basis, Functional};
+use crate::optimal_gait::OptimalGait;
 use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
 

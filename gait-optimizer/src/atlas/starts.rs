@@ -8,8 +8,8 @@ use rand_chacha::ChaCha8Rng;
 use swimmer_model::Gait;
 
 use super::barrier::Barrier;
-use crate::OptimalGait;
 use crate::closed_curve::Basis;
+use crate::optimal_gait::OptimalGait;
 
 /// Highest order of a start.
 const MOST_HARMONICS: usize = 4;

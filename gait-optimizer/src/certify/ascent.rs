@@ -7,8 +7,8 @@ use super::Subject;
 use super::limits::Limits;
 use super::second_variation::{Ascents, Neighbours};
 use super::variation::Gain;
-use crate::OptimalGait;
 use crate::certificate::turning_number;
+use crate::optimal_gait::OptimalGait;
 
 /// Shapes along a closed curve, each with its u from 0 to 1.
 pub(crate) type Curve = Vec<(f64, Vector2<f64>)>;

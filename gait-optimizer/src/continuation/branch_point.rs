@@ -2,9 +2,9 @@
 
 use swimmer_files::{ArcKind, Objective};
 
-use crate::OptimalGait;
 use crate::atlas::distinct::{Outline, Symmetries};
 use crate::extremal::Extremal;
+use crate::optimal_gait::OptimalGait;
 
 /// In one step a curve may move this far \[rad\], and the logarithm of its gain change by this much.
 const MOST_MOVE: f64 = 0.15;

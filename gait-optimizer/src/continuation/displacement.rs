@@ -3,8 +3,9 @@
 use super::branch_point::BranchPoint;
 use super::follow::Family;
 use super::{ContinuationProblem, Start};
+use crate::certificate::Condition;
 use crate::displacement::{DisplacementProblem, Heading, every};
-use crate::{Condition, OptimalGait};
+use crate::optimal_gait::OptimalGait;
 
 pub(super) struct Displacement<'a> {
     pub(super) problem: &'a ContinuationProblem,

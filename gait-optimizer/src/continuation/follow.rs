@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::branch_point::{BranchPoint, FIGURES, slope};
-use crate::Watch;
+use crate::parallel::Watch;
 
 use super::{ContinuationProblem, Event, EventKind, Fold, OtherSide, Start};
 

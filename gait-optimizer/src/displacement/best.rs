@@ -10,10 +10,10 @@ use super::flow::Touch;
 use super::search::{Candidate, FINER_SCAN, SCAN_POINTS, Search, Seen};
 use super::start_family::{StartFamily, families, families_on_the_diagonal};
 use super::{DisplacementError, DisplacementProblem, Fates, certified, traced};
-use crate::certificate::{Verdict, turning_number};
+use crate::certificate::{Condition, Verdict, turning_number};
 use crate::momentum::Motion;
+use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
-use crate::{Condition, OptimalGait};
 
 /// What a search within some bounds came to.
 pub(super) struct Extremals<'a> {

@@ -3,7 +3,9 @@
 use std::fmt;
 
 use super::Heading;
-use crate::{Immobile, InvalidProblem, OptimalGait};
+use crate::immobile::Immobile;
+use crate::optimal_gait::OptimalGait;
+use crate::problem::InvalidProblem;
 
 /// What became of the extremals that the search sent out.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -7,8 +7,8 @@ use super::flow::Touch;
 use super::search::{SCAN_POINTS, Search};
 use super::start_family::{StartFamily, families};
 use super::{DisplacementProblem, certified};
-use crate::OptimalGait;
 use crate::momentum::Motion;
+use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
 
 /// The optimum of a problem that lies near the optimum of a neighbouring one (another swimmer or other bounds, a little changed),

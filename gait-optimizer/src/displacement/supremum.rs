@@ -18,7 +18,7 @@ use swimmer_files::Bounds;
 use swimmer_model::Model;
 
 use super::DisplacementProblem;
-use crate::OptimalGait;
+use crate::optimal_gait::OptimalGait;
 use crate::parallel::in_parallel;
 use crate::problem::tightened;
 use crate::region::Region;

@@ -10,10 +10,10 @@ use swimmer_model::{Links, Model};
 
 use super::chain::Found;
 use super::{Branch, EfficiencyError, EfficiencyProblem, Method, certified, finished};
-use crate::OptimalGait;
 use crate::certificate::{crossings, turning_number};
 use crate::extremal::Extremal;
 use crate::extremal::continuation::{Ended, Path, Tightness};
+use crate::optimal_gait::OptimalGait;
 use crate::region::Clearance;
 
 /// Below this share of the free gait's efficiency a gait has faded.

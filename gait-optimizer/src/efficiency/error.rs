@@ -1,7 +1,9 @@
 //! Why there is no efficiency gait to return.
 
 use super::{Branch, Reached};
-use crate::{Immobile, InvalidProblem, OptimalGait};
+use crate::immobile::Immobile;
+use crate::optimal_gait::OptimalGait;
+use crate::problem::InvalidProblem;
 
 /// Why there is no efficiency gait to return.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

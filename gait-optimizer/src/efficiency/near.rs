@@ -2,10 +2,10 @@
 
 use super::chain::Found;
 use super::{EfficiencyProblem, Method, finished};
-use crate::OptimalGait;
 use crate::certificate::simple_and_turning_once;
 use crate::extremal::continuation::within_walls;
 use crate::extremal::{Extremal, Walls, polish, polish_chain};
+use crate::optimal_gait::OptimalGait;
 
 /// An efficiency gait from which the gaits of neighbouring problems are found: another swimmer or other bounds, a little changed.
 /// The first step reads the arcs off its curve, each further one starts from the arcs themselves.

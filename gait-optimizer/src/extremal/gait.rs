@@ -9,9 +9,9 @@ use super::sampled::sampled;
 use super::shooting::Class;
 use super::wall::Walls;
 use super::{Extremal, Unpolished};
-use crate::OptimalGait;
 use crate::certificate::{Certificate, Condition};
 use crate::certify::slopes_open;
+use crate::optimal_gait::OptimalGait;
 
 /// Samples of a cycle are not made more beyond this.
 const MOST_SAMPLES: usize = 8192;

@@ -17,10 +17,10 @@ use super::newton::{Design, Family, newton};
 use super::nodes::Nodes;
 use super::quarter::{ArcCurve, Trajectory};
 use super::{RobustError, cycle};
-use crate::OptimalGait;
 use crate::certificate::{Check, Condition};
 use crate::cycle::Cycle;
 use crate::member::Member;
+use crate::optimal_gait::OptimalGait;
 
 /// Degree of the polynomial of an arc: of one of several, and of one that is the whole quarter.
 const DEGREES: [usize; 2] = [28, 44];

@@ -3,7 +3,9 @@
 use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::InvalidSwimmer;
 
-use crate::{DisplacementError, Immobile, SpeedError};
+use crate::displacement::DisplacementError;
+use crate::immobile::Immobile;
+use crate::speed::SpeedError;
 
 /// Why there is no robust design.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -9,10 +9,9 @@ use swimmer_model::{Model, Stroke, SymmetricFourier};
 
 use super::newton::{Design, Family};
 use super::{RobustError, cycle};
-use crate::Branch;
 use crate::certificate::{Check, Condition};
 use crate::cycle::Cycle;
-use crate::efficiency::{Objective, starts};
+use crate::efficiency::{Branch, Objective, starts};
 use crate::member::Member;
 use crate::numerics::damped;
 

@@ -5,11 +5,12 @@ use swimmer_model::Stroke;
 use super::ensemble::Ensemble;
 use super::newton::Design;
 use super::{Over, RobustError, Robustness, Uncertainty, certificate};
+use crate::certificate::Condition;
 use crate::cycle::Cycle;
 use crate::member::Member;
+use crate::parallel::Watch;
 use crate::region::Region;
-use crate::speed::{Polished, Setting, mended, speed_of, told};
-use crate::{Condition, Fastest, SpeedProblem, Watch};
+use crate::speed::{Fastest, Polished, Setting, SpeedProblem, mended, speed_of, told};
 
 /// A robust fastest gait.
 #[derive(Debug, Clone, PartialEq)]

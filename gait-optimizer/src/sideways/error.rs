@@ -2,7 +2,7 @@
 
 use swimmer_files::Bounds;
 
-use crate::AtlasError;
+use crate::atlas::AtlasError;
 
 /// Why there is no gait that moves sideways.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

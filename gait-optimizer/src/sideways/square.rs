@@ -4,9 +4,9 @@ use swimmer_files::GaitFile;
 use swimmer_model::{Gait, Model, Tolerance, trajectory};
 
 use super::SidewaysProblem;
-use crate::OptimalGait;
 use crate::cycle::Cycle;
 use crate::numerics::halved;
+use crate::optimal_gait::OptimalGait;
 use crate::simple_shapes::top;
 
 /// Instants that headings are looked at.

@@ -3,7 +3,7 @@
 use swimmer_files::Bounds;
 use swimmer_model::InvalidSwimmer;
 
-use crate::Immobile;
+use crate::immobile::Immobile;
 
 /// Why there is no fastest gait.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

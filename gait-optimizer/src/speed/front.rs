@@ -1,7 +1,6 @@
 //! Displacement against speed: the farthest gait in every period.
 
-use crate::Watch;
-use crate::parallel::in_parallel;
+use crate::parallel::{Watch, in_parallel};
 
 use super::{Fastest, SpeedError, SpeedProblem};
 

@@ -14,8 +14,10 @@ use swimmer_model::{Gait, Model, Swimmer};
 
 use super::gauge::Facet;
 use super::{SpeedError, SpeedProblem};
+use crate::atlas::{AtlasError, AtlasProblem, atlas_watched};
+use crate::optimal_gait::OptimalGait;
+use crate::parallel::Watch;
 use crate::problem::{GaitClass, InvalidProblem, validated};
-use crate::{AtlasError, AtlasProblem, OptimalGait, Watch, atlas_watched};
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,8 +5,7 @@ use swimmer_files::GaitArc;
 use super::arc::Shape;
 use super::polish::Polished;
 use super::problem::Setting;
-use crate::cycle::Arc;
-use crate::cycle::Cycle;
+use crate::cycle::{Arc, Cycle};
 
 /// Fewest samples on a straight arc and on a curved one.
 const STRAIGHT: usize = 16;

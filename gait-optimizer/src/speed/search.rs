@@ -14,9 +14,8 @@ use super::problem::Setting;
 use super::samples;
 use super::selection::Group;
 use super::{Fastest, SpeedAtlas, SpeedError, SpeedProblem};
-use crate::Watch;
 use crate::optimal_gait::OptimalGait;
-use crate::parallel::in_parallel;
+use crate::parallel::{Watch, in_parallel};
 
 /// Of the time, about, until all rough polygons are there.
 pub(super) const ROUGH_SHARE: f64 = 0.6;

@@ -19,12 +19,12 @@ use super::interior::rough_polygon;
 use super::polish::Polished;
 use super::problem::{Goal, HeadingRule, Setting};
 use super::{SpeedError, SpeedProblem, samples, selection, starts, validate};
+use crate::certificate::{Certificate, Condition};
 use crate::cycle::Cycle;
 use crate::immobile::refuse_immobile;
 use crate::optimal_gait::OptimalGait;
-use crate::parallel::in_parallel;
+use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
-use crate::{Certificate, Condition, Watch};
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]

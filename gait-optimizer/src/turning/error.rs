@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::InvalidProblem;
+use crate::problem::InvalidProblem;
 
 /// Why there is no turning gait to return.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -4,9 +4,9 @@ use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use super::curve::{Ground, Mesh};
-use crate::OptimalGait;
 use crate::displacement::best::best;
 use crate::displacement::{DisplacementProblem, OUTDONE};
+use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
 
 /// A polygon at rest and what it carries.

@@ -11,11 +11,10 @@ use super::super::phases::{Curve, Phase, polished};
 use super::super::problem::{Goal, HeadingRule, Setting};
 use super::super::{SpeedError, samples, selection, starts};
 use super::{Limit, Limited, LimitedError, LimitedProblem, STARTS};
-use crate::Watch;
 use crate::cycle::{Arc, Cycle};
 use crate::immobile::refuse_immobile;
 use crate::optimal_gait::{OptimalGait, Solution};
-use crate::parallel::in_parallel;
+use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
 
 /// Elements of a cycle of several limits, first and last.

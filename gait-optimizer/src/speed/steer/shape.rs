@@ -6,8 +6,8 @@ use swimmer_files::Bounds;
 use super::super::polish::Polished;
 use super::super::problem::Setting;
 use super::{chains, near};
-use crate::Watch;
 use crate::numerics::halved;
+use crate::parallel::Watch;
 use crate::region::Region;
 
 /// The common shape stays this far within the bounds \[rad, or over L\].
