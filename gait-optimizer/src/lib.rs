@@ -27,7 +27,8 @@
 //! | `efficiency` | the small and the large Lighthill gait: Fourier series, then `extremal`, bounds followed |
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs, second-order test |
 //! | `cycle` | a full cycle at constant power, of a closed curve or of a quarter mirrored twice |
-//! | `speed` | the fastest gait of servos with a limit on rate, power or both |
+//! | `speed` | the fastest gait of servos with a limit on their rates, and what several limits share with it |
+//! | `limited` | the fastest gait within limits on rates, power and torque |
 //! | `turning` | the simple closed gait that turns most: round a region of the curvature |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
 //! | `certificate` | every condition with its key and tolerance, and checks |
@@ -76,6 +77,7 @@ mod efficiency;
 mod extremal;
 mod height_map;
 mod immobile;
+mod limited;
 mod loops;
 mod member;
 mod momentum;
@@ -112,6 +114,7 @@ pub use height_map::{
     AreaRule, Convergence, Frame, Grid, HeightMap, HeightMapError, LevelCurve, Row,
 };
 pub use immobile::Immobile;
+pub use limited::{Limit, Limited, LimitedError, LimitedProblem, Torque, fastest_within};
 pub use optimal_gait::{EfficiencyFigures, OptimalGait};
 pub use parallel::Watch;
 pub use problem::InvalidProblem;
@@ -122,9 +125,8 @@ pub use robust::{
 pub use sideways::{Sideways, SidewaysError, SidewaysProblem, sideways};
 pub use simple_shapes::{BestAmplitude, SimpleShape, best_amplitudes};
 pub use speed::{
-    Fastest, Front, HeadingRule, Joined, Limit, Limited, LimitedError, LimitedProblem, SpeedAtlas,
-    SpeedError, SpeedProblem, SteerProblem, Steering, Torque, fastest, fastest_within, front,
-    steer,
+    Fastest, Front, HeadingRule, Joined, SpeedAtlas, SpeedError, SpeedProblem, SteerProblem,
+    Steering, fastest, front, steer,
 };
 pub use swimmer_files::{ArcKind, Bounds, GaitArc, Objective};
 pub use turning::{Turning, TurningError, TurningProblem, turning};

@@ -54,6 +54,7 @@ use fourier::FourierFamily;
 use newton::{Design, Family};
 pub use speed::{RobustSpeed, robust_speed};
 pub use uncertainty::Uncertainty;
+use worst::find;
 
 /// What a robust design maximises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -185,12 +186,12 @@ pub fn robust_displacement(
     let mut family = Arcs::around(&optimum, sign)?;
     let start = family.solve(&family.start(), &[(ensemble.nominal, 1.0)])?;
     let nominal = ensemble.values(&family, &start);
-    let found = match ensemble.find(&family, over) {
+    let found = match find(&family, &ensemble, over) {
         // Where the arcs of the nominal optimum do not lead to the best worst case, those of the worst swimmer's own may.
         Err(error @ RobustError::NotConverged { .. }) if over == Over::Worst => {
             let worst = ensemble.worst_swimmer(|member| family.value(&start, member));
             family = Arcs::around(&of(worst.ok_or(error)?)?, sign)?;
-            ensemble.find(&family, over)?
+            find(&family, &ensemble, over)?
         }
         found => found?,
     };
@@ -247,7 +248,7 @@ pub fn robust_efficiency(
     let swimmer = uncertainty.nominal(swimmer);
     refuse_immobile(&ensemble.nominal.model, bounds)?;
     let family = FourierFamily::around(&ensemble.nominal, order, branch)?;
-    let found = ensemble.find(&family, over)?;
+    let found = find(&family, &ensemble, over)?;
     let cycle = |x| family.cycle(&ensemble.nominal.model, x);
     let by = certificate::overstepped(&cycle(&found.point), bounds, &swimmer.links);
     if by > 1e-10 {

@@ -5,7 +5,7 @@ use swimmer_model::{InvalidSwimmer, Swimmer};
 
 use super::newton::Design;
 use super::uncertainty::Uncertainty;
-use super::{Holder, Over, RobustError, Values, worst};
+use super::{Holder, RobustError, Values};
 use crate::member::Member;
 
 /// All swimmers of a problem.
@@ -165,36 +165,15 @@ impl<'a> Ensemble<'a> {
         Ok(here)
     }
 
-    /// The gait that is the best over the uncertainty.
-    pub(super) fn find<D: Design>(
-        &self,
-        design: &D,
-        over: Over,
-    ) -> Result<Found<D::Point>, RobustError> {
-        let active = match over {
-            Over::Mean => {
-                return Ok(Found {
-                    point: self.solve(design, &design.start(), &self.normal)?,
-                    weighted: self.normal.clone(),
-                    held_by: Vec::new(),
-                });
-            }
-            Over::Worst => worst::worst(design, self)?,
-        };
-        let holder = |(lowest, multiplier): &(Lowest, f64)| {
-            let possible = self.uncertainty.at(self.swimmer, lowest.place);
-            Holder {
-                sphere_radius: possible.swimmer.sphere_radius,
-                chi: possible.swimmer.chi,
-                gain: possible.gain,
-                multiplier: *multiplier,
-            }
-        };
-        Ok(Found {
-            held_by: active.members.iter().map(holder).collect(),
-            weighted: active.weighted(),
-            point: active.point,
-        })
+    /// The swimmer of a worst case, with its multiplier.
+    pub(super) fn holder(&self, lowest: &Lowest, multiplier: f64) -> Holder {
+        let possible = self.uncertainty.at(self.swimmer, lowest.place);
+        Holder {
+            sphere_radius: possible.swimmer.sphere_radius,
+            chi: possible.swimmer.chi,
+            gain: possible.gain,
+            multiplier,
+        }
     }
 
     /// What a gait brings.

@@ -4,6 +4,7 @@ use swimmer_model::Stroke;
 
 use super::ensemble::Ensemble;
 use super::newton::Design;
+use super::worst::find;
 use super::{Over, RobustError, Robustness, Uncertainty, certificate};
 use crate::certificate::Condition;
 use crate::cycle::Cycle;
@@ -117,7 +118,7 @@ pub fn robust_speed(
         setting: &setting,
         fast: problem.rates[0].max(problem.rates[1]),
     };
-    let found = ensemble.find(&design, over)?;
+    let found = find(&design, &ensemble, over)?;
     let weighed = Setting {
         members: &found.weighted,
         ..setting.clone()

@@ -7,9 +7,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::RobustError;
-use super::ensemble::{Ensemble, Lowest};
+use super::ensemble::{Ensemble, Found, Lowest};
 use super::newton::Design;
+use super::{Over, RobustError};
 use crate::member::Member;
 
 /// A gait with the members that hold it, each with its multiplier.
@@ -32,11 +32,31 @@ impl<P> Held<P> {
     }
 }
 
-/// The gait of the best worst case.
-pub(super) fn worst<D: Design>(
+/// The gait that is the best over the uncertainty.
+pub(super) fn find<D: Design>(
     design: &D,
     ensemble: &Ensemble<'_>,
-) -> Result<Held<D::Point>, RobustError> {
+    over: Over,
+) -> Result<Found<D::Point>, RobustError> {
+    if over == Over::Mean {
+        return Ok(Found {
+            point: ensemble.solve(design, &design.start(), &ensemble.normal)?,
+            weighted: ensemble.normal.clone(),
+            held_by: Vec::new(),
+        });
+    }
+    let held = worst(design, ensemble)?;
+    let holders = held.members.iter();
+    let holders = holders.map(|(lowest, multiplier)| ensemble.holder(lowest, *multiplier));
+    Ok(Found {
+        held_by: holders.collect(),
+        weighted: held.weighted(),
+        point: held.point,
+    })
+}
+
+/// The gait of the best worst case.
+fn worst<D: Design>(design: &D, ensemble: &Ensemble<'_>) -> Result<Held<D::Point>, RobustError> {
     let mut held = Held {
         point: design.start(),
         members: Vec::new(),

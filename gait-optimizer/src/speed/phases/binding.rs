@@ -4,7 +4,7 @@ use nalgebra::{DVector, Vector2};
 
 use super::super::arc::{MOST_PARAMETERS, Place};
 use super::equations::Equation;
-use super::newton::Method;
+use super::equations::Method;
 use super::{BENDS, Draft, PUT_IN, Phase, side};
 
 /// Multipliers that are no more negative than this share, and limits overstepped by no more, are none the less in order.

@@ -5,7 +5,7 @@ use nalgebra::{Matrix4, Vector2, Vector4};
 use super::super::arc::{MOST_PARAMETERS, Place};
 use super::super::gauge::{Facet, Level};
 use super::super::problem::Setting;
-use super::newton::Method;
+use super::super::quadrature::Rule;
 use super::{BENDS, Draft, Phase};
 
 /// One equation.
@@ -115,6 +115,18 @@ fn smoothly(
     let more = other.limits.iter().filter(|limit| **limit != own);
     let meets = |&limit| Equation::Meets { element, s, limit };
     more.map(meets).collect()
+}
+
+/// A draft with all that is asked of it.
+pub(super) struct Method<'a> {
+    pub(super) setting: &'a Setting<'a>,
+    pub(super) draft: Draft,
+    pub(super) limits: Vec<Facet>,
+    /// Where limits bind, and where bounds do.
+    pub(super) nodes: Rule,
+    pub(super) inner: Rule,
+    pub(super) path: Rule,
+    pub(super) equations: Vec<Equation>,
 }
 
 impl Method<'_> {

@@ -3,11 +3,10 @@
 use nalgebra::{DMatrix, DVector, Vector4};
 
 use super::super::arc::{MOST_PARAMETERS, Place};
-use super::super::gauge::Facet;
 use super::super::problem::Setting;
 use super::super::quadrature::Rule;
 use super::super::{bordered, chain};
-use super::equations::{Equation, equations};
+use super::equations::{Equation, Method, equations};
 use super::{BENDS, Curve, Draft, Phase, side};
 
 /// Quadrature points of the path on an element.
@@ -32,17 +31,6 @@ pub(super) enum Outcome {
     Gone(usize, Box<Draft>),
     /// The method does not converge.
     Lost,
-}
-
-pub(super) struct Method<'a> {
-    pub(super) setting: &'a Setting<'a>,
-    pub(super) draft: Draft,
-    pub(super) limits: Vec<Facet>,
-    /// Where limits bind, and where bounds do.
-    pub(super) nodes: Rule,
-    pub(super) inner: Rule,
-    pub(super) path: Rule,
-    pub(super) equations: Vec<Equation>,
 }
 
 struct Look {

@@ -1,9 +1,9 @@
 //! The fastest gait of servos whose rates, power or torque are limited.
 //!
 //! Under a limit on the power alone it is Lighthill's most efficient gait, run at constant power: `V = √(ξ P/(c_t L))` (paper,
-//! definition of ξ); under limits on the rates alone it is [`fastest`](super::fastest)'s. A gait of either kind that keeps within
+//! definition of ξ); under limits on the rates alone it is [`fastest`](crate::fastest())'s. A gait of either kind that keeps within
 //! the other limits is the answer. Else several limits bind, each on its part of the cycle: rough polygons near many starts lead
-//! to curves whose phases tell what binds ([`phases`](super::phases)), and the certificate works out the costate from the curve.
+//! to curves whose phases tell what binds (`speed::phases`), and the certificate works out the costate from the curve.
 
 mod mixed;
 #[cfg(test)]
@@ -12,12 +12,12 @@ mod tests;
 use swimmer_files::{Bounds, Objective};
 use swimmer_model::{Gait, Model, Swimmer};
 
-use super::gauge::Facet;
-use super::{SpeedError, SpeedProblem};
 use crate::atlas::{AtlasError, AtlasProblem, atlas_watched};
 use crate::optimal_gait::OptimalGait;
 use crate::parallel::Watch;
 use crate::problem::{GaitClass, InvalidProblem, validated};
+use crate::speed::gauge::Facet;
+use crate::speed::{SpeedError, SpeedProblem, validate};
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -209,7 +209,7 @@ impl LimitedProblem {
         if (self.power_over_viscosity, self.rates, self.torque) == (None, None, None) {
             return Err(LimitedError::Unlimited);
         }
-        super::validate(&SpeedProblem {
+        validate(&SpeedProblem {
             bounds: self.bounds,
             ..SpeedProblem::new(self.swimmer, self.rates.unwrap_or([1.0; 2]))
         })?;

@@ -4,18 +4,18 @@ use nalgebra::Vector2;
 use swimmer_files::{ArcKind, GaitArc, Objective};
 use swimmer_model::{Gait, Model, Tolerance, swim};
 
-use super::super::certificate::within_limits;
-use super::super::gauge::Facet;
-use super::super::interior::{self, Polygon};
-use super::super::phases::{Curve, Phase, polished};
-use super::super::problem::{Goal, HeadingRule, Setting};
-use super::super::{SpeedError, samples, selection, starts};
 use super::{Limit, Limited, LimitedError, LimitedProblem, STARTS};
 use crate::cycle::{Arc, Cycle};
 use crate::immobile::refuse_immobile;
 use crate::optimal_gait::{OptimalGait, Solution};
 use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
+use crate::speed::certificate::within_limits;
+use crate::speed::gauge::Facet;
+use crate::speed::interior::{self, Polygon};
+use crate::speed::phases::{Curve, Phase, polished};
+use crate::speed::problem::{Goal, HeadingRule, Setting};
+use crate::speed::{SpeedError, samples, selection, starts};
 
 /// Elements of a cycle of several limits, first and last.
 const ELEMENTS: [usize; 2] = [8, 16];
