@@ -123,10 +123,6 @@ impl Arcs {
         })
     }
 
-    pub(super) fn nodes(&self) -> &Nodes {
-        &self.nodes
-    }
-
     /// Weighted heights of all nodes.
     fn heights(&self, arcs: &[ArcCurve], members: &[(Member, f64)]) -> Vec<f64> {
         let count: usize = arcs.iter().map(|arc| arc.phi.len()).sum();
@@ -147,7 +143,7 @@ impl Family for Arcs {
     const RELATIVE: bool = false;
 
     fn cycle(&self, model: &Model<f64>, x: &DVector<f64>) -> Cycle {
-        cycle::of_arcs(model, self, x)
+        cycle::of_arcs(model, &self.nodes, self.kinds(), &self.curves(x))
     }
 
     /// h̄ vanishes on free arcs and falls outwards there (generalised Legendre–Clebsch), and pushes against bounds.

@@ -1,10 +1,11 @@
 //! From the design's quarter to the sampled cycle.
 
-use nalgebra::{DVector, Vector2};
+use nalgebra::Vector2;
 use swimmer_files::{ArcKind, GaitArc};
 use swimmer_model::{Gait, Model, SymmetricFourier};
 
-use super::arcs::Arcs;
+use super::nodes::Nodes;
+use super::quarter::ArcCurve;
 use crate::cycle::{Cycle, Samples};
 
 /// Samples of an arc.
@@ -14,13 +15,16 @@ const CYCLE: u32 = 1024;
 /// Directions this close in angle \[rad\] make no corner.
 const SMOOTH: f64 = 1e-6;
 
-/// The cycle of a displacement gait, at constant power of the nominal swimmer.
-pub(super) fn of_arcs(model: &Model<f64>, family: &Arcs, x: &DVector<f64>) -> Cycle {
-    let nodes = family.nodes();
-    let curves = family.curves(x);
+/// The cycle of a displacement gait with these arcs, at constant power of the nominal swimmer.
+pub(super) fn of_arcs(
+    model: &Model<f64>,
+    nodes: &Nodes,
+    kinds: impl Iterator<Item = ArcKind>,
+    curves: &[ArcCurve],
+) -> Cycle {
     let mut quarter = Samples::default();
     let mut length = 0.0;
-    for (kind, curve) in family.kinds().zip(&curves) {
+    for (kind, curve) in kinds.zip(curves) {
         let speed: Vec<f64> = curve
             .phi
             .iter()
