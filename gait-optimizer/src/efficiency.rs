@@ -25,7 +25,7 @@ pub use bounded::Reached;
 pub(crate) use chain::starts;
 use chain::{Found, same_gait};
 pub use error::EfficiencyError;
-pub(crate) use fourier::Objective;
+pub(crate) use fourier::{Expansion, Objective, Value, climb};
 pub use near::EfficiencySeed;
 
 /// Which of the two optima.

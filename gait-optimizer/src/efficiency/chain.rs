@@ -155,14 +155,15 @@ impl<'a> Ladder<'a> {
         let mut objective = Objective::new(self.model, order, panels);
         let mut from = self.coefficients.clone();
         from.resize(2 * order, 0.0);
-        let maximum =
-            climb(&mut objective, &from, least_gain).ok_or(EfficiencyError::RunsAway {
+        let maximum = climb(|x| objective.expansion(x), &from, least_gain).ok_or(
+            EfficiencyError::RunsAway {
                 branch: self.branch,
                 amplitude: self.amplitude,
                 order,
                 efficiency: self.efficiency,
                 farthest: FARTHEST,
-            })?;
+            },
+        )?;
         self.coefficients.clone_from(&maximum.coefficients);
         self.efficiency = maximum.value.efficiency();
         Ok(maximum)

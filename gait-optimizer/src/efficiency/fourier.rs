@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use swimmer_model::Model;
 
 pub(crate) use ascent::{FARTHEST, Maximum, climb};
-pub(crate) use objective::{Objective, series};
+pub(crate) use objective::{Expansion, Objective, Value, series};
 
 /// Panels of the quarter that circles and ellipses are looked at in.
 const PANELS: usize = 11;

@@ -11,30 +11,16 @@ use super::newton::{Design, Family};
 use super::{RobustError, cycle};
 use crate::certificate::{Check, Condition};
 use crate::cycle::Cycle;
-use crate::efficiency::{Branch, Objective, starts};
+use crate::efficiency::{Branch, Expansion, Objective, Value, climb, starts};
 use crate::member::Member;
-use crate::numerics::damped;
 
-/// Relative gradient norm, |∇ξ̄|/ξ̄ per radian, that counts as zero.
-pub(super) const FLAT: f64 = 1e-9;
-const STEPS: usize = 120;
-const HALVINGS: usize = 30;
-/// Longest step of the coefficients \[rad\].
-const LONGEST: f64 = 0.05;
-/// Curvatures of the objective smaller than this share of the largest one are raised to it.
-const FLATTEST: f64 = 1e-7;
+/// A step that promises to gain less than this in ln ξ̄ is not worth it: then the slope is rounding.
+const LEAST_GAIN: f64 = 1e-20;
 
 /// Fourier gaits of an order, around a start; a gait is its coefficients (A₁, B₁, A₂, B₂, …).
 #[derive(Debug)]
 pub(super) struct FourierFamily {
     start: DVector<f64>,
-}
-
-/// ln ξ̄ of a design, with its derivatives.
-struct Weighted {
-    log_xi: f64,
-    gradient: DVector<f64>,
-    hessian: DMatrix<f64>,
 }
 
 impl FourierFamily {
@@ -72,7 +58,8 @@ impl FourierFamily {
         Objective::new(&member.model, order, 48 + 4 * order)
     }
 
-    fn weighted(x: &DVector<f64>, members: &[(Member, f64)]) -> Weighted {
+    /// ln ξ̄ of a design, with its derivatives.
+    fn weighted(x: &DVector<f64>, members: &[(Member, f64)]) -> Expansion {
         let size = x.len();
         let (mut xi, mut slope) = (0.0, DVector::zeros(size));
         let mut bend = DMatrix::zeros(size, size);
@@ -90,8 +77,13 @@ impl FourierFamily {
         let gradient = slope / xi;
         let mut hessian = bend / xi;
         hessian.ger(-1.0, &gradient, &gradient, 1.0);
-        Weighted {
-            log_xi: xi.ln(),
+        let value = Value {
+            objective: xi.ln(),
+            x: xi,
+            power_length: 1.0,
+        };
+        Expansion {
+            value,
             gradient,
             hessian,
         }
@@ -108,7 +100,7 @@ impl Family for FourierFamily {
 
     /// Stationary, and a maximum: the largest curvature over the magnitude of the steepest.
     fn conditions(&self, x: &DVector<f64>, members: &[(Member, f64)]) -> Vec<Check> {
-        let Weighted {
+        let Expansion {
             gradient, hessian, ..
         } = Self::weighted(x, members);
         let curvatures = hessian.symmetric_eigenvalues();
@@ -136,42 +128,17 @@ impl Design for FourierFamily {
         stroke.efficiency()
     }
 
-    /// Newton's ascent on ln ξ̄: along each principal direction uphill, by the distance that its curvature tells.
+    /// The climb of the efficiency search, on ln ξ̄.
     fn solve(
         &self,
         start: &DVector<f64>,
         members: &[(Member, f64)],
     ) -> Result<DVector<f64>, RobustError> {
-        let mut x = start.clone();
-        let mut here = Self::weighted(&x, members);
-        for _ in 0..STEPS {
-            if here.gradient.norm() <= FLAT {
-                return Ok(x);
-            }
-            let eigen = here.hessian.clone().symmetric_eigen();
-            let floor = FLATTEST * eigen.eigenvalues.amax();
-            let mut along = eigen.eigenvectors.tr_mul(&here.gradient);
-            for (slope, curvature) in along.iter_mut().zip(eigen.eigenvalues.iter()) {
-                *slope /= curvature.abs().max(floor);
-            }
-            let step = &eigen.eigenvectors * along;
-            let most = (LONGEST / step.norm().max(f64::MIN_POSITIVE)).min(1.0);
-            let next = damped(most).take(HALVINGS).find_map(|share| {
-                let trial = &x + &step * share;
-                let there = Self::weighted(&trial, members);
-                // Near the top the value is rounding, and the gradient tells.
-                let gains = there.log_xi > here.log_xi
-                    || (there.log_xi > here.log_xi - 1e-13
-                        && there.gradient.norm() < here.gradient.norm());
-                gains.then_some((trial, there))
-            });
-            let Some(next) = next else { break };
-            (x, here) = next;
-        }
-        let residual = here.gradient.norm();
-        if residual <= 10.0 * FLAT {
-            return Ok(x);
-        }
-        Err(RobustError::NotConverged { residual })
+        let look = |x: &[f64]| Self::weighted(&DVector::from_column_slice(x), members);
+        let top = climb(look, start.as_slice(), LEAST_GAIN);
+        let top = top.map(|top| DVector::from_vec(top.coefficients));
+        top.ok_or(RobustError::NotConverged {
+            residual: f64::INFINITY,
+        })
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-use super::objective::{Objective, Value, series};
+use super::objective::{Expansion, Value, series};
 
 /// A local maximum over the coefficients.
 #[derive(Debug, Clone)]
@@ -18,24 +18,24 @@ const LONGEST: f64 = 0.35;
 /// A curve with joint angles beyond this has run away \[rad\].
 pub(crate) const FARTHEST: f64 = 9.0;
 
-/// Climbs from these coefficients to where a step promises to gain less than `least_gain` in ln(X/S); X keeps its sign. None where the
-/// curve runs away or the climb does not end.
+/// Climbs from these coefficients on what `look` sees there, to where a step promises to gain less than `least_gain`; X keeps its
+/// sign. None where the curve runs away or the climb does not end.
 pub(crate) fn climb(
-    objective: &mut Objective<'_>,
+    mut look: impl FnMut(&[f64]) -> Expansion,
     start: &[f64],
     least_gain: f64,
 ) -> Option<Maximum> {
     let mut here = start.to_vec();
+    let mut seen = look(&here);
     let mut damping = 0.0_f64;
     for _ in 0..MOST_STEPS {
-        let expansion = objective.expansion(&here);
-        let value = expansion.value;
+        let value = seen.value;
         if !value.objective.is_finite() || farthest_point(&here) > FARTHEST {
             return None;
         }
-        let bend = -&expansion.hessian;
+        let bend = -&seen.hessian;
         let scale = bend.diagonal().amax().max(1e-6);
-        let finished = |coefficients| {
+        let finished = |coefficients, value| {
             Some(Maximum {
                 coefficients,
                 value,
@@ -43,37 +43,37 @@ pub(crate) fn climb(
         };
         let mut next = None;
         for _ in 0..60 {
-            let Some((step, promise)) = step(&bend, &expansion.gradient, damping) else {
+            let Some((step, promise)) = step(&bend, &seen.gradient, damping) else {
                 damping = (damping * 4.0).max(1e-9 * scale);
                 continue;
             };
             if promise < least_gain {
-                return finished(here);
+                return finished(here, value);
             }
             if step.amax() > LONGEST {
                 damping = (damping * 3.0).max(1e-6 * scale);
                 continue;
             }
             let trial: Vec<f64> = here.iter().zip(step.iter()).map(|(c, d)| c + d).collect();
-            let reached = objective.value(&trial);
-            let gain = reached.objective - value.objective;
-            if reached.x * value.x > 0.0 && gain >= 0.1 * promise {
+            let reached = look(&trial);
+            let gain = reached.value.objective - value.objective;
+            if reached.value.x * value.x > 0.0 && gain >= 0.1 * promise {
                 if gain > 0.6 * promise {
                     damping *= 0.1;
                     if damping < 1e-10 * scale {
                         damping = 0.0;
                     }
                 }
-                next = Some(trial);
+                next = Some((trial, reached));
                 break;
             }
-            // What is left is below the rounding of the objective.
+            // What is left is below the rounding of the objective, not of its slope.
             if promise < 1e-13 {
-                return finished(here);
+                return finished(trial, reached.value);
             }
             damping = (damping * 4.0).max(1e-6 * scale);
         }
-        here = next?;
+        (here, seen) = next?;
     }
     None
 }
