@@ -478,13 +478,15 @@ pub struct OptimalGait {
     pub extremals: Option<usize>,
 }
 impl OptimalGait {
+    pub fn certify(&self) -> Result<Certificate, CertifyError> {}
+}
+impl OptimalGait {
     pub fn heading(&self) -> Option<f64> {}
     pub fn u(&self) -> &[f64] {}
     pub fn phi(&self) -> &[Vector2<f64>] {}
     pub fn corners(&self) -> &[f64] {}
     pub fn cycle_arcs(&self) -> &[GaitArc] {}
     pub fn gait(&self) -> Result<AnyGait, InvalidSamples> {}
-    pub fn certify(&self) -> Result<Certificate, CertifyError> {}
     pub fn gait_file(&self, swimmer_name: &str) -> GaitFile {}
 }
 #[derive(Debug, Clone, PartialEq)]
