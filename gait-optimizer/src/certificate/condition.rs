@@ -207,6 +207,8 @@ conditions! {
     LimitMultiplier: "limit_multiplier_least" >= -1e-5;
     /// A bound does.
     BoundWithinLimits: "bound_multiplier_least" >= -1e-5;
+    /// No push of the curve that keeps what binds gains to second order.
+    NoFasterNeighbour: "second_variation_least" >= 0.0;
 }
 
 impl Condition {

@@ -9,6 +9,7 @@ mod affine;
 mod costate;
 mod legs;
 mod second_order;
+mod second_variation;
 mod switching;
 mod taken;
 

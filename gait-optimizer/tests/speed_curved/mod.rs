@@ -246,6 +246,18 @@ fn whole(elements: &[Element]) -> Pose {
     poses.fold(Pose::default(), |pose, next| pose * next)
 }
 
+/// The least time for a turn of the joints at a shape, of the swimmer of length 1.
+pub(crate) fn least_time(
+    problem: &LimitedProblem,
+    model: &Model<f64>,
+    phi: &Vector2<f64>,
+    turn: &Vector2<f64>,
+) -> f64 {
+    let power = model.connection_and_power(phi).1;
+    let gauges = gauges(problem).into_iter();
+    gauges.map(|gauge| gauge(&power, turn)).fold(0.0, f64::max)
+}
+
 /// One for each limit, over the swimmer of length 1.
 fn gauges(problem: &LimitedProblem) -> Vec<Gauge> {
     let volume = problem.swimmer.total_length().powi(3);

@@ -7,13 +7,14 @@
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_files::{AnyGait, GaitFile};
-use swimmer_model::{Gait as _, Model, Panel, Panels, Tolerance, swim};
+use swimmer_model::{Gait as _, Model, Panel, Panels, SecondDerivatives, Tolerance, swim};
 
 use super::legs::{arcs, pose_at};
+use super::second_variation::Multipliers;
 use super::{RESTS, of_the_curve, taken};
 use crate::certificate::{Certificate, Check, Condition, again_within};
 use crate::momentum::Momentum;
-use crate::region::Region;
+use crate::region::{Bound, Region};
 use crate::speed::gauge::{Facet, Level};
 use crate::speed::quadrature::{Rule, cut};
 
@@ -29,13 +30,15 @@ const TURN: f64 = 0.5;
 const LEAST: usize = 3;
 
 /// One node.
-struct Node {
-    rate: Vector2<f64>,
+pub(super) struct Node {
+    pub(super) rate: Vector2<f64>,
+    pub(super) pose: [f64; 3],
+    pub(super) second: SecondDerivatives<f64>,
     /// Height over V for p along d, and for a unit of the multiplier of rotation.
     height: [f64; 2],
     /// The largest share of any limit, and the limits that bind.
     taken: f64,
-    levels: Vec<Level>,
+    pub(super) levels: Vec<Level>,
     /// Gradient of the margin of the bound that it lies on.
     bound: Option<Vector2<f64>>,
 }
@@ -109,17 +112,17 @@ impl Equations {
 }
 
 /// A cycle whose costate is asked for.
-struct Costate<'a> {
+pub(super) struct Costate<'a> {
     model: &'a Model<f64>,
     region: &'a Region,
     limits: &'a [Facet],
-    gait: &'a AnyGait,
+    pub(super) gait: &'a AnyGait,
     panels: Vec<Panel<f64>>,
-    period: f64,
+    pub(super) period: f64,
     /// Dual to the displacement, over V; and 1/V.
-    p: Vector2<f64>,
-    slowness: f64,
-    rule: Rule,
+    pub(super) p: Vector2<f64>,
+    pub(super) slowness: f64,
+    pub(super) rule: Rule,
 }
 
 /// What the equations' unknowns are.
@@ -128,8 +131,8 @@ struct Unknowns {
     rotation: usize,
     /// σ where each part begins.
     starts: Vec<[usize; 2]>,
-    /// Of each node the shares of its limits.
-    shares: Vec<Vec<usize>>,
+    /// Of each part's nodes the shares of their limits.
+    shares: Vec<Vec<Vec<usize>>>,
     /// Of bounds.
     pushes: Vec<usize>,
 }
@@ -145,21 +148,23 @@ impl Costate<'_> {
         let levels: Vec<Level> = levels.collect();
         Node {
             rate,
+            pose,
+            second,
             height: [height(self.p, 0.0), height(Vector2::zeros(), self.slowness)],
             taken: levels.iter().map(|level| level.value).fold(0.0, f64::max),
             levels: levels
                 .into_iter()
                 .filter(|level| level.value >= Condition::TakesLimit.tolerance())
                 .collect(),
-            bound: self.rests(&point.phi).next(),
+            bound: self.rests(&point.phi).next().map(|(_, gradient)| gradient),
         }
     }
 
-    /// Gradients of the margins of the bounds that a shape lies on.
-    fn rests(&self, phi: &Vector2<f64>) -> impl Iterator<Item = Vector2<f64>> {
+    /// The bounds that a shape lies on, with the gradients of their margins.
+    pub(super) fn rests(&self, phi: &Vector2<f64>) -> impl Iterator<Item = (Bound, Vector2<f64>)> {
         let on = self.region.bounds();
         let on = on.filter(move |bound| bound.margin(phi).abs() < RESTS);
-        on.map(move |bound| bound.gradient(phi))
+        on.map(move |bound| (bound, bound.gradient(phi)))
     }
 
     /// The equations of one part of the cycle, with those that join it to the next.
@@ -176,10 +181,11 @@ impl Costate<'_> {
             let push = node.bound.map(|_| equations.unknown());
             let sum = shares.iter().map(|at| (*at, 1.0)).collect();
             equations.rows.push((sum, 1.0));
-            unknowns.shares.push(shares.clone());
             unknowns.pushes.extend(push);
             own.push((shares, push));
         }
+        let shares = own.iter().map(|(shares, _)| shares.clone());
+        unknowns.shares.push(shares.collect());
         let rotation = unknowns.rotation;
         // ∫ of one joint's σ̇ with these weights: its entries, and what is known of it.
         let integral = |weights: &[f64], joint: usize| {
@@ -215,7 +221,8 @@ impl Costate<'_> {
         // On to the next part, past what its first corner rests on.
         let next = unknowns.starts[(number + 1) % unknowns.starts.len()];
         let corner = self.gait.at(to).phi;
-        let rests: Vec<Vector2<f64>> = self.rests(&corner).collect();
+        let rests = self.rests(&corner).map(|(_, gradient)| gradient);
+        let rests: Vec<Vector2<f64>> = rests.collect();
         let jumps: Vec<usize> = rests.iter().map(|_| equations.unknown()).collect();
         for joint in 0..2 {
             let (mut row, known) = integral(&self.rule.weights, joint);
@@ -240,14 +247,16 @@ impl Costate<'_> {
         let starts = starts.map(|_| [equations.unknown(), equations.unknown()]);
         unknowns.starts = starts.collect();
         let (mut most, mut least) = (0.0_f64, f64::INFINITY);
+        let mut nodes = Vec::with_capacity(parts.len());
         for (number, &(from, to)) in parts.iter().enumerate() {
             let places = self.rule.nodes.iter().map(|s| from + (to - from) * s);
-            let nodes: Vec<Node> = places.map(|u| self.node(u)).collect();
-            for node in &nodes {
+            let own: Vec<Node> = places.map(|u| self.node(u)).collect();
+            for node in &own {
                 (most, least) = (most.max(node.taken), least.min(node.taken));
             }
             let into = (&mut equations, &mut unknowns);
-            self.part((number, (from, to)), &nodes, into);
+            self.part((number, (from, to)), &own, into);
+            nodes.push(own);
         }
         let mut checks = vec![
             Condition::KeepsLimits.check(most - 1.0),
@@ -257,16 +266,23 @@ impl Costate<'_> {
             // Nothing tells the costate where no limit binds.
             return checks;
         }
-        let Unknowns { shares, pushes, .. } = unknowns;
-        let positive: Vec<usize> = shares.iter().flatten().chain(&pushes).copied().collect();
+        let Unknowns {
+            shares,
+            pushes,
+            rotation,
+            ..
+        } = unknowns;
+        let of_nodes = || shares.iter().flatten();
+        let positive = of_nodes().flatten().chain(&pushes).copied();
+        let positive: Vec<usize> = positive.collect();
         let Some((x, residual)) = equations.solve(&positive) else {
             checks.push(Condition::CostateWithinLimits.check(f64::NAN));
             return checks;
         };
         let off = |own: &Vec<usize>| (own.iter().map(|at| x[*at]).sum::<f64>() - 1.0).abs();
-        let hamiltonian = shares.iter().map(off).fold(0.0, f64::max);
+        let hamiltonian = of_nodes().map(off).fold(0.0, f64::max);
         let least = |least: f64, at: &usize| least.min(x[*at]);
-        let share = shares.iter().flatten().fold(f64::INFINITY, least);
+        let share = of_nodes().flatten().fold(f64::INFINITY, least);
         checks.extend([
             Condition::CostateWithinLimits.check(residual),
             Condition::HamiltonianWithinLimits.check(hamiltonian),
@@ -276,6 +292,14 @@ impl Costate<'_> {
             let push = pushes.iter().fold(f64::INFINITY, least);
             checks.push(Condition::BoundWithinLimits.check(push));
         }
+        let value = |at: &usize| x[*at];
+        let of_node = |own: &Vec<usize>| own.iter().map(value).collect();
+        let multipliers = Multipliers {
+            rotation: x[rotation],
+            shares: (shares.iter().map(|part| part.iter().map(of_node).collect())).collect(),
+        };
+        let second = self.least_second_variation(&parts, &nodes, &multipliers);
+        checks.extend(second.map(|least| Condition::NoFasterNeighbour.check(least)));
         checks
     }
 }
