@@ -3,7 +3,9 @@
 mod plane;
 mod speed_direct;
 
-use gait_optimizer::{Bounds, Over, SpeedProblem, Uncertainty, fastest, front, robust_speed};
+use gait_optimizer::{
+    Bounds, Over, SpeedProblem, Uncertainty, certify, fastest, front, robust_speed,
+};
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -241,6 +243,19 @@ fn a_wider_bound_is_never_slower() {
 #[ignore = "soak: an hour"]
 fn a_wider_bound_is_never_slower_over_many() {
     monotone(20, 60, SpeedProblem::STARTS);
+}
+
+/// Of four straight arcs, in the middle of one of which certificates begin it.
+#[test]
+fn a_file_passes_wherever_it_begins() {
+    let found = fastest(&problem(Swimmer::purcell(), 2.0, 8)).unwrap();
+    let file = found.gait.gait_file("purcell");
+    for sample in [0, 7, 100, 300] {
+        let begun = file.begun_at(sample);
+        let certificate = certify(&found.gait.swimmer, &begun, begun.objective, &begun.bounds);
+        let certificate = certificate.unwrap();
+        assert!(certificate.pass(), "{sample}: {}", certificate.failures());
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use swimmer_files::ArcKind;
 
 use super::super::polish::{BENDS, second_variation};
 use super::super::problem::Setting;
-use super::super::structure::{Link, Motion, bend, holds};
+use super::super::structure::{Link, Motion, bend, holds, merge};
 use super::legs::Legs;
 use super::switching::along;
 use super::{Asked, RESTS, on_bound};
@@ -48,6 +48,8 @@ pub(super) fn least(setting: &Setting, legs: &Legs, asked: Asked) -> Option<f64>
         })
         .collect();
     let mut links = links?;
+    // Where the samples begin within an arc, a shift of that place changes nothing.
+    merge(&mut links);
     bend(&mut links, BENDS);
     second_variation(setting, &links)
 }
