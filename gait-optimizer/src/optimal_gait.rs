@@ -62,33 +62,7 @@ pub struct OptimalGait {
     pub(crate) cycle: Cycle,
 }
 
-/// What a solver knows of a gait before its numbers are worked out.
-#[derive(Debug)]
-pub(crate) struct Solution {
-    pub(crate) objective: Objective,
-    pub(crate) swimmer: Swimmer<f64>,
-    pub(crate) bounds: Bounds,
-    pub(crate) symmetric: bool,
-    pub(crate) arcs: Vec<Arc>,
-    pub(crate) cycle: Cycle,
-    /// The cycle swum by the model of the swimmer with L = 1.
-    pub(crate) stroke: Stroke<f64>,
-    pub(crate) links_cross: f64,
-    pub(crate) certificate: Certificate,
-}
-
 impl OptimalGait {
-    pub(crate) fn new(solution: Solution) -> Self {
-        let of = (solution.objective, &solution.swimmer, &solution.bounds);
-        let Solution { stroke, cycle, .. } = solution;
-        Self {
-            arcs: solution.arcs,
-            links_cross: solution.links_cross,
-            certificate: solution.certificate,
-            ..Self::of_cycle(of, solution.symmetric, cycle, &stroke)
-        }
-    }
-
     /// A gait with the numbers that follow from its cycle, swum by the model of the swimmer with L = 1; no condition is asked yet.
     pub(crate) fn of_cycle(
         (objective, swimmer, bounds): (Objective, &Swimmer<f64>, &Bounds),

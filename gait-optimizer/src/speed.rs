@@ -21,7 +21,7 @@ pub(crate) mod phases;
 mod polish;
 pub(crate) mod problem;
 mod quadrature;
-pub(crate) mod samples;
+mod samples;
 mod search;
 pub(crate) mod selection;
 pub(crate) mod starts;

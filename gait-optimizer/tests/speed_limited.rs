@@ -56,10 +56,7 @@ fn nothing_faster(problem: LimitedProblem, starts: usize) -> f64 {
 fn robot(power: Option<f64>, rates: Option<[f64; 2]>, torque: Option<Torque>) -> LimitedProblem {
     LimitedProblem {
         swimmer: Swimmer::robot(),
-        bounds: Bounds {
-            max_angle: Some(2.0),
-            ..Bounds::default()
-        },
+        bounds: Bounds::within(2.0),
         power_over_viscosity: power,
         rates,
         torque,

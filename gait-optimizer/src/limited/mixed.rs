@@ -5,9 +5,9 @@ use swimmer_files::{ArcKind, GaitArc, Objective};
 use swimmer_model::{Gait, Model, Tolerance, swim};
 
 use super::{Limit, Limited, LimitedError, LimitedProblem, STARTS};
-use crate::cycle::{Arc, Cycle};
+use crate::cycle::Cycle;
 use crate::immobile::refuse_immobile;
-use crate::optimal_gait::{OptimalGait, Solution};
+use crate::optimal_gait::OptimalGait;
 use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
 use crate::speed::certificate::within_limits;
@@ -15,7 +15,7 @@ use crate::speed::gauge::Facet;
 use crate::speed::interior::{self, Polygon};
 use crate::speed::phases::{Curve, Phase, polished};
 use crate::speed::problem::{Goal, HeadingRule, Setting};
-use crate::speed::{SpeedError, samples, selection, starts};
+use crate::speed::{SpeedError, selection, starts};
 
 /// Elements of a cycle of several limits, first and last.
 const ELEMENTS: [usize; 2] = [8, 16];
@@ -184,26 +184,21 @@ impl LimitedProblem {
         let curve = finer.unwrap_or(curve);
         let ahead = curve.net.heading().cos() >= 0.0;
         let limits = setting.limits();
-        let (mut cycle, mut arcs) = sampled(setting.region, &limits, &curve);
+        let mut cycle = sampled(setting.region, &limits, &curve);
         if !ahead {
-            (cycle, arcs) = (cycle.reversed(|phi| *phi), samples::reversed(&arcs));
+            cycle = cycle.reversed(|phi| *phi);
         }
         let gait = cycle.gait().ok()?;
         let file = cycle.file(self.bounds);
         let told = (curve.period(), curve.net.distance());
         let of = (setting.model, setting.region);
         let certificate = within_limits(of, &limits, (&file, &gait), told);
-        let gait = OptimalGait::new(Solution {
-            objective: Objective::Speed,
-            swimmer: self.swimmer,
-            bounds: self.bounds,
-            symmetric: false,
-            links_cross: cycle.links_cross(setting.model),
-            arcs,
-            stroke: swim(setting.model, &gait, &Tolerance::default()),
-            cycle,
+        let stroke = swim(setting.model, &gait, &Tolerance::default());
+        let of = (Objective::Speed, &self.swimmer, &self.bounds);
+        let gait = OptimalGait {
             certificate,
-        });
+            ..OptimalGait::of_cycle(of, false, cycle, &stroke)
+        };
         let limited = self.limited(gait, told.1, told.0 / unit).ok()?;
         Some(Limited {
             refinement,
@@ -221,14 +216,8 @@ fn near(setting: &Setting, polygon: &Polygon) -> Option<Curve> {
 
 /// A curve as one cycle of samples, each phase with its own, from the corner of the most φ₂ and half as much φ₁ on: of symmetric gaits
 /// that is one.
-fn sampled(region: &Region, limits: &[Facet], curve: &Curve) -> (Cycle, Vec<Arc>) {
-    let mut cycle = Cycle {
-        u: Vec::new(),
-        phi: Vec::new(),
-        corners: Vec::new(),
-        arcs: Vec::new(),
-    };
-    let mut arcs = Vec::new();
+fn sampled(region: &Region, limits: &[Facet], curve: &Curve) -> Cycle {
+    let mut cycle = Cycle::default();
     let phases = curve.phases();
     let far = |number: &usize| {
         let phi = curve.at(phases[*number].from);
@@ -256,18 +245,13 @@ fn sampled(region: &Region, limits: &[Facet], curve: &Curve) -> (Cycle, Vec<Arc>
             from: since(phase.from),
             to: since(phase.to),
         });
-        arcs.push(Arc {
-            kind,
-            from: curve.at(phase.from).into(),
-            to: curve.at(phase.to).into(),
-        });
     }
     cycle.u.push(1.0);
     cycle.phi.extend(cycle.phi.first().copied());
     if let Some(last) = cycle.arcs.last_mut() {
         last.to = 1.0;
     }
-    (cycle, arcs)
+    cycle
 }
 
 /// Two limits leave no choice of the direction, one flat one leaves the costate none.

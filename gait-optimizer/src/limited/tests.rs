@@ -7,10 +7,7 @@ use swimmer_model::{Circle, Stroke, Tolerance, swim};
 fn asked(power: Option<f64>, rates: Option<[f64; 2]>) -> LimitedProblem {
     LimitedProblem {
         swimmer: Swimmer::robot(),
-        bounds: Bounds {
-            max_angle: Some(2.0),
-            ..Bounds::default()
-        },
+        bounds: Bounds::within(2.0),
         power_over_viscosity: power,
         rates,
         torque: None,

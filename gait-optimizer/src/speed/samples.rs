@@ -5,7 +5,7 @@ use swimmer_files::GaitArc;
 use super::arc::Shape;
 use super::polish::Polished;
 use super::problem::Setting;
-use crate::cycle::{Arc, Cycle};
+use crate::cycle::Cycle;
 
 /// Fewest samples on a straight arc and on a curved one.
 const STRAIGHT: usize = 16;
@@ -74,14 +74,4 @@ pub(crate) fn cycle_from(setting: &Setting, polished: &Polished, sign: f64, firs
         last.to = 1.0;
     }
     cycle
-}
-
-/// The same arcs run backwards.
-pub(crate) fn reversed(arcs: &[Arc]) -> Vec<Arc> {
-    let back = |arc: &Arc| Arc {
-        kind: arc.kind,
-        from: arc.to,
-        to: arc.from,
-    };
-    arcs.iter().rev().map(back).collect()
 }
