@@ -22,20 +22,18 @@ mod stencil;
 mod symmetry;
 mod variation;
 
-use std::cell::{Cell, OnceCell};
+use std::cell::Cell;
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{
-    InvalidSamples, InvalidSwimmer, Model, SecondDerivatives, Swimmer, Tolerance, crossing_share,
-    swim,
+    InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, crossing_share, swim,
 };
 
 use crate::certificate::{
     Certificate, Check, Condition, SHARE, SWUM_AGAIN, SeenBy, simple_and_turning_once,
     turning_number,
 };
-use crate::cycle::Cycle;
 use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
 use crate::speed::{MadeFor, certify_speed};
@@ -44,6 +42,7 @@ use grid::{Along, Degree, Grid};
 use limits::{Limit, Limits};
 use path::Path;
 use resolution::{Rounding, with_uncertainty};
+pub(crate) use second_variation::ascents_of_efficiency;
 use symmetry::{begun_on_the_diagonal, is_symmetric};
 
 /// Directions closer than this make no corner \[rad\].
@@ -86,8 +85,6 @@ struct Subject<'a> {
     path: Path,
     /// The same by the coarser polynomials.
     coarse: Path,
-    /// The model's derivatives at the shapes, once somebody asks.
-    seconds: OnceCell<Vec<SecondDerivatives<f64>>>,
     symmetric: bool,
     /// How far from a bound a sample on it may be written \[rad\].
     written: f64,
@@ -208,18 +205,6 @@ pub(crate) fn certified(gait: OptimalGait) -> OptimalGait {
     }
 }
 
-/// How far two polynomials through the samples of a cycle of most efficiency differ in its slopes, over what [`certify`] lets them.
-pub(crate) fn slopes_open(cycle: &Cycle) -> f64 {
-    let file = cycle.file(Bounds::default());
-    let (grid, shapes) = Grid::new(&file, &grid::told_by_arcs(&file));
-    let [fine, coarse] = [Degree::Fine, Degree::Coarse].map(|degree| grid.slopes(&shapes, degree));
-    let apart = fine
-        .iter()
-        .zip(&coarse)
-        .map(|(fine, coarse)| (fine - coarse).norm() / fine.norm());
-    apart.fold(0.0, f64::max) / Condition::SlopesKnown.tolerance()
-}
-
 /// What the sampling may leave open.
 fn sampling(objective: Objective, open: Openness) -> [Check; 2] {
     let coarsest = if objective == Objective::Efficiency {
@@ -247,6 +232,10 @@ fn certify_turned(
     let sampling = sampling(objective, open);
     let coarse = sampling.iter().any(|check| !check.pass);
     let mut checks = subject.of_the_curve(gait, curve, coarse);
+    // Where effort counts a loop that turns back costs what it is, and a curve may cross itself.
+    if objective != Objective::Efficiency {
+        checks.extend(subject.of_its_loop(gait));
+    }
     checks.extend(sampling);
     let stroke = swim(model, curve, &Tolerance::default());
     let [x, y, theta] = subject.path.end();
@@ -284,7 +273,6 @@ impl<'a> Subject<'a> {
         Self {
             coarse: path.again(&grid, &shapes, Degree::Coarse),
             path,
-            seconds: OnceCell::new(),
             symmetric: is_symmetric(gait),
             written: 2.0 * Rounding::of(gait).phi,
             model,
@@ -292,15 +280,6 @@ impl<'a> Subject<'a> {
             grid,
             shapes,
         }
-    }
-
-    fn seconds(&self) -> &[SecondDerivatives<f64>] {
-        self.seconds.get_or_init(|| {
-            let seconds = self.shapes.iter();
-            seconds
-                .map(|phi| self.model.second_derivatives(phi))
-                .collect()
-        })
     }
 
     fn openness(&self) -> Openness {
@@ -314,7 +293,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// Closure, simplicity and bounds: what does not depend on the objective. Samples that are too coarse show no symmetry.
+    /// Closure and bounds: what does not depend on the objective. Samples that are too coarse show no symmetry.
     fn of_the_curve(&self, gait: &GaitFile, curve: &AnyGait, coarse: bool) -> Vec<Check> {
         let at_samples = |check: Check| check.seen_by(SeenBy::Samples);
         let gap = match (gait.phi.first(), gait.phi.last()) {
@@ -322,14 +301,6 @@ impl<'a> Subject<'a> {
             _ => f64::NAN,
         };
         let mut checks = vec![at_samples(Condition::Closed.check(gap))];
-        // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
-        let quarter = gait.u.partition_point(|&u| u <= 0.25 + 1e-12);
-        let simple = if self.limits.region.has_diagonals() {
-            gait.phi.get(..quarter).unwrap_or_default()
-        } else {
-            &gait.phi
-        };
-        checks.extend(simple_and_turning_once(&gait.phi, simple).map(at_samples));
         if self.limits.region.is_of_quarters() {
             let off = if self.symmetric { 0.0 } else { 1.0 };
             let seen_by = if coarse {
@@ -361,6 +332,18 @@ impl<'a> Subject<'a> {
             checks.extend(off.map(|off| at_samples(condition.check(off))));
         }
         checks
+    }
+
+    /// Whether the curve is simple and turns once.
+    fn of_its_loop(&self, gait: &GaitFile) -> [Check; 2] {
+        // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
+        let quarter = gait.u.partition_point(|&u| u <= 0.25 + 1e-12);
+        let simple = if self.limits.region.has_diagonals() {
+            gait.phi.get(..quarter).unwrap_or_default()
+        } else {
+            &gait.phi
+        };
+        simple_and_turning_once(&gait.phi, simple).map(|check| check.seen_by(SeenBy::Samples))
     }
 
     fn along(&self, node: usize) -> Along {

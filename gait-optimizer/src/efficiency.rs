@@ -23,7 +23,7 @@ use crate::optimal_gait::{EfficiencyFigures, OptimalGait};
 use crate::problem::{GaitClass, InvalidProblem, validated};
 pub use bounded::Reached;
 pub(crate) use chain::starts;
-use chain::{Found, same_gait};
+use chain::{Origin, same_gait};
 pub use error::EfficiencyError;
 pub(crate) use fourier::{Expansion, Objective, Value, climb};
 pub use near::EfficiencySeed;
@@ -151,38 +151,35 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Efficiency
 pub(crate) fn best_symmetric(problem: &EfficiencyProblem) -> Result<OptimalGait, EfficiencyError> {
     let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
-    let mut best: Option<(OptimalGait, Extremal)> = None;
-    let mut refused: Option<EfficiencyError> = None;
-    for start in starts(&model, problem.branch)? {
-        let led_to = chain::extremal_from(&model, problem.branch, problem.method, start);
-        match led_to.and_then(|found| accepted(problem, &model, found)) {
-            Ok(found) => {
-                // An optimum among all curves goes before one among gaits of its symmetry.
-                let rank = |gait: &OptimalGait| (gait.certificate.pass(), gait.efficiency);
-                if best
-                    .as_ref()
-                    .is_none_or(|(known, _)| rank(&found.0) > rank(known))
-                {
-                    best = Some(found);
-                }
-            }
-            Err(error) => {
-                if refused
-                    .as_ref()
-                    .is_none_or(|r| error.distance() > r.distance())
-                {
-                    refused = Some(error);
-                }
-            }
+    let branch = problem.branch;
+    let mut refused = EfficiencyError::NoStart {
+        branch,
+        best: f64::NAN,
+    };
+    let mut led_to = Vec::new();
+    for start in starts(&model, branch)? {
+        match chain::extremal_from(&model, (branch, problem.method), start) {
+            Ok(found) => led_to.push(found),
+            Err(error) => refused = refused.or_farther(error),
         }
     }
-    match (best, refused) {
-        (Some(free), _) => within_bounds(problem, &model, free),
-        (None, Some(error)) => Err(error),
-        (None, None) => Err(EfficiencyError::NoStart {
-            branch: problem.branch,
-            best: f64::NAN,
-        }),
+    let efficiency = |(extremal, _): &(Extremal, Origin)| extremal.efficiency(&model);
+    led_to.sort_by(|a, b| efficiency(b).total_cmp(&efficiency(a)));
+    let mut best: Option<Found> = None;
+    for (extremal, origin) in led_to {
+        match free(problem, &model, extremal, origin) {
+            // An optimum among all curves goes before one among gaits of its symmetry.
+            Ok(found) if found.gait.certificate.pass() => {
+                best = Some(found);
+                break;
+            }
+            Ok(found) => best = best.or(Some(found)),
+            Err(error) => refused = refused.or_farther(error),
+        }
+    }
+    match best {
+        Some(free) => within_bounds(problem, &model, &free),
+        None => Err(refused),
     }
 }
 
@@ -229,29 +226,28 @@ pub fn efficiency_from(
             order: 0,
             efficiency: direct.efficiency,
         })?;
-    let found = Found {
-        extremal,
+    let origin = Origin {
         order: 0,
         method: direct.method,
         direct_efficiency: Some(direct.efficiency),
     };
-    let free = accepted(problem, &model, found)?;
-    no_saddle(problem.branch, within_bounds(problem, &model, free)?)
+    let free = free(problem, &model, extremal, origin)?;
+    no_saddle(problem.branch, within_bounds(problem, &model, &free)?)
 }
 
 /// A free optimum under the problem's bounds.
 fn within_bounds(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
-    (free, extremal): (OptimalGait, Extremal),
+    free: &Found,
 ) -> Result<OptimalGait, EfficiencyError> {
-    if keeps_bounds(problem, &free) {
+    if keeps_bounds(problem, &free.gait) {
         return Ok(OptimalGait {
             bounds: problem.bounds,
-            ..free
+            ..free.gait.clone()
         });
     }
-    bounded::bounded(problem, model, &free, &extremal)
+    bounded::bounded(problem, model, free)
 }
 
 /// A gait that no other nearby outdoes, with the paper's symmetries or without.
@@ -264,32 +260,32 @@ fn no_saddle(branch: Branch, gait: OptimalGait) -> Result<OptimalGait, Efficienc
 }
 
 /// A free extremal as a gait of the branch, certified among those of its symmetry.
-fn accepted(
+fn free(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
-    found: Found,
-) -> Result<(OptimalGait, Extremal), EfficiencyError> {
-    let branch = problem.branch;
-    let mut gait = finished(problem, model, &found, &Bounds::default()).map_err(|_| {
+    extremal: Extremal,
+    origin: Origin,
+) -> Result<Found, EfficiencyError> {
+    let (branch, order) = (problem.branch, origin.order);
+    let efficiency = extremal.efficiency(model);
+    let found = finished((problem, model, &Bounds::default()), extremal, origin).map_err(|_| {
         EfficiencyError::NotConverged {
             branch,
-            order: 0,
-            efficiency: found.extremal.efficiency(model),
+            order,
+            efficiency,
         }
     })?;
-    // Continuation asks this of every gait on the way; a free one is asked here.
-    let simple = simple_and_turning_once(gait.phi(), gait.phi());
-    gait.certificate = gait.certificate.with(simple.to_vec());
+    let gait = &found.gait;
     let crossings = crossings(gait.phi());
     if crossings > 0 {
         return Err(EfficiencyError::CrossesItself {
             branch,
-            order: found.order,
+            order,
             efficiency: gait.efficiency,
             crossings,
         });
     }
-    if !branch.contains(&gait) {
+    if !branch.contains(gait) {
         return Err(EfficiencyError::OtherBranch {
             branch,
             efficiency: gait.efficiency,
@@ -298,7 +294,10 @@ fn accepted(
             definition: branch.definition(),
         });
     }
-    Ok((certified(branch, gait)?, found.extremal))
+    Ok(Found {
+        gait: certified(branch, found.gait)?,
+        ..found
+    })
 }
 
 /// A gait that no other with the paper's symmetries outdoes nearby.
@@ -313,28 +312,37 @@ fn certified(branch: Branch, gait: OptimalGait) -> Result<OptimalGait, Efficienc
     })
 }
 
+/// A gait and the extremal that it samples.
+#[derive(Debug, Clone)]
+struct Found {
+    gait: OptimalGait,
+    extremal: Extremal,
+}
+
 /// An extremal as a gait with its certificate, not yet looked at.
 fn finished(
-    problem: &EfficiencyProblem,
-    model: &Model<f64>,
-    found: &Found,
-    bounds: &Bounds,
-) -> Result<OptimalGait, Unpolished> {
+    (problem, model, bounds): (&EfficiencyProblem, &Model<f64>, &Bounds),
+    extremal: Extremal,
+    origin: Origin,
+) -> Result<Found, Unpolished> {
     let order = Order {
         swimmer: &problem.swimmer,
         model,
         bounds,
         samples: 4 * problem.quarter_samples.max(16),
     };
-    let mut gait = gait(&order, &found.extremal)?;
-    let power_variation = gait.certificate.value(Condition::PowerFollowedAgain);
+    let mut gait = gait(&order, &extremal)?;
+    // An atlas lists gaits that cross themselves as well.
+    let simple = simple_and_turning_once(gait.phi(), gait.phi());
+    gait.certificate = gait.certificate.with(simple.to_vec());
+    let power_variation = gait.certificate.value(Condition::ConstantPower);
     gait.efficiency_figures = Some(EfficiencyFigures {
-        residual: found.extremal.solved.residual,
+        residual: extremal.solved.residual,
         power_variation: power_variation.unwrap_or(f64::NAN),
-        method: found.method,
-        direct_efficiency: found.direct_efficiency,
+        method: origin.method,
+        direct_efficiency: origin.direct_efficiency,
     });
-    Ok(gait)
+    Ok(Found { gait, extremal })
 }
 
 /// Whether a free gait keeps the bounds: then it is the optimum under them too.

@@ -6,50 +6,45 @@
 //! | `flow` | flow maps with exact Jacobians |
 //! | `wall` | bounds of the joint angles as curves to run along |
 //! | `shooting` | multiple shooting over arcs: a quarter, or a closed curve without symmetry |
-//! | `elimination` | the linear systems of the shooting, without their zeros |
 //! | `guess` | states and momenta from any closed curve |
 //! | `structure` | which arcs a curve is made of, and what a solution says of that |
 //! | `continuation` | a gait followed as its bounds tighten |
 //! | `sampled` | an extremal as a sampled cycle |
-//! | `evidence` | the arcs followed again in the plain form of the maximum principle |
-//! | `second_variation` | along how many directions the efficiency grows to second order |
 //! | `gait` | the gait with its certificate |
 //!
 //! [`polish`] is the way in: any closed curve near an optimum, and bounds.
 
 pub(crate) mod continuation;
-mod elimination;
 mod equations;
-mod evidence;
 mod flow;
 pub(crate) mod gait;
 pub(crate) mod guess;
 mod sampled;
-mod second_variation;
 pub(crate) mod shooting;
 mod structure;
 pub(crate) mod wall;
 
-use std::sync::OnceLock;
-
+use nalgebra::Vector2;
 use swimmer_model::{Gait, Model};
 
+use crate::certify::ascents_of_efficiency;
+use crate::cycle::Cycle;
 use equations::shape;
 use guess::Trajectory;
-use shooting::{Class, Solved, Unsolved, solve};
+use shooting::{Chain, Class, Solved, Unsolved, solve};
 use structure::{next_structure, of_curve};
 pub(crate) use wall::Walls;
 
 /// How often a structure may be changed.
 const MOST_STRUCTURES: usize = 12;
+/// Samples of a cycle that is asked for its ascents.
+const ASCENTS_OF: usize = 256;
 
 /// An extremal: arcs that satisfy every first-order condition.
 #[derive(Debug, Clone)]
 pub(crate) struct Extremal {
     pub(crate) solved: Solved,
     pub(crate) class: Class,
-    /// Looked at more than once, and dear.
-    ascents: OnceLock<Option<usize>>,
 }
 
 /// Why a curve could not be polished.
@@ -75,7 +70,7 @@ pub(crate) fn polish<G: Gait<f64> + ?Sized>(
     gait: &G,
     quarter: bool,
 ) -> Result<Extremal, Unpolished> {
-    let inside = |phi: &nalgebra::Vector2<f64>| {
+    let inside = |phi: &Vector2<f64>| {
         walls
             .nearest(phi)
             .is_none_or(|(_, depth)| depth < -structure::NEAR)
@@ -90,7 +85,7 @@ pub(crate) fn polish_chain(
     model: &Model<f64>,
     walls: &Walls,
     class: Class,
-    guess: shooting::Chain,
+    guess: Chain,
 ) -> Result<Extremal, Unpolished> {
     let (mut chain, mut class) = (guess, class);
     for _ in 0..MOST_STRUCTURES {
@@ -106,7 +101,7 @@ pub(crate) fn polish_chain(
         };
         match next_structure(model, walls, class, &solved.chain) {
             None => {
-                return Ok(Extremal::new(solved, class));
+                return Ok(Extremal { solved, class });
             }
             Some(next) => (chain, class) = next,
         }
@@ -115,30 +110,19 @@ pub(crate) fn polish_chain(
 }
 
 /// The free quarter near a guess, without a look at bounds; none where Newton's method finds none.
-pub(crate) fn free_quarter(model: &Model<f64>, guess: shooting::Chain) -> Option<Extremal> {
+pub(crate) fn free_quarter(model: &Model<f64>, guess: Chain) -> Option<Extremal> {
     let class = Class::Quarter;
     let solved = solve(model, class, guess).ok()?;
-    Some(Extremal::new(solved, class))
+    Some(Extremal { solved, class })
 }
 
 impl Extremal {
-    fn new(solved: Solved, class: Class) -> Self {
-        Self {
-            solved,
-            class,
-            ascents: OnceLock::new(),
-        }
-    }
-
-    /// Along how many directions the efficiency grows to second order; none where that cannot be told.
+    /// Along how many directions the efficiency grows to second order, of a quarter those that keep its symmetries; none where an arc
+    /// cannot be followed.
     pub(crate) fn ascents(&self, model: &Model<f64>) -> Option<usize> {
-        let count = || second_variation::ascent_directions(model, self.class, &self.solved.chain);
-        *self.ascents.get_or_init(count)
-    }
-
-    /// The same of a quarter's cycle among closed curves of any symmetry.
-    pub(crate) fn ascents_without_symmetry(&self, model: &Model<f64>) -> Option<usize> {
-        second_variation::ascents_without_symmetry(model, &self.solved.chain)
+        let cycle = self.cycle(model, ASCENTS_OF)?;
+        let symmetric = self.class == Class::Quarter;
+        Some(ascents_of_efficiency(model, &cycle, symmetric))
     }
 
     /// Lighthill's efficiency ξ = `c_t/|p|²` of a swimmer with L = 1.
@@ -149,15 +133,25 @@ impl Extremal {
         })
     }
 
-    /// The shapes of the full cycle; none where an arc cannot be followed.
-    pub(crate) fn curve(
-        &self,
-        model: &Model<f64>,
-        samples: usize,
-    ) -> Option<Vec<nalgebra::Vector2<f64>>> {
+    /// The full cycle in about so many samples; none where an arc cannot be followed.
+    pub(crate) fn cycle(&self, model: &Model<f64>, samples: usize) -> Option<Cycle> {
         let parts = if self.class == Class::Quarter { 4 } else { 1 };
-        let cycle = sampled::sampled(model, self.class, &self.solved.chain, samples / parts);
-        Some(cycle?.phi)
+        sampled::sampled(model, self.class, &self.solved.chain, samples / parts)
+    }
+
+    /// Net displacement of the cycle over L in the frame of its first shape: p S/|p|².
+    pub(crate) fn displacement(&self) -> Vector2<f64> {
+        let Chain { arcs, states } = &self.solved.chain;
+        let parts = if self.class == Class::Quarter {
+            4.0
+        } else {
+            1.0
+        };
+        let length: f64 = arcs.iter().map(|arc| arc.length).sum();
+        let p = states.first().map(|z| Vector2::new(z[3], z[4]));
+        p.map_or(Vector2::repeat(f64::NAN), |p| {
+            p * (parts * length / p.norm_squared())
+        })
     }
 
     /// λ₃ = p·x̂ in the frame of the first shape: the sign of X for a quarter.
@@ -166,7 +160,7 @@ impl Extremal {
     }
 
     /// The first shape.
-    pub(crate) fn start(&self) -> nalgebra::Vector2<f64> {
+    pub(crate) fn start(&self) -> Vector2<f64> {
         self.solved
             .chain
             .states

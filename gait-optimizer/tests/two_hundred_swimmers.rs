@@ -11,8 +11,8 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 use gait_optimizer::{
-    AtlasProblem, Branch, Condition, EfficiencyProblem, Objective, OptimalGait, SidewaysProblem,
-    SpeedProblem, TurningProblem, atlas, certify, efficiency, fastest, sideways, turning,
+    AtlasProblem, Branch, EfficiencyProblem, Objective, OptimalGait, SidewaysProblem, SpeedProblem,
+    TurningProblem, atlas, certify, efficiency, fastest, sideways, turning,
 };
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, GaitFile};
@@ -24,21 +24,9 @@ const SEED: u64 = 20_260_703;
 /// A case that takes longer hangs.
 const PATIENCE: Duration = Duration::from_mins(1);
 
-/// A gait, and whether its solver says that the curve is simple: for efficiency an atlas takes others, too.
-struct Found {
-    gait: OptimalGait,
-    simple: bool,
-}
-
-impl From<OptimalGait> for Found {
-    fn from(gait: OptimalGait) -> Self {
-        Self { gait, simple: true }
-    }
-}
-
 /// What a solver says.
 enum Answer {
-    Gaits(Vec<Found>),
+    Gaits(Vec<OptimalGait>),
     Reason { kind: String, text: String },
     Wrong(String),
 }
@@ -94,7 +82,7 @@ fn most_efficient(case: &Case, branch: Branch) -> Answer {
             gait.efficiency
         ));
     }
-    Answer::Gaits(vec![gait.into()])
+    Answer::Gaits(vec![gait])
 }
 
 fn most_turning(case: &Case) -> Answer {
@@ -106,7 +94,7 @@ fn most_turning(case: &Case) -> Answer {
             if found.gait.rotation > 0.0
                 && found.gait.rotation <= found.bridged_supremum + 1e-9 =>
         {
-            Answer::Gaits(vec![found.gait.into()])
+            Answer::Gaits(vec![found.gait])
         }
         Ok(found) => Answer::Wrong(format!(
             "turns {} rad, and all regions together {} rad",
@@ -132,7 +120,7 @@ fn most_sideways(case: &Case) -> Answer {
                     found.lateral_over_length, found.gait.lateral_over_length
                 ));
             }
-            Answer::Gaits(vec![found.gait.into()])
+            Answer::Gaits(vec![found.gait])
         }
         Err(error) => Answer::refused(&error),
     }
@@ -167,16 +155,7 @@ fn small_atlas(case: &Case, objective: Objective) -> Answer {
             ),
         };
     }
-    Answer::Gaits(
-        found
-            .optima
-            .into_iter()
-            .map(|one| Found {
-                gait: one.gait,
-                simple: one.simple,
-            })
-            .collect(),
-    )
+    Answer::Gaits(found.optima.into_iter().map(|one| one.gait).collect())
 }
 
 /// With few starts.
@@ -187,31 +166,20 @@ fn fastest_gait(case: &Case) -> Answer {
         ..SpeedProblem::new(case.swimmer, [1.0, 0.8])
     };
     match fastest(&problem) {
-        Ok(found) if found.speed_over_length > 0.0 => Answer::Gaits(vec![found.gait.into()]),
+        Ok(found) if found.speed_over_length > 0.0 => Answer::Gaits(vec![found.gait]),
         Ok(found) => Answer::Wrong(format!("{} L a second", found.speed_over_length)),
         Err(error) => Answer::refused(&error),
     }
 }
 
 /// What `certify` holds against a gait's file, if anything.
-fn refused(case: &Case, Found { gait, simple }: &Found) -> Option<String> {
+fn refused(case: &Case, gait: &OptimalGait) -> Option<String> {
     let text = gait.gait_file("one").to_text();
     let read = GaitFile::parse(&text, Path::new("one.gait")).ok()?;
-    let certificate = match certify(&case.swimmer, &read, gait.objective, &case.bounds) {
-        Ok(certificate) => certificate,
-        Err(error) => return Some(error.to_string()),
-    };
-    // A curve that crosses itself fails for that, and shall fail for nothing else.
-    let crossings = [Condition::Simple, Condition::TurnsOnce];
-    let held = if *simple {
-        certificate.pass()
-    } else {
-        certificate
-            .checks()
-            .iter()
-            .all(|check| check.pass || crossings.contains(&check.condition))
-    };
-    (!held).then(|| certificate.failures())
+    match certify(&case.swimmer, &read, gait.objective, &case.bounds) {
+        Ok(certificate) => (!certificate.pass()).then(|| certificate.failures()),
+        Err(error) => Some(error.to_string()),
+    }
 }
 
 /// What is wrong with a gait, by its file, the real swimmer's model and distances of segments alone.
@@ -303,12 +271,10 @@ fn ask((objective, solve): Kind, every: usize) {
         }
         match answer {
             Answer::Gaits(found) => {
-                let faults: Vec<String> = found
-                    .iter()
-                    .flat_map(|found| faults(&case, &found.gait))
-                    .collect();
+                let faults: Vec<String> =
+                    found.iter().flat_map(|gait| faults(&case, gait)).collect();
                 gaits += found.len();
-                for why in found.iter().filter_map(|found| refused(&case, found)) {
+                for why in found.iter().filter_map(|gait| refused(&case, gait)) {
                     println!("{objective} REFUSED {name}: {why}");
                     refusals.push(format!("{name}: {why}"));
                 }

@@ -230,7 +230,7 @@ fn told(optimum: &Optimum, rates: Option<[f64; 2]>, seconds: f64) -> Outcome<(Do
         .key("arcs", gait.arcs.clone())
         .key("links_cross", gait.links_cross);
     tell_figures(&mut keys, gait, Condition::ShootingResidual, |gait| {
-        gait.certificate.value(Condition::ConstantPowerOfSamples)
+        gait.certificate.value(Condition::ConstantPower)
     });
     keys.key("certificate", gait.certificate.clone())
         .key("simple", optimum.simple)

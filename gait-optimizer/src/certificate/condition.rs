@@ -44,8 +44,6 @@ conditions! {
     PapersSymmetries: "without_the_papers_symmetries" <= 0.0;
     /// It keeps its bounds \[rad\].
     KeepsBounds: "bound_overstepped_rad" <= 1e-9;
-    /// An extremal's arcs keep walls that are wider by a hair where links may touch \[rad\].
-    KeepsWalls: "bound_overstepped" <= 1e-8;
     /// No side link folds through the middle one.
     NothingFolded: "side_link_on_middle_link" <= 0.0;
     /// Arcs along straight bounds lie on them \[rad\].
@@ -67,8 +65,6 @@ conditions! {
     DisplacementSteppedAgain: "displacement_stepped_again" <= super::SWUM_AGAIN;
     /// The rotation, step by step from sample to sample \[rad\].
     RotationSteppedAgain: "rotation_stepped_again" <= super::SWUM_AGAIN;
-    /// The efficiency of the samples is that of the arcs, relatively.
-    EfficiencySwumAgain: "efficiency_swum_again" <= 1e-7;
     /// A gait with the paper's symmetries goes nowhere across its heading, over L.
     NoLateral: "net_lateral" <= 1e-8;
     /// It does not turn the swimmer \[rad\].
@@ -117,8 +113,6 @@ conditions! {
     // Efficiency.
     /// The power is constant: (max − min) over the square of ∮√P.
     ConstantPower: "power_variation" <= 1e-7;
-    /// The same of samples that an extremal's arcs are interpolated by, over the mean power.
-    ConstantPowerOfSamples: "power_variation" <= 1e-6;
     /// No corners but those of the forbidden shapes \[rad\].
     NoCorner: "corner_rad" <= 1e-7;
     /// The symmetry lines are crossed square \[rad\].
@@ -133,16 +127,6 @@ conditions! {
     EffortOnBound: "bound_multiplier_least" >= -1e-7;
     /// What is left of the shooting's equations: angles in rad, momenta over |p|.
     ShootingResidual: "shooting_residual" <= 1e-10;
-    /// The arcs followed again by the paper's equations end where the next ones begin \[rad\].
-    FollowedAgain: "off_extremal_rad" <= 1e-8;
-    /// 2H, the power, along these.
-    PowerFollowedAgain: "hamiltonian_variation" <= 1e-8;
-    /// The body momentum is what the pose makes of p, over |p|.
-    MomentumOfPose: "momentum_off_pose" <= 1e-8;
-    /// p is parallel to the displacement: the sine between them.
-    MomentumAlongDisplacement: "displacement_off_momentum" <= 1e-7;
-    /// |p| |d| = ∮√P, relatively.
-    MomentumScale: "momentum_off_scale" <= 1e-7;
     /// A closed curve polished without its symmetry has the efficiency of its quarter, relatively.
     SameAsQuarter: "closed_curve_off_quarter" <= 1e-8;
 

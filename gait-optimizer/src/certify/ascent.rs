@@ -32,7 +32,7 @@ pub(crate) fn ways_up(model: &Model<f64>, gait: &OptimalGait) -> Vec<Curve> {
     let neighbours = Neighbours {
         subject: &subject,
         gain: Gain::Displacement,
-        rotation: momentum.c,
+        momentum,
         symmetric: false,
     };
     let ascents = neighbours.ascents();

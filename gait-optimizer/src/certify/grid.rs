@@ -108,7 +108,30 @@ impl Grid {
             [stencil::around, stencil::coarsely_around].map(|window| window(from, to, count))
         };
         let places = |low: usize, width: usize| u.get(low..low + width).unwrap_or_default();
+        let even = even_before(u);
+        // Where the samples are even all round, rules are those of the node before, one further.
+        let goes_on = |i: usize| {
+            let [before, here] = [i - 1, i].map(|i| (windows(i, i), windows(i - 1, i)));
+            let moved = |(low, width): (usize, usize)| (low + 1, width);
+            let same = before.0.map(moved) == here.0 && before.1.map(moved) == here.1;
+            let (low, width) = here.1[0].min(here.0[0]);
+            let high = (low + width).min(count - 1);
+            same && even.get(high).is_some_and(|even| *even > high - low)
+        };
         for (i, &at) in u.iter().enumerate() {
+            if i > 1
+                && goes_on(i)
+                && let Some(before) = self.nodes.last()
+            {
+                let mut node = before.clone();
+                node.u = at;
+                let rules = node.slope_and_bend.iter_mut().flatten();
+                for rule in rules.chain(node.integral.iter_mut().flatten()) {
+                    rule.low += 1;
+                }
+                self.nodes.push(node);
+                continue;
+            }
             let rule = |low: usize, weights: Weights| Rule {
                 low: first + low,
                 weights,
@@ -171,18 +194,6 @@ impl Grid {
         sums
     }
 
-    /// What each node counts for in an integral round the whole cycle.
-    pub(super) fn weights(&self, degree: Degree) -> Vec<f64> {
-        let mut sums = vec![0.0; self.nodes.len()];
-        for rules in self.nodes.iter().filter_map(|node| node.integral.as_ref()) {
-            let Rule { low, weights } = rules[degree as usize];
-            for (sum, weight) in sums.iter_mut().skip(low).zip(weights) {
-                *sum += weight;
-            }
-        }
-        sums
-    }
-
     /// The node before this one, where it belongs to the same piece.
     pub(super) fn before(&self, node: usize) -> Option<usize> {
         self.nodes.get(node)?.integral.as_ref()?;
@@ -217,6 +228,20 @@ impl Grid {
         let values = values.get(stencil).unwrap_or_default();
         weights.iter().zip(values).map(|(w, v)| w * v).sum()
     }
+}
+
+/// How many intervals before each place are as long as the last of them.
+fn even_before(u: &[f64]) -> Vec<usize> {
+    let mut even = vec![0; u.len()];
+    for i in 1..u.len() {
+        let (here, before) = (u[i] - u[i - 1], u[i - 1] - u[i.saturating_sub(2)]);
+        even[i] = if (here - before).abs() <= 1e-9 * here {
+            even[i - 1] + 1
+        } else {
+            1
+        };
+    }
+    even
 }
 
 /// The knot at u.

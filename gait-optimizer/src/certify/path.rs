@@ -1,6 +1,6 @@
 //! A sampled cycle swum along its own samples: poses, connection and power at every node.
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{SVector, Vector2, Vector3};
 use swimmer_model::{FirstDerivatives, Model};
 
 use super::grid::{Degree, Grid};
@@ -14,6 +14,8 @@ pub(super) struct Place {
     pub(super) phi: Vector2<f64>,
     /// dΦ/du.
     pub(super) rate: Vector2<f64>,
+    /// d²Φ/du².
+    pub(super) bend: Vector2<f64>,
     pub(super) first: FirstDerivatives<f64>,
     /// x, y over L and θ, from the first sample.
     pub(super) pose: [f64; 3],
@@ -24,10 +26,34 @@ pub(super) struct Place {
 }
 
 impl Place {
+    /// Shape, its rate and the pose; and how they change.
+    fn state(&self) -> [SVector<f64, 7>; 2] {
+        let Self {
+            phi, rate, bend, ..
+        } = self;
+        let ([x, y, theta], (sin, cos)) = (self.pose, self.heading);
+        let body = self.first.connection * rate;
+        let out = [cos * body.x - sin * body.y, sin * body.x + cos * body.y];
+        [
+            [phi.x, phi.y, rate.x, rate.y, x, y, theta].into(),
+            [rate.x, rate.y, bend.x, bend.y, out[0], out[1], body.z].into(),
+        ]
+    }
+
     /// The height of one choice of the multipliers here.
     pub(super) fn height(&self, momentum: &Momentum) -> f64 {
         momentum.at(&self.pose).dot(&self.first.curvature())
     }
+}
+
+/// The curve between its nodes.
+pub(super) struct Here {
+    pub(super) phi: Vector2<f64>,
+    /// dΦ/du.
+    pub(super) rate: Vector2<f64>,
+    /// d²Φ/du².
+    pub(super) bend: Vector2<f64>,
+    pub(super) pose: [f64; 3],
 }
 
 /// The whole cycle.
@@ -62,14 +88,15 @@ impl Path {
         firsts: impl Iterator<Item = FirstDerivatives<f64>>,
         degree: Degree,
     ) -> Self {
-        let rates = grid.slopes(shapes, degree);
+        let (rates, bends) = (grid.slopes(shapes, degree), grid.bends(shapes, degree));
         let mut places: Vec<Place> = shapes
             .iter()
-            .zip(&rates)
+            .zip(rates.iter().zip(&bends))
             .zip(firsts)
-            .map(|((&phi, &rate), first)| Place {
+            .map(|((&phi, (&rate, &bend)), first)| Place {
                 phi,
                 rate,
+                bend,
                 first,
                 pose: [0.0; 3],
                 heading: (0.0, 1.0),
@@ -99,6 +126,30 @@ impl Path {
             power_length: grid.integrals(&roots, 0.0, degree),
             places,
         }
+    }
+
+    /// At u, by the cubic through values and slopes at the nodes on either side; none beyond the last.
+    pub(super) fn between(&self, grid: &Grid, u: f64) -> Option<Here> {
+        let after = grid.nodes.partition_point(|node| node.u < u).max(1);
+        let before = grid.before(after)?;
+        let from = grid.nodes.get(before)?.u;
+        let width = grid.nodes.get(after)?.u - from;
+        let ([p, a], [q, b]) = (
+            self.places.get(before)?.state(),
+            self.places.get(after)?.state(),
+        );
+        let (t, way) = ((u - from) / width, q - p);
+        // p + a w t + β t² + γ t³, w the width.
+        let beta = way * 3.0 - (a * 2.0 + b) * width;
+        let gamma = (a + b) * width - way * 2.0;
+        let here = p + a * (width * t) + (beta + gamma * t) * (t * t);
+        let change = a + (beta * 2.0 + gamma * (3.0 * t)) * (t / width);
+        Some(Here {
+            phi: here.fixed_rows::<2>(0).into(),
+            rate: here.fixed_rows::<2>(2).into(),
+            bend: change.fixed_rows::<2>(2).into(),
+            pose: [here[4], here[5], here[6]],
+        })
     }
 
     /// Net displacement over L, in the frame of the first sample.
@@ -138,27 +189,31 @@ impl Path {
     }
 }
 
-/// The net pose once more: (ẋ, ẏ, θ̇) = G(Φ, θ) Φ̇ stepped by the Runge–Kutta method of order eight from sample to sample.
+/// Steps of a cycle that is closely sampled, about, and the most intervals between samples that one takes.
+const STEPS: usize = 256;
+const LONGEST_STEP: usize = 4;
+
+/// The net pose once more: (ẋ, ẏ, θ̇) = G(Φ, θ) Φ̇ stepped by the Runge–Kutta method of order eight along the samples.
 pub(super) fn stepped(model: &Model<f64>, grid: &Grid, shapes: &[Vector2<f64>]) -> [f64; 3] {
-    let mut pose = [0.0; 3];
-    for node in 0..grid.nodes.len() {
-        let (Some(before), Some(stencil)) = (grid.before(node), grid.stencil(node)) else {
-            continue;
-        };
+    let stride = (grid.nodes.len() / STEPS).clamp(1, LONGEST_STEP);
+    let u = |node: usize| grid.nodes.get(node).map_or(0.0, |node| node.u);
+    let ends = grid.pieces.iter().flat_map(|piece| {
+        let (first, last) = (*piece.nodes.start(), *piece.nodes.end());
+        let steps = (first..last).step_by(stride);
+        steps.map(move |from| (first, from, (from + stride).min(last), last))
+    });
+    ends.fold([0.0; 3], |[x, y, theta], (first, from, to, last)| {
+        let (low, width) = stencil::around(from - first, to - first, last + 1 - first);
+        let stencil = first + low..=first + low + width - 1;
         let places = grid.places(&stencil);
         let shapes = shapes.get(stencil).unwrap_or_default();
         let rate = |z: &[f64; 4]| {
             let [value, slope] = stencil::derivatives(&places, z[0]);
-            let weigh = |weights: &stencil::Weights| {
-                shapes
-                    .iter()
-                    .zip(weights)
-                    .fold(Vector2::zeros(), |sum, (shape, weight)| {
-                        sum + shape * *weight
-                    })
+            let weigh = |weights: &stencil::Weights| -> Vector2<f64> {
+                let terms = shapes.iter().zip(weights);
+                terms.map(|(shape, weight)| shape * *weight).sum()
             };
-            let (phi, rate): (Vector2<f64>, Vector2<f64>) = (weigh(&value), weigh(&slope));
-            let body = model.local_connection(&phi) * rate;
+            let body = model.local_connection(&weigh(&value)) * weigh(&slope);
             let (sin, cos) = z[3].sin_cos();
             [
                 1.0,
@@ -167,11 +222,8 @@ pub(super) fn stepped(model: &Model<f64>, grid: &Grid, shapes: &[Vector2<f64>]) 
                 body.z,
             ]
         };
-        let u = |node: usize| grid.nodes.get(node).map_or(0.0, |node| node.u);
-        let [x, y, theta] = pose;
-        let start = Point::new(&rate, [u(before), x, y, theta]);
-        let [_, x, y, theta] = exact_step(&rate, &start, u(node) - u(before)).z;
-        pose = [x, y, theta];
-    }
-    pose
+        let start = Point::new(&rate, [u(from), x, y, theta]);
+        let [_, x, y, theta] = exact_step(&rate, &start, u(to) - u(from)).z;
+        [x, y, theta]
+    })
 }

@@ -8,7 +8,7 @@
 use nalgebra::Vector2;
 
 use super::grid::Along;
-use super::path::Path;
+use super::path::{Path, Place};
 use super::variation::Gain;
 use super::{Degree, Openness, Subject, lesser, worse};
 use crate::certificate::{Check, Condition};
@@ -47,12 +47,12 @@ impl Subject<'_> {
         });
         checks.push(Condition::Legendre.check(definite.fold(f64::INFINITY, f64::min)));
         checks.extend(self.effort_multipliers(&momentum));
-        checks.extend(self.ascents(Gain::Efficiency, momentum.c / length));
+        checks.extend(self.ascents(Gain::Efficiency, momentum));
         checks
     }
 
     /// p = S d/|d|², and c from the free arcs.
-    fn effort_momentum(&self) -> Momentum {
+    pub(super) fn effort_momentum(&self) -> Momentum {
         let d = self.path.displacement();
         let p = d * (self.path.total_power_length() / d.norm_squared());
         if self.symmetric {
@@ -121,20 +121,18 @@ impl Subject<'_> {
 
     /// The multiplier of the bound on each bound arc: what pushes out, over the size of W t.
     fn effort_multipliers(&self, momentum: &Momentum) -> Option<Check> {
-        let multipliers = |degree: Degree, path: &Path| -> Vec<f64> {
-            let bends = self.grid.bends(&self.shapes, degree);
+        let multipliers = |path: &Path| -> Vec<f64> {
             let scale = largest_costate(path);
             path.places
                 .iter()
-                .zip(&bends)
                 .enumerate()
                 .filter(|(node, _)| self.along(*node) == Along::Bound)
-                .map(|(node, (place, bend))| {
+                .map(|(node, place)| {
                     let Some(side) = self.bound_side(node) else {
                         return f64::NAN;
                     };
-                    let ([d1, d2], w, rate) =
-                        (&place.first.d_power, &place.first.power, &place.rate);
+                    let Place { rate, bend, .. } = place;
+                    let ([d1, d2], w) = (&place.first.d_power, &place.first.power);
                     let along = d1 * rate.x + d2 * rate.y;
                     let power = place.root_power.powi(2);
                     let power_rate = 2.0 * bend.dot(&(w * rate)) + rate.dot(&(along * rate));
@@ -146,8 +144,7 @@ impl Subject<'_> {
                 })
                 .collect()
         };
-        let fine = multipliers(Degree::Fine, &self.path);
-        let coarse = multipliers(Degree::Coarse, &self.coarse);
+        let (fine, coarse) = (multipliers(&self.path), multipliers(&self.coarse));
         let unsure = fine
             .iter()
             .zip(&coarse)

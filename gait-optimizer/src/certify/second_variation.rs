@@ -1,37 +1,42 @@
 //! The second-order test that any curve can be asked: is a neighbour better?
 //!
-//! The curve is pushed along its normal by waves over each of its free stretches, which end at bounds and corners. The objective's
-//! Hessian in these waves is exact ([`super::variation`]), and on the waves that turn nothing that of an optimum has no direction that
-//! leads up.
-
-use std::f64::consts::{FRAC_PI_2, PI};
+//! The curve is pushed along its normal by hats over knots on each of its free stretches, which end at bounds and corners. The gain's
+//! second variation in these ([`super::variation`]), where the push turns nothing, has no direction at an optimum that leads up.
 
 use nalgebra::{DMatrix, DVector, Vector2};
+use swimmer_files::Bounds;
+use swimmer_model::Model;
 
 use super::Subject;
-use super::grid::{Along, Degree, Node};
-use super::variation::{Gain, Push, Variation};
+use super::grid::{Along, Node};
+use super::limits::Limits;
+use super::path::{Here, Path, Place};
+use super::variation::{Element, Form, Gain, Push};
 use crate::certificate::{Check, Condition};
+use crate::cycle::Cycle;
+use crate::momentum::Momentum;
 
 /// A curve and what it is optimal for.
 pub(super) struct Neighbours<'a> {
     pub(super) subject: &'a Subject<'a>,
     pub(super) gain: Gain,
-    /// Multiplier of rotation, in the units of the gain.
-    pub(super) rotation: f64,
-    /// Only waves that keep the paper's symmetries.
+    pub(super) momentum: Momentum,
+    /// Only pushes that keep the paper's symmetries: of the first quarter, which goes on into its images.
     pub(super) symmetric: bool,
 }
 
-/// Half waves all round, and the fewest of a free stretch. Where effort counts, kinks are dear; where it does not, the best push need not
-/// vanish towards bounds, which sines come to slowly.
-const HALF_WAVES: [f64; 2] = [48.0, 96.0];
-const FEWEST: usize = 3;
+/// Parts between knots, of the cycle or of its first quarter, and the fewest of a piece.
+const PARTS: f64 = 160.0;
+const FEWEST: usize = 4;
+/// Where the elements of a part are looked at, each half of it (Gauss's rule).
+const PLACES: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 /// Places this close in u are the same.
 const SAME: f64 = 1e-9;
-/// Eigenvalues below this part of the largest are not told from zero.
+/// Curvatures below this part of the largest are not told from zero. Where effort counts the largest is that of the narrowest push,
+/// and that of the widest the square of the knots less.
 const FLAT: f64 = 1e-5;
-/// Rounding leaves less than this part of the Hessian open.
+const FLAT_OF_WIDEST: f64 = 1e-3;
+/// Rounding leaves less than this part of the form open.
 const ROUNDING: f64 = 1e-9;
 
 /// The directions that lead up from a curve.
@@ -40,8 +45,7 @@ pub(super) struct Ascents {
     pub(super) count: usize,
     /// How many of these the samples leave open.
     unsure: usize,
-    /// The steepest, as a push at every node; the farthest push is 1 rad. Empty where it is
-    /// not known.
+    /// The steepest, as a push at every node; the farthest push is 1 rad. Empty where it is not known, or none leads up.
     pub(super) steepest: Vec<Vector2<f64>>,
 }
 
@@ -55,14 +59,14 @@ impl Ascents {
 }
 
 impl Subject<'_> {
-    /// How many pushes of the curve would gain, with this multiplier of the rotation: those that keep the paper's symmetries,
-    /// where the curve has them, and those of any kind. None where no push is free.
-    pub(super) fn ascents(&self, gain: Gain, rotation: f64) -> Vec<Check> {
+    /// How many pushes of the curve would gain, with these multipliers: those that keep the paper's symmetries, where the curve has
+    /// them, and those of any kind. None where no push is free.
+    pub(super) fn ascents(&self, gain: Gain, momentum: Momentum) -> Vec<Check> {
         let of = |symmetric: bool| {
             let neighbours = Neighbours {
                 subject: self,
                 gain,
-                rotation,
+                momentum,
                 symmetric,
             };
             Some(neighbours.ascents()?.check())
@@ -90,217 +94,283 @@ impl Subject<'_> {
 impl Neighbours<'_> {
     /// Which directions lead up; none where the curve cannot be pushed.
     pub(super) fn ascents(&self) -> Option<Ascents> {
-        let slopes = self.subject.path.places.iter();
-        let slopes: Vec<_> = slopes.map(|place| place.rate).collect();
-        let waves = self.waves(&slopes);
-        let size = waves.len();
-        if size == 0 {
+        let Subject { path, coarse, .. } = self.subject;
+        let mesh = self.mesh();
+        if mesh.count == 0 {
             return None;
         }
-        let Some((reduced, before)) = self.second_variation(&waves, Degree::Fine) else {
+        let Some((reduced, before)) = self.second_variation(&mesh, path) else {
             // Nothing is known of any.
             return Some(Ascents {
-                count: size,
-                unsure: size,
+                count: mesh.count,
+                unsure: mesh.count,
                 steepest: Vec::new(),
             });
         };
+        if std::env::var("DBG").is_ok() {
+            let e = reduced.clone().symmetric_eigen();
+            let i = e.eigenvalues.imax();
+            let v = e.eigenvectors.column(i);
+            eprintln!(
+                "DBX {:?} sym {} max {:?} amax {:?} n {} vec {:.2?}",
+                self.gain,
+                self.symmetric,
+                e.eigenvalues.max(),
+                e.eigenvalues.amax(),
+                mesh.count,
+                mesh.knots
+                    .iter()
+                    .step_by(8)
+                    .map(|k| k.number.map_or(0.0, |n| v[n]))
+                    .collect::<Vec<_>>()
+            );
+        }
+        // None at a maximum, which a factorisation shows sooner than the eigenvalues do.
+        if (-&reduced).cholesky().is_some() {
+            return Some(Ascents {
+                count: 0,
+                unsure: 0,
+                steepest: Vec::new(),
+            });
+        }
         let eigen = reduced.clone().symmetric_eigen();
         let values = &eigen.eigenvalues;
-        // Where next to nothing is free all waves are alike, and but for rounding none is left that turns nothing.
-        let level = (FLAT * values.amax()).max(ROUNDING * before);
+        let flat = if self.gain.is_priced() {
+            FLAT_OF_WIDEST / (mesh.count as f64).powi(2)
+        } else {
+            FLAT
+        };
+        // Where next to nothing is free all pushes are alike, and but for rounding none is left that turns nothing.
+        let level = (flat * values.amax()).max(ROUNDING * before);
         let up = |level: f64| values.iter().filter(|&&value| value > level).count();
         let count = up(level);
         // Another matrix moves no eigenvalue by more than its distance.
         let unsure = if count == 0 {
             0
         } else {
-            let other = self.second_variation(&waves, Degree::Coarse);
+            let other = self.second_variation(&mesh, coarse);
             let apart = other.map_or(f64::INFINITY, |(other, _)| (&reduced - other).norm());
             count - up(level + apart)
         };
-        let weights = eigen.eigenvectors.column(values.imax());
-        let mut steepest = vec![Vector2::zeros(); slopes.len()];
-        for (wave, weight) in waves.iter().zip(&weights) {
-            for (sum, push) in steepest.iter_mut().zip(wave) {
-                *sum += push * *weight;
-            }
-        }
-        let farthest = steepest.iter().map(Vector2::norm).fold(0.0, f64::max);
-        for push in &mut steepest {
-            *push /= farthest;
-        }
         Some(Ascents {
             count,
             unsure,
-            steepest,
+            steepest: self.steepest(&mesh, &eigen.eigenvectors.column(values.imax()).into()),
         })
     }
 
-    /// The Hessian on the pushes that turn nothing, and the largest entry of the whole one; none where it is not finite.
-    fn second_variation(
-        &self,
-        waves: &[Vec<Vector2<f64>>],
-        degree: Degree,
-    ) -> Option<(DMatrix<f64>, f64)> {
-        let size = waves.len();
-        let Subject {
-            grid, path, coarse, ..
-        } = self.subject;
-        let path = match degree {
-            Degree::Fine => path,
-            Degree::Coarse => coarse,
+    /// Half the second variation on the pushes that turn nothing, and the largest entry of the whole one; none where it is not finite.
+    fn second_variation(&self, mesh: &Mesh, path: &Path) -> Option<(DMatrix<f64>, f64)> {
+        let elements = self.elements(mesh, path);
+        let form = Form::new(&elements, mesh.count, self.gain, &self.momentum);
+        let (p, d) = (&self.momentum.p, &path.displacement());
+        let form = if self.symmetric {
+            form.of_quarter(0.25 * p.dot(d))
+        } else {
+            form.of_whole_cycle(self.gain, (p, d), &self.started(mesh))
         };
-        let gain = (self.gain, self.rotation);
-        let variation = Variation::new(grid, path, self.subject.seconds(), degree, gain);
-        let push = |wave: &Vec<Vector2<f64>>| Push {
-            slopes: grid.slopes(wave, degree),
-            by: wave.clone(),
-        };
-        let pushes: Vec<Push> = waves.iter().map(push).collect();
-        let turned = pushes.iter().map(|push| variation.turned(push, |by| by));
-        let turned = DVector::from_iterator(size, turned);
-        let reach = pushes.iter().map(|push| variation.turned(push, f64::abs));
-        let reach = reach.fold(0.0, f64::max);
-        let hessian = variation.of_gradients(&pushes);
-        let hessian = 0.5 * (&hessian + hessian.transpose());
-        if !hessian.iter().all(|entry| entry.is_finite()) {
+        let Form {
+            half,
+            turned,
+            reach,
+            ..
+        } = form;
+        if !half.iter().all(|entry| entry.is_finite()) {
             return None;
         }
-        let before = hessian.amax();
-        let reduced = if self.gain == Gain::Turning || turned.norm() <= 1e-9 * reach {
-            hessian
-        } else {
-            without(&hessian, &turned)
-        };
+        let before = half.amax();
+        // Images turn back what a quarter turns.
+        let turns =
+            !self.symmetric && self.gain != Gain::Turning && turned.norm() > 1e-9 * reach.amax();
+        let reduced = if turns { without(half, &turned) } else { half };
         Some((reduced, before))
     }
 
-    /// The pushes at every node.
-    fn waves(&self, slopes: &[Vector2<f64>]) -> Vec<Vec<Vector2<f64>>> {
-        let nodes = || self.subject.grid.nodes.iter().zip(slopes);
-        let pushes = |wave: &Wave| -> Vec<Vector2<f64>> {
-            let push = |(node, slope): (&Node, &Vector2<f64>)| {
-                let right = Vector2::new(slope.y, -slope.x);
-                let height = if self.symmetric {
-                    let images = [node.u, 0.5 - node.u, 0.5 + node.u, 1.0 - node.u];
-                    images.map(|u| wave.at(u)).iter().sum()
-                } else {
-                    wave.at(node.u)
-                };
-                let speed = right.norm();
-                if node.along == Along::Free && speed > 0.0 {
-                    right * (height / speed)
-                } else {
-                    Vector2::zeros()
-                }
-            };
-            nodes().map(push).collect()
-        };
-        let half_waves = HALF_WAVES[usize::from(self.gain != Gain::Efficiency)];
-        let stretches = self.stretches(slopes);
-        let stretches = stretches.iter().filter(|stretch| {
-            // Of images one is enough.
-            let middle = (stretch.from + 0.5 * stretch.width).rem_euclid(1.0);
-            !self.symmetric || stretch.closed || middle <= 0.25 + SAME || middle >= 1.0 - SAME
-        });
-        stretches
-            .flat_map(|stretch| stretch.waves(half_waves))
-            .map(|wave| pushes(&wave))
-            .filter(|wave| wave.iter().any(|push| push.norm() > 1e-3))
-            .collect()
+    /// How far a push of each knot turns the heading at the start.
+    fn started(&self, mesh: &Mesh) -> DVector<f64> {
+        let mut started = DVector::zeros(mesh.count);
+        if let (Some(Some(knot)), Some(place)) = (
+            mesh.knots.first().map(|knot| knot.number),
+            self.subject.path.places.first(),
+        ) {
+            let right = Vector2::new(place.rate.y, -place.rate.x).normalize();
+            started[knot] = (place.first.connection * right).z;
+        }
+        started
     }
 
-    /// The free stretches of the curve between bounds and corners; the whole of it where it is free and smooth all round.
-    fn stretches(&self, slopes: &[Vector2<f64>]) -> Vec<Stretch> {
-        let pieces = &self.subject.grid.pieces;
-        let smooth_after = |i: usize| {
-            let (piece, next) = (&pieces[i], &pieces[(i + 1) % pieces.len()]);
-            let (Some(a), Some(b)) = (
-                slopes.get(*piece.nodes.end()),
-                slopes.get(*next.nodes.start()),
-            ) else {
-                return false;
-            };
-            piece.along == Along::Free
-                && next.along == Along::Free
-                && a.perp(b).atan2(a.dot(b)).abs() < super::SMOOTH
-        };
-        let Some(first) = (0..pieces.len()).find(|&i| !smooth_after(i)) else {
-            return vec![Stretch {
-                from: 0.0,
-                width: 1.0,
-                closed: true,
-            }];
-        };
-        let u = |node: usize| self.subject.grid.nodes.get(node).map_or(0.0, |node| node.u);
-        let mut stretches = Vec::new();
-        let mut width = 0.0;
-        for i in (1..=pieces.len()).map(|k| (first + k) % pieces.len()) {
-            let (from, to) = (u(*pieces[i].nodes.start()), u(*pieces[i].nodes.end()));
-            width += to - from;
-            if !smooth_after(i) {
-                if pieces[i].along == Along::Free {
-                    stretches.push(Stretch {
-                        from: to - width,
-                        width,
-                        closed: false,
-                    });
-                }
-                width = 0.0;
+    fn elements(&self, mesh: &Mesh, path: &Path) -> Vec<Element> {
+        let Subject { grid, model, .. } = self.subject;
+        let mut elements = Vec::with_capacity(PLACES.len() * mesh.knots.len());
+        for [from, to] in mesh.knots.array_windows() {
+            let width = to.u - from.u;
+            // Two pieces meet in two knots.
+            if width <= 0.0 {
+                continue;
+            }
+            for share in PLACES {
+                let Some(Here {
+                    phi,
+                    rate,
+                    bend,
+                    pose,
+                }) = path.between(grid, from.u + share * width)
+                else {
+                    continue;
+                };
+                let second = model.second_derivatives(&phi);
+                let speed = rate.norm();
+                let right = Vector2::new(rate.y, -rate.x) / speed;
+                let right_rate = rate * (rate.perp(&bend) / (speed * speed * speed));
+                let scale = if self.gain.is_priced() {
+                    rate.dot(&(second.first.power * rate)).sqrt()
+                } else {
+                    1.0
+                };
+                let slope = 1.0 / width;
+                let hats = [
+                    (from.number, 1.0 - share, -slope),
+                    (to.number, share, slope),
+                ];
+                let pushes = hats.into_iter().filter_map(|(knot, value, slope)| {
+                    Some(Push {
+                        knot: knot?,
+                        by: right * value,
+                        slope: (right * slope + right_rate * value) / scale,
+                    })
+                });
+                elements.push(Element {
+                    pushes: pushes.collect(),
+                    second,
+                    rate: rate / scale,
+                    pose,
+                    length: width / PLACES.len() as f64 * scale,
+                });
             }
         }
-        stretches
+        elements
     }
-}
 
-/// A free stretch of the curve, in fractions of the period.
-struct Stretch {
-    from: f64,
-    width: f64,
-    /// Whether its ends are one.
-    closed: bool,
-}
-
-/// A sine over a stretch: how many half waves, and where in the first it begins.
-struct Wave<'a> {
-    stretch: &'a Stretch,
-    halves: usize,
-    phase: f64,
-}
-
-impl Stretch {
-    /// With so many half waves in a period.
-    fn waves(&self, half_waves: f64) -> Vec<Wave<'_>> {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some tens
-        let most = ((half_waves * self.width).round() as usize).max(FEWEST);
-        let wave = |halves: usize, phase: f64| Wave {
-            stretch: self,
-            halves,
-            phase,
+    /// The knots from u = 0 on, over the cycle or its first quarter, evenly over each piece.
+    fn mesh(&self) -> Mesh {
+        let grid = &self.subject.grid;
+        let end = if self.symmetric { 0.25 } else { 1.0 };
+        let u = |node: usize| grid.nodes.get(node).map_or(0.0, |node| node.u);
+        let (mut knots, mut count) = (Vec::new(), 0);
+        let mut free_knot = || {
+            count += 1;
+            Some(count - 1)
         };
-        if !self.closed {
-            return (1..=most).map(|halves| wave(halves, 0.0)).collect();
+        // Where the cycle closes smoothly, and on symmetry lines, ends are free.
+        let closes = self.smooth_after(grid.pieces.len().saturating_sub(1));
+        let mut number = if closes { free_knot() } else { None };
+        for (index, piece) in grid.pieces.iter().enumerate() {
+            let (from, to) = (u(*piece.nodes.start()), u(*piece.nodes.end()));
+            if from >= end - SAME {
+                break;
+            }
+            let (free, ends) = (piece.along == Along::Free, to >= end - SAME);
+            let goes_on = free && to > end + SAME || self.smooth_after(index);
+            let width = to.min(end) - from;
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some tens
+            let parts = ((PARTS * width / end).round() as usize).max(FEWEST);
+            for part in 0..=parts {
+                if part > 0 {
+                    let is_last = part == parts;
+                    number = match is_last {
+                        _ if !free => None,
+                        true if !goes_on => None,
+                        true if ends && !self.symmetric => Some(0),
+                        _ => free_knot(),
+                    };
+                }
+                let u = from + width * part as f64 / parts as f64;
+                knots.push(Knot { u, number });
+            }
         }
-        let even = (0..=most).step_by(2);
-        even.flat_map(|halves| [wave(halves, FRAC_PI_2), wave(halves, 0.0)])
-            .collect()
+        Mesh { knots, count }
+    }
+
+    /// Whether the curve is free and smooth where a piece ends.
+    fn smooth_after(&self, piece: usize) -> bool {
+        let Subject { grid, path, .. } = self.subject;
+        let (Some(this), Some(next)) = (
+            grid.pieces.get(piece),
+            grid.pieces.get((piece + 1) % grid.pieces.len().max(1)),
+        ) else {
+            return false;
+        };
+        let rate = |node: usize| path.places.get(node).map(|place| place.rate);
+        let (Some(a), Some(b)) = (rate(*this.nodes.end()), rate(*next.nodes.start())) else {
+            return false;
+        };
+        this.along == Along::Free
+            && next.along == Along::Free
+            && a.perp(&b).atan2(a.dot(&b)).abs() < super::SMOOTH
+    }
+
+    /// A direction as a push at every node.
+    fn steepest(&self, mesh: &Mesh, weights: &DVector<f64>) -> Vec<Vector2<f64>> {
+        let height = |u: f64| {
+            let after = mesh.knots.partition_point(|knot| knot.u < u).max(1);
+            let (from, to) = (mesh.knots.get(after - 1)?, mesh.knots.get(after)?);
+            let share = (u - from.u) / (to.u - from.u);
+            let at = |knot: &Knot| knot.number.map_or(0.0, |number| weights[number]);
+            share
+                .is_finite()
+                .then(|| at(from) * (1.0 - share) + at(to) * share)
+        };
+        let nodes = self
+            .subject
+            .grid
+            .nodes
+            .iter()
+            .zip(&self.subject.path.places);
+        let push = |(node, place): (&Node, &Place)| {
+            let right = Vector2::new(place.rate.y, -place.rate.x).normalize();
+            right * height(node.u).unwrap_or(0.0)
+        };
+        let pushes: Vec<Vector2<f64>> = nodes.map(push).collect();
+        let farthest = pushes.iter().map(Vector2::norm).fold(0.0, f64::max);
+        pushes.iter().map(|push| push / farthest).collect()
     }
 }
 
-impl Wave<'_> {
-    fn at(&self, u: f64) -> f64 {
-        let part = (u - self.stretch.from).rem_euclid(1.0) / self.stretch.width;
-        if part > 1.0 {
-            return 0.0;
-        }
-        (PI * self.halves as f64 * part + self.phase).sin()
-    }
+/// Along how many directions the efficiency of a cycle grows to second order, by pushes that keep the paper's symmetries, which it then
+/// has, or of any kind.
+pub(crate) fn ascents_of_efficiency(model: &Model<f64>, cycle: &Cycle, symmetric: bool) -> usize {
+    let bounds = Bounds::default();
+    let limits = Limits::new(&bounds, &model.swimmer().links);
+    let subject = Subject::new(model, &cycle.file(bounds), limits);
+    let neighbours = Neighbours {
+        gain: Gain::Efficiency,
+        momentum: subject.effort_momentum(),
+        subject: &subject,
+        symmetric,
+    };
+    neighbours.ascents().map_or(0, |ascents| ascents.count)
 }
 
-/// The quadratic form on the plane across `direction`.
-fn without(hessian: &DMatrix<f64>, direction: &DVector<f64>) -> DMatrix<f64> {
-    let unit = direction / direction.norm();
-    let across = DMatrix::identity(unit.len(), unit.len()) - &unit * unit.transpose();
-    &across * hessian * &across
+/// A knot of the hats; without a number where the curve is held.
+struct Knot {
+    u: f64,
+    number: Option<usize>,
+}
+
+/// Knots along the curve, and how many are free.
+struct Mesh {
+    knots: Vec<Knot>,
+    count: usize,
+}
+
+/// A form on the plane across a linear function; along that it is as far below zero as it is anywhere.
+fn without(mut form: DMatrix<f64>, function: &DVector<f64>) -> DMatrix<f64> {
+    let unit = function.normalize();
+    let pulled = &form * &unit;
+    let below = -form.amax();
+    let along = below + unit.dot(&pulled);
+    form.ger(-1.0, &unit, &pulled, 1.0);
+    form.ger(-1.0, &pulled, &unit, 1.0);
+    form.ger(along, &unit, &unit, 1.0);
+    form
 }

@@ -60,13 +60,12 @@ impl Subject<'_> {
             .path
             .places
             .iter()
-            .zip(self.seconds())
-            .map(|(place, second)| {
-                let gradient = momentum.height(second, &place.pose).gradient;
+            .map(|place| {
+                let (height, ..) = momentum.evaluate(self.model, &place.phi, &place.pose);
                 let curvature = place.first.curvature();
                 Look {
-                    height: place.height(&momentum),
-                    gradient,
+                    height: height.value,
+                    gradient: height.gradient,
                     left: Vector2::new(-place.rate.y, place.rate.x) / place.rate.norm(),
                     pose_leverage: 2.0 * curvature.norm(),
                 }
@@ -74,7 +73,7 @@ impl Subject<'_> {
             .collect();
         let mut checks = self.on_free_arcs(&looks, open);
         checks.extend(self.on_bounds(&looks, open));
-        checks.extend(self.ascents(gain, momentum.c));
+        checks.extend(self.ascents(gain, momentum));
         checks
     }
 

@@ -25,6 +25,7 @@ pub(super) fn derivatives<const ORDERS: usize>(places: &[f64], at: f64) -> [Weig
         ahead = place - at;
         for (j, &other) in places.iter().enumerate().take(i) {
             let apart = place - other;
+            let closer = apart.recip();
             new_product *= apart;
             if j + 1 == i {
                 for k in (1..ORDERS).rev() {
@@ -35,9 +36,9 @@ pub(super) fn derivatives<const ORDERS: usize>(places: &[f64], at: f64) -> [Weig
                 weights[0][i] = -product * behind * weights[0][i - 1] / new_product;
             }
             for k in (1..ORDERS).rev() {
-                weights[k][j] = (ahead * weights[k][j] - k as f64 * weights[k - 1][j]) / apart;
+                weights[k][j] = (ahead * weights[k][j] - k as f64 * weights[k - 1][j]) * closer;
             }
-            weights[0][j] *= ahead / apart;
+            weights[0][j] *= ahead * closer;
         }
         product = new_product;
     }

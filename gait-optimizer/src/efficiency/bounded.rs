@@ -8,8 +8,8 @@ use std::fmt;
 
 use swimmer_model::{Links, Model};
 
-use super::chain::Found;
-use super::{Branch, EfficiencyError, EfficiencyProblem, Method, certified, finished};
+use super::chain::Origin;
+use super::{Branch, EfficiencyError, EfficiencyProblem, Found, certified, finished};
 use crate::certificate::{crossings, turning_number};
 use crate::extremal::Extremal;
 use crate::extremal::continuation::{Ended, Path, Tightness};
@@ -46,10 +46,10 @@ impl fmt::Display for Reached {
 pub(super) fn bounded(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
-    free: &OptimalGait,
-    start: &Extremal,
+    free: &Found,
 ) -> Result<OptimalGait, EfficiencyError> {
     let (branch, bounds) = (problem.branch, &problem.bounds);
+    let start = &free.extremal;
     let floor = start.efficiency(model) * FADED;
     let keeps = |extremal: &Extremal| keeps_its_name(branch, model, extremal, floor);
     let path = Path {
@@ -57,7 +57,7 @@ pub(super) fn bounded(
         clearance: bounds.clearance / problem.swimmer.total_length(),
         keeps: &keeps,
     };
-    let farthest = free.phi().iter().map(nalgebra::Vector2::amax);
+    let farthest = free.gait.phi().iter().map(nalgebra::Vector2::amax);
     let farthest = farthest.fold(0.0, f64::max) + 1e-6;
     let links = model.swimmer().links;
     let max_angle = bounds.max_angle.unwrap_or(f64::INFINITY);
@@ -88,18 +88,13 @@ pub(super) fn bounded(
     let extremal = followed(&[at(tight, 0.0), at(tight, links_kept)])
         .or_else(|ended| angle_last().ok_or(ended))
         .map_err(|ended| branch_ends(branch, &links, &ended))?;
-    let found = Found {
-        extremal,
-        order: 0,
-        method: Method::Shooting.word(),
-        direct_efficiency: None,
-    };
-    let gait =
-        finished(problem, model, &found, bounds).map_err(|error| EfficiencyError::NotFollowed {
+    let of = (problem, model, bounds);
+    let found =
+        finished(of, extremal, Origin::arcs()).map_err(|error| EfficiencyError::NotFollowed {
             branch,
             reason: error.to_string(),
         })?;
-    certified(branch, gait)
+    certified(branch, found.gait)
 }
 
 /// What a gait must keep being on its way; what it lost otherwise.
@@ -121,10 +116,10 @@ fn keeps_its_name(
     if extremal.efficiency(model) < floor {
         return Err("any displacement worth the name (the efficiency fades to nothing)");
     }
-    let curve = extremal
-        .curve(model, 256)
+    let cycle = extremal
+        .cycle(model, 256)
         .ok_or("arcs that can be followed")?;
-    if crossings(&curve) > 0 || (turning_number(&curve) - 1.0).abs() > 1e-6 {
+    if crossings(&cycle.phi) > 0 || (turning_number(&cycle.phi) - 1.0).abs() > 1e-6 {
         return Err("a simple curve");
     }
     Ok(())

@@ -9,16 +9,26 @@ use crate::certificate::crossings;
 use crate::extremal::guess::quarter_of_curve;
 use crate::extremal::{Extremal, free_quarter};
 
-/// An extremal and where it came from.
-#[derive(Debug, Clone)]
-pub(crate) struct Found {
-    pub(crate) extremal: Extremal,
+/// Where an extremal comes from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Origin {
     /// Order of the Fourier series that it grew from.
     pub(crate) order: usize,
     /// What led to the guess that was shot from.
     pub(crate) method: &'static str,
     /// ξ of the curve that a direct method found by itself.
     pub(crate) direct_efficiency: Option<f64>,
+}
+
+impl Origin {
+    /// Another extremal's arcs.
+    pub(crate) fn arcs() -> Self {
+        Self {
+            order: 0,
+            method: Method::Shooting.word(),
+            direct_efficiency: None,
+        }
+    }
 }
 
 /// Orders of the series, the panels of the quarter, the gain that a climb stops at, and the numbers of pieces that are shot from
@@ -59,10 +69,9 @@ pub(crate) fn starts(model: &Model<f64>, branch: Branch) -> Result<Vec<[f64; 2]>
 /// where the series has settled.
 pub(crate) fn extremal_from(
     model: &Model<f64>,
-    branch: Branch,
-    method: Method,
+    (branch, method): (Branch, Method),
     start: [f64; 2],
-) -> Result<Found, EfficiencyError> {
+) -> Result<(Extremal, Origin), EfficiencyError> {
     let mut ladder = Ladder::new(model, branch, start);
     let mut last: Option<(usize, Maximum)> = None;
     let mut saddle = None;
@@ -82,18 +91,16 @@ pub(crate) fn extremal_from(
             let Some(extremal) = shot(model, &maximum, pieces) else {
                 continue;
             };
-            // Newton's method takes saddles as well; what has settled is where the climb led.
-            let is_maximum = alone || extremal.ascents(model) == Some(0);
-            let found = Found {
-                extremal,
+            let origin = Origin {
                 order,
                 method: if alone { method } else { Method::Shooting }.word(),
                 direct_efficiency: alone.then_some(efficiency),
             };
-            if is_maximum {
-                return Ok(found);
+            // Newton's method takes saddles as well; what has settled is where the climb led.
+            if alone || extremal.ascents(model) == Some(0) {
+                return Ok((extremal, origin));
             }
-            saddle.get_or_insert(found);
+            saddle.get_or_insert((extremal, origin));
         }
         if !alone && !bridges.is_empty() && saddle.is_none() {
             simple(branch, order, &maximum)?;

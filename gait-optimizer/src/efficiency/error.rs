@@ -131,15 +131,24 @@ pub enum EfficiencyError {
 }
 
 impl EfficiencyError {
-    /// How far the search for a gait came: of several reasons the farthest is told.
-    pub(super) fn distance(&self) -> u8 {
+    /// Of two reasons the one that the search came farther to.
+    pub(super) fn or_farther(self, other: Self) -> Self {
+        if other.distance() > self.distance() {
+            other
+        } else {
+            self
+        }
+    }
+
+    fn distance(&self) -> u8 {
         match self {
-            Self::Saddle { .. } => 5,
-            Self::NotCertified { .. } => 4,
-            Self::NotConverged { .. } => 3,
-            Self::CrossesItself { .. } => 2,
-            Self::RunsAway { .. } => 1,
-            _ => 0,
+            Self::Saddle { .. } => 6,
+            Self::NotCertified { .. } => 5,
+            Self::NotConverged { .. } => 4,
+            Self::CrossesItself { .. } => 3,
+            Self::RunsAway { .. } => 2,
+            Self::NoStart { .. } => 0,
+            _ => 1,
         }
     }
 

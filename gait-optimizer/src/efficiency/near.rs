@@ -1,8 +1,7 @@
 //! The gait of a design from the gait of a neighbouring one: its arcs shot again, no series and no path of bounds.
 
-use super::chain::Found;
-use super::{EfficiencyProblem, Method, finished};
-use crate::certificate::simple_and_turning_once;
+use super::chain::Origin;
+use super::{EfficiencyProblem, Found, finished};
 use crate::extremal::continuation::within_walls;
 use crate::extremal::{Extremal, Walls, polish, polish_chain};
 use crate::optimal_gait::OptimalGait;
@@ -54,23 +53,16 @@ impl EfficiencySeed {
         }
         let walls = Walls::new(&problem.bounds, &problem.swimmer.links);
         let extremal = match &self.extremal {
-            Some(Extremal { solved, class, .. }) => {
+            Some(Extremal { solved, class }) => {
                 polish_chain(&model, &walls, *class, within_walls(&walls, &solved.chain))
             }
             None => polish(&model, &walls, &self.gait.gait().ok()?, true),
         };
-        let found = Found {
-            extremal: extremal.ok()?,
-            method: Method::Shooting.word(),
-            order: 0,
-            direct_efficiency: None,
-        };
-        let mut gait = finished(problem, &model, &found, &problem.bounds).ok()?;
-        let simple = simple_and_turning_once(gait.phi(), gait.phi());
-        gait.certificate = gait.certificate.with(simple.to_vec());
+        let of = (problem, &model, &problem.bounds);
+        let Found { gait, extremal } = finished(of, extremal.ok()?, Origin::arcs()).ok()?;
         (problem.branch.contains(&gait) && gait.certificate.pass()).then_some(Self {
             gait,
-            extremal: Some(found.extremal),
+            extremal: Some(extremal),
         })
     }
 }

@@ -207,7 +207,7 @@ pub(crate) fn other_side(
     }
     [1.0, 1.5, 2.0, 0.7].into_iter().find_map(|factor| {
         let solved = solve(model, before.class, mirrored(here, turn, factor)).ok()?;
-        (solved.orientation * before.solved.orientation < 0.0)
-            .then(|| Extremal::new(solved, before.class))
+        let class = before.class;
+        (solved.orientation * before.solved.orientation < 0.0).then_some(Extremal { solved, class })
     })
 }

@@ -10,6 +10,7 @@
 mod chain;
 mod conditions;
 
+use nalgebra::DVector;
 use swimmer_model::Model;
 
 use super::equations::STATE;
@@ -75,20 +76,21 @@ pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<So
         if residual.is_nan() {
             return Err(Unsolved::Lost);
         }
-        let right: Vec<f64> = here.residual.iter().map(|value| -value).collect();
-        let newton = here.jacobian.solve(&right);
-        if let Some(newton) = &newton {
-            orientation = newton.orientation;
+        let factors = here.jacobian.clone().lu();
+        let step = factors.solve(&-DVector::from_column_slice(&here.residual));
+        if step.is_some() {
+            let pivots = factors.u().diagonal().map(f64::signum).product();
+            orientation = pivots * factors.p().determinant::<f64>();
         }
         if residual <= TOLERANCE {
             break;
         }
-        let step = newton.ok_or(Unsolved::Singular)?.solution;
+        let step = step.ok_or(Unsolved::Singular)?;
+        let step = step.as_slice();
         let norm = here.norm();
-        let mut factors =
-            damped(longest_factor(&chain, &step)).take_while(|&factor| factor >= 1e-3);
+        let mut factors = damped(longest_factor(&chain, step)).take_while(|&factor| factor >= 1e-3);
         let next = factors.find_map(|factor| {
-            let moved = chain.moved(&step, factor);
+            let moved = chain.moved(step, factor);
             let trial = assemble(model, class, &moved, scale, tolerance)?;
             (trial.norm() < (1.0 - 1e-4 * factor) * norm).then_some((moved, trial))
         });

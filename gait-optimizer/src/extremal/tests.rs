@@ -2,6 +2,8 @@
 
 use super::equations::Motion;
 use super::*;
+use crate::momentum::Momentum;
+use crate::runge_kutta::{Point, StepControl, System, advance};
 use crate::{Branch, EfficiencyError, EfficiencyProblem, OptimalGait, efficiency};
 use swimmer_files::Bounds;
 use swimmer_model::{Links, Swimmer, SymmetricFourier};
@@ -122,16 +124,20 @@ fn a_saddle_has_ways_up() {
     assert_eq!(from_ellipse([1.2, 1.2]).ascents(&model), Some(0));
 }
 
-/// A quarter unfolded is the cycle: it has as many ascents as the closed curve that is shot whole.
+/// A quarter's cycle has as many ascents as the closed curve that is shot whole.
 #[test]
 fn a_quarter_knows_the_ascents_without_its_symmetry() {
+    let without_symmetry = |quarter: &Extremal, model: &Model<f64>| {
+        let cycle = quarter.cycle(model, ASCENTS_OF)?;
+        Some(ascents_of_efficiency(model, &cycle, false))
+    };
     for case in cases() {
         let model = case.model();
         let [quarter, closed] = [true, false]
             .map(|quarter| polish(&model, &Walls::default(), &case.gait(), quarter).unwrap());
         let counts = [
             quarter.ascents(&model),
-            quarter.ascents_without_symmetry(&model),
+            without_symmetry(&quarter, &model),
             closed.ascents(&model),
         ];
         assert_eq!(counts, [Some(0); 3]);
@@ -154,7 +160,7 @@ fn a_quarter_knows_the_ascents_without_its_symmetry() {
     let [quarter, closed] =
         [true, false].map(|quarter| polish(&model, &Walls::default(), &curve, quarter).unwrap());
     assert_eq!(quarter.ascents(&model), Some(0));
-    assert_eq!(quarter.ascents_without_symmetry(&model), Some(1));
+    assert_eq!(without_symmetry(&quarter, &model), Some(1));
     assert_eq!(closed.ascents(&model), Some(1));
 }
 
@@ -243,4 +249,74 @@ fn a_closed_gait_bends_round_the_forbidden_shapes() {
         closed.certificate.failures()
     );
     assert!((closed.efficiency / quarter.efficiency - 1.0).abs() < 1e-11);
+}
+
+/// φ₁, φ₂, x, y, θ, λ₁, λ₂ of the paper (section V), with λ₅ = −½.
+struct PapersCostates<'a> {
+    model: &'a Model<f64>,
+    momentum: Momentum,
+}
+
+impl PapersCostates<'_> {
+    /// From `H_u = 0`.
+    fn control(&self, s: &[f64; 7]) -> Vector2<f64> {
+        let (a, w) = self.model.connection_and_power(&Vector2::new(s[0], s[1]));
+        let force =
+            Vector2::new(s[5], s[6]) + a.transpose() * self.momentum.at(&[s[2], s[3], s[4]]);
+        w.try_inverse().unwrap() * force
+    }
+}
+
+impl System<7> for PapersCostates<'_> {
+    fn rate(&self, s: &[f64; 7]) -> [f64; 7] {
+        let u = self.control(s);
+        let d = self.model.first_derivatives(&Vector2::new(s[0], s[1]));
+        let (mu, body) = (self.momentum.at(&[s[2], s[3], s[4]]), d.connection * u);
+        let (sin, cos) = s[4].sin_cos();
+        let force = |joint: usize| {
+            0.5 * u.dot(&(d.d_power[joint] * u)) - mu.dot(&(d.d_connection[joint] * u))
+        };
+        let [x, y] = [cos * body.x - sin * body.y, sin * body.x + cos * body.y];
+        [u.x, u.y, x, y, body.z, force(0), force(1)]
+    }
+}
+
+/// An extremal of the reduced flow is one of the paper's costate equations: canonical momenta, pose carried along, no curvature, no
+/// magnetic field.
+#[test]
+fn the_flow_is_the_papers_costate_system() {
+    for (swimmer, z) in [
+        (Swimmer::purcell(), [0.7, -1.3, 2.1, 3.0, -1.2, 0.4]),
+        (Swimmer::robot(), [-2.4, 1.1, -0.6, -12.0, 5.0, 1.7]),
+    ] {
+        let model = &Model::new(&swimmer.of_unit_length()).unwrap();
+        let mu = equations::momentum(&z);
+        let momentum = Momentum {
+            p: mu.xy(),
+            c: mu.z,
+        };
+        let papers = PapersCostates { model, momentum };
+        let (a, w) = model.connection_and_power(&shape(&z));
+        let e = Vector2::new(z[2].cos(), z[2].sin());
+        let costate = w * e / e.dot(&(w * e)).sqrt() - a.transpose() * mu;
+        let start = [z[0], z[1], 0.0, 0.0, 0.0, costate.x, costate.y];
+        let control = StepControl {
+            tolerance: 1e-13,
+            longest: f64::INFINITY,
+        };
+        let s = advance(&papers, Point::new(&papers, start), 0.6, control)
+            .unwrap()
+            .z;
+        let (end, gain) = flow::flowed(model, &Motion::Free, &z, 0.6).unwrap();
+        let (u, mu) = (papers.control(&s), momentum.at(&[s[2], s[3], s[4]]));
+        let off = [
+            s[0] - end[0],
+            s[1] - end[1],
+            (u.y.atan2(u.x) - end[2]).sin(),
+        ];
+        assert!(off.iter().all(|off| off.abs() < 1e-10), "{off:?}");
+        assert!((mu - equations::momentum(&end)).amax() < 1e-10 * mu.norm());
+        assert!((u.dot(&(model.power_matrix(&shape(&end)) * u)) - 1.0).abs() < 1e-9);
+        assert!((momentum.p.dot(&Vector2::new(s[2], s[3])) - gain).abs() < 1e-10);
+    }
 }

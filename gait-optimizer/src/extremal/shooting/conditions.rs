@@ -3,18 +3,17 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, Vector2};
 use swimmer_model::Model;
 
 use super::chain::{Chain, Class, Entry, Stretch};
-use crate::extremal::elimination::System;
 use crate::extremal::equations::{Motion, STATE, State, shape};
 use crate::extremal::flow::{Mapped, mapped};
 
 /// Residuals and Jacobian under construction, row by row.
 pub(super) struct Equations {
     pub(super) residual: Vec<f64>,
-    pub(super) jacobian: System,
+    pub(super) jacobian: DMatrix<f64>,
     /// Of momenta.
     scale: f64,
 }
@@ -61,7 +60,7 @@ pub(super) fn assemble(
     let size = lengths_from + chain.arcs.len();
     let mut equations = Equations {
         residual: Vec::with_capacity(size),
-        jacobian: System::new(size),
+        jacobian: DMatrix::zeros(size, size),
         scale,
     };
     let mut maps = Vec::with_capacity(count);
@@ -138,7 +137,9 @@ impl Equations {
         let row = self.residual.len();
         self.residual.push(value);
         for (column, slope) in slopes {
-            self.jacobian.add(row, column, slope);
+            if let Some(entry) = self.jacobian.get_mut((row, column)) {
+                *entry += slope;
+            }
         }
     }
 
