@@ -181,7 +181,7 @@ fn the_direct_method_climbs_back_to_every_gait() {
     for (name, problem) in problems {
         let gait = optimum(&problem);
         let mut direct = Direct::off_from(&gait, 0.05, 30);
-        let start = direct.start();
+        let start = direct.carries();
         let climbed = direct.climb();
         let exact = gait.displacement_over_length;
         println!(
