@@ -10,7 +10,7 @@ use swimmer_files::AnyGait;
 use swimmer_model::{Gait as _, Tolerance, swim};
 
 use super::legendre::{gauss, polynomials};
-use super::space::{Field, table};
+use super::space::{Field, table, weighed};
 use super::{HIGHEST, HeightMap, HeightMapError, Row, turned_back};
 
 /// What the map says of a gait, and what it swims; (x, y, θ) over L and in rad, along and across the middle link at the
@@ -100,10 +100,7 @@ impl HeightMap {
         let order = (self.convergence.order + MORE).min(HIGHEST - 1);
         let (nodes, weights) = gauss(order + MORE);
         let (p, _) = table(&nodes, order);
-        let mut weighted = p.transpose();
-        for (mut column, weight) in weighted.column_iter_mut().zip(&weights) {
-            column *= *weight;
-        }
+        let weighted = weighed(&p, &weights);
         let rows = [Row::X, Row::Y, Row::Theta].map(|row| {
             let heights = self.on_nodes(row, &nodes, &nodes);
             let coefficients = &weighted * heights * weighted.transpose();
