@@ -10,7 +10,7 @@ use swimmer_model::Model;
 use super::flow::{FINE, Fate, Quarter, Touch, TraceOptions, follow, is_end_line, lasting};
 use crate::arcs::Leg;
 use crate::momentum::{Flow, Momentum, Motion, State, Track, pose, shape};
-use crate::region::{Bound, Piece, Region, Wall};
+use crate::region::{Bound, Region, Wall};
 use crate::runge_kutta::{Point, StepControl, advance};
 
 /// A line of places.
@@ -65,11 +65,7 @@ pub(crate) fn families(flow: Flow<'_>, bounds: &Bounds, region: &Region) -> Vec<
             continue;
         };
         if let Wall::Curved(clearance, piece) = &mut track.wall {
-            *piece = if clearance.has_corner() {
-                Piece::BackTip
-            } else {
-                Piece::Tips
-            };
+            *piece = clearance.after_tip(0);
         }
         let start = Place {
             state,

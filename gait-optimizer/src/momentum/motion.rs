@@ -99,12 +99,8 @@ impl Track {
         };
         let forwards = self.way > 0.0;
         let next = match piece {
-            Piece::FrontTip if forwards && clearance.has_corner() => Piece::BackTip,
-            Piece::BackTip if !forwards && clearance.has_corner() => Piece::FrontTip,
-            Piece::FrontTip if forwards => Piece::Tips,
-            Piece::BackTip if !forwards => Piece::Tips,
-            Piece::Tips if forwards => Piece::BackTip,
-            Piece::Tips => Piece::FrontTip,
+            Piece::Tips => Piece::Tip(usize::from(forwards)),
+            Piece::Tip(tip) if forwards == (tip == 0) => clearance.after_tip(tip),
             _ => return None,
         };
         Some(Self {
