@@ -21,8 +21,9 @@ use event::{MOST_EVENTS, Watched, first_event};
 pub(crate) use trace::{ByPower, SMOOTH, Trace};
 
 use crate::momentum::{Flow, Motion, State, shape};
+use crate::numerics::locate;
 use crate::region::{Bound, Region};
-use crate::runge_kutta::{Point, StepControl, controlled_step, exact_step, locate};
+use crate::runge_kutta::{Point, StepControl, controlled_step, exact_step};
 
 /// One arc of a chain.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -26,6 +26,7 @@ mod area_rule;
 mod error;
 mod galerkin;
 pub(crate) mod legendre;
+mod level;
 mod level_curve;
 mod space;
 mod zeros;
@@ -37,9 +38,10 @@ use crate::batch::{Batch, First};
 
 pub use area_rule::AreaRule;
 pub use error::HeightMapError;
+pub(crate) use level::{End, Level, OnCurve, Stride};
 pub use level_curve::LevelCurve;
 use level_curve::level_curves;
-pub(crate) use level_curve::{Level, LevelSearch, OnCurve, level_seeds, passes};
+pub(crate) use level_curve::{LevelSearch, level_seeds, passes};
 
 use galerkin::Coefficients;
 use legendre::polynomials;

@@ -7,7 +7,8 @@ use super::shooting::Closed;
 use crate::arcs::{ByPower, Leg, Trace};
 use crate::cycle::Cycle;
 use crate::momentum::{Flow, Momentum, Motion, State, pose};
-use crate::runge_kutta::{Point, StepControl, advance, locate};
+use crate::numerics::locate;
+use crate::runge_kutta::{Point, StepControl, advance};
 
 const CONTROL: StepControl = StepControl {
     tolerance: 1e-13,

@@ -1,6 +1,7 @@
 //! What an arc runs along: free, or along a bound one way or the other, piece by piece.
 
 use nalgebra::Vector2;
+use swimmer_files::ArcKind;
 
 use crate::region::{Piece, Region, Wall};
 
@@ -14,6 +15,14 @@ pub(crate) enum Motion {
 }
 
 impl Motion {
+    /// What an arc of it is called.
+    pub(crate) fn kind(&self) -> ArcKind {
+        match self {
+            Self::Singular => ArcKind::Singular,
+            Self::Along(track) => track.wall.kind(),
+        }
+    }
+
     /// Place of the bound that is run along; none for the singular control.
     pub(crate) fn bound(&self) -> Option<usize> {
         match self {
