@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use crate::cycle::Cycle;
-use crate::loops::{ClosedOrbit, Launch, traced_from_start};
+use crate::loops::{Closed, ClosedOrbit, Launch, ReturnCondition, traced_from};
 use crate::momentum::{Momentum, Motion, Track};
 use crate::numerics::{halved, root};
 use crate::region::{Bound, Edge, Region};
@@ -49,7 +49,7 @@ pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) ->
             for rotation in family.roots() {
                 let trace = family.shoot(rotation, FINE).and_then(|orbit| {
                     let momentum = family.momentum(rotation);
-                    traced_from_start(model, momentum, &orbit, samples)
+                    traced_from(model, &Closed { momentum, orbit }, None, samples)
                 });
                 found.extend(trace);
             }
@@ -131,7 +131,7 @@ impl Family<'_> {
                 &self.start.at,
                 1.0,
             )?),
-            until: crate::loops::ReturnCondition::Along(self.start.bound),
+            until: ReturnCondition::Along(self.start.bound),
             ahead: self.start.along,
             shortest: 0.5,
             near: f64::INFINITY,
