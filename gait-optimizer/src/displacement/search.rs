@@ -17,7 +17,7 @@ use crate::region::Region;
 use crate::runge_kutta::StepControl;
 
 /// An extremal that meets all end conditions.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Candidate {
     pub(crate) quarter: Quarter,
     pub(crate) momentum: Momentum,
@@ -194,7 +194,8 @@ impl<'a> Search<'a> {
             }
             match (a.1, b.1) {
                 (Some(from), Some(to)) if from.arcs == to.arcs || halvings == 0 || *left == 0 => {
-                    self.between(family, (a.0, from.lambda4), (b.0, to.lambda4), found);
+                    let root = self.root(family, [(a.0, from.lambda4), (b.0, to.lambda4)]);
+                    found.extend(root.and_then(|p| self.candidate(family, p)));
                 }
                 _ if halvings == 0 || *left == 0 => {}
                 _ => {
@@ -208,25 +209,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// A root between two places, where `λ₄(t_f)` changes sign there.
-    fn between(
-        &self,
-        family: &StartFamily,
-        a: (f64, f64),
-        b: (f64, f64),
-        found: &mut Vec<Candidate>,
-    ) {
-        if a.1.signum() * b.1.signum() < 0.0
-            && let Some(p) = self.root(family, a, b)
-        {
-            found.extend(self.candidate(family, p));
-        }
-    }
-
-    /// The root of `λ₄(t_f)` in a bracket of the coarse scan: near it at the coarse tolerance, which the bracket holds for, then
-    /// secants at the fine one. None at a jump.
-    fn root(&self, family: &StartFamily, a: (f64, f64), b: (f64, f64)) -> Option<f64> {
-        let near = root([a, b], NEAR, |p| self.miss(family, p, COARSE))?;
+    /// The root of `λ₄(t_f)` between two places of the coarse scan: near it at the coarse tolerance, which the bracket holds for,
+    /// then secants at the fine one. None where it does not change its sign, and at a jump.
+    fn root(&self, family: &StartFamily, ends: [(f64, f64); 2]) -> Option<f64> {
+        let changes = ends[0].1.signum() * ends[1].1.signum() < 0.0;
+        let coarse = |p| self.miss(family, p, COARSE);
+        let near = changes.then(|| root(ends, NEAR, coarse)).flatten()?;
         self.polished(family, near)
     }
 
@@ -285,7 +273,7 @@ impl<'a> Search<'a> {
             StartFamily::Bounds { .. } | StartFamily::EndLine { .. } => {
                 let start = family.start()?;
                 let whole = self.whole(&start, final_y, family.begins_straight());
-                let mut legs = whole.legs().iter();
+                let mut legs = whole.legs.iter();
                 let left = legs.find(|leg| leg.motion == Motion::Singular)?;
                 let place = self.place(family, p, FINE)?.state;
                 ((shape(&left.from) - shape(&place)).norm() < 1e-6).then_some(whole)?
@@ -304,14 +292,13 @@ impl<'a> Search<'a> {
         }
         let final_y = family.end()?[3];
         let quarter = self.whole(&family.start()?, final_y, false);
-        let mut legs = quarter.legs().iter();
+        let mut legs = quarter.legs.iter();
         let stayed = legs.all(|leg| leg.motion != Motion::Singular);
-        let candidate = Candidate {
+        let on_the_end = (quarter.end[3] - final_y).abs() < 1e-10;
+        (self.ended(&quarter) && stayed && on_the_end).then(|| Candidate {
             quarter,
             momentum: self.momentum(final_y),
-        };
-        let on_the_end = (quarter.end[3] - final_y).abs() < 1e-10;
-        (self.ended(&quarter) && stayed && on_the_end).then_some(candidate)
+        })
     }
 
     /// The quarter that begins at a place.
@@ -395,7 +382,7 @@ impl<'a> Search<'a> {
 
 impl Miss {
     fn of(quarter: &Quarter, final_y: f64, sign: f64) -> Self {
-        let arcs = lasting(quarter.legs()).fold(0, |arcs: u64, leg| {
+        let arcs = lasting(&quarter.legs).fold(0, |arcs: u64, leg| {
             let arc = match leg.motion {
                 Motion::Singular => 1,
                 Motion::Along(track) => 2 + track.index as u64,

@@ -72,7 +72,7 @@ pub(crate) fn families(flow: Flow<'_>, bounds: &Bounds, region: &Region) -> Vec<
             motion: Motion::Along(track),
         };
         let way = along_bounds(flow, region, start, Touch::Ends);
-        let stretches = stretches(way.legs());
+        let stretches = stretches(&way.legs);
         if way.fate == Fate::Ended && !stretches.is_empty() {
             families.push(StartFamily::Bounds { stretches });
         }
@@ -98,7 +98,7 @@ pub(crate) fn families_on_the_diagonal(
         .flatten();
     let ways = on_bounds.chain(straight).filter_map(|start| {
         let way = along_bounds(flow, region, start, touch);
-        let mut stretches = stretches(way.legs());
+        let mut stretches = stretches(&way.legs);
         let touching = stretches
             .iter()
             .position(|stretch| stretch.track.index == index)?;
@@ -144,7 +144,7 @@ fn turn(flow: Flow<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
     };
     let motion = Motion::Along(stretch.track);
     let way = follow(Flow { motion, ..flow }, region, stretch.from, options);
-    match way.legs() {
+    match way.legs.as_slice() {
         [first, next, ..] if next.motion == Motion::Singular => Some(first.to),
         _ => None,
     }
@@ -153,13 +153,20 @@ fn turn(flow: Flow<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
 /// Legs along bounds, one after the other.
 fn stretches(legs: &[Leg]) -> Vec<Stretch> {
     let mut p = 0.0;
-    lasting(legs)
-        .filter_map(|leg| {
-            let stretch = stretch(leg, p)?;
-            p = stretch.span[1];
-            Some(stretch)
+    let stretch = |leg: &Leg| {
+        let Motion::Along(track) = leg.motion else {
+            return None;
+        };
+        let begins = p;
+        p += leg.length;
+        Some(Stretch {
+            track,
+            from: leg.from,
+            to: leg.to,
+            span: [begins, p],
         })
-        .collect()
+    };
+    lasting(legs).filter_map(stretch).collect()
 }
 
 /// Where a bound that leads towards φ₁ = −φ₂ meets φ₁ = φ₂ > 0, and which way round it is run from there.
@@ -176,18 +183,6 @@ fn start(bound: &Bound) -> Option<(f64, f64)> {
         }
         Bound::Clearance(clearance) => clearance.on_diagonal().map(|corner| (corner, 1.0)),
     }
-}
-
-fn stretch(leg: &Leg, p: f64) -> Option<Stretch> {
-    let Motion::Along(track) = leg.motion else {
-        return None;
-    };
-    Some(Stretch {
-        track,
-        from: leg.from,
-        to: leg.to,
-        span: [p, p + leg.length],
-    })
 }
 
 impl StartFamily {
