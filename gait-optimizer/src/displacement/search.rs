@@ -5,7 +5,6 @@
 //! one `y_f`, so the place fixes the whole extremal, and a scan over the family with a scalar root search on
 //! `λ₄(t_f) = 0` finds every quarter gait without a guess. One more candidate never leaves the bound at all.
 
-use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use super::Fates;
@@ -172,7 +171,7 @@ impl<'a> Search<'a> {
     ) {
         if outermost.1.is_some() {
             let last = end + 1e-7 * (outermost.0 - end);
-            let last = (last, self.missed(family, last));
+            let last = (last, self.missed(family, last, COARSE));
             self.refine(family, [outermost, last], left, found);
         }
     }
@@ -201,7 +200,7 @@ impl<'a> Search<'a> {
                 _ => {
                     *left -= 1;
                     let p = 0.5 * (a.0 + b.0);
-                    let middle = (p, self.missed(family, p));
+                    let middle = (p, self.missed(family, p, COARSE));
                     open.push((middle, b, halvings - 1));
                     open.push((a, middle, halvings - 1));
                 }
@@ -281,7 +280,7 @@ impl<'a> Search<'a> {
         };
         self.ended(&whole).then_some(Candidate {
             quarter: whole,
-            momentum: self.momentum(final_y),
+            momentum: Momentum::of_quarter(self.sign, final_y),
         })
     }
 
@@ -297,7 +296,7 @@ impl<'a> Search<'a> {
         let on_the_end = (quarter.end[3] - final_y).abs() < 1e-10;
         (self.ended(&quarter) && stayed && on_the_end).then(|| Candidate {
             quarter,
-            momentum: self.momentum(final_y),
+            momentum: Momentum::of_quarter(self.sign, final_y),
         })
     }
 
@@ -310,13 +309,12 @@ impl<'a> Search<'a> {
 
     /// `λ₄(t_f)` over λ₃ of the extremal that leaves a family at p, where that extremal ends.
     fn miss(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<f64> {
-        let (quarter, final_y) = self.shoot(family, p, control)?;
-        self.ended(&quarter).then(|| quarter.end[3] - final_y)
+        Some(self.missed(family, p, control)?.lambda4)
     }
 
-    /// The same coarsely, with the arcs.
-    fn missed(&self, family: &StartFamily, p: f64) -> Option<Miss> {
-        let (quarter, final_y) = self.shoot(family, p, COARSE)?;
+    /// The same, with the arcs.
+    fn missed(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<Miss> {
+        let (quarter, final_y) = self.shoot(family, p, control)?;
         self.ended(&quarter)
             .then(|| Miss::of(&quarter, final_y, self.sign))
     }
@@ -362,19 +360,11 @@ impl<'a> Search<'a> {
         family.place(flow, p, if coarse { MIDDLING } else { FINE })
     }
 
-    /// The paper's multipliers λ₃ and `λ₄ = λ₃ (y − y_f)`, `y_f` over L.
-    fn momentum(&self, final_y: f64) -> Momentum {
-        Momentum {
-            p: Vector2::new(self.sign, 0.0),
-            c: -self.sign * final_y,
-        }
-    }
-
     /// An arc of an extremal with this `y_f`.
     pub(super) fn flow(&self, final_y: f64, motion: Motion) -> Flow<'a> {
         Flow {
             model: self.model,
-            momentum: self.momentum(final_y),
+            momentum: Momentum::of_quarter(self.sign, final_y),
             motion,
         }
     }

@@ -192,9 +192,7 @@ impl Clearance {
 
     /// Each tip's height over the line of the other link; positive on the side of its own joint.
     fn heights(&self, phi: &Vector2<f64>) -> [f64; 2] {
-        let both = phi.sum().sin();
-        let alone = |tip: usize| self.links.middle * phi[1 - tip].sin();
-        [0, 1].map(|tip| zone(phi) * (alone(tip) + self.side(tip) * both))
+        [0, 1].map(|tip| self.height_level(phi, tip).value)
     }
 
     /// Where a tip's foot on the line of the other link lies, from that link's joint.

@@ -10,7 +10,7 @@ use swimmer_model::Model;
 use super::error::TurningError;
 use crate::arcs::Event;
 use crate::height_map::{End, Level, LevelSearch, OnCurve, Stride, passes};
-use crate::momentum::{Motion, Track};
+use crate::momentum::{Momentum, Motion, Track};
 use crate::region::Region;
 
 /// What the walks go by.
@@ -265,9 +265,12 @@ pub(super) fn close_up(points: &mut Vec<Vector2<f64>>, end: Vector2<f64>, gap: f
     points.push(end);
 }
 
-/// The curvature of θ and its gradient.
-pub(super) fn curvature(model: &Model<f64>, phi: &Vector2<f64>) -> (f64, Vector2<f64>) {
-    let second = model.second_derivatives(phi);
-    let [along1, along2] = second.d_curvature();
-    (second.first.curvature().z, Vector2::new(along1.z, along2.z))
+/// The curvature of θ with its gradient: the height of the momentum that is dual to the rotation alone.
+fn curvature(model: &Model<f64>, phi: &Vector2<f64>) -> (f64, Vector2<f64>) {
+    const TURNS: Momentum = Momentum {
+        p: Vector2::new(0.0, 0.0),
+        c: 1.0,
+    };
+    let (height, ..) = TURNS.evaluate(model, phi, &[0.0; 3]);
+    (height.value, height.gradient)
 }
