@@ -115,19 +115,20 @@ impl<'a> Search<'a> {
         let [low, high] = family.range();
         let place =
             |look: usize| low + (high - low) * (look as f64 + 0.5) / self.scan_points as f64;
+        let mut looks: Vec<Look> = (0..self.scan_points)
+            .map(|look| (place(look), self.look((index, family), place(look), seen)))
+            .collect();
+        // Between the outermost places and the family's own ends, where its arc shrinks to nothing.
+        let [before, after] = [(looks.first(), low), (looks.last(), high)].map(|(last, end)| {
+            let (p, _) = last.filter(|look| look.1.is_some())?;
+            let p = end + 1e-7 * (p - end);
+            Some((p, self.missed(family, p, COARSE)))
+        });
+        looks.splice(0..0, before);
+        looks.extend(after);
         let mut left = MOST_REFINEMENTS;
-        let mut before: Option<Look> = None;
-        for look in 0..self.scan_points {
-            let p = place(look);
-            let here = (p, self.look((index, family), p, seen));
-            match before {
-                Some(before) => self.refine(family, [before, here], &mut left, found),
-                None => self.towards_the_end(family, (here, low), &mut left, found),
-            }
-            before = Some(here);
-        }
-        if let Some(last) = before {
-            self.towards_the_end(family, (last, high), &mut left, found);
+        for pair in looks.array_windows() {
+            self.refine(family, *pair, &mut left, found);
         }
     }
 
@@ -159,21 +160,6 @@ impl<'a> Search<'a> {
             Fate::Stalled | Fate::TooManyArcs => fates.lost += 1,
         }
         None
-    }
-
-    /// Between the outermost place looked at and the family's own end, where its arc shrinks to nothing.
-    fn towards_the_end(
-        &self,
-        family: &StartFamily,
-        (outermost, end): (Look, f64),
-        left: &mut usize,
-        found: &mut Vec<Candidate>,
-    ) {
-        if outermost.1.is_some() {
-            let last = end + 1e-7 * (outermost.0 - end);
-            let last = (last, self.missed(family, last, COARSE));
-            self.refine(family, [outermost, last], left, found);
-        }
     }
 
     /// Roots between two places: where other arcs follow, or the extremal of one does not end, looks closer. At most
