@@ -251,12 +251,7 @@ impl HeightMap {
     fn on_nodes(&self, row: Row, first: &[f64], second: &[f64]) -> DMatrix<f64> {
         let order = self.coefficients.order();
         let (p1, _) = table(first, order);
-        let p2 = if first == second {
-            p1.clone()
-        } else {
-            table(second, order).0
-        };
-        let p2 = p2.transpose();
+        let p2 = table(second, order).0.transpose();
         let [x, y, theta] = &self.coefficients.rows;
         let b = [&p1 * x * &p2, &p1 * y * &p2, &p1 * theta * &p2];
         let mut heights = DMatrix::zeros(first.len(), second.len());

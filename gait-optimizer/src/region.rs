@@ -250,15 +250,16 @@ impl Region {
                 (None, fold) => fold.map(|fold| (fold, ArcKind::Clearance)),
             }
         };
-        if let Some((max, kind)) = reach(links.back) {
-            edge(0.0, 1.0, max, kind);
-        }
-        if let Some((max, kind)) = reach(links.front) {
-            edge(-1.0, 0.0, max, kind);
-            edge(1.0, 0.0, max, kind);
-        }
-        if let Some((max, kind)) = reach(links.back) {
-            edge(0.0, -1.0, max, kind);
+        let [front, back] = [links.front, links.back].map(reach);
+        for (x, y, farthest) in [
+            (0.0, 1.0, back),
+            (-1.0, 0.0, front),
+            (1.0, 0.0, front),
+            (0.0, -1.0, back),
+        ] {
+            if let Some((max, kind)) = farthest {
+                edge(x, y, max, kind);
+            }
         }
         if let Some(min) = bounds.min_angle {
             edge(0.0, -1.0, -min, ArcKind::Lower);
@@ -268,8 +269,8 @@ impl Region {
             edge(half, -half, 0.0, ArcKind::Diagonal);
             edge(-half, -half, 0.0, ArcKind::Diagonal);
         }
-        let farthest = reach(links.front)
-            .zip(reach(links.back))
+        let farthest = front
+            .zip(back)
             .map(|(front, back)| 2.0 * front.0.max(back.0));
         Self {
             edges,

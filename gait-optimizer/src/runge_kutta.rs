@@ -157,8 +157,8 @@ fn trial<const N: usize>(
     let (mut fifth, mut third) = (0.0, 0.0);
     for (i, &after) in z.iter().enumerate() {
         let scale = tolerance * start.z[i].abs().max(after.abs()).max(1.0);
-        fifth += square(weighted(&k, &FIFTH_ORDER, i) / scale);
-        third += square(weighted(&k, &THIRD_ORDER, i) / scale);
+        fifth += (weighted(&k, &FIFTH_ORDER, i) / scale).powi(2);
+        third += (weighted(&k, &THIRD_ORDER, i) / scale).powi(2);
     }
     // Hairer's mixture of both estimates, which behaves like order 8.
     let mixed = fifth + 0.01 * third;
@@ -196,10 +196,6 @@ fn weighted<const N: usize>(k: &[[f64; N]; STAGES], weights: &[f64; STAGES], i: 
         .zip(weights)
         .map(|(slope, weight)| weight * slope[i])
         .sum()
-}
-
-fn square(value: f64) -> f64 {
-    value * value
 }
 
 #[cfg(test)]

@@ -71,7 +71,7 @@ pub(crate) fn families(flow: Flow<'_>, bounds: &Bounds, region: &Region) -> Vec<
             state,
             motion: Motion::Along(track),
         };
-        let way = along_bounds(flow, region, start, Touch::Ends);
+        let way = along_bounds(flow, region, start, (Touch::Ends, false));
         let stretches = stretches(&way.legs);
         if way.fate == Fate::Ended && !stretches.is_empty() {
             families.push(StartFamily::Bounds { stretches });
@@ -97,7 +97,7 @@ pub(crate) fn families_on_the_diagonal(
         .then(|| straight_shape(region, index))
         .flatten();
     let ways = on_bounds.chain(straight).filter_map(|start| {
-        let way = along_bounds(flow, region, start, touch);
+        let way = along_bounds(flow, region, start, (touch, false));
         let mut stretches = stretches(&way.legs);
         let touching = stretches
             .iter()
@@ -109,12 +109,16 @@ pub(crate) fn families_on_the_diagonal(
     ways.collect()
 }
 
-/// Follows the bounds from a place on the first one, never leaving them.
-fn along_bounds(flow: Flow<'_>, region: &Region, start: Place, touch: Touch) -> Quarter {
-    let Place { state, motion } = start;
+/// Follows the bounds from a place on the first one, never leaving them unless it `leaves`.
+fn along_bounds(
+    flow: Flow<'_>,
+    region: &Region,
+    Place { state, motion }: Place,
+    (touch, leaves): (Touch, bool),
+) -> Quarter {
     let options = TraceOptions {
         control: FINE,
-        leaves: false,
+        leaves,
         touch,
         touched: false,
         began: state[0] + state[1],
@@ -135,15 +139,11 @@ fn straight_shape(region: &Region, index: usize) -> Option<Place> {
 /// Where the multiplier of φ₁ = −φ₂ falls to zero along a stretch of that line. Its curvature has no θ component, so it is the
 /// same place for every λ₄.
 fn turn(flow: Flow<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
-    let options = TraceOptions {
-        control: FINE,
-        leaves: true,
-        touch: Touch::Ends,
-        touched: true,
-        began: 0.0,
+    let start = Place {
+        state: stretch.from,
+        motion: Motion::Along(stretch.track),
     };
-    let motion = Motion::Along(stretch.track);
-    let way = follow(Flow { motion, ..flow }, region, stretch.from, options);
+    let way = along_bounds(flow, region, start, (Touch::Ends, true));
     match way.legs.as_slice() {
         [first, next, ..] if next.motion == Motion::Singular => Some(first.to),
         _ => None,
