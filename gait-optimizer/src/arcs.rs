@@ -21,8 +21,9 @@ use event::{MOST_EVENTS, Watched, first_event};
 pub(crate) use trace::{ByPower, SMOOTH, Trace};
 
 use crate::momentum::{Flow, Motion, State, shape};
+use crate::numerics::locate;
 use crate::region::{Bound, Region};
-use crate::runge_kutta::{Point, StepControl, controlled_step, exact_step, locate};
+use crate::runge_kutta::{Point, StepControl, controlled_step, exact_step};
 
 /// One arc of a chain.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,7 +62,7 @@ pub(crate) trait EndCondition {
     }
 }
 
-/// One arc to be traced.
+/// How arcs are traced, and along what.
 pub(crate) struct Tracer<'a, C> {
     pub(crate) flow: Flow<'a>,
     pub(crate) region: &'a Region,
@@ -78,8 +79,28 @@ pub(crate) struct Tracer<'a, C> {
 const MOST_STEPS: usize = 600;
 
 impl<C: EndCondition> Tracer<'_, C> {
+    /// Arc after arc from a state, at most so many: what follows each, `next` says, or how it all ended; none where it has not.
+    pub(crate) fn chain<F>(
+        mut self,
+        start: State,
+        most: usize,
+        mut next: impl FnMut(&Self, &Leg, Option<Event<C::End>>) -> Result<Motion, F>,
+    ) -> (Vec<Leg>, Option<F>) {
+        let mut legs: Vec<Leg> = Vec::with_capacity(most);
+        while legs.len() < most {
+            let (leg, event) = self.arc(legs.last().map_or(start, |leg| leg.to));
+            self.before += leg.length;
+            legs.push(leg);
+            match next(&self, &leg, event) {
+                Ok(motion) => self.flow.motion = motion,
+                Err(fate) => return (legs, Some(fate)),
+            }
+        }
+        (legs, None)
+    }
+
     /// Integrates until the first event; none where steps fail or the chain grows too long.
-    pub(crate) fn arc(&self, start: State) -> (Leg, Option<Event<C::End>>) {
+    fn arc(&self, start: State) -> (Leg, Option<Event<C::End>>) {
         let leg = |to: State, length: f64| Leg {
             motion: self.flow.motion,
             from: start,

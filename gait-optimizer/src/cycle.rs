@@ -155,56 +155,35 @@ impl Samples {
 
     /// The cycle of a quarter from φ₁ = φ₂ to φ₁ = −φ₂, with its images: run backwards and reflected in φ₁ = −φ₂, then both turned
     /// by half a turn. Where it begins or ends `square` to its symmetry line, it meets its images smoothly.
-    pub(crate) fn unfolded(&self, square: [bool; 2]) -> Cycle {
-        let at = (0..self.phi.len()).map(|i| 0.25 * self.place(i));
-        let samples = at.zip(&self.phi);
+    pub(crate) fn unfolded(&self, [starts_square, ends_square]: [bool; 2]) -> Cycle {
+        let half = self.mirrored(|phi| Vector2::new(-phi.y, -phi.x), ends_square);
+        let mut whole = half.mirrored(|phi| Vector2::new(phi.y, phi.x), starts_square);
+        if !starts_square {
+            whole.corners.insert(0, 0);
+        }
+        whole.closed()
+    }
+
+    /// With its image run backwards behind it, which it meets smoothly or in a corner.
+    fn mirrored(&self, image: impl Fn(&Vector2<f64>) -> Vector2<f64>, smoothly: bool) -> Self {
         let last = self.phi.len().saturating_sub(1);
-        let inner = self.corners.iter().filter(|&&i| i > 0);
-        let inner = inner.map(|&i| 0.25 * self.place(i));
-        let [starts_square, ends_square] = square;
-        let images = self.gait_arcs().rev().map(|arc| GaitArc {
-            kind: arc.kind,
-            from: 2.0 - arc.to,
-            to: 2.0 - arc.from,
-        });
-        let half_arcs: Vec<GaitArc> = self.gait_arcs().chain(images).collect();
-        let (mut u, mut phi) = (Vec::new(), Vec::new());
-        let (mut corners, mut arcs) = (Vec::new(), Vec::<GaitArc>::new());
-        for (before, sign) in [(0.0, 1.0), (0.5, -1.0)] {
-            for (at, shape) in samples.clone().take(last) {
-                u.push(before + at);
-                phi.push(shape * sign);
-            }
-            for (at, shape) in samples.clone().skip(1).rev() {
-                u.push(before + 0.5 - at);
-                phi.push(Vector2::new(-shape.y, -shape.x) * sign);
-            }
-            corners.extend((!starts_square).then_some(before));
-            corners.extend(inner.clone().map(|at| before + at));
-            corners.extend((!ends_square).then_some(before + 0.25));
-            corners.extend(inner.clone().rev().map(|at| before + 0.5 - at));
-            for (number, arc) in half_arcs.iter().enumerate() {
-                let arc = GaitArc {
-                    kind: arc.kind,
-                    from: before + 0.25 * arc.from,
-                    to: before + 0.25 * arc.to,
-                };
-                // An arc that crosses a symmetry line smoothly is one with its image.
-                let joins =
-                    (number == 0 && starts_square) || (number == self.arcs.len() && ends_square);
-                match arcs.last_mut() {
-                    Some(last) if joins && last.kind == arc.kind => last.to = arc.to,
-                    _ => arcs.push(arc),
-                }
-            }
+        let whole = self.along.last().copied().unwrap_or_default();
+        let back = |sample: &usize| 2 * last - sample;
+        let mut both = self.clone();
+        both.corners.retain(|&sample| sample > 0);
+        both.phi.extend(self.phi.iter().rev().skip(1).map(image));
+        let along = self.along.iter().rev().skip(1);
+        both.along.extend(along.map(|along| 2.0 * whole - along));
+        let images: Vec<usize> = both.corners.iter().rev().map(back).collect();
+        both.corners.extend((!smoothly).then_some(last));
+        both.corners.extend(images);
+        let images = self.arcs.iter().rev();
+        let mut images = images.map(|(kind, from, to)| (*kind, back(to), back(from)));
+        // An arc that crosses a symmetry line smoothly is one with its image.
+        if smoothly && let Some((arc, (_, _, to))) = both.arcs.last_mut().zip(images.next()) {
+            arc.2 = to;
         }
-        u.push(1.0);
-        phi.extend(phi.first().copied());
-        Cycle {
-            u,
-            phi,
-            corners,
-            arcs,
-        }
+        both.arcs.extend(images);
+        both
     }
 }

@@ -265,7 +265,7 @@ fn traced(
     candidate: &Candidate,
     samples: usize,
 ) -> Option<QuarterTrace> {
-    let legs: Vec<_> = flow::lasting(candidate.quarter.legs()).copied().collect();
+    let legs: Vec<_> = flow::lasting(&candidate.quarter.legs).copied().collect();
     QuarterTrace::new((model, candidate.momentum), region, &legs, samples)
 }
 

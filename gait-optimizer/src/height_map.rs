@@ -26,20 +26,22 @@ mod area_rule;
 mod error;
 mod galerkin;
 pub(crate) mod legendre;
+mod level;
 mod level_curve;
 mod space;
 mod zeros;
 
-use nalgebra::{DMatrix, Vector2, Vector3};
+use nalgebra::{DMatrix, Rotation2, Vector2, Vector3};
 use swimmer_model::{Model, Swimmer};
 
 use crate::batch::{Batch, First};
 
 pub use area_rule::AreaRule;
 pub use error::HeightMapError;
+pub(crate) use level::{End, Level, OnCurve, Stride};
 pub use level_curve::LevelCurve;
 use level_curve::level_curves;
-pub(crate) use level_curve::{Level, LevelSearch, OnCurve, level_seeds, passes};
+pub(crate) use level_curve::{LevelSearch, level_seeds, passes};
 
 use galerkin::Coefficients;
 use legendre::polynomials;
@@ -224,7 +226,8 @@ impl HeightMap {
             // Of R(−b_θ)(F_v + F_θ J b): of the curvature, of b, and of the turning by −b_θ.
             let of_curvature = carried(&along[k], &frame.b);
             let step = frame.slopes[k];
-            let of_place = turned_back(&(Vector2::new(-step.y, step.x) * curvature.z), frame.b.z);
+            let sideways = Vector2::new(-step.y, step.x) * curvature.z;
+            let of_place = Rotation2::new(-frame.b.z) * sideways;
             let of_turn = Vector2::new(height.y, -height.x) * step.z;
             of_curvature + Vector3::new(of_place.x + of_turn.x, of_place.y + of_turn.y, 0.0)
         };
@@ -248,12 +251,7 @@ impl HeightMap {
     fn on_nodes(&self, row: Row, first: &[f64], second: &[f64]) -> DMatrix<f64> {
         let order = self.coefficients.order();
         let (p1, _) = table(first, order);
-        let p2 = if first == second {
-            p1.clone()
-        } else {
-            table(second, order).0
-        };
-        let p2 = p2.transpose();
+        let p2 = table(second, order).0.transpose();
         let [x, y, theta] = &self.coefficients.rows;
         let b = [&p1 * x * &p2, &p1 * y * &p2, &p1 * theta * &p2];
         let mut heights = DMatrix::zeros(first.len(), second.len());
@@ -310,15 +308,9 @@ fn both(column: &[f64], [values, slopes]: [&[f64]; 2]) -> [f64; 2] {
     [value, slope].map(|[a, b, c, d]| (a + b) + (c + d))
 }
 
-/// R(−angle) v
-fn turned_back(v: &Vector2<f64>, angle: f64) -> Vector2<f64> {
-    let (sin, cos) = angle.sin_cos();
-    Vector2::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x)
-}
-
 /// A velocity of the middle link, seen from the frame (b_x, b_y, b_θ) fixed to it.
 fn carried(velocity: &Vector3<f64>, b: &Vector3<f64>) -> Vector3<f64> {
     let moved = Vector2::new(velocity.x - velocity.z * b.y, velocity.y + velocity.z * b.x);
-    let turned = turned_back(&moved, b.z);
+    let turned = Rotation2::new(-b.z) * moved;
     Vector3::new(turned.x, turned.y, velocity.z)
 }

@@ -13,4 +13,4 @@ mod trace;
 
 pub(crate) use flow::{ClosedOrbit, Launch, ReturnCondition};
 pub(crate) use shooting::{Closed, Loop, Section, close};
-pub(crate) use trace::{traced, traced_from_start};
+pub(crate) use trace::{traced, traced_from};

@@ -35,6 +35,14 @@ pub(crate) struct Height {
 }
 
 impl Momentum {
+    /// Of a quarter gait that ends at `y_f`, over L: the paper's λ₃ and `λ₄ = λ₃ (y − y_f)`.
+    pub(crate) fn of_quarter(sign: f64, final_y: f64) -> Self {
+        Self {
+            p: Vector2::new(sign, 0.0),
+            c: -sign * final_y,
+        }
+    }
+
     /// The momentum with p of length 1 at this angle whose height vanishes at a shape where the pose is the origin; none where
     /// no multiplier of the rotation makes it vanish.
     pub(crate) fn of_zero(model: &Model<f64>, phi: &Vector2<f64>, angle: f64) -> Option<Self> {

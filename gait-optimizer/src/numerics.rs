@@ -1,4 +1,4 @@
-//! Where something changes along a line: halving, roots by regula falsi, steps that are damped.
+//! Where something changes along a line: halving, roots by regula falsi and by Newton's method, steps that are damped.
 
 /// The ends of an interval halved so often, the lower one the last place where a property is seen to hold that is taken to hold at
 /// its beginning and not at its end.
@@ -45,6 +45,46 @@ pub(crate) fn root(
     }
     None
 }
+
+/// Where a value that is above zero at the start of a way falls through zero: the point there and the length up to it. Newton's
+/// method from a `guess`, kept between the start and the `longest` length, until its next step would be shorter than `tolerance`.
+///
+/// `at` follows the way over a length; `value` is the value with its slope over the length. None where `at` fails.
+pub(crate) fn locate<P>(
+    [guess, longest]: [f64; 2],
+    tolerance: f64,
+    at: impl Fn(f64) -> Option<P>,
+    value: impl Fn(&P) -> (f64, f64),
+) -> Option<(P, f64)> {
+    let (mut low, mut high) = (0.0, longest);
+    let mut length = guess;
+    let mut there = at(length)?;
+    for _ in 0..60 {
+        let (here, slope) = value(&there);
+        if here > 0.0 {
+            low = length;
+        } else {
+            high = length;
+        }
+        let newton = length - here / slope;
+        let within = newton > low && newton < high;
+        let next = if within { newton } else { 0.5 * (low + high) };
+        let step = (next - length).abs();
+        if here == 0.0 || step < tolerance {
+            break;
+        }
+        length = next;
+        there = at(length)?;
+        // What is left after a step of Newton's is about its square.
+        if within && SQUARED * step * step < tolerance {
+            break;
+        }
+    }
+    Some((there, length))
+}
+
+/// How much larger than its square what a step of Newton's leaves is allowed to be.
+const SQUARED: f64 = 100.0;
 
 /// Shares of a step to try, each half of the one before.
 pub(crate) fn damped(most: f64) -> impl Iterator<Item = f64> {

@@ -129,8 +129,7 @@ impl Bound {
     pub fn smooth_level(&self, phi: &Vector2<f64>) -> Level {
         match self {
             Self::Clearance(clearance) if clearance.has_corner() => {
-                let [front, back] =
-                    [Piece::FrontTip, Piece::BackTip].map(|piece| clearance.level(piece, phi));
+                let [front, back] = [0, 1].map(|tip| clearance.level(Piece::Tip(tip), phi));
                 if front.value > back.value {
                     front
                 } else {
@@ -156,7 +155,7 @@ impl Bound {
     pub(crate) fn onto(&self, phi: &Vector2<f64>) -> Vector2<f64> {
         match self {
             Self::Straight(edge) => edge.onto(phi),
-            Self::Clearance(clearance) => onto(clearance, phi),
+            Self::Clearance(clearance) => onto(phi, |phi| clearance.deciding_level(phi)),
         }
     }
 }
@@ -190,41 +189,29 @@ impl Wall {
 
     /// The shape on it nearest to this one, or (where it is curved) near it.
     pub(crate) fn onto(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        const STEPS: usize = 8;
-        let mut here = *phi;
-        for _ in 0..STEPS {
-            let Level {
-                value, gradient, ..
-            } = self.level(&here);
-            let step = gradient * (value / gradient.norm_squared());
-            if !step.norm().is_finite() || step.norm() < 1e-15 {
-                break;
-            }
-            here -= step;
-        }
-        here
+        onto(phi, |phi| self.level(phi))
     }
 }
 
-fn onto(clearance: &Clearance, phi: &Vector2<f64>) -> Vector2<f64> {
+/// A shape near this one where a margin vanishes, by Newton's method along its gradient; the unchanged shape where that fails.
+fn onto(phi: &Vector2<f64>, level: impl Fn(&Vector2<f64>) -> Level) -> Vector2<f64> {
     const STEPS: usize = 40;
     /// Longest step towards the bound \[rad\].
     const STRIDE: f64 = 0.3;
     let mut here = *phi;
     for _ in 0..STEPS {
-        let margin = clearance.margin(&here);
-        if margin.abs() < 1e-15 {
+        let there = level(&here);
+        if there.value.abs() < 1e-15 {
             return here;
         }
-        let gradient = clearance.deciding_level(&here).gradient;
-        let step = gradient * (margin / gradient.norm_squared());
+        let step = there.gradient * (there.value / there.gradient.norm_squared());
         if !step.norm().is_finite() {
             return *phi;
         }
         here -= step * (STRIDE / step.norm()).min(1.0);
     }
     // Rounding may keep it from the very last digit.
-    if clearance.margin(&here).abs() < 1e-13 {
+    if level(&here).value.abs() < 1e-13 {
         here
     } else {
         *phi
@@ -263,15 +250,16 @@ impl Region {
                 (None, fold) => fold.map(|fold| (fold, ArcKind::Clearance)),
             }
         };
-        if let Some((max, kind)) = reach(links.back) {
-            edge(0.0, 1.0, max, kind);
-        }
-        if let Some((max, kind)) = reach(links.front) {
-            edge(-1.0, 0.0, max, kind);
-            edge(1.0, 0.0, max, kind);
-        }
-        if let Some((max, kind)) = reach(links.back) {
-            edge(0.0, -1.0, max, kind);
+        let [front, back] = [links.front, links.back].map(reach);
+        for (x, y, farthest) in [
+            (0.0, 1.0, back),
+            (-1.0, 0.0, front),
+            (1.0, 0.0, front),
+            (0.0, -1.0, back),
+        ] {
+            if let Some((max, kind)) = farthest {
+                edge(x, y, max, kind);
+            }
         }
         if let Some(min) = bounds.min_angle {
             edge(0.0, -1.0, -min, ArcKind::Lower);
@@ -281,8 +269,8 @@ impl Region {
             edge(half, -half, 0.0, ArcKind::Diagonal);
             edge(-half, -half, 0.0, ArcKind::Diagonal);
         }
-        let farthest = reach(links.front)
-            .zip(reach(links.back))
+        let farthest = front
+            .zip(back)
             .map(|(front, back)| 2.0 * front.0.max(back.0));
         Self {
             edges,

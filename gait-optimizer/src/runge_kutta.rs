@@ -136,46 +136,6 @@ pub(crate) fn advance<const N: usize>(
     Some(here)
 }
 
-/// Where a value that is above zero at the start falls through zero: the point there and the length up to it. Newton's method
-/// from a `guess`, kept between the start and the `longest` length, until its next step would be shorter than `tolerance`.
-///
-/// `at` follows the system over a length; `value` is the value with its slope over the length. None where `at` fails.
-pub(crate) fn locate<const N: usize>(
-    [guess, longest]: [f64; 2],
-    tolerance: f64,
-    at: impl Fn(f64) -> Option<Point<N>>,
-    value: impl Fn(&Point<N>) -> (f64, f64),
-) -> Option<(Point<N>, f64)> {
-    let (mut low, mut high) = (0.0, longest);
-    let mut length = guess;
-    let mut there = at(length)?;
-    for _ in 0..60 {
-        let (here, slope) = value(&there);
-        if here > 0.0 {
-            low = length;
-        } else {
-            high = length;
-        }
-        let newton = length - here / slope;
-        let within = newton > low && newton < high;
-        let next = if within { newton } else { 0.5 * (low + high) };
-        let step = (next - length).abs();
-        if here == 0.0 || step < tolerance {
-            break;
-        }
-        length = next;
-        there = at(length)?;
-        // What is left after a step of Newton's is about its square.
-        if within && SQUARED * step * step < tolerance {
-            break;
-        }
-    }
-    Some((there, length))
-}
-
-/// How much larger than its square what a step of Newton's leaves is allowed to be.
-const SQUARED: f64 = 100.0;
-
 /// The end of a step and its error over the tolerance.
 fn trial<const N: usize>(
     system: &impl System<N>,
@@ -197,8 +157,8 @@ fn trial<const N: usize>(
     let (mut fifth, mut third) = (0.0, 0.0);
     for (i, &after) in z.iter().enumerate() {
         let scale = tolerance * start.z[i].abs().max(after.abs()).max(1.0);
-        fifth += square(weighted(&k, &FIFTH_ORDER, i) / scale);
-        third += square(weighted(&k, &THIRD_ORDER, i) / scale);
+        fifth += (weighted(&k, &FIFTH_ORDER, i) / scale).powi(2);
+        third += (weighted(&k, &THIRD_ORDER, i) / scale).powi(2);
     }
     // Hairer's mixture of both estimates, which behaves like order 8.
     let mixed = fifth + 0.01 * third;
@@ -236,10 +196,6 @@ fn weighted<const N: usize>(k: &[[f64; N]; STAGES], weights: &[f64; STAGES], i: 
         .zip(weights)
         .map(|(slope, weight)| weight * slope[i])
         .sum()
-}
-
-fn square(value: f64) -> f64 {
-    value * value
 }
 
 #[cfg(test)]

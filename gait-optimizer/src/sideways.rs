@@ -116,24 +116,17 @@ pub fn sideways(problem: &SidewaysProblem, watch: Watch<'_>) -> Result<Sideways,
         .and_then(|found| from_the_other_end(problem, &found));
     match (ours, theirs) {
         (Ok(ours), Some(theirs)) => {
-            let bridged = ours
-                .bridged_supremum_over_length
-                .zip(theirs.bridged_supremum_over_length)
-                .map(|(ours, theirs)| ours.max(theirs));
+            let bridged = ours.bridged_supremum_over_length;
+            let both = bridged.zip(theirs.bridged_supremum_over_length);
             let loops = ours.loops + theirs.loops;
-            let best = if theirs.lateral_over_length > ours.lateral_over_length {
-                theirs
-            } else {
-                ours
-            };
+            let is_theirs = theirs.lateral_over_length > ours.lateral_over_length;
             Ok(Sideways {
-                bridged_supremum_over_length: bridged,
+                bridged_supremum_over_length: both.map(|(ours, theirs)| ours.max(theirs)),
                 loops,
-                ..best
+                ..if is_theirs { theirs } else { ours }
             })
         }
-        (Err(_), Some(theirs)) => Ok(theirs),
-        (ours, None) => ours,
+        (ours, theirs) => theirs.map_or(ours, Ok),
     }
 }
 

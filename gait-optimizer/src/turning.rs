@@ -21,14 +21,11 @@
     reason = "formulas in the docs read like the paper's: F_θ"
 )]
 
-mod border;
-mod crossing;
 mod error;
-mod piece;
 mod walk;
 
 use nalgebra::{DMatrix, Vector2};
-use swimmer_files::{AnyGait, ArcKind, Bounds, Objective};
+use swimmer_files::{AnyGait, Bounds, Objective};
 use swimmer_model::{Gait as _, Model, Swimmer};
 
 pub use error::TurningError;
@@ -37,13 +34,12 @@ use crate::certificate::double_area;
 use crate::certify::certified;
 use crate::cycle::Samples;
 use crate::height_map::legendre::gauss;
-use crate::height_map::{Level, LevelSearch, level_seeds};
+use crate::height_map::{LevelSearch, level_seeds};
+use crate::momentum::Motion;
 use crate::optimal_gait::OptimalGait;
 use crate::problem::{GaitClass, validated};
 use crate::region::Region;
-use border::Border;
-use piece::{Piece, close_up};
-use walk::{Domain, curvature};
+use walk::{Domain, Piece, close_up};
 
 /// Whose gait, and within what.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,11 +61,9 @@ pub struct Turning {
     pub regions: usize,
 }
 
-/// From point to point of the border \[rad\].
-const SPACING: f64 = 0.012;
 /// Vertices nearer than this to where the cycle begins give way \[rad\].
 const CROWDED: f64 = 1e-3;
-/// Steps along zero-level curves, in a half width of the region.
+/// Steps along zero-level curves and bounds, in a half width of the region.
 const STEPS: f64 = 240.0;
 
 /// Finds the simple closed gait that turns most within the bounds.
@@ -122,16 +116,15 @@ fn at_resolution(
         bounds.max_angle = Some(std::f64::consts::PI);
     }
     let region = Region::new(&bounds, &problem.swimmer.links);
-    let border = Border::new(&region, SPACING / times).ok_or(TurningError::Border)?;
-    let reach = border.reach();
-    let level = Level(|phi: &Vector2<f64>| curvature(model, phi));
+    let reach = region.reach();
     let domain = Domain {
+        model,
         region: &region,
-        border: &border,
-        level: &level,
         step: reach / (STEPS * times),
+        stays_on_border: false,
     };
     let search = LevelSearch::new(reach);
+    let level = domain.level(Motion::Singular);
     let seeds = level_seeds(&level, &search, |first, second| {
         DMatrix::from_fn(first.len(), second.len(), |i, j| {
             let at = |places: &[f64], i: usize| places.get(i).copied().unwrap_or(0.0) * reach;
@@ -139,12 +132,12 @@ fn at_resolution(
             model.first_derivatives(&phi).curvature().z
         })
     });
-    let rounds = domain.rounds(&search, seeds)?;
+    let rounds = domain.rounds(&search, &seeds)?;
     let mut bridged_supremum = 0.0;
     let of = (Objective::Turning, &problem.swimmer, &bounds);
     let mut best: Option<OptimalGait> = None;
     for round in &rounds {
-        let pieces = begun_on_diagonal(round, &border, &level);
+        let pieces = begun_on_diagonal(round, domain);
         let found = gait(of, &pieces, model).ok_or_else(|| no_gait(&pieces))?;
         bridged_supremum += found.rotation;
         let outside = double_area(found.phi()) > 0.0;
@@ -170,61 +163,36 @@ fn no_gait(pieces: &[Piece]) -> TurningError {
 }
 
 /// The pieces in order from where the curve first meets φ₁ = φ₂ > 0; from where they are where it does not.
-fn begun_on_diagonal<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
-    round: &[Piece],
-    border: &Border,
-    level: &Level<F>,
-) -> Vec<Piece> {
+fn begun_on_diagonal(round: &[Piece], domain: Domain<'_>) -> Vec<Piece> {
     let off = |phi: &Vector2<f64>| phi.x - phi.y;
-    let mut first: Option<(usize, usize, Vector2<f64>)> = None;
-    for (number, piece) in round.iter().enumerate() {
-        for (at, [a, b]) in piece.points.array_windows().enumerate() {
-            if (off(a) >= 0.0) == (off(b) >= 0.0) || a.sum() + b.sum() < 1e-6 {
-                continue;
-            }
-            let middle = 0.5 * (a + (b - a) * (off(a) / (off(a) - off(b)))).sum();
-            let step = (b - a).norm();
-            let diagonal = |angle: f64| Vector2::repeat(angle);
-            let met = if piece.kind == ArcKind::Singular {
-                level.between(&diagonal(middle - step), &diagonal(middle + step))
-            } else {
-                border
-                    .on_diagonal()
-                    .filter(|phi| (phi - diagonal(middle)).norm() < step)
-            };
-            if let Some(met) = met
-                && first.is_none_or(|(.., other)| met.sum() < other.sum())
-            {
-                first = Some((number, at, met));
-            }
+    let sides = round.iter().enumerate().flat_map(|(number, piece)| {
+        let sides = piece.points.array_windows().enumerate();
+        sides.map(move |(at, side)| (number, at, side))
+    });
+    let met = sides.filter_map(|(number, at, [a, b])| {
+        if (off(a) >= 0.0) == (off(b) >= 0.0) || a.sum() + b.sum() < 1e-6 {
+            return None;
         }
-    }
-    let Some((number, at, met)) = first else {
+        let middle = 0.5 * (a + (b - a) * (off(a) / (off(a) - off(b)))).sum();
+        let [low, high] = [-1.0, 1.0].map(|way| Vector2::repeat(middle + way * (b - a).norm()));
+        let level = domain.level(round[number].motion);
+        Some((number, at, level.between(&low, &high)?))
+    });
+    let Some((number, at, met)) = met.min_by(|a, b| a.2.sum().total_cmp(&b.2.sum())) else {
         return round.to_vec();
     };
     let mut pieces = round.to_vec();
     pieces.rotate_left(number);
-    let Some(cut) = pieces.first().cloned() else {
-        return pieces;
-    };
-    let (before, after) = cut.points.split_at(at + 1);
-    let (mut tail, mut head) = (before.to_vec(), after.to_vec());
-    close_up(&mut tail, met, CROWDED);
+    let mut tail = pieces[0].clone();
+    let mut head = tail.points.split_off(at + 1);
+    close_up(&mut tail.points, met, CROWDED);
     head.reverse();
     close_up(&mut head, met, CROWDED);
     head.reverse();
-    if let Some(first) = pieces.first_mut() {
-        first.points = head;
-    }
-    pieces.push(Piece {
-        kind: cut.kind,
-        points: tail,
-    });
+    pieces[0].points = head;
+    pieces.push(tail);
     // Cut at a corner, one of both parts is nothing.
-    pieces.retain(|piece| {
-        let mut sides = piece.points.array_windows();
-        sides.any(|[a, b]| (b - a).norm() > 1e-9)
-    });
+    pieces.retain(Piece::lasts);
     pieces
 }
 
@@ -236,12 +204,12 @@ fn sampled(pieces: &[Piece], model: &Model<f64>) -> Option<Samples> {
         let new = piece.points.iter().skip(usize::from(from > 0));
         samples.phi.extend(new.copied());
         let to = samples.phi.len() - 1;
-        samples.arcs.push((piece.kind, from, to));
+        samples.arcs.push((piece.motion.kind(), from, to));
         samples.corners.push(from);
     }
     // Exactly closed.
     *samples.phi.last_mut()? = *samples.phi.first()?;
-    if begins_smoothly(&samples.phi) {
+    if begins_smoothly(pieces) {
         samples.corners.remove(0);
     }
     samples.along.push(0.0);
@@ -253,29 +221,19 @@ fn sampled(pieces: &[Piece], model: &Model<f64>) -> Option<Samples> {
     Some(samples)
 }
 
-/// Whether the last side of a closed curve goes on into the first: it bends there no more than the neighbours' bends explain.
-fn begins_smoothly(phi: &[Vector2<f64>]) -> bool {
-    let count = phi.len();
-    let side = |i: usize| match (phi.get(i), phi.get(i + 1)) {
-        (Some(a), Some(b)) => b - a,
-        _ => Vector2::zeros(),
-    };
-    if count < 8 {
+/// Whether the last piece of a closed curve goes on into the first, straight on.
+fn begins_smoothly(pieces: &[Piece]) -> bool {
+    let Some((first, last)) = pieces.first().zip(pieces.last()) else {
         return false;
-    }
-    let turn = |before: Vector2<f64>, after: Vector2<f64>| {
-        before.perp(&after).atan2(before.dot(&after)).abs()
     };
-    let bend = |before: Vector2<f64>, after: Vector2<f64>| {
-        turn(before, after) / (before.norm() + after.norm())
-    };
-    let (last, first) = (side(count - 2), side(0));
-    let beside = bend(side(count - 3), last).max(bend(first, side(1)));
-    turn(last, first) < 0.1 && bend(last, first) < 3.0 * beside + SHARP
+    let starts = first.points.array_windows().next();
+    let ends = last.points.array_windows().next_back();
+    let goes_on = starts.zip(ends).is_some_and(|([a, b], [c, d])| {
+        let (before, after) = (d - c, b - a);
+        before.perp(&after).abs() < 0.1 * before.dot(&after)
+    });
+    first.motion == last.motion && goes_on
 }
-
-/// A curve that bends this much more than beside has a corner \[1/rad\].
-const SHARP: f64 = 0.05;
 
 /// ∫√(Φ′ᵀWΦ′) up to each knot.
 fn power_lengths(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Vec<f64> {

@@ -9,9 +9,9 @@ use gait_optimizer::{
     ArcKind, DisplacementError, DisplacementProblem, InvalidProblem, OptimalGait, Verdict,
     displacement,
 };
-use swimmer_files::{Bounds, GaitFile};
-use swimmer_model::{Links, Swimmer, TangentialDrag, Tolerance, swim};
-use swimmers::{Case, best_simple_displacement};
+use swimmer_files::GaitFile;
+use swimmer_model::{Links, Swimmer, Tolerance, swim};
+use swimmers::best_simple_displacement;
 
 fn optimum(problem: &DisplacementProblem) -> OptimalGait {
     match displacement(problem) {
@@ -181,7 +181,7 @@ fn the_direct_method_climbs_back_to_every_gait() {
     for (name, problem) in problems {
         let gait = optimum(&problem);
         let mut direct = Direct::off_from(&gait, 0.05, 30);
-        let start = direct.start();
+        let start = direct.carries();
         let climbed = direct.climb();
         let exact = gait.displacement_over_length;
         println!(
@@ -262,65 +262,6 @@ fn impossible_problems_are_named() {
     ));
 }
 
-/// Swimmers and bounds of all kinds: a certified gait or a reason. With a large sphere small loops carry backwards, and where
-/// no circle or square goes forwards there need be no gait. Wide bounds can cut off a negative island that the best gait goes
-/// round: then it touches its image along a diagonal. Wherever a circle or square goes forwards there is a gait, and none
-/// is beaten by one.
-#[test]
-fn a_grid_of_swimmers_and_bounds() {
-    let (mut forwards, mut refused, mut below) = (0, Vec::new(), Vec::new());
-    for ratio in [0.3, 0.7, 1.0, 1.5, 3.0] {
-        for chi in [1.3, 2.0, 3.6, 5.0] {
-            for sphere in [0.0, 0.5, 1.2] {
-                for max_angle in [1.0, 1.8, 2.4, 3.0] {
-                    let swimmer = Swimmer {
-                        links: Links {
-                            middle: ratio,
-                            front: 1.0,
-                            back: 1.0,
-                        },
-                        chi,
-                        tangential_drag: TangentialDrag::LogAspect(4.0),
-                        sphere_radius: sphere * ratio,
-                    };
-                    let name =
-                        format!("l0/l1 {ratio}, chi {chi}, sphere {sphere} l0, within {max_angle}");
-                    let best = best_simple_displacement(&Case {
-                        name: name.clone(),
-                        swimmer,
-                        bounds: Bounds::within(max_angle),
-                    });
-                    forwards += usize::from(best > 0.0);
-                    match displacement(&DisplacementProblem::new(swimmer).with_max_angle(max_angle))
-                    {
-                        Ok(gait) => {
-                            assert!(gait.certificate.pass() && gait.displacement > 0.0, "{name}");
-                            if gait.displacement_over_length < best - 1e-9 {
-                                below.push(format!(
-                                    "{name}: {} < {best}",
-                                    gait.displacement_over_length
-                                ));
-                            }
-                        }
-                        Err(error) => {
-                            assert!(
-                                matches!(error, DisplacementError::NoOptimum { .. }),
-                                "{name}: {error}"
-                            );
-                            if best > 0.0 {
-                                refused.push(format!("{name}: {error}"));
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
-    assert!(forwards > 150, "{forwards}");
-    assert!(refused.is_empty(), "of {forwards}:\n{}", refused.join("\n"));
-    assert!(below.is_empty(), "of {forwards}:\n{}", below.join("\n"));
-}
-
 /// The gaits (c) and (d), from the same search. (That their ratios are the paper's is a row of `validation`.)
 #[test]
 fn lower_bound_and_sector() {
@@ -366,13 +307,21 @@ fn the_papers_gaits_without_crossing_links() {
     }
 }
 
-/// 200 swimmers drawn at random, every second one without crossing links: a certified gait that no circle or square beats and
-/// that swims as it says, or a reason where none of them goes forwards.
+/// 200 swimmers drawn at random, every second one without crossing links, each within a tight bound, too: a certified gait that no
+/// circle or square beats and that swims as it says, or a reason where none of them goes forwards. With a large sphere small loops
+/// carry backwards. Wide bounds can cut off a negative island that the best gait goes round: then it touches its image along a
+/// diagonal.
 #[test]
 fn random_swimmers() {
     let (mut found, mut saddles) = (0, 0);
     let mut wrong = Vec::new();
-    for case in swimmers::random(20_260_703, 200) {
+    let cases = swimmers::random(20_260_703, 200).into_iter();
+    let cases = cases.flat_map(|case| {
+        let mut tight = case.clone();
+        tight.bounds.max_angle = Some(1.0);
+        [case, tight]
+    });
+    for case in cases {
         let best = best_simple_displacement(&case);
         let problem = DisplacementProblem {
             bounds: case.bounds,
@@ -404,8 +353,8 @@ fn random_swimmers() {
             Err(error) => wrong.push(format!("{}: {error}; {best}", case.name)),
         }
     }
-    println!("{found} of 200 with a gait, {saddles} with a saddle");
+    println!("{found} of 400 with a gait, {saddles} with a saddle");
     assert!(saddles <= 1, "{saddles}");
-    assert!(found > 120, "{found}");
+    assert!(found > 240, "{found}");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

@@ -1,7 +1,6 @@
 //! A chain of arcs followed once more, state by state at equal steps of power length, for its samples and what is read off them.
 
 use nalgebra::Vector2;
-use swimmer_files::ArcKind;
 use swimmer_model::Model;
 
 use crate::cycle::Samples;
@@ -114,11 +113,9 @@ impl Trace {
                 samples.phi.push(shape(z));
                 samples.along.push(z[5]);
             }
-            let kind = match motion {
-                Motion::Singular => ArcKind::Singular,
-                Motion::Along(track) => track.wall.kind(),
-            };
-            samples.arcs.push((kind, from, samples.phi.len() - 1));
+            samples
+                .arcs
+                .push((motion.kind(), from, samples.phi.len() - 1));
         }
         samples
     }

@@ -1,5 +1,7 @@
 //! The functions that a closed curve is a sum of, tabulated at the Gauss nodes of its panels.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
+
 use nalgebra::{DMatrix, Vector2};
 
 /// Gauss nodes in a panel.
@@ -21,7 +23,10 @@ pub(crate) const PARTIAL: [[f64; STAGES]; STAGES] = [
 /// Basis functions and their slopes at every Gauss node.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Basis {
-    kind: Kind,
+    /// Whether the first function is 1.
+    has_constant: bool,
+    /// Of cosine and sine, pair by pair: what u is multiplied by.
+    rates: Vec<f64>,
     panels: usize,
     /// One column a node: the value of each function.
     pub(crate) values: DMatrix<f64>,
@@ -29,30 +34,26 @@ pub(crate) struct Basis {
     pub(crate) slopes: DMatrix<f64>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
-    /// 1, cos 2πu, sin 2πu, cos 4πu, …
-    Fourier { order: usize },
-    /// cos s, sin s, cos 3s, sin 3s, … over a quarter of the cycle, s = 0 … π/2.
-    Quarter { order: usize },
-}
-
 impl Basis {
-    /// A Fourier series to this order (the paper's Appendix C, without its symmetries).
+    /// A Fourier series to this order (the paper's Appendix C, without its symmetries): 1, cos 2πu, sin 2πu, cos 4πu, …
     pub(crate) fn fourier(order: usize, panels: usize) -> Self {
-        Self::tabulated(Kind::Fourier { order }, 2 * order + 1, panels)
+        let rates = (1..=order).map(|k| TAU * k as f64);
+        Self::tabulated(true, rates.collect(), panels)
     }
 
     /// The odd part of a series over a quarter of the cycle, which u then runs over: what the paper's two symmetries leave, and what
-    /// they tie together besides (φ₁ = φ₂ in the cosines, φ₁ = −φ₂ in the sines).
+    /// they tie together besides (φ₁ = φ₂ in the cosines, φ₁ = −φ₂ in the sines): cos s, sin s, cos 3s, sin 3s, …, s = 0 … π/2.
     pub(crate) fn quarter(order: usize, panels: usize) -> Self {
-        Self::tabulated(Kind::Quarter { order }, 2 * order, panels)
+        let rates = (0..order).map(|n| FRAC_PI_2 * (2 * n + 1) as f64);
+        Self::tabulated(false, rates.collect(), panels)
     }
 
-    fn tabulated(kind: Kind, functions: usize, panels: usize) -> Self {
+    fn tabulated(has_constant: bool, rates: Vec<f64>, panels: usize) -> Self {
+        let functions = usize::from(has_constant) + 2 * rates.len();
         let panels = panels.max(4);
         let mut basis = Self {
-            kind,
+            has_constant,
+            rates,
             panels,
             values: DMatrix::zeros(functions, panels * STAGES),
             slopes: DMatrix::zeros(functions, panels * STAGES),
@@ -90,16 +91,14 @@ impl Basis {
     /// ∮(b′)² du of a function, that of the slowest for a constant: how much it lengthens a curve. Steps are damped in
     /// proportion.
     pub(crate) fn roughness(&self, function: usize) -> f64 {
-        let rate = match self.kind {
-            Kind::Fourier { .. } => std::f64::consts::TAU * function.div_ceil(2).max(1) as f64,
-            Kind::Quarter { .. } => std::f64::consts::FRAC_PI_2 * (function | 1) as f64,
-        };
+        let pair = function.saturating_sub(usize::from(self.has_constant)) / 2;
+        let rate = self.rates.get(pair).copied().unwrap_or_default();
         0.5 * rate * rate
     }
 
     /// Turns a closed curve round: the same points, run backwards from the same start.
     pub(crate) fn reverse(&self, coefficients: &mut DMatrix<f64>) {
-        for k in (2..self.functions()).step_by(2) {
+        for k in (usize::from(self.has_constant) + 1..self.functions()).step_by(2) {
             let mut sine = coefficients.column_mut(k);
             sine.neg_mut();
         }
@@ -124,27 +123,11 @@ impl Basis {
 
     /// Value and derivative by u of every function at a fraction of the cycle.
     pub(crate) fn at(&self, u: f64, out: &mut [(f64, f64)]) {
-        match self.kind {
-            Kind::Fourier { order } => {
-                if let Some(first) = out.first_mut() {
-                    *first = (1.0, 0.0);
-                }
-                for k in 1..=order {
-                    let rate = std::f64::consts::TAU * k as f64;
-                    let (sin, cos) = (rate * u).sin_cos();
-                    if let Some([even, odd]) = out.get_mut(2 * k - 1..=2 * k) {
-                        *even = (cos, -rate * sin);
-                        *odd = (sin, rate * cos);
-                    }
-                }
-            }
-            Kind::Quarter { order } => {
-                for (n, pair) in out.chunks_exact_mut(2).take(order).enumerate() {
-                    let rate = std::f64::consts::FRAC_PI_2 * (2 * n + 1) as f64;
-                    let (sin, cos) = (rate * u).sin_cos();
-                    pair.copy_from_slice(&[(cos, -rate * sin), (sin, rate * cos)]);
-                }
-            }
+        let (constant, waves) = out.split_at_mut(usize::from(self.has_constant));
+        constant.fill((1.0, 0.0));
+        for (pair, rate) in waves.chunks_exact_mut(2).zip(&self.rates) {
+            let (sin, cos) = (rate * u).sin_cos();
+            pair.copy_from_slice(&[(cos, -rate * sin), (sin, rate * cos)]);
         }
     }
 }

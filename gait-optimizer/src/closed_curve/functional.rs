@@ -4,7 +4,7 @@
 //! moves by `a = b A_xy v` at each node; ϑ at the nodes is the panel's first heading plus [`PARTIAL`] times the ω; then
 //! d = Σ R(ϑ) a, Δθ = Σ ω and ∮P du = panels Σ b vᵀWv. The sums are differentiated exactly.
 
-use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3x2, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3x2, Rotation2, Vector2, Vector3};
 use swimmer_model::{Model, SecondDerivatives};
 
 use super::Basis;
@@ -139,7 +139,7 @@ impl<'a> Functional<'a> {
             for ((heading, row), motion) in headings.iter_mut().zip(&PARTIAL).zip(motions) {
                 let inside: f64 = row.iter().zip(motions).map(|(part, m)| part * m.z).sum();
                 *heading = theta + inside;
-                displacement += turned(*heading, motion);
+                displacement += Rotation2::new(*heading) * motion.xy();
             }
             theta += motions.iter().map(|motion| motion.z).sum::<f64>();
         }
@@ -157,7 +157,8 @@ impl<'a> Functional<'a> {
         for panel in (0..self.basis.panels()).rev() {
             let first = panel * STAGES;
             let quarter: [Vector2<f64>; STAGES] = std::array::from_fn(|q| {
-                let moved = turned(work.heading[first + q], &work.motion[first + q]);
+                let turn = Rotation2::new(work.heading[first + q]);
+                let moved = turn * work.motion[first + q].xy();
                 Vector2::new(-moved.y, moved.x)
             });
             for (r, lever) in work.lever.iter_mut().skip(first).take(STAGES).enumerate() {
@@ -205,15 +206,6 @@ impl<'a> Functional<'a> {
             }
         }
     }
-}
-
-/// R(ϑ) times the translation of a body motion.
-pub(crate) fn turned(theta: f64, motion: &Vector3<f64>) -> Vector2<f64> {
-    let (sin, cos) = theta.sin_cos();
-    Vector2::new(
-        cos * motion.x - sin * motion.y,
-        sin * motion.x + cos * motion.y,
-    )
 }
 
 pub(crate) fn column(matrix: &DMatrix<f64>, node: usize) -> Vector2<f64> {

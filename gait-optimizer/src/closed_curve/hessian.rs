@@ -3,7 +3,7 @@
 //! One part is local: second derivatives of a, ω and the power at each node. The other couples nodes: everything swum
 //! later is turned by an earlier turn, which is a product of two matrices with one column a node.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, Rotation2, Vector2};
 
 use super::basis::{PARTIAL, STAGES, WEIGHTS};
 use super::functional::{Functional, Workspace, column};
@@ -77,7 +77,7 @@ impl Functional<'_> {
     fn partner(&self, weights: &Weights, work: &mut Workspace, node: usize) {
         let weight = WEIGHTS[node % STAGES];
         let slope = column(&work.slope, node);
-        let body = body_momentum(weights, work.heading[node]);
+        let body = Rotation2::new(-work.heading[node]) * weights.momentum;
         let motion = &work.motion[node];
         let pull = 0.5 * (body.x * motion.x + body.y * motion.y);
         let first = &work.derivatives[node].first;
@@ -102,7 +102,7 @@ impl Functional<'_> {
         let weight = WEIGHTS[node % STAGES];
         let slope = column(&work.slope, node);
         let second = &work.derivatives[node];
-        let body = body_momentum(weights, work.heading[node]);
+        let body = Rotation2::new(-work.heading[node]) * weights.momentum;
         // What one unit of (a_x, a_y, ω) at this node adds to the sum.
         let rows = [
             body.x * weight,
@@ -157,11 +157,4 @@ fn heading_gradients(work: &mut Workspace, panel: usize) {
     for r in 0..STAGES {
         work.running.axpy(1.0, &work.turn.column(first + r), 1.0);
     }
-}
-
-/// R(ϑ)ᵀ p.
-fn body_momentum(weights: &Weights, theta: f64) -> Vector2<f64> {
-    let (sin, cos) = theta.sin_cos();
-    let p = &weights.momentum;
-    Vector2::new(p.x * cos + p.y * sin, -p.x * sin + p.y * cos)
 }

@@ -1,15 +1,14 @@
 //! One quarter gait for given multipliers: arc after arc, each ended by an event.
 
-mod quarter;
-
 use swimmer_files::ArcKind;
 
 use crate::arcs::{EndCondition, Event, Leg, Tracer};
 use crate::momentum::{Flow, Motion, State, Track, shape};
 use crate::region::{Bound, Edge, Region};
 use crate::runge_kutta::{Point, StepControl, System};
-pub(crate) use quarter::{Fate, MOST_ARCS, Quarter};
 
+/// Most arcs of a quarter.
+const MOST_ARCS: usize = 12;
 /// Longest curve of a quarter \[rad\].
 const LONGEST_CURVE: f64 = 40.0;
 
@@ -43,6 +42,39 @@ pub(crate) struct TraceOptions {
     pub(crate) began: f64,
 }
 
+/// How a quarter came to its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Fate {
+    /// On φ₁ = −φ₂, as it should.
+    Ended,
+    /// Back on φ₁ = φ₂, where its mirror image would cross it.
+    CameBack,
+    /// Beyond the horizon.
+    LeftHorizon,
+    /// The singular control is not defined: no step is short enough.
+    Stalled,
+    /// Arc after arc without an end.
+    TooManyArcs,
+}
+
+/// A quarter gait.
+#[derive(Debug, Clone)]
+pub(crate) struct Quarter {
+    pub(crate) legs: Vec<Leg>,
+    /// Whether it touched φ₁ = −φ₂ and went on along it.
+    pub(crate) touched: bool,
+    pub(crate) fate: Fate,
+    pub(crate) end: State,
+}
+
+impl Quarter {
+    /// Whether it ends on a way along φ₁ = −φ₂, which it would go back: no loop.
+    pub(crate) fn ends_in_a_spike(&self) -> bool {
+        let last = self.legs.last().map(|leg| leg.motion);
+        matches!(last, Some(Motion::Along(track)) if is_end_line(track.wall.edge()))
+    }
+}
+
 /// Legs that have a length.
 pub(super) fn lasting(legs: &[Leg]) -> impl Iterator<Item = &Leg> {
     legs.iter().filter(|leg| leg.to[5] > leg.from[5])
@@ -55,60 +87,49 @@ pub(crate) fn follow(
     start: State,
     options: TraceOptions,
 ) -> Quarter {
-    let still = Leg {
-        motion: first.motion,
-        from: start,
-        to: start,
-        length: 0.0,
+    let tracer = Tracer {
+        flow: first,
+        region,
+        control: options.control,
+        leaves: options.leaves,
+        ends: &Ends { region },
+        before: 0.0,
+        longest: LONGEST_CURVE,
     };
-    let mut quarter = Quarter {
-        legs: [still; MOST_ARCS],
-        count: 0,
-        touched: options.touched,
-        fate: Fate::TooManyArcs,
-        end: start,
-    };
-    let mut motion = first.motion;
-    while let Some(leg) = quarter.legs.get_mut(quarter.count) {
-        let ends = Ends { region };
-        let tracer = Tracer {
-            flow: Flow { motion, ..first },
-            region,
-            control: options.control,
-            leaves: options.leaves,
-            ends: &ends,
-            before: 0.0,
-            longest: LONGEST_CURVE,
-        };
-        let event;
-        (*leg, event) = tracer.arc(quarter.end);
-        let end = leg.to;
-        quarter.end = end;
-        quarter.count += 1;
-        let at_the_end = event == Some(Event::End(End::Antidiagonal));
-        let touch = (at_the_end && !quarter.touched)
-            .then(|| along_the_end(region, &end, options.touch))
-            .flatten();
-        if let Some(touch) = touch {
-            quarter.touched = true;
-            motion = touch;
-            continue;
+    let mut touched = options.touched;
+    let (legs, fate) = tracer.chain(start, MOST_ARCS, |tracer, leg, event| {
+        if event == Some(Event::End(End::Antidiagonal))
+            && !touched
+            && let Some(along) = along_the_end(region, &leg.to, options.touch)
+        {
+            touched = true;
+            return Ok(along);
         }
-        let next = Next {
-            flow: tracer.flow,
-            region,
-            began: options.began,
-            ends_straight: quarter.touched,
-        };
-        match next.after(&end, event) {
-            Ok(next) => motion = next,
-            Err(fate) => {
-                quarter.fate = fate;
-                break;
+        // One that has touched φ₁ = −φ₂ must end in the straight shape, or it would meet itself.
+        match event {
+            None => Err(Fate::Stalled),
+            Some(Event::End(End::Antidiagonal)) => Err(Fate::Ended),
+            Some(Event::End(End::Diagonal)) => Err(Fate::CameBack),
+            Some(Event::End(End::Horizon)) => Err(Fate::LeftHorizon),
+            Some(Event::HeightGone) => Ok(Motion::Singular),
+            Some(Event::PieceEnd) => leg.motion.next_piece().ok_or(Fate::Stalled),
+            Some(Event::Bound(index)) => {
+                let track = Track::new(region, index, &shape(&leg.to), 1.0).ok_or(Fate::Stalled)?;
+                let is_straight =
+                    on_diagonal(&leg.motion) && track.wall.kind() == ArcKind::Diagonal;
+                if is_straight && touched {
+                    return Err(Fate::Ended);
+                }
+                Ok(onto(track, &tracer.flow, &leg.to, options.began))
             }
         }
+    });
+    Quarter {
+        end: legs.last().map_or(start, |leg| leg.to),
+        legs,
+        touched,
+        fate: fate.unwrap_or(Fate::TooManyArcs),
     }
-    quarter
 }
 
 /// Where a quarter ends.
@@ -181,60 +202,26 @@ fn along_the_end(region: &Region, at: &State, touch: Touch) -> Option<Motion> {
     (region.overstepped(&ahead) < 0.5 * AHEAD).then_some(Motion::Along(track))
 }
 
-/// What follows an arc.
-struct Next<'a> {
-    flow: Flow<'a>,
-    region: &'a Region,
-    /// φ₁ + φ₂ where the quarter began.
-    began: f64,
-    /// Whether a quarter ends in the straight shape. One that has touched φ₁ = −φ₂ must, or it would meet itself.
-    ends_straight: bool,
-}
-
-impl Next<'_> {
-    fn after(&self, at: &State, event: Option<Event<End>>) -> Result<Motion, Fate> {
-        match event {
-            None => Err(Fate::Stalled),
-            Some(Event::End(End::Antidiagonal)) => Err(Fate::Ended),
-            Some(Event::End(End::Diagonal)) => Err(Fate::CameBack),
-            Some(Event::End(End::Horizon)) => Err(Fate::LeftHorizon),
-            Some(Event::HeightGone) => Ok(Motion::Singular),
-            Some(Event::PieceEnd) => self.flow.motion.next_piece().ok_or(Fate::Stalled),
-            Some(Event::Bound(index)) => {
-                let phi = shape(at);
-                let Some(track) = Track::new(self.region, index, &phi, 1.0) else {
-                    return Err(Fate::Stalled);
-                };
-                let is_straight =
-                    on_diagonal(&self.flow.motion) && track.wall.kind() == ArcKind::Diagonal;
-                if is_straight && self.ends_straight {
-                    return Err(Fate::Ended);
-                }
-                let along = track.direction(&phi);
-                // A singular arc may turn either way on a bound; the way towards φ₁ = −φ₂ closes the loop. On φ₁ = φ₂ it
-                // leads away from where the quarter began. In a corner of the region the only way is back inside.
-                let forwards = match self.flow.motion {
-                    Motion::Singular => {
-                        let outwards =
-                            is_start_line(track.wall.edge()) && phi.x + phi.y > self.began;
-                        let away = if outwards { 1.0 } else { -1.0 };
-                        let towards_end = away * (along.x + along.y);
-                        if towards_end.abs() > 1e-9 {
-                            towards_end
-                        } else {
-                            along.dot(&shape(&self.flow.rate(at)))
-                        }
-                    }
-                    Motion::Along(before) => along.dot(&before.inwards(&phi)),
-                };
-                Ok(Motion::Along(if forwards < 0.0 {
-                    track.back()
-                } else {
-                    track
-                }))
+/// Which way a bound is run that an arc meets, of a quarter that began where φ₁ + φ₂ is `began`.
+fn onto(track: Track, flow: &Flow<'_>, at: &State, began: f64) -> Motion {
+    let phi = shape(at);
+    let along = track.direction(&phi);
+    // A singular arc may turn either way on a bound; the way towards φ₁ = −φ₂ closes the loop. On φ₁ = φ₂ it leads away from where
+    // the quarter began. In a corner of the region the only way is back inside.
+    let forwards = match flow.motion {
+        Motion::Singular => {
+            let outwards = is_start_line(track.wall.edge()) && phi.x + phi.y > began;
+            let away = if outwards { 1.0 } else { -1.0 };
+            let towards_end = away * (along.x + along.y);
+            if towards_end.abs() > 1e-9 {
+                towards_end
+            } else {
+                along.dot(&shape(&flow.rate(at)))
             }
         }
-    }
+        Motion::Along(before) => along.dot(&before.inwards(&phi)),
+    };
+    Motion::Along(if forwards < 0.0 { track.back() } else { track })
 }
 
 /// The edge φ₂ ≥ φ₁ of the sector, on which quarters begin.

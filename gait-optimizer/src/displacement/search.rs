@@ -5,7 +5,6 @@
 //! one `y_f`, so the place fixes the whole extremal, and a scan over the family with a scalar root search on
 //! `λ₄(t_f) = 0` finds every quarter gait without a guess. One more candidate never leaves the bound at all.
 
-use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use super::Fates;
@@ -17,7 +16,7 @@ use crate::region::Region;
 use crate::runge_kutta::StepControl;
 
 /// An extremal that meets all end conditions.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Candidate {
     pub(crate) quarter: Quarter,
     pub(crate) momentum: Momentum,
@@ -116,19 +115,20 @@ impl<'a> Search<'a> {
         let [low, high] = family.range();
         let place =
             |look: usize| low + (high - low) * (look as f64 + 0.5) / self.scan_points as f64;
+        let mut looks: Vec<Look> = (0..self.scan_points)
+            .map(|look| (place(look), self.look((index, family), place(look), seen)))
+            .collect();
+        // Between the outermost places and the family's own ends, where its arc shrinks to nothing.
+        let [before, after] = [(looks.first(), low), (looks.last(), high)].map(|(last, end)| {
+            let (p, _) = last.filter(|look| look.1.is_some())?;
+            let p = end + 1e-7 * (p - end);
+            Some((p, self.missed(family, p, COARSE)))
+        });
+        looks.splice(0..0, before);
+        looks.extend(after);
         let mut left = MOST_REFINEMENTS;
-        let mut before: Option<Look> = None;
-        for look in 0..self.scan_points {
-            let p = place(look);
-            let here = (p, self.look((index, family), p, seen));
-            match before {
-                Some(before) => self.refine(family, [before, here], &mut left, found),
-                None => self.towards_the_end(family, (here, low), &mut left, found),
-            }
-            before = Some(here);
-        }
-        if let Some(last) = before {
-            self.towards_the_end(family, (last, high), &mut left, found);
+        for pair in looks.array_windows() {
+            self.refine(family, *pair, &mut left, found);
         }
     }
 
@@ -162,21 +162,6 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Between the outermost place looked at and the family's own end, where its arc shrinks to nothing.
-    fn towards_the_end(
-        &self,
-        family: &StartFamily,
-        (outermost, end): (Look, f64),
-        left: &mut usize,
-        found: &mut Vec<Candidate>,
-    ) {
-        if outermost.1.is_some() {
-            let last = end + 1e-7 * (outermost.0 - end);
-            let last = (last, self.missed(family, last));
-            self.refine(family, [outermost, last], left, found);
-        }
-    }
-
     /// Roots between two places: where other arcs follow, or the extremal of one does not end, looks closer. At most
     /// `left` times.
     fn refine(
@@ -194,13 +179,14 @@ impl<'a> Search<'a> {
             }
             match (a.1, b.1) {
                 (Some(from), Some(to)) if from.arcs == to.arcs || halvings == 0 || *left == 0 => {
-                    self.between(family, (a.0, from.lambda4), (b.0, to.lambda4), found);
+                    let root = self.root(family, [(a.0, from.lambda4), (b.0, to.lambda4)]);
+                    found.extend(root.and_then(|p| self.candidate(family, p)));
                 }
                 _ if halvings == 0 || *left == 0 => {}
                 _ => {
                     *left -= 1;
                     let p = 0.5 * (a.0 + b.0);
-                    let middle = (p, self.missed(family, p));
+                    let middle = (p, self.missed(family, p, COARSE));
                     open.push((middle, b, halvings - 1));
                     open.push((a, middle, halvings - 1));
                 }
@@ -208,25 +194,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// A root between two places, where `λ₄(t_f)` changes sign there.
-    fn between(
-        &self,
-        family: &StartFamily,
-        a: (f64, f64),
-        b: (f64, f64),
-        found: &mut Vec<Candidate>,
-    ) {
-        if a.1.signum() * b.1.signum() < 0.0
-            && let Some(p) = self.root(family, a, b)
-        {
-            found.extend(self.candidate(family, p));
-        }
-    }
-
-    /// The root of `λ₄(t_f)` in a bracket of the coarse scan: near it at the coarse tolerance, which the bracket holds for, then
-    /// secants at the fine one. None at a jump.
-    fn root(&self, family: &StartFamily, a: (f64, f64), b: (f64, f64)) -> Option<f64> {
-        let near = root([a, b], NEAR, |p| self.miss(family, p, COARSE))?;
+    /// The root of `λ₄(t_f)` between two places of the coarse scan: near it at the coarse tolerance, which the bracket holds for,
+    /// then secants at the fine one. None where it does not change its sign, and at a jump.
+    fn root(&self, family: &StartFamily, ends: [(f64, f64); 2]) -> Option<f64> {
+        let changes = ends[0].1.signum() * ends[1].1.signum() < 0.0;
+        let coarse = |p| self.miss(family, p, COARSE);
+        let near = changes.then(|| root(ends, NEAR, coarse)).flatten()?;
         self.polished(family, near)
     }
 
@@ -285,7 +258,7 @@ impl<'a> Search<'a> {
             StartFamily::Bounds { .. } | StartFamily::EndLine { .. } => {
                 let start = family.start()?;
                 let whole = self.whole(&start, final_y, family.begins_straight());
-                let mut legs = whole.legs().iter();
+                let mut legs = whole.legs.iter();
                 let left = legs.find(|leg| leg.motion == Motion::Singular)?;
                 let place = self.place(family, p, FINE)?.state;
                 ((shape(&left.from) - shape(&place)).norm() < 1e-6).then_some(whole)?
@@ -293,7 +266,7 @@ impl<'a> Search<'a> {
         };
         self.ended(&whole).then_some(Candidate {
             quarter: whole,
-            momentum: self.momentum(final_y),
+            momentum: Momentum::of_quarter(self.sign, final_y),
         })
     }
 
@@ -304,14 +277,13 @@ impl<'a> Search<'a> {
         }
         let final_y = family.end()?[3];
         let quarter = self.whole(&family.start()?, final_y, false);
-        let mut legs = quarter.legs().iter();
+        let mut legs = quarter.legs.iter();
         let stayed = legs.all(|leg| leg.motion != Motion::Singular);
-        let candidate = Candidate {
-            quarter,
-            momentum: self.momentum(final_y),
-        };
         let on_the_end = (quarter.end[3] - final_y).abs() < 1e-10;
-        (self.ended(&quarter) && stayed && on_the_end).then_some(candidate)
+        (self.ended(&quarter) && stayed && on_the_end).then(|| Candidate {
+            quarter,
+            momentum: Momentum::of_quarter(self.sign, final_y),
+        })
     }
 
     /// The quarter that begins at a place.
@@ -323,13 +295,12 @@ impl<'a> Search<'a> {
 
     /// `λ₄(t_f)` over λ₃ of the extremal that leaves a family at p, where that extremal ends.
     fn miss(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<f64> {
-        let (quarter, final_y) = self.shoot(family, p, control)?;
-        self.ended(&quarter).then(|| quarter.end[3] - final_y)
+        Some(self.missed(family, p, control)?.lambda4)
     }
 
-    /// The same coarsely, with the arcs.
-    fn missed(&self, family: &StartFamily, p: f64) -> Option<Miss> {
-        let (quarter, final_y) = self.shoot(family, p, COARSE)?;
+    /// The same, with the arcs.
+    fn missed(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<Miss> {
+        let (quarter, final_y) = self.shoot(family, p, control)?;
         self.ended(&quarter)
             .then(|| Miss::of(&quarter, final_y, self.sign))
     }
@@ -375,19 +346,11 @@ impl<'a> Search<'a> {
         family.place(flow, p, if coarse { MIDDLING } else { FINE })
     }
 
-    /// The paper's multipliers λ₃ and `λ₄ = λ₃ (y − y_f)`, `y_f` over L.
-    fn momentum(&self, final_y: f64) -> Momentum {
-        Momentum {
-            p: Vector2::new(self.sign, 0.0),
-            c: -self.sign * final_y,
-        }
-    }
-
     /// An arc of an extremal with this `y_f`.
     pub(super) fn flow(&self, final_y: f64, motion: Motion) -> Flow<'a> {
         Flow {
             model: self.model,
-            momentum: self.momentum(final_y),
+            momentum: Momentum::of_quarter(self.sign, final_y),
             motion,
         }
     }
@@ -395,7 +358,7 @@ impl<'a> Search<'a> {
 
 impl Miss {
     fn of(quarter: &Quarter, final_y: f64, sign: f64) -> Self {
-        let arcs = lasting(quarter.legs()).fold(0, |arcs: u64, leg| {
+        let arcs = lasting(&quarter.legs).fold(0, |arcs: u64, leg| {
             let arc = match leg.motion {
                 Motion::Singular => 1,
                 Motion::Along(track) => 2 + track.index as u64,

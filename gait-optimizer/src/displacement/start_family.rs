@@ -10,7 +10,7 @@ use swimmer_model::Model;
 use super::flow::{FINE, Fate, Quarter, Touch, TraceOptions, follow, is_end_line, lasting};
 use crate::arcs::Leg;
 use crate::momentum::{Flow, Momentum, Motion, State, Track, pose, shape};
-use crate::region::{Bound, Piece, Region, Wall};
+use crate::region::{Bound, Region, Wall};
 use crate::runge_kutta::{Point, StepControl, advance};
 
 /// A line of places.
@@ -65,18 +65,14 @@ pub(crate) fn families(flow: Flow<'_>, bounds: &Bounds, region: &Region) -> Vec<
             continue;
         };
         if let Wall::Curved(clearance, piece) = &mut track.wall {
-            *piece = if clearance.has_corner() {
-                Piece::BackTip
-            } else {
-                Piece::Tips
-            };
+            *piece = clearance.after_tip(0);
         }
         let start = Place {
             state,
             motion: Motion::Along(track),
         };
-        let way = along_bounds(flow, region, start, Touch::Ends);
-        let stretches = stretches(way.legs());
+        let way = along_bounds(flow, region, start, (Touch::Ends, false));
+        let stretches = stretches(&way.legs);
         if way.fate == Fate::Ended && !stretches.is_empty() {
             families.push(StartFamily::Bounds { stretches });
         }
@@ -101,8 +97,8 @@ pub(crate) fn families_on_the_diagonal(
         .then(|| straight_shape(region, index))
         .flatten();
     let ways = on_bounds.chain(straight).filter_map(|start| {
-        let way = along_bounds(flow, region, start, touch);
-        let mut stretches = stretches(way.legs());
+        let way = along_bounds(flow, region, start, (touch, false));
+        let mut stretches = stretches(&way.legs);
         let touching = stretches
             .iter()
             .position(|stretch| stretch.track.index == index)?;
@@ -113,12 +109,16 @@ pub(crate) fn families_on_the_diagonal(
     ways.collect()
 }
 
-/// Follows the bounds from a place on the first one, never leaving them.
-fn along_bounds(flow: Flow<'_>, region: &Region, start: Place, touch: Touch) -> Quarter {
-    let Place { state, motion } = start;
+/// Follows the bounds from a place on the first one, never leaving them unless it `leaves`.
+fn along_bounds(
+    flow: Flow<'_>,
+    region: &Region,
+    Place { state, motion }: Place,
+    (touch, leaves): (Touch, bool),
+) -> Quarter {
     let options = TraceOptions {
         control: FINE,
-        leaves: false,
+        leaves,
         touch,
         touched: false,
         began: state[0] + state[1],
@@ -139,16 +139,12 @@ fn straight_shape(region: &Region, index: usize) -> Option<Place> {
 /// Where the multiplier of φ₁ = −φ₂ falls to zero along a stretch of that line. Its curvature has no θ component, so it is the
 /// same place for every λ₄.
 fn turn(flow: Flow<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
-    let options = TraceOptions {
-        control: FINE,
-        leaves: true,
-        touch: Touch::Ends,
-        touched: true,
-        began: 0.0,
+    let start = Place {
+        state: stretch.from,
+        motion: Motion::Along(stretch.track),
     };
-    let motion = Motion::Along(stretch.track);
-    let way = follow(Flow { motion, ..flow }, region, stretch.from, options);
-    match way.legs() {
+    let way = along_bounds(flow, region, start, (Touch::Ends, true));
+    match way.legs.as_slice() {
         [first, next, ..] if next.motion == Motion::Singular => Some(first.to),
         _ => None,
     }
@@ -157,13 +153,20 @@ fn turn(flow: Flow<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
 /// Legs along bounds, one after the other.
 fn stretches(legs: &[Leg]) -> Vec<Stretch> {
     let mut p = 0.0;
-    lasting(legs)
-        .filter_map(|leg| {
-            let stretch = stretch(leg, p)?;
-            p = stretch.span[1];
-            Some(stretch)
+    let stretch = |leg: &Leg| {
+        let Motion::Along(track) = leg.motion else {
+            return None;
+        };
+        let begins = p;
+        p += leg.length;
+        Some(Stretch {
+            track,
+            from: leg.from,
+            to: leg.to,
+            span: [begins, p],
         })
-        .collect()
+    };
+    lasting(legs).filter_map(stretch).collect()
 }
 
 /// Where a bound that leads towards φ₁ = −φ₂ meets φ₁ = φ₂ > 0, and which way round it is run from there.
@@ -180,18 +183,6 @@ fn start(bound: &Bound) -> Option<(f64, f64)> {
         }
         Bound::Clearance(clearance) => clearance.on_diagonal().map(|corner| (corner, 1.0)),
     }
-}
-
-fn stretch(leg: &Leg, p: f64) -> Option<Stretch> {
-    let Motion::Along(track) = leg.motion else {
-        return None;
-    };
-    Some(Stretch {
-        track,
-        from: leg.from,
-        to: leg.to,
-        span: [p, p + leg.length],
-    })
 }
 
 impl StartFamily {

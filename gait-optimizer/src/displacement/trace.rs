@@ -8,31 +8,17 @@ use swimmer_model::Model;
 use crate::arcs::{Leg, SMOOTH, Trace};
 use crate::certificate::{Check, Condition};
 use crate::cycle::{Cycle, Samples};
-use crate::momentum::{Momentum, Motion, State, pose, shape};
+use crate::momentum::{Height, Momentum, Motion, State, pose, shape};
 use crate::region::Region;
-use second_variation::{Push, SecondVariation, Stretch, is_maximum_without_symmetry};
+use second_variation::{Push, Stretch, is_maximum_without_symmetry, least_pivot};
 
-/// Numbers gathered along the trace, for the certificate.
-struct Evidence<'a> {
-    model: &'a Model<f64>,
-    momentum: Momentum,
-    region: &'a Region,
-    /// x at the end.
-    final_x: f64,
-    /// Largest `|H_u|` that the costate equations leave, over L.
-    h_u: f64,
-    /// Largest distance of a singular arc from the zero of the height \[rad\].
-    off_zero: f64,
-    /// Smallest multiplier on a bound; none without such arcs.
-    multiplier: Option<f64>,
-    /// Smallest slope of the height across a singular arc; none without such arcs.
-    legendre_clebsch: Option<f64>,
-    /// Largest gradient of the height along the quarter: the scale of that slope.
-    steepest: f64,
-    /// Stretches of singular arcs, on which pushes are free.
-    free: Vec<Stretch>,
-    /// Largest overstepping of a bound \[rad\].
-    overstepped: f64,
+/// What one state of an arc tells.
+struct Moment {
+    motion: Motion,
+    phi: Vector2<f64>,
+    height: Height,
+    /// What a push does to the displacement there, where pushes are free.
+    push: Push,
 }
 
 /// A quarter gait, sampled.
@@ -95,38 +81,40 @@ fn conditions(
 ) -> Option<Vec<Check>> {
     let first = trace.arcs.first()?.1.first()?;
     let last = trace.arcs.last()?.1.last()?;
-    let mut evidence = Evidence {
-        model,
-        momentum,
-        region,
-        final_x: last[2],
-        h_u: 0.0,
-        off_zero: 0.0,
-        multiplier: None,
-        legendre_clebsch: None,
-        steepest: 0.0,
-        free: Vec::new(),
-        overstepped: f64::NEG_INFINITY,
+    let final_x = last[2];
+    let moment = |motion: Motion, z: &State| {
+        let (phi, pose) = (shape(z), pose(z));
+        let second = model.second_derivatives(&phi);
+        let height = momentum.height(&second, &pose);
+        let along = height.singular_direction();
+        let left = height.gradient.dot(&Vector2::new(-along.y, along.x));
+        let curvature = second.first.curvature();
+        let push = Push::new(momentum.p.x, &curvature, pose[2], final_x - pose[0], left);
+        Moment {
+            motion,
+            phi,
+            height,
+            push,
+        }
     };
+    let arcs: Vec<Vec<Moment>> = trace
+        .arcs
+        .iter()
+        .map(|(motion, states)| states.iter().map(|z| moment(*motion, z)).collect())
+        .collect();
+    let all = || arcs.iter().flatten();
+    let is_free = |moment: &&Moment| moment.motion == Motion::Singular;
     // λ₁, λ₂ from H_u = 0 at the start. On a free arc their equations leave Ḣ_u = h (Φ̇₂, −Φ̇₁); along a bound the multiplier
     // pushes along its normal and keeps H_u as it is.
-    let mut h_u = Vector2::zeros();
-    for (motion, states) in &trace.arcs {
-        let mut before: Option<(Vector2<f64>, f64, Option<Push>)> = None;
-        for z in states {
-            let (height, push) = evidence.evaluate(motion, z);
-            let phi = shape(z);
-            if let Some((from, lower, last)) = before
-                && *motion == Motion::Singular
-            {
-                let way = phi - from;
-                h_u += Vector2::new(way.y, -way.x) * (0.5 * (lower + height));
-                evidence
-                    .free
-                    .extend(last.zip(push).map(|(last, push)| (last, push, way.norm())));
-            }
-            evidence.h_u = evidence.h_u.max(h_u.norm());
-            before = Some((phi, height, push));
+    let (mut h_u, mut largest_h_u) = (Vector2::zeros(), 0.0_f64);
+    let mut free: Vec<Stretch> = Vec::new();
+    for [from, to] in arcs.iter().flat_map(|arc| arc.array_windows()) {
+        if is_free(&from) {
+            let way = to.phi - from.phi;
+            let height = 0.5 * (from.height.value + to.height.value);
+            h_u += Vector2::new(way.y, -way.x) * height;
+            largest_h_u = largest_h_u.max(h_u.norm());
+            free.push((from.push, to.push, way.norm()));
         }
     }
     // λ₁ and λ₂ with which `H_u = 0` at a state.
@@ -137,65 +125,41 @@ fn conditions(
     let starts = costate(first);
     let ends = costate(last) + h_u;
     let off_lines = (first[0] - first[1]).abs().max((last[0] + last[1]).abs());
+    let steepness = |moment: &Moment| moment.height.gradient.norm();
+    let off_zero = all().filter(is_free);
+    let off_zero = off_zero.map(|moment| moment.height.value.abs() / steepness(moment));
     let mut checks = vec![
         Condition::OnSymmetryLines.check(off_lines),
         Condition::FinalLambda4.check(momentum.at(&pose(last)).z.abs()),
         Condition::StartTransversality.check(starts.sum().abs()),
         Condition::EndTransversality.check((ends.x - ends.y).abs()),
-        Condition::StationaryQuarter.check(evidence.h_u),
-        Condition::OnZeroHeight.check(evidence.off_zero),
+        Condition::StationaryQuarter.check(largest_h_u),
+        Condition::OnZeroHeight.check(off_zero.fold(0.0, f64::max)),
     ];
-    let steepest = evidence.steepest;
-    let clebsch = evidence.legendre_clebsch.map(|least| least / steepest);
+    let steepest = all().map(steepness).fold(0.0, f64::max);
+    let clebsch = all().filter(is_free).map(|moment| moment.push.slope);
+    let clebsch = clebsch.reduce(f64::min).map(|least| least / steepest);
     checks.extend(clebsch.map(|least| Condition::GrowsInwardsSteeply.check(least)));
-    let pushes = evidence.multiplier;
-    checks.extend(pushes.map(|least| Condition::HeightOnBound.check(least)));
-    if !evidence.free.is_empty() {
-        let least = SecondVariation::of(&evidence.free).least;
+    let multipliers = all().filter_map(|moment| match moment.motion {
+        Motion::Along(track) => Some(track.way * moment.height.value),
+        Motion::Singular => None,
+    });
+    let least = multipliers.reduce(f64::min);
+    checks.extend(least.map(|least| Condition::HeightOnBound.check(least)));
+    if !free.is_empty() {
+        let least = least_pivot(&free);
         checks.push(Condition::NoConjugatePoint.check(least));
         // Bounds that are told of a quarter mean something for gaits with its symmetries only.
         if !region.is_of_quarters() {
-            let best = is_maximum_without_symmetry(&evidence.free, 4.0 * evidence.final_x);
+            let best = is_maximum_without_symmetry(&free, 4.0 * final_x);
             let ascents = if best { 0.0 } else { 1.0 };
             checks.push(Condition::NoAscentWithoutSymmetry.check(ascents));
         }
     }
     if region.bounds().next().is_some() {
-        checks.push(Condition::KeepsBounds.check(evidence.overstepped));
+        let overstepped = all().map(|moment| region.overstepped(&moment.phi));
+        let most = overstepped.fold(f64::NEG_INFINITY, f64::max);
+        checks.push(Condition::KeepsBounds.check(most));
     }
     Some(checks)
-}
-
-impl Evidence<'_> {
-    /// Takes in one state of an arc; the height there, and what a push does to the displacement, where pushes are free.
-    fn evaluate(&mut self, motion: &Motion, z: &State) -> (f64, Option<Push>) {
-        let (phi, pose) = (shape(z), pose(z));
-        let second = self.model.second_derivatives(&phi);
-        let height = self.momentum.height(&second, &pose);
-        self.overstepped = self.overstepped.max(self.region.overstepped(&phi));
-        let slope = height.gradient.norm();
-        self.steepest = self.steepest.max(slope);
-        if let Motion::Along(track) = motion {
-            let multiplier = track.way * height.value;
-            let least = self.multiplier.unwrap_or(f64::INFINITY);
-            self.multiplier = Some(least.min(multiplier));
-            return (height.value, None);
-        }
-        self.off_zero = self.off_zero.max(height.value.abs() / slope);
-        // Slope towards the left of the motion.
-        let direction = height.singular_direction();
-        let left = height
-            .gradient
-            .dot(&Vector2::new(-direction.y, direction.x));
-        let least = self.legendre_clebsch.unwrap_or(f64::INFINITY);
-        self.legendre_clebsch = Some(least.min(left));
-        let push = Push::new(
-            self.momentum.p.x,
-            &second.first.curvature(),
-            pose[2],
-            self.final_x - pose[0],
-            left,
-        );
-        (height.value, Some(push))
-    }
 }

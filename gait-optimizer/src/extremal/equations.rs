@@ -285,7 +285,7 @@ mod tests {
                 offset: 1.0,
                 kind: ArcKind::Upper,
             });
-            let curved = Wall::Curved(Clearance::new(links, 0.01).unwrap(), Piece::FrontTip);
+            let curved = Wall::Curved(Clearance::new(links, 0.01).unwrap(), Piece::Tip(0));
             for motion in [Motion::Free, Motion::Along(straight), Motion::Along(curved)] {
                 let exact = linear(&model, &motion, &z);
                 let plain = rate(&model, &motion, &z);

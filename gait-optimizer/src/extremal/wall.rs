@@ -135,7 +135,7 @@ impl Walls {
         // A tip over the other side link's joint is bounded by its angle alone, which is a straight bound.
         let curved = self.clearance.iter().filter_map(|clearance| {
             let piece = clearance.piece(phi);
-            let at_joint = matches!(piece, Piece::FrontTipToJoint | Piece::BackTipToJoint);
+            let at_joint = matches!(piece, Piece::TipToJoint(_));
             (!at_joint).then(|| (Wall::Curved(*clearance, piece), -clearance.margin(phi)))
         });
         straight.chain(curved).max_by(|a, b| a.1.total_cmp(&b.1))

@@ -5,13 +5,13 @@
 //! still turns and sways in between. Minimum-perturbation coordinates make them small, not zero: the rule is good for
 //! gaits up to about a radian, and only a guide for larger ones. The row θ is exact, because plane rotations commute.
 
-use nalgebra::{DMatrix, Vector2, Vector3};
+use nalgebra::{DMatrix, Rotation2, Vector2, Vector3};
 use swimmer_files::AnyGait;
 use swimmer_model::{Gait as _, Tolerance, swim};
 
 use super::legendre::{gauss, polynomials};
-use super::space::{Field, table};
-use super::{HIGHEST, HeightMap, HeightMapError, Row, turned_back};
+use super::space::{Field, table, weighed};
+use super::{HIGHEST, HeightMap, HeightMapError, Row};
 
 /// What the map says of a gait, and what it swims; (x, y, θ) over L and in rad, along and across the middle link at the
 /// gait's first shape, as every other answer tells a displacement.
@@ -52,7 +52,7 @@ impl HeightMap {
         // The frame rides along: h a h⁻¹ for the frame h and its net motion a.
         let b = self.frame(&first).b;
         let place = Vector2::new(b.x, b.y);
-        let carried = turned_back(&area.xy(), -b.z) + place - turned_back(&place, -area.z);
+        let carried = Rotation2::new(b.z) * area.xy() + place - Rotation2::new(area.z) * place;
         Ok(AreaRule {
             area: Vector3::new(carried.x, carried.y, area.z),
             swum: Vector3::new(
@@ -100,10 +100,7 @@ impl HeightMap {
         let order = (self.convergence.order + MORE).min(HIGHEST - 1);
         let (nodes, weights) = gauss(order + MORE);
         let (p, _) = table(&nodes, order);
-        let mut weighted = p.transpose();
-        for (mut column, weight) in weighted.column_iter_mut().zip(&weights) {
-            column *= *weight;
-        }
+        let weighted = weighed(&p, &weights);
         let rows = [Row::X, Row::Y, Row::Theta].map(|row| {
             let heights = self.on_nodes(row, &nodes, &nodes);
             let coefficients = &weighted * heights * weighted.transpose();

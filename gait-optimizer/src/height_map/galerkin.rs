@@ -32,7 +32,8 @@ pub(super) fn solve(model: &Model<f64>, half_width: f64, order: usize) -> Coeffi
     let rows = rows(model, half_width, &space);
     let [t1, t2] = &rows[2];
     // Minimises ∫|a + ∇b|², without mean.
-    let theta = divided(&space, &space.test_slopes([t1, t2]), 0.0) * -1.0;
+    let load = space.test(&Field::zeros(t1.nrows(), t1.ncols()), [t1, t2]);
+    let theta = -divided(&space, &load, 0.0);
     let [x, y] = place(&space, &rows);
     let mut coefficients = Coefficients {
         rows: [x, y, theta].map(|row| space.in_legendre(&row)),

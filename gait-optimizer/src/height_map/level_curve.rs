@@ -7,10 +7,8 @@
 
 use nalgebra::{DMatrix, Vector2};
 
+use super::level::{End, Level, OnCurve, Stride};
 use crate::certificate::to_side;
-
-/// A function of the joint angles with its gradient.
-pub(crate) struct Level<F>(pub(crate) F);
 
 /// One connected zero-level curve, possibly through points where it crosses another.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -34,39 +32,7 @@ pub(crate) struct LevelSearch {
     pub(crate) half_width: f64,
     /// Cells along φ₁ and φ₂. Coprime and both odd, so that curves of symmetry, φ₁ = ±φ₂, pass between the nodes.
     cells: [usize; 2],
-    /// Longest step along a curve \[rad\].
-    step: f64,
-}
-
-/// Every vertex is polished to this.
-const POLISHED: f64 = 1e-12;
-/// And to this where rounding lets it be.
-const ROUNDING: f64 = 1e-15;
-/// A step is cut until the curve turns by less than this \[rad\].
-const TURN: f64 = 0.12;
-/// A curve cannot have come round in fewer steps than this.
-const FEWEST_ROUND: usize = 10;
-/// Steps shorter than this share of the longest are given up.
-const SHORTEST: f64 = 1e-7;
-/// A curve of more vertices than this is given up: nothing on these squares has a tenth.
-const MOST_POINTS: usize = 100_000;
-
-/// A point of a curve with the direction it was reached in.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct OnCurve {
-    pub(crate) phi: Vector2<f64>,
-    pub(crate) tangent: Vector2<f64>,
-    pub(crate) value: f64,
-    /// The function's slope to the left of the tangent.
-    pub(crate) slope_left: f64,
-}
-
-/// How a walk along a curve ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
-    Closed,
-    Edge,
-    Stuck,
+    stride: Stride,
 }
 
 impl LevelSearch {
@@ -81,7 +47,10 @@ impl LevelSearch {
         Self {
             half_width,
             cells: [cells, cells + 2],
-            step: half_width / 90.0,
+            stride: Stride {
+                longest: half_width / 90.0,
+                turn: 0.12,
+            },
         }
     }
 
@@ -166,41 +135,6 @@ fn is_dip(values: &DMatrix<f64>, i: usize, j: usize) -> bool {
 }
 
 impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
-    pub(crate) fn at(&self, phi: &Vector2<f64>) -> (f64, Vector2<f64>) {
-        self.0(phi)
-    }
-
-    /// The zero on a segment whose ends differ in sign: Newton's method kept inside the bracket.
-    pub(crate) fn between(&self, a: &Vector2<f64>, b: &Vector2<f64>) -> Option<Vector2<f64>> {
-        let along = b - a;
-        let (mut low, mut high) = (0.0, 1.0);
-        let rising = self.at(b).0 > self.at(a).0;
-        let mut t = 0.5;
-        for _ in 0..100 {
-            let phi = a + along * t;
-            let (value, gradient) = self.at(&phi);
-            if value.abs() <= ROUNDING || high - low < 1e-15 {
-                return Some(phi);
-            }
-            if (value > 0.0) == rising {
-                high = t;
-            } else {
-                low = t;
-            }
-            let newton = t - value / gradient.dot(&along);
-            t = if newton > low && newton < high {
-                if (newton - t).abs() < 1e-16 {
-                    return (value.abs() <= POLISHED).then_some(phi);
-                }
-                newton
-            } else {
-                0.5 * (low + high)
-            };
-        }
-        let phi = a + along * t;
-        (self.at(&phi).0.abs() <= POLISHED).then_some(phi)
-    }
-
     /// Zeros around a node that has the smallest value of its neighbourhood, where a finer grid shows another sign.
     fn hidden_near(
         &self,
@@ -222,166 +156,40 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
 
     /// The whole curve through one of its points.
     fn curve_through(&self, search: &LevelSearch, seed: &Vector2<f64>) -> Option<LevelCurve> {
-        let start = self.corrected(seed, None, search.step)?;
-        let (mut points, mut worst) = (vec![start.phi], start.value.abs());
-        let end = self.walk(search, start, &mut points, &mut worst);
-        if end != End::Closed {
-            let mut back = Vec::new();
-            let turned = OnCurve {
-                tangent: -start.tangent,
-                slope_left: -start.slope_left,
-                ..start
-            };
-            self.walk(search, turned, &mut back, &mut worst);
-            back.reverse();
-            back.append(&mut points);
-            points = back;
+        let mut points = vec![self.corrected(seed, None, search.stride.longest)?];
+        let closed = self.to_edge(search, &mut points);
+        if !closed {
+            points.reverse();
+            *points.last_mut()? = points.last()?.back();
+            self.to_edge(search, &mut points);
+            points.reverse();
         }
-        (points.len() > 1).then_some(LevelCurve {
-            points,
-            closed: end == End::Closed,
-            residual: worst,
+        (points.len() > 1).then(|| LevelCurve {
+            closed,
+            residual: points.iter().map(|at| at.value.abs()).fold(0.0, f64::max),
+            points: points.iter().map(|at| at.phi).collect(),
         })
     }
 
-    /// Walks along the curve to its end, adding vertices after the first.
-    fn walk(
-        &self,
-        search: &LevelSearch,
-        start: OnCurve,
-        points: &mut Vec<Vector2<f64>>,
-        worst: &mut f64,
-    ) -> End {
-        let mut here = start;
-        let mut step = search.step;
-        let mut steps = 0;
-        while points.len() < MOST_POINTS {
-            let to_start = start.phi - here.phi;
-            let ahead = to_start.dot(&here.tangent);
-            let back_home = steps > FEWEST_ROUND
-                && ahead > 0.0
-                && to_start.norm() <= step.max(0.5 * search.step)
-                && (to_start - here.tangent * ahead).norm() <= 0.25 * ahead
-                && here.tangent.dot(&start.tangent) > 0.9;
-            if back_home {
-                points.push(start.phi);
-                return End::Closed;
-            }
-            let Some(next) = self.stepped(&here, step) else {
-                step *= 0.5;
-                if step < SHORTEST * search.step {
-                    return End::Stuck;
-                }
-                continue;
-            };
-            if !search.holds(&next.phi) {
-                return match self.on_edge(search, &here, &next) {
-                    Some(edge) => {
-                        *worst = worst.max(edge.value.abs());
-                        if (edge.phi - here.phi).norm() > 1e-9 {
-                            points.push(edge.phi);
-                        }
-                        End::Edge
-                    }
-                    None => End::Stuck,
-                };
-            }
-            steps += 1;
-            *worst = worst.max(next.value.abs());
-            points.push(next.phi);
-            here = next;
-            step = (1.4 * step).min(search.step);
-        }
-        End::Stuck
-    }
-
-    /// One step along the curve; none where it would turn too much or leave the curve.
-    pub(crate) fn stepped(&self, here: &OnCurve, step: f64) -> Option<OnCurve> {
-        let guess = here.phi + here.tangent * step;
-        let next = self.corrected(&guess, Some(&here.tangent), 0.2 * step)?;
-        let turn = here
-            .tangent
-            .perp(&next.tangent)
-            .atan2(here.tangent.dot(&next.tangent));
-        // The chord must agree with both tangents, or the step has changed to another branch.
-        let chord = (next.phi - here.phi).normalize();
-        let kink = here
-            .tangent
-            .perp(&chord)
-            .abs()
-            .max(chord.perp(&next.tangent).abs());
-        (turn.abs() <= TURN && kink <= 0.8 * TURN).then_some(next)
-    }
-
-    /// Newton's method along the gradient, no farther than `reach` from the guess; the tangent goes on along `onward`.
-    pub(crate) fn corrected(
-        &self,
-        guess: &Vector2<f64>,
-        onward: Option<&Vector2<f64>>,
-        reach: f64,
-    ) -> Option<OnCurve> {
-        let mut phi = *guess;
-        let mut best: Option<OnCurve> = None;
-        for _ in 0..12 {
-            let (value, gradient) = self.at(&phi);
-            let slope = gradient.norm();
-            if !(value.is_finite() && slope > 0.0 && (phi - guess).norm() <= reach) {
-                break;
-            }
-            if best.is_some_and(|best| value.abs() >= best.value.abs()) {
-                break;
-            }
-            let tangent = Vector2::new(gradient.y, -gradient.x) / slope;
-            let along = onward.is_none_or(|onward| tangent.dot(onward) >= 0.0);
-            best = Some(OnCurve {
-                phi,
-                tangent: if along { tangent } else { -tangent },
-                value,
-                slope_left: if along { slope } else { -slope },
+    /// Walks on to the edge of the square, or round: whether round.
+    fn to_edge(&self, search: &LevelSearch, points: &mut Vec<OnCurve>) -> bool {
+        let half_width = search.half_width;
+        let end = self.walk(points, search.stride, |at| search.holds(&at.phi));
+        if let (End::Met(step, beyond), Some(here)) = (end, points.last()) {
+            // The edges that are met, and the first of them.
+            let edges = (0..2).filter(|&axis| beyond.phi[axis].abs() > half_width);
+            let met = edges.filter_map(|axis| {
+                let side = beyond.phi[axis].signum();
+                let left =
+                    |at: &OnCurve| (half_width - side * at.phi[axis], -side * at.tangent[axis]);
+                let (mut met, length) = self.cut(here, step, left)?;
+                met.phi[axis] = side * half_width;
+                Some((met, length))
             });
-            if value.abs() <= ROUNDING {
-                break;
-            }
-            phi -= gradient * (value / (slope * slope));
+            let first = met.min_by(|a, b| a.1.total_cmp(&b.1));
+            points.extend(first.filter(|first| first.1 > 1e-9).map(|first| first.0));
         }
-        best.filter(|best| best.value.abs() <= POLISHED)
-    }
-
-    /// Where the curve leaves the square between two of its points, the second outside: a zero on the edge itself.
-    fn on_edge(&self, search: &LevelSearch, from: &OnCurve, to: &OnCurve) -> Option<OnCurve> {
-        let way = to.phi - from.phi;
-        // The edge that is met first.
-        let (axis, share) = (0..2)
-            .filter(|&axis| to.phi[axis].abs() > search.half_width && way[axis] != 0.0)
-            .map(|axis| {
-                let edge = search.half_width.copysign(to.phi[axis]);
-                (axis, (edge - from.phi[axis]) / way[axis])
-            })
-            .min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let mut phi = from.phi + way * share.clamp(0.0, 1.0);
-        phi[axis] = search.half_width.copysign(to.phi[axis]);
-        let other = 1 - axis;
-        let met = phi[other];
-        for _ in 0..30 {
-            let (value, gradient) = self.at(&phi);
-            let next = (phi[other] - value / gradient[other])
-                .clamp(met - way.norm(), met + way.norm())
-                .clamp(-search.half_width, search.half_width);
-            if value.abs() <= ROUNDING || (next - phi[other]).abs() < 1e-16 || !next.is_finite() {
-                return (value.abs() <= POLISHED).then_some(OnCurve {
-                    phi,
-                    value,
-                    ..*from
-                });
-            }
-            phi[other] = next;
-        }
-        let value = self.at(&phi).0;
-        (value.abs() <= POLISHED).then_some(OnCurve {
-            phi,
-            value,
-            ..*from
-        })
+        matches!(end, End::Closed)
     }
 }
 

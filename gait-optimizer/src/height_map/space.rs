@@ -52,16 +52,9 @@ impl Space {
         let eigen = stiffness.symmetric_eigen();
         let (p, d) = table(&nodes, order);
         let (values, slopes) = (p * &eigen.eigenvectors, d * &eigen.eigenvectors);
-        let weigh = |field: &DMatrix<f64>| {
-            let mut transposed = field.transpose();
-            for (mut column, weight) in transposed.column_iter_mut().zip(&weights) {
-                column *= *weight;
-            }
-            transposed
-        };
         Self {
-            weighted_values: weigh(&values),
-            weighted_slopes: weigh(&slopes),
+            weighted_values: weighed(&values, &weights),
+            weighted_slopes: weighed(&slopes, &weights),
             values,
             slopes,
             nodes,
@@ -94,13 +87,7 @@ impl Space {
         across * self.weighted_values.transpose() + steep * self.weighted_slopes.transpose()
     }
 
-    /// For each basis function ψ: ∫ g·∇ψ.
-    pub(super) fn test_slopes(&self, g: [&Field; 2]) -> Field {
-        &self.weighted_slopes * g[0] * self.weighted_values.transpose()
-            + &self.weighted_values * g[1] * self.weighted_slopes.transpose()
-    }
-
-    /// ∫ f g over the square.
+    /// The mean of f over the square.
     pub(super) fn mean(&self, f: &Field) -> f64 {
         let (mut sum, mut area) = (0.0, 0.0);
         let (_, weights) = gauss(self.nodes.len());
@@ -117,6 +104,15 @@ impl Space {
     pub(super) fn in_legendre(&self, coefficients: &Field) -> Field {
         &self.legendre * coefficients * self.legendre.transpose()
     }
+}
+
+/// Values at the nodes of a rule, one row a node, transposed and times the weights.
+pub(super) fn weighed(values: &DMatrix<f64>, weights: &[f64]) -> DMatrix<f64> {
+    let mut transposed = values.transpose();
+    for (mut column, weight) in transposed.column_iter_mut().zip(weights) {
+        column *= *weight;
+    }
+    transposed
 }
 
 /// Orthonormal Legendre polynomials and their slopes at some places: one row a place.

@@ -59,67 +59,69 @@ pub(crate) struct Launch<'a> {
 impl Launch<'_> {
     /// Runs the orbit; none where it does not come back.
     pub(crate) fn orbit(&self) -> Option<ClosedOrbit> {
-        let mut orbit = ClosedOrbit {
-            legs: Vec::with_capacity(8),
-            end: [self.start.x, self.start.y, 0.0, 0.0, 0.0, 0.0],
-        };
-        let mut motion = self.first;
-        let mut travelled = 0.0;
-        for _ in 0..MOST_ARCS {
-            let flow = Flow {
+        let start = [self.start.x, self.start.y, 0.0, 0.0, 0.0, 0.0];
+        let tracer = Tracer {
+            flow: Flow {
                 model: self.model,
                 momentum: self.momentum,
-                motion,
-            };
-            if motion.bound().is_some() {
-                // The height must rise where a bound is met, or be positive already.
-                let ahead = exact_step(&flow, &Point::new(&flow, orbit.end), 1e-5);
-                if flow.height(&ahead.z).value < -SLACK {
-                    return None;
-                }
+                motion: self.entered(self.first, &start)?,
+            },
+            region: self.region,
+            control: StepControl {
+                longest: self.control.longest.min(LONGEST_STEP),
+                ..self.control
+            },
+            leaves: true,
+            ends: self,
+            before: 0.0,
+            longest: LONGEST,
+        };
+        let (legs, returned) = tracer.chain(start, MOST_ARCS, |tracer, leg, event| {
+            if event.is_some_and(|event| self.returns(event, leg, tracer.before)) {
+                return Err(Some(Returned));
             }
-            let tracer = Tracer {
-                flow,
-                region: self.region,
-                control: StepControl {
-                    longest: self.control.longest.min(LONGEST_STEP),
-                    ..self.control
-                },
-                leaves: true,
-                ends: self,
-                before: travelled,
-                longest: LONGEST,
+            let next = match event {
+                Some(Event::HeightGone) => Some(Motion::Singular),
+                Some(Event::Bound(index)) => {
+                    along(self.region, index, &shape(&leg.to), &leg.motion)
+                }
+                Some(Event::PieceEnd) => leg.motion.next_piece(),
+                _ => None,
             };
-            let (leg, event) = tracer.arc(orbit.end);
-            orbit.legs.push(leg);
-            orbit.end = leg.to;
-            travelled += leg.length;
-            let phi = shape(&leg.to);
-            match event? {
-                Event::End(Returned) => return Some(orbit),
-                Event::HeightGone => {
-                    let returned = motion.bound().map(ReturnCondition::Exit) == Some(self.until)
-                        && travelled > self.shortest
-                        && (phi - self.start).norm() < self.near;
-                    if returned {
-                        return Some(orbit);
-                    }
-                    motion = Motion::Singular;
-                }
-                Event::Bound(index)
-                    if self.until == ReturnCondition::Along(index)
-                        && travelled > self.shortest
-                        && (phi - self.start).norm() < AT_START =>
-                {
-                    return Some(orbit);
-                }
-                Event::Bound(index) => {
-                    motion = along(self.region, index, &phi, &motion)?;
-                }
-                Event::PieceEnd => motion = motion.next_piece()?,
+            next.and_then(|next| self.entered(next, &leg.to))
+                .ok_or(None)
+        });
+        let end = legs.last()?.to;
+        returned.flatten().map(|Returned| ClosedOrbit { legs, end })
+    }
+
+    /// Whether an arc's end is the orbit's, which is so long \[rad\].
+    fn returns(&self, event: Event<Returned>, leg: &Leg, length: f64) -> bool {
+        let off = (shape(&leg.to) - self.start).norm();
+        let is_start = match event {
+            Event::End(Returned) => return true,
+            Event::HeightGone => {
+                let exit = leg.motion.bound().map(ReturnCondition::Exit);
+                exit == Some(self.until) && off < self.near
             }
-        }
-        None
+            Event::Bound(index) => self.until == ReturnCondition::Along(index) && off < AT_START,
+            Event::PieceEnd => false,
+        };
+        is_start && length > self.shortest
+    }
+
+    /// A motion, where it may follow in a state: on a bound the height must rise, or be positive already.
+    fn entered(&self, motion: Motion, at: &State) -> Option<Motion> {
+        let flow = Flow {
+            model: self.model,
+            momentum: self.momentum,
+            motion,
+        };
+        let rises = || {
+            let ahead = exact_step(&flow, &Point::new(&flow, *at), 1e-5);
+            flow.height(&ahead.z).value >= -SLACK
+        };
+        (motion == Motion::Singular || rises()).then_some(motion)
     }
 }
 

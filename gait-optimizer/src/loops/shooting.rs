@@ -1,6 +1,6 @@
 //! Closing a loop: Gauss–Newton on the place of the start and the direction of the momentum.
 
-use nalgebra::{Matrix2, Vector2, Vector3};
+use nalgebra::{Matrix3x2, Vector2, Vector3};
 use swimmer_model::Model;
 
 use super::flow::{ClosedOrbit, Launch, ReturnCondition};
@@ -51,6 +51,15 @@ const STRIDE: f64 = 0.12;
 const NEAR: f64 = 1e-4;
 const CLOSED: f64 = 1e-11;
 
+impl Loop {
+    fn moved(&self, step: &Vector2<f64>) -> Self {
+        Self {
+            place: self.place + step.x,
+            angle: self.angle + step.y,
+        }
+    }
+}
+
 struct Problem<'a> {
     model: &'a Model<f64>,
     region: &'a Region,
@@ -84,10 +93,7 @@ pub(crate) fn close(
         let step = problem.step(&here, &miss, control)?;
         let mut factors = damped((STRIDE / step.amax()).min(1.0)).take(8);
         let better = factors.find_map(|factor| {
-            let there = Loop {
-                place: here.place + factor * step.x,
-                angle: here.angle + factor * step.y,
-            };
+            let there = here.moved(&(step * factor));
             let (new, new_lap) = problem.shoot(&there, control)?;
             (new.norm() < miss.norm()).then_some((there, new, new_lap))
         });
@@ -159,31 +165,17 @@ impl Problem<'_> {
         } else {
             1e-4
         };
-        let column = |place: f64, angle: f64| {
-            let there = Loop {
-                place: at.place + place,
-                angle: at.angle + angle,
-            };
-            let back = Loop {
-                place: at.place - place,
-                angle: at.angle - angle,
-            };
-            match (self.shoot(&there, control), self.shoot(&back, control)) {
+        let column = |way: Vector2<f64>| {
+            let [there, back] = [h, -h].map(|h| self.shoot(&at.moved(&(way * h)), control));
+            match (there, back) {
                 (Some((a, _)), Some((b, _))) => Some((a - b) / (2.0 * h)),
                 (Some((a, _)), None) => Some((a - miss) / h),
                 (None, Some((b, _))) => Some((miss - b) / h),
                 (None, None) => None,
             }
         };
-        let (by_place, by_angle) = (column(h, 0.0)?, column(0.0, h)?);
-        let normal = Matrix2::new(
-            by_place.norm_squared(),
-            by_place.dot(&by_angle),
-            by_place.dot(&by_angle),
-            by_angle.norm_squared(),
-        );
-        let right = -Vector2::new(by_place.dot(miss), by_angle.dot(miss));
-        let step = normal.try_inverse()? * right;
+        let slopes = Matrix3x2::from_columns(&[column(Vector2::x())?, column(Vector2::y())?]);
+        let step = slopes.tr_mul(&slopes).try_inverse()? * slopes.tr_mul(&-miss);
         step.norm().is_finite().then_some(step)
     }
 }

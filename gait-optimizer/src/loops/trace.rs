@@ -6,8 +6,9 @@ use super::flow::ClosedOrbit;
 use super::shooting::Closed;
 use crate::arcs::{ByPower, Leg, Trace};
 use crate::cycle::Cycle;
-use crate::momentum::{Flow, Momentum, Motion, State, pose};
-use crate::runge_kutta::{Point, StepControl, advance, locate};
+use crate::momentum::{Flow, Motion, State, pose};
+use crate::numerics::locate;
+use crate::runge_kutta::{Point, StepControl, advance};
 
 const CONTROL: StepControl = StepControl {
     tolerance: 1e-13,
@@ -20,10 +21,20 @@ const LASTING: f64 = 1e-9;
 
 /// Traces a loop with about this many samples, from where it crosses φ₁ = φ₂ > 0 farthest out, or from its own start.
 pub(crate) fn traced(model: &Model<f64>, closed: &Closed, samples: usize) -> Option<Cycle> {
+    let home = home(model, closed, &lasting(&closed.orbit));
+    traced_from(model, closed, home, samples)
+}
+
+/// Traces a loop from a state on one of its lasting legs, or from its own start.
+pub(crate) fn traced_from(
+    model: &Model<f64>,
+    closed: &Closed,
+    start: Option<(usize, State)>,
+    samples: usize,
+) -> Option<Cycle> {
     let total = closed.orbit.end[5];
     let legs = lasting(&closed.orbit);
-    let home = home(model, closed, &legs);
-    let (first, state) = home.unwrap_or((0, legs.first()?.from));
+    let (first, state) = start.unwrap_or((0, legs.first()?.from));
     let momentum = closed.momentum.seen_from(&pose(&state));
     let mut route: Vec<(Motion, f64)> = Vec::with_capacity(legs.len() + 1);
     let leg = legs.get(first)?;
@@ -41,34 +52,7 @@ pub(crate) fn traced(model: &Model<f64>, closed: &Closed, samples: usize) -> Opt
         whole
     });
     let start = [state[0], state[1], 0.0, 0.0, 0.0, 0.0];
-    cycle((model, momentum), start, &route, samples)
-}
-
-/// Traces an orbit from its own start.
-pub(crate) fn traced_from_start(
-    model: &Model<f64>,
-    momentum: Momentum,
-    orbit: &ClosedOrbit,
-    samples: usize,
-) -> Option<Cycle> {
-    let legs = lasting(orbit);
-    let start = legs.first()?.from;
-    let route = legs.iter().map(|leg| (leg.motion, leg.to[5] - leg.from[5]));
-    cycle(
-        (model, momentum),
-        start,
-        &route.collect::<Vec<_>>(),
-        samples,
-    )
-}
-
-fn cycle(
-    of: (&Model<f64>, Momentum),
-    start: State,
-    route: &[(Motion, f64)],
-    samples: usize,
-) -> Option<Cycle> {
-    let trace = Trace::new(of, start, route, &QUARTERS, samples)?;
+    let trace = Trace::new((model, momentum), start, &route, &QUARTERS, samples)?;
     Some(trace.samples(true).closed())
 }
 

@@ -1,6 +1,7 @@
 //! What an arc runs along: free, or along a bound one way or the other, piece by piece.
 
 use nalgebra::Vector2;
+use swimmer_files::ArcKind;
 
 use crate::region::{Piece, Region, Wall};
 
@@ -14,6 +15,14 @@ pub(crate) enum Motion {
 }
 
 impl Motion {
+    /// What an arc of it is called.
+    pub(crate) fn kind(&self) -> ArcKind {
+        match self {
+            Self::Singular => ArcKind::Singular,
+            Self::Along(track) => track.wall.kind(),
+        }
+    }
+
     /// Place of the bound that is run along; none for the singular control.
     pub(crate) fn bound(&self) -> Option<usize> {
         match self {
@@ -99,12 +108,8 @@ impl Track {
         };
         let forwards = self.way > 0.0;
         let next = match piece {
-            Piece::FrontTip if forwards && clearance.has_corner() => Piece::BackTip,
-            Piece::BackTip if !forwards && clearance.has_corner() => Piece::FrontTip,
-            Piece::FrontTip if forwards => Piece::Tips,
-            Piece::BackTip if !forwards => Piece::Tips,
-            Piece::Tips if forwards => Piece::BackTip,
-            Piece::Tips => Piece::FrontTip,
+            Piece::Tips => Piece::Tip(usize::from(forwards)),
+            Piece::Tip(tip) if forwards == (tip == 0) => clearance.after_tip(tip),
             _ => return None,
         };
         Some(Self {

@@ -4,14 +4,6 @@ use super::arc::pose_rates;
 use super::*;
 use swimmer_model::Swimmer;
 
-/// The paper's multipliers: λ₃ and `λ₄ = λ₃ (y − y_f)`.
-fn papers(sign: f64, final_y: f64) -> Momentum {
-    Momentum {
-        p: Vector2::new(sign, 0.0),
-        c: -sign * final_y,
-    }
-}
-
 fn height(model: &Model<f64>, momentum: Momentum, phi: &Vector2<f64>, pose: &[f64; 3]) -> f64 {
     let curvature = model.first_derivatives(phi).curvature();
     momentum.at(pose).dot(&curvature)
@@ -21,7 +13,7 @@ fn height(model: &Model<f64>, momentum: Momentum, phi: &Vector2<f64>, pose: &[f6
 #[test]
 fn the_gradient_is_the_derivative_along_each_joint() {
     let model = Model::new(&Swimmer::<f64>::purcell()).unwrap();
-    let momentum = papers(-1.0, 0.13);
+    let momentum = Momentum::of_quarter(-1.0, 0.13);
     let (phi, pose) = (Vector2::new(0.7, 1.9), [0.2, -0.1, 0.4]);
     let (there, ..) = momentum.evaluate(&model, &phi, &pose);
     assert!((there.value - height(&model, momentum, &phi, &pose)).abs() < 1e-15);
@@ -57,7 +49,7 @@ fn the_gradient_is_the_derivative_along_each_joint() {
 #[test]
 fn the_height_is_minus_the_papers_switching_function() {
     let model = Model::new(&Swimmer::<f64>::robot()).unwrap();
-    let momentum = papers(1.0, 0.03);
+    let momentum = Momentum::of_quarter(1.0, 0.03);
     let (phi, pose) = (Vector2::new(-0.4, 2.1), [0.0, 0.05, -0.6]);
     let d = model.first_derivatives(&phi);
     let (sin, cos) = f64::sin_cos(-0.6);

@@ -16,19 +16,15 @@ impl Level {
     }
 }
 
-/// What is nearest to what, or crosses it.
+/// What is nearest to what, or crosses it: which tip, 0 for the front link's and 1 for the back link's, as the angles φ₁ and φ₂.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Piece {
-    /// The tip of the front link, to the inside of the back link.
-    FrontTip,
-    /// The tip of the back link, to the inside of the front link.
-    BackTip,
+    /// The tip of one side link, to the inside of the other.
+    Tip(usize),
     /// Tip to tip.
     Tips,
-    /// The tip of the front link, to the joint of the back link: only φ₁ counts.
-    FrontTipToJoint,
-    /// The tip of the back link, to the joint of the front link: only φ₂ counts.
-    BackTipToJoint,
+    /// The tip of one side link, to the joint of the other: only its own angle counts.
+    TipToJoint(usize),
 }
 
 /// The margin with its first and second derivatives in Φ.
@@ -78,14 +74,10 @@ impl Clearance {
     pub(crate) fn piece(&self, phi: &Vector2<f64>) -> Piece {
         if self.links.overlap(phi) > 0.0 {
             // Crossing: out by the tip that has the shorter way.
-            let (front, back) = (self.front_height(phi), self.back_height(phi));
-            return if front > back {
-                Piece::FrontTip
-            } else {
-                Piece::BackTip
-            };
+            let [front, back] = self.heights(phi);
+            return Piece::Tip(usize::from(front <= back));
         }
-        let (front, back) = (self.front_tip_piece(phi), self.back_tip_piece(phi));
+        let [front, back] = self.tip_pieces(phi);
         if self.reach(front, phi) <= self.reach(back, phi) {
             front
         } else {
@@ -96,12 +88,14 @@ impl Clearance {
     /// Distance of the tips from the other side link, less the clearance: positive inside, negative where they are too near
     /// or cross. Continuous within |φᵢ| < π.
     pub(crate) fn margin(&self, phi: &Vector2<f64>) -> f64 {
-        if self.links.overlap(phi) > 0.0 {
-            return self.front_height(phi).max(self.back_height(phi)) - self.distance;
-        }
-        self.reach(self.front_tip_piece(phi), phi)
-            .min(self.reach(self.back_tip_piece(phi), phi))
-            - self.distance
+        let apart = if self.links.overlap(phi) > 0.0 {
+            let [front, back] = self.heights(phi);
+            front.max(back)
+        } else {
+            let [front, back] = self.tip_pieces(phi).map(|piece| self.reach(piece, phi));
+            front.min(back)
+        };
+        apart - self.distance
     }
 
     /// The margin with its derivatives, from the piece that decides.
@@ -126,8 +120,8 @@ impl Clearance {
             back,
         } = self.links;
         let mut level = match piece {
-            Piece::FrontTip => self.height_level(phi, front, [0, 1]),
-            Piece::BackTip => self.height_level(phi, back, [1, 0]),
+            Piece::Tip(tip) => self.height_level(phi, tip),
+            Piece::TipToJoint(tip) => self.joint_level(phi, tip),
             Piece::Tips => {
                 let (sin, cos) = (phi.map(f64::sin), phi.map(f64::cos));
                 let (sin12, cos12) = (phi.x + phi.y).sin_cos();
@@ -141,8 +135,6 @@ impl Clearance {
                 );
                 root_level(self.tips(phi), gradient, hessian)
             }
-            Piece::FrontTipToJoint => self.joint_level(phi, front, 0),
-            Piece::BackTipToJoint => self.joint_level(phi, back, 1),
         };
         level.value -= self.distance;
         level
@@ -155,24 +147,20 @@ impl Clearance {
         piece: Piece,
         phi: &Vector2<f64>,
     ) -> Option<(f64, Vector2<f64>)> {
-        let sum = phi.x + phi.y;
         // Where the foot of a tip passes the other tip.
-        let over = |joint: usize, own: f64, other: f64| {
-            let value = self.links.middle * phi[joint].cos() + own * sum.cos() + other;
-            let mut slope = Vector2::repeat(-own * sum.sin());
-            slope[joint] -= self.links.middle * phi[joint].sin();
-            (value, slope)
+        let over = |tip: usize| {
+            let mut slope = Vector2::repeat(-self.side(tip) * phi.sum().sin());
+            slope[1 - tip] -= self.links.middle * phi[1 - tip].sin();
+            (self.side(1 - tip) - self.foot(phi, tip), slope)
         };
         match piece {
-            Piece::FrontTip => Some(over(1, self.links.front, self.links.back)),
-            Piece::BackTip => Some(over(0, self.links.back, self.links.front)),
+            Piece::Tip(tip) => Some(over(tip)),
             Piece::Tips => {
-                let front = over(1, self.links.front, self.links.back);
-                let back = over(0, self.links.back, self.links.front);
+                let (front, back) = (over(0), over(1));
                 let nearer = if front.0 > back.0 { front } else { back };
                 Some((-nearer.0, -nearer.1))
             }
-            Piece::FrontTipToJoint | Piece::BackTipToJoint => None,
+            Piece::TipToJoint(_) => None,
         }
     }
 
@@ -188,60 +176,50 @@ impl Clearance {
         self.distance <= 0.0
     }
 
-    fn side(phi: &Vector2<f64>) -> f64 {
-        if phi.x + phi.y < 0.0 { -1.0 } else { 1.0 }
-    }
-
-    /// The front tip's height over the line of the back link; positive on the side of the front joint.
-    fn front_height(&self, phi: &Vector2<f64>) -> f64 {
-        Self::side(phi)
-            * (self.links.middle * phi.y.sin() + self.links.front * (phi.x + phi.y).sin())
-    }
-
-    fn back_height(&self, phi: &Vector2<f64>) -> f64 {
-        Self::side(phi)
-            * (self.links.middle * phi.x.sin() + self.links.back * (phi.x + phi.y).sin())
-    }
-
-    /// Where the front tip's foot on the line of the back link lies, from the back joint.
-    fn front_foot(&self, phi: &Vector2<f64>) -> f64 {
-        -self.links.middle * phi.y.cos() - self.links.front * (phi.x + phi.y).cos()
-    }
-
-    fn back_foot(&self, phi: &Vector2<f64>) -> f64 {
-        -self.links.middle * phi.x.cos() - self.links.back * (phi.x + phi.y).cos()
-    }
-
-    fn front_tip_piece(&self, phi: &Vector2<f64>) -> Piece {
-        let foot = self.front_foot(phi);
-        if foot < 0.0 {
-            Piece::FrontTipToJoint
-        } else if foot > self.links.back {
-            Piece::Tips
+    /// What follows a tip towards the corner of the zone: the other one where they meet there.
+    pub(crate) fn after_tip(&self, tip: usize) -> Piece {
+        if self.has_corner() {
+            Piece::Tip(1 - tip)
         } else {
-            Piece::FrontTip
+            Piece::Tips
         }
     }
 
-    fn back_tip_piece(&self, phi: &Vector2<f64>) -> Piece {
-        let foot = self.back_foot(phi);
-        if foot < 0.0 {
-            Piece::BackTipToJoint
-        } else if foot > self.links.front {
-            Piece::Tips
-        } else {
-            Piece::BackTip
-        }
+    /// The length of a side link.
+    fn side(&self, link: usize) -> f64 {
+        [self.links.front, self.links.back][link]
+    }
+
+    /// Each tip's height over the line of the other link; positive on the side of its own joint.
+    fn heights(&self, phi: &Vector2<f64>) -> [f64; 2] {
+        [0, 1].map(|tip| self.height_level(phi, tip).value)
+    }
+
+    /// Where a tip's foot on the line of the other link lies, from that link's joint.
+    fn foot(&self, phi: &Vector2<f64>, tip: usize) -> f64 {
+        -self.links.middle * phi[1 - tip].cos() - self.side(tip) * phi.sum().cos()
+    }
+
+    /// What of the other link is nearest to each tip.
+    fn tip_pieces(&self, phi: &Vector2<f64>) -> [Piece; 2] {
+        [0, 1].map(|tip| {
+            let foot = self.foot(phi, tip);
+            if foot < 0.0 {
+                Piece::TipToJoint(tip)
+            } else if foot > self.side(1 - tip) {
+                Piece::Tips
+            } else {
+                Piece::Tip(tip)
+            }
+        })
     }
 
     /// The distance that a piece stands for.
     fn reach(&self, piece: Piece, phi: &Vector2<f64>) -> f64 {
         match piece {
-            Piece::FrontTip => self.front_height(phi).abs(),
-            Piece::BackTip => self.back_height(phi).abs(),
+            Piece::Tip(tip) => self.heights(phi)[tip].abs(),
             Piece::Tips => self.tips(phi),
-            Piece::FrontTipToJoint => self.tip_to_joint(self.links.front, phi.x),
-            Piece::BackTipToJoint => self.tip_to_joint(self.links.back, phi.y),
+            Piece::TipToJoint(tip) => self.tip_to_joint(phi, tip),
         }
     }
 
@@ -251,19 +229,19 @@ impl Clearance {
         along.hypot(self.links.front * phi.x.sin() - self.links.back * phi.y.sin())
     }
 
-    fn tip_to_joint(&self, side: f64, angle: f64) -> f64 {
-        (self.links.middle + side * angle.cos()).hypot(side * angle.sin())
+    fn tip_to_joint(&self, phi: &Vector2<f64>, tip: usize) -> f64 {
+        let (sin, cos) = phi[tip].sin_cos();
+        (self.links.middle + self.side(tip) * cos).hypot(self.side(tip) * sin)
     }
 
-    /// l₀ sin φ + l sin(φ₁ + φ₂) with φ of the other joint, positive on the inside.
-    fn height_level(&self, phi: &Vector2<f64>, side: f64, [own, other]: [usize; 2]) -> Level {
-        let sign = Self::side(phi);
-        let (sin12, cos12) = (phi.x + phi.y).sin_cos();
+    /// The height of a tip.
+    fn height_level(&self, phi: &Vector2<f64>, tip: usize) -> Level {
+        let other = 1 - tip;
+        let (sin12, cos12) = phi.sum().sin_cos();
         let (sin, cos) = phi[other].sin_cos();
-        let (both, alone) = (sign * side, sign * self.links.middle);
-        let mut gradient = Vector2::zeros();
-        gradient[own] = both * cos12;
-        gradient[other] = both * cos12 + alone * cos;
+        let [both, alone] = [self.side(tip), self.links.middle].map(|length| zone(phi) * length);
+        let mut gradient = Vector2::repeat(both * cos12);
+        gradient[other] += alone * cos;
         let mut hessian = Matrix2::repeat(-both * sin12);
         hessian[(other, other)] -= alone * sin;
         Level {
@@ -273,14 +251,19 @@ impl Clearance {
         }
     }
 
-    fn joint_level(&self, phi: &Vector2<f64>, side: f64, joint: usize) -> Level {
-        let (sin, cos) = phi[joint].sin_cos();
-        let product = self.links.middle * side;
+    fn joint_level(&self, phi: &Vector2<f64>, tip: usize) -> Level {
+        let (sin, cos) = phi[tip].sin_cos();
+        let product = self.links.middle * self.side(tip);
         let (mut gradient, mut hessian) = (Vector2::zeros(), Matrix2::zeros());
-        gradient[joint] = -product * sin;
-        hessian[(joint, joint)] = -product * cos;
-        root_level(self.tip_to_joint(side, phi[joint]), gradient, hessian)
+        gradient[tip] = -product * sin;
+        hessian[(tip, tip)] = -product * cos;
+        root_level(self.tip_to_joint(phi, tip), gradient, hessian)
     }
+}
+
+/// Which of both forbidden zones is nearer: 1 where both angles are positive.
+fn zone(phi: &Vector2<f64>) -> f64 {
+    if phi.sum() < 0.0 { -1.0 } else { 1.0 }
 }
 
 /// A distance whose square over two has these derivatives.

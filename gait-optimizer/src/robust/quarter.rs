@@ -1,6 +1,6 @@
 //! A quarter gait swum by one member of the ensemble, with the height of its displacement along the way.
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{Rotation2, Vector2, Vector3};
 
 use super::nodes::Nodes;
 use crate::member::Member;
@@ -45,7 +45,7 @@ impl Trajectory {
             let turned = nodes.integrals(&turning).into_iter();
             let turned: Vec<f64> = turned.map(|turn| theta + turn).collect();
             let rates = body.iter().zip(&turned);
-            let rates = rates.map(|(twist, theta)| crate::closed_curve::turned(*theta, twist));
+            let rates = rates.map(|(twist, theta)| Rotation2::new(*theta) * twist.xy());
             let (along, across): (Vec<f64>, Vec<f64>) = rates.map(|rate| (rate.x, rate.y)).unzip();
             x += nodes.integrals(&along).last().copied().unwrap_or(0.0);
             let rise = nodes.integrals(&across).into_iter();
@@ -65,10 +65,7 @@ impl Trajectory {
     /// a push of the curve to its right, a radian for a radian of its length, adds to a quarter's x.
     pub(super) fn height(&self, member: &Member, index: usize, phi: &Vector2<f64>) -> Height {
         let Member { model, gain } = member;
-        let momentum = Momentum {
-            p: Vector2::x(),
-            c: -self.final_y,
-        };
+        let momentum = Momentum::of_quarter(1.0, self.final_y);
         let at = |values: &[f64]| values.get(index).copied().unwrap_or(f64::NAN);
         let pose = [0.0, at(&self.y), at(&self.theta)];
         let Height { value, gradient } = momentum.evaluate(model, &(phi * *gain), &pose).0;

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use crate::cycle::Cycle;
-use crate::loops::{ClosedOrbit, Launch, traced_from_start};
+use crate::loops::{Closed, ClosedOrbit, Launch, ReturnCondition, Section, traced_from};
 use crate::momentum::{Momentum, Motion, Track};
 use crate::numerics::{halved, root};
 use crate::region::{Bound, Edge, Region};
@@ -27,14 +27,6 @@ const FINE: StepControl = StepControl {
     longest: 0.15,
 };
 
-/// A start on an edge.
-#[derive(Debug, Clone, Copy)]
-struct Start {
-    at: Vector2<f64>,
-    bound: usize,
-    along: Vector2<f64>,
-}
-
 /// All loops that close, traced.
 pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) -> Vec<Cycle> {
     let mut found = Vec::new();
@@ -49,7 +41,7 @@ pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) ->
             for rotation in family.roots() {
                 let trace = family.shoot(rotation, FINE).and_then(|orbit| {
                     let momentum = family.momentum(rotation);
-                    traced_from_start(model, momentum, &orbit, samples)
+                    traced_from(model, &Closed { momentum, orbit }, None, samples)
                 });
                 found.extend(trace);
             }
@@ -59,7 +51,7 @@ pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) ->
 }
 
 /// Shapes on the straight bounds where the heading is stationary along them, and their corners.
-fn starts(model: &Model<f64>, region: &Region) -> Vec<Start> {
+fn starts(model: &Model<f64>, region: &Region) -> Vec<Section> {
     let mut found = Vec::new();
     let reach = region.horizon;
     for (bound, edge) in region.bounds().enumerate() {
@@ -82,7 +74,8 @@ fn starts(model: &Model<f64>, region: &Region) -> Vec<Start> {
             let same = |share: f64| turning(&low) * turning(&low.lerp(&high, share)) > 0.0;
             let [_, share] = halved([0.0, 1.0], 60, same);
             let at = edge.onto(&low.lerp(&high, share));
-            found.push(Start { at, bound, along });
+            let bound = Some(bound);
+            found.push(Section { at, along, bound });
         }
         found.extend(corner(region, bound, &edge).filter(|start| inside(&start.at)));
     }
@@ -90,15 +83,15 @@ fn starts(model: &Model<f64>, region: &Region) -> Vec<Start> {
 }
 
 /// The corner where an edge begins, run counter-clockwise.
-fn corner(region: &Region, bound: usize, edge: &Edge) -> Option<Start> {
+fn corner(region: &Region, bound: usize, edge: &Edge) -> Option<Section> {
     let along = edge.counter_clockwise();
     region.edges().iter().find_map(|other| {
         // The edge before is square to this one for a box.
         let turns_left = other.counter_clockwise().perp(&along);
-        (turns_left > 0.99).then(|| Start {
+        (turns_left > 0.99).then(|| Section {
             at: edge.normal * edge.offset + other.normal * other.offset,
-            bound,
             along,
+            bound: Some(bound),
         })
     })
 }
@@ -106,7 +99,7 @@ fn corner(region: &Region, bound: usize, edge: &Edge) -> Option<Start> {
 struct Family<'a> {
     model: &'a Model<f64>,
     region: &'a Region,
-    start: Start,
+    start: Section,
     /// Left or right of the heading.
     sign: f64,
 }
@@ -120,18 +113,14 @@ impl Family<'_> {
     }
 
     fn shoot(&self, rotation: f64, control: StepControl) -> Option<ClosedOrbit> {
+        let bound = self.start.bound?;
         let launch = Launch {
             model: self.model,
             region: self.region,
             momentum: self.momentum(rotation),
             start: self.start.at,
-            first: Motion::Along(Track::new(
-                self.region,
-                self.start.bound,
-                &self.start.at,
-                1.0,
-            )?),
-            until: crate::loops::ReturnCondition::Along(self.start.bound),
+            first: Motion::Along(Track::new(self.region, bound, &self.start.at, 1.0)?),
+            until: ReturnCondition::Along(bound),
             ahead: self.start.along,
             shortest: 0.5,
             near: f64::INFINITY,

@@ -281,7 +281,7 @@ mod tests {
         };
         Shape::Along {
             clearance: Clearance::new(&links, 0.02).unwrap(),
-            piece: Piece::FrontTip,
+            piece: Piece::Tip(0),
             pace: 0,
         }
     }

@@ -1,316 +1,276 @@
-//! Round the regions where the curvature turns left: along zero-level curves and along the border, the region always on
-//! the left. Every piece of either belongs to exactly one such walk, so all walks together go round all regions.
+//! Round the regions where the curvature turns left, each on the left: along zero-level curves and along bounds alike. Both are
+//! curves on which one of several functions vanishes while the others are positive, and where another one falls through zero, it
+//! takes over. So every piece of either kind belongs to exactly one walk, and all walks together go round all regions.
+
+use std::convert::Infallible;
 
 use nalgebra::Vector2;
-use swimmer_files::ArcKind;
 use swimmer_model::Model;
 
-use super::border::Border;
 use super::error::TurningError;
-use super::piece::{Piece, close_up, pieces_of, singular};
-use crate::height_map::{Level, LevelSearch, OnCurve, passes};
-use crate::numerics::halved;
+use crate::arcs::Event;
+use crate::height_map::{End, Level, LevelSearch, OnCurve, Stride, passes};
+use crate::momentum::{Momentum, Motion, Track};
 use crate::region::Region;
 
 /// What the walks go by.
-pub(super) struct Domain<'a, F> {
+#[derive(Clone, Copy)]
+pub(super) struct Domain<'a> {
+    pub(super) model: &'a Model<f64>,
     pub(super) region: &'a Region,
-    pub(super) border: &'a Border,
-    pub(super) level: &'a Level<F>,
+    /// Longest step \[rad\].
     pub(super) step: f64,
+    /// Whether walks go on along bounds where the curvature is negative.
+    pub(super) stays_on_border: bool,
 }
 
-/// A place of the border where the curvature changes sign.
-#[derive(Debug, Clone, Copy)]
-struct Crossing {
-    phi: Vector2<f64>,
-    /// Index of the point before it.
-    after: usize,
-    /// Whether the curvature falls there, going counter-clockwise: a walk leaves the border.
-    leaves: bool,
+/// One arc of a walk.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Piece {
+    pub(super) motion: Motion,
+    pub(super) points: Vec<Vector2<f64>>,
 }
 
-/// Halvings that place a crossing.
-const HALVINGS: usize = 60;
+/// A place with what is run along there.
+type Place = (Motion, OnCurve);
+
 /// Curvatures this small count as zero.
 const ZERO: f64 = 1e-13;
-/// A curve ends at a crossing if it comes this near \[rad\].
-const ARRIVED: f64 = 1e-6;
-/// More points than this and the walk has lost its way.
-const MOST_POINTS: usize = 60_000;
+/// Another function takes over where it is below zero by more than this.
+const BEYOND: f64 = 1e-13;
+/// Which piece of another bound takes over is seen this far beyond a corner \[rad\].
+const AHEAD: f64 = 1e-5;
+/// A walk is back at a corner if it comes this near \[rad\].
+const BACK: f64 = 1e-6;
+/// Shorter arcs are crossings of a corner, not arcs \[rad\].
+const LASTING: f64 = 1e-9;
+/// After more arcs than this a walk has lost its way.
+const MOST_ARCS: usize = 1000;
 
-/// The curvature of θ and its gradient.
-pub(super) fn curvature(model: &Model<f64>, phi: &Vector2<f64>) -> (f64, Vector2<f64>) {
-    let second = model.second_derivatives(phi);
-    let [along1, along2] = second.d_curvature();
-    (second.first.curvature().z, Vector2::new(along1.z, along2.z))
-}
-
-impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Domain<'_, F> {
+impl Domain<'_> {
     /// All walks, or where one loses its way: closed curves with a region of positive curvature on the left, each piece begins where
     /// the one before ends.
     pub(super) fn rounds(
-        &self,
+        self,
         search: &LevelSearch,
-        seeds: Vec<Vector2<f64>>,
+        seeds: &[Vector2<f64>],
     ) -> Result<Vec<Vec<Piece>>, TurningError> {
-        let crossings = self.crossings().ok_or_else(|| {
-            TurningError::lost(
-                Vector2::zeros(),
-                "the curvature vanishes all along the bounds",
-            )
-        })?;
-        let mut rounds: Vec<Vec<Piece>> = Vec::new();
-        let mut unused: Vec<usize> = (0..crossings.len())
-            .filter(|&i| crossings[i].leaves)
+        let along_border = self.border().ok_or(TurningError::Border)?;
+        let places = along_border
+            .iter()
+            .flat_map(|piece| piece.points.iter().map(|phi| (piece.motion, *phi)));
+        let border: Vec<_> = places
+            .map(|(motion, phi)| (motion, phi, curvature(self.model, &phi).0))
             .collect();
-        while let Some(&first) = unused.first() {
-            let mut round = Vec::new();
-            let mut at = first;
-            loop {
-                unused.retain(|&crossing| crossing != at);
-                let (inland, arrived) = self.across(&crossings, at)?;
-                round.extend(inland);
-                let (along, left) = self.along_border(&crossings, arrived)?;
-                round.extend(along);
-                at = left;
-                if at == first {
-                    break;
-                }
-                if !unused.contains(&at) {
-                    let place = crossings[at].phi;
-                    return Err(TurningError::lost(place, "two regions share an edge"));
-                }
-            }
-            rounds.push(round);
+        if border.iter().all(|(.., value)| value.abs() <= ZERO) {
+            let what = "the curvature vanishes all along the bounds";
+            return Err(TurningError::lost(Vector2::zeros(), what));
         }
-        if crossings.is_empty() {
-            let (points, first) = (&self.border.points, self.border.points[0]);
-            if self.sign(&first.phi) > 0 {
-                let gap = 0.3 * self.step;
-                rounds.push(pieces_of(first.phi, first.track, points, first.phi, gap));
-            }
+        let mut rounds = Vec::new();
+        if border.iter().all(|(.., value)| *value > ZERO) {
+            rounds.push(along_border);
         }
-        // What the walks from the border did not meet is closed.
-        let mut seeds = seeds;
-        seeds.retain(|seed| self.region.overstepped(seed) < -1e-7);
-        while !seeds.is_empty() {
-            seeds.retain(|seed| {
-                !rounds.iter().flatten().any(|piece| {
-                    piece.kind == ArcKind::Singular && passes(&piece.points, seed, search.close())
-                })
+        // Where walks leave the border; then what they did not meet.
+        let pairs = border.iter().zip(border.iter().cycle().skip(1));
+        let leaving = pairs.filter(|(here, next)| here.2 > ZERO && next.2 <= ZERO);
+        let inland = seeds
+            .iter()
+            .rev()
+            .filter(|seed| self.region.overstepped(seed) < -1e-7);
+        let starts = leaving.map(|((motion, phi, _), _)| (*motion, phi));
+        for (motion, phi) in starts.chain(inland.map(|seed| (Motion::Singular, seed))) {
+            let mut known = rounds.iter().flatten();
+            let is_known = known.any(|piece: &Piece| {
+                piece.motion == motion && passes(&piece.points, phi, search.close())
             });
-            let Some(seed) = seeds.pop() else { break };
-            rounds.push(self.inland_round(&seed)?);
+            if !is_known {
+                rounds.push(self.round(motion, *phi)?);
+            }
         }
         Ok(rounds)
     }
 
-    fn value(&self, phi: &Vector2<f64>) -> f64 {
-        self.level.at(phi).0
-    }
-
-    /// The sign of the curvature; 0 where it is zero but for rounding.
-    fn sign(&self, phi: &Vector2<f64>) -> i8 {
-        let value = self.value(phi);
-        i8::from(value > ZERO) - i8::from(value < -ZERO)
-    }
-
-    /// All crossings, counter-clockwise.
-    fn crossings(&self) -> Option<Vec<Crossing>> {
-        let points = &self.border.points;
-        let signs: Vec<i8> = points.iter().map(|s| self.sign(&s.phi)).collect();
-        let count = points.len();
-        let start = signs.iter().position(|&sign| sign != 0)?;
-        let mut crossings = Vec::new();
-        let (mut last, mut last_sign) = (start, signs[start]);
-        for k in 1..=count {
-            let i = (start + k) % count;
-            let sign = signs[i];
-            if sign == 0 {
-                continue;
-            }
-            if sign != last_sign {
-                crossings.push(self.crossing(last, i, last_sign > 0));
-            }
-            (last, last_sign) = (i, sign);
-        }
-        crossings.sort_by_key(|crossing| crossing.after);
-        Some(crossings)
-    }
-
-    /// The crossing between two points of different sign; points between them, if any, are zeros.
-    fn crossing(&self, last: usize, next: usize, leaves: bool) -> Crossing {
-        let points = &self.border.points;
-        let after = (last + 1) % points.len();
-        if after != next {
-            let phi = points[after].phi;
-            return Crossing { phi, after, leaves };
-        }
-        let (a, b) = (&points[last], &points[next]);
-        let before = |share| (self.value(&Border::between(a, b, share)) > 0.0) == leaves;
-        let [_, share] = halved([0.0, 1.0], HALVINGS, before);
-        Crossing {
-            phi: Border::between(a, b, share),
-            after: last,
-            leaves,
-        }
-    }
-
-    /// From a crossing inland along zero-level curves to the crossing where they meet the border again.
-    fn across(
-        &self,
-        crossings: &[Crossing],
-        from: usize,
-    ) -> Result<(Vec<Piece>, usize), TurningError> {
-        let phi = crossings[from].phi;
-        let lost = |what| TurningError::lost(phi, what);
-        let begin = self.level.corrected(&phi, None, 1e-6);
-        let begin = begin.ok_or_else(|| lost("zero-level curves cross on the bound"))?;
-        let begin = OnCurve {
-            phi,
-            ..positive_left(begin)
+    /// The border of what the bounds allow round the straight shape; none where it does not come round.
+    fn border(self) -> Option<Vec<Piece>> {
+        // Where φ₂ = 0 no other link is near, and only the bound on φ₁ binds.
+        let mut edges = self.region.edges().iter().enumerate();
+        let (first, edge) = edges.find(|(_, edge)| edge.normal.x > 0.5)?;
+        let start = Vector2::new(edge.offset, 0.0);
+        let track = Track::new(self.region, first, &start, 1.0)?;
+        let on_border = Self {
+            stays_on_border: true,
+            ..self
         };
-        let (mut pieces, end) = self.inland(begin, None)?;
-        let end = end.ok_or_else(|| lost("a zero-level curve does not end"))?;
-        let gap = |i: usize| (crossings[i].phi - end).norm();
-        let arrived = (0..crossings.len())
-            .filter(|&i| !crossings[i].leaves && gap(i) < ARRIVED)
-            .min_by(|&a, &b| gap(a).total_cmp(&gap(b)))
-            .ok_or_else(|| TurningError::lost(end, "a zero-level curve touches the bound"))?;
-        if let Some(last) = pieces.last_mut() {
-            close_up(&mut last.points, crossings[arrived].phi, 0.3 * self.step);
-        }
-        Ok((pieces, arrived))
+        on_border.round(Motion::Along(track), start).ok()
     }
 
-    /// Along zero-level curves from a point on one, turning left where they cross, until the border (its place is
-    /// returned) or, with `home`, until back there.
-    fn inland(
-        &self,
-        begin: OnCurve,
-        home: Option<Vector2<f64>>,
-    ) -> Result<(Vec<Piece>, Option<Vector2<f64>>), TurningError> {
-        let mut pieces = Vec::new();
-        let mut points = vec![begin.phi];
-        let (mut here, mut step) = (begin, self.step);
-        let mut walked = 0;
-        while walked < MOST_POINTS {
-            if let Some(home) = home
-                && walked > 8
+    /// From the first corner behind a shape once round to that corner; the whole curve from the shape where there is no corner.
+    fn round(self, motion: Motion, phi: Vector2<f64>) -> Result<Vec<Piece>, TurningError> {
+        let mut here = self.on(motion, phi)?;
+        let mut pieces: Vec<Piece> = Vec::new();
+        for number in 0..MOST_ARCS {
+            if let Some(first) = pieces.first()
+                && first.motion == here.0
+                && (first.points[0] - here.1.phi).norm() < BACK
             {
-                let ahead = (home - here.phi).dot(&here.tangent);
-                let off = (home - here.phi).perp(&here.tangent).abs();
-                if ahead > 0.0 && ahead <= step && off <= 0.2 * ahead {
-                    close_up(&mut points, home, 0.3 * self.step);
-                    pieces.push(singular(points));
-                    return Ok((pieces, None));
-                }
+                return Ok(pieces);
             }
-            let shorter = |step: f64, what| {
-                if step > 1e-8 * self.step {
-                    Ok(0.5 * step)
-                } else {
-                    Err(TurningError::lost(here.phi, what))
-                }
+            let (piece, next) = self.arc(here)?;
+            let Some(next) = next else {
+                return Ok(vec![piece]);
             };
-            let Some(next) = self.level.stepped(&here, step) else {
-                step = shorter(step, "a zero-level curve has a kink")?;
-                continue;
-            };
-            walked += 1;
-            if self.region.overstepped(&next.phi) > 1e-12 {
-                let end = self.leaving(&here, step).ok_or_else(|| {
-                    TurningError::lost(here.phi, "a zero-level curve runs along the bound")
-                })?;
-                pieces.push(singular(points));
-                return Ok((pieces, Some(end)));
+            // The first one began anywhere.
+            if number > 0 && piece.lasts() {
+                pieces.push(piece);
             }
-            if next.slope_left < 0.0 {
-                // The curve has crossed another one: beyond, the region lies to the right.
-                let Some((node, ahead)) = self.node(&here, &next) else {
-                    step = shorter(step, "zero-level curves nearly cross")?;
-                    continue;
-                };
-                close_up(&mut points, node, 0.3 * self.step);
-                pieces.push(singular(points));
-                points = vec![node];
-                here = self.after(node, ahead)?;
-            } else {
-                here = next;
-            }
-            points.push(here.phi);
-            step = (1.5 * step).min(self.step);
+            here = next;
         }
-        Err(TurningError::lost(
-            here.phi,
-            "a zero-level curve does not end",
-        ))
+        Err(TurningError::lost(phi, "a walk does not come round"))
     }
 
-    /// Where a step leaves the region.
-    fn leaving(&self, here: &OnCurve, step: f64) -> Option<Vector2<f64>> {
-        let at = |length: f64| {
-            let guess = here.phi + here.tangent * length;
-            let point = self.level.corrected(&guess, Some(&here.tangent), step);
-            point.map(|point| point.phi)
+    /// Along one motion to where another one takes over; to no other one where it comes round.
+    fn arc(self, (motion, from): Place) -> Result<(Piece, Option<Place>), TurningError> {
+        let level = self.level(motion);
+        let value = |event, at: &OnCurve| {
+            let (value, gradient) = self.value(event, motion, &at.phi);
+            (value, gradient.dot(&at.tangent))
         };
-        let inside = |length| at(length).is_some_and(|phi| self.region.overstepped(&phi) <= 0.0);
-        let [_, length] = halved([0.0, step], HALVINGS, inside);
-        at(length)
+        let is_beyond = |event: &Event<Infallible>, at: &OnCurve| value(*event, at).0 < -BEYOND;
+        let mut points = vec![from];
+        let stride = Stride {
+            longest: self.step,
+            turn: if motion == Motion::Singular {
+                0.12
+            } else {
+                0.02
+            },
+        };
+        let end = level.walk(&mut points, stride, |at| {
+            at.slope_left > 0.0 && !self.beside(motion).any(|event| is_beyond(&event, at))
+        });
+        let here = points.last().copied().unwrap_or(from);
+        let lost = |what| TurningError::lost(here.phi, what);
+        let gap = 0.3 * self.step;
+        let mut points: Vec<_> = points.iter().map(|at| at.phi).collect();
+        if motion != Motion::Singular {
+            points.dedup_by(|next, kept| (*next - *kept).norm() < gap);
+        }
+        let next = match end {
+            End::Closed => None,
+            End::Stuck => return Err(lost("a curve has a kink, or nearly crosses another one")),
+            End::Met(step, beyond) => {
+                let events = self
+                    .beside(motion)
+                    .filter(|event| is_beyond(event, &beyond));
+                let met = events.filter_map(|event| {
+                    let (at, length) = level.cut(&here, step, |at| value(event, at))?;
+                    (at.slope_left > 0.0).then_some((event, at, length))
+                });
+                let next = if let Some((event, at, _)) = met.min_by(|a, b| a.2.total_cmp(&b.2)) {
+                    self.after(motion, event, &at)?
+                } else {
+                    let node = level.node(&here, &beyond);
+                    let node = node.ok_or_else(|| lost("it is not clear what a curve meets"))?;
+                    (motion, node)
+                };
+                close_up(&mut points, next.1.phi, gap);
+                Some(next)
+            }
+        };
+        Ok((Piece { motion, points }, next))
     }
 
-    /// Counter-clockwise along the border from a crossing to the next one where the walk leaves it.
-    fn along_border(
-        &self,
-        crossings: &[Crossing],
-        from: usize,
-    ) -> Result<(Vec<Piece>, usize), TurningError> {
-        let points = &self.border.points;
-        let to = (from + 1) % crossings.len();
-        let (begin, end) = (&crossings[from], &crossings[to]);
-        if !end.leaves {
-            return Err(TurningError::lost(
-                end.phi,
-                "the curvature changes sign twice at one place of the bound",
-            ));
-        }
-        let mut ahead = Vec::new();
-        let mut i = begin.after;
-        while i != end.after && ahead.len() <= points.len() {
-            i = (i + 1) % points.len();
-            ahead.push(points[i]);
-        }
-        // What ends at the crossing runs along the bound of the point before it.
-        let track = points[begin.after].track;
-        let pieces = pieces_of(begin.phi, track, &ahead, end.phi, 0.3 * self.step);
-        Ok((pieces, to))
+    /// What vanishes along a motion and rises to its left.
+    pub(super) fn level(
+        self,
+        motion: Motion,
+    ) -> Level<impl Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> {
+        Level(move |phi: &Vector2<f64>| match motion {
+            Motion::Singular => curvature(self.model, phi),
+            Motion::Along(track) => {
+                let level = track.wall.level(phi);
+                (level.value, level.gradient)
+            }
+        })
     }
 
-    /// A walk that never meets the border.
-    fn inland_round(&self, seed: &Vector2<f64>) -> Result<Vec<Piece>, TurningError> {
-        let begin = self.level.corrected(seed, None, 1e-6);
-        let begin = begin.ok_or_else(|| TurningError::lost(*seed, "zero-level curves branch"))?;
-        let begin = positive_left(begin);
-        match self.inland(begin, Some(begin.phi))? {
-            (pieces, None) => Ok(pieces),
-            (_, Some(end)) => Err(TurningError::lost(
-                end,
-                "a zero-level curve grazes the bound",
-            )),
+    /// What else must not fall through zero along a motion.
+    fn beside(self, motion: Motion) -> impl Iterator<Item = Event<Infallible>> {
+        let is_heeded = motion != Motion::Singular && !self.stays_on_border;
+        let bounds = 0..self.region.bounds().count();
+        let others = bounds.filter(move |index| Some(*index) != motion.bound());
+        let curvature = is_heeded.then_some(Event::HeightGone);
+        let events = curvature.into_iter().chain(others.map(Event::Bound));
+        events.chain([Event::PieceEnd])
+    }
+
+    /// Its value, and how that changes with the shape.
+    fn value(
+        self,
+        event: Event<Infallible>,
+        motion: Motion,
+        phi: &Vector2<f64>,
+    ) -> (f64, Vector2<f64>) {
+        let none = (1.0, Vector2::zeros());
+        match event {
+            Event::Bound(index) => self
+                .region
+                .bound(index)
+                .map_or(none, |bound| (bound.margin(phi), bound.gradient(phi))),
+            Event::PieceEnd => motion.piece_end(phi).unwrap_or(none),
+            _ => curvature(self.model, phi),
         }
+    }
+
+    /// What takes over where something falls through zero.
+    fn after(
+        self,
+        motion: Motion,
+        event: Event<Infallible>,
+        at: &OnCurve,
+    ) -> Result<Place, TurningError> {
+        let next = match event {
+            Event::PieceEnd => motion.next_piece(),
+            Event::Bound(index) => {
+                let ahead = at.phi + at.tangent * AHEAD;
+                Track::new(self.region, index, &ahead, 1.0).map(Motion::Along)
+            }
+            _ => Some(Motion::Singular),
+        };
+        let next = next.ok_or_else(|| TurningError::lost(at.phi, "a bound ends nowhere"))?;
+        self.on(next, at.phi)
+    }
+
+    /// Where a motion begins.
+    fn on(self, motion: Motion, phi: Vector2<f64>) -> Result<Place, TurningError> {
+        let on = self.level(motion).corrected(&phi, None, 1e-6);
+        let on = on.ok_or_else(|| TurningError::lost(phi, "zero-level curves cross"))?;
+        Ok((motion, OnCurve { phi, ..on }))
     }
 }
 
-/// The same point, run with the function rising to the left.
-fn positive_left(point: OnCurve) -> OnCurve {
-    if point.slope_left < 0.0 {
-        OnCurve {
-            tangent: -point.tangent,
-            slope_left: -point.slope_left,
-            ..point
-        }
-    } else {
-        point
+impl Piece {
+    /// Whether it is more than a corner.
+    pub(super) fn lasts(&self) -> bool {
+        let mut sides = self.points.array_windows();
+        sides.any(|[a, b]| (b - a).norm() > LASTING)
     }
+}
+
+/// Ends a polyline at a point, without a last vertex too near to it.
+pub(super) fn close_up(points: &mut Vec<Vector2<f64>>, end: Vector2<f64>, gap: f64) {
+    while points.len() > 1 && points.last().is_some_and(|last| (last - end).norm() < gap) {
+        points.pop();
+    }
+    points.push(end);
+}
+
+/// The curvature of θ with its gradient: the height of the momentum that is dual to the rotation alone.
+fn curvature(model: &Model<f64>, phi: &Vector2<f64>) -> (f64, Vector2<f64>) {
+    const TURNS: Momentum = Momentum {
+        p: Vector2::new(0.0, 0.0),
+        c: 1.0,
+    };
+    let (height, ..) = TURNS.evaluate(model, phi, &[0.0; 3]);
+    (height.value, height.gradient)
 }

@@ -6,8 +6,7 @@
 
 use gait_optimizer::{ArcKind, OptimalGait};
 use nalgebra::{DMatrix, DVector, Vector2};
-use swimmer_files::AnyGait;
-use swimmer_model::{Model, Swimmer, Tolerance, swim};
+use swimmer_model::{Model, Swimmer};
 
 use crate::plane::Pose;
 use crate::swimmers::Apart;
@@ -181,8 +180,8 @@ impl Direct {
             .collect()
     }
 
-    /// X over L of the start.
-    pub(crate) fn start(&self) -> f64 {
+    /// X over L, signed, by the poses of its sides.
+    pub(crate) fn carries(&self) -> f64 {
         4.0 * self.sign * self.value()
     }
 
@@ -240,7 +239,7 @@ impl Direct {
         (gradient * self.sign, second * self.sign)
     }
 
-    /// Climbs until the moves are below 1e-8; returns X over L, signed, swum by the model.
+    /// Climbs until the moves are below 1e-8; returns X over L, signed.
     pub(crate) fn climb(&mut self) -> f64 {
         let mut damping = 1e-2;
         let mut here = self.value();
@@ -289,41 +288,7 @@ impl Direct {
                 }
             }
         }
-        self.swum()
-    }
-
-    /// X over L of the closed polygon through the quarter and its images, by the model's own integration.
-    fn swum(&self) -> f64 {
-        let mut quarter: Vec<Vector2<f64>> = Vec::new();
-        for k in 0..self.nodes.len() - 1 {
-            let (from, to) = (self.nodes[k].at, self.nodes[k + 1].at);
-            if self.on_border[k] {
-                let border = self.border(from, to);
-                quarter.extend(&border[..border.len() - 1]);
-            } else {
-                quarter.push(from);
-            }
-        }
-        quarter.push(self.nodes[self.nodes.len() - 1].at);
-        let last = quarter.len() - 1;
-        let mut phi = quarter.clone();
-        phi.extend(
-            quarter[..last]
-                .iter()
-                .rev()
-                .map(|p| Vector2::new(-p.y, -p.x)),
-        );
-        phi.pop();
-        phi.extend(phi.clone().iter().map(|p| -p));
-        phi.dedup_by(|a, b| (*a - *b).norm() < 1e-13);
-        let u: Vec<f64> = (0..phi.len())
-            .map(|k| k as f64 / phi.len() as f64)
-            .collect();
-        // A corner at every knot: straight sides.
-        let corners: Vec<usize> = (0..phi.len()).collect();
-        let gait = AnyGait::from_samples(&u, &phi, &corners).unwrap();
-        let stroke = swim(&self.model, &gait, &Tolerance::new(1e-11));
-        stroke.displacement.x
+        self.carries()
     }
 }
 

@@ -43,7 +43,7 @@ fn the_second_variation_agrees_with_the_neighbours() {
                             let Some(gain) = neighbour_gain(&search, &family, &candidate) else {
                                 continue;
                             };
-                            let legs: Vec<_> = lasting(candidate.quarter.legs()).copied().collect();
+                            let legs: Vec<_> = lasting(&candidate.quarter.legs).copied().collect();
                             let of = (&model, candidate.momentum);
                             let trace = QuarterTrace::new(of, &region, &legs, 256).unwrap();
                             let conditions = Certificate::new(trace.conditions);
@@ -70,14 +70,14 @@ fn neighbour_gain(search: &Search<'_>, family: &StartFamily, candidate: &Candida
     const BESIDE: f64 = 1e-3;
     let first = candidate
         .quarter
-        .legs()
+        .legs
         .iter()
         .find(|leg| leg.motion == Motion::Singular)?;
     let p = match family {
         StartFamily::StartLine { .. } => first.from[0],
         StartFamily::Bounds { .. } => candidate
             .quarter
-            .legs()
+            .legs
             .iter()
             .take_while(|leg| leg.motion != Motion::Singular)
             .map(|leg| leg.length)

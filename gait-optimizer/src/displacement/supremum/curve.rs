@@ -96,14 +96,6 @@ impl<'a> Ground<'a> {
         poses.last().map_or(0.0, |end| 4.0 * self.sign * end.x)
     }
 
-    /// The multipliers that belong to a polygon which ends in a pose.
-    pub(super) fn momentum(&self, end: &Pose<f64>) -> Momentum {
-        Momentum {
-            p: Vector2::new(self.sign, 0.0),
-            c: -self.sign * end.y,
-        }
-    }
-
     pub(super) fn height(&self, momentum: &Momentum, phi: &Shape, pose: &Pose<f64>) -> Height {
         momentum
             .evaluate(self.model, phi, &[pose.x, pose.y, pose.theta])
@@ -171,7 +163,7 @@ impl<'a> Ground<'a> {
     fn climb(&self, corners: &mut [Shape], longest: f64) {
         let poses = self.poses(corners);
         let Some(end) = poses.last() else { return };
-        let momentum = self.momentum(end);
+        let momentum = Momentum::of_quarter(self.sign, end.y);
         let heights: Vec<Height> = corners
             .iter()
             .zip(&poses)

@@ -57,7 +57,7 @@ impl Ground<'_> {
         let Some(end) = poses.last() else {
             return Vec::new();
         };
-        let momentum = self.momentum(end);
+        let momentum = Momentum::of_quarter(self.sign, end.y);
         let reach = self.region.reach();
         let mut seen = BTreeMap::new();
         for j in 0..whole(reach / GRID) {

@@ -34,30 +34,11 @@ pub(crate) struct Push {
     /// c.
     shift: f64,
     /// L.
-    slope: f64,
+    pub(super) slope: f64,
 }
 
 /// A stretch of a singular arc: pushes at its ends, and its length.
 pub(crate) type Stretch = (Push, Push, f64);
-
-/// The second variation, factored along the quarter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SecondVariation {
-    u: f64,
-    w: f64,
-    /// The smallest W so far: 1 at the start, positive where the quarter is a maximum.
-    pub(crate) least: f64,
-}
-
-impl Default for SecondVariation {
-    fn default() -> Self {
-        Self {
-            u: 0.0,
-            w: 1.0,
-            least: 1.0,
-        }
-    }
-}
 
 impl Push {
     /// From λ₃, the curvature (over L) in the body's frame, the heading, `x_f − x` and the slope of the height to the left.
@@ -78,27 +59,27 @@ impl Push {
     }
 }
 
-impl SecondVariation {
-    /// Of a quarter's free stretches.
-    pub(crate) fn of(quarter: &[Stretch]) -> Self {
-        let mut form = Self::default();
-        for (before, after, length) in quarter {
-            form.step(before, after, *length);
-        }
-        form
-    }
+/// a, c and the length over L of a short stretch, along which v keeps its value.
+fn middle((before, after, length): &Stretch) -> [f64; 3] {
+    [
+        0.5 * (before.turn + after.turn),
+        0.5 * (before.shift + after.shift),
+        length / (0.5 * (before.slope + after.slope)),
+    ]
+}
 
-    /// On over a stretch of a singular arc of this length, between pushes at its ends.
-    fn step(&mut self, before: &Push, after: &Push, length: f64) {
-        let middle = |value: fn(&Push) -> f64| 0.5 * (value(before) + value(after));
-        let (a, c) = (middle(|push| push.turn), middle(|push| push.shift));
-        let rate = length / middle(|push| push.slope);
+/// The smallest W along a quarter with these free stretches: 1 at the start, positive where the quarter is a maximum.
+pub(crate) fn least_pivot(quarter: &[Stretch]) -> f64 {
+    let (mut u, mut w, mut least) = (0.0, 1.0, 1.0_f64);
+    for stretch in quarter {
+        let [a, c, rate] = middle(stretch);
         // The matrix of the system is nilpotent: the exponential has two terms.
-        let common = rate * (a * self.w - c * self.u);
-        self.u += a * common;
-        self.w += c * common;
-        self.least = self.least.min(self.w);
+        let common = rate * (a * w - c * u);
+        u += a * common;
+        w += c * common;
+        least = least.min(w);
     }
+    least
 }
 
 impl Push {
@@ -134,17 +115,10 @@ pub(crate) fn is_maximum_without_symmetry(quarter: &[Stretch], d: f64) -> bool {
     for number in 0..4 {
         let backwards = number % 2 == 1;
         for at in 0..quarter.len() {
-            let at = if backwards {
-                quarter.len() - 1 - at
-            } else {
-                at
-            };
-            let (before, after, length) = quarter[at];
+            let last = quarter.len() - 1;
+            let (before, after, length) = quarter[if backwards { last - at } else { at }];
             let [before, after] = [before, after].map(|push| push.in_quarter(number, d));
-            let middle = |value: fn(&Push) -> f64| 0.5 * (value(&before) + value(&after));
-            let (a, c) = (middle(|push| push.turn), middle(|push| push.shift));
-            let rate = length / middle(|push| push.slope);
-            // As along a quarter, v keeps its value over a short stretch.
+            let [a, c, rate] = middle(&(before, after, length));
             let turned = places.row(0).transpose();
             let swept = (alpha * a + kappa * c - turned * (sign * c)) * rate;
             places += Vector2::new(a, c) * swept.transpose();
@@ -247,11 +221,11 @@ mod tests {
         for strength in [0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 6.0] {
             for phase in [0.0, 1.0, 2.0, 3.0] {
                 let push = |s: f64| push(strength, phase, s);
-                let mut form = SecondVariation::default();
-                for i in 0..count {
+                let stretch = |i: i32| {
                     let s = f64::from(i) * step;
-                    form.step(&push(s), &push(s + step), step);
-                }
+                    (push(s), push(s + step), step)
+                };
+                let found = least_pivot(&(0..count).map(stretch).collect::<Vec<_>>());
                 let at: Vec<Push> = (0..count)
                     .map(|i| push((f64::from(i) + 0.5) * step))
                     .collect();
@@ -262,7 +236,7 @@ mod tests {
                 });
                 let least = matrix.symmetric_eigen().eigenvalues.min();
                 if least.abs() > 0.02 {
-                    assert_eq!(form.least > 0.0, least > 0.0, "{form:?} {least}");
+                    assert_eq!(found > 0.0, least > 0.0, "{found} {least}");
                 }
             }
         }
