@@ -325,14 +325,8 @@ pub fn refused(
     servos: &Servos,
     links: &Links<f64>,
 ) -> Option<(usize, String)> {
-    let limits = servos.limits();
     tables.iter().find_map(|sent| {
-        let facts = crate::losses::facts(&sent.table, links)?;
-        let allowed = facts
-            .allow(&limits)
-            .and_then(|()| facts.allow_period(&limits, sent.period_us));
-        allowed
-            .err()
-            .map(|refusal| (sent.step, refusal.to_string()))
+        let verdict = crate::losses::verdict(&sent.table, links, servos, sent.period_us);
+        Some((sent.step, verdict.refused?))
     })
 }

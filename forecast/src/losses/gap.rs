@@ -1,10 +1,5 @@
 //! How close the side links come to each other along a way.
 
-#![allow(
-    clippy::cast_possible_truncation,
-    reason = "the clearance is the robot's own, in single precision"
-)]
-
 use gait_player::clearance::{clearance, margin as robot_margin};
 use nalgebra::Vector2;
 use swimmer_model::{Gait, Links};
