@@ -3,6 +3,8 @@
 use nalgebra::Vector2;
 use swimmer_model::Gait;
 
+use crate::timing::cuts;
+
 /// Where a gait turns a joint furthest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
@@ -14,12 +16,10 @@ pub struct Reach {
     pub angle: f64,
 }
 
-/// Looks at a gait are at least this dense over a cycle.
-const LOOKS: f64 = 2048.0;
 /// Steps of the golden section that refines the best look: 1e-9 of two looks.
 const REFINEMENTS: usize = 44;
 
-/// The largest |φᵢ| of a gait, with its place: the best of 2048 looks and all piece ends, refined by golden section.
+/// The largest |φᵢ| of a gait, with its place: the best of 2048 looks and of all ends of pieces, refined by golden section.
 ///
 /// ```
 /// use swimmer_files::AnyGait;
@@ -30,20 +30,11 @@ const REFINEMENTS: usize = 44;
 pub fn reach<G: Gait<f64> + ?Sized>(gait: &G) -> Reach {
     let mut best = at(gait, 0.0);
     let mut width = 0.0;
-    let mut start = 0.0;
-    for piece in 0..gait.pieces().max(1) {
-        let end = gait.piece_end(piece).min(1.0);
-        let looks = ((end - start) * LOOKS).ceil().max(1.0);
-        let step = (end - start) / looks;
-        let mut look = 0.0;
-        while look < looks {
-            let there = at(gait, start + look * step);
-            if there.angle.abs() > best.angle.abs() {
-                (best, width) = (there, step);
-            }
-            look += 1.0;
+    for [start, end] in cuts(gait).array_windows() {
+        let there = at(gait, *start);
+        if there.angle.abs() > best.angle.abs() {
+            (best, width) = (there, end - start);
         }
-        start = end;
     }
     let joint = best.joint;
     let angle = |u: f64| component(&gait.at(u).phi, joint);
