@@ -40,7 +40,6 @@ pub mod table;
 pub mod tank;
 pub mod timing;
 
-pub use certainty::Ends;
 pub use fluid::{Demand, demand};
 pub use losses::{Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast};
 pub use net_motion::NetMotion;
