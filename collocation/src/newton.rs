@@ -7,18 +7,18 @@
 
 mod preconditioner;
 
-use gait_optimizer::region::Bound;
-use nalgebra::{DMatrix, Matrix2, Matrix2xX};
+use gait_optimizer::region::{Bound, Level};
+use nalgebra::{Matrix2, Matrix2xX};
 use swimmer_model::Model;
 
 use super::guess::bind_ends;
 use super::mesh::Mesh;
 use super::path::Path;
-use super::{CollocationError, HORIZON, lighthill};
+use super::{CollocationError, HORIZON, levels, lighthill};
 use preconditioner::Preconditioner;
 
 /// Where the barrier begins and ends; both count against an objective, ln E − 2 ln x, of order one.
-const FIRST_BARRIER: f64 = 1e-3;
+pub(crate) const FIRST_BARRIER: f64 = 1e-3;
 const LAST_BARRIER: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 200;
 const MOST_PRODUCTS: usize = 200;
@@ -40,8 +40,8 @@ pub(crate) struct Newton<'a> {
     /// Of the wanted x.
     pub(crate) sign: f64,
     path: Path,
-    /// Multiplier density of each wall (rows) at each point (columns).
-    multipliers: DMatrix<f64>,
+    /// Multiplier density of each wall at each point, in the order of [`levels`].
+    multipliers: Vec<f64>,
 }
 
 /// A step towards the optimum of the barrier problem.
@@ -56,23 +56,25 @@ struct Step {
 }
 
 impl<'a> Newton<'a> {
+    /// With multipliers on the central path.
     pub(crate) fn new(
         model: &'a Model<f64>,
         mesh: &'a Mesh,
         walls: &'a [Bound],
         sign: f64,
         phi: Matrix2xX<f64>,
+        barrier: f64,
     ) -> Self {
-        let mut newton = Self {
+        Self {
+            multipliers: levels(walls, &phi)
+                .map(|(_, level)| barrier / level.value)
+                .collect(),
             model,
             mesh,
             walls,
             sign,
             path: Path::new(model, mesh, phi),
-            multipliers: DMatrix::zeros(walls.len(), mesh.len()),
-        };
-        newton.center(FIRST_BARRIER);
-        newton
+        }
     }
 
     /// Iterates to an optimum.
@@ -124,41 +126,21 @@ impl<'a> Newton<'a> {
         if path.phi.amax() > HORIZON {
             return None;
         }
-        for (phi, weight) in path.phi.column_iter().zip(&self.mesh.weights) {
-            for wall in self.walls {
-                let margin = wall.smooth_level(&phi.into_owned()).value;
-                if margin <= 0.0 || margin.is_nan() {
-                    return None;
-                }
-                value -= barrier * weight * margin.ln();
+        for (point, Level { value: margin, .. }) in levels(self.walls, &path.phi) {
+            if margin <= 0.0 || margin.is_nan() {
+                return None;
             }
+            value -= barrier * self.mesh.weights[point] * margin.ln();
         }
         value.is_finite().then_some(value)
-    }
-
-    /// Multipliers on the central path.
-    fn center(&mut self, barrier: f64) {
-        for (phi, mut multipliers) in self
-            .path
-            .phi
-            .column_iter()
-            .zip(self.multipliers.column_iter_mut())
-        {
-            for (multiplier, wall) in multipliers.iter_mut().zip(self.walls) {
-                *multiplier = barrier / wall.smooth_level(&phi.into_owned()).value;
-            }
-        }
     }
 
     /// Of the barrier function, per shape, the ends on their lines; from that of the objective.
     fn gradient(&self, slope: &Matrix2xX<f64>, barrier: f64) -> Matrix2xX<f64> {
         let mut gradient = slope.clone();
-        for (point, weight) in self.mesh.weights.iter().enumerate() {
-            for wall in self.walls {
-                let level = wall.smooth_level(&self.path.phi.column(point).into_owned());
-                let mut pushed = gradient.column_mut(point);
-                pushed -= level.gradient * (weight * barrier / level.value);
-            }
+        for (point, level) in levels(self.walls, &self.path.phi) {
+            let mut pushed = gradient.column_mut(point);
+            pushed -= level.gradient * (self.mesh.weights[point] * barrier / level.value);
         }
         bind_ends(&mut gradient);
         gradient
@@ -168,18 +150,16 @@ impl<'a> Newton<'a> {
     fn step(&self, barrier: f64) -> Step {
         let slope = self.path.slope(self.mesh);
         let gradient = self.gradient(&slope, barrier);
-        let mut preconditioner = Preconditioner::new(&self.path, self.mesh);
-        let mut curvature = vec![Matrix2::zeros(); self.mesh.len()];
-        for (point, weight) in self.mesh.weights.iter().enumerate() {
-            for (wall, multiplier) in self.walls.iter().zip(&self.multipliers.column(point)) {
-                let level = wall.smooth_level(&self.path.phi.column(point).into_owned());
-                let stiff = level.gradient * level.gradient.transpose();
-                let stiff = stiff * (weight * multiplier / level.value);
-                preconditioner.stiffen(point, &stiff);
-                curvature[point] += stiff - level.hessian * (weight * multiplier);
-            }
+        let mut pushes = vec![Matrix2::zeros(); self.mesh.len()];
+        let mut curvature = pushes.clone();
+        let walls = levels(self.walls, &self.path.phi).zip(&self.multipliers);
+        for ((point, level), multiplier) in walls {
+            let push = self.mesh.weights[point] * multiplier;
+            let stiff = level.gradient * level.gradient.transpose() * (push / level.value);
+            pushes[point] += stiff;
+            curvature[point] += stiff - level.hessian * push;
         }
-        preconditioner.factor();
+        let preconditioner = Preconditioner::new(&self.path, self.mesh, &pushes);
         let product = |along: &Matrix2xX<f64>| {
             let size = DIFFERENCE / along.amax();
             let moved = Path::new(self.model, self.mesh, &self.path.phi + along * size);
@@ -249,18 +229,15 @@ impl<'a> Newton<'a> {
         barrier: f64,
         length: f64,
     ) {
-        for (point, mut multipliers) in self.multipliers.column_iter_mut().enumerate() {
-            let at = |path: &Path| path.phi.column(point).into_owned();
-            for (multiplier, wall) in multipliers.iter_mut().zip(self.walls) {
-                let level = wall.smooth_level(&at(&self.path));
-                let opening = level.gradient.dot(&shapes.column(point));
-                let change =
-                    barrier / level.value - *multiplier - *multiplier / level.value * opening;
-                let central = barrier / wall.smooth_level(&at(next)).value;
-                *multiplier = (*multiplier + length * change)
-                    .max(0.01 * *multiplier)
-                    .clamp(central * 1e-6, central * 1e6);
-            }
+        let now = levels(self.walls, &self.path.phi);
+        let walls = now.zip(levels(self.walls, &next.phi));
+        for (((point, level), (_, after)), multiplier) in walls.zip(&mut self.multipliers) {
+            let opening = level.gradient.dot(&shapes.column(point));
+            let change = barrier / level.value - *multiplier - *multiplier / level.value * opening;
+            let central = barrier / after.value;
+            *multiplier = (*multiplier + length * change)
+                .max(0.01 * *multiplier)
+                .clamp(central * 1e-6, central * 1e6);
         }
     }
 }

@@ -29,11 +29,7 @@ fn gradient_and_hessian_are_exact() {
         .bounds()
         .collect();
     let barrier = 1e-2;
-    let make = |phi| {
-        let mut newton = Newton::new(&model, &mesh, &walls, 1.0, phi);
-        newton.center(barrier);
-        newton
-    };
+    let make = |phi| Newton::new(&model, &mesh, &walls, 1.0, phi, barrier);
     let gradient = |newton: &Newton<'_>| newton.gradient(&newton.path.slope(&mesh), barrier);
     let phi = somewhere(&mesh, 1.3);
     let newton = make(phi.clone());
