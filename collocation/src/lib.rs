@@ -36,7 +36,7 @@ use swimmer_files::Bounds;
 use swimmer_model::{Gait, Model};
 
 use mesh::Mesh;
-use newton::{FIRST_BARRIER, Newton};
+use newton::Newton;
 use path::Path;
 
 /// What is to be solved, and how finely.
@@ -151,14 +151,13 @@ pub fn solve<G: Gait<f64> + ?Sized>(
     let walls = problem.validate()?;
     let mesh = Mesh::new(problem.elements, problem.degree);
     let phi = guess::on_mesh(guess, &mesh, &walls)?;
-    let newton = Newton::new(
-        problem.model,
-        &mesh,
-        &walls,
-        problem.sign,
-        phi,
-        FIRST_BARRIER,
-    );
+    let newton = Newton {
+        model: problem.model,
+        mesh: &mesh,
+        walls: &walls,
+        sign: problem.sign,
+        path: Path::new(problem.model, &mesh, phi),
+    };
     let path = newton.run()?;
     // φ̇ = u holds for polynomials whatever the mesh. What a coarse mesh gets wrong are θ, x and E, and a spurious optimum of the
     // discretisation lives on just that: along the same polynomials they follow again by a rule of the highest degree.

@@ -1,4 +1,4 @@
-//! The primal–dual interior-point iteration on the shapes.
+//! The interior-point iteration on the shapes.
 //!
 //! Iterates stay strictly inside the walls and on the state equations, so the barrier function itself is the merit function. A
 //! step solves Newton's equation by conjugate gradients, which ask for the Hessian along one direction at a time (the
@@ -18,7 +18,7 @@ use super::{CollocationError, HORIZON, levels, lighthill};
 use preconditioner::Preconditioner;
 
 /// Where the barrier begins and ends; both count against an objective, ln E − 2 ln x, of order one.
-pub(crate) const FIRST_BARRIER: f64 = 1e-3;
+const FIRST_BARRIER: f64 = 1e-3;
 const LAST_BARRIER: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 200;
 const MOST_PRODUCTS: usize = 200;
@@ -39,9 +39,7 @@ pub(crate) struct Newton<'a> {
     pub(crate) walls: &'a [Bound],
     /// Of the wanted x.
     pub(crate) sign: f64,
-    path: Path,
-    /// Multiplier density of each wall at each point, in the order of [`levels`].
-    multipliers: Vec<f64>,
+    pub(crate) path: Path,
 }
 
 /// A step towards the optimum of the barrier problem.
@@ -55,28 +53,7 @@ struct Step {
     convex: bool,
 }
 
-impl<'a> Newton<'a> {
-    /// With multipliers on the central path.
-    pub(crate) fn new(
-        model: &'a Model<f64>,
-        mesh: &'a Mesh,
-        walls: &'a [Bound],
-        sign: f64,
-        phi: Matrix2xX<f64>,
-        barrier: f64,
-    ) -> Self {
-        Self {
-            multipliers: levels(walls, &phi)
-                .map(|(_, level)| barrier / level.value)
-                .collect(),
-            model,
-            mesh,
-            walls,
-            sign,
-            path: Path::new(model, mesh, phi),
-        }
-    }
-
+impl Newton<'_> {
     /// Iterates to an optimum.
     pub(crate) fn run(mut self) -> Result<Path, CollocationError> {
         let mut barrier = if self.walls.is_empty() {
@@ -94,7 +71,6 @@ impl<'a> Newton<'a> {
             let largest = step.shapes.amax();
             let settled = largest <= SMALL_STEP;
             let next = if let Some((length, path, value)) = self.search(&step, barrier, here) {
-                self.move_multipliers(&step.shapes, &path, barrier, length);
                 (self.path, here) = (path, value);
                 step.convex && length >= 0.9 && (settled || -step.slope <= barrier)
             } else if -step.slope <= 1e-11 {
@@ -152,9 +128,8 @@ impl<'a> Newton<'a> {
         let gradient = self.gradient(&slope, barrier);
         let mut pushes = vec![Matrix2::zeros(); self.mesh.len()];
         let mut curvature = pushes.clone();
-        let walls = levels(self.walls, &self.path.phi).zip(&self.multipliers);
-        for ((point, level), multiplier) in walls {
-            let push = self.mesh.weights[point] * multiplier;
+        for (point, level) in levels(self.walls, &self.path.phi) {
+            let push = self.mesh.weights[point] * barrier / level.value;
             let stiff = level.gradient * level.gradient.transpose() * (push / level.value);
             pushes[point] += stiff;
             curvature[point] += stiff - level.hessian * push;
@@ -219,26 +194,6 @@ impl<'a> Newton<'a> {
             length *= 0.5;
         }
         None
-    }
-
-    /// The dual step, no farther than keeps every multiplier positive, and back near the central path of the new shapes.
-    fn move_multipliers(
-        &mut self,
-        shapes: &Matrix2xX<f64>,
-        next: &Path,
-        barrier: f64,
-        length: f64,
-    ) {
-        let now = levels(self.walls, &self.path.phi);
-        let walls = now.zip(levels(self.walls, &next.phi));
-        for (((point, level), (_, after)), multiplier) in walls.zip(&mut self.multipliers) {
-            let opening = level.gradient.dot(&shapes.column(point));
-            let change = barrier / level.value - *multiplier - *multiplier / level.value * opening;
-            let central = barrier / after.value;
-            *multiplier = (*multiplier + length * change)
-                .max(0.01 * *multiplier)
-                .clamp(central * 1e-6, central * 1e6);
-        }
     }
 }
 
