@@ -28,7 +28,7 @@
 //! assert!(forecast.share(forecast.total_loss()).unwrap() < 0.1);
 //! ```
 
-pub mod certainty;
+mod certainty;
 pub mod fluid;
 pub mod losses;
 pub mod net_motion;

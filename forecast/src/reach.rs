@@ -1,6 +1,5 @@
 //! The angles that a gait asks of the servos.
 
-use nalgebra::Vector2;
 use swimmer_model::Gait;
 
 use crate::timing::cuts;
@@ -37,7 +36,7 @@ pub fn reach<G: Gait<f64> + ?Sized>(gait: &G) -> Reach {
         }
     }
     let joint = best.joint;
-    let angle = |u: f64| component(&gait.at(u).phi, joint);
+    let angle = |u: f64| gait.at(u).phi[joint];
     let (mut low, mut high) = (best.u - width, best.u + width);
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     for _ in 0..REFINEMENTS {
@@ -62,16 +61,12 @@ pub fn reach<G: Gait<f64> + ?Sized>(gait: &G) -> Reach {
 
 fn at<G: Gait<f64> + ?Sized>(gait: &G, u: f64) -> Reach {
     let phi = gait.at(u).phi;
-    let joint = usize::from(phi.y.abs() > phi.x.abs());
+    let joint = phi.iamax();
     Reach {
         u,
         joint,
-        angle: component(&phi, joint),
+        angle: phi[joint],
     }
-}
-
-fn component(phi: &Vector2<f64>, joint: usize) -> f64 {
-    if joint == 0 { phi.x } else { phi.y }
 }
 
 #[cfg(test)]
@@ -99,6 +94,6 @@ mod tests {
             .fold(0.0, f64::max);
         assert!((found.angle.abs() - dense).abs() < 1e-11 && found.angle.abs() >= dense - 1e-14);
         let there = gait.at(found.u).phi;
-        assert!((component(&there, found.joint) - found.angle).abs() < 1e-12);
+        assert!((there[found.joint] - found.angle).abs() < 1e-12);
     }
 }
