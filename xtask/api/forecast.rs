@@ -295,7 +295,6 @@ pub fn until_wall<G: Gait<f64> + ?Sized>(
     tank: &Tank,
     start: &Pose<f64>,
 ) -> Option<Meeting> {}
-pub mod certainty {}
 pub mod fluid {
     pub use crate::Demand;
     pub use crate::demand;
