@@ -41,7 +41,7 @@ mod worst;
 use swimmer_files::Bounds;
 use swimmer_model::Swimmer;
 
-use crate::certificate::Certificate;
+use crate::certificate::{Certificate, Condition};
 use crate::cycle::Cycle;
 use crate::displacement::{DisplacementProblem, displacement};
 use crate::efficiency::Branch;
@@ -142,7 +142,7 @@ impl Robustness {
             values: ensemble.values(design, &found.point),
             nominal,
             held_by: holders.collect(),
-            members: ensemble.counts(),
+            members: (ensemble.grid.len(), ensemble.normal.len()),
             off_branch: ensemble.is_off_branch(design, &found.point),
             links_cross: [
                 ensemble.on_grid().map(crossing).fold(0.0, f64::max),
@@ -289,7 +289,9 @@ fn certified<F: Family>(
     })?;
     let mut checks = family.conditions(&found.point, &found.weighted);
     checks.extend(certificate::of_curve(&cycle, bounds, &swimmer.links));
-    checks.extend(certificate::of_symmetry(&stroke));
+    // What gaits with the paper's symmetries bring is along the heading, all of it.
+    checks.push(Condition::NoLateral.check(stroke.displacement.y.abs()));
+    checks.push(Condition::NoRotation.check(stroke.rotation.abs()));
     let certificate = Certificate::new(checks);
     let cycles = [&cycle, optimum];
     let (robustness, certificate) =

@@ -30,11 +30,12 @@ pub(super) const FLAT: f64 = 1e-11;
 
 /// An arc as the design sees it.
 #[derive(Debug, Clone)]
-enum Leg {
-    /// Nodes and the direction in which each moves.
-    Free(Vec<(Vector2<f64>, Vector2<f64>)>),
-    /// Straight along a bound between these ends; a neighbouring free arc may move them.
-    Bound([Vector2<f64>; 2]),
+struct Leg {
+    kind: ArcKind,
+    /// Nodes of a free arc, and the direction in which each moves.
+    nodes: Vec<(Vector2<f64>, Vector2<f64>)>,
+    /// Ends of a straight one along a bound; neighbouring free arcs may move them.
+    ends: [Vector2<f64>; 2],
 }
 
 /// Gaits with the arcs of a nominal optimum.
@@ -56,21 +57,23 @@ impl Arcs {
         })?;
         let mut legs = Vec::with_capacity(gait.arcs.len());
         for (index, (arc, timed)) in gait.arcs.iter().zip(gait.cycle_arcs()).enumerate() {
-            legs.push(match arc.kind {
-                ArcKind::Upper => Leg::Bound([arc.from, arc.to].map(Vector2::from)),
-                ArcKind::Singular => {
-                    let neighbour = |at: Option<usize>, diagonal: Vector2<f64>| {
-                        at.and_then(|at| gait.arcs.get(at))
-                            .map_or(diagonal, |bound| {
-                                Vector2::from(bound.to) - Vector2::from(bound.from)
-                            })
-                    };
-                    let first = neighbour(index.checked_sub(1), Vector2::new(1.0, 1.0));
-                    let last = neighbour(Some(index + 1), Vector2::new(-1.0, 1.0));
-                    let span = (timed.from, timed.to.min(0.25));
-                    free(&nodes, &curve, span, [first, last])
-                }
-                kind => return Err(RobustError::Arc { kind }),
+            let along = |at: Option<usize>, diagonal: Vector2<f64>| {
+                let bound = at.and_then(|at| gait.arcs.get(at));
+                bound.map_or(diagonal, |bound| {
+                    Vector2::from(bound.to) - Vector2::from(bound.from)
+                })
+            };
+            let first = along(index.checked_sub(1), Vector2::new(1.0, 1.0));
+            let last = along(Some(index + 1), Vector2::new(-1.0, 1.0));
+            let span = (timed.from, timed.to.min(0.25));
+            legs.push(Leg {
+                kind: arc.kind,
+                nodes: match arc.kind {
+                    ArcKind::Upper => Vec::new(),
+                    ArcKind::Singular => free(&nodes, &curve, span, [first, last]),
+                    kind => return Err(RobustError::Arc { kind }),
+                },
+                ends: [arc.from, arc.to].map(Vector2::from),
             });
         }
         Ok(Self { nodes, legs, sign })
@@ -78,27 +81,21 @@ impl Arcs {
 
     /// The arcs moved by `x`, a number for each free node.
     pub(super) fn curves(&self, x: &DVector<f64>) -> Vec<ArcCurve> {
-        let mut next = x.iter();
-        let mut arcs: Vec<Vec<Vector2<f64>>> = self
-            .legs
-            .iter()
-            .map(|leg| match leg {
-                Leg::Free(free) => free
-                    .iter()
-                    .map(|(phi, direction)| phi + direction * next.next().copied().unwrap_or(0.0))
-                    .collect(),
-                Leg::Bound(ends) => ends.to_vec(),
-            })
-            .collect();
-        for at in 0..arcs.len() {
-            if let Some(Leg::Bound(ends)) = self.legs.get(at) {
-                let before = at.checked_sub(1).and_then(|i| arcs.get(i)?.last().copied());
+        let mut by = x.iter();
+        let moved = |leg: &Leg| {
+            let nodes = leg.nodes.iter().zip(&mut by);
+            nodes
+                .map(|((phi, direction), by)| phi + direction * *by)
+                .collect()
+        };
+        let mut arcs: Vec<Vec<Vector2<f64>>> = self.legs.iter().map(moved).collect();
+        for (at, leg) in self.legs.iter().enumerate() {
+            if arcs[at].is_empty() {
+                let before = at.checked_sub(1).and_then(|at| arcs[at].last().copied());
                 let after = arcs.get(at + 1).and_then(|arc| arc.first().copied());
-                let (from, to) = (before.unwrap_or(ends[0]), after.unwrap_or(ends[1]));
+                let (from, to) = (before.unwrap_or(leg.ends[0]), after.unwrap_or(leg.ends[1]));
                 let straight = self.nodes.place.iter().map(|t| from + (to - from) * *t);
-                if let Some(arc) = arcs.get_mut(at) {
-                    *arc = straight.collect();
-                }
+                arcs[at] = straight.collect();
             }
         }
         arcs.into_iter()
@@ -107,13 +104,6 @@ impl Arcs {
                 phi,
             })
             .collect()
-    }
-
-    pub(super) fn kinds(&self) -> impl Iterator<Item = ArcKind> + '_ {
-        self.legs.iter().map(|leg| match leg {
-            Leg::Free(_) => ArcKind::Singular,
-            Leg::Bound(_) => ArcKind::Upper,
-        })
     }
 
     /// Weighted heights of all nodes, with their gradients.
@@ -148,7 +138,8 @@ impl Family for Arcs {
     const OBJECTIVE: Objective = Objective::Displacement;
 
     fn cycle(&self, model: &Model<f64>, x: &DVector<f64>) -> Cycle {
-        cycle::of_arcs(model, &self.nodes, self.kinds(), &self.curves(x))
+        let kinds = self.legs.iter().map(|leg| leg.kind);
+        cycle::of_arcs(model, &self.nodes, kinds, &self.curves(x))
     }
 
     /// h̄ vanishes on free arcs and falls outwards there (generalised Legendre–Clebsch), and pushes against bounds.
@@ -159,7 +150,7 @@ impl Family for Arcs {
         let (mut largest, mut falls) = (0.0_f64, f64::INFINITY);
         for ((leg, heights), arc) in self.of_legs(&heights).zip(&arcs) {
             for (height, slope) in heights.iter().zip(&arc.slope) {
-                if matches!(leg, Leg::Bound(_)) {
+                if leg.kind == ArcKind::Upper {
                     let least = multiplier.unwrap_or(f64::INFINITY);
                     multiplier = Some(least.min(height.value));
                     continue;
@@ -183,8 +174,7 @@ impl Design for Arcs {
     const RELATIVE: bool = false;
 
     fn start(&self) -> DVector<f64> {
-        let free = self.legs.iter().filter(|leg| matches!(leg, Leg::Free(_)));
-        DVector::zeros(free.count() * self.nodes.count())
+        DVector::zeros(self.legs.iter().map(|leg| leg.nodes.len()).sum())
     }
 
     fn value(&self, x: &DVector<f64>, member: &Member) -> f64 {
@@ -208,7 +198,7 @@ impl Design for Arcs {
         let residual = |x: &DVector<f64>| {
             let heights = self.heights(&self.curves(x), members);
             let free = self.of_legs(&heights);
-            let free = free.filter(|(leg, _)| matches!(leg, Leg::Free(_)));
+            let free = free.filter(|(leg, _)| leg.kind == ArcKind::Singular);
             let free = free.flat_map(|(_, heights)| heights);
             DVector::from_vec(free.map(|height| height.value).collect())
         };
@@ -225,7 +215,7 @@ fn free(
     curve: &impl Gait<f64>,
     (from, to): (f64, f64),
     along: [Vector2<f64>; 2],
-) -> Leg {
+) -> Vec<(Vector2<f64>, Vector2<f64>)> {
     // Outward is the right-hand side of the motion.
     let outward = |u: f64, along: Vector2<f64>| {
         let rate = curve.at(u).rate;
@@ -245,5 +235,5 @@ fn free(
         let phi = curve.at(from + (to - from) * t).phi;
         (phi, (begin + (end - begin) * *t).normalize())
     };
-    Leg::Free(nodes.place.iter().map(place).collect())
+    nodes.place.iter().map(place).collect()
 }

@@ -2,7 +2,7 @@
 //! by the model's own integration.
 
 use swimmer_files::Bounds;
-use swimmer_model::{Links, Stroke};
+use swimmer_model::Links;
 
 use super::Values;
 use super::ensemble::{Ensemble, Found};
@@ -33,14 +33,6 @@ pub(super) fn overstepped(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) ->
     let region = Region::new(&full, links);
     let by = cycle.phi.iter().map(|phi| region.overstepped(phi));
     by.fold(f64::NEG_INFINITY, f64::max)
-}
-
-/// The displacement of the estimates along their heading, all of it, without rotation: what gaits with the paper's symmetries bring.
-pub(super) fn of_symmetry(stroke: &Stroke<f64>) -> [Check; 2] {
-    [
-        Condition::NoLateral.check(stroke.displacement.y.abs()),
-        Condition::NoRotation.check(stroke.rotation.abs()),
-    ]
 }
 
 /// All values swum again by the model's own integration, and looked for again among all swimmers; and who holds the worst case is as

@@ -14,7 +14,7 @@ pub(super) struct Ensemble<'a> {
     uncertainty: &'a Uncertainty,
     pub(super) nominal: Member,
     /// Where the search for the worst case begins.
-    grid: Vec<([f64; 3], Member)>,
+    pub(super) grid: Vec<([f64; 3], Member)>,
     /// With their weights in the mean.
     pub(super) normal: Vec<(Member, f64)>,
 }
@@ -72,11 +72,6 @@ impl<'a> Ensemble<'a> {
             grid: grid.collect::<Result<_, InvalidSwimmer>>()?,
             normal: uncertainty.normal(swimmer)?,
         })
-    }
-
-    /// How many swimmers the search for the worst case begins with, and how many the mean is taken of.
-    pub(super) fn counts(&self) -> (usize, usize) {
-        (self.grid.len(), self.normal.len())
     }
 
     /// The least value over all that is left open; none where no value is a number.

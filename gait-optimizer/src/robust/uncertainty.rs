@@ -60,11 +60,7 @@ impl Axis {
     }
 
     fn grid(self) -> impl Iterator<Item = f64> + Clone {
-        let last = if self.round {
-            self.steps - 1
-        } else {
-            self.steps
-        };
+        let last = self.steps - u32::from(self.round);
         (0..=last).map(move |i| {
             let share = f64::from(i) / f64::from(self.steps.max(1));
             self.from + (self.to - self.from) * share
