@@ -10,6 +10,7 @@
 mod entries;
 mod sine;
 
+use std::array::from_fn;
 use std::marker::PhantomData;
 
 use nalgebra::Vector2;
@@ -137,14 +138,8 @@ impl Batch {
             let found = self.some::<E, B>(&shapes, count);
             for k in 0..count {
                 let lanes = &found[k / WIDTH];
-                then(
-                    number,
-                    E::one(
-                        lanes
-                            .each_ref()
-                            .map(|lanes| block(&lanes.map(|lane| lane[k % WIDTH]))),
-                    ),
-                );
+                let entries = |b: usize| from_fn(|entry| lanes[b][entry][k % WIDTH]);
+                then(number, E::one(from_fn(|b| block(&entries(b)))));
                 number += 1;
             }
         }
