@@ -5,7 +5,7 @@ use gait_optimizer::{
     efficiency_from,
 };
 
-use super::{CollocationError, CollocationProblem, CollocationSolution, solve};
+use super::{CollocationError, CollocationProblem, solve};
 
 /// Circles up to this amplitude are tried \[rad\].
 const LARGEST: f64 = 5.0;
@@ -34,7 +34,12 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Collocatio
         .map(|circle| {
             let guess = SimpleShape::Circle.gait(circle.amplitude);
             let solution = solve(&CollocationProblem::new(&model, branch.sign()), &guess)?;
-            polished(problem, &solution)
+            let direct = Direct {
+                method: "collocation",
+                gait: &solution.gait()?,
+                efficiency: solution.efficiency,
+            };
+            Ok(efficiency_from(problem, &direct)?)
         })
         // The best one, else the first error.
         .reduce(|best, next| match (&best, &next) {
@@ -43,16 +48,4 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Collocatio
             _ => best,
         })
         .unwrap_or(Err(CollocationError::NoStart { branch }))
-}
-
-fn polished(
-    problem: &EfficiencyProblem,
-    solution: &CollocationSolution,
-) -> Result<OptimalGait, CollocationError> {
-    let direct = Direct {
-        method: "collocation",
-        gait: &solution.gait()?,
-        efficiency: solution.efficiency,
-    };
-    Ok(efficiency_from(problem, &direct)?)
 }

@@ -1,63 +1,37 @@
-//! Where the iteration starts: the first quarter of any gait, at constant power.
+//! Where the iteration starts: the first quarter of any gait.
 
 use gait_optimizer::region::Bound;
 use nalgebra::{Matrix2xX, Vector2};
-use swimmer_model::{Gait, Model};
+use swimmer_model::Gait;
 
-use super::CollocationError;
 use super::mesh::Mesh;
+use super::{CollocationError, levels};
 
-/// Samples of the quarter.
-const SAMPLES: usize = 512;
 /// Share of the room inside the bounds that a guess is shrunk to.
 const INSIDE: f64 = 0.98;
 
-/// The shapes of a gait's first quarter at the points of a mesh, its ends moved on to the symmetry lines, timed at constant power
-/// and brought inside the bounds.
+/// The shapes of a gait's first quarter at the points of a mesh, its ends moved on to the symmetry lines, and brought
+/// inside the bounds.
 pub(crate) fn on_mesh<G: Gait<f64> + ?Sized>(
     gait: &G,
-    model: &Model<f64>,
     mesh: &Mesh,
     walls: &[Bound],
 ) -> Result<Matrix2xX<f64>, CollocationError> {
     let refuse = |problem| Err(CollocationError::Guess { problem });
-    let place = |i: usize| 0.25 * i as f64 / SAMPLES as f64;
-    let samples: Vec<_> = (0..=SAMPLES).map(|i| gait.at(place(i)).phi).collect();
+    let samples: Vec<_> = mesh.times.iter().map(|t| gait.at(0.25 * t).phi).collect();
     let mut shapes = Matrix2xX::from_columns(&samples);
     if !shapes.iter().all(|angle| angle.abs() < 1e3) {
         return refuse("a shape is not finite, or an angle beyond 1000 rad");
+    }
+    if samples.iter().all(|phi| *phi == samples[0]) {
+        return refuse("it spends no power");
     }
     bind_ends(&mut shapes);
     if !is_inside(walls, &(&shapes / INSIDE)) {
         shapes = shrunk(&shapes, walls);
     }
-    let mut times = vec![0.0];
-    let mut total = 0.0;
-    for i in 1..shapes.ncols() {
-        let step = shapes.column(i) - shapes.column(i - 1);
-        let power = model.power_matrix(&((shapes.column(i) + shapes.column(i - 1)) * 0.5));
-        total += step.dot(&(power * step)).max(0.0).sqrt();
-        times.push(total);
-    }
-    if !(total > 0.0 && total.is_finite()) {
-        return refuse("it spends no power");
-    }
-    let last = times.len() - 1;
-    let mut on_mesh = Matrix2xX::zeros(mesh.len());
-    for (mut phi, t) in on_mesh.column_iter_mut().zip(&mesh.times) {
-        let after = times
-            .partition_point(|time| *time <= t * total)
-            .clamp(1, last);
-        let share = (t * total - times[after - 1])
-            / (times[after] - times[after - 1]).max(f64::MIN_POSITIVE);
-        phi.copy_from(
-            &shapes
-                .column(after - 1)
-                .lerp(&shapes.column(after), share.clamp(0.0, 1.0)),
-        );
-    }
-    if is_inside(walls, &on_mesh) {
-        Ok(on_mesh)
+    if is_inside(walls, &shapes) {
+        Ok(shapes)
     } else {
         refuse("it does not fit inside the bounds")
     }
@@ -78,11 +52,7 @@ fn shrunk(shapes: &Matrix2xX<f64>, walls: &[Bound]) -> Matrix2xX<f64> {
 }
 
 fn is_inside(walls: &[Bound], shapes: &Matrix2xX<f64>) -> bool {
-    shapes.column_iter().all(|phi| {
-        walls
-            .iter()
-            .all(|wall| wall.smooth_level(&phi.into_owned()).value > 0.0)
-    })
+    levels(walls, shapes).all(|(_, level)| level.value > 0.0)
 }
 
 /// Moves the first shape to φ₁ = φ₂ and the last to φ₁ = −φ₂.

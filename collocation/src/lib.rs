@@ -4,7 +4,7 @@
 //!
 //! The problem on a quarter gait, t = 0 … 1: states z = (φ₁, φ₂, x, θ, E), control u = Φ̇, from φ₁ = φ₂ to φ₁ = −φ₂, make
 //! `x_f²/E_f` greatest, |φᵢ| ≤ `φ_max`. It is discretised by Legendre–Gauss–Radau collocation on an even mesh (`radau`, `mesh`),
-//! fine enough that the states, integrated again with the interpolated control, agree (`reintegration`); else there is no answer.
+//! fine enough that the states, integrated again with the interpolated control, agree; else there is no answer.
 //!
 //! # Why a solver of our own
 //!
@@ -21,7 +21,6 @@ mod mesh;
 mod newton;
 mod path;
 mod radau;
-mod reintegration;
 mod solution;
 #[cfg(test)]
 mod tests;
@@ -30,14 +29,15 @@ pub use efficiency::efficiency;
 pub use error::CollocationError;
 pub use solution::CollocationSolution;
 
-use gait_optimizer::region::{Bound, Region};
+use gait_optimizer::region::{Bound, Level, Region};
 use gait_optimizer::{Branch, EfficiencyProblem};
+use nalgebra::Matrix2xX;
 use swimmer_files::Bounds;
 use swimmer_model::{Gait, Model};
 
 use mesh::Mesh;
 use newton::Newton;
-use reintegration::Reintegration;
+use path::Path;
 
 /// What is to be solved, and how finely.
 #[derive(Debug, Clone, Copy)]
@@ -105,6 +105,22 @@ impl<'a> CollocationProblem<'a> {
     }
 }
 
+/// How far shapes are within each wall, shape by shape with its number.
+fn levels<'a>(
+    walls: &'a [Bound],
+    shapes: &'a Matrix2xX<f64>,
+) -> impl Iterator<Item = (usize, Level)> + 'a {
+    shapes
+        .column_iter()
+        .enumerate()
+        .flat_map(move |(point, phi)| {
+            let phi = phi.into_owned();
+            walls
+                .iter()
+                .map(move |wall| (point, wall.smooth_level(&phi)))
+        })
+}
+
 /// ξ of a quarter: `c_t L x_f²/E_f`, `t_f = 1`.
 fn lighthill(model: &Model<f64>, x: f64, energy: f64) -> f64 {
     model.side_drag() * model.swimmer().total_length() * x * x / energy
@@ -134,14 +150,30 @@ pub fn solve<G: Gait<f64> + ?Sized>(
 ) -> Result<CollocationSolution, CollocationError> {
     let walls = problem.validate()?;
     let mesh = Mesh::new(problem.elements, problem.degree);
-    let phi = guess::on_mesh(guess, problem.model, &mesh, &walls)?;
-    let path = Newton::new(problem.model, &mesh, &walls, problem.sign, phi).run()?;
-    let again = Reintegration::new(problem.model, &mesh, &walls, &path);
-    let efficiency = |x, energy| lighthill(problem.model, x, energy);
+    let phi = guess::on_mesh(guess, &mesh, &walls)?;
+    let newton = Newton {
+        model: problem.model,
+        mesh: &mesh,
+        walls: &walls,
+        sign: problem.sign,
+        path: Path::new(problem.model, &mesh, phi),
+    };
+    let path = newton.run()?;
+    // φ̇ = u holds for polynomials whatever the mesh. What a coarse mesh gets wrong are θ, x and E, and a spurious optimum of the
+    // discretisation lives on just that: along the same polynomials they follow again by a rule of the highest degree.
+    let fine = Mesh::new(problem.elements, radau::HIGHEST_DEGREE);
+    let phi: Vec<_> = fine
+        .times
+        .iter()
+        .map(|t| mesh.shape(&path.phi, *t))
+        .collect();
+    let again = Path::new(problem.model, &fine, Matrix2xX::from_columns(&phi));
+    let beyond = levels(&walls, &again.phi).map(|(_, level)| -level.value);
+    let efficiency = |path: &Path| lighthill(problem.model, path.final_x, path.final_energy);
     let solution = CollocationSolution {
-        efficiency: efficiency(path.final_x, path.final_energy),
-        efficiency_again: efficiency(again.final_x, again.final_energy),
-        overstepped: again.overstepped,
+        efficiency: efficiency(&path),
+        efficiency_again: efficiency(&again),
+        overstepped: beyond.fold(0.0, f64::max),
         phi: path.phi,
         mesh,
     };

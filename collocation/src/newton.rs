@@ -1,4 +1,4 @@
-//! The primal–dual interior-point iteration on the shapes.
+//! The interior-point iteration on the shapes.
 //!
 //! Iterates stay strictly inside the walls and on the state equations, so the barrier function itself is the merit function. A
 //! step solves Newton's equation by conjugate gradients, which ask for the Hessian along one direction at a time (the
@@ -7,14 +7,14 @@
 
 mod preconditioner;
 
-use gait_optimizer::region::Bound;
-use nalgebra::{DMatrix, Matrix2, Matrix2xX};
+use gait_optimizer::region::{Bound, Level};
+use nalgebra::{Matrix2, Matrix2xX};
 use swimmer_model::Model;
 
 use super::guess::bind_ends;
 use super::mesh::Mesh;
 use super::path::Path;
-use super::{CollocationError, HORIZON, lighthill};
+use super::{CollocationError, HORIZON, levels, lighthill};
 use preconditioner::Preconditioner;
 
 /// Where the barrier begins and ends; both count against an objective, ln E − 2 ln x, of order one.
@@ -39,9 +39,7 @@ pub(crate) struct Newton<'a> {
     pub(crate) walls: &'a [Bound],
     /// Of the wanted x.
     pub(crate) sign: f64,
-    path: Path,
-    /// Multiplier density of each wall (rows) at each point (columns).
-    multipliers: DMatrix<f64>,
+    pub(crate) path: Path,
 }
 
 /// A step towards the optimum of the barrier problem.
@@ -55,26 +53,7 @@ struct Step {
     convex: bool,
 }
 
-impl<'a> Newton<'a> {
-    pub(crate) fn new(
-        model: &'a Model<f64>,
-        mesh: &'a Mesh,
-        walls: &'a [Bound],
-        sign: f64,
-        phi: Matrix2xX<f64>,
-    ) -> Self {
-        let mut newton = Self {
-            model,
-            mesh,
-            walls,
-            sign,
-            path: Path::new(model, mesh, phi),
-            multipliers: DMatrix::zeros(walls.len(), mesh.len()),
-        };
-        newton.center(FIRST_BARRIER);
-        newton
-    }
-
+impl Newton<'_> {
     /// Iterates to an optimum.
     pub(crate) fn run(mut self) -> Result<Path, CollocationError> {
         let mut barrier = if self.walls.is_empty() {
@@ -92,7 +71,6 @@ impl<'a> Newton<'a> {
             let largest = step.shapes.amax();
             let settled = largest <= SMALL_STEP;
             let next = if let Some((length, path, value)) = self.search(&step, barrier, here) {
-                self.move_multipliers(&step.shapes, &path, barrier, length);
                 (self.path, here) = (path, value);
                 step.convex && length >= 0.9 && (settled || -step.slope <= barrier)
             } else if -step.slope <= 1e-11 {
@@ -124,41 +102,21 @@ impl<'a> Newton<'a> {
         if path.phi.amax() > HORIZON {
             return None;
         }
-        for (phi, weight) in path.phi.column_iter().zip(&self.mesh.weights) {
-            for wall in self.walls {
-                let margin = wall.smooth_level(&phi.into_owned()).value;
-                if margin <= 0.0 || margin.is_nan() {
-                    return None;
-                }
-                value -= barrier * weight * margin.ln();
+        for (point, Level { value: margin, .. }) in levels(self.walls, &path.phi) {
+            if margin <= 0.0 || margin.is_nan() {
+                return None;
             }
+            value -= barrier * self.mesh.weights[point] * margin.ln();
         }
         value.is_finite().then_some(value)
-    }
-
-    /// Multipliers on the central path.
-    fn center(&mut self, barrier: f64) {
-        for (phi, mut multipliers) in self
-            .path
-            .phi
-            .column_iter()
-            .zip(self.multipliers.column_iter_mut())
-        {
-            for (multiplier, wall) in multipliers.iter_mut().zip(self.walls) {
-                *multiplier = barrier / wall.smooth_level(&phi.into_owned()).value;
-            }
-        }
     }
 
     /// Of the barrier function, per shape, the ends on their lines; from that of the objective.
     fn gradient(&self, slope: &Matrix2xX<f64>, barrier: f64) -> Matrix2xX<f64> {
         let mut gradient = slope.clone();
-        for (point, weight) in self.mesh.weights.iter().enumerate() {
-            for wall in self.walls {
-                let level = wall.smooth_level(&self.path.phi.column(point).into_owned());
-                let mut pushed = gradient.column_mut(point);
-                pushed -= level.gradient * (weight * barrier / level.value);
-            }
+        for (point, level) in levels(self.walls, &self.path.phi) {
+            let mut pushed = gradient.column_mut(point);
+            pushed -= level.gradient * (self.mesh.weights[point] * barrier / level.value);
         }
         bind_ends(&mut gradient);
         gradient
@@ -168,18 +126,15 @@ impl<'a> Newton<'a> {
     fn step(&self, barrier: f64) -> Step {
         let slope = self.path.slope(self.mesh);
         let gradient = self.gradient(&slope, barrier);
-        let mut preconditioner = Preconditioner::new(&self.path, self.mesh);
-        let mut curvature = vec![Matrix2::zeros(); self.mesh.len()];
-        for (point, weight) in self.mesh.weights.iter().enumerate() {
-            for (wall, multiplier) in self.walls.iter().zip(&self.multipliers.column(point)) {
-                let level = wall.smooth_level(&self.path.phi.column(point).into_owned());
-                let stiff = level.gradient * level.gradient.transpose();
-                let stiff = stiff * (weight * multiplier / level.value);
-                preconditioner.stiffen(point, &stiff);
-                curvature[point] += stiff - level.hessian * (weight * multiplier);
-            }
+        let mut pushes = vec![Matrix2::zeros(); self.mesh.len()];
+        let mut curvature = pushes.clone();
+        for (point, level) in levels(self.walls, &self.path.phi) {
+            let push = self.mesh.weights[point] * barrier / level.value;
+            let stiff = level.gradient * level.gradient.transpose() * (push / level.value);
+            pushes[point] += stiff;
+            curvature[point] += stiff - level.hessian * push;
         }
-        preconditioner.factor();
+        let preconditioner = Preconditioner::new(&self.path, self.mesh, &pushes);
         let product = |along: &Matrix2xX<f64>| {
             let size = DIFFERENCE / along.amax();
             let moved = Path::new(self.model, self.mesh, &self.path.phi + along * size);
@@ -239,29 +194,6 @@ impl<'a> Newton<'a> {
             length *= 0.5;
         }
         None
-    }
-
-    /// The dual step, no farther than keeps every multiplier positive, and back near the central path of the new shapes.
-    fn move_multipliers(
-        &mut self,
-        shapes: &Matrix2xX<f64>,
-        next: &Path,
-        barrier: f64,
-        length: f64,
-    ) {
-        for (point, mut multipliers) in self.multipliers.column_iter_mut().enumerate() {
-            let at = |path: &Path| path.phi.column(point).into_owned();
-            for (multiplier, wall) in multipliers.iter_mut().zip(self.walls) {
-                let level = wall.smooth_level(&at(&self.path));
-                let opening = level.gradient.dot(&shapes.column(point));
-                let change =
-                    barrier / level.value - *multiplier - *multiplier / level.value * opening;
-                let central = barrier / wall.smooth_level(&at(next)).value;
-                *multiplier = (*multiplier + length * change)
-                    .max(0.01 * *multiplier)
-                    .clamp(central * 1e-6, central * 1e6);
-            }
-        }
     }
 }
 

@@ -6,78 +6,51 @@ use crate::losses::{Forecast, tolerance};
 
 impl Forecast {
     /// Half width of the displacement's interval \[m\], along the designed displacement, at the level of the fit's intervals:
-    /// the played way swum by the swimmers at the ends of the intervals of `r_s` and χ, to first order, with their correlation
-    /// where the fit tells it.
-    pub fn displacement_error(&self, ends: &Ends) -> f64 {
-        let along = self
-            .stages
-            .first()
-            .and_then(|designed| designed.displacement.try_normalize(0.0))
-            .unwrap_or_else(nalgebra::Vector2::x);
-        let swum =
-            |model: &Model<f64>| along.dot(&swim(model, &self.way, &tolerance()).displacement);
-        let half = |[low, high]: &[Model<f64>; 2]| 0.5 * (swum(high) - swum(low));
-        let (by_radius, by_chi) = (half(&ends.sphere_radius), half(&ends.chi));
-        let correlation = ends.correlation.unwrap_or(0.0);
-        let variance =
-            by_radius * by_radius + by_chi * by_chi + 2.0 * correlation * by_radius * by_chi;
-        variance.max(0.0).sqrt()
-    }
-}
-
-/// The swimmers at the ends of what a calibration leaves open, the other parameter at its estimate.
-///
-/// ```
-/// use forecast::{Ends, Played, Servos, forecast};
-/// use swimmer_files::{AnyGait, ServoFile};
-/// use swimmer_model::{Model, Swimmer};
-///
-/// let robot = Swimmer::robot();
-/// let played = Played { servos: Servos::on_the_robot(ServoFile::default()), period: 30.0, knots: 512 };
-/// let forecast = forecast(&Model::new(&robot)?, &AnyGait::circle(1.2), &played).unwrap();
-/// let narrow = Ends::new(&robot, [0.0690, 0.0694], [3.58, 3.62], None)?;
-/// let wide = Ends::new(&robot, [0.0680, 0.0704], [3.50, 3.70], None)?;
-/// assert!(forecast.displacement_error(&narrow) < forecast.displacement_error(&wide));
-/// # Ok::<(), swimmer_model::InvalidSwimmer>(())
-/// ```
-#[derive(Debug, Clone)]
-pub struct Ends {
-    /// At both ends of the interval of `r_s`, the lower one first.
-    pub sphere_radius: [Model<f64>; 2],
-    /// At both ends of the interval of χ.
-    pub chi: [Model<f64>; 2],
-    /// Correlation of both estimates, where it is known.
-    pub correlation: Option<f64>,
-}
-
-impl Ends {
-    /// Of a swimmer with these intervals of `r_s` \[m\] and χ. A sphere below nothing counts as none.
+    /// the played way swum by the swimmers at the ends of the intervals of `r_s` \[m\] and χ, the other parameter at the fitted
+    /// swimmer's, to first order, with the correlation of both estimates where the fit tells it. A sphere below nothing counts
+    /// as none.
     ///
     /// # Errors
     /// An end at which there is no swimmer.
-    pub fn new(
-        swimmer: &Swimmer<f64>,
+    ///
+    /// ```
+    /// use forecast::{Played, Servos, forecast};
+    /// use swimmer_files::{AnyGait, ServoFile};
+    /// use swimmer_model::{Model, Swimmer};
+    ///
+    /// let robot = Swimmer::robot();
+    /// let played = Played { servos: Servos::on_the_robot(ServoFile::default()), period: 30.0, knots: 512 };
+    /// let forecast = forecast(&Model::new(&robot)?, &AnyGait::circle(1.2), &played).unwrap();
+    /// let narrow = forecast.displacement_error(&robot, [0.0690, 0.0694], [3.58, 3.62], None)?;
+    /// let wide = forecast.displacement_error(&robot, [0.0680, 0.0704], [3.50, 3.70], None)?;
+    /// assert!(narrow < wide);
+    /// # Ok::<(), swimmer_model::InvalidSwimmer>(())
+    /// ```
+    pub fn displacement_error(
+        &self,
+        fitted: &Swimmer<f64>,
         sphere_radius: [f64; 2],
         chi: [f64; 2],
         correlation: Option<f64>,
-    ) -> Result<Self, InvalidSwimmer> {
-        let at = |sphere_radius: f64, chi| {
-            Model::new(&Swimmer {
-                sphere_radius: sphere_radius.max(0.0),
-                chi,
-                ..*swimmer
-            })
+    ) -> Result<f64, InvalidSwimmer> {
+        let designed = self.stages.first();
+        let along = designed
+            .and_then(|designed| designed.displacement.try_normalize(0.0))
+            .unwrap_or_else(nalgebra::Vector2::x);
+        let swum = |swimmer| {
+            let model = Model::new(&swimmer)?;
+            Ok(along.dot(&swim(&model, &self.way, &tolerance()).displacement))
         };
-        let [radius_low, radius_high] = sphere_radius;
-        let [chi_low, chi_high] = chi;
-        Ok(Self {
-            sphere_radius: [at(radius_low, swimmer.chi)?, at(radius_high, swimmer.chi)?],
-            chi: [
-                at(swimmer.sphere_radius, chi_low)?,
-                at(swimmer.sphere_radius, chi_high)?,
-            ],
-            correlation,
-        })
+        let half = |[low, high]: [Swimmer<f64>; 2]| Ok(0.5 * (swum(high)? - swum(low)?));
+        let by_radius = half(sphere_radius.map(|radius| Swimmer {
+            sphere_radius: radius.max(0.0),
+            ..*fitted
+        }))?;
+        let by_chi = half(chi.map(|chi| Swimmer { chi, ..*fitted }))?;
+        let correlation = correlation.unwrap_or(0.0);
+        let variance =
+            by_radius * by_radius + by_chi * by_chi + 2.0 * correlation * by_radius * by_chi;
+        Ok(variance.max(0.0).sqrt())
     }
 }
 
@@ -101,13 +74,9 @@ mod tests {
         } = *model.swimmer();
         let error = |by_radius: f64, by_chi: f64, correlation| {
             let around = |value: f64, by: f64| [value - by, value + by];
-            let ends = Ends::new(
-                model.swimmer(),
-                around(sphere_radius, by_radius),
-                around(chi, by_chi),
-                correlation,
-            );
-            told.displacement_error(&ends.unwrap())
+            let intervals = (around(sphere_radius, by_radius), around(chi, by_chi));
+            told.displacement_error(model.swimmer(), intervals.0, intervals.1, correlation)
+                .unwrap()
         };
         assert!(error(0.0, 0.0, None) < 1e-15);
         let (radius, chi_alone) = (error(1e-4, 0.0, None), error(0.0, 0.01, None));

@@ -4,8 +4,8 @@
 //! All of it runs `gait-player`'s own table, playback, plant and table check, so that a forecast and the robot cannot disagree
 //! on arithmetic.
 //!
-//! - [`timing()`]: a gait is a curve; its timing is free. The best timing under a rate limit, and the shortest period;
-//!   [`timing_of_table`]: the same for the table that the robot makes of it.
+//! - [`timing_of_table`]: a gait is a curve; its timing is free. The best timing under a rate limit, of the table that the robot
+//!   makes of it, and the shortest period.
 //! - [`table()`]: the table that a robot is given of a gait, its corners rounded.
 //! - [`reach()`]: the largest angle of a gait, with its place, against what the servos allow.
 //! - [`until_wall`]: how many cycles a tank has room for; [`Forecast::displacement_error`]: what a calibration leaves open.
@@ -28,7 +28,7 @@
 //! assert!(forecast.share(forecast.total_loss()).unwrap() < 0.1);
 //! ```
 
-pub mod certainty;
+mod certainty;
 pub mod fluid;
 pub mod losses;
 pub mod net_motion;
@@ -40,7 +40,6 @@ pub mod table;
 pub mod tank;
 pub mod timing;
 
-pub use certainty::Ends;
 pub use fluid::{Demand, demand};
 pub use losses::{Forecast, ForecastError, Loss, Played, Servos, Stage, Verdict, forecast};
 pub use net_motion::NetMotion;
@@ -49,6 +48,4 @@ pub use playlist::{PlaylistTable, Repeated};
 pub use reach::{Reach, reach};
 pub use table::table;
 pub use tank::{Meeting, Part, Tank, meets_wall, until_wall};
-pub use timing::{
-    Timing, TimingError, shortest_of_table, shortest_period, timing, timing_of_table,
-};
+pub use timing::{Timing, TimingError, shortest_of_table, shortest_period, timing_of_table};

@@ -16,12 +16,12 @@ use gait_player::servo::plant::PlantParameters;
 use gait_player::table::TableError;
 use nalgebra::Vector2;
 use swimmer_files::ServoFile;
-use swimmer_model::{Gait, Model, Tolerance, swim};
+use swimmer_model::{Gait, InvalidSamples, Model, Tolerance};
 
 use crate::path::Polyline;
 use crate::reach::{Reach, reach};
 pub use gap::Gap;
-pub(crate) use stages::facts;
+pub(crate) use stages::verdict;
 
 /// The servos that shall play a gait.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,6 +110,9 @@ pub enum ForecastError {
     /// The gait fits in no table.
     #[error("the robot cannot hold this gait: {0}")]
     Table(#[from] TableError),
+    /// Its knots make no curve.
+    #[error("the gait's knots make no curve: {0}")]
+    Knots(#[from] InvalidSamples),
     /// The gait leaves the servos' range.
     #[error(
         "the gait turns φ{} to {:.4} rad at u = {:.4}, beyond the servos' largest angle of {max_angle} rad, so no robot plays \
@@ -268,41 +271,40 @@ pub fn forecast<G: Gait<f64> + ?Sized>(
     let along = designed
         .try_normalize(1e-12 * model.swimmer().total_length())
         .unwrap_or_else(Vector2::x);
-    let mut stages: Vec<Loss> = Vec::with_capacity(Stage::ALL.len());
-    for (stage, stroke) in Stage::ALL.into_iter().zip(&swum) {
-        let before = stages
-            .last()
-            .map_or((stroke.displacement, stroke.rotation), |last| {
-                (last.displacement, last.rotation)
-            });
-        stages.push(Loss {
-            stage,
-            displacement: stroke.displacement,
-            rotation: stroke.rotation,
-            delta_y: stroke.delta_y,
-            delta_theta: stroke.delta_theta,
-            loss: along.dot(&(before.0 - stroke.displacement)),
-            turned: stroke.rotation - before.1,
-        });
-    }
+    let before = swum.iter().take(1).chain(&swum);
+    let stages = Stage::ALL.into_iter().zip(before.zip(&swum));
+    let stages = stages.map(|(stage, (before, stroke))| Loss {
+        stage,
+        displacement: stroke.displacement,
+        rotation: stroke.rotation,
+        delta_y: stroke.delta_y,
+        delta_theta: stroke.delta_theta,
+        loss: along.dot(&(before.displacement - stroke.displacement)),
+        turned: stroke.rotation - before.rotation,
+    });
     let links = model.swimmer().links;
+    let [.., way] = ways.chains;
     Ok(Forecast {
         played: *played,
-        stages,
+        stages: stages.collect(),
         reach,
-        gap: Gap::along(&links, ways.played()),
-        way: ways.played().clone(),
+        gap: Gap::along(&links, &way),
+        way,
         designed_gap: Gap::of_gait(&links, gait),
         thickness: match model.swimmer().tangential_drag {
             swimmer_model::TangentialDrag::HalfThickness(half) => 2.0 * half,
             _ => PLATE,
         },
         margin: gap::margin(&links),
-        verdict: ways.verdict(&links, played),
+        verdict: verdict(&ways.table, &links, &played.servos, played.period_us()),
     })
 }
 
 impl Played {
+    fn period_us(&self) -> u32 {
+        (self.period * 1e6).round() as u32
+    }
+
     fn validate(&self) -> Result<(), ForecastError> {
         if !(0.1..=4000.0).contains(&self.period) {
             return Err(ForecastError::Period {
@@ -416,11 +418,6 @@ const TURNING: f64 = 0.001_745;
 /// Integration of each stage: closer than the smallest loss that is told.
 pub(crate) fn tolerance() -> Tolerance {
     Tolerance::new(1e-10)
-}
-
-/// One stage swum.
-fn stroke<G: Gait<f64> + ?Sized>(model: &Model<f64>, gait: &G) -> swimmer_model::Stroke<f64> {
-    swim(model, gait, &tolerance())
 }
 
 #[cfg(test)]

@@ -5,6 +5,12 @@
 //! digit. The robot has room for two tables and checks the next while one plays: a table that would be over before that is done
 //! takes in cycles of what follows.
 
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "saturates"
+)]
+
 use gait_player::GaitTable;
 use gait_player::TICK_US;
 use gait_player::playback::{Playback, PlayedLeg, setpoints};
@@ -101,30 +107,18 @@ pub fn tables<G: Gait<f64>>(steps: &[Repeated<G>]) -> Result<Vec<PlaylistTable>,
         let missing = SHORTEST_S - duration(&open);
         if !open.is_empty() {
             let taken = cycles_in(missing, step.period).min(left);
-            open.push(Part {
-                step,
-                number,
-                cycles: taken,
-            });
+            open.push((step, number, taken));
             left -= taken;
             if duration(&open) >= SHORTEST_S {
                 tables.push(table_of(shape, &open, 1)?);
                 open.clear();
             }
         }
-        let whole = Part {
-            step,
-            number,
-            cycles: 1,
-        };
         let last = number + 1 == steps.len();
         if left > 0 && (last || f64::from(left) * step.period >= SHORTEST_S) {
-            tables.push(table_of(shape, &[whole], left)?);
+            tables.push(table_of(shape, &[(step, number, 1)], left)?);
         } else if left > 0 {
-            open.push(Part {
-                cycles: left,
-                ..whole
-            });
+            open.push((step, number, left));
         }
     }
     if !open.is_empty() {
@@ -134,46 +128,18 @@ pub fn tables<G: Gait<f64>>(steps: &[Repeated<G>]) -> Result<Vec<PlaylistTable>,
 }
 
 /// Whole cycles that last at least so long, at least one.
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "saturates"
-)]
 fn cycles_in(seconds: f64, period: f64) -> u32 {
     ((seconds / period).ceil() as u32).max(1)
 }
 
-/// Cycles of one step in a table.
-#[derive(Debug)]
-struct Part<'a, G> {
-    step: &'a Repeated<G>,
-    number: usize,
-    cycles: u32,
-}
-
-impl<G> Clone for Part<'_, G> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<G> Copy for Part<'_, G> {}
-
-impl<G> Part<'_, G> {
-    fn duration(&self) -> f64 {
-        f64::from(self.cycles) * self.step.period
-    }
-}
+/// Cycles of one step in a table: of which, its number, and how many.
+type Part<'a, G> = (&'a Repeated<G>, usize, u32);
 
 fn duration<G>(parts: &[Part<'_, G>]) -> f64 {
-    parts.iter().map(Part::duration).sum()
+    let of = |(step, _, cycles): &Part<'_, G>| f64::from(*cycles) * step.period;
+    parts.iter().map(of).sum()
 }
 
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "saturates"
-)]
 fn table_of<G: Gait<f64>>(
     shape: Vector2<f64>,
     parts: &[Part<'_, G>],
@@ -182,11 +148,11 @@ fn table_of<G: Gait<f64>>(
     let whole = duration(parts);
     let mut ends = Vec::new();
     let mut time = 0.0;
-    for part in parts {
-        for _ in 0..part.cycles {
+    for (step, _, count) in parts {
+        for _ in 0..*count {
             let start = time;
-            time += part.step.period;
-            ends.push((start / whole, time / whole, &part.step.gait));
+            time += step.period;
+            ends.push((start / whole, time / whole, &step.gait));
         }
     }
     Ok(PlaylistTable {
@@ -199,7 +165,7 @@ fn table_of<G: Gait<f64>>(
         )?,
         cycles,
         period_us: (whole * 1e6).round() as u32,
-        step: parts.first().map_or(0, |part| part.number),
+        step: parts.first().map_or(0, |(_, number, _)| *number),
     })
 }
 
@@ -231,17 +197,8 @@ impl<G: Gait<f64>> Strung<'_, G> {
 impl<G: Gait<f64>> Gait<f64> for Strung<'_, G> {
     fn at(&self, u: f64) -> GaitPoint<f64> {
         let moved = Self::moved(u - u.floor());
-        if moved <= 0.0 || moved >= 1.0 {
-            return GaitPoint {
-                phi: self.shape,
-                rate: Vector2::zeros(),
-            };
-        }
-        let held = self
-            .cycles
-            .iter()
-            .find(|(_, end, _)| moved < *end)
-            .or(self.cycles.last());
+        let mut cycles = self.cycles.iter();
+        let held = cycles.find(|(_, end, _)| 0.0 < moved && moved < *end);
         let Some((start, end, gait)) = held else {
             return GaitPoint {
                 phi: self.shape,
@@ -325,14 +282,8 @@ pub fn refused(
     servos: &Servos,
     links: &Links<f64>,
 ) -> Option<(usize, String)> {
-    let limits = servos.limits();
     tables.iter().find_map(|sent| {
-        let facts = crate::losses::facts(&sent.table, links)?;
-        let allowed = facts
-            .allow(&limits)
-            .and_then(|()| facts.allow_period(&limits, sent.period_us));
-        allowed
-            .err()
-            .map(|refusal| (sent.step, refusal.to_string()))
+        let verdict = crate::losses::verdict(&sent.table, links, servos, sent.period_us);
+        Some((sent.step, verdict.refused?))
     })
 }

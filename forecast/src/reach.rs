@@ -1,7 +1,8 @@
 //! The angles that a gait asks of the servos.
 
-use nalgebra::Vector2;
 use swimmer_model::Gait;
+
+use crate::timing::cuts;
 
 /// Where a gait turns a joint furthest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,12 +15,10 @@ pub struct Reach {
     pub angle: f64,
 }
 
-/// Looks at a gait are at least this dense over a cycle.
-const LOOKS: f64 = 2048.0;
 /// Steps of the golden section that refines the best look: 1e-9 of two looks.
 const REFINEMENTS: usize = 44;
 
-/// The largest |φᵢ| of a gait, with its place: the best of 2048 looks and all piece ends, refined by golden section.
+/// The largest |φᵢ| of a gait, with its place: the best of 2048 looks and of all ends of pieces, refined by golden section.
 ///
 /// ```
 /// use swimmer_files::AnyGait;
@@ -30,23 +29,14 @@ const REFINEMENTS: usize = 44;
 pub fn reach<G: Gait<f64> + ?Sized>(gait: &G) -> Reach {
     let mut best = at(gait, 0.0);
     let mut width = 0.0;
-    let mut start = 0.0;
-    for piece in 0..gait.pieces().max(1) {
-        let end = gait.piece_end(piece).min(1.0);
-        let looks = ((end - start) * LOOKS).ceil().max(1.0);
-        let step = (end - start) / looks;
-        let mut look = 0.0;
-        while look < looks {
-            let there = at(gait, start + look * step);
-            if there.angle.abs() > best.angle.abs() {
-                (best, width) = (there, step);
-            }
-            look += 1.0;
+    for [start, end] in cuts(gait).array_windows() {
+        let there = at(gait, *start);
+        if there.angle.abs() > best.angle.abs() {
+            (best, width) = (there, end - start);
         }
-        start = end;
     }
     let joint = best.joint;
-    let angle = |u: f64| component(&gait.at(u).phi, joint);
+    let angle = |u: f64| gait.at(u).phi[joint];
     let (mut low, mut high) = (best.u - width, best.u + width);
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     for _ in 0..REFINEMENTS {
@@ -71,16 +61,12 @@ pub fn reach<G: Gait<f64> + ?Sized>(gait: &G) -> Reach {
 
 fn at<G: Gait<f64> + ?Sized>(gait: &G, u: f64) -> Reach {
     let phi = gait.at(u).phi;
-    let joint = usize::from(phi.y.abs() > phi.x.abs());
+    let joint = phi.iamax();
     Reach {
         u,
         joint,
-        angle: component(&phi, joint),
+        angle: phi[joint],
     }
-}
-
-fn component(phi: &Vector2<f64>, joint: usize) -> f64 {
-    if joint == 0 { phi.x } else { phi.y }
 }
 
 #[cfg(test)]
@@ -108,6 +94,6 @@ mod tests {
             .fold(0.0, f64::max);
         assert!((found.angle.abs() - dense).abs() < 1e-11 && found.angle.abs() >= dense - 1e-14);
         let there = gait.at(found.u).phi;
-        assert!((component(&there, found.joint) - found.angle).abs() < 1e-12);
+        assert!((there[found.joint] - found.angle).abs() < 1e-12);
     }
 }

@@ -15,6 +15,13 @@ pub struct Tank {
     pub width: f64,
 }
 
+impl Tank {
+    /// Whether a disc of this radius \[m\] has room here, from the tank's centre \[m\].
+    pub(crate) fn holds(&self, at: &Vector2<f64>, radius: f64) -> bool {
+        at.x.abs() + radius < 0.5 * self.length && at.y.abs() + radius < 0.5 * self.width
+    }
+}
+
 /// A part of the body that meets the wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Part {
@@ -95,13 +102,10 @@ pub fn until_wall<G: Gait<f64> + ?Sized>(
         .map(|(_, pose, _)| pose.position().norm())
         .fold(0.0, f64::max)
         + swimmer.total_length().max(swimmer.sphere_radius);
-    let (half_length, half_width) = (0.5 * tank.length, 0.5 * tank.width);
     let mut began = *start;
     let mut turned: f64 = 0.0;
     for number in 0..MOST_CYCLES {
-        let far_from_walls =
-            began.x.abs() + reach < half_length && began.y.abs() + reach < half_width;
-        if !far_from_walls {
+        if !tank.holds(&began.position(), reach) {
             for (u, pose, phi) in &cycle {
                 let pose = began * *pose;
                 if let Some((part, at)) = touching(swimmer, tank, &pose, phi) {
@@ -160,7 +164,7 @@ pub fn meets_wall(
 }
 
 /// The part of the body that is beyond a wall, and where.
-fn touching(
+pub(crate) fn touching(
     swimmer: &Swimmer<f64>,
     tank: &Tank,
     pose: &Pose<f64>,
@@ -176,9 +180,7 @@ fn touching(
     ];
     parts.into_iter().find_map(|(part, point, radius)| {
         let at = pose.transform(&point);
-        let beyond =
-            at.x.abs() + radius >= 0.5 * tank.length || at.y.abs() + radius >= 0.5 * tank.width;
-        beyond.then_some((part, at))
+        (!tank.holds(&at, radius)).then_some((part, at))
     })
 }
 

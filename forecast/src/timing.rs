@@ -28,7 +28,7 @@ mod table;
 
 use nalgebra::Vector2;
 use swimmer_files::{GaitArc, GaitFile};
-use swimmer_model::{Gait, Model};
+use swimmer_model::{Gait, GaitPoint, Model};
 
 pub use error::TimingError;
 use error::{check_period, check_rate};
@@ -69,21 +69,16 @@ pub struct Timing {
     /// Energy of the cycle over μ \[m³/s\].
     #[serde(skip)]
     pub energy: f64,
-    /// Highest power over μ \[m³/s²\]: that of every stretch where no servo is at its limit.
-    #[serde(skip)]
-    pub power: f64,
     #[serde(skip)]
     cells: Vec<Cell>,
 }
 
-/// A stretch of the curve: where it ends, when, and the power there.
+/// Where a cell of the curve ends, and when.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cell {
     u: f64,
     /// Seconds.
     time: f64,
-    /// P/μ \[m³/s²\] in the mean over the cell.
-    power: f64,
 }
 
 /// p and τ·r at the points of the rule.
@@ -113,14 +108,10 @@ pub fn shortest_period<G: Gait<f64> + ?Sized>(
     for rate in max_rates {
         check_rate(rate)?;
     }
-    let mut period = 0.0;
-    for (start, end) in cells(gait) {
-        for (at, weight) in RULE {
-            let point = gait.at(start + at * (end - start));
-            let turning = point.rate.component_div(&Vector2::from(max_rates));
-            period += weight * (end - start) * turning.amax();
-        }
-    }
+    let rates = Vector2::from(max_rates);
+    let lasts =
+        |(weight, point): (f64, GaitPoint<f64>)| weight * point.rate.component_div(&rates).amax();
+    let period = points(gait, &cuts(gait)).flatten().map(lasts).sum();
     if period > 0.0 {
         Ok(period)
     } else {
@@ -128,48 +119,10 @@ pub fn shortest_period<G: Gait<f64> + ?Sized>(
     }
 }
 
-/// The timing of least energy of a gait with this period \[s\] and joints of at most `max_rate` \[rad/s\] (infinite for no
-/// limit).
-///
-/// # Errors
-/// [`TimingError`]; a period that is too short comes with the shortest one.
-///
-/// ```
-/// use forecast::timing;
-/// use swimmer_files::AnyGait;
-/// use swimmer_model::{Model, Swimmer};
-///
-/// let model = Model::new(&Swimmer::<f64>::robot()).unwrap();
-/// let relaxed = timing(&model, &AnyGait::circle(1.2), 30.0, 3.5).unwrap();
-/// assert!(relaxed.efficiency_loss.abs() < 1e-9 && relaxed.at_limit == 0.0);
-/// let hurried = timing(&model, &AnyGait::circle(1.2), 1.02 * relaxed.shortest_period, 3.5).unwrap();
-/// assert!(hurried.efficiency_loss > 0.0);
-/// assert!(timing(&model, &AnyGait::circle(1.2), 0.9 * relaxed.shortest_period, 3.5).is_err());
-/// ```
-pub fn timing<G: Gait<f64> + ?Sized>(
-    model: &Model<f64>,
-    gait: &G,
-    period: f64,
-    max_rate: f64,
-) -> Result<Timing, TimingError> {
-    check_rate(max_rate)?;
-    check_period(period)?;
-    let curve = Curve::new(model, gait)?;
-    let shortest = curve.shortest(max_rate);
-    if period < shortest {
-        return Err(TimingError::TooFast {
-            period,
-            rate: max_rate,
-            shortest,
-        });
-    }
-    Ok(curve.timing(period, max_rate))
-}
-
 /// A curve with what its timing depends on.
 struct Curve {
-    /// From and to.
-    cells: Vec<(f64, f64)>,
+    cuts: Vec<f64>,
+    /// Of each cell.
     samples: Vec<[Sample; 4]>,
     /// ∫p: the power length.
     length: f64,
@@ -177,28 +130,21 @@ struct Curve {
 
 impl Curve {
     fn new<G: Gait<f64> + ?Sized>(model: &Model<f64>, gait: &G) -> Result<Self, TimingError> {
-        let cells = cells(gait);
-        let samples: Vec<[Sample; 4]> = cells
-            .iter()
-            .map(|&(start, end)| {
-                RULE.map(|(at, weight)| {
-                    let point = gait.at(start + at * (end - start));
-                    let power = point
-                        .rate
-                        .dot(&(model.power_matrix(&point.phi) * point.rate));
-                    Sample {
-                        weight: weight * (end - start),
-                        power_root: power.max(0.0).sqrt(),
-                        turn: point.rate.amax(),
-                    }
-                })
-            })
-            .collect();
+        let sample = |(weight, point): (f64, GaitPoint<f64>)| {
+            let power = model.power_matrix(&point.phi) * point.rate;
+            Sample {
+                weight,
+                power_root: point.rate.dot(&power).max(0.0).sqrt(),
+                turn: point.rate.amax(),
+            }
+        };
+        let cuts = cuts(gait);
+        let samples: Vec<_> = points(gait, &cuts).map(|cell| cell.map(sample)).collect();
         let all = || samples.iter().flatten();
         let length: f64 = all().map(|s| s.weight * s.power_root).sum();
         if length > 0.0 && all().any(|s| s.turn > 0.0) {
             Ok(Self {
-                cells,
+                cuts,
                 samples,
                 length,
             })
@@ -213,43 +159,30 @@ impl Curve {
         all.map(|s| s.weight * s.turn).sum::<f64>() / max_rate
     }
 
-    /// The best timing with a period that is no shorter than the shortest.
+    /// The timing of least energy with a period \[s\] that is no shorter than the shortest, and joints of at most `max_rate`
+    /// \[rad/s\] (infinite for no limit).
     fn timing(&self, period: f64, max_rate: f64) -> Timing {
         let (length, all) = (self.length, || self.samples.iter().flatten());
         let k = pour(all, period, max_rate, period / length);
-        let (mut time, mut energy, mut limited, mut fastest) = (0.0, 0.0, 0.0, 0.0_f64);
-        let mut timed = Vec::with_capacity(self.cells.len() + 1);
-        timed.push((0.0, 0.0, 0.0));
-        for (&(_, end), samples) in self.cells.iter().zip(&self.samples) {
-            let (mut lasts, mut spends) = (0.0, 0.0);
-            for s in samples {
-                let (floor, poured) = (s.turn / max_rate, k * s.power_root);
-                let slowness = floor.max(poured);
-                lasts += s.weight * slowness;
-                if slowness > 0.0 {
-                    spends += s.weight * s.power_root * s.power_root / slowness;
-                }
-                if floor > poured {
-                    limited += s.weight * floor;
-                }
-                if s.power_root > 0.0 {
-                    fastest = fastest.max(s.turn / s.power_root);
-                }
-            }
-            time += lasts;
-            energy += spends;
-            timed.push((end, time, if lasts > 0.0 { spends / lasts } else { 0.0 }));
-        }
+        let floor = |s: &Sample| s.turn / max_rate;
+        let slowness = |s: &Sample| floor(s).max(k * s.power_root);
+        let moving = || all().filter(|s| s.power_root > 0.0);
+        let energy = moving().map(|s| s.weight * s.power_root.powi(2) / slowness(s));
+        let energy: f64 = energy.sum();
+        let limited = all().filter(|s| floor(s) > k * s.power_root);
+        let limited: f64 = limited.map(|s| s.weight * floor(s)).sum();
+        let fastest = moving().map(|s| s.turn / s.power_root).fold(0.0, f64::max);
+        let ends = self.samples.iter().scan(0.0, |time, cell| {
+            *time += cell.iter().map(|s| s.weight * slowness(s)).sum::<f64>();
+            Some(*time)
+        });
+        let times: Vec<f64> = std::iter::once(0.0).chain(ends).collect();
         // The last digits of the sum, so that the cycle ends at its period.
-        let scale = period / time;
-        let cells: Vec<Cell> = timed
-            .into_iter()
-            .map(|(u, time, power)| Cell {
-                u,
-                time: if u >= 1.0 { period } else { time * scale },
-                power,
-            })
-            .collect();
+        let scale = period / times.last().copied().unwrap_or(period);
+        let cells = self.cuts.iter().zip(times).map(|(&u, time)| Cell {
+            u,
+            time: if u >= 1.0 { period } else { time * scale },
+        });
         Timing {
             period,
             shortest_period: self.shortest(max_rate),
@@ -258,8 +191,19 @@ impl Curve {
             rate_at_constant_power: fastest * length / period,
             energy,
             efficiency_loss: (1.0 - length * length / (period * energy)).max(0.0),
-            power: cells.iter().map(|cell| cell.power).fold(0.0, f64::max),
-            cells,
+            cells: cells.collect(),
+        }
+    }
+
+    /// The fastest timing of servos of this rate, slower by the same share everywhere so that it takes this period.
+    fn stretched(&self, period: f64, max_rate: f64) -> Timing {
+        let rate = self.shortest(1.0) / period;
+        let timing = self.timing(period, rate);
+        let close = max_rate <= 1.01 * rate;
+        Timing {
+            max_rate,
+            at_limit: if close { timing.at_limit } else { 0.0 },
+            ..timing
         }
     }
 }
@@ -306,13 +250,7 @@ impl Timing {
         match (self.cells.get(i - 1), self.cells.get(i)) {
             (Some(a), Some(b)) => {
                 let share = ((u - a.u) / (b.u - a.u)).clamp(0.0, 1.0);
-                // At a cell's end the very number, so that equal u have equal images.
-                let time = if share <= 0.0 {
-                    a.time
-                } else {
-                    a.time + share * (b.time - a.time)
-                };
-                time / self.period
+                (a.time + share * (b.time - a.time)) / self.period
             }
             _ => u,
         }
@@ -340,36 +278,35 @@ impl Timing {
     }
 }
 
-/// The cycle cut at the ends of the gait's pieces, and finer where those are far apart.
-fn cells<G: Gait<f64> + ?Sized>(gait: &G) -> Vec<(f64, f64)> {
-    let mut cells = Vec::new();
+/// Where the cycle is cut, from 0 to 1: at the ends of the gait's pieces, and between where those are far apart.
+pub(crate) fn cuts<G: Gait<f64> + ?Sized>(gait: &G) -> Vec<f64> {
+    let mut cuts = vec![0.0];
     let mut start = 0.0;
-    let pieces = gait.pieces().max(1);
-    for piece in 0..pieces {
-        let end = if piece + 1 == pieces {
+    let last = gait.pieces().max(1) - 1;
+    for piece in 0..=last {
+        let end = if piece == last {
             1.0
         } else {
-            gait.piece_end(piece).min(1.0)
+            gait.piece_end(piece).clamp(start, 1.0)
         };
-        if end <= start {
-            continue;
-        }
-        let parts = ((end - start) * CELLS).ceil().max(1.0);
-        let mut from = start;
-        let mut part = 1.0;
-        while part <= parts {
-            let to = if part < parts {
-                start + (end - start) * (part / parts)
-            } else {
-                end
-            };
-            cells.push((from, to));
-            from = to;
-            part += 1.0;
-        }
+        let parts = ((end - start) * CELLS).ceil();
+        let inner = (1_u32..).map(|part| f64::from(part) / parts);
+        let inner = inner.take_while(|share| *share < 1.0);
+        cuts.extend(inner.map(|share| start + (end - start) * share));
+        cuts.extend((end > start).then_some(end));
         start = end;
     }
-    cells
+    cuts
+}
+
+/// The points of the rule in each cell between cuts, with their weights.
+fn points<G: Gait<f64> + ?Sized>(
+    gait: &G,
+    cuts: &[f64],
+) -> impl Iterator<Item = [(f64, GaitPoint<f64>); 4]> {
+    cuts.array_windows().map(|[start, end]| {
+        RULE.map(|(at, weight)| (weight * (end - start), gait.at(start + at * (end - start))))
+    })
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
-//! A and W, and their derivatives, at 10 000 shapes a call and one by one; what is told is the time of one shape.
+//! A and W at 10 000 shapes a call, and with their derivatives one by one; what is told is the time of one shape.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::Criterion;
-use gait_optimizer::{Batch, ConnectionsAndPowers, ManyFirstDerivatives};
+use gait_optimizer::{Batch, ConnectionsAndPowers};
 use nalgebra::Vector2;
 use swimmer_model::{Model, Swimmer};
 
@@ -42,11 +42,6 @@ fn main() {
     bench("connection and power, a shape", &mut || {
         batch.connections_and_powers(black_box(&phi1), black_box(&phi2), &mut found);
         black_box(&found);
-    });
-    let mut first = ManyFirstDerivatives::default();
-    bench("with first derivatives, a shape", &mut || {
-        batch.first_derivatives(black_box(&phi1), black_box(&phi2), &mut first);
-        black_box(&first);
     });
     bench("connection and power, one by one", &mut || {
         for phi in one_by_one() {

@@ -10,12 +10,14 @@
 mod entries;
 mod sine;
 
+use std::array::from_fn;
 use std::marker::PhantomData;
 
 use nalgebra::Vector2;
-use swimmer_model::{InvalidSwimmer, Model, Swimmer};
+use swimmer_model::{InvalidSwimmer, Model, Scalar, Swimmer};
 
-pub(crate) use entries::{Connection, Entries, First, Second, Values};
+pub(crate) use entries::{Blocks, Connection, First, Second, Values};
+use entries::{ENTRIES, block, entries};
 use sine::sines_and_cosines;
 
 /// A swimmer's model for many shapes at once.
@@ -38,22 +40,13 @@ pub struct Batch {
     machine: pulp::Arch,
 }
 
-/// A and W at many shapes, or a derivative of them, entry by entry.
+/// A and W at many shapes, entry by entry.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ConnectionsAndPowers {
     /// A row by row: x, y \[m\] and θ, each for φ̇₁ and φ̇₂.
     pub connection: [Vec<f64>; 6],
     /// W₁₁, W₁₂, W₂₂ over μ \[m³\].
     pub power: [Vec<f64>; 3],
-}
-
-/// A, W and their first derivatives at many shapes, entry by entry.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ManyFirstDerivatives {
-    /// A and W.
-    pub values: ConnectionsAndPowers,
-    /// ∂/∂φ₁ and ∂/∂φ₂ of both.
-    pub slopes: [ConnectionsAndPowers; 2],
 }
 
 /// Shapes of a group, which one vector instruction or a few hold.
@@ -64,8 +57,8 @@ const AT_ONCE: usize = GROUPS * WIDTH;
 
 /// φ₁ and φ₂ of all shapes of each group.
 type Shapes = [[[f64; WIDTH]; 2]; GROUPS];
-/// Each entry at all shapes of each group.
-type Found<const N: usize> = [[[f64; WIDTH]; N]; GROUPS];
+/// Each entry of each block at all shapes of each group.
+type Found<const B: usize> = [[[[f64; WIDTH]; ENTRIES]; B]; GROUPS];
 
 impl Batch {
     /// Of a swimmer.
@@ -91,58 +84,8 @@ impl Batch {
         phi2: &[f64],
         found: &mut ConnectionsAndPowers,
     ) {
-        self.columns(Values, [phi1, phi2], found.columns());
-    }
-
-    /// A, W and their first derivatives, as [`Self::connections_and_powers`].
-    pub fn first_derivatives(&self, phi1: &[f64], phi2: &[f64], found: &mut ManyFirstDerivatives) {
-        let slopes = found.slopes.iter_mut();
-        let columns = std::iter::once(&mut found.values).chain(slopes);
-        let columns = columns.flat_map(ConnectionsAndPowers::columns);
-        self.columns(First, [phi1, phi2], columns);
-    }
-
-    /// `then` is told the number of each shape \[rad\] and what the model has there, in order.
-    pub(crate) fn each<E: Entries<N>, const N: usize>(
-        &self,
-        _: E,
-        phi: impl Iterator<Item = Vector2<f64>>,
-        mut then: impl FnMut(usize, E::One),
-    ) {
-        // There `libm` is as good, and every kilobyte counts.
-        if cfg!(target_family = "wasm") {
-            for (number, phi) in phi.enumerate() {
-                then(number, E::alone(&self.model, &phi));
-            }
-            return;
-        }
-        let mut phi = phi.peekable();
-        let mut number = 0;
-        while phi.peek().is_some() {
-            let (mut shapes, mut count) = (Shapes::default(), 0);
-            for phi in phi.by_ref().take(AT_ONCE) {
-                let [phi1, phi2] = &mut shapes[count / WIDTH];
-                (phi1[count % WIDTH], phi2[count % WIDTH]) = (phi.x, phi.y);
-                count += 1;
-            }
-            let found = self.some::<E, N>(&shapes, count);
-            for k in 0..count {
-                let lanes = &found[k / WIDTH];
-                let entries = std::array::from_fn(|entry| lanes[entry][k % WIDTH]);
-                then(number, E::one(&entries));
-                number += 1;
-            }
-        }
-    }
-
-    /// The same, each entry in a column of its own.
-    fn columns<'a, E: Entries<N>, const N: usize>(
-        &self,
-        _: E,
-        [phi1, phi2]: [&[f64]; 2],
-        columns: impl Iterator<Item = &'a mut Vec<f64>>,
-    ) {
         let count = phi1.len().min(phi2.len());
+        let columns = found.connection.iter_mut().chain(&mut found.power);
         let mut columns: Vec<&mut Vec<f64>> = columns.collect();
         for column in &mut columns {
             column.resize(count, 0.0);
@@ -155,9 +98,9 @@ impl Batch {
                 lanes[0][..range.len()].copy_from_slice(&phi1[range.clone()]);
                 lanes[1][..range.len()].copy_from_slice(&phi2[range]);
             }
-            let found = self.some::<E, N>(&shapes, to - from);
+            let found = self.some::<Values, 1>(&shapes, to - from);
             for (from, lanes) in (from..to).step_by(WIDTH).zip(&found) {
-                for (column, entry) in columns.iter_mut().zip(lanes) {
+                for (column, entry) in columns.iter_mut().zip(&lanes[0]) {
                     let rest = &mut column[from..];
                     match rest.first_chunk_mut() {
                         Some(whole) => *whole = *entry,
@@ -168,34 +111,62 @@ impl Batch {
         }
     }
 
+    /// `then` is told the number of each shape \[rad\] and what the model has there, in order.
+    pub(crate) fn each<E: Blocks<B>, const B: usize>(
+        &self,
+        _: E,
+        phi: impl Iterator<Item = Vector2<f64>>,
+        mut then: impl FnMut(usize, E::One),
+    ) {
+        // There `libm` is as good, and every kilobyte counts.
+        if cfg!(target_family = "wasm") {
+            for (number, phi) in phi.enumerate() {
+                let turns = [phi.x, phi.y].map(Scalar::sin_cos);
+                then(number, E::one(E::at(&self.model, turns)));
+            }
+            return;
+        }
+        let mut phi = phi.peekable();
+        let mut number = 0;
+        while phi.peek().is_some() {
+            let (mut shapes, mut count) = (Shapes::default(), 0);
+            for phi in phi.by_ref().take(AT_ONCE) {
+                let [phi1, phi2] = &mut shapes[count / WIDTH];
+                (phi1[count % WIDTH], phi2[count % WIDTH]) = (phi.x, phi.y);
+                count += 1;
+            }
+            let found = self.some::<E, B>(&shapes, count);
+            for k in 0..count {
+                let lanes = &found[k / WIDTH];
+                let entries = |b: usize| from_fn(|entry| lanes[b][entry][k % WIDTH]);
+                then(number, E::one(from_fn(|b| block(&entries(b)))));
+                number += 1;
+            }
+        }
+    }
+
     /// Entries at the first `count` of these shapes.
-    fn some<E: Entries<N>, const N: usize>(&self, shapes: &Shapes, count: usize) -> Found<N> {
-        let mut found = [[[0.0; WIDTH]; N]; GROUPS];
-        self.machine.dispatch(Groups::<E, N> {
+    fn some<E: Blocks<B>, const B: usize>(&self, shapes: &Shapes, count: usize) -> Found<B> {
+        let mut found = [[[[0.0; WIDTH]; ENTRIES]; B]; GROUPS];
+        self.machine.dispatch(Groups::<E, B> {
             model: &self.model,
             shapes: &shapes[..count.div_ceil(WIDTH)],
             found: &mut found,
-            entries: PhantomData,
+            blocks: PhantomData,
         });
         found
     }
 }
 
-impl ConnectionsAndPowers {
-    fn columns(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
-        self.connection.iter_mut().chain(&mut self.power)
-    }
-}
-
 /// Groups of shapes to be looked at, for whatever instructions there are.
-struct Groups<'a, E, const N: usize> {
+struct Groups<'a, E, const B: usize> {
     model: &'a Model<f64>,
     shapes: &'a [[[f64; WIDTH]; 2]],
-    found: &'a mut Found<N>,
-    entries: PhantomData<E>,
+    found: &'a mut Found<B>,
+    blocks: PhantomData<E>,
 }
 
-impl<E: Entries<N>, const N: usize> pulp::WithSimd for Groups<'_, E, N> {
+impl<E: Blocks<B>, const B: usize> pulp::WithSimd for Groups<'_, E, B> {
     type Output = ();
 
     #[inline(always)]
@@ -206,9 +177,12 @@ impl<E: Entries<N>, const N: usize> pulp::WithSimd for Groups<'_, E, N> {
             let (sin1, cos1) = sines_and_cosines(&phi[0]);
             let (sin2, cos2) = sines_and_cosines(&phi[1]);
             for k in 0..WIDTH {
-                let entries = E::at(&model, [(sin1[k], cos1[k]), (sin2[k], cos2[k])]);
-                for i in 0..N {
-                    found[i][k] = entries[i];
+                let blocks = E::at(&model, [(sin1[k], cos1[k]), (sin2[k], cos2[k])]);
+                for b in 0..B {
+                    let entries = entries(&blocks[b]);
+                    for i in 0..ENTRIES {
+                        found[b][i][k] = entries[i];
+                    }
                 }
             }
         }
@@ -263,23 +237,15 @@ mod tests {
         ) {
             let (phi1, phi2): (Vec<f64>, Vec<f64>) = shapes.iter().copied().unzip();
             let batch = Batch::new(&swimmer).unwrap();
-            let mut first = ManyFirstDerivatives::default();
-            batch.first_derivatives(&phi1, &phi2, &mut first);
-            let mut values = ConnectionsAndPowers::default();
-            batch.connections_and_powers(&phi1, &phi2, &mut values);
-            prop_assert_eq!(&values, &first.values);
+            let mut found = ConnectionsAndPowers::default();
+            batch.connections_and_powers(&phi1, &phi2, &mut found);
             let model = Model::new(&swimmer).unwrap();
             for (at, (phi1, phi2)) in shapes.into_iter().enumerate() {
-                let d = model.first_derivatives(&Vector2::new(phi1, phi2));
-                let all = [(&first.values, d.connection, d.power)].into_iter().chain((0..2).map(|k| {
-                    (&first.slopes[k], d.d_connection[k], d.d_power[k])
-                }));
-                for (many, a, w) in all {
-                    let a = [a.m11, a.m12, a.m21, a.m22, a.m31, a.m32];
-                    let columns = many.connection.iter().chain(&many.power);
-                    let here: Vec<f64> = columns.map(|column| column[at]).collect();
-                    prop_assert_eq!(here, [&a[..], &[w.m11, w.m12, w.m22]].concat());
-                }
+                let (a, w) = model.connection_and_power(&Vector2::new(phi1, phi2));
+                let a = [a.m11, a.m12, a.m21, a.m22, a.m31, a.m32];
+                let columns = found.connection.iter().chain(&found.power);
+                let here: Vec<f64> = columns.map(|column| column[at]).collect();
+                prop_assert_eq!(here, [&a[..], &[w.m11, w.m12, w.m22]].concat());
             }
         }
     }

@@ -94,7 +94,7 @@ mod speed;
 mod turning;
 
 pub use atlas::{Atlas, AtlasError, AtlasProblem, Optimum, StartCurves, atlas, atlas_watched};
-pub use batch::{Batch, ConnectionsAndPowers, ManyFirstDerivatives};
+pub use batch::{Batch, ConnectionsAndPowers};
 pub use certificate::{Certificate, Check, Condition, Verdict};
 pub use certify::{CertifyError, certify};
 pub use continuation::{

@@ -9,6 +9,8 @@ use swimmer_model::{InvalidSwimmer, Model, Swimmer};
 /// an area, the square of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Member {
+    /// It itself.
+    pub(crate) swimmer: Swimmer<f64>,
     /// Of the swimmer with L = 1.
     pub(crate) model: Model<f64>,
     /// What both servos turn over what they are told.
@@ -17,7 +19,10 @@ pub(crate) struct Member {
 
 impl Member {
     pub(crate) fn new(swimmer: &Swimmer<f64>, gain: f64) -> Result<Self, InvalidSwimmer> {
-        let model = Model::new(&swimmer.of_unit_length())?;
-        Ok(Self { model, gain })
+        Ok(Self {
+            swimmer: *swimmer,
+            model: Model::new(&swimmer.of_unit_length())?,
+            gain,
+        })
     }
 }

@@ -41,11 +41,12 @@ mod worst;
 use swimmer_files::Bounds;
 use swimmer_model::Swimmer;
 
-use crate::certificate::Certificate;
+use crate::certificate::{Certificate, Condition};
 use crate::cycle::Cycle;
 use crate::displacement::{DisplacementProblem, displacement};
 use crate::efficiency::Branch;
 use crate::immobile::refuse_immobile;
+use crate::member::Member;
 use crate::optimal_gait::OptimalGait;
 use arcs::Arcs;
 use ensemble::{Ensemble, Found};
@@ -119,28 +120,45 @@ pub struct RobustGait {
 }
 
 impl Robustness {
-    /// Of the gait of this cycle.
-    fn new<D: Design>(
+    /// Of the gait of this cycle, with the certificate of these checks and of what it brings, swum again.
+    fn certified<D: Design>(
         ensemble: &Ensemble<'_>,
         design: &D,
         found: &Found<D::Point>,
-        (over, nominal): (Over, Values),
+        nominal: Values,
         [cycle, optimum]: [&Cycle; 2],
-    ) -> Self {
-        let mut robustness = Self {
-            over,
+        certificate: Certificate,
+    ) -> Result<(Self, Certificate), RobustError> {
+        let crossing = |member: &Member| cycle.turned(member.gain).links_cross(&member.model);
+        let holders = found.holders().iter();
+        let holders = holders.map(|&(member, multiplier)| Holder {
+            sphere_radius: member.swimmer.sphere_radius,
+            chi: member.swimmer.chi,
+            gain: member.gain,
+            multiplier,
+        });
+        let robustness = Self {
+            over: found.over,
             values: ensemble.values(design, &found.point),
             nominal,
-            held_by: found.held_by.clone(),
-            members: ensemble.counts(),
+            held_by: holders.collect(),
+            members: (ensemble.grid.len(), ensemble.normal.len()),
             off_branch: ensemble.is_off_branch(design, &found.point),
-            links_cross: [0.0, optimum.links_cross(&ensemble.nominal.model)],
+            links_cross: [
+                ensemble.on_grid().map(crossing).fold(0.0, f64::max),
+                optimum.links_cross(&ensemble.nominal.model),
+            ],
         };
-        for member in ensemble.on_grid() {
-            let crossing = cycle.turned(member.gain).links_cross(&member.model);
-            robustness.links_cross[0] = robustness.links_cross[0].max(crossing);
+        let values = &robustness.values;
+        let swum_again = certificate::swum_again(ensemble, design, found, cycle, values);
+        let certificate = certificate.with(swum_again);
+        if certificate.pass() {
+            Ok((robustness, certificate))
+        } else {
+            Err(RobustError::NotCertified {
+                failed: certificate.failures(),
+            })
         }
-        robustness
     }
 }
 
@@ -180,7 +198,7 @@ pub fn robust_displacement(
             ..*problem
         })
     };
-    let swimmer = uncertainty.nominal(&problem.swimmer);
+    let swimmer = ensemble.nominal.swimmer;
     let optimum = of(swimmer)?;
     let sign = optimum.displacement_over_length.signum();
     let mut family = Arcs::around(&optimum, sign)?;
@@ -189,21 +207,14 @@ pub fn robust_displacement(
     let found = match find(&family, &ensemble, over) {
         // Where the arcs of the nominal optimum do not lead to the best worst case, those of the worst swimmer's own may.
         Err(error @ RobustError::NotConverged { .. }) if over == Over::Worst => {
-            let worst = ensemble.worst_swimmer(|member| family.value(&start, member));
-            family = Arcs::around(&of(worst.ok_or(error)?)?, sign)?;
+            let worst = ensemble.lowest(|member| family.value(&start, member));
+            family = Arcs::around(&of(worst.ok_or(error)?.member.swimmer)?, sign)?;
             find(&family, &ensemble, over)?
         }
         found => found?,
     };
-    let of = (&swimmer, &problem.bounds);
-    certified(
-        &ensemble,
-        &family,
-        &found,
-        (over, nominal),
-        of,
-        &optimum.cycle,
-    )
+    let bounds = &problem.bounds;
+    certified(&ensemble, &family, &found, nominal, bounds, &optimum.cycle)
 }
 
 /// The doubly symmetric Fourier gait of this order whose efficiency ξ, as timed, is the most in the worst case or in the mean.
@@ -245,19 +256,18 @@ pub fn robust_efficiency(
         });
     }
     let ensemble = Ensemble::new(swimmer, bounds, uncertainty)?;
-    let swimmer = uncertainty.nominal(swimmer);
     refuse_immobile(&ensemble.nominal.model, bounds)?;
     let family = FourierFamily::around(&ensemble.nominal, order, branch)?;
     let found = find(&family, &ensemble, over)?;
     let cycle = |x| family.cycle(&ensemble.nominal.model, x);
-    let by = certificate::overstepped(&cycle(&found.point), bounds, &swimmer.links);
+    let by = certificate::overstepped(&cycle(&found.point), bounds, &links);
     if by > 1e-10 {
         let bounds = *bounds;
         return Err(RobustError::Bound { by, bounds });
     }
-    let (start, of) = (family.start(), (&swimmer, bounds));
-    let told = (over, ensemble.values(&family, &start));
-    certified(&ensemble, &family, &found, told, of, &cycle(&start))
+    let start = family.start();
+    let nominal = ensemble.values(&family, &start);
+    certified(&ensemble, &family, &found, nominal, bounds, &cycle(&start))
 }
 
 /// Highest order of a Fourier gait.
@@ -268,35 +278,24 @@ fn certified<F: Family>(
     ensemble: &Ensemble<'_>,
     family: &F,
     found: &Found<F::Point>,
-    told: (Over, Values),
-    (swimmer, bounds): (&Swimmer<f64>, &Bounds),
+    nominal: Values,
+    bounds: &Bounds,
     optimum: &Cycle,
 ) -> Result<RobustGait, RobustError> {
-    let nominal = &ensemble.nominal.model;
-    let cycle = family.cycle(nominal, &found.point);
-    let robustness = Robustness::new(ensemble, family, found, told, [&cycle, optimum]);
-    let values = &robustness.values;
-    let scale = if F::RELATIVE {
-        values.nominal.abs()
-    } else {
-        1.0
-    };
-    let mut checks = family.conditions(&found.point, &found.weighted);
-    checks.extend(certificate::of_curve(&cycle, bounds, &swimmer.links));
-    checks.extend(certificate::of_symmetry(&cycle, nominal));
-    let values = (values, scale);
-    checks.extend(certificate::swum_again(
-        ensemble, family, found, &cycle, values,
-    ));
-    let certificate = Certificate::new(checks);
-    if !certificate.pass() {
-        return Err(RobustError::NotCertified {
-            failed: certificate.failures(),
-        });
-    }
-    let stroke = cycle.swum(nominal).ok_or(RobustError::Structure {
+    let Member { swimmer, model, .. } = &ensemble.nominal;
+    let cycle = family.cycle(model, &found.point);
+    let stroke = cycle.swum(model).ok_or(RobustError::Structure {
         problem: "the robust gait's samples cannot be swum",
     })?;
+    let mut checks = family.conditions(&found.point, &found.weighted);
+    checks.extend(certificate::of_curve(&cycle, bounds, &swimmer.links));
+    // What gaits with the paper's symmetries bring is along the heading, all of it.
+    checks.push(Condition::NoLateral.check(stroke.displacement.y.abs()));
+    checks.push(Condition::NoRotation.check(stroke.rotation.abs()));
+    let certificate = Certificate::new(checks);
+    let cycles = [&cycle, optimum];
+    let (robustness, certificate) =
+        Robustness::certified(ensemble, family, found, nominal, cycles, certificate)?;
     let of = (F::OBJECTIVE, swimmer, bounds);
     Ok(RobustGait {
         gait: OptimalGait {

@@ -7,20 +7,6 @@ pub struct Demand {
     pub torque: [f64; 2],
     pub reynolds: f64,
 }
-#[derive(Debug, Clone)]
-pub struct Ends {
-    pub sphere_radius: [Model<f64>; 2],
-    pub chi: [Model<f64>; 2],
-    pub correlation: Option<f64>,
-}
-impl Ends {
-    pub fn new(
-        swimmer: &Swimmer<f64>,
-        sphere_radius: [f64; 2],
-        chi: [f64; 2],
-        correlation: Option<f64>,
-    ) -> Result<Self, InvalidSwimmer> {}
-}
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Errand {
     pub from: Pose<f64>,
@@ -53,7 +39,13 @@ pub struct Forecast {
     pub verdict: Verdict,
 }
 impl Forecast {
-    pub fn displacement_error(&self, ends: &Ends) -> f64 {}
+    pub fn displacement_error(
+        &self,
+        fitted: &Swimmer<f64>,
+        sphere_radius: [f64; 2],
+        chi: [f64; 2],
+        correlation: Option<f64>,
+    ) -> Result<f64, InvalidSwimmer> {}
 }
 impl Forecast {
     pub fn ends(&self) -> Option<(&Loss, &Loss)> {}
@@ -65,6 +57,7 @@ impl Forecast {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ForecastError {
     Table(TableError),
+    Knots(InvalidSamples),
     Range { reach: Reach, max_angle: f64 },
     Period { period: f64 },
     Servo { name: &'static str, value: f64, problem: &'static str },
@@ -235,7 +228,6 @@ pub struct Timing {
     pub at_limit: f64,
     pub efficiency_loss: f64,
     pub energy: f64,
-    pub power: f64,
 }
 impl Timing {
     pub fn fraction_at(&self, u: f64) -> f64 {}
@@ -291,12 +283,6 @@ pub fn table<G: Gait<f64> + ?Sized>(
     gait: &G,
     knots: usize,
 ) -> Result<GaitTable, TableError> {}
-pub fn timing<G: Gait<f64> + ?Sized>(
-    model: &Model<f64>,
-    gait: &G,
-    period: f64,
-    max_rate: f64,
-) -> Result<Timing, TimingError> {}
 pub fn timing_of_table(
     model: &Model<f64>,
     file: &GaitFile,
@@ -309,9 +295,6 @@ pub fn until_wall<G: Gait<f64> + ?Sized>(
     tank: &Tank,
     start: &Pose<f64>,
 ) -> Option<Meeting> {}
-pub mod certainty {
-    pub use crate::Ends;
-}
 pub mod fluid {
     pub use crate::Demand;
     pub use crate::demand;
@@ -342,12 +325,6 @@ pub mod path {
         pub fn vertices(&self) -> &[Vector2<f64>] {}
     }
     impl Gait<f64> for Polyline {}
-    #[derive(Debug, Clone, PartialEq)]
-    pub struct TableCurve {}
-    impl TableCurve {
-        pub fn new(knots: Vec<Vector2<f64>>) -> Self {}
-    }
-    impl Gait<f64> for TableCurve {}
 }
 pub mod plan {
     pub use crate::Errand;
@@ -395,6 +372,5 @@ pub mod timing {
     pub use crate::TimingError;
     pub use crate::shortest_of_table;
     pub use crate::shortest_period;
-    pub use crate::timing;
     pub use crate::timing_of_table;
 }

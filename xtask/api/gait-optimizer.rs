@@ -61,12 +61,6 @@ impl Batch {
         phi2: &[f64],
         found: &mut ConnectionsAndPowers,
     ) {}
-    pub fn first_derivatives(
-        &self,
-        phi1: &[f64],
-        phi2: &[f64],
-        found: &mut ManyFirstDerivatives,
-    ) {}
 }
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BestAmplitude {
@@ -431,11 +425,6 @@ pub struct LimitedProblem {
     pub rates: Option<[f64; 2]>,
     pub torque: Option<Torque>,
     pub threads: usize,
-}
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ManyFirstDerivatives {
-    pub values: ConnectionsAndPowers,
-    pub slopes: [ConnectionsAndPowers; 2],
 }
 #[derive(Debug, Clone, PartialEq)]
 pub struct Member {

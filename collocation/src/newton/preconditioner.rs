@@ -11,7 +11,8 @@ use crate::path::Path;
 /// How much stiffer than the energy's the ends are held on their lines.
 const HELD: f64 = 1e6;
 
-/// A chain of blocks: neighbours are coupled by minus `links`.
+/// A chain of blocks, neighbours coupled by minus `links`, with each block the inverse of what is left of it once all before are
+/// eliminated.
 #[derive(Debug)]
 pub(super) struct Preconditioner {
     blocks: Vec<Matrix2<f64>>,
@@ -19,7 +20,8 @@ pub(super) struct Preconditioner {
 }
 
 impl Preconditioner {
-    pub(super) fn new(path: &Path, mesh: &Mesh) -> Self {
+    /// With what the walls add to the block of each point.
+    pub(super) fn new(path: &Path, mesh: &Mesh, walls: &[Matrix2<f64>]) -> Self {
         let power = |point: usize| path.physics[point].power / path.final_energy;
         let last = mesh.len() - 1;
         let links: Vec<_> = (0..last)
@@ -29,7 +31,7 @@ impl Preconditioner {
             })
             .collect();
         let mut blocks: Vec<_> = (0..=last)
-            .map(|point| power(point) * mesh.weights[point])
+            .map(|point| power(point) * mesh.weights[point] + walls[point])
             .collect();
         for (point, link) in links.iter().enumerate() {
             blocks[point] += link;
@@ -39,28 +41,18 @@ impl Preconditioner {
             let held = HELD * blocks[point].trace();
             blocks[point] += across * across.transpose() * held;
         }
+        for point in 0..=last {
+            if point > 0 {
+                let link = links[point - 1];
+                let gone = link * blocks[point - 1] * link;
+                blocks[point] -= gone;
+            }
+            blocks[point] = blocks[point].try_inverse().unwrap_or_else(Matrix2::zeros);
+        }
         Self { blocks, links }
     }
 
-    /// Adds to the block of a point.
-    pub(super) fn stiffen(&mut self, point: usize, by: &Matrix2<f64>) {
-        self.blocks[point] += by;
-    }
-
-    /// Makes each block the inverse of what is left of it once all before are eliminated.
-    pub(super) fn factor(&mut self) {
-        for point in 0..self.blocks.len() {
-            if point > 0 {
-                let link = self.links[point - 1];
-                let gone = link * self.blocks[point - 1] * link;
-                self.blocks[point] -= gone;
-            }
-            let inverse = self.blocks[point].try_inverse();
-            self.blocks[point] = inverse.unwrap_or_else(Matrix2::zeros);
-        }
-    }
-
-    /// Solves for a right-hand side after [`Self::factor`].
+    /// Solves for a right-hand side.
     pub(super) fn solve(&self, right: &Matrix2xX<f64>) -> Matrix2xX<f64> {
         let mut solution = right.clone();
         for (point, link) in self.links.iter().enumerate() {

@@ -29,10 +29,12 @@ fn gradient_and_hessian_are_exact() {
         .bounds()
         .collect();
     let barrier = 1e-2;
-    let make = |phi| {
-        let mut newton = Newton::new(&model, &mesh, &walls, 1.0, phi);
-        newton.center(barrier);
-        newton
+    let make = |phi| Newton {
+        model: &model,
+        mesh: &mesh,
+        walls: &walls,
+        sign: 1.0,
+        path: Path::new(&model, &mesh, phi),
     };
     let gradient = |newton: &Newton<'_>| newton.gradient(&newton.path.slope(&mesh), barrier);
     let phi = somewhere(&mesh, 1.3);
@@ -57,7 +59,6 @@ fn gradient_and_hessian_are_exact() {
             (here - difference).abs() < 1e-5 * (1.0 + here.abs()),
             "{here} {difference}"
         );
-        // On the central path the primal–dual matrix is the barrier function's Hessian.
         let along = |size: f64| gradient(&make(&phi + &step.shapes * size)).dot(&wave);
         let change = (along(SIZE) - along(-SIZE)) / (2.0 * SIZE);
         assert!(

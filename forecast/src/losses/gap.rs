@@ -1,10 +1,5 @@
 //! How close the side links come to each other along a way.
 
-#![allow(
-    clippy::cast_possible_truncation,
-    reason = "the clearance is the robot's own, in single precision"
-)]
-
 use gait_player::clearance::{clearance, margin as robot_margin};
 use nalgebra::Vector2;
 use swimmer_model::{Gait, Links};
@@ -31,36 +26,32 @@ const CHORDS: u32 = 4096;
 impl Gap {
     /// Along a chain of straight pieces.
     pub(super) fn along(links: &Links<f64>, way: &Polyline) -> Self {
-        let mut gap = Self {
-            distance: f64::INFINITY,
-            phi: Vector2::zeros(),
-        };
         let links = single(links);
         let sides = || way.vertices().array_windows();
         let length: f64 = sides().map(|[from, to]| (to - from).norm()).sum();
         let step = LOOK.max(length / MOST_LOOKS);
-        for [from, to] in sides() {
+        let places = sides().flat_map(|[from, to]| {
             let looks = ((to - from).norm() / step).ceil().max(1.0);
-            let mut look = 0.0;
-            while look <= looks {
-                gap.look(&links, from + (to - from) * (look / looks));
-                look += 1.0;
-            }
-        }
-        gap
+            let looked = (0_u32..)
+                .map(f64::from)
+                .take_while(move |look| *look <= looks);
+            looked.map(move |look| from + (to - from) * (look / looks))
+        });
+        let gaps = places.map(|phi| Self {
+            distance: clearance(&links, [phi.x as f32, phi.y as f32]).into(),
+            phi,
+        });
+        let least = gaps.min_by(|a, b| a.distance.total_cmp(&b.distance));
+        least.unwrap_or(Self {
+            distance: f64::INFINITY,
+            phi: Vector2::zeros(),
+        })
     }
 
     /// Along a curve.
     pub(super) fn of_gait<G: Gait<f64> + ?Sized>(links: &Links<f64>, gait: &G) -> Self {
         let places = (0..=CHORDS).map(|i| gait.at(f64::from(i) / f64::from(CHORDS)).phi);
         Self::along(links, &Polyline::new(places))
-    }
-
-    fn look(&mut self, links: &Links<f32>, phi: Vector2<f64>) {
-        let distance = f64::from(clearance(links, [phi.x as f32, phi.y as f32]));
-        if distance < self.distance {
-            *self = Self { distance, phi };
-        }
     }
 }
 

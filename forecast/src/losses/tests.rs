@@ -1,7 +1,9 @@
 use super::*;
+use gait_player::GaitTable;
+use gait_player::table::Phase;
 use proptest::prelude::*;
 use swimmer_files::AnyGait;
-use swimmer_model::{Swimmer, SymmetricFourier};
+use swimmer_model::{Swimmer, SymmetricFourier, swim};
 
 fn robot() -> Model<f64> {
     Model::new(&Swimmer::robot()).unwrap()
@@ -49,18 +51,6 @@ fn stage(forecast: &Forecast, stage: Stage) -> Loss {
         .unwrap()
 }
 
-#[test]
-fn losses_sum_to_the_whole() {
-    let servos = Servos::on_the_robot(ServoFile::default());
-    let forecast = told(&AnyGait::circle(1.2), servos, 30.0, 128);
-    let (designed, played) = forecast.ends().unwrap();
-    let whole =
-        designed.displacement.norm() - played.displacement.dot(&designed.displacement.normalize());
-    assert!((forecast.total_loss() - whole).abs() < 1e-15);
-    assert_eq!(forecast.stages.len(), Stage::ALL.len());
-    assert!(forecast.verdict.refused.is_none(), "{:?}", forecast.verdict);
-}
-
 /// A dead band makes every turning point fall short by its width: the circle of radius a is played as one of a − δ.
 #[test]
 fn a_dead_band_shrinks_the_gait() {
@@ -102,6 +92,26 @@ fn interpolation_losses_fall_at_fourth_order() {
     }
 }
 
+#[test]
+fn the_curve_of_a_table_is_the_robots_interpolant() {
+    for knots in [2, 3, 4, 5, 64, 512] {
+        let gait = AnyGait::circle(1.9);
+        let table = GaitTable::from_fn(knots, |u| gait.at(u).phi.into()).unwrap();
+        let units = |i| Vector2::from(table.knot(i).map(|units| f64::from(units) * 1e-4));
+        let curve = stages::through((0..knots).map(units)).unwrap();
+        for i in 0..997_usize {
+            let interval = i * knots / 997;
+            let robot = table.at(Phase {
+                interval,
+                fraction: (i as f64 / 997.0 * knots as f64 - interval as f64) as f32,
+            });
+            let ours = curve.at(i as f64 / 997.0).phi;
+            let off = Vector2::from(robot.angles.map(f64::from)) - ours;
+            assert!(off.amax() < 2e-6, "{knots} {i}: {off}");
+        }
+    }
+}
+
 /// What a coarse table gives by another way: swim the very knots' polygon of the robot's interpolant, finely chopped.
 #[test]
 fn a_coarse_table_by_another_integration() {
@@ -109,9 +119,9 @@ fn a_coarse_table_by_another_integration() {
     let gait = AnyGait::circle(1.4);
     let servos = fine(ideal());
     let told = stage(&told(&gait, servos, 30.0, 16), Stage::Rounded);
-    let table = gait_player::GaitTable::from_fn(16, |u| gait.at(u).phi.into()).unwrap();
+    let table = GaitTable::from_fn(16, |u| gait.at(u).phi.into()).unwrap();
     let shape = |i: usize| {
-        let phase = gait_player::table::Phase {
+        let phase = Phase {
             interval: i / 500,
             fraction: (i % 500) as f32 / 500.0,
         };

@@ -3,14 +3,14 @@
 use std::cell::OnceCell;
 
 use nalgebra::Vector2;
-use swimmer_model::{Gait as _, Model, Pose, trajectory};
+use swimmer_model::{Model, Pose, trajectory};
 
 use super::legs::LARGEST;
 use super::member::{Member, Nets, SMALLEST};
 use super::{Errand, Family};
 use crate::losses::tolerance;
 use crate::path::Polyline;
-use crate::tank::Tank;
+use crate::tank::{Tank, meets_wall, touching};
 
 /// Looks at the body a cycle.
 const LOOKS: usize = 72;
@@ -20,26 +20,23 @@ const RATIO: f64 = 0.9;
 /// The walls, and who swims between them.
 pub(super) struct Room<'a> {
     model: &'a Model<f64>,
+    /// Within the margin.
     tank: Option<Tank>,
-    margin: f64,
 }
 
 impl<'a> Room<'a> {
     pub(super) fn new(model: &'a Model<f64>, errand: &Errand, margin: f64) -> Self {
-        Self {
-            model,
-            tank: errand.tank,
-            margin,
-        }
+        let tank = errand.tank.map(|tank| Tank {
+            length: tank.length - 2.0 * margin,
+            width: tank.width - 2.0 * margin,
+        });
+        Self { model, tank }
     }
 
     /// Whether the body in this shape and pose stays clear of the walls.
     pub(super) fn fits(&self, pose: &Pose<f64>, phi: &Vector2<f64>) -> bool {
-        self.holds(
-            pose,
-            &self.model.swimmer().links.outline(phi),
-            &[Vector2::zeros()],
-        )
+        let touching = |tank: Tank| touching(self.model.swimmer(), &tank, pose, phi);
+        self.tank.and_then(touching).is_none()
     }
 
     /// Whether links through these points, and spheres around those, do.
@@ -47,11 +44,10 @@ impl<'a> Room<'a> {
         let Some(tank) = &self.tank else { return true };
         let (sin, cos) = pose.theta.sin_cos();
         let inside = |points: &[Vector2<f64>], radius: f64| {
-            let far = 0.5 * tank.length - self.margin - radius;
-            let wide = 0.5 * tank.width - self.margin - radius;
             points.iter().all(|point| {
-                (pose.x + cos * point.x - sin * point.y).abs() <= far
-                    && (pose.y + sin * point.x + cos * point.y).abs() <= wide
+                let turned =
+                    Vector2::new(cos * point.x - sin * point.y, sin * point.x + cos * point.y);
+                tank.holds(&(pose.position() + turned), radius)
             })
         };
         inside(links, 0.0) && inside(spheres, self.model.swimmer().sphere_radius)
@@ -59,14 +55,8 @@ impl<'a> Room<'a> {
 
     /// Whether the way that the servos take does, from the straight shape at this pose.
     pub(super) fn leaves_played(&self, from: &Pose<f64>, way: &Polyline) -> bool {
-        if self.tank.is_none() {
-            return true;
-        }
-        let mut inside = true;
-        trajectory(self.model, way, &tolerance(), way.pieces(), |point| {
-            inside = inside && self.fits(&(*from * point.pose), &point.phi);
-        });
-        inside
+        let meets = |tank: Tank| meets_wall(self.model, way, &tank, from);
+        self.tank.and_then(meets).is_none()
     }
 }
 

@@ -25,7 +25,7 @@ const SPARE: f64 = 1e-5;
 /// A gait that no table holds (beyond 3.2767 rad) is timed as a curve; the robot refuses it in any case.
 ///
 /// # Errors
-/// As [`super::timing()`].
+/// [`TimingError`]; a period that is too short comes with the shortest one.
 ///
 /// ```
 /// use forecast::timing_of_table;
@@ -55,12 +55,9 @@ pub fn timing_of_table(
     }
     let mut timing = curve.timing(period, max_rate);
     if needed(&timing, file, max_rate)? > period {
-        timing = fastest.stretched(period);
+        timing = curve.stretched(period, max_rate);
     }
-    let timing = Timing {
-        shortest_period: shortest,
-        ..timing
-    };
+    timing.shortest_period = shortest;
     let file = timing.retime_file(file);
     Ok((timing, file))
 }
@@ -68,7 +65,7 @@ pub fn timing_of_table(
 /// A gait as fast as its table can run: its timing, with the file that makes the table.
 ///
 /// # Errors
-/// As [`super::timing()`].
+/// As [`timing_of_table`].
 ///
 /// ```
 /// use forecast::{shortest_of_table, timing_of_table};
@@ -101,7 +98,7 @@ fn shortest(
     let period = needed(&fastest, file, max_rate)?;
     let timing = Timing {
         shortest_period: period,
-        ..fastest.stretched(period)
+        ..curve.stretched(period, max_rate)
     };
     Ok((curve, timing))
 }
@@ -118,29 +115,6 @@ fn needed(timing: &Timing, file: &GaitFile, max_rate: f64) -> Result<f64, Timing
     };
     let of = |interval| f64::from(table.interval_period(interval, &limits)) * (1.0 + SPARE);
     Ok((0..table.knots()).map(of).fold(timing.period, f64::max))
-}
-
-impl Timing {
-    /// The same with a longer period, slower by the same share everywhere.
-    fn stretched(mut self, period: f64) -> Self {
-        let by = period / self.period;
-        self.period = period;
-        self.energy /= by;
-        self.power /= by * by;
-        self.rate_at_constant_power /= by;
-        self.at_limit = if by > 1.01 { 0.0 } else { self.at_limit };
-        for cell in &mut self.cells {
-            // The cycle ends at its period, whatever is rounded.
-            let ends = cell.u >= 1.0;
-            cell.time = if ends {
-                period
-            } else {
-                (cell.time * by).min(period)
-            };
-            cell.power /= by * by;
-        }
-        self
-    }
 }
 
 #[cfg(test)]

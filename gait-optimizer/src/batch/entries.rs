@@ -1,21 +1,22 @@
-//! What a batch can be asked for: the model's numbers at a shape as a list of entries, and back.
+//! What a batch can be asked for: A and W at a shape with derivatives of them, as blocks, and a block as a list of entries.
 
-use nalgebra::{Matrix2, Matrix3x2, Vector2};
+use nalgebra::{Matrix2, Matrix3x2};
 use swimmer_model::{FirstDerivatives, Model, SecondDerivatives};
 
-/// Sine and cosine of φ₁ and of φ₂.
-type Turns = [(f64, f64); 2];
+/// A and W at a shape, or a derivative of them.
+pub(crate) type Block = (Matrix3x2<f64>, Matrix2<f64>);
 
-/// N numbers at a shape.
-pub(crate) trait Entries<const N: usize> {
+/// Entries of a block: A row by row, then W's upper triangle.
+pub(super) const ENTRIES: usize = 9;
+
+/// B blocks at a shape.
+pub(crate) trait Blocks<const B: usize> {
     /// What they stand for.
     type One;
-    /// They.
-    fn at(model: &Model<f64>, turns: Turns) -> [f64; N];
+    /// They, from sine and cosine of φ₁ and of φ₂.
+    fn at(model: &Model<f64>, turns: [(f64, f64); 2]) -> [Block; B];
     /// Put together.
-    fn one(entries: &[f64; N]) -> Self::One;
-    /// At one shape \[rad\], without a batch.
-    fn alone(model: &Model<f64>, phi: &Vector2<f64>) -> Self::One;
+    fn one(blocks: [Block; B]) -> Self::One;
 }
 
 /// A.
@@ -27,136 +28,95 @@ pub(crate) struct First;
 /// A, W and their first and second derivatives.
 pub(crate) struct Second;
 
-/// A row by row, then W's upper triangle.
-const BLOCK: usize = 9;
-
 #[inline(always)]
-fn put<const N: usize>(entries: &mut [f64; N], block: usize, a: &Matrix3x2<f64>, w: &Matrix2<f64>) {
-    let at = BLOCK * block;
-    entries[at] = a.m11;
-    entries[at + 1] = a.m12;
-    entries[at + 2] = a.m21;
-    entries[at + 3] = a.m22;
-    entries[at + 4] = a.m31;
-    entries[at + 5] = a.m32;
-    entries[at + 6] = w.m11;
-    entries[at + 7] = w.m12;
-    entries[at + 8] = w.m22;
+pub(super) fn entries((a, w): &Block) -> [f64; ENTRIES] {
+    [
+        a.m11, a.m12, a.m21, a.m22, a.m31, a.m32, w.m11, w.m12, w.m22,
+    ]
 }
 
 #[inline]
-fn taken<const N: usize>(entries: &[f64; N], block: usize) -> (Matrix3x2<f64>, Matrix2<f64>) {
-    let e = |k: usize| entries[BLOCK * block + k];
+pub(super) fn block(e: &[f64; ENTRIES]) -> Block {
     (
-        Matrix3x2::new(e(0), e(1), e(2), e(3), e(4), e(5)),
-        Matrix2::new(e(6), e(7), e(7), e(8)),
+        Matrix3x2::new(e[0], e[1], e[2], e[3], e[4], e[5]),
+        Matrix2::new(e[6], e[7], e[7], e[8]),
     )
 }
 
-impl Entries<6> for Connection {
+impl Blocks<1> for Connection {
     type One = Matrix3x2<f64>;
 
     #[inline(always)]
-    fn at(model: &Model<f64>, turns: Turns) -> [f64; 6] {
-        let a = model.connection_and_power_at(turns).0;
-        [a.m11, a.m12, a.m21, a.m22, a.m31, a.m32]
+    fn at(model: &Model<f64>, turns: [(f64, f64); 2]) -> [Block; 1] {
+        [(model.connection_and_power_at(turns).0, Matrix2::zeros())]
     }
 
     #[inline]
-    fn one(e: &[f64; 6]) -> Self::One {
-        Matrix3x2::new(e[0], e[1], e[2], e[3], e[4], e[5])
-    }
-
-    fn alone(model: &Model<f64>, phi: &Vector2<f64>) -> Self::One {
-        model.local_connection(phi)
+    fn one([(connection, _)]: [Block; 1]) -> Self::One {
+        connection
     }
 }
 
-impl Entries<BLOCK> for Values {
-    type One = (Matrix3x2<f64>, Matrix2<f64>);
+impl Blocks<1> for Values {
+    type One = Block;
 
     #[inline(always)]
-    fn at(model: &Model<f64>, turns: Turns) -> [f64; BLOCK] {
-        let (a, w) = model.connection_and_power_at(turns);
-        let mut entries = [0.0; BLOCK];
-        put(&mut entries, 0, &a, &w);
-        entries
+    fn at(model: &Model<f64>, turns: [(f64, f64); 2]) -> [Block; 1] {
+        [model.connection_and_power_at(turns)]
     }
 
     #[inline]
-    fn one(entries: &[f64; BLOCK]) -> Self::One {
-        taken(entries, 0)
-    }
-
-    fn alone(model: &Model<f64>, phi: &Vector2<f64>) -> Self::One {
-        model.connection_and_power(phi)
+    fn one([values]: [Block; 1]) -> Self::One {
+        values
     }
 }
 
-#[inline(always)]
-fn put_first<const N: usize>(entries: &mut [f64; N], d: &FirstDerivatives<f64>) {
-    put(entries, 0, &d.connection, &d.power);
-    put(entries, 1, &d.d_connection[0], &d.d_power[0]);
-    put(entries, 2, &d.d_connection[1], &d.d_power[1]);
-}
-
-#[inline]
-fn first<const N: usize>(entries: &[f64; N]) -> FirstDerivatives<f64> {
-    let (connection, power) = taken(entries, 0);
-    let ((a1, w1), (a2, w2)) = (taken(entries, 1), taken(entries, 2));
-    FirstDerivatives {
-        connection,
-        power,
-        d_connection: [a1, a2],
-        d_power: [w1, w2],
-    }
-}
-
-impl Entries<{ 3 * BLOCK }> for First {
+impl Blocks<3> for First {
     type One = FirstDerivatives<f64>;
 
     #[inline(always)]
-    fn at(model: &Model<f64>, turns: Turns) -> [f64; 3 * BLOCK] {
-        let mut entries = [0.0; 3 * BLOCK];
-        put_first(&mut entries, &model.first_derivatives_at(turns));
-        entries
+    fn at(model: &Model<f64>, turns: [(f64, f64); 2]) -> [Block; 3] {
+        let d = model.first_derivatives_at(turns);
+        let ([a1, a2], [w1, w2]) = (d.d_connection, d.d_power);
+        [(d.connection, d.power), (a1, w1), (a2, w2)]
     }
 
     #[inline]
-    fn one(entries: &[f64; 3 * BLOCK]) -> Self::One {
-        first(entries)
-    }
-
-    fn alone(model: &Model<f64>, phi: &Vector2<f64>) -> Self::One {
-        model.first_derivatives(phi)
+    fn one([(connection, power), (a1, w1), (a2, w2)]: [Block; 3]) -> Self::One {
+        FirstDerivatives {
+            connection,
+            power,
+            d_connection: [a1, a2],
+            d_power: [w1, w2],
+        }
     }
 }
 
-impl Entries<{ 6 * BLOCK }> for Second {
+impl Blocks<6> for Second {
     type One = SecondDerivatives<f64>;
 
     #[inline(always)]
-    fn at(model: &Model<f64>, turns: Turns) -> [f64; 6 * BLOCK] {
+    fn at(model: &Model<f64>, turns: [(f64, f64); 2]) -> [Block; 6] {
         let d = model.second_derivatives_at(turns);
-        let mut entries = [0.0; 6 * BLOCK];
-        put_first(&mut entries, &d.first);
-        put(&mut entries, 3, &d.d2_connection[0], &d.d2_power[0]);
-        put(&mut entries, 4, &d.d2_connection[1], &d.d2_power[1]);
-        put(&mut entries, 5, &d.d2_connection[2], &d.d2_power[2]);
-        entries
+        let ([a1, a2], [w1, w2]) = (d.first.d_connection, d.first.d_power);
+        let ([a11, a12, a22], [w11, w12, w22]) = (d.d2_connection, d.d2_power);
+        let values = (d.first.connection, d.first.power);
+        [
+            values,
+            (a1, w1),
+            (a2, w2),
+            (a11, w11),
+            (a12, w12),
+            (a22, w22),
+        ]
     }
 
     #[inline]
-    fn one(entries: &[f64; 6 * BLOCK]) -> Self::One {
-        let [(a11, w11), (a12, w12), (a22, w22)] = [3, 4, 5].map(|block| taken(entries, block));
+    fn one([values, d1, d2, (a11, w11), (a12, w12), (a22, w22)]: [Block; 6]) -> Self::One {
         SecondDerivatives {
-            first: first(entries),
+            first: First::one([values, d1, d2]),
             d2_connection: [a11, a12, a22],
             d2_power: [w11, w12, w22],
         }
-    }
-
-    fn alone(model: &Model<f64>, phi: &Vector2<f64>) -> Self::One {
-        model.second_derivatives(phi)
     }
 }

@@ -20,6 +20,7 @@ use super::{RobustError, cycle};
 use crate::certificate::{Check, Condition};
 use crate::cycle::Cycle;
 use crate::member::Member;
+use crate::momentum::Height;
 use crate::optimal_gait::OptimalGait;
 
 /// Degree of the polynomial of an arc: of one of several, and of one that is the whole quarter.
@@ -29,11 +30,12 @@ pub(super) const FLAT: f64 = 1e-11;
 
 /// An arc as the design sees it.
 #[derive(Debug, Clone)]
-enum Leg {
-    /// Nodes and the direction in which each moves.
-    Free(Vec<(Vector2<f64>, Vector2<f64>)>),
-    /// Straight along a bound between these ends; a neighbouring free arc may move them.
-    Bound([Vector2<f64>; 2]),
+struct Leg {
+    kind: ArcKind,
+    /// Nodes of a free arc, and the direction in which each moves.
+    nodes: Vec<(Vector2<f64>, Vector2<f64>)>,
+    /// Ends of a straight one along a bound; neighbouring free arcs may move them.
+    ends: [Vector2<f64>; 2],
 }
 
 /// Gaits with the arcs of a nominal optimum.
@@ -54,58 +56,46 @@ impl Arcs {
             problem: "the nominal gait's samples cannot be swum",
         })?;
         let mut legs = Vec::with_capacity(gait.arcs.len());
-        let count = gait.arcs.len();
-        let mut start = 0.0;
-        for (index, arc) in gait.arcs.iter().enumerate() {
-            let end = if index + 1 == count {
-                0.25
-            } else {
-                fraction_of(gait, arc.to)
+        for (index, (arc, timed)) in gait.arcs.iter().zip(gait.cycle_arcs()).enumerate() {
+            let along = |at: Option<usize>, diagonal: Vector2<f64>| {
+                let bound = at.and_then(|at| gait.arcs.get(at));
+                bound.map_or(diagonal, |bound| {
+                    Vector2::from(bound.to) - Vector2::from(bound.from)
+                })
             };
-            let ends = [Vector2::from(arc.from), Vector2::from(arc.to)];
-            legs.push(match arc.kind {
-                ArcKind::Upper => Leg::Bound(ends),
-                ArcKind::Singular => {
-                    let neighbour = |at: Option<usize>, diagonal: Vector2<f64>| {
-                        at.and_then(|at| gait.arcs.get(at))
-                            .map_or(diagonal, |bound| {
-                                Vector2::from(bound.to) - Vector2::from(bound.from)
-                            })
-                    };
-                    let first = neighbour(index.checked_sub(1), Vector2::new(1.0, 1.0));
-                    let last = neighbour(Some(index + 1), Vector2::new(-1.0, 1.0));
-                    free(&nodes, &curve, (start, end), ends, [first, last])
-                }
-                kind => return Err(RobustError::Arc { kind }),
+            let first = along(index.checked_sub(1), Vector2::new(1.0, 1.0));
+            let last = along(Some(index + 1), Vector2::new(-1.0, 1.0));
+            let span = (timed.from, timed.to.min(0.25));
+            legs.push(Leg {
+                kind: arc.kind,
+                nodes: match arc.kind {
+                    ArcKind::Upper => Vec::new(),
+                    ArcKind::Singular => free(&nodes, &curve, span, [first, last]),
+                    kind => return Err(RobustError::Arc { kind }),
+                },
+                ends: [arc.from, arc.to].map(Vector2::from),
             });
-            start = end;
         }
         Ok(Self { nodes, legs, sign })
     }
 
     /// The arcs moved by `x`, a number for each free node.
     pub(super) fn curves(&self, x: &DVector<f64>) -> Vec<ArcCurve> {
-        let mut next = x.iter();
-        let mut arcs: Vec<Vec<Vector2<f64>>> = self
-            .legs
-            .iter()
-            .map(|leg| match leg {
-                Leg::Free(free) => free
-                    .iter()
-                    .map(|(phi, direction)| phi + direction * next.next().copied().unwrap_or(0.0))
-                    .collect(),
-                Leg::Bound(ends) => ends.to_vec(),
-            })
-            .collect();
-        for at in 0..arcs.len() {
-            if let Some(Leg::Bound(ends)) = self.legs.get(at) {
-                let before = at.checked_sub(1).and_then(|i| arcs.get(i)?.last().copied());
+        let mut by = x.iter();
+        let moved = |leg: &Leg| {
+            let nodes = leg.nodes.iter().zip(&mut by);
+            nodes
+                .map(|((phi, direction), by)| phi + direction * *by)
+                .collect()
+        };
+        let mut arcs: Vec<Vec<Vector2<f64>>> = self.legs.iter().map(moved).collect();
+        for (at, leg) in self.legs.iter().enumerate() {
+            if arcs[at].is_empty() {
+                let before = at.checked_sub(1).and_then(|at| arcs[at].last().copied());
                 let after = arcs.get(at + 1).and_then(|arc| arc.first().copied());
-                let (from, to) = (before.unwrap_or(ends[0]), after.unwrap_or(ends[1]));
+                let (from, to) = (before.unwrap_or(leg.ends[0]), after.unwrap_or(leg.ends[1]));
                 let straight = self.nodes.place.iter().map(|t| from + (to - from) * *t);
-                if let Some(arc) = arcs.get_mut(at) {
-                    *arc = straight.collect();
-                }
+                arcs[at] = straight.collect();
             }
         }
         arcs.into_iter()
@@ -116,61 +106,58 @@ impl Arcs {
             .collect()
     }
 
-    pub(super) fn kinds(&self) -> impl Iterator<Item = ArcKind> + '_ {
-        self.legs.iter().map(|leg| match leg {
-            Leg::Free(_) => ArcKind::Singular,
-            Leg::Bound(_) => ArcKind::Upper,
-        })
-    }
-
-    /// Weighted heights of all nodes.
-    fn heights(&self, arcs: &[ArcCurve], members: &[(Member, f64)]) -> Vec<f64> {
-        let count: usize = arcs.iter().map(|arc| arc.phi.len()).sum();
-        let mut heights = vec![0.0; count];
+    /// Weighted heights of all nodes, with their gradients.
+    fn heights(&self, arcs: &[ArcCurve], members: &[(Member, f64)]) -> Vec<Height> {
+        let shapes: Vec<_> = arcs.iter().flat_map(|arc| &arc.phi).collect();
+        let nothing = Height {
+            value: 0.0,
+            gradient: Vector2::zeros(),
+        };
+        let mut heights = vec![nothing; shapes.len()];
         for (member, weight) in members.iter().filter(|(_, weight)| *weight != 0.0) {
             let swum = Trajectory::new(member, &self.nodes, arcs);
-            let shapes = arcs.iter().flat_map(|arc| &arc.phi);
-            for ((index, phi), height) in shapes.enumerate().zip(&mut heights) {
-                *height += self.sign * weight * swum.height(member, index, phi).value;
+            for (index, (phi, sum)) in shapes.iter().zip(&mut heights).enumerate() {
+                let height = swum.height(member, index, phi);
+                sum.value += self.sign * weight * height.value;
+                sum.gradient += height.gradient * (self.sign * weight);
             }
         }
         heights
+    }
+
+    /// The same of each leg.
+    fn of_legs<'a>(
+        &'a self,
+        heights: &'a [Height],
+    ) -> impl Iterator<Item = (&'a Leg, &'a [Height])> {
+        self.legs.iter().zip(heights.chunks(self.nodes.count()))
     }
 }
 
 impl Family for Arcs {
     const OBJECTIVE: Objective = Objective::Displacement;
-    const RELATIVE: bool = false;
 
     fn cycle(&self, model: &Model<f64>, x: &DVector<f64>) -> Cycle {
-        cycle::of_arcs(model, &self.nodes, self.kinds(), &self.curves(x))
+        let kinds = self.legs.iter().map(|leg| leg.kind);
+        cycle::of_arcs(model, &self.nodes, kinds, &self.curves(x))
     }
 
     /// h̄ vanishes on free arcs and falls outwards there (generalised Legendre–Clebsch), and pushes against bounds.
     fn conditions(&self, x: &DVector<f64>, members: &[(Member, f64)]) -> Vec<Check> {
         let arcs = self.curves(x);
         let heights = self.heights(&arcs, members);
-        let weighed = members.iter().filter(|(_, weight)| *weight != 0.0);
-        let swum: Vec<_> = weighed
-            .map(|(one, weight)| (one, *weight, Trajectory::new(one, &self.nodes, &arcs)))
-            .collect();
         let mut multiplier: Option<f64> = None;
         let (mut largest, mut falls) = (0.0_f64, f64::INFINITY);
-        let mut heights = heights.into_iter().enumerate();
-        for (leg, arc) in self.legs.iter().zip(&arcs) {
-            let nodes = arc.phi.iter().zip(&arc.slope);
-            for ((phi, slope), (index, height)) in nodes.zip(&mut heights) {
-                if matches!(leg, Leg::Bound(_)) {
-                    multiplier = Some(multiplier.unwrap_or(f64::INFINITY).min(height));
+        for ((leg, heights), arc) in self.of_legs(&heights).zip(&arcs) {
+            for (height, slope) in heights.iter().zip(&arc.slope) {
+                if leg.kind == ArcKind::Upper {
+                    let least = multiplier.unwrap_or(f64::INFINITY);
+                    multiplier = Some(least.min(height.value));
                     continue;
                 }
-                largest = largest.max(height.abs());
+                largest = largest.max(height.value.abs());
                 let outward = Vector2::new(slope.y, -slope.x).normalize();
-                let members = swum.iter().map(|(member, weight, swum)| {
-                    let height = swum.height(member, index, phi);
-                    -self.sign * weight * height.gradient.dot(&outward)
-                });
-                falls = falls.min(members.sum());
+                falls = falls.min(-height.gradient.dot(&outward));
             }
         }
         let mut checks = vec![
@@ -184,13 +171,10 @@ impl Family for Arcs {
 
 impl Design for Arcs {
     type Point = DVector<f64>;
+    const RELATIVE: bool = false;
 
     fn start(&self) -> DVector<f64> {
-        let free = self.legs.iter().map(|leg| match leg {
-            Leg::Free(nodes) => nodes.len(),
-            Leg::Bound(_) => 0,
-        });
-        DVector::zeros(free.sum())
+        DVector::zeros(self.legs.iter().map(|leg| leg.nodes.len()).sum())
     }
 
     fn value(&self, x: &DVector<f64>, member: &Member) -> f64 {
@@ -213,16 +197,10 @@ impl Design for Arcs {
     ) -> Result<DVector<f64>, RobustError> {
         let residual = |x: &DVector<f64>| {
             let heights = self.heights(&self.curves(x), members);
-            let mut index = 0;
-            let mut free = Vec::with_capacity(x.len());
-            for leg in &self.legs {
-                let nodes = self.nodes.count();
-                if matches!(leg, Leg::Free(_)) {
-                    free.extend(heights.iter().skip(index).take(nodes));
-                }
-                index += nodes;
-            }
-            DVector::from_vec(free)
+            let free = self.of_legs(&heights);
+            let free = free.filter(|(leg, _)| leg.kind == ArcKind::Singular);
+            let free = free.flat_map(|(_, heights)| heights);
+            DVector::from_vec(free.map(|height| height.value).collect())
         };
         newton(residual, start.clone(), FLAT, MOST)
     }
@@ -231,25 +209,13 @@ impl Design for Arcs {
 /// Longest step of a node in one iteration \[rad\].
 const MOST: f64 = 0.1;
 
-/// u of the sample of the quarter that is nearest to a shape.
-fn fraction_of(gait: &OptimalGait, shape: [f64; 2]) -> f64 {
-    let shape = Vector2::from(shape);
-    gait.u()
-        .iter()
-        .zip(gait.phi())
-        .take_while(|(u, _)| **u <= 0.25 + 1e-12)
-        .min_by(|a, b| (a.1 - shape).norm().total_cmp(&(b.1 - shape).norm()))
-        .map_or(0.25, |(u, _)| *u)
-}
-
-/// A free arc between two fractions of the period, its ends put where they belong.
+/// A free arc between two fractions of the period, whose ends move along these directions.
 fn free(
     nodes: &Nodes,
     curve: &impl Gait<f64>,
     (from, to): (f64, f64),
-    [first, last]: [Vector2<f64>; 2],
     along: [Vector2<f64>; 2],
-) -> Leg {
+) -> Vec<(Vector2<f64>, Vector2<f64>)> {
     // Outward is the right-hand side of the motion.
     let outward = |u: f64, along: Vector2<f64>| {
         let rate = curve.at(u).rate;
@@ -265,16 +231,9 @@ fn free(
         outward(from + inside, along[0]),
         outward(to - inside, along[1]),
     );
-    let count = nodes.count();
-    let place = |(index, t): (usize, &f64)| {
-        let phi = if index == 0 {
-            first
-        } else if index + 1 == count {
-            last
-        } else {
-            curve.at(from + (to - from) * t).phi
-        };
+    let place = |t: &f64| {
+        let phi = curve.at(from + (to - from) * t).phi;
         (phi, (begin + (end - begin) * *t).normalize())
     };
-    Leg::Free(nodes.place.iter().enumerate().map(place).collect())
+    nodes.place.iter().map(place).collect()
 }

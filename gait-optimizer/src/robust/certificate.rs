@@ -2,7 +2,7 @@
 //! by the model's own integration.
 
 use swimmer_files::Bounds;
-use swimmer_model::{Links, Model, Stroke};
+use swimmer_model::Links;
 
 use super::Values;
 use super::ensemble::{Ensemble, Found};
@@ -35,25 +35,20 @@ pub(super) fn overstepped(cycle: &Cycle, bounds: &Bounds, links: &Links<f64>) ->
     by.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The displacement of the estimates along their heading, all of it, without rotation: what gaits with the paper's symmetries bring.
-pub(super) fn of_symmetry(cycle: &Cycle, nominal: &Model<f64>) -> [Check; 2] {
-    let swum = cycle.swum(nominal);
-    let of = |part: fn(&Stroke<f64>) -> f64| swum.as_ref().map_or(f64::NAN, |s| part(s).abs());
-    [
-        Condition::NoLateral.check(of(|stroke| stroke.displacement.y)),
-        Condition::NoRotation.check(of(|stroke| stroke.rotation)),
-    ]
-}
-
 /// All values swum again by the model's own integration, and looked for again among all swimmers; and who holds the worst case is as
-/// badly off as the worst. What they may be off by is over `scale`.
+/// badly off as the worst.
 pub(super) fn swum_again<D: Design>(
     ensemble: &Ensemble<'_>,
     design: &D,
     found: &Found<D::Point>,
     cycle: &Cycle,
-    (values, scale): (&Values, f64),
+    values: &Values,
 ) -> Vec<Check> {
+    let scale = if D::RELATIVE {
+        values.nominal.abs()
+    } else {
+        1.0
+    };
     let swum = |member: &Member| {
         let swum = cycle.turned(member.gain).swum(&member.model);
         swum.map_or(f64::NAN, |stroke| design.swum(&found.point, &stroke))
@@ -66,8 +61,8 @@ pub(super) fn swum_again<D: Design>(
     ]
     .map(|(condition, off)| condition.check(off.abs() / scale))
     .into();
-    if !found.held_by.is_empty() {
-        let holders = found.weighted.iter();
+    if !found.holders().is_empty() {
+        let holders = found.holders().iter();
         let (least, apart) = holders.fold((f64::INFINITY, 0.0_f64), |(least, apart), one| {
             let off = (design.unit() * swum(&one.0) - values.worst).abs() / scale;
             (one.1.min(least), if off <= apart { apart } else { off })

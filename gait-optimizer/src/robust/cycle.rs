@@ -1,8 +1,8 @@
 //! From the design's quarter to the sampled cycle.
 
 use nalgebra::Vector2;
-use swimmer_files::{ArcKind, GaitArc};
-use swimmer_model::{Gait, Model, SymmetricFourier};
+use swimmer_files::{ArcKind, GaitArc, GaitFile};
+use swimmer_model::{Model, SymmetricFourier};
 
 use super::nodes::Nodes;
 use super::quarter::ArcCurve;
@@ -11,7 +11,7 @@ use crate::cycle::{Cycle, Samples};
 /// Samples of an arc.
 const SAMPLES: u32 = 128;
 /// Samples of a cycle of a series.
-const CYCLE: u32 = 1024;
+const CYCLE: usize = 1024;
 /// Directions this close in angle \[rad\] make no corner.
 const SMOOTH: f64 = 1e-6;
 
@@ -36,43 +36,29 @@ pub(super) fn of_arcs(
                     .sqrt()
             })
             .collect();
-        let lengths: Vec<Vector2<f64>> = nodes
-            .integrals(&speed)
-            .into_iter()
-            .map(|along| Vector2::new(along, 0.0))
-            .collect();
+        let lengths = nodes.integrals(&speed);
         let first = quarter.phi.len().saturating_sub(1);
         for sample in u32::from(!quarter.phi.is_empty())..=SAMPLES {
             let t = f64::from(sample) / f64::from(SAMPLES);
-            quarter.along.push(length + nodes.value(&lengths, t).x);
+            quarter.along.push(length + nodes.value(&lengths, t));
             quarter.phi.push(nodes.value(&curve.phi, t));
         }
-        length += lengths.last().map_or(0.0, |along| along.x);
+        length += lengths.last().copied().unwrap_or_default();
         quarter.corners.push(first);
         quarter.arcs.push((kind, first, quarter.phi.len() - 1));
     }
-    let square = [
-        curves.first().and_then(|curve| curve.slope.first()),
-        curves.last().and_then(|curve| curve.slope.last()),
-    ];
-    let [begins_across, ends_across] = [1.0, -1.0].map(|sign| {
-        move |slope: &Vector2<f64>| (slope.x + sign * slope.y).abs() < SMOOTH * slope.norm()
-    });
+    let square = |slope: Option<&Vector2<f64>>, sign: f64| {
+        slope.is_some_and(|slope| (slope.x + sign * slope.y).abs() < SMOOTH * slope.norm())
+    };
     quarter.unfolded([
-        square[0].is_some_and(begins_across),
-        square[1].is_some_and(ends_across),
+        square(curves.first().and_then(|curve| curve.slope.first()), 1.0),
+        square(curves.last().and_then(|curve| curve.slope.last()), -1.0),
     ])
 }
 
 /// The cycle of a series, timed as it is.
 pub(super) fn of_series(gait: &SymmetricFourier<Vec<[f64; 2]>>) -> Cycle {
-    let u: Vec<f64> = (0..=CYCLE)
-        .map(|i| f64::from(i) / f64::from(CYCLE))
-        .collect();
-    let mut phi: Vec<Vector2<f64>> = u.iter().map(|&u| gait.at(u).phi).collect();
-    if let (Some(first), Some(last)) = (phi.first().copied(), phi.last_mut()) {
-        *last = first;
-    }
+    let GaitFile { u, phi, .. } = GaitFile::sampled(gait, CYCLE);
     Cycle {
         u,
         phi,

@@ -5,7 +5,7 @@ use swimmer_model::{InvalidSwimmer, Swimmer};
 
 use super::newton::Design;
 use super::uncertainty::Uncertainty;
-use super::{Holder, RobustError, Values};
+use super::{Over, RobustError, Values};
 use crate::member::Member;
 
 /// All swimmers of a problem.
@@ -14,7 +14,7 @@ pub(super) struct Ensemble<'a> {
     uncertainty: &'a Uncertainty,
     pub(super) nominal: Member,
     /// Where the search for the worst case begins.
-    grid: Vec<([f64; 3], Member)>,
+    pub(super) grid: Vec<([f64; 3], Member)>,
     /// With their weights in the mean.
     pub(super) normal: Vec<(Member, f64)>,
 }
@@ -27,11 +27,21 @@ pub(super) struct Lowest {
     pub(super) member: Member,
 }
 
-/// A gait found: the members that its first-order condition weighs, and who holds the worst case.
+/// A gait found, and the members that its first-order condition weighs: for the worst case those that hold it.
 pub(super) struct Found<P> {
+    pub(super) over: Over,
     pub(super) point: P,
     pub(super) weighted: Vec<(Member, f64)>,
-    pub(super) held_by: Vec<Holder>,
+}
+
+impl<P> Found<P> {
+    /// Who holds the worst case; nobody holds a mean.
+    pub(super) fn holders(&self) -> &[(Member, f64)] {
+        match self.over {
+            Over::Worst => &self.weighted,
+            Over::Mean => &[],
+        }
+    }
 }
 
 /// Of the grid, so many of the lowest are gone downhill from.
@@ -54,21 +64,14 @@ impl<'a> Ensemble<'a> {
             return Err(RobustError::Clearance);
         }
         let grid = uncertainty.grid().into_iter();
-        let grid = grid.map(|place| Ok((place, uncertainty.at(swimmer, place).member()?)));
-        let normal = uncertainty.normal(swimmer).into_iter();
-        let normal = normal.map(|(possible, weight)| Ok((possible.member()?, weight)));
+        let grid = grid.map(|place| Ok((place, uncertainty.at(swimmer, place)?)));
         Ok(Self {
             swimmer,
             uncertainty,
-            nominal: Member::new(&uncertainty.nominal(swimmer), 1.0)?,
+            nominal: uncertainty.at(swimmer, [0.0; 3])?,
             grid: grid.collect::<Result<_, InvalidSwimmer>>()?,
-            normal: normal.collect::<Result<_, InvalidSwimmer>>()?,
+            normal: uncertainty.normal(swimmer)?,
         })
-    }
-
-    /// How many swimmers the search for the worst case begins with, and how many the mean is taken of.
-    pub(super) fn counts(&self) -> (usize, usize) {
-        (self.grid.len(), self.normal.len())
     }
 
     /// The least value over all that is left open; none where no value is a number.
@@ -88,37 +91,30 @@ impl<'a> Ensemble<'a> {
     /// Coordinate by coordinate, with ever smaller steps.
     fn downhill(&self, mut here: Lowest, value: &impl Fn(&Member) -> f64) -> Lowest {
         let axes = self.uncertainty.axes();
+        let moved = |mut place: [f64; 3], index: usize, share: f64| {
+            let (axis, before) = (axes[index], place[index]);
+            place[index] = axis.within(before + share * axis.half_step());
+            // Not where it is already at the end, or nothing is open.
+            let moves = (place[index] - before).abs() > 0.0;
+            let member = self.uncertainty.at(self.swimmer, place).ok();
+            let member = member.filter(|_| moves)?;
+            let value = value(&member);
+            Some(Lowest {
+                value,
+                place,
+                member,
+            })
+        };
         let mut share = 1.0;
         while share > FINEST {
-            let mut moved = false;
-            for (index, axis) in axes.iter().enumerate() {
-                let Some(step) = axis.half_step() else {
-                    continue;
-                };
-                for by in [step * share, -step * share] {
-                    let mut place = here.place;
-                    place[index] = axis.within(place[index] + by);
-                    // Already at the end of it.
-                    if (place[index] - here.place[index]).abs() <= 0.0 {
-                        continue;
-                    }
-                    let Ok(member) = self.uncertainty.at(self.swimmer, place).member() else {
-                        continue;
-                    };
-                    let value = value(&member);
-                    if value < here.value {
-                        here = Lowest {
-                            value,
-                            place,
-                            member,
-                        };
-                        moved = true;
-                        break;
-                    }
-                }
-            }
-            if !moved {
-                share *= 0.5;
+            let steps = [0, 1, 2].map(|index| [(index, share), (index, -share)]);
+            let places = steps.into_iter().flatten();
+            let better = places
+                .filter_map(|(index, share)| moved(here.place, index, share))
+                .find(|there| there.value < here.value);
+            match better {
+                Some(there) => here = there,
+                None => share *= 0.5,
             }
         }
         here
@@ -165,17 +161,6 @@ impl<'a> Ensemble<'a> {
         Ok(here)
     }
 
-    /// The swimmer of a worst case, with its multiplier.
-    pub(super) fn holder(&self, lowest: &Lowest, multiplier: f64) -> Holder {
-        let possible = self.uncertainty.at(self.swimmer, lowest.place);
-        Holder {
-            sphere_radius: possible.swimmer.sphere_radius,
-            chi: possible.swimmer.chi,
-            gain: possible.gain,
-            multiplier,
-        }
-    }
-
     /// What a gait brings.
     pub(super) fn values<D: Design>(&self, design: &D, point: &D::Point) -> Values {
         self.brings(|member| design.value(point, member), design.unit())
@@ -190,12 +175,6 @@ impl<'a> Ensemble<'a> {
             worst: unit * self.lowest(&value).map_or(f64::NAN, |lowest| lowest.value),
             mean: unit * mean,
         }
-    }
-
-    /// The swimmer in whose hands the gait fares worst.
-    pub(super) fn worst_swimmer(&self, value: impl Fn(&Member) -> f64) -> Option<Swimmer<f64>> {
-        let lowest = self.lowest(value)?;
-        Some(self.uncertainty.at(self.swimmer, lowest.place).swimmer)
     }
 
     /// The swimmers of the grid, which reaches to the border of all that is left open.

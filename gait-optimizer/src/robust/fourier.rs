@@ -92,7 +92,6 @@ impl FourierFamily {
 
 impl Family for FourierFamily {
     const OBJECTIVE: swimmer_files::Objective = swimmer_files::Objective::Efficiency;
-    const RELATIVE: bool = true;
 
     fn cycle(&self, _: &Model<f64>, x: &DVector<f64>) -> Cycle {
         cycle::of_series(&Self::gait(x))

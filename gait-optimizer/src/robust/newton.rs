@@ -14,6 +14,8 @@ use crate::numerics::damped;
 pub(super) trait Design {
     /// A gait of the family.
     type Point: Clone;
+    /// Whether values swum again are compared relatively.
+    const RELATIVE: bool = true;
 
     /// The nominal optimum.
     fn start(&self) -> Self::Point;
@@ -40,8 +42,6 @@ pub(super) trait Design {
 /// A family of gaits with the paper's symmetries.
 pub(super) trait Family: Design {
     const OBJECTIVE: Objective;
-    /// Whether values swum again are compared relatively.
-    const RELATIVE: bool;
 
     /// At constant power of this model, or as the family times it.
     fn cycle(&self, model: &Model<f64>, point: &Self::Point) -> Cycle;
@@ -68,23 +68,23 @@ pub(super) fn newton(
     let mut x = start;
     let mut r = residual(&x);
     let mut lu = None;
-    for _ in 0..STEPS {
-        if r.amax() <= tolerance {
+    for _ in 0..=STEPS {
+        let before = r.amax();
+        if before <= tolerance {
             return Ok(x);
         }
-        if lu.is_none() {
-            lu = Some(jacobian(&residual, &x, &r).lu());
-        }
-        let step = lu.as_ref().and_then(|lu| lu.solve(&r));
-        let Some(step) = step.filter(|step| step.iter().all(|s| s.is_finite())) else {
-            break;
-        };
-        let before = r.amax();
-        let most = (longest / step.amax().max(f64::MIN_POSITIVE)).min(1.0);
-        let better = damped(most).take(HALVINGS).find_map(|share| {
-            let trial = &x - &step * share;
-            let there = residual(&trial);
-            (there.amax() < before).then_some((trial, there))
+        let lu_here = lu
+            .take()
+            .unwrap_or_else(|| jacobian(&residual, &x, &r).lu());
+        let step = lu_here.solve(&r);
+        let step = step.filter(|step| step.iter().all(|s| s.is_finite()));
+        let better = step.and_then(|step| {
+            let most = (longest / step.amax().max(f64::MIN_POSITIVE)).min(1.0);
+            damped(most).take(HALVINGS).find_map(|share| {
+                let trial = &x - &step * share;
+                let there = residual(&trial);
+                (there.amax() < before).then_some((trial, there))
+            })
         });
         let Some(better) = better else {
             // At the floor of rounding a step may gain nothing more.
@@ -94,12 +94,7 @@ pub(super) fn newton(
             break;
         };
         (x, r) = better;
-        if r.amax() > GOOD * before {
-            lu = None;
-        }
-    }
-    if r.amax() <= tolerance {
-        return Ok(x);
+        lu = (r.amax() <= GOOD * before).then_some(lu_here);
     }
     Err(RobustError::NotConverged { residual: r.amax() })
 }

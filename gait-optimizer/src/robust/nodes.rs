@@ -2,6 +2,8 @@
 //! polynomial. (Its values are exact at both ends, where arcs meet bounds and symmetry lines.)
 
 use std::f64::consts::PI;
+use std::iter::Sum;
+use std::ops::Mul;
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
@@ -98,9 +100,9 @@ impl Nodes {
     }
 
     /// The polynomial at t.
-    pub(super) fn value(&self, values: &[Vector2<f64>], t: f64) -> Vector2<f64> {
+    pub(super) fn value<V: Copy + Mul<f64, Output = V> + Sum>(&self, values: &[V], t: f64) -> V {
         let shares = self.shares(t).into_iter().zip(values);
-        shares.map(|(share, value)| value * share).sum()
+        shares.map(|(share, value)| *value * share).sum()
     }
 }
 

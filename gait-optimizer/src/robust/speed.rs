@@ -5,7 +5,7 @@ use swimmer_model::Stroke;
 use super::ensemble::Ensemble;
 use super::newton::Design;
 use super::worst::find;
-use super::{Over, RobustError, Robustness, Uncertainty, certificate};
+use super::{Over, RobustError, Robustness, Uncertainty};
 use crate::certificate::Condition;
 use crate::cycle::Cycle;
 use crate::member::Member;
@@ -103,7 +103,7 @@ pub fn robust_speed(
 ) -> Result<RobustSpeed, RobustError> {
     let ensemble = Ensemble::new(&problem.swimmer, &problem.bounds, uncertainty)?;
     let problem = &SpeedProblem {
-        swimmer: uncertainty.nominal(&problem.swimmer),
+        swimmer: ensemble.nominal.swimmer,
         ..*problem
     };
     let optimum = problem.watched(watch)?;
@@ -127,17 +127,12 @@ pub fn robust_speed(
     fastest.found = optimum.found;
     let nominal = ensemble.values(&design, &design.start);
     let gait = &mut fastest.gait;
+    let turns = Condition::NobodyTurns.check(turns_nobody(&ensemble, &gait.cycle)?);
+    let certificate = gait.certificate.clone().with(vec![turns]);
     let cycles = [&gait.cycle, &optimum.gait.cycle];
-    let robustness = Robustness::new(&ensemble, &design, &found, (over, nominal), cycles);
-    let values = (&robustness.values, robustness.values.nominal);
-    let mut checks = certificate::swum_again(&ensemble, &design, &found, &gait.cycle, values);
-    checks.push(Condition::NobodyTurns.check(turns_nobody(&ensemble, &gait.cycle)?));
-    gait.certificate = gait.certificate.clone().with(checks);
-    if !gait.certificate.pass() {
-        return Err(RobustError::NotCertified {
-            failed: gait.certificate.failures(),
-        });
-    }
+    let (robustness, certificate) =
+        Robustness::certified(&ensemble, &design, &found, nominal, cycles, certificate)?;
+    gait.certificate = certificate;
     Ok(RobustSpeed {
         fastest,
         robustness,

@@ -5,7 +5,7 @@ use crate::Condition;
 use crate::member::Member;
 use nalgebra::DVector;
 use swimmer_files::AnyGait;
-use swimmer_model::{Gait, Model, Tolerance, swim};
+use swimmer_model::{Model, Tolerance, swim};
 
 fn fit() -> Uncertainty {
     Uncertainty {
@@ -88,39 +88,28 @@ fn robustness_pays_where_it_is_asked_for() {
     assert!((least - told).abs() < 1e-8, "{least} {told}");
 }
 
-/// A gait with a bump on each quarter.
-struct Bumped<'a>(&'a AnyGait, f64, f64);
-impl Gait<f64> for Bumped<'_> {
-    fn at(&self, u: f64) -> swimmer_model::GaitPoint<f64> {
-        // All four images, so that the gait stays in its class; only inwards and outwards along the rays.
-        let mut point = self.0.at(u);
-        let phase = 8.0 * std::f64::consts::PI * (u - self.1);
-        let bump = (phase.cos() * 12.0 - 12.0).exp();
-        let slope = -8.0 * std::f64::consts::PI * 12.0 * phase.sin() * bump;
-        point.rate = point.rate * (1.0 + self.2 * bump) + point.phi * (self.2 * slope);
-        point.phi *= 1.0 + self.2 * bump;
-        point
-    }
-    fn pieces(&self) -> usize {
-        self.0.pieces()
-    }
-    fn piece_end(&self, i: usize) -> f64 {
-        self.0.piece_end(i)
-    }
-    fn corner_at_end(&self, i: usize) -> bool {
-        self.0.corner_at_end(i)
-    }
+/// A gait with a bump on each quarter: all four images, so that it stays in its class; only inwards and outwards along the rays.
+fn bumped(gait: &OptimalGait, at: f64, size: f64) -> AnyGait {
+    let bump = |u: f64| {
+        let phase = 8.0 * std::f64::consts::PI * (u - at);
+        1.0 + size * (phase.cos() * 12.0 - 12.0).exp()
+    };
+    let phi = gait.u().iter().zip(gait.phi());
+    let cycle = Cycle {
+        phi: phi.map(|(u, phi)| phi * bump(*u)).collect(),
+        ..gait.cycle.clone()
+    };
+    cycle.gait().unwrap()
 }
 
 /// No gait near the robust one does better for the mean: bumps on its free arcs, within the bound.
 #[test]
 fn no_neighbour_has_a_better_mean() {
     let robust = robust_displacement(&bounded(), &fit(), Over::Mean).unwrap();
-    let members = fit().normal(&Swimmer::robot());
-    let mean = |gait: &dyn Gait<f64>| -> f64 {
-        let of = |(possible, weight): &(uncertainty::Possible, f64)| {
-            let model = Model::new(&possible.swimmer).unwrap();
-            let stroke = swim(&model, gait, &Tolerance::new(1e-11));
+    let members = fit().normal(&Swimmer::robot()).unwrap();
+    let mean = |gait: &AnyGait| -> f64 {
+        let of = |(member, weight): &(Member, f64)| {
+            let stroke = swim(&member.model, gait, &Tolerance::new(1e-11));
             weight * stroke.displacement_over_length().x
         };
         members.iter().map(of).sum()
@@ -130,7 +119,7 @@ fn no_neighbour_has_a_better_mean() {
     assert!((best - robust.robustness.values.mean).abs() < 1e-8);
     // At the middle of the first free arc and at the antidiagonal; bumps repeat with a quarter's period, so both images.
     for (at, size) in [(0.0, 0.02), (0.0, -0.02), (0.22, 0.02), (0.22, -0.02)] {
-        let other = mean(&Bumped(&gait, at, size));
+        let other = mean(&bumped(&robust.gait, at, size));
         assert!(other < best, "{at} {size}: {other} {best}");
     }
 }
@@ -218,11 +207,7 @@ fn a_gain_in_doubt_is_designed_for() {
     assert_eq!(held_by.len(), 2, "{held_by:?}");
     let curve = robust.gait.gait().unwrap();
     let brings = |gain: f64| {
-        let phi: Vec<_> = robust.gait.phi().iter().map(|phi| phi * gain).collect();
-        let corners: Vec<usize> = (0..phi.len())
-            .filter(|&at| robust.gait.corners().contains(&robust.gait.u()[at]))
-            .collect();
-        let turned = AnyGait::from_samples(robust.gait.u(), &phi, &corners).unwrap();
+        let turned = robust.gait.cycle.turned(gain).gait().unwrap();
         displacement_of(&turned, &Swimmer::purcell())
     };
     assert!((brings(1.0) - displacement_of(&curve, &Swimmer::purcell())).abs() < 1e-12);
@@ -243,8 +228,8 @@ fn the_worst_of_an_ellipse_is_a_minimum() {
     let steps = 720;
     let brings = |i: i32| {
         let turn = std::f64::consts::TAU * f64::from(i) / f64::from(steps);
-        let possible = tilted.at(&Swimmer::robot(), [1.0, turn, 0.0]);
-        displacement_of(&gait, &possible.swimmer)
+        let member = tilted.at(&Swimmer::robot(), [1.0, turn, 0.0]);
+        displacement_of(&gait, &member.unwrap().swimmer)
     };
     let on_border: Vec<f64> = (0..steps).map(brings).collect();
     let least = on_border.iter().copied().fold(f64::INFINITY, f64::min);
@@ -374,11 +359,7 @@ fn the_nominal_optimum_is_not_robust() {
     let uncertainty = fit();
     let found = robust_speed(&problem, &uncertainty, Over::Mean, &|_| ()).unwrap();
     let optimum = crate::fastest(&problem).unwrap();
-    let members: Vec<(Member, f64)> = uncertainty
-        .normal(&Swimmer::robot())
-        .iter()
-        .map(|(possible, weight)| (possible.member().unwrap(), *weight))
-        .collect();
+    let members = uncertainty.normal(&Swimmer::robot()).unwrap();
     let residual = |gait: &OptimalGait| {
         let file = gait.gait_file("");
         let curve = gait.gait().unwrap();

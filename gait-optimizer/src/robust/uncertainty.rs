@@ -37,19 +37,6 @@ pub struct Uncertainty {
     pub correlation: Option<f64>,
 }
 
-/// A swimmer that is left open.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Possible {
-    pub(super) swimmer: Swimmer<f64>,
-    pub(super) gain: f64,
-}
-
-impl Possible {
-    pub(super) fn member(&self) -> Result<Member, InvalidSwimmer> {
-        Member::new(&self.swimmer, self.gain)
-    }
-}
-
 /// One coordinate of all that is left open.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axis {
@@ -73,20 +60,16 @@ impl Axis {
     }
 
     fn grid(self) -> impl Iterator<Item = f64> + Clone {
-        let last = if self.round {
-            self.steps - 1
-        } else {
-            self.steps
-        };
+        let last = self.steps - u32::from(self.round);
         (0..=last).map(move |i| {
             let share = f64::from(i) / f64::from(self.steps.max(1));
             self.from + (self.to - self.from) * share
         })
     }
 
-    /// Halfway to the grid's neighbour; none where nothing is open.
-    pub(super) fn half_step(self) -> Option<f64> {
-        (self.steps > 0).then(|| 0.5 * (self.to - self.from) / f64::from(self.steps))
+    /// Halfway to the grid's neighbour; 0 where nothing is open.
+    pub(super) fn half_step(self) -> f64 {
+        0.5 * (self.to - self.from) / f64::from(self.steps.max(1))
     }
 
     /// A coordinate, or where it ends.
@@ -150,98 +133,97 @@ impl Uncertainty {
         )?;
         interval("fit's interval of χ", self.chi, self.chi_interval)?;
         interval("interval of the gain, about 1,", 1.0, self.gain_interval)?;
-        if self.gain_interval[0] <= 0.0 {
-            let [low, _] = self.gain_interval;
-            return wrong("gain", low, "its whole interval must be above 0");
-        }
-        let [low, _] = self.chi_interval;
-        if low <= 0.0 || self.chi <= 0.0 {
-            return wrong(
+        let ([gain, _], [chi, _]) = (self.gain_interval, self.chi_interval);
+        let chi = chi.min(self.chi);
+        let rho = self.correlation.unwrap_or(0.0);
+        for (holds, name, value, problem) in [
+            (
+                gain > 0.0,
+                "gain",
+                gain,
+                "its whole interval must be above 0",
+            ),
+            (
+                chi > 0.0,
                 "fit's χ",
-                low.min(self.chi),
+                chi,
                 "χ and its whole interval must be above 0",
-            );
-        }
-        if !(self.level > 0.0 && self.level < 1.0) {
-            return wrong(
+            ),
+            (
+                self.level > 0.0 && self.level < 1.0,
                 "fit's level",
                 self.level,
                 "give a share between 0 and 1, as 0.95",
-            );
-        }
-        match self.correlation {
-            Some(rho) if rho.is_nan() || rho.abs() > 1.0 => wrong(
+            ),
+            (
+                rho.abs() <= 1.0,
                 "fit's correlation",
                 rho,
                 "a correlation lies between -1 and 1",
             ),
-            _ => Ok(()),
+        ] {
+            if !holds {
+                return wrong(name, value, problem);
+            }
         }
+        Ok(())
     }
 
-    /// The swimmer with the estimates themselves.
-    pub(super) fn nominal(&self, swimmer: &Swimmer<f64>) -> Swimmer<f64> {
-        with(swimmer, self.sphere_radius, self.chi)
-    }
-
-    /// Half widths of the interval of r_s, below and above the estimate \[m\].
-    fn radius_widths(&self) -> [f64; 2] {
-        let [low, high] = self.sphere_radius_interval;
-        let above = (high - self.sphere_radius).max(0.0);
-        let below = (self.sphere_radius - low).max(0.0);
-        [if low <= 0.0 { below.max(above) } else { below }, above]
-    }
-
-    /// The same of ln χ.
-    fn log_chi_widths(&self) -> [f64; 2] {
+    /// Half widths of the intervals, below and above the estimates: of r_s \[m\], of ln χ and of the gain.
+    fn widths(&self) -> [[f64; 2]; 3] {
+        let around = |estimate: f64, [low, high]: [f64; 2]| {
+            [(estimate - low).max(0.0), (high - estimate).max(0.0)]
+        };
+        let [mut below, above] = around(self.sphere_radius, self.sphere_radius_interval);
+        if self.sphere_radius_interval[0] <= 0.0 {
+            below = below.max(above);
+        }
         let [low, high] = self.chi_interval;
+        let log_chi = [(self.chi / low).ln(), (high / self.chi).ln()];
         [
-            (self.chi / low).ln().max(0.0),
-            (high / self.chi).ln().max(0.0),
+            [below, above],
+            log_chi.map(|width| width.max(0.0)),
+            around(1.0, self.gain_interval),
         ]
     }
 
     /// Correlation, where there are two to correlate.
     fn rho(&self) -> Option<f64> {
-        let open = |widths: [f64; 2]| widths[0] + widths[1] > 0.0;
-        let both = open(self.radius_widths()) && open(self.log_chi_widths());
+        let [radius, log_chi, _] = self.widths();
+        let both = is_open(radius) && is_open(log_chi);
         self.correlation.map(|rho| if both { rho } else { 0.0 })
-    }
-
-    fn gain_widths(&self) -> [f64; 2] {
-        let [low, high] = self.gain_interval;
-        [(1.0 - low).max(0.0), (high - 1.0).max(0.0)]
     }
 
     /// Whether nobody knows how far the servos turn.
     pub(super) fn gain_is_open(&self) -> bool {
-        self.gain_widths().iter().any(|width| *width > 0.0)
+        is_open(self.widths()[2])
     }
 
-    /// The swimmer so many half widths from the estimates.
-    fn off(&self, swimmer: &Swimmer<f64>, [radius, log_chi, gain]: [f64; 3]) -> Possible {
-        let log_chi = scaled(self.log_chi_widths(), log_chi);
-        Possible {
-            swimmer: with(
-                swimmer,
-                self.sphere_radius + scaled(self.radius_widths(), radius),
-                self.chi * log_chi.exp(),
-            ),
-            gain: 1.0 + scaled(self.gain_widths(), gain),
-        }
+    /// The swimmer so far from the estimates, in r_s \[m\], ln χ and gain. A sphere below nothing counts as none.
+    fn off(
+        &self,
+        swimmer: &Swimmer<f64>,
+        [radius, log_chi, gain]: [f64; 3],
+    ) -> Result<Member, InvalidSwimmer> {
+        let swimmer = Swimmer {
+            sphere_radius: (self.sphere_radius + radius).max(0.0),
+            chi: self.chi * log_chi.exp(),
+            ..*swimmer
+        };
+        Member::new(&swimmer, 1.0 + gain)
     }
 
     /// The coordinates of all that is left open: of the ellipse radius and turn, else both half widths; and the gain's.
     pub(super) fn axes(&self) -> [Axis; 3] {
-        let side = |widths: [f64; 2], steps| {
-            let open = widths[0] + widths[1] > 0.0;
-            if open {
+        let side = |widths, steps| {
+            if is_open(widths) {
                 Axis::new(-1.0, 1.0, steps)
             } else {
                 Axis::new(0.0, 0.0, 0)
             }
         };
-        let gain = side(self.gain_widths(), GAIN_STEPS);
+        let [radius, log_chi, gain] = self.widths();
+        let gain = side(gain, GAIN_STEPS);
         match self.rho() {
             Some(_) => {
                 let turn = Axis {
@@ -250,11 +232,7 @@ impl Uncertainty {
                 };
                 [Axis::new(0.0, 1.0, 1), turn, gain]
             }
-            None => [
-                side(self.radius_widths(), STEPS),
-                side(self.log_chi_widths(), STEPS),
-                gain,
-            ],
+            None => [side(radius, STEPS), side(log_chi, STEPS), gain],
         }
     }
 
@@ -270,8 +248,17 @@ impl Uncertainty {
     }
 
     /// The swimmer at these coordinates.
-    pub(super) fn at(&self, swimmer: &Swimmer<f64>, place: [f64; 3]) -> Possible {
-        self.off(swimmer, self.half_widths(place))
+    ///
+    /// # Errors
+    /// There is none.
+    pub(super) fn at(
+        &self,
+        swimmer: &Swimmer<f64>,
+        place: [f64; 3],
+    ) -> Result<Member, InvalidSwimmer> {
+        let (by, widths) = (self.half_widths(place), self.widths());
+        let scaled = |k: usize| by[k] * widths[k][usize::from(by[k] >= 0.0)];
+        self.off(swimmer, [0, 1, 2].map(scaled))
     }
 
     /// A grid over all that is left open, the estimates first, to begin the search for the worst case from.
@@ -299,44 +286,35 @@ impl Uncertainty {
     /// An interval does not tell its degrees of freedom, so the deviation is taken as if they were many: half width over the
     /// normal quantile. A calibration's intervals are Student's, wider for few runs: there the deviation comes out larger than the
     /// standard error, and the mean is taken over a wider spread than the fit's own.
-    pub(super) fn normal(&self, swimmer: &Swimmer<f64>) -> Vec<(Possible, f64)> {
+    ///
+    /// # Errors
+    /// One of them is none.
+    pub(super) fn normal(
+        &self,
+        swimmer: &Swimmer<f64>,
+    ) -> Result<Vec<(Member, f64)>, InvalidSwimmer> {
         let quantile = Normal::standard().inverse_cdf(0.5 + 0.5 * self.level);
-        let deviation = |[below, above]: [f64; 2]| 0.5 * (below + above) / quantile;
-        let deviations = [
-            self.radius_widths(),
-            self.log_chi_widths(),
-            self.gain_widths(),
-        ]
-        .map(deviation);
-        let one = [(0.0, 1.0)];
-        let rule = |deviation: f64| {
+        let deviations = self.widths().map(|[a, b]| 0.5 * (a + b) / quantile);
+        let rules = deviations.map(|deviation| {
             if deviation > 0.0 {
                 HERMITE.as_slice()
             } else {
-                one.as_slice()
+                &[(0.0, 1.0)]
             }
-        };
-        let [radius, log_chi, gain] = deviations.map(rule);
+        });
         let rho = self.rho().unwrap_or(0.0);
-        let mut weighted = Vec::with_capacity(radius.len() * log_chi.len() * gain.len());
-        for &(z1, w1) in radius {
-            for &(z2, w2) in log_chi {
-                for &(z3, w3) in gain {
+        let mut weighted = Vec::new();
+        for &(z1, w1) in rules[0] {
+            for &(z2, w2) in rules[1] {
+                for &(z3, w3) in rules[2] {
                     let (a, b) = correlated(rho, z1, z2);
                     let [radius, log_chi, gain] = deviations;
-                    let possible = Possible {
-                        swimmer: with(
-                            swimmer,
-                            self.sphere_radius + radius * a,
-                            self.chi * (log_chi * b).exp(),
-                        ),
-                        gain: 1.0 + gain * z3,
-                    };
-                    weighted.push((possible, w1 * w2 * w3));
+                    let by = [radius * a, log_chi * b, gain * z3];
+                    weighted.push((self.off(swimmer, by)?, w1 * w2 * w3));
                 }
             }
         }
-        weighted
+        Ok(weighted)
     }
 }
 
@@ -344,20 +322,12 @@ impl Uncertainty {
 const STEPS: u32 = 4;
 const GAIN_STEPS: u32 = 2;
 
-/// A standard variable in units of the half width on its side.
-fn scaled([below, above]: [f64; 2], z: f64) -> f64 {
-    z * if z < 0.0 { below } else { above }
+/// Whether an interval of these half widths leaves anything open.
+fn is_open([below, above]: [f64; 2]) -> bool {
+    below + above > 0.0
 }
 
 /// Two standard variables of this correlation from two independent ones.
 fn correlated(rho: f64, z1: f64, z2: f64) -> (f64, f64) {
     (z1, rho * z1 + (1.0 - rho * rho).max(0.0).sqrt() * z2)
-}
-
-fn with(swimmer: &Swimmer<f64>, sphere_radius: f64, chi: f64) -> Swimmer<f64> {
-    Swimmer {
-        sphere_radius: sphere_radius.max(0.0),
-        chi,
-        ..*swimmer
-    }
 }

@@ -40,16 +40,14 @@ pub(super) fn find<D: Design>(
 ) -> Result<Found<D::Point>, RobustError> {
     if over == Over::Mean {
         return Ok(Found {
+            over,
             point: ensemble.solve(design, &design.start(), &ensemble.normal)?,
             weighted: ensemble.normal.clone(),
-            held_by: Vec::new(),
         });
     }
     let held = worst(design, ensemble)?;
-    let holders = held.members.iter();
-    let holders = holders.map(|(lowest, multiplier)| ensemble.holder(lowest, *multiplier));
     Ok(Found {
-        held_by: holders.collect(),
+        over,
         weighted: held.weighted(),
         point: held.point,
     })

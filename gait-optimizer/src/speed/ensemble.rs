@@ -32,7 +32,7 @@ pub(super) fn expansion(
     if members.is_empty() {
         return (slope, bend);
     }
-    for (Member { model, gain }, weight) in members {
+    for (Member { model, gain, .. }, weight) in members {
         let turned = turned(layout, z, *gain);
         let jets = layout.jets(model, rule, &turned);
         let (net, gradient) = chain::gradient(layout, &jets, &turned, weights);

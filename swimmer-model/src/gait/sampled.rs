@@ -205,7 +205,8 @@ impl<'a, T: Scalar> Sampled<'a, T> {
         } else {
             (true, true)
         };
-        let most = STENCIL.min(self.u.len() + 1).cast_signed();
+        // An odd number, so that away from corners it is even on both sides.
+        let most = STENCIL.min((self.u.len() + 1) | 1).cast_signed();
         while hi - lo + 1 < most && (open.0 || open.1) {
             if open.0 && (!open.1 || i - lo <= hi - i) {
                 lo -= 1;

@@ -4,12 +4,12 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use forecast::{Ends, Forecast, Meeting, Played, Servos, Tank, forecast, until_wall};
+use forecast::{Forecast, Meeting, Played, Servos, Tank, forecast, until_wall};
 use link_protocol::{ANGLE_UNIT_RAD, Board, Configuration, HelloReply, MAX_KNOTS, TangentialDrag};
 use nalgebra::Vector2;
 use serde::Serialize;
 use swimmer_files::{AnyGait, SwimmerFile};
-use swimmer_model::{InvalidSwimmer, Links, Model, Pose, Swimmer};
+use swimmer_model::{Links, Model, Pose, Swimmer};
 use twin::is_configured_as;
 
 use super::playing::duration;
@@ -246,8 +246,7 @@ impl Arguments {
                     ..player.swimmer
                 };
                 let intervals = (fit.sphere_radius_interval, fit.chi_interval);
-                let ends = Ends::new(&fitted, intervals.0, intervals.1, fit.correlation)?;
-                Ok::<_, InvalidSwimmer>(told.displacement_error(&ends))
+                told.displacement_error(&fitted, intervals.0, intervals.1, fit.correlation)
             })
             .transpose()
             .map_err(|error| Failure::bad_input(&error))?;

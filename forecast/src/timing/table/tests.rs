@@ -117,7 +117,8 @@ fn with_time_to_spare_it_is_constant_power() {
     let file = square(1.0);
     let (timing, timed) = timing_of_table(&model, &file, 100.0, 3.5).unwrap();
     let gait = AnyGait::from_file(&file).unwrap();
-    let free = super::super::timing(&model, &gait, 100.0, f64::INFINITY).unwrap();
+    let free = Curve::new(&model, &gait).unwrap();
+    let free = free.timing(100.0, f64::INFINITY);
     assert_eq!(timed, free.retime_file(&file));
     assert!((timing.energy / free.energy - 1.0).abs() < 1e-12 && timing.at_limit == 0.0);
 }
@@ -126,9 +127,19 @@ fn with_time_to_spare_it_is_constant_power() {
 fn senseless_numbers_are_refused() {
     let model = Model::new(&Swimmer::robot()).unwrap();
     let timed = |period, rate| timing_of_table(&model, &square(1.0), period, rate);
+    let shortest = |amplitude: f64, rate| {
+        super::super::shortest_period(&AnyGait::circle(amplitude), [3.5, rate])
+    };
     for rate in [0.0, -1.0, f64::NAN] {
         assert!(matches!(timed(5.0, rate), Err(TimingError::Rate { .. })));
+        assert!(matches!(shortest(1.0, rate), Err(TimingError::Rate { .. })));
     }
+    let still = GaitFile::sampled(&AnyGait::circle(0.0), 9);
+    let still = timing_of_table(&model, &still, 5.0, 1.0).unwrap_err();
+    assert_eq!(
+        (still, shortest(0.0, 1.0)),
+        (TimingError::Still, Err(TimingError::Still))
+    );
     for period in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(
             timed(period, 1.0),

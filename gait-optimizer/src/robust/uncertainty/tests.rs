@@ -23,7 +23,7 @@ fn fitted(chi: f64, [low, high]: [f64; 2], correlation: Option<f64>) -> Uncertai
 
 #[test]
 fn the_rule_has_the_moments_of_the_normal_distribution() {
-    let members = wide().normal(&Swimmer::robot());
+    let members = wide().normal(&Swimmer::robot()).unwrap();
     let mean = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
         members
             .iter()
@@ -39,7 +39,9 @@ fn the_rule_has_the_moments_of_the_normal_distribution() {
     assert!((mean(&|r, c| r * c) / (0.7 * dr * dchi) - 1.0).abs() < 1e-8);
     assert!((mean(&|_, c| c.powi(4)) / (3.0 * dchi.powi(4)) - 1.0).abs() < 1e-8);
     // A χ known to a factor of three has no swimmers of no χ, nor any that a floor made.
-    let open = fitted(5.16, [1.55, 17.1], Some(-0.9)).normal(&Swimmer::robot());
+    let open = fitted(5.16, [1.55, 17.1], Some(-0.9))
+        .normal(&Swimmer::robot())
+        .unwrap();
     let logs = open.iter().map(|(s, w)| w * s.swimmer.chi.ln());
     assert!((logs.sum::<f64>() - 5.16_f64.ln()).abs() < 1e-12);
     // An exact r_s leaves χ its whole spread, whatever the correlation.
@@ -47,7 +49,7 @@ fn the_rule_has_the_moments_of_the_normal_distribution() {
         sphere_radius_interval: [0.07; 2],
         ..wide()
     };
-    let spread = alone.normal(&Swimmer::robot());
+    let spread = alone.normal(&Swimmer::robot()).unwrap();
     let spread = spread
         .iter()
         .map(|(s, w)| w * (s.swimmer.chi / 3.6).ln().powi(2));
@@ -67,7 +69,7 @@ fn fine(case: &Uncertainty) -> Vec<Swimmer<f64>> {
         .flat_map(|two| along(first).step_by(32).map(move |one| [one, two, 0.0]))
         .chain(along(first).map(|one| [one, second.to, 0.0]))
         .chain(along(second).map(|two| [border, two, 0.0]))
-        .map(|place| case.at(&Swimmer::robot(), place).swimmer)
+        .map(|place| case.at(&Swimmer::robot(), place).unwrap().swimmer)
         .collect()
 }
 
@@ -110,7 +112,9 @@ fn the_swimmers_touch_the_intervals_and_never_leave_them() {
     assert_eq!(count(box_only), 25);
     assert_eq!(count(wide()), 33);
     assert_eq!(count(Uncertainty::none(0.07, 3.6)), 1);
-    let exact = Uncertainty::none(0.07, 3.6).normal(&Swimmer::robot());
+    let exact = Uncertainty::none(0.07, 3.6)
+        .normal(&Swimmer::robot())
+        .unwrap();
     assert_eq!(exact.len(), 1);
 }
 

@@ -241,7 +241,7 @@ impl<'a> Swum<'a> {
 
     /// Its share of the height at a shape that the servos are told.
     fn height(&self, u: f64, phi: &Vector2<f64>) -> Height {
-        let Member { model, gain } = self.member;
+        let Member { model, gain, .. } = self.member;
         let momentum = Momentum {
             p: self.unit,
             c: 0.0,
