@@ -34,6 +34,7 @@ use crate::certificate::{
     Certificate, Check, Condition, SHARE, SWUM_AGAIN, SeenBy, simple_and_turning_once,
     turning_number,
 };
+use crate::cycle::Cycle;
 use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
 use crate::speed::{MadeFor, certify_speed};
@@ -203,6 +204,16 @@ pub(crate) fn certified(gait: OptimalGait) -> OptimalGait {
         certificate,
         ..gait
     }
+}
+
+/// How far two polynomials through the samples of a cycle of most efficiency differ in its slopes, over what [`certify`] lets them.
+pub(crate) fn slopes_open(cycle: &Cycle) -> f64 {
+    let file = cycle.file(Bounds::default());
+    let (grid, shapes) = Grid::new(&file, &grid::told_by_arcs(&file));
+    let [fine, coarse] = [Degree::Fine, Degree::Coarse].map(|degree| grid.slopes(&shapes, degree));
+    let slopes = fine.iter().zip(&coarse);
+    let apart = slopes.map(|(fine, coarse)| (fine - coarse).norm() / fine.norm());
+    apart.fold(0.0, f64::max) / Condition::SlopesKnown.tolerance()
 }
 
 /// What the sampling may leave open.

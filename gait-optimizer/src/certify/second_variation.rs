@@ -26,7 +26,7 @@ pub(super) struct Neighbours<'a> {
 }
 
 /// Parts between knots, of the cycle or of its first quarter, and the fewest of a piece.
-const PARTS: f64 = 160.0;
+const PARTS: f64 = 96.0;
 const FEWEST: usize = 4;
 /// Where the elements of a part are looked at, each half of it (Gauss's rule).
 const PLACES: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];

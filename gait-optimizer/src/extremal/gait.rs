@@ -6,8 +6,7 @@ use swimmer_model::{Gait, Model, Swimmer, Tolerance, swim};
 use super::shooting::Class;
 use super::{Extremal, Unpolished};
 use crate::certificate::Condition;
-use crate::certify::certified;
-use crate::cycle::Cycle;
+use crate::certify::{certified, slopes_open};
 use crate::optimal_gait::OptimalGait;
 
 /// Samples of a cycle are not made more beyond this.
@@ -29,39 +28,21 @@ pub(crate) struct Order<'a> {
 /// An extremal as a gait, with the certificate of its file; whether that passes is for the caller to see. Where the interpolated samples
 /// do not keep the power constant, or leave slopes open that the certificate asks for, there are more of them than were asked for.
 pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait, Unpolished> {
+    let Order { model, swimmer, .. } = *order;
     let mut samples = order.samples;
-    loop {
-        let cycle = extremal
-            .cycle(order.model, samples)
-            .ok_or(Unpolished::Trace)?;
+    let (cycle, curve) = loop {
+        let cycle = extremal.cycle(model, samples).ok_or(Unpolished::Trace)?;
         let curve = cycle.gait().map_err(|_| Unpolished::Trace)?;
         // The power varies by the third power of the samples' distance, slopes are open by the sixth.
-        let mut off = (power_variation(order.model, &cycle.u, &curve) / CONSTANT_POWER).cbrt();
+        let off = (power_variation(model, &cycle.u, &curve) / CONSTANT_POWER).cbrt();
+        let off = off.max(slopes_open(&cycle).powf(1.0 / 6.0));
         if off <= 1.0 || samples > MOST_SAMPLES {
-            let gait = of_samples(order, extremal, cycle, &curve);
-            let slopes = gait
-                .certificate
-                .value(Condition::SlopesKnown)
-                .unwrap_or(0.0);
-            off = (slopes / Condition::SlopesKnown.tolerance()).powf(1.0 / 6.0);
-            if off <= 1.0 || samples > MOST_SAMPLES {
-                return Ok(gait);
-            }
+            break (cycle, curve);
         }
         samples = more(samples, off);
-    }
-}
-
-/// The gait of an extremal's cycle, certified.
-fn of_samples(
-    order: &Order<'_>,
-    extremal: &Extremal,
-    cycle: Cycle,
-    curve: &AnyGait,
-) -> OptimalGait {
-    let Order { model, swimmer, .. } = *order;
+    };
     let symmetric = extremal.class == Class::Quarter;
-    let stroke = swim(model, curve, &Tolerance::new(1e-12));
+    let stroke = swim(model, &curve, &Tolerance::new(1e-12));
     let of = (Objective::Efficiency, swimmer, order.bounds);
     // The arcs know these closer than the samples do: d is parallel to p, and p · d is the length.
     let d = extremal.displacement();
@@ -74,7 +55,7 @@ fn of_samples(
     });
     let residual = Condition::ShootingResidual.check(extremal.solved.residual);
     gait.certificate = gait.certificate.with(vec![residual]);
-    gait
+    Ok(gait)
 }
 
 /// So many samples that they should suffice where they are too far apart by this factor.
