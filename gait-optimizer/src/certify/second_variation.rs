@@ -40,6 +40,7 @@ const FLAT_OF_WIDEST: f64 = 1e-3;
 const ROUNDING: f64 = 1e-9;
 
 /// The directions that lead up from a curve.
+#[derive(Default)]
 pub(super) struct Ascents {
     /// How many are independent.
     pub(super) count: usize,
@@ -107,31 +108,9 @@ impl Neighbours<'_> {
                 steepest: Vec::new(),
             });
         };
-        if std::env::var("DBG").is_ok() {
-            let e = reduced.clone().symmetric_eigen();
-            let i = e.eigenvalues.imax();
-            let v = e.eigenvectors.column(i);
-            eprintln!(
-                "DBX {:?} sym {} max {:?} amax {:?} n {} vec {:.2?}",
-                self.gain,
-                self.symmetric,
-                e.eigenvalues.max(),
-                e.eigenvalues.amax(),
-                mesh.count,
-                mesh.knots
-                    .iter()
-                    .step_by(8)
-                    .map(|k| k.number.map_or(0.0, |n| v[n]))
-                    .collect::<Vec<_>>()
-            );
-        }
         // None at a maximum, which a factorisation shows sooner than the eigenvalues do.
         if (-&reduced).cholesky().is_some() {
-            return Some(Ascents {
-                count: 0,
-                unsure: 0,
-                steepest: Vec::new(),
-            });
+            return Some(Ascents::default());
         }
         let eigen = reduced.clone().symmetric_eigen();
         let values = &eigen.eigenvalues;

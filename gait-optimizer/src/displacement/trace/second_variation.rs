@@ -212,33 +212,4 @@ mod tests {
         }
         assert!(maxima.iter().all(|&count| count > 40), "{maxima:?}");
     }
-
-    /// W turns negative exactly where the dense matrix of the form has a negative direction.
-    #[test]
-    fn the_factorisation_agrees_with_a_dense_matrix() {
-        let (count, length) = (200, 2.0);
-        let step = length / f64::from(count);
-        for strength in [0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 6.0] {
-            for phase in [0.0, 1.0, 2.0, 3.0] {
-                let push = |s: f64| push(strength, phase, s);
-                let stretch = |i: i32| {
-                    let s = f64::from(i) * step;
-                    (push(s), push(s + step), step)
-                };
-                let found = least_pivot(&(0..count).map(stretch).collect::<Vec<_>>());
-                let at: Vec<Push> = (0..count)
-                    .map(|i| push((f64::from(i) + 0.5) * step))
-                    .collect();
-                let matrix = DMatrix::from_fn(at.len(), at.len(), |i, j| {
-                    let (first, last) = (at[i.min(j)], at[i.max(j)]);
-                    let both = first.turn * last.shift * step;
-                    if i == j { first.slope + both } else { both }
-                });
-                let least = matrix.symmetric_eigen().eigenvalues.min();
-                if least.abs() > 0.02 {
-                    assert_eq!(found > 0.0, least > 0.0, "{found} {least}");
-                }
-            }
-        }
-    }
 }
