@@ -35,7 +35,7 @@ const SAME: f64 = 1e-9;
 /// Curvatures below this part of the largest are not told from zero. Where effort counts the largest is that of the narrowest push,
 /// and that of the widest the square of the knots less.
 const FLAT: f64 = 1e-5;
-const FLAT_OF_WIDEST: f64 = 1e-3;
+const FLAT_OF_WIDEST: f64 = 1e-2;
 /// Rounding leaves less than this part of the form open.
 const ROUNDING: f64 = 1e-9;
 
