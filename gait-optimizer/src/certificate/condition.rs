@@ -65,6 +65,8 @@ conditions! {
     DisplacementSteppedAgain: "displacement_stepped_again" <= super::SWUM_AGAIN;
     /// The rotation, step by step from sample to sample \[rad\].
     RotationSteppedAgain: "rotation_stepped_again" <= super::SWUM_AGAIN;
+    /// The efficiency of the samples is that of the arcs, relatively.
+    EfficiencySwumAgain: "efficiency_swum_again" <= 1e-7;
     /// A gait with the paper's symmetries goes nowhere across its heading, over L.
     NoLateral: "net_lateral" <= 1e-8;
     /// It does not turn the swimmer \[rad\].
@@ -127,6 +129,10 @@ conditions! {
     EffortOnBound: "bound_multiplier_least" >= -1e-7;
     /// What is left of the shooting's equations: angles in rad, momenta over |p|.
     ShootingResidual: "shooting_residual" <= 1e-10;
+    /// p is parallel to the displacement: the sine between them.
+    MomentumAlongDisplacement: "displacement_off_momentum" <= 1e-7;
+    /// |p| |d| = ∮√P, relatively.
+    MomentumScale: "momentum_off_scale" <= 1e-7;
     /// A closed curve polished without its symmetry has the efficiency of its quarter, relatively.
     SameAsQuarter: "closed_curve_off_quarter" <= 1e-8;
 

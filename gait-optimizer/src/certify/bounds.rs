@@ -73,7 +73,7 @@ impl Subject<'_> {
         };
         // Right on the links' clearance its slope may point either way by rounding, so both sides are asked.
         let place = self.path.places.get(inside)?;
-        let right = Vector2::new(place.rate.y, -place.rate.x).normalize() * ASIDE;
+        let right = place.right() * ASIDE;
         let bound = self.bound_followed_at(inside)?;
         let margin = |shape: Vector2<f64>| {
             let limits = self.limits.at(&shape, self.quarter(inside));

@@ -26,17 +26,31 @@ pub(super) struct Place {
 }
 
 impl Place {
+    /// How the pose changes.
+    fn velocity(&self) -> Vector3<f64> {
+        let body = self.first.connection * self.rate;
+        let (sin, cos) = self.heading;
+        Vector3::new(
+            cos * body.x - sin * body.y,
+            sin * body.x + cos * body.y,
+            body.z,
+        )
+    }
+
+    /// Unit vector to the right of the motion.
+    pub(super) fn right(&self) -> Vector2<f64> {
+        Vector2::new(self.rate.y, -self.rate.x).normalize()
+    }
+
     /// Shape, its rate and the pose; and how they change.
     fn state(&self) -> [SVector<f64, 7>; 2] {
         let Self {
             phi, rate, bend, ..
         } = self;
-        let ([x, y, theta], (sin, cos)) = (self.pose, self.heading);
-        let body = self.first.connection * rate;
-        let out = [cos * body.x - sin * body.y, sin * body.x + cos * body.y];
+        let ([x, y, theta], moves) = (self.pose, self.velocity());
         [
             [phi.x, phi.y, rate.x, rate.y, x, y, theta].into(),
-            [rate.x, rate.y, bend.x, bend.y, out[0], out[1], body.z].into(),
+            [rate.x, rate.y, bend.x, bend.y, moves.x, moves.y, moves.z].into(),
         ]
     }
 
@@ -103,20 +117,14 @@ impl Path {
                 root_power: rate.dot(&(first.power * rate)).max(0.0).sqrt(),
             })
             .collect();
-        let body: Vec<Vector3<f64>> = places
-            .iter()
-            .map(|place| place.first.connection * place.rate)
-            .collect();
-        let turning: Vec<f64> = body.iter().map(|rate| rate.z).collect();
+        // Turning is the same in every frame.
+        let turning: Vec<f64> = places.iter().map(|place| place.velocity().z).collect();
         let headings = grid.integrals(&turning, 0.0, degree);
         for (place, theta) in places.iter_mut().zip(&headings) {
             place.heading = theta.sin_cos();
         }
-        let velocities = body.iter().zip(&places).map(|(body, place)| {
-            let (sin, cos) = place.heading;
-            Vector2::new(cos * body.x - sin * body.y, sin * body.x + cos * body.y)
-        });
-        let velocities: Vec<Vector2<f64>> = velocities.collect();
+        let velocities: Vec<Vector2<f64>> =
+            places.iter().map(|place| place.velocity().xy()).collect();
         let positions = grid.integrals(&velocities, Vector2::zeros(), degree);
         for ((place, position), theta) in places.iter_mut().zip(&positions).zip(&headings) {
             place.pose = [position.x, position.y, *theta];

@@ -35,7 +35,7 @@ const SAME: f64 = 1e-9;
 /// Curvatures below this part of the largest are not told from zero. Where effort counts the largest is that of the narrowest push,
 /// and that of the widest the square of the knots less.
 const FLAT: f64 = 1e-5;
-const FLAT_OF_WIDEST: f64 = 1e-2;
+const FLAT_OF_WIDEST: f64 = 1e-3;
 /// Rounding leaves less than this part of the form open.
 const ROUNDING: f64 = 1e-9;
 
@@ -172,8 +172,7 @@ impl Neighbours<'_> {
             mesh.knots.first().map(|knot| knot.number),
             self.subject.path.places.first(),
         ) {
-            let right = Vector2::new(place.rate.y, -place.rate.x).normalize();
-            started[knot] = (place.first.connection * right).z;
+            started[knot] = (place.first.connection * place.right()).z;
         }
         started
     }
@@ -305,10 +304,7 @@ impl Neighbours<'_> {
             .nodes
             .iter()
             .zip(&self.subject.path.places);
-        let push = |(node, place): (&Node, &Place)| {
-            let right = Vector2::new(place.rate.y, -place.rate.x).normalize();
-            right * height(node.u).unwrap_or(0.0)
-        };
+        let push = |(node, place): (&Node, &Place)| place.right() * height(node.u).unwrap_or(0.0);
         let pushes: Vec<Vector2<f64>> = nodes.map(push).collect();
         let farthest = pushes.iter().map(Vector2::norm).fold(0.0, f64::max);
         pushes.iter().map(|push| push / farthest).collect()

@@ -45,16 +45,24 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
     let stroke = swim(model, &curve, &Tolerance::new(1e-12));
     let of = (Objective::Efficiency, swimmer, order.bounds);
     // The arcs know these closer than the samples do: d is parallel to p, and p · d is the length.
-    let d = extremal.displacement();
+    let (d, efficiency) = (extremal.displacement(), extremal.efficiency(model));
     let mut gait = certified(OptimalGait {
-        efficiency: extremal.efficiency(model),
+        efficiency,
         displacement_over_length: d.x,
         lateral_over_length: d.y,
         displacement: d.x * swimmer.total_length(),
         ..OptimalGait::of_cycle(of, symmetric, cycle, &stroke)
     });
-    let residual = Condition::ShootingResidual.check(extremal.solved.residual);
-    gait.certificate = gait.certificate.with(vec![residual]);
+    // What the arcs say of themselves, against the samples swum.
+    let swum = stroke.displacement;
+    gait.certificate = gait.certificate.with(vec![
+        Condition::ShootingResidual.check(extremal.solved.residual),
+        Condition::MomentumAlongDisplacement
+            .check((swum.perp(&d) / (swum.norm() * d.norm())).abs()),
+        Condition::MomentumScale.check((swum.norm() / d.norm() - 1.0).abs()),
+        Condition::EfficiencySwumAgain
+            .check((stroke.efficiency_constant_power() / efficiency - 1.0).abs()),
+    ]);
     Ok(gait)
 }
 
