@@ -4,7 +4,6 @@ mod closed_curve;
 mod condition;
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
-use swimmer_model::Stroke;
 
 pub use condition::Condition;
 
@@ -196,16 +195,4 @@ pub(crate) const SHARE: f64 = 1e-3;
 /// What two ways of swimming a gait that moves so far over L may differ by, over L.
 pub(crate) fn again_within(over_length: f64) -> f64 {
     SWUM_AGAIN.min(SHARE * over_length)
-}
-
-/// The samples swum by the model's own cycle integration, which shares no code with the arcs.
-pub(crate) fn swum_again(stroke: &Stroke<f64>, displacement_over_length: f64) -> [Check; 3] {
-    let (x, y) = (stroke.displacement.x, stroke.displacement.y);
-    let rotation = stroke.rotation;
-    let tolerance = again_within(displacement_over_length.abs());
-    [
-        Condition::DisplacementSwumAgain.within((x - displacement_over_length).abs(), tolerance),
-        Condition::NoLateral.check(y.abs()),
-        Condition::NoRotation.check(rotation.abs()),
-    ]
 }

@@ -31,7 +31,7 @@ use swimmer_model::{
 };
 
 use crate::certificate::{
-    Certificate, Check, Condition, SHARE, SWUM_AGAIN, SeenBy, simple_and_turning_once,
+    Certificate, Check, Condition, SHARE, SWUM_AGAIN, SeenBy, Verdict, simple_and_turning_once,
     turning_number,
 };
 use crate::cycle::Cycle;
@@ -127,29 +127,38 @@ pub fn certify(
     objective: Objective,
     bounds: &Bounds,
 ) -> Result<Certificate, CertifyError> {
+    certify_swum((swimmer, objective, bounds), gait, None)
+}
+
+/// As [`certify`], of a gait whose displacement over L is known.
+fn certify_swum(
+    of @ (swimmer, objective, _): (&Swimmer<f64>, Objective, &Bounds),
+    gait: &GaitFile,
+    swum: Option<Vector2<f64>>,
+) -> Result<Certificate, CertifyError> {
     let model = Model::new(&swimmer.of_unit_length())?;
     let made_for = Cell::new(None);
-    let asked = |gait: &GaitFile| of_samples((&model, &made_for), swimmer, gait, objective, bounds);
+    let asked = |gait: &GaitFile, swum| of_samples((&model, &made_for), of, gait, swum);
     AnyGait::from_file(gait)?;
     // Across whose heading a gait moves is asked of the first sample; of all else it says nothing.
     let begun = (objective != Objective::Sideways)
         .then(|| begun_on_the_diagonal(gait))
         .flatten();
+    let swum = swum.filter(|_| begun.is_none());
     let gait = begun.as_ref().unwrap_or(gait);
     let efficiency = objective == Objective::Efficiency;
-    let certificate = asked(gait)?;
+    let certificate = asked(gait, swum)?;
     Ok(with_uncertainty(certificate, gait, efficiency, |other| {
-        asked(other).ok()
+        asked(other, None).ok()
     }))
 }
 
-/// As [`certify`], whatever the samples leave open.
+/// As [`certify_swum`], whatever the samples leave open.
 fn of_samples(
     (model, made_for): (&Model<f64>, &Cell<Option<MadeFor>>),
-    swimmer: &Swimmer<f64>,
+    (swimmer, objective, bounds): (&Swimmer<f64>, Objective, &Bounds),
     gait: &GaitFile,
-    objective: Objective,
-    bounds: &Bounds,
+    swum: Option<Vector2<f64>>,
 ) -> Result<Certificate, CertifyError> {
     let curve = AnyGait::from_file(gait)?;
     if gait.u.len() < GaitFile::FEWEST_SAMPLES || gait.u.last() != Some(&1.0) {
@@ -172,7 +181,9 @@ fn of_samples(
         reversed.as_ref().unwrap_or(gait),
         curve.reversed_if(clockwise),
     );
-    certify_turned(model, gait, objective, limits, &curve)
+    let swum = swum.filter(|_| !clockwise);
+    let swum = swum.unwrap_or_else(|| swim(model, &curve, &Tolerance::default()).displacement);
+    certify_turned(model, gait, objective, limits, (&curve, swum))
 }
 
 impl OptimalGait {
@@ -199,11 +210,30 @@ impl OptimalGait {
 pub(crate) fn certified(gait: OptimalGait) -> OptimalGait {
     // Of what makes no closed curve nothing holds.
     let nothing = |_| Certificate::new(vec![Condition::Closed.check(f64::NAN)]);
-    let certificate = gait.certify().unwrap_or_else(nothing);
+    let file = gait.gait_file("");
+    let of = (&gait.swimmer, gait.objective, &gait.bounds);
+    let certificate = certify_swum(of, &file, Some(gait.swum)).unwrap_or_else(nothing);
     OptimalGait {
         certificate,
         ..gait
     }
+}
+
+/// The same of a gait in as many samples as it needs to be decided, of so many first and twice as many each time; where no number of
+/// them will do, as it was first. None where it cannot be made.
+pub(crate) fn decided(
+    samples: usize,
+    make: impl Fn(usize) -> Option<OptimalGait>,
+) -> Option<OptimalGait> {
+    /// How often they are doubled.
+    const FINEST: u32 = 4;
+    let is_decided = |gait: &OptimalGait| gait.certificate.verdict() != Verdict::Undecided;
+    let first = certified(make(samples)?);
+    if is_decided(&first) {
+        return Some(first);
+    }
+    let mut finer = (1..=FINEST).filter_map(|times| Some(certified(make(samples << times)?)));
+    finer.find(is_decided).or(Some(first))
 }
 
 /// How far two polynomials through the samples of a cycle of most efficiency differ in its slopes, over what [`certify`] lets them.
@@ -230,13 +260,13 @@ fn sampling(objective: Objective, open: Openness) -> [Check; 2] {
     .map(|check| check.seen_by(SeenBy::Spacing))
 }
 
-/// As [`certify`] of a counter-clockwise gait.
+/// As [`certify`] of a counter-clockwise gait, with its curve and that one's displacement.
 fn certify_turned(
     model: &Model<f64>,
     gait: &GaitFile,
     objective: Objective,
     limits: Limits,
-    curve: &AnyGait,
+    (curve, swum): (&AnyGait, Vector2<f64>),
 ) -> Result<Certificate, CertifyError> {
     let subject = Subject::new(model, gait, limits);
     let open = subject.openness();
@@ -248,16 +278,14 @@ fn certify_turned(
         checks.extend(subject.of_its_loop(gait));
     }
     checks.extend(sampling);
-    let stroke = swim(model, curve, &Tolerance::default());
     let [x, y, theta] = subject.path.end();
     let apart = |[a, b]: [f64; 2]| (a - x).hypot(b - y);
     let again = path::stepped(model, &subject.grid, &subject.shapes);
-    let swum = [stroke.displacement.x, stroke.displacement.y];
     let mut tolerance = SWUM_AGAIN + open.pose;
     if objective != Objective::Turning {
         tolerance = tolerance.min(SHARE * x.hypot(y));
     }
-    checks.push(Condition::DisplacementSwumAgain.within(apart(swum), tolerance));
+    checks.push(Condition::DisplacementSwumAgain.within(apart(swum.into()), tolerance));
     checks.push(Condition::DisplacementSteppedAgain.within(apart([again[0], again[1]]), tolerance));
     if objective != Objective::Turning {
         checks.push(Condition::NoRotation.open(theta.abs(), open.pose));

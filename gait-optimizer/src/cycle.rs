@@ -59,6 +59,12 @@ impl Cycle {
         }
     }
 
+    /// The shapes of the first quarter, its end among them.
+    pub(crate) fn quarter(&self) -> &[Vector2<f64>] {
+        let end = self.u.partition_point(|&u| u < 0.25 - 1e-12);
+        self.phi.get(..=end).unwrap_or(&self.phi)
+    }
+
     /// The cycle of servos that turn so many times what they are told.
     pub(crate) fn turned(&self, gain: f64) -> Self {
         Self {

@@ -7,7 +7,6 @@ mod near;
 mod search;
 mod start_family;
 mod supremum;
-mod trace;
 
 use std::fmt;
 
@@ -19,10 +18,11 @@ use search::{Candidate, SCAN_POINTS};
 pub use supremum::{Member, Suprema, Supremum};
 use swimmer_files::{Bounds, Objective};
 use swimmer_model::{Model, Swimmer};
-use trace::QuarterTrace;
 
-use crate::certificate::{Certificate, simple_and_turning_once, swum_again};
+use crate::certificate::{Condition, again_within};
+use crate::certify::decided;
 use crate::immobile::refuse_immobile;
+use crate::momentum::pose;
 use crate::optimal_gait::OptimalGait;
 use crate::problem::{GaitClass, InvalidProblem, validated};
 
@@ -189,9 +189,8 @@ pub(crate) fn best_symmetric(
     let (touching, seen) = best(problem, &model, within, carries(&found));
     let mut answer = if touching.is_ok() { touching } else { found };
     let least = carries(&answer) * (1.0 + OUTDONE);
-    let farthest = seen
-        .farthest(problem, &model, within, least)
-        .map(|gait| gait.displacement_over_length);
+    let farthest = seen.farthest(&model, problem.heading().sign(), least);
+    let farthest = farthest.map(|(_, far)| far);
     match &mut answer {
         Ok(gait) => gait.outdone_over_length = farthest,
         Err(DisplacementError::NoOptimum { outdone, .. }) => *outdone = farthest,
@@ -224,49 +223,47 @@ pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, D
     Ok(gaits)
 }
 
-/// A candidate as a full cycle with its certificate and the bounds that it was found within, which are those that it can be
-/// certified for again; none where it cannot even be traced.
+/// A candidate as a full cycle with its certificate and the bounds that it was found within, which are those that it is certified
+/// for; none where it cannot even be traced.
 fn certified(
     problem: &DisplacementProblem,
     model: &Model<f64>,
-    (bounds, region): (&Bounds, &Region),
+    within: (&Bounds, &Region),
     candidate: &Candidate,
 ) -> Option<OptimalGait> {
-    let trace = traced(model, region, candidate, problem.quarter_samples)?;
-    let cycle = trace.cycle();
-    let displacement_over_length = 4.0 * candidate.quarter.end[2];
-    let stroke = cycle.swum(model)?;
-    // The arcs tell their conditions at once; to read them off the samples, as `certify` does, takes longer than the search.
-    let mut checks = trace.conditions.clone();
-    // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
-    let curve = if region.has_diagonals() {
-        &trace.samples.phi
-    } else {
-        &cycle.phi
-    };
-    checks.extend(simple_and_turning_once(&cycle.phi, curve));
-    checks.extend(swum_again(&stroke, displacement_over_length));
-    let of = (Objective::Displacement, &problem.swimmer, bounds);
-    Some(OptimalGait {
-        // The arcs know these closer than the samples do.
-        displacement_over_length,
-        displacement: displacement_over_length * problem.swimmer.total_length(),
-        start_angle: trace.start().x,
-        end_angle: trace.end().y,
-        certificate: Certificate::new(checks),
-        ..OptimalGait::of_cycle(of, true, cycle, &stroke)
-    })
+    let mut gait = decided(problem.quarter_samples, |samples| {
+        swum(problem, model, within, candidate, samples)
+    })?;
+    // What the arcs say of themselves.
+    let end = pose(&candidate.quarter.end);
+    let lambda4 = candidate.momentum.at(&end).z.abs();
+    let again = 4.0 * candidate.quarter.end[2] - gait.swum.x;
+    let tolerance = again_within(gait.swum.x.abs());
+    gait.certificate = gait.certificate.with(vec![
+        Condition::FinalLambda4.check(lambda4),
+        Condition::ArcsSwumAgain.within(again.abs(), tolerance),
+    ]);
+    Some(gait)
 }
 
-/// A candidate's quarter, sampled; none where it cannot be traced.
-fn traced(
+/// A candidate as a full cycle, four times so many samples, not yet certified; none where it cannot be traced.
+fn swum(
+    problem: &DisplacementProblem,
     model: &Model<f64>,
-    region: &Region,
+    (bounds, _): (&Bounds, &Region),
     candidate: &Candidate,
     samples: usize,
-) -> Option<QuarterTrace> {
-    let legs: Vec<_> = flow::lasting(&candidate.quarter.legs).copied().collect();
-    QuarterTrace::new((model, candidate.momentum), region, &legs, samples)
+) -> Option<OptimalGait> {
+    let cycle = candidate.cycle(model, samples)?;
+    let stroke = cycle.swum(model)?;
+    let of = (Objective::Displacement, &problem.swimmer, bounds);
+    // The arcs know this closer than the samples do.
+    let displacement_over_length = 4.0 * candidate.quarter.end[2];
+    Some(OptimalGait {
+        displacement_over_length,
+        displacement: displacement_over_length * problem.swimmer.total_length(),
+        ..OptimalGait::of_cycle(of, true, cycle, &stroke)
+    })
 }
 
 #[cfg(test)]

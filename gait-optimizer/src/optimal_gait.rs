@@ -60,6 +60,8 @@ pub struct OptimalGait {
     /// none where a solver follows a single one.
     pub extremals: Option<usize>,
     pub(crate) cycle: Cycle,
+    /// Net displacement over L as the model swims the samples.
+    pub(crate) swum: Vector2<f64>,
 }
 
 impl OptimalGait {
@@ -94,6 +96,7 @@ impl OptimalGait {
             outdone_over_length: None,
             extremals: None,
             cycle,
+            swum: over_length,
         }
     }
 
@@ -128,6 +131,7 @@ impl OptimalGait {
             arc.to = arc.to.map(|angle| -angle);
         }
         self.lateral_over_length = -self.lateral_over_length;
+        self.swum.y = -self.swum.y;
         self.rotation = -self.rotation;
         self.start_angle = -self.start_angle;
         self.end_angle = -self.end_angle;

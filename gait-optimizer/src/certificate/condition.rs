@@ -81,12 +81,8 @@ conditions! {
     LeavesAtZero: "off_exit_condition_rad" <= 1e-8;
     /// The height grows to the left of free arcs (generalised Legendre–Clebsch).
     GrowsInwards: "legendre_clebsch_least" >= 1e-6;
-    /// The same over the steepest slope of a quarter.
-    GrowsInwardsSteeply: "legendre_clebsch_least" >= 1e-4;
     /// Costates integrated along free arcs keep `H_u = 0`.
     Stationary: "h_u" <= 1e-8;
-    /// The same of a quarter whose arcs are known, over L.
-    StationaryQuarter: "h_u" <= 1e-9;
     /// H keeps its value with them.
     HamiltonianZero: "hamiltonian" <= 1e-8;
     /// The height pushes against bounds.
@@ -99,18 +95,10 @@ conditions! {
     NoAscentWithoutSymmetry: "ascent_directions_without_symmetry" <= 0.0;
 
     // A quarter that a search traced (paper, section IV).
-    /// It begins on φ₁ = φ₂ and ends on φ₁ = −φ₂ \[rad\].
-    OnSymmetryLines: "off_symmetry_lines_rad" <= 1e-9;
-    /// The arcs traced once more end where the search's do \[rad\].
-    Retraced: "retraced_rad" <= 1e-8;
     /// λ₄ at the end.
     FinalLambda4: "final_lambda4" <= 1e-9;
-    /// λ₁ = −λ₂ at the start.
-    StartTransversality: "start_transversality" <= 1e-9;
-    /// λ₁ = λ₂ at the end.
-    EndTransversality: "end_transversality" <= 1e-9;
-    /// No conjugate point before the end.
-    NoConjugatePoint: "conjugate_point_least" >= 1e-6;
+    /// Its displacement is that of the samples, over L.
+    ArcsSwumAgain: "arcs_swum_again" <= super::SWUM_AGAIN;
 
     // Efficiency.
     /// The power is constant: (max − min) over the square of ∮√P.

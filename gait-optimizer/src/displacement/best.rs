@@ -2,18 +2,21 @@
 
 use std::cmp::Ordering;
 
-use nalgebra::Vector2;
 use swimmer_files::Bounds;
 use swimmer_model::Model;
 
 use super::flow::Touch;
 use super::search::{Candidate, FINER_SCAN, SCAN_POINTS, Search, Seen};
 use super::start_family::{StartFamily, families, families_on_the_diagonal};
-use super::{DisplacementError, DisplacementProblem, Fates, certified, traced};
-use crate::certificate::{Condition, Verdict, turning_number};
+use super::{DisplacementError, DisplacementProblem, Fates, certified};
+use crate::certificate::{simple_and_turning_once, turning_number};
+use crate::cycle::Cycle;
 use crate::momentum::Motion;
 use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
+
+/// Samples of a quarter that is no optimum.
+const SAMPLES: usize = 192;
 
 /// What a search within some bounds came to.
 pub(super) struct Extremals<'a> {
@@ -75,29 +78,33 @@ fn farther(a: &Candidate, b: &Candidate) -> Ordering {
 }
 
 impl Extremals<'_> {
-    /// Of the gaits seen that are no extremals and carry farther than `least`, over L, about the farthest; none where none was seen.
+    /// About the farthest of the gaits seen that are no extremals and carry farther than `least`, with its X over L; none where none
+    /// was seen.
     pub(super) fn farthest(
         &self,
-        problem: &DisplacementProblem,
         model: &Model<f64>,
-        within: (&Bounds, &Region),
+        sign: f64,
         least: f64,
-    ) -> Option<OptimalGait> {
-        let sign = problem.heading().sign();
+    ) -> Option<(Cycle, f64)> {
         let scans = self.scans.iter();
-        let mut carried: Vec<Candidate> = scans
+        let mut carried: Vec<_> = scans
             .flat_map(|(search, families, seen)| search.farthest(families, seen, least / 4.0))
-            .filter(|candidate| 4.0 * sign * candidate.quarter.end[2] > least)
             .collect();
-        carried.sort_by(farther);
-        carried.iter().find_map(|candidate| {
+        carried.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+        carried.iter().find_map(|(_, candidate)| {
+            let candidate = candidate()?;
+            let far = 4.0 * candidate.quarter.end[2];
             // Most that carry far wind several times, which a few samples tell.
-            let few = traced(model, within.1, candidate, 32)?.cycle();
-            if (turning_number(&few.phi) - 1.0).abs() > 0.5 {
+            let few = candidate.cycle(model, 32)?;
+            if sign * far <= least || (turning_number(&few.phi) - 1.0).abs() > 0.5 {
                 return None;
             }
-            let gait = certified(problem, model, within, candidate)?;
-            is_gait(&gait).then_some(gait)
+            let cycle = candidate.cycle(model, SAMPLES)?;
+            let checks = simple_and_turning_once(&cycle.phi, cycle.quarter());
+            checks
+                .iter()
+                .all(|check| check.pass)
+                .then_some((cycle, far))
         })
     }
 }
@@ -119,9 +126,8 @@ pub(super) fn best<'a>(
                 continue;
             };
             if gait.certificate.holds_among_symmetric() {
-                let mut finer = finely_sampled(problem, model, within, (candidate, gait));
-                finer.extremals = Some(seen.found.len());
-                return (Ok(finer), seen);
+                let extremals = Some(seen.found.len());
+                return (Ok(OptimalGait { extremals, ..gait }), seen);
             }
             refused.get_or_insert(gait);
         }
@@ -147,70 +153,4 @@ pub(super) fn best<'a>(
         },
     };
     (Err(error), seen)
-}
-
-/// Whether all holds that makes a curve a gait within its bounds, optimal or not.
-fn is_gait(gait: &OptimalGait) -> bool {
-    gait.certificate.holds_but(&[
-        Condition::FinalLambda4,
-        Condition::StartTransversality,
-        Condition::EndTransversality,
-        Condition::NoConjugatePoint,
-        Condition::NoAscentWithoutSymmetry,
-    ])
-}
-
-/// Most samples of a quarter, as a multiple of those asked for.
-const FINEST: usize = 16;
-
-/// Gaits with shorter sides and smaller bends between them \[rad\] are not asked: they pass, and asking costs as much as finding the
-/// gait.
-const CLOSE: [f64; 2] = [0.08, 0.1];
-
-/// The gait with as many samples as its own certificate needs when it is worked out from the samples alone; as it is where no
-/// number of them will do.
-pub(super) fn finely_sampled(
-    problem: &DisplacementProblem,
-    model: &Model<f64>,
-    within: (&Bounds, &Region),
-    (candidate, gait): (&Candidate, OptimalGait),
-) -> OptimalGait {
-    if longest_and_sharpest(&gait)
-        .iter()
-        .zip(CLOSE)
-        .all(|(found, close)| *found < close)
-    {
-        return gait;
-    }
-    let mut finer = *problem;
-    let mut sampled = gait.clone();
-    while leaves_open(&sampled) {
-        finer.quarter_samples *= 2;
-        if finer.quarter_samples > FINEST * problem.quarter_samples {
-            return gait;
-        }
-        match certified(&finer, model, within, candidate) {
-            Some(again) if again.certificate.holds_among_symmetric() => sampled = again,
-            _ => return gait,
-        }
-    }
-    sampled
-}
-
-/// The longest side of a gait's polygon, and the largest angle between two but at corners \[rad\].
-fn longest_and_sharpest(gait: &OptimalGait) -> [f64; 2] {
-    let sides: Vec<_> = gait.phi().array_windows().map(|[a, b]| b - a).collect();
-    let bends = sides.array_windows().zip(gait.u().iter().skip(1));
-    let bends = bends.filter(|(_, u)| !gait.corners().contains(u));
-    let bends = bends.map(|([a, b], _)| a.perp(b).atan2(a.dot(b)).abs());
-    [
-        sides.iter().map(Vector2::norm).fold(0.0, f64::max),
-        bends.fold(0.0, f64::max),
-    ]
-}
-
-/// Whether samples alone leave open what [`certify`](crate::certify()) asks.
-fn leaves_open(gait: &OptimalGait) -> bool {
-    let certificate = gait.certify();
-    certificate.is_ok_and(|certificate| certificate.verdict() == Verdict::Undecided)
 }

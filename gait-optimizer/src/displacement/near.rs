@@ -2,7 +2,6 @@
 
 use swimmer_files::ArcKind;
 
-use super::best::finely_sampled;
 use super::flow::Touch;
 use super::search::{SCAN_POINTS, Search};
 use super::start_family::{StartFamily, families};
@@ -73,9 +72,5 @@ pub fn displacement_near(
             a.total_cmp(&b)
         })?;
     let within = (&problem.bounds, &region);
-    let gait = certified(problem, &model, within, &found)?;
-    if !gait.certificate.pass() {
-        return None;
-    }
-    Some(finely_sampled(problem, &model, within, (&found, gait)))
+    certified(problem, &model, within, &found).filter(|gait| gait.certificate.pass())
 }

@@ -10,6 +10,8 @@ use swimmer_model::Model;
 use super::Fates;
 use super::flow::{FINE, Fate, Quarter, Touch, TraceOptions, follow, lasting};
 use super::start_family::{Place, StartFamily};
+use crate::arcs::{SMOOTH, Trace};
+use crate::cycle::Cycle;
 use crate::momentum::{Flow, Momentum, Motion, State, shape};
 use crate::numerics::root;
 use crate::region::Region;
@@ -20,6 +22,23 @@ use crate::runge_kutta::StepControl;
 pub(crate) struct Candidate {
     pub(crate) quarter: Quarter,
     pub(crate) momentum: Momentum,
+}
+
+impl Candidate {
+    /// The cycle in four times so many samples at equal steps of power length; none where it cannot be traced.
+    pub(crate) fn cycle(&self, model: &Model<f64>, samples: usize) -> Option<Cycle> {
+        let legs = || lasting(&self.quarter.legs);
+        let mut start = legs().next()?.from;
+        start[5] = 0.0;
+        let route: Vec<_> = legs()
+            .map(|leg| (leg.motion, leg.to[5] - leg.from[5]))
+            .collect();
+        let trace = Trace::new((model, self.momentum), start, &route, &[], samples)?;
+        let [first, last] = trace.ends()?;
+        // Square to φ₁ = φ₂ (φ₁ = −φ₂) is a direction without a part along it.
+        let square = [first.x + first.y, last.x - last.y].map(|along| along.abs() < SMOOTH);
+        Some(trace.samples(false).unfolded(square))
+    }
 }
 
 /// The shooting problem.
@@ -88,14 +107,15 @@ impl<'a> Search<'a> {
         (found, seen)
     }
 
-    /// Those of the extremals seen that carry farthest, best first, traced finely one after the other: gaits within the bounds,
-    /// but no optima, since their λ₄ does not end at zero. Only such as may carry a quarter farther than `least`.
-    pub(crate) fn farthest(
-        self,
-        families: &[StartFamily],
+    /// Those of the extremals seen that carry farthest, with how far a quarter does, about: gaits within the bounds, but no optima,
+    /// since their λ₄ does not end at zero. Only such as may carry a quarter farther than `least`.
+    pub(crate) fn farthest<'b>(
+        &'b self,
+        families: &'b [StartFamily],
         seen: &Seen,
         least: f64,
-    ) -> impl Iterator<Item = Candidate> {
+    ) -> impl Iterator<Item = (f64, impl Fn() -> Option<Candidate> + use<'a, 'b>)> + use<'a, 'b>
+    {
         const MOST: usize = 24;
         /// How far off the coarse scan may be, over L.
         const OFF: f64 = 1e-3;
@@ -103,7 +123,9 @@ impl<'a> Search<'a> {
         ended.retain(|(_, _, carried)| *carried > least - OFF);
         ended.sort_by(|a, b| b.2.total_cmp(&a.2));
         let best = ended.into_iter().take(MOST);
-        best.filter_map(move |(index, p, _)| self.candidate(families.get(index)?, p))
+        best.map(move |(index, p, carried)| {
+            (carried, move || self.candidate(families.get(index)?, p))
+        })
     }
 
     fn scan(

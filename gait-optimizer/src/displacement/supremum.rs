@@ -184,14 +184,14 @@ impl Rung {
             kinds::met(&DisplacementProblem { bounds, ..problem }, model, &region)
         });
         let ground = Ground::new(&problem, model, &region);
-        let gaits = met.iter().chain(beside.iter().flatten());
-        let starts = gaits.map(kinds::of_gait).chain(across(&problem));
+        let seen = met.iter().map(|(_, far)| *far).fold(0.0, f64::max);
+        let met = met.into_iter().chain(beside.into_iter().flatten());
+        let starts = met.map(|(quarter, _)| quarter).chain(across(&problem));
         let kinds = starts.map(|start| explored(&ground, &start)).collect();
-        let seen = met.iter().map(|gait| gait.displacement_over_length.abs());
         Self {
             problem,
             kinds: distinct(kinds),
-            seen: seen.fold(0.0, f64::max),
+            seen,
             members: None,
         }
     }

@@ -6,7 +6,6 @@ use swimmer_model::Model;
 use super::curve::{Ground, Mesh};
 use crate::displacement::best::best;
 use crate::displacement::{DisplacementProblem, OUTDONE};
-use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
 
 /// A polygon at rest and what it carries.
@@ -26,20 +25,16 @@ const FARTHER: f64 = 1e-5;
 /// By how much kinds differ, relatively.
 const ALIKE: f64 = 1e-4;
 
-/// Gaits that the search for optima meets: the optimum, and the farthest that is none.
-pub(super) fn met(
-    problem: &DisplacementProblem,
-    model: &Model<f64>,
-    region: &Region,
-) -> Vec<OptimalGait> {
+/// Quarters that the search for optima meets: the optimum's, and the farthest that is none.
+pub(super) fn met(problem: &DisplacementProblem, model: &Model<f64>, region: &Region) -> Vec<Kind> {
     let within = (&problem.bounds, region);
     let (optimum, seen) = best(problem, model, within, 0.0);
-    let carried = optimum
-        .as_ref()
-        .map(|gait| gait.displacement_over_length.abs());
-    let least = carried.unwrap_or(0.0) * (1.0 + OUTDONE);
-    let farthest = seen.farthest(problem, model, within, least);
-    optimum.into_iter().chain(farthest).collect()
+    let optimum = optimum.map(|gait| (gait.cycle, gait.displacement_over_length));
+    let carried = optimum.as_ref().map_or(0.0, |(_, far)| far.abs());
+    let farthest = seen.farthest(model, problem.heading().sign(), carried * (1.0 + OUTDONE));
+    let met = optimum.into_iter().chain(farthest);
+    met.map(|(cycle, far)| (cycle.quarter().to_vec(), far.abs()))
+        .collect()
 }
 
 /// Farthest first, without those that carry as far as another.
@@ -47,12 +42,6 @@ pub(super) fn distinct(mut kinds: Vec<Kind>) -> Vec<Kind> {
     kinds.sort_by(|(_, a), (_, b)| b.total_cmp(a));
     kinds.dedup_by(|(_, a), (_, b)| (*b - *a).abs() < ALIKE * *b);
     kinds
-}
-
-/// The first quarter of a gait.
-pub(super) fn of_gait(gait: &OptimalGait) -> Vec<Vector2<f64>> {
-    let quarter = gait.u().partition_point(|&u| u < 0.25 - 1e-12);
-    gait.phi().iter().take(quarter + 1).copied().collect()
 }
 
 /// Straight across between the diagonals, along the bounds.
