@@ -147,9 +147,18 @@ impl Certificate {
 
     /// What it says: where all hold, pass; else fail, unless the samples may be the reason of all that fails.
     pub fn verdict(&self) -> Verdict {
-        if self.pass() {
+        self.verdict_but(&[])
+    }
+
+    /// The same, these excepted.
+    pub(crate) fn verdict_but(&self, excepted: &[Condition]) -> Verdict {
+        let mut asked = self
+            .checks
+            .iter()
+            .filter(|check| !excepted.contains(&check.condition));
+        if self.holds_but(excepted) {
             Verdict::Pass
-        } else if self.checks.iter().any(Check::fails_for_certain) {
+        } else if asked.any(Check::fails_for_certain) {
             Verdict::Fail
         } else {
             Verdict::Undecided

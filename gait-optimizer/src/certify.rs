@@ -219,15 +219,18 @@ pub(crate) fn certified(gait: OptimalGait) -> OptimalGait {
     }
 }
 
-/// The same of a gait in as many samples as it needs to be decided, of so many first and twice as many each time; where no number of
-/// them will do, as it was first. None where it cannot be made.
+/// The same of a gait in as many samples as it takes to decide whether it is an optimum among those of its symmetry, of so many first
+/// and twice as many each time; where no number of them will do, as it was first. None where it cannot be made.
 pub(crate) fn decided(
     samples: usize,
     make: impl Fn(usize) -> Option<OptimalGait>,
 ) -> Option<OptimalGait> {
     /// How often they are doubled.
     const FINEST: u32 = 4;
-    let is_decided = |gait: &OptimalGait| gait.certificate.verdict() != Verdict::Undecided;
+    let is_decided = |gait: &OptimalGait| {
+        let without = [Condition::NoAscentWithoutSymmetry];
+        gait.certificate.verdict_but(&without) != Verdict::Undecided
+    };
     let first = certified(make(samples)?);
     if is_decided(&first) {
         return Some(first);

@@ -28,6 +28,8 @@ pub(super) struct Neighbours<'a> {
 /// Parts between knots, of the cycle or of its first quarter, and the fewest of a piece.
 const PARTS: f64 = 96.0;
 const FEWEST: usize = 4;
+/// Slopes below this share of the steepest call for no closer knots.
+const LOOSEST: f64 = 1e-3;
 /// Where the elements of a part are looked at, each half of it (Gauss's rule).
 const PLACES: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 /// Places this close in u are the same.
@@ -100,7 +102,7 @@ impl Neighbours<'_> {
         if mesh.count == 0 {
             return None;
         }
-        let Some((reduced, before)) = self.second_variation(&mesh, path) else {
+        let Some((reduced, before, far)) = self.second_variation(&mesh, path) else {
             // Nothing is known of any.
             return Some(Ascents {
                 count: mesh.count,
@@ -128,18 +130,26 @@ impl Neighbours<'_> {
             0
         } else {
             let other = self.second_variation(&mesh, coarse);
-            let apart = other.map_or(f64::INFINITY, |(other, _)| (&reduced - other).norm());
+            let apart = other.map_or(f64::INFINITY, |(other, ..)| (&reduced - other).norm());
             count - up(level + apart)
         };
         Some(Ascents {
             count,
             unsure,
-            steepest: self.steepest(&mesh, &eigen.eigenvectors.column(values.imax()).into()),
+            steepest: self.steepest(
+                &mesh,
+                &eigen.eigenvectors.column(values.imax()).component_mul(&far),
+            ),
         })
     }
 
-    /// Half the second variation on the pushes that turn nothing, and the largest entry of the whole one; none where it is not finite.
-    fn second_variation(&self, mesh: &Mesh, path: &Path) -> Option<(DMatrix<f64>, f64)> {
+    /// Half the second variation on the pushes that turn nothing, the largest entry of the whole one, and how far each knot is pushed; none
+    /// where it is not finite.
+    fn second_variation(
+        &self,
+        mesh: &Mesh,
+        path: &Path,
+    ) -> Option<(DMatrix<f64>, f64, DVector<f64>)> {
         let elements = self.elements(mesh, path);
         let form = Form::new(&elements, mesh.count, self.gain, &self.momentum);
         let (p, d) = (&self.momentum.p, &path.displacement());
@@ -148,21 +158,31 @@ impl Neighbours<'_> {
         } else {
             form.of_whole_cycle(self.gain, (p, d), &self.started(mesh))
         };
+        if !form.half.iter().all(|entry| entry.is_finite()) {
+            return None;
+        }
         let Form {
-            half,
-            turned,
-            reach,
+            mut half,
+            mut turned,
+            mut reach,
             ..
         } = form;
-        if !half.iter().all(|entry| entry.is_finite()) {
-            return None;
+        // Where effort counts all knots are alike; else each is pushed as far as makes its own part of the form one.
+        let mut far = DVector::repeat(mesh.count, 1.0);
+        if !self.gain.is_priced() {
+            far = half
+                .diagonal()
+                .map(|own| own.abs().max(f64::MIN_POSITIVE).sqrt().recip());
+            turned.component_mul_assign(&far);
+            reach.component_mul_assign(&far);
+            half.component_mul_assign(&(&far * far.transpose()));
         }
         let before = half.amax();
         // Images turn back what a quarter turns.
         let turns =
             !self.symmetric && self.gain != Gain::Turning && turned.norm() > 1e-9 * reach.amax();
         let reduced = if turns { without(half, &turned) } else { half };
-        Some((reduced, before))
+        Some((reduced, before, far))
     }
 
     /// How far a push of each knot turns the heading at the start.
@@ -183,7 +203,7 @@ impl Neighbours<'_> {
         for [from, to] in mesh.knots.array_windows() {
             let width = to.u - from.u;
             // Two pieces meet in two knots.
-            if width <= 0.0 {
+            if width <= SAME {
                 continue;
             }
             for share in PLACES {
@@ -229,11 +249,49 @@ impl Neighbours<'_> {
         elements
     }
 
-    /// The knots from u = 0 on, over the cycle or its first quarter, evenly over each piece.
+    /// What knots are spread evenly over, from u = 0 to every node: half ∫ du and, where effort does not count, half ∫ ds/L, each over its
+    /// whole. L is the slope of the height: where it is small, little holds the curve, and pushes are narrow.
+    fn passed(&self) -> Vec<f64> {
+        let Subject {
+            grid, path, model, ..
+        } = self.subject;
+        if self.gain.is_priced() {
+            return grid.nodes.iter().map(|node| node.u).collect();
+        }
+        let slope = |place: &Place| {
+            let (height, ..) = self.momentum.evaluate(model, &place.phi, &place.pose);
+            height.gradient.norm()
+        };
+        let slopes: Vec<f64> = path.places.iter().map(slope).collect();
+        let steepest = slopes.iter().copied().fold(0.0, f64::max);
+        let loose = path.places.iter().zip(&slopes);
+        let loose = loose.map(|(place, slope)| place.rate.norm() / slope.max(LOOSEST * steepest));
+        let loose: Vec<f64> = loose.collect();
+        let mut sums = vec![[0.0; 2]];
+        for (nodes, loose) in grid.nodes.array_windows().zip(loose.array_windows()) {
+            let ([from, to], [before, after], [u, free]) = (nodes, loose, sums[sums.len() - 1]);
+            let more = (to.u - from.u) * f64::midpoint(*before, *after);
+            let counts = to.along == Along::Free;
+            sums.push([u + to.u - from.u, if counts { free + more } else { free }]);
+        }
+        let whole = sums
+            .last()
+            .map_or(1.0, |[_, free]| free.max(f64::MIN_POSITIVE));
+        sums.iter()
+            .map(|[u, free]| f64::midpoint(*u, free / whole))
+            .collect()
+    }
+
+    /// The knots from u = 0 on, over the cycle or its first quarter, each piece cut evenly by what is [`passed`](Self::passed).
     fn mesh(&self) -> Mesh {
         let grid = &self.subject.grid;
         let end = if self.symmetric { 0.25 } else { 1.0 };
-        let u = |node: usize| grid.nodes.get(node).map_or(0.0, |node| node.u);
+        let us: Vec<f64> = grid.nodes.iter().map(|node| node.u).collect();
+        let passed = self.passed();
+        let passed_until = |u: f64| interpolated(&us, &passed, u);
+        let u = |node: usize| us.get(node).copied().unwrap_or(0.0);
+        // Where neither effort nor the first shape counts nothing asks pushes to be continuous: they are free up to the ends of arcs.
+        let jumps = matches!(self.gain, Gain::Displacement | Gain::Turning);
         let (mut knots, mut count) = (Vec::new(), 0);
         let mut free_knot = || {
             count += 1;
@@ -249,20 +307,25 @@ impl Neighbours<'_> {
             }
             let (free, ends) = (piece.along == Along::Free, to >= end - SAME);
             let goes_on = free && to > end + SAME || self.smooth_after(index);
-            let width = to.min(end) - from;
+            let (from, to) = (passed_until(from), passed_until(to.min(end)));
+            let share = (to - from) / passed_until(end);
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some tens
-            let parts = ((PARTS * width / end).round() as usize).max(FEWEST);
+            let parts = ((PARTS * share).round() as usize).max(FEWEST);
             for part in 0..=parts {
+                if part == 0 && jumps && !(free && number.is_some()) {
+                    number = if free { free_knot() } else { None };
+                }
                 if part > 0 {
                     let is_last = part == parts;
                     number = match is_last {
                         _ if !free => None,
-                        true if !goes_on => None,
+                        true if !goes_on && !jumps => None,
                         true if ends && !self.symmetric => Some(0),
                         _ => free_knot(),
                     };
                 }
-                let u = from + width * part as f64 / parts as f64;
+                let passed_here = from + (to - from) * part as f64 / parts as f64;
+                let u = interpolated(&passed, &us, passed_here);
                 knots.push(Knot { u, number });
             }
         }
@@ -324,6 +387,20 @@ pub(crate) fn ascents_of_efficiency(model: &Model<f64>, cycle: &Cycle, symmetric
         symmetric,
     };
     neighbours.ascents().map_or(0, |ascents| ascents.count)
+}
+
+/// A function that grows, told at places one after the other, between them.
+fn interpolated(places: &[f64], values: &[f64], at: f64) -> f64 {
+    let after = places.partition_point(|&place| place < at);
+    let after = after.clamp(1, places.len().saturating_sub(1).max(1));
+    let (Some([from, to]), Some([low, high])) = (
+        places.get(after - 1..).and_then(<[f64]>::first_chunk),
+        values.get(after - 1..).and_then(<[f64]>::first_chunk),
+    ) else {
+        return at;
+    };
+    let share = (at - from) / (to - from);
+    low + (high - low) * if share.is_finite() { share } else { 0.0 }
 }
 
 /// A knot of the hats; without a number where the curve is held.
