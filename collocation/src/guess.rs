@@ -2,23 +2,24 @@
 
 use gait_optimizer::region::Bound;
 use nalgebra::{Matrix2xX, Vector2};
-use swimmer_model::Gait;
 
 use super::mesh::Mesh;
 use super::{CollocationError, levels};
 
-/// Share of the room inside the bounds that a guess is shrunk to.
-const INSIDE: f64 = 0.98;
+/// A quarter that leaves the bounds by more than this \[rad, or over L\] is shrunk; by less, its shapes there are drawn inside.
+const HAIR: f64 = 0.02;
+const SHRINK: f64 = 0.99;
 
-/// The shapes of a gait's first quarter at the points of a mesh, its ends moved on to the symmetry lines, and brought
-/// inside the bounds.
-pub(crate) fn on_mesh<G: Gait<f64> + ?Sized>(
-    gait: &G,
+/// The shapes of a quarter at the points of a mesh, its ends moved on to the symmetry lines, and brought inside the bounds by a
+/// margin.
+pub(crate) fn on_mesh(
+    shape: &dyn Fn(f64) -> Vector2<f64>,
     mesh: &Mesh,
     walls: &[Bound],
+    margin: f64,
 ) -> Result<Matrix2xX<f64>, CollocationError> {
     let refuse = |problem| Err(CollocationError::Guess { problem });
-    let samples: Vec<_> = mesh.times.iter().map(|t| gait.at(0.25 * t).phi).collect();
+    let samples: Vec<_> = mesh.times.iter().map(|t| shape(*t)).collect();
     let mut shapes = Matrix2xX::from_columns(&samples);
     if !shapes.iter().all(|angle| angle.abs() < 1e3) {
         return refuse("a shape is not finite, or an angle beyond 1000 rad");
@@ -26,33 +27,26 @@ pub(crate) fn on_mesh<G: Gait<f64> + ?Sized>(
     if samples.iter().all(|phi| *phi == samples[0]) {
         return refuse("it spends no power");
     }
-    bind_ends(&mut shapes);
-    if !is_inside(walls, &(&shapes / INSIDE)) {
-        shapes = shrunk(&shapes, walls);
+    let room = |shapes: &_| {
+        let margins = levels(walls, shapes).map(|(_, level)| level.value);
+        margins.fold(margin, f64::min)
+    };
+    while room(&shapes) < -HAIR && shapes.amax() > HAIR {
+        shapes *= SHRINK;
     }
-    if is_inside(walls, &shapes) {
+    for mut phi in shapes.column_iter_mut() {
+        for wall in walls {
+            let level = wall.smooth_level(&phi.clone_owned());
+            let missing = (margin - level.value).max(0.0);
+            phi += level.gradient * (missing / level.gradient.norm_squared());
+        }
+    }
+    bind_ends(&mut shapes);
+    if room(&shapes) > 0.0 {
         Ok(shapes)
     } else {
         refuse("it does not fit inside the bounds")
     }
-}
-
-/// Brought inside the bounds as a whole.
-fn shrunk(shapes: &Matrix2xX<f64>, walls: &[Bound]) -> Matrix2xX<f64> {
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..40 {
-        let middle = 0.5 * (low + high);
-        if is_inside(walls, &(shapes * middle)) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    shapes * (INSIDE * low)
-}
-
-fn is_inside(walls: &[Bound], shapes: &Matrix2xX<f64>) -> bool {
-    levels(walls, shapes).all(|(_, level)| level.value > 0.0)
 }
 
 /// Moves the first shape to φ₁ = φ₂ and the last to φ₁ = −φ₂.
