@@ -25,8 +25,6 @@ const INEXACT: f64 = 0.05;
 const SMALL_STEP: f64 = 1e-7;
 /// Longest step of any angle \[rad\], so that the iteration stays with the gait it was started from.
 const LONG_STEP: f64 = 0.4;
-/// Share of the way to a wall that a step may go at once.
-const NEARER: f64 = 0.99;
 /// How many times larger or smaller than barrier over margin a multiplier may be.
 const OFF_CENTRE: f64 = 1e4;
 /// Changes of the shapes over which the gradient's difference is taken \[rad\].
@@ -182,10 +180,7 @@ impl<'a> Newton<'a> {
     /// Backtracks until the barrier function falls as it should: how far, the path there, and its value.
     fn search(&self, step: &Matrix2xX<f64>, slope: f64, here: f64) -> Option<(f64, Path, f64)> {
         let rounding = 1e-14 * (1.0 + here.abs());
-        let closing = levels(self.walls, &self.path.phi)
-            .map(|(point, level)| -level.gradient.dot(&step.column(point)) / level.value);
-        let most = closing.fold(step.amax() * NEARER / LONG_STEP, f64::max);
-        let mut length = (NEARER / most).min(1.0);
+        let mut length = (LONG_STEP / step.amax()).min(1.0);
         for _ in 0..30 {
             let phi = &self.path.phi + step * length;
             let path = Path::new(self.problem.model, self.mesh, phi);
