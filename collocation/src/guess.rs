@@ -6,9 +6,11 @@ use nalgebra::{Matrix2xX, Vector2};
 use super::mesh::Mesh;
 use super::{CollocationError, levels};
 
-/// A quarter that leaves the bounds by more than this \[rad, or over L\] is shrunk; by less, its shapes there are drawn inside.
-const HAIR: f64 = 0.02;
+/// A quarter that leaves the bounds by more than this share of its largest angle is shrunk; by less, it is drawn inside where it
+/// leaves them.
+const HAIR: f64 = 0.01;
 const SHRINK: f64 = 0.99;
+const SMALLEST: f64 = 1e-6;
 
 /// The shapes of a quarter at the points of a mesh, its ends moved on to the symmetry lines, and brought inside the bounds by a
 /// margin.
@@ -31,14 +33,17 @@ pub(crate) fn on_mesh(
         let margins = levels(walls, shapes).map(|(_, level)| level.value);
         margins.fold(margin, f64::min)
     };
-    while room(&shapes) < -HAIR && shapes.amax() > HAIR {
+    while room(&shapes) < -HAIR * shapes.amax() && shapes.amax() > SMALLEST {
         shapes *= SHRINK;
     }
+    // Narrow bounds leave not even the straight swimmer as much as is wished for wide ones.
+    let margin = margin.min(0.1 * shapes.amax());
     for mut phi in shapes.column_iter_mut() {
         for wall in walls {
             let level = wall.smooth_level(&phi.clone_owned());
-            let missing = (margin - level.value).max(0.0);
-            phi += level.gradient * (missing / level.gradient.norm_squared());
+            if level.value < margin {
+                phi += level.gradient * ((margin - level.value) / level.gradient.norm_squared());
+            }
         }
     }
     bind_ends(&mut shapes);

@@ -49,16 +49,15 @@ pub struct CollocationProblem<'a> {
     pub bounds: Bounds,
     /// Whether x shall be positive or negative: +1 or −1.
     pub sign: f64,
-    /// Elements of the finer mesh. The first has a quarter of them, and is all there is where it does without bounds.
+    /// Elements of the last mesh. A first one with a quarter of them comes before, and without bounds may do.
     pub elements: usize,
-    /// Degree of its elements.
+    /// Degree of the elements.
     pub degree: usize,
 }
 
 /// Relative difference of ξ from that of the gait integrated again: more, and it is no gait but an optimum of the mesh.
 const TOLERANCE: f64 = 1e-6;
-/// The same for the first mesh: without bounds, where it then does; and with them, where its kinks are at best near their places
-/// and it is a start for the second.
+/// The same on the first mesh, for an answer without bounds and for a start of the second mesh with them.
 const AGREED: f64 = 1e-10;
 const ROUGH: f64 = 1e-3;
 /// How many times fewer elements than the last mesh the first has.
