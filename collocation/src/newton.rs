@@ -104,9 +104,7 @@ impl<'a> Newton<'a> {
             return None;
         }
         for (point, Level { value: margin, .. }) in levels(self.walls, &path.phi) {
-            if margin <= 0.0 || margin.is_nan() {
-                return None;
-            }
+            // Outside, a logarithm is no number.
             value -= self.barrier * self.mesh.weights[point] * margin.ln();
         }
         value.is_finite().then_some(value)
@@ -183,8 +181,11 @@ impl<'a> Newton<'a> {
         let mut length = (LONG_STEP / step.amax()).min(1.0);
         for _ in 0..30 {
             let phi = &self.path.phi + step * length;
-            let path = Path::new(self.problem.model, self.mesh, phi);
-            if let Some(value) = self.merit(&path)
+            // What lies outside is told before it is swum.
+            let inside = levels(self.walls, &phi).all(|(_, level)| level.value > 0.0);
+            let path = inside.then(|| Path::new(self.problem.model, self.mesh, phi));
+            if let Some(path) = path
+                && let Some(value) = self.merit(&path)
                 && value <= here + 1e-4 * length * slope + rounding
             {
                 return Some((length, path, value));
