@@ -2,23 +2,26 @@
 
 use gait_optimizer::region::Bound;
 use nalgebra::{Matrix2xX, Vector2};
-use swimmer_model::Gait;
 
 use super::mesh::Mesh;
 use super::{CollocationError, levels};
 
-/// Share of the room inside the bounds that a guess is shrunk to.
-const INSIDE: f64 = 0.98;
+/// A quarter that leaves the bounds by more than this share of its largest angle is shrunk; by less, it is drawn inside where it
+/// leaves them.
+const HAIR: f64 = 0.01;
+const SHRINK: f64 = 0.99;
+const SMALLEST: f64 = 1e-6;
 
-/// The shapes of a gait's first quarter at the points of a mesh, its ends moved on to the symmetry lines, and brought
-/// inside the bounds.
-pub(crate) fn on_mesh<G: Gait<f64> + ?Sized>(
-    gait: &G,
+/// The shapes of a quarter at the points of a mesh, its ends moved on to the symmetry lines, and brought inside the bounds by a
+/// margin.
+pub(crate) fn on_mesh(
+    shape: &dyn Fn(f64) -> Vector2<f64>,
     mesh: &Mesh,
     walls: &[Bound],
+    margin: f64,
 ) -> Result<Matrix2xX<f64>, CollocationError> {
     let refuse = |problem| Err(CollocationError::Guess { problem });
-    let samples: Vec<_> = mesh.times.iter().map(|t| gait.at(0.25 * t).phi).collect();
+    let samples: Vec<_> = mesh.times.iter().map(|t| shape(*t)).collect();
     let mut shapes = Matrix2xX::from_columns(&samples);
     if !shapes.iter().all(|angle| angle.abs() < 1e3) {
         return refuse("a shape is not finite, or an angle beyond 1000 rad");
@@ -26,33 +29,29 @@ pub(crate) fn on_mesh<G: Gait<f64> + ?Sized>(
     if samples.iter().all(|phi| *phi == samples[0]) {
         return refuse("it spends no power");
     }
-    bind_ends(&mut shapes);
-    if !is_inside(walls, &(&shapes / INSIDE)) {
-        shapes = shrunk(&shapes, walls);
+    let room = |shapes: &_| {
+        let margins = levels(walls, shapes).map(|(_, level)| level.value);
+        margins.fold(margin, f64::min)
+    };
+    while room(&shapes) < -HAIR * shapes.amax() && shapes.amax() > SMALLEST {
+        shapes *= SHRINK;
     }
-    if is_inside(walls, &shapes) {
+    // Narrow bounds leave not even the straight swimmer as much as is wished for wide ones.
+    let margin = margin.min(0.1 * shapes.amax());
+    for mut phi in shapes.column_iter_mut() {
+        for wall in walls {
+            let level = wall.smooth_level(&phi.clone_owned());
+            if level.value < margin {
+                phi += level.gradient * ((margin - level.value) / level.gradient.norm_squared());
+            }
+        }
+    }
+    bind_ends(&mut shapes);
+    if room(&shapes) > 0.0 {
         Ok(shapes)
     } else {
         refuse("it does not fit inside the bounds")
     }
-}
-
-/// Brought inside the bounds as a whole.
-fn shrunk(shapes: &Matrix2xX<f64>, walls: &[Bound]) -> Matrix2xX<f64> {
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..40 {
-        let middle = 0.5 * (low + high);
-        if is_inside(walls, &(shapes * middle)) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    shapes * (INSIDE * low)
-}
-
-fn is_inside(walls: &[Bound], shapes: &Matrix2xX<f64>) -> bool {
-    levels(walls, shapes).all(|(_, level)| level.value > 0.0)
 }
 
 /// Moves the first shape to φ₁ = φ₂ and the last to φ₁ = −φ₂.

@@ -4,7 +4,8 @@
 //!
 //! The problem on a quarter gait, t = 0 … 1: states z = (φ₁, φ₂, x, θ, E), control u = Φ̇, from φ₁ = φ₂ to φ₁ = −φ₂, make
 //! `x_f²/E_f` greatest, |φᵢ| ≤ `φ_max`. It is discretised by Legendre–Gauss–Radau collocation on an even mesh (`radau`, `mesh`),
-//! fine enough that the states, integrated again with the interpolated control, agree; else there is no answer.
+//! fine enough that the states, integrated again with the interpolated control, agree; else there is no answer. A coarse mesh
+//! comes first: free gaits are so smooth that it mostly does, and with bounds the fine one starts where it ends.
 //!
 //! # Why a solver of our own
 //!
@@ -31,7 +32,7 @@ pub use solution::CollocationSolution;
 
 use gait_optimizer::region::{Bound, Level, Region};
 use gait_optimizer::{Branch, EfficiencyProblem};
-use nalgebra::Matrix2xX;
+use nalgebra::{Matrix2xX, Vector2};
 use swimmer_files::Bounds;
 use swimmer_model::{Gait, Model};
 
@@ -48,14 +49,24 @@ pub struct CollocationProblem<'a> {
     pub bounds: Bounds,
     /// Whether x shall be positive or negative: +1 or −1.
     pub sign: f64,
-    /// Elements of the mesh.
+    /// Elements of the last mesh. A first one with a quarter of them comes before, and without bounds may do.
     pub elements: usize,
-    /// Degree of its elements.
+    /// Degree of the elements.
     pub degree: usize,
 }
 
 /// Relative difference of ξ from that of the gait integrated again: more, and it is no gait but an optimum of the mesh.
 const TOLERANCE: f64 = 1e-6;
+/// The same on the first mesh, for an answer without bounds and for a start of the second mesh with them.
+const AGREED: f64 = 1e-10;
+const ROUGH: f64 = 1e-3;
+/// How many times fewer elements than the last mesh the first has.
+const COARSER: usize = 4;
+/// Where the barrier begins, where one mesh hands it on to the other, and where it ends; it counts against an objective,
+/// ln E − 2 ln x, of order one.
+const FIRST_BARRIER: f64 = 1e-2;
+const HANDED_ON: f64 = 1e-5;
+const LAST_BARRIER: f64 = 1e-10;
 /// Without a bound no angle may leave two turns.
 const HORIZON: f64 = 2.0 * std::f64::consts::TAU;
 
@@ -103,6 +114,43 @@ impl<'a> CollocationProblem<'a> {
         }
         Ok(Region::new(&self.bounds, &swimmer.links).bounds().collect())
     }
+
+    /// The optimum of one mesh, if its ξ agrees with that of the gait integrated again.
+    fn solved(
+        &self,
+        walls: &[Bound],
+        elements: usize,
+        shape: &dyn Fn(f64) -> Vector2<f64>,
+        barriers: [f64; 2],
+        tolerance: f64,
+    ) -> Result<CollocationSolution, CollocationError> {
+        let mesh = Mesh::new(elements, self.degree);
+        let phi = guess::on_mesh(shape, &mesh, walls, barriers[0])?;
+        let path = Newton::new(self, &mesh, walls, phi, barriers[0]).run(barriers[1])?;
+        // φ̇ = u holds for polynomials whatever the mesh. What a coarse mesh gets wrong are θ, x and E, and a spurious optimum of
+        // the discretisation lives on just that: along the same polynomials they follow again by a rule of the highest degree.
+        let fine = Mesh::new(elements, radau::HIGHEST_DEGREE);
+        let along = |t: &f64| mesh.shape(&path.phi, *t);
+        let phi: Vec<_> = fine.times.iter().map(along).collect();
+        let again = Path::new(self.model, &fine, Matrix2xX::from_columns(&phi));
+        let beyond = levels(walls, &again.phi).map(|(_, level)| -level.value);
+        let solution = CollocationSolution {
+            efficiency: path.efficiency(self.model),
+            efficiency_again: again.efficiency(self.model),
+            overstepped: beyond.fold(0.0, f64::max),
+            phi: path.phi,
+            mesh,
+        };
+        let off = (solution.efficiency_again / solution.efficiency - 1.0).abs();
+        if off <= tolerance && again.final_x * self.sign > 0.0 {
+            return Ok(solution);
+        }
+        Err(CollocationError::Spurious {
+            efficiency: solution.efficiency,
+            again: solution.efficiency_again,
+            points: solution.mesh.len(),
+        })
+    }
 }
 
 /// How far shapes are within each wall, shape by shape with its number.
@@ -110,20 +158,10 @@ fn levels<'a>(
     walls: &'a [Bound],
     shapes: &'a Matrix2xX<f64>,
 ) -> impl Iterator<Item = (usize, Level)> + 'a {
-    shapes
-        .column_iter()
-        .enumerate()
-        .flat_map(move |(point, phi)| {
-            let phi = phi.into_owned();
-            walls
-                .iter()
-                .map(move |wall| (point, wall.smooth_level(&phi)))
-        })
-}
-
-/// ξ of a quarter: `c_t L x_f²/E_f`, `t_f = 1`.
-fn lighthill(model: &Model<f64>, x: f64, energy: f64) -> f64 {
-    model.side_drag() * model.swimmer().total_length() * x * x / energy
+    (0..shapes.ncols() * walls.len()).map(move |i| {
+        let (point, wall) = (i / walls.len(), &walls[i % walls.len()]);
+        (point, wall.smooth_level(&shapes.column(point).into_owned()))
+    })
 }
 
 /// Solves from the first quarter of a gait that starts on φ₁ = φ₂ > 0 and runs counter-clockwise; one that leaves the bounds is
@@ -149,41 +187,23 @@ pub fn solve<G: Gait<f64> + ?Sized>(
     guess: &G,
 ) -> Result<CollocationSolution, CollocationError> {
     let walls = problem.validate()?;
-    let mesh = Mesh::new(problem.elements, problem.degree);
-    let phi = guess::on_mesh(guess, &mesh, &walls)?;
-    let newton = Newton {
-        model: problem.model,
-        mesh: &mesh,
-        walls: &walls,
-        sign: problem.sign,
-        path: Path::new(problem.model, &mesh, phi),
-    };
-    let path = newton.run()?;
-    // φ̇ = u holds for polynomials whatever the mesh. What a coarse mesh gets wrong are θ, x and E, and a spurious optimum of the
-    // discretisation lives on just that: along the same polynomials they follow again by a rule of the highest degree.
-    let fine = Mesh::new(problem.elements, radau::HIGHEST_DEGREE);
-    let phi: Vec<_> = fine
-        .times
-        .iter()
-        .map(|t| mesh.shape(&path.phi, *t))
-        .collect();
-    let again = Path::new(problem.model, &fine, Matrix2xX::from_columns(&phi));
-    let beyond = levels(&walls, &again.phi).map(|(_, level)| -level.value);
-    let efficiency = |path: &Path| lighthill(problem.model, path.final_x, path.final_energy);
-    let solution = CollocationSolution {
-        efficiency: efficiency(&path),
-        efficiency_again: efficiency(&again),
-        overstepped: beyond.fold(0.0, f64::max),
-        phi: path.phi,
-        mesh,
-    };
-    let off = (solution.efficiency_again / solution.efficiency - 1.0).abs();
-    if off <= TOLERANCE && again.final_x * problem.sign > 0.0 {
-        return Ok(solution);
+    let quarter = |t: f64| guess.at(0.25 * t).phi;
+    let tolerance = if walls.is_empty() { AGREED } else { ROUGH };
+    let few = problem.elements.div_ceil(COARSER);
+    let coarse = problem.solved(&walls, few, &quarter, [FIRST_BARRIER, HANDED_ON], tolerance);
+    if coarse.is_ok() && walls.is_empty() {
+        return coarse;
     }
-    Err(CollocationError::Spurious {
-        efficiency: solution.efficiency,
-        again: solution.efficiency_again,
-        points: solution.mesh.len(),
-    })
+    let last = |shape: &dyn Fn(f64) -> Vector2<f64>, barrier| {
+        problem.solved(
+            &walls,
+            problem.elements,
+            shape,
+            [barrier, LAST_BARRIER],
+            TOLERANCE,
+        )
+    };
+    coarse
+        .and_then(|coarse| last(&|t| coarse.phi(t), HANDED_ON))
+        .or_else(|_| last(&quarter, FIRST_BARRIER))
 }

@@ -21,14 +21,9 @@ impl Mesh {
         let (degree, count) = (rule.degree(), elements as f64);
         let points = elements * degree + 1;
         let node = |point: usize| (point + degree - 1) % degree;
-        let times = DVector::from_fn(points, |point, _| {
-            let element = point.saturating_sub(1) / degree;
-            let within = if point == 0 {
-                0.0
-            } else {
-                rule.points[node(point) + 1]
-            };
-            (element as f64 + within) / count
+        let times = DVector::from_fn(points, |point, _| match point {
+            0 => 0.0,
+            _ => (((point - 1) / degree) as f64 + rule.points[node(point) + 1]) / count,
         });
         let weights = DVector::from_fn(points, |point, _| rule.weights()[node(point)] / count);
         Self {
@@ -54,11 +49,8 @@ impl Mesh {
         let degree = self.rule.degree();
         let place = t.clamp(0.0, 1.0) * self.elements as f64;
         let start = |first: &usize| (first / degree) as f64;
-        let first = self
-            .firsts()
-            .take_while(|first| start(first) <= place)
-            .last()
-            .unwrap_or(0);
+        let first = self.firsts().rfind(|first| start(first) <= place);
+        let first = first.unwrap_or(0);
         values.columns(first, degree + 1) * self.rule.shares(place - start(&first))
     }
 }

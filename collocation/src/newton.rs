@@ -1,135 +1,136 @@
 //! The interior-point iteration on the shapes.
 //!
-//! Iterates stay strictly inside the walls and on the state equations, so the barrier function itself is the merit function. A
+//! Iterates stay strictly inside the walls and on the state equations, so the barrier function itself is the merit function. The
+//! walls' multipliers are iterated beside the shapes, without which Newton's method takes many more steps along walls. A
 //! step solves Newton's equation by conjugate gradients, which ask for the Hessian along one direction at a time (the
 //! gradient's difference along it) and notice where it is not convex. What makes the equation stiff is known: the energy of
-//! the steps from point to point and the walls. Preconditioned with these two (`preconditioner`), a few dozen products do.
+//! the steps from point to point and the walls. Preconditioned with these two (`preconditioner`), a few products do.
 
 mod preconditioner;
 
 use gait_optimizer::region::{Bound, Level};
 use nalgebra::{Matrix2, Matrix2xX};
-use swimmer_model::Model;
 
 use super::guess::bind_ends;
 use super::mesh::Mesh;
 use super::path::Path;
-use super::{CollocationError, HORIZON, levels, lighthill};
+use super::{CollocationError, CollocationProblem, HORIZON, levels};
 use preconditioner::Preconditioner;
 
-/// Where the barrier begins and ends; both count against an objective, ln E − 2 ln x, of order one.
-const FIRST_BARRIER: f64 = 1e-3;
-const LAST_BARRIER: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 200;
 const MOST_PRODUCTS: usize = 200;
-/// Share of the residual that is left of Newton's equation.
-const INEXACT: f64 = 1e-6;
+/// Share of the residual that is left of Newton's equation; more exact steps cost more than they save.
+const INEXACT: f64 = 0.05;
 /// Steps below this \[rad\] end the iteration.
-const SMALL_STEP: f64 = 1e-8;
+const SMALL_STEP: f64 = 1e-7;
 /// Longest step of any angle \[rad\], so that the iteration stays with the gait it was started from.
 const LONG_STEP: f64 = 0.4;
+/// How many times larger or smaller than barrier over margin a multiplier may be.
+const OFF_CENTRE: f64 = 1e4;
 /// Changes of the shapes over which the gradient's difference is taken \[rad\].
 const DIFFERENCE: f64 = 1e-6;
 
 /// One discretised problem.
 #[derive(Debug)]
 pub(crate) struct Newton<'a> {
-    pub(crate) model: &'a Model<f64>,
-    pub(crate) mesh: &'a Mesh,
-    pub(crate) walls: &'a [Bound],
-    /// Of the wanted x.
-    pub(crate) sign: f64,
-    pub(crate) path: Path,
+    problem: &'a CollocationProblem<'a>,
+    mesh: &'a Mesh,
+    walls: &'a [Bound],
+    path: Path,
+    /// How much the walls' logarithms count for now.
+    barrier: f64,
+    /// Density of each wall's multiplier at each point, in the order of [`levels`].
+    multipliers: Vec<f64>,
 }
 
-/// A step towards the optimum of the barrier problem.
-#[derive(Debug)]
-struct Step {
-    /// Change of the shape at every point.
-    shapes: Matrix2xX<f64>,
-    /// Derivative of the barrier function along it; negative.
-    slope: f64,
-    /// Whether the Hessian was positive along all that was tried.
-    convex: bool,
-}
-
-impl Newton<'_> {
-    /// Iterates to an optimum.
-    pub(crate) fn run(mut self) -> Result<Path, CollocationError> {
-        let mut barrier = if self.walls.is_empty() {
-            0.0
-        } else {
-            FIRST_BARRIER
-        };
-        let wrong_way = CollocationError::WrongWay {
-            x: self.path.final_x,
-            wanted: self.sign,
-        };
-        let mut here = self.merit(&self.path, barrier).ok_or(wrong_way)?;
-        for iteration in 1..=MOST_ITERATIONS {
-            let step = self.step(barrier);
-            let largest = step.shapes.amax();
-            let settled = largest <= SMALL_STEP;
-            let next = if let Some((length, path, value)) = self.search(&step, barrier, here) {
-                (self.path, here) = (path, value);
-                step.convex && length >= 0.9 && (settled || -step.slope <= barrier)
-            } else if -step.slope <= 1e-11 {
-                // As flat as rounding lets the objective be.
-                true
-            } else {
-                return Err(self.stalled(iteration));
-            };
-            if next && barrier <= LAST_BARRIER {
-                return Ok(self.path);
-            } else if next {
-                barrier = (barrier * 0.1).min(barrier.powf(1.5)).max(LAST_BARRIER);
-                here = self.merit(&self.path, barrier).unwrap_or(f64::INFINITY);
-            }
+impl<'a> Newton<'a> {
+    /// From shapes inside the walls, and where the barrier begins.
+    pub(crate) fn new(
+        problem: &'a CollocationProblem<'a>,
+        mesh: &'a Mesh,
+        walls: &'a [Bound],
+        phi: Matrix2xX<f64>,
+        barrier: f64,
+    ) -> Self {
+        let central = levels(walls, &phi).map(|(_, level)| barrier / level.value);
+        Self {
+            problem,
+            mesh,
+            walls,
+            barrier: if walls.is_empty() { 0.0 } else { barrier },
+            multipliers: central.collect(),
+            path: Path::new(problem.model, mesh, phi),
         }
-        Err(self.stalled(MOST_ITERATIONS))
     }
 
-    fn stalled(&self, iterations: usize) -> CollocationError {
-        CollocationError::Stalled {
-            iterations,
-            efficiency: lighthill(self.model, self.path.final_x, self.path.final_energy),
+    /// Iterates to an optimum, the barrier down to where it ends.
+    pub(crate) fn run(mut self, last_barrier: f64) -> Result<Path, CollocationError> {
+        let (x, wanted) = (self.path.final_x, self.problem.sign);
+        let wrong_way = CollocationError::WrongWay { x, wanted };
+        let mut here = self.merit(&self.path).ok_or(wrong_way)?;
+        let mut iterations = 0;
+        while iterations < MOST_ITERATIONS {
+            iterations += 1;
+            let (slope, step, convex) = self.step(INEXACT);
+            let settled = step.amax() <= SMALL_STEP;
+            let next = match self.search(&step, slope, here) {
+                Some((length, path, value)) => {
+                    self.move_multipliers(&step, length, &path);
+                    (self.path, here) = (path, value);
+                    convex && length >= 0.9 && (settled || -slope <= self.barrier)
+                }
+                // As flat as rounding lets the objective be.
+                None if -slope <= 1e-11 => true,
+                None => break,
+            };
+            if next && self.barrier <= last_barrier {
+                return Ok(self.path);
+            } else if next {
+                let lower = (self.barrier * 0.1).min(self.barrier.powf(1.5));
+                self.barrier = lower.max(last_barrier);
+                here = self.merit(&self.path).unwrap_or(f64::INFINITY);
+            }
         }
+        Err(CollocationError::Stalled {
+            iterations,
+            efficiency: self.path.efficiency(self.problem.model),
+        })
     }
 
     /// The barrier function; none where the path leaves the walls or the horizon, or x has the wrong sign.
-    fn merit(&self, path: &Path, barrier: f64) -> Option<f64> {
-        let mut value = path.objective(self.sign)?;
+    fn merit(&self, path: &Path) -> Option<f64> {
+        let mut value = path.objective(self.problem.sign)?;
         if path.phi.amax() > HORIZON {
             return None;
         }
         for (point, Level { value: margin, .. }) in levels(self.walls, &path.phi) {
-            if margin <= 0.0 || margin.is_nan() {
-                return None;
-            }
-            value -= barrier * self.mesh.weights[point] * margin.ln();
+            // Outside, a logarithm is no number.
+            value -= self.barrier * self.mesh.weights[point] * margin.ln();
         }
         value.is_finite().then_some(value)
     }
 
     /// Of the barrier function, per shape, the ends on their lines; from that of the objective.
-    fn gradient(&self, slope: &Matrix2xX<f64>, barrier: f64) -> Matrix2xX<f64> {
+    fn gradient(&self, slope: &Matrix2xX<f64>) -> Matrix2xX<f64> {
         let mut gradient = slope.clone();
         for (point, level) in levels(self.walls, &self.path.phi) {
             let mut pushed = gradient.column_mut(point);
-            pushed -= level.gradient * (self.mesh.weights[point] * barrier / level.value);
+            pushed -= level.gradient * (self.mesh.weights[point] * self.barrier / level.value);
         }
         bind_ends(&mut gradient);
         gradient
     }
 
-    /// Newton's step of the barrier problem, or as much of it as is convex.
-    fn step(&self, barrier: f64) -> Step {
+    /// Newton's step of the barrier problem, or as much of it as is convex: the barrier function's derivative along it, the change
+    /// of the shapes, and whether the Hessian was positive along all that was tried.
+    fn step(&self, inexact: f64) -> (f64, Matrix2xX<f64>, bool) {
         let slope = self.path.slope(self.mesh);
-        let gradient = self.gradient(&slope, barrier);
+        let gradient = self.gradient(&slope);
         let mut pushes = vec![Matrix2::zeros(); self.mesh.len()];
         let mut curvature = pushes.clone();
-        for (point, level) in levels(self.walls, &self.path.phi) {
-            let push = self.mesh.weights[point] * barrier / level.value;
+        let walls = levels(self.walls, &self.path.phi);
+        for ((point, level), multiplier) in walls.zip(&self.multipliers) {
+            let push = self.mesh.weights[point] * multiplier;
             let stiff = level.gradient * level.gradient.transpose() * (push / level.value);
             pushes[point] += stiff;
             curvature[point] += stiff - level.hessian * push;
@@ -137,7 +138,7 @@ impl Newton<'_> {
         let preconditioner = Preconditioner::new(&self.path, self.mesh, &pushes);
         let product = |along: &Matrix2xX<f64>| {
             let size = DIFFERENCE / along.amax();
-            let moved = Path::new(self.model, self.mesh, &self.path.phi + along * size);
+            let moved = Path::new(self.problem.model, self.mesh, &self.path.phi + along * size);
             let mut changed = (moved.slope(self.mesh) - &slope) / size;
             for (point, curvature) in curvature.iter().enumerate() {
                 let mut column = changed.column_mut(point);
@@ -147,15 +148,18 @@ impl Newton<'_> {
             changed
         };
         let mut shapes = Matrix2xX::zeros(self.mesh.len());
+        let mut direction = shapes.clone();
         let mut residual = -&gradient;
-        let mut towards = preconditioner.solve(&residual);
-        let mut direction = towards.clone();
-        let first = residual.dot(&towards);
-        let (mut left, mut convex) = (first, true);
+        let (mut first, mut before, mut convex) = (0.0, f64::INFINITY, true);
         for _ in 0..MOST_PRODUCTS {
-            if left <= INEXACT * INEXACT * first {
+            let towards = preconditioner.solve(&residual);
+            let left = residual.dot(&towards);
+            first = left.max(first);
+            if left <= inexact * inexact * first {
                 break;
             }
+            direction = towards + direction * (left / before);
+            before = left;
             let bent = product(&direction);
             let curved = direction.dot(&bent);
             if curved.is_nan() || curved <= 0.0 {
@@ -167,33 +171,40 @@ impl Newton<'_> {
             }
             shapes += &direction * (left / curved);
             residual -= bent * (left / curved);
-            towards = preconditioner.solve(&residual);
-            let before = left;
-            left = residual.dot(&towards);
-            direction = &towards + direction * (left / before);
         }
-        Step {
-            slope: gradient.dot(&shapes),
-            shapes,
-            convex,
-        }
+        (gradient.dot(&shapes), shapes, convex)
     }
 
     /// Backtracks until the barrier function falls as it should: how far, the path there, and its value.
-    fn search(&self, step: &Step, barrier: f64, here: f64) -> Option<(f64, Path, f64)> {
+    fn search(&self, step: &Matrix2xX<f64>, slope: f64, here: f64) -> Option<(f64, Path, f64)> {
         let rounding = 1e-14 * (1.0 + here.abs());
-        let mut length = (LONG_STEP / step.shapes.amax()).min(1.0);
+        let mut length = (LONG_STEP / step.amax()).min(1.0);
         for _ in 0..30 {
-            let phi = &self.path.phi + &step.shapes * length;
-            let path = Path::new(self.model, self.mesh, phi);
-            if let Some(value) = self.merit(&path, barrier)
-                && value <= here + 1e-4 * length * step.slope + rounding
+            let phi = &self.path.phi + step * length;
+            // What lies outside is told before it is swum.
+            let inside = levels(self.walls, &phi).all(|(_, level)| level.value > 0.0);
+            let path = inside.then(|| Path::new(self.problem.model, self.mesh, phi));
+            if let Some(path) = path
+                && let Some(value) = self.merit(&path)
+                && value <= here + 1e-4 * length * slope + rounding
             {
                 return Some((length, path, value));
             }
             length *= 0.5;
         }
         None
+    }
+
+    /// The dual step that goes with a step of the shapes, and back near to the central path of the new ones.
+    fn move_multipliers(&mut self, step: &Matrix2xX<f64>, length: f64, next: &Path) {
+        let walls = levels(self.walls, &self.path.phi).zip(levels(self.walls, &next.phi));
+        for (((point, level), (_, there)), multiplier) in walls.zip(&mut self.multipliers) {
+            let opening = level.gradient.dot(&step.column(point));
+            let wanted = (self.barrier - *multiplier * opening) / level.value;
+            let central = self.barrier / there.value;
+            *multiplier = (*multiplier + (wanted - *multiplier) * length)
+                .clamp(central / OFF_CENTRE, central * OFF_CENTRE);
+        }
     }
 }
 

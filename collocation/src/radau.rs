@@ -20,8 +20,6 @@ pub(crate) struct Rule {
     pub(crate) slopes: DMatrix<f64>,
     /// Integral from 0 to each node (columns) per value at each node (rows).
     pub(crate) integrals: DMatrix<f64>,
-    /// Of the barycentric interpolation through all d + 1 points.
-    barycentric: DVector<f64>,
 }
 
 impl Rule {
@@ -51,7 +49,6 @@ impl Rule {
             integrals: integrals.unwrap_or_else(|| DMatrix::zeros(degree, degree)),
             points,
             slopes,
-            barycentric,
         }
     }
 
@@ -64,19 +61,19 @@ impl Rule {
         self.integrals.column(self.degree() - 1)
     }
 
-    /// What each of the d + 1 points counts in the value at `tau`.
+    /// What each of the d + 1 points counts in the value at `tau`: Lagrange's polynomials.
     pub(crate) fn shares(&self, tau: f64) -> DVector<f64> {
-        if let Some(at) = self
-            .points
-            .iter()
-            .position(|point| (tau - point).abs() < 1e-15)
-        {
-            return DVector::from_fn(self.points.len(), |i, _| f64::from(u8::from(i == at)));
-        }
-        let shares = self
-            .barycentric
-            .zip_map(&self.points, |weight, point| weight / (tau - point));
-        &shares / shares.sum()
+        let points = &self.points;
+        DVector::from_fn(points.len(), |i, _| {
+            let others = (0..points.len()).filter(|&other| other != i);
+            let products = others.fold([1.0; 2], |[above, below], other| {
+                [
+                    above * (tau - points[other]),
+                    below * (points[i] - points[other]),
+                ]
+            });
+            products[0] / products[1]
+        })
     }
 }
 

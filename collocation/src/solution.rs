@@ -33,22 +33,16 @@ impl CollocationSolution {
     /// # Errors
     /// [`CollocationError::Guess`]: its samples make no closed curve; never for a solution that this crate made.
     pub fn gait(&self) -> Result<AnyGait, CollocationError> {
-        let quarter: Vec<_> = (0..=SAMPLES)
-            .map(|i| self.phi(i as f64 / SAMPLES as f64))
-            .collect();
-        // On φ₁ = −φ₂ the way back is the way there, mirrored; the second half is the first turned by half a turn.
-        let mirrored = quarter.iter().rev().map(|phi| -Vector2::new(phi.y, phi.x));
-        let half: Vec<_> = quarter.iter().copied().chain(mirrored.skip(1)).collect();
-        let other = half.iter().skip(1).map(|phi| -phi);
-        let phi: Vec<_> = half
-            .iter()
-            .copied()
-            .chain(other)
-            .take(4 * SAMPLES)
-            .collect();
-        let u: Vec<_> = (0..phi.len())
-            .map(|i| i as f64 / phi.len() as f64)
-            .collect();
+        let quarters = |i: usize| i as f64 / SAMPLES as f64;
+        let phi = |i: usize| {
+            let (half, step) = (i / (2 * SAMPLES), i % (2 * SAMPLES));
+            let phi = self.phi(quarters(step.min(2 * SAMPLES - step)));
+            // On φ₁ = −φ₂ the way back is the way there, mirrored; the second half is the first turned by half a turn.
+            let phi = if step > SAMPLES { -phi.yx() } else { phi };
+            if half > 0 { -phi } else { phi }
+        };
+        let phi: Vec<_> = (0..4 * SAMPLES).map(phi).collect();
+        let u: Vec<_> = (0..4 * SAMPLES).map(|i| 0.25 * quarters(i)).collect();
         AnyGait::from_samples(&u, &phi, &[]).map_err(|_| CollocationError::Guess {
             problem: "its samples make no closed curve",
         })

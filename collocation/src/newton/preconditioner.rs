@@ -62,11 +62,8 @@ impl Preconditioner {
         }
         let mut after = Vector2::zeros();
         for (point, block) in self.blocks.iter().enumerate().rev() {
-            let known = self
-                .links
-                .get(point)
-                .map_or_else(Vector2::zeros, |link| link * after);
-            after = block * (solution.column(point) + known);
+            let known = self.links.get(point).map(|link| link * after);
+            after = block * (solution.column(point) + known.unwrap_or_default());
             solution.set_column(point, &after);
         }
         bind_ends(&mut solution);
