@@ -14,6 +14,14 @@ fn gaits(criterion: &mut Criterion) {
     group.bench_function("robot, 2.8 rad (b)", |bench| {
         bench.iter(|| displacement(&robot));
     });
+    // The paper's kind alone, without the scans for gaits that touch their own images.
+    let simple = DisplacementProblem {
+        simple: true,
+        ..robot
+    };
+    group.bench_function("robot, 2.8 rad (b), simple", |bench| {
+        bench.iter(|| displacement(&simple));
+    });
     group.finish();
 }
 

@@ -358,3 +358,18 @@ fn random_swimmers() {
     assert!(found > 240, "{found}");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+/// Near a place where two zero-level curves are about to meet little holds the curve, and only narrow pushes there lead up: with even
+/// knots this saddle passed. A criterion of its own arcs, and knots four times as close, said the same.
+#[test]
+fn a_faint_saddle_is_refused() {
+    let mut swimmer = Swimmer::robot();
+    swimmer.sphere_radius = 0.0395;
+    let mut problem = DisplacementProblem::new(swimmer).with_max_angle(2.8);
+    problem.simple = true;
+    let Err(DisplacementError::Saddle { gait }) = displacement(&problem) else {
+        panic!("no saddle");
+    };
+    assert!((gait.displacement_over_length - 0.092_017_722_44).abs() < 1e-10);
+    assert_eq!(gait.certify().unwrap().verdict(), Verdict::Fail);
+}
