@@ -212,7 +212,7 @@ pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, D
         let gaits = candidates(problem, &model, (bounds, &region), SCAN_POINTS)
             .found
             .into_iter()
-            .filter_map(|candidate| certified(problem, &model, (bounds, &region), &candidate));
+            .filter_map(|candidate| certified(problem, &model, bounds, &candidate));
         gaits.collect::<Vec<_>>()
     };
     let mut gaits = of(&problem.bounds);
@@ -228,42 +228,30 @@ pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, D
 fn certified(
     problem: &DisplacementProblem,
     model: &Model<f64>,
-    within: (&Bounds, &Region),
+    bounds: &Bounds,
     candidate: &Candidate,
 ) -> Option<OptimalGait> {
+    // The arcs know this closer than the samples do.
+    let displacement_over_length = 4.0 * candidate.quarter.end[2];
+    let of = (Objective::Displacement, &problem.swimmer, bounds);
     let mut gait = decided(problem.quarter_samples, |samples| {
-        swum(problem, model, within, candidate, samples)
+        let cycle = candidate.cycle(model, samples)?;
+        let stroke = cycle.swum(model)?;
+        Some(OptimalGait {
+            displacement_over_length,
+            displacement: displacement_over_length * problem.swimmer.total_length(),
+            ..OptimalGait::of_cycle(of, true, cycle, &stroke)
+        })
     })?;
     // What the arcs say of themselves.
-    let end = pose(&candidate.quarter.end);
-    let lambda4 = candidate.momentum.at(&end).z.abs();
-    let again = 4.0 * candidate.quarter.end[2] - gait.swum.x;
+    let lambda4 = candidate.momentum.at(&pose(&candidate.quarter.end)).z;
+    let again = displacement_over_length - gait.swum.x;
     let tolerance = again_within(gait.swum.x.abs());
     gait.certificate = gait.certificate.with(vec![
-        Condition::FinalLambda4.check(lambda4),
+        Condition::FinalLambda4.check(lambda4.abs()),
         Condition::ArcsSwumAgain.within(again.abs(), tolerance),
     ]);
     Some(gait)
-}
-
-/// A candidate as a full cycle, four times so many samples, not yet certified; none where it cannot be traced.
-fn swum(
-    problem: &DisplacementProblem,
-    model: &Model<f64>,
-    (bounds, _): (&Bounds, &Region),
-    candidate: &Candidate,
-    samples: usize,
-) -> Option<OptimalGait> {
-    let cycle = candidate.cycle(model, samples)?;
-    let stroke = cycle.swum(model)?;
-    let of = (Objective::Displacement, &problem.swimmer, bounds);
-    // The arcs know this closer than the samples do.
-    let displacement_over_length = 4.0 * candidate.quarter.end[2];
-    Some(OptimalGait {
-        displacement_over_length,
-        displacement: displacement_over_length * problem.swimmer.total_length(),
-        ..OptimalGait::of_cycle(of, true, cycle, &stroke)
-    })
 }
 
 #[cfg(test)]

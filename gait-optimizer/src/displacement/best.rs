@@ -9,7 +9,7 @@ use super::flow::Touch;
 use super::search::{Candidate, FINER_SCAN, SCAN_POINTS, Search, Seen};
 use super::start_family::{StartFamily, families, families_on_the_diagonal};
 use super::{DisplacementError, DisplacementProblem, Fates, certified};
-use crate::certificate::{simple_and_turning_once, turning_number};
+use crate::certificate::{Condition, again_within, simple_and_turning_once, turning_number};
 use crate::cycle::Cycle;
 use crate::momentum::Motion;
 use crate::optimal_gait::OptimalGait;
@@ -87,12 +87,15 @@ impl Extremals<'_> {
         least: f64,
     ) -> Option<(Cycle, f64)> {
         let scans = self.scans.iter();
-        let mut carried: Vec<_> = scans
-            .flat_map(|(search, families, seen)| search.farthest(families, seen, least / 4.0))
+        let mut seen: Vec<_> = scans
+            .flat_map(|(search, families, seen)| {
+                let farthest = seen.farthest(least / 4.0);
+                farthest.map(move |(index, p, carried)| (carried, search, families.get(index), p))
+            })
             .collect();
-        carried.sort_by(|(a, _), (b, _)| b.total_cmp(a));
-        carried.iter().find_map(|(_, candidate)| {
-            let candidate = candidate()?;
+        seen.sort_by(|a, b| b.0.total_cmp(&a.0));
+        seen.into_iter().find_map(|(_, search, family, p)| {
+            let candidate = search.candidate(family?, p)?;
             let far = 4.0 * candidate.quarter.end[2];
             // Most that carry far wind several times, which a few samples tell.
             let few = candidate.cycle(model, 32)?;
@@ -100,11 +103,13 @@ impl Extremals<'_> {
                 return None;
             }
             let cycle = candidate.cycle(model, SAMPLES)?;
-            let checks = simple_and_turning_once(&cycle.phi, cycle.quarter());
-            checks
+            let loops = simple_and_turning_once(&cycle.phi, cycle.quarter());
+            let kept = cycle
+                .quarter()
                 .iter()
-                .all(|check| check.pass)
-                .then_some((cycle, far))
+                .all(|phi| search.region.overstepped(phi) <= Condition::KeepsBounds.tolerance());
+            let again = (cycle.swum(model)?.displacement.x - far).abs() <= again_within(far.abs());
+            (loops.iter().all(|check| check.pass) && kept && again).then_some((cycle, far))
         })
     }
 }
@@ -122,7 +127,7 @@ pub(super) fn best<'a>(
     for closer in [true, false] {
         let farther = |candidate: &&Candidate| 4.0 * candidate.quarter.end[2].abs() > least;
         for candidate in seen.found.iter().filter(farther) {
-            let Some(gait) = certified(problem, model, within, candidate) else {
+            let Some(gait) = certified(problem, model, within.0, candidate) else {
                 continue;
             };
             if gait.certificate.holds_among_symmetric() {

@@ -71,6 +71,5 @@ pub fn displacement_near(
             let [a, b] = [a, b].map(|candidate| candidate.quarter.end[2].abs());
             a.total_cmp(&b)
         })?;
-    let within = (&problem.bounds, &region);
-    certified(problem, &model, within, &found).filter(|gait| gait.certificate.pass())
+    certified(problem, &model, &problem.bounds, &found).filter(|gait| gait.certificate.pass())
 }

@@ -63,6 +63,20 @@ pub(crate) struct Seen {
     ended: Vec<(usize, f64, f64)>,
 }
 
+impl Seen {
+    /// Those of the extremals seen that carry farthest: gaits within the bounds, but no optima, since their λ₄ does not end at zero. Only
+    /// such as may carry a quarter farther than `least`. Each with its family's index, the place on it, and how far it carries, about.
+    pub(crate) fn farthest(&self, least: f64) -> impl Iterator<Item = (usize, f64, f64)> + use<> {
+        const MOST: usize = 24;
+        /// How far off the coarse scan may be, over L.
+        const OFF: f64 = 1e-3;
+        let mut ended = self.ended.clone();
+        ended.retain(|(_, _, carried)| *carried > least - OFF);
+        ended.sort_by(|a, b| b.2.total_cmp(&a.2));
+        ended.into_iter().take(MOST)
+    }
+}
+
 /// Places looked at on each family.
 pub(crate) const SCAN_POINTS: usize = 40;
 /// The same where that finds no optimum: the places from which extremals end may lie in a narrow gap.
@@ -105,27 +119,6 @@ impl<'a> Search<'a> {
             found.extend(self.never_leaving(family));
         }
         (found, seen)
-    }
-
-    /// Those of the extremals seen that carry farthest, with how far a quarter does, about: gaits within the bounds, but no optima,
-    /// since their λ₄ does not end at zero. Only such as may carry a quarter farther than `least`.
-    pub(crate) fn farthest<'b>(
-        &'b self,
-        families: &'b [StartFamily],
-        seen: &Seen,
-        least: f64,
-    ) -> impl Iterator<Item = (f64, impl Fn() -> Option<Candidate> + use<'a, 'b>)> + use<'a, 'b>
-    {
-        const MOST: usize = 24;
-        /// How far off the coarse scan may be, over L.
-        const OFF: f64 = 1e-3;
-        let mut ended = seen.ended.clone();
-        ended.retain(|(_, _, carried)| *carried > least - OFF);
-        ended.sort_by(|a, b| b.2.total_cmp(&a.2));
-        let best = ended.into_iter().take(MOST);
-        best.map(move |(index, p, carried)| {
-            (carried, move || self.candidate(families.get(index)?, p))
-        })
     }
 
     fn scan(

@@ -45,8 +45,7 @@ fn the_second_variation_agrees_with_the_neighbours() {
                             let Some(gain) = neighbour_gain(&search, &family, &candidate) else {
                                 continue;
                             };
-                            let within = (&bounds, &region);
-                            let gait = certified(&problem, &model, within, &candidate).unwrap();
+                            let gait = certified(&problem, &model, &bounds, &candidate).unwrap();
                             let up = gait.certificate.value(Condition::NoAscent).unwrap();
                             if gain < 0.0 {
                                 maxima += 1;
