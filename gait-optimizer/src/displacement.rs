@@ -115,7 +115,25 @@ impl DisplacementProblem {
         self.may_touch() || sectored
     }
 
-    /// The bounds that such gaits obey.
+    /// The bounds that gaits are looked for within: those that touch their own images keep between the diagonals, and so do all others.
+    fn searched(&self) -> Bounds {
+        if self.may_touch() {
+            self.touching()
+        } else {
+            self.bounds
+        }
+    }
+
+    /// The bounds that a candidate is certified for.
+    fn bounds_of(&self, candidate: &Candidate) -> Bounds {
+        if candidate.quarter.is_simple() {
+            self.bounds
+        } else {
+            self.touching()
+        }
+    }
+
+    /// The bounds that gaits obey which touch their own images.
     fn touching(&self) -> Bounds {
         Bounds {
             sector: true,
@@ -174,27 +192,20 @@ pub(crate) fn best_symmetric(
     let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
     let links = &problem.swimmer.links;
-    let region = Region::new(&problem.bounds, links);
-    let (found, _) = best(problem, &model, (&problem.bounds, &region), 0.0);
-    if !problem.may_touch() {
-        return found;
-    }
-    let bounds = problem.touching();
+    let bounds = problem.searched();
     let region = Region::new(&bounds, links);
-    let within = (&bounds, &region);
-    let carries = |gait: &Result<OptimalGait, _>| {
-        gait.as_ref()
-            .map_or(0.0, |gait| gait.displacement_over_length.abs())
-    };
-    let (touching, seen) = best(problem, &model, within, carries(&found));
-    let mut answer = if touching.is_ok() { touching } else { found };
-    let least = carries(&answer) * (1.0 + OUTDONE);
-    let farthest = seen.farthest(&model, problem.heading().sign(), least);
-    let farthest = farthest.map(|(_, far)| far);
-    match &mut answer {
-        Ok(gait) => gait.outdone_over_length = farthest,
-        Err(DisplacementError::NoOptimum { outdone, .. }) => *outdone = farthest,
-        Err(_) => {}
+    let (mut answer, seen) = best(problem, &model, (&bounds, &region));
+    if problem.may_touch() {
+        let carries = answer
+            .as_ref()
+            .map_or(0.0, |gait| gait.displacement_over_length.abs());
+        let farthest = seen.farthest(carries * (1.0 + OUTDONE));
+        let farthest = farthest.map(|(_, far)| far);
+        match &mut answer {
+            Ok(gait) => gait.outdone_over_length = farthest,
+            Err(DisplacementError::NoOptimum { outdone, .. }) => *outdone = farthest,
+            Err(_) => {}
+        }
     }
     answer
 }
@@ -207,33 +218,27 @@ const OUTDONE: f64 = 1e-6;
 pub(crate) fn every(problem: &DisplacementProblem) -> Result<Vec<OptimalGait>, DisplacementError> {
     let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
-    let of = |bounds: &Bounds| {
-        let region = Region::new(bounds, &problem.swimmer.links);
-        let gaits = candidates(problem, &model, (bounds, &region), SCAN_POINTS)
-            .found
-            .into_iter()
-            .filter_map(|candidate| certified(problem, &model, bounds, &candidate));
-        gaits.collect::<Vec<_>>()
-    };
-    let mut gaits = of(&problem.bounds);
-    if problem.may_touch() {
-        gaits.extend(of(&problem.touching()));
-    }
+    let bounds = problem.searched();
+    let region = Region::new(&bounds, &problem.swimmer.links);
+    let found = candidates(problem, &model, (&bounds, &region), SCAN_POINTS).found;
+    let gaits = found
+        .iter()
+        .filter_map(|candidate| certified(problem, &model, candidate));
+    let mut gaits: Vec<_> = gaits.collect();
     gaits.sort_by(|a, b| b.displacement.abs().total_cmp(&a.displacement.abs()));
     Ok(gaits)
 }
 
-/// A candidate as a full cycle with its certificate and the bounds that it was found within, which are those that it is certified
-/// for; none where it cannot even be traced.
+/// A candidate as a full cycle with its certificate; none where it cannot even be traced.
 fn certified(
     problem: &DisplacementProblem,
     model: &Model<f64>,
-    bounds: &Bounds,
     candidate: &Candidate,
 ) -> Option<OptimalGait> {
+    let bounds = problem.bounds_of(candidate);
     // The arcs know this closer than the samples do.
     let displacement_over_length = 4.0 * candidate.quarter.end[2];
-    let of = (Objective::Displacement, &problem.swimmer, bounds);
+    let of = (Objective::Displacement, &problem.swimmer, &bounds);
     let mut gait = decided(problem.quarter_samples, |samples| {
         let cycle = candidate.cycle(model, samples)?;
         let stroke = cycle.swum(model)?;

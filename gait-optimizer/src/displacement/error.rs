@@ -16,7 +16,7 @@ pub struct Fates {
     pub ended: usize,
     /// The smallest |λ₄| (over L) with which one reached φ₁ = −φ₂; an optimum has 0.
     pub nearest: Option<f64>,
-    /// Came back to φ₁ = φ₂, where their mirror images would cross them.
+    /// Came back to φ₁ = φ₂ where they or their mirror images had been.
     pub came_back: usize,
     /// Left the horizon of the search.
     pub left_horizon: usize,

@@ -19,7 +19,7 @@ pub(super) const FINE: StepControl = StepControl {
 };
 
 /// What a quarter does where it first meets φ₁ = −φ₂.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Touch {
     /// Ends there.
     Ends,
@@ -35,11 +35,40 @@ pub(crate) struct TraceOptions {
     pub(crate) control: StepControl,
     /// Whether bounds are left where the multiplier falls to zero.
     pub(crate) leaves: bool,
-    pub(crate) touch: Touch,
-    /// Whether the quarter has touched φ₁ = −φ₂ before the state that is followed from.
-    pub(crate) touched: bool,
-    /// φ₁ + φ₂ where the quarter began.
-    pub(crate) began: f64,
+    /// Where the quarter has been before the state that is followed from.
+    pub(crate) met: Met,
+}
+
+/// Where a quarter has met the diagonals. It may meet neither there again.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Met {
+    /// The lowest and the highest φ₁ + φ₂ on φ₁ = φ₂.
+    start: [f64; 2],
+    /// φ₂ − φ₁ where it met φ₁ = −φ₂ first, and up to where it ran along that line.
+    end: Option<[f64; 2]>,
+}
+
+impl Met {
+    /// Of a quarter that begins in a state.
+    pub(super) fn beginning(state: &State) -> Self {
+        Self {
+            start: [state[0] + state[1]; 2],
+            end: None,
+        }
+    }
+
+    /// And ran along φ₁ = −φ₂ from one state to another.
+    pub(super) fn and_ran(self, from: &State, to: &State) -> Self {
+        let end = Some([from, to].map(|state| state[1] - state[0]));
+        Self { end, ..self }
+    }
+
+    /// And along φ₁ = φ₂ up to a state.
+    fn and_started(self, to: &State) -> Self {
+        let ([low, high], at) = (self.start, to[0] + to[1]);
+        let start = [low.min(at), high.max(at)];
+        Self { start, ..self }
+    }
 }
 
 /// How a quarter came to its end.
@@ -47,7 +76,7 @@ pub(crate) struct TraceOptions {
 pub(crate) enum Fate {
     /// On φ₁ = −φ₂, as it should.
     Ended,
-    /// Back on φ₁ = φ₂, where its mirror image would cross it.
+    /// Back where it or its mirror images have been.
     CameBack,
     /// Beyond the horizon.
     LeftHorizon,
@@ -61,17 +90,48 @@ pub(crate) enum Fate {
 #[derive(Debug, Clone)]
 pub(crate) struct Quarter {
     pub(crate) legs: Vec<Leg>,
-    /// Whether it touched φ₁ = −φ₂ and went on along it.
-    pub(crate) touched: bool,
+    pub(crate) met: Met,
     pub(crate) fate: Fate,
     pub(crate) end: State,
 }
 
 impl Quarter {
-    /// Whether it ends on a way along φ₁ = −φ₂, which it would go back: no loop.
-    pub(crate) fn ends_in_a_spike(&self) -> bool {
-        let last = self.legs.last().map(|leg| leg.motion);
-        matches!(last, Some(Motion::Along(track)) if is_end_line(track.wall.edge()))
+    /// Whether it touched φ₁ = −φ₂ and went on along it.
+    pub(crate) fn touched(&self) -> bool {
+        self.met.end.is_some()
+    }
+
+    /// Whether it keeps off the diagonals but for its ends.
+    pub(crate) fn is_simple(&self) -> bool {
+        !lasting(&self.legs).any(|leg| on_diagonal(&leg.motion))
+    }
+
+    /// Whether it ends on φ₁ = −φ₂ as it may: beyond where it ran along that line.
+    pub(crate) fn ended(&self) -> bool {
+        let beyond = self.met.end.is_none_or(|[from, to]| {
+            let end = self.end[1] - self.end[0];
+            (end - to) * (to - from) > 0.0
+        });
+        self.fate == Fate::Ended && beyond
+    }
+
+    /// What it becomes where it does otherwise than end where it first meets φ₁ = −φ₂; none where that line is no bound or another
+    /// bound is in the way.
+    pub(crate) fn going_on(
+        &self,
+        touch: Touch,
+        (flow, region): (Flow<'_>, &Region),
+        options: TraceOptions,
+    ) -> Option<Self> {
+        if self.fate != Fate::Ended || self.touched() {
+            return None;
+        }
+        let motion = along_the_end(region, &self.end, touch)?;
+        let met = self.met;
+        let options = TraceOptions { met, ..options };
+        let onwards = follow(Flow { motion, ..flow }, region, self.end, options);
+        let legs = self.legs.iter().chain(&onwards.legs).copied().collect();
+        Some(Self { legs, ..onwards })
     }
 }
 
@@ -80,7 +140,8 @@ pub(super) fn lasting(legs: &[Leg]) -> impl Iterator<Item = &Leg> {
     legs.iter().filter(|leg| leg.to[5] > leg.from[5])
 }
 
-/// Follows arcs from a state on the first one until the quarter is over.
+/// Follows arcs from a state on the first one until the quarter is over, where it first meets φ₁ = −φ₂ at the latest unless it runs
+/// along that line.
 pub(crate) fn follow(
     first: Flow<'_>,
     region: &Region,
@@ -96,16 +157,19 @@ pub(crate) fn follow(
         before: 0.0,
         longest: LONGEST_CURVE,
     };
-    let mut touched = options.touched;
+    let mut met = options.met;
     let (legs, fate) = tracer.chain(start, MOST_ARCS, |tracer, leg, event| {
-        if event == Some(Event::End(End::Antidiagonal))
-            && !touched
-            && let Some(along) = along_the_end(region, &leg.to, options.touch)
-        {
-            touched = true;
-            return Ok(along);
+        let edge = edge_along(&leg.motion);
+        if is_start_line(edge) {
+            met = met.and_started(&leg.to);
         }
-        // One that has touched φ₁ = −φ₂ must end in the straight shape, or it would meet itself.
+        if is_end_line(edge) {
+            met = met.and_ran(&leg.from, &leg.to);
+            // The rest of that line is off the region.
+            if matches!(event, Some(Event::Bound(_))) {
+                return Err(Fate::CameBack);
+            }
+        }
         match event {
             None => Err(Fate::Stalled),
             Some(Event::End(End::Antidiagonal)) => Err(Fate::Ended),
@@ -115,19 +179,25 @@ pub(crate) fn follow(
             Some(Event::PieceEnd) => leg.motion.next_piece().ok_or(Fate::Stalled),
             Some(Event::Bound(index)) => {
                 let track = Track::new(region, index, &shape(&leg.to), 1.0).ok_or(Fate::Stalled)?;
-                let is_straight =
-                    on_diagonal(&leg.motion) && track.wall.kind() == ArcKind::Diagonal;
-                if is_straight && touched {
+                let edge = track.wall.edge();
+                if is_start_line(edge) {
+                    let ([low, high], at) = (met.start, leg.to[0] + leg.to[1]);
+                    if low < at && at < high {
+                        return Err(Fate::CameBack);
+                    }
+                }
+                // Along φ₁ = φ₂ to the straight shape.
+                if is_end_line(edge) && met.end.is_some() {
                     return Err(Fate::Ended);
                 }
-                Ok(onto(track, &tracer.flow, &leg.to, options.began))
+                Ok(onto(track, &tracer.flow, &leg.to, met.start))
             }
         }
     });
     Quarter {
         end: legs.last().map_or(start, |leg| leg.to),
         legs,
-        touched,
+        met,
         fate: fate.unwrap_or(Fate::TooManyArcs),
     }
 }
@@ -185,6 +255,14 @@ fn on_diagonal(motion: &Motion) -> bool {
     matches!(motion, Motion::Along(track) if track.wall.kind() == ArcKind::Diagonal)
 }
 
+/// The edge that an arc runs along.
+fn edge_along(motion: &Motion) -> Option<&Edge> {
+    match motion {
+        Motion::Along(track) => track.wall.edge(),
+        Motion::Singular => None,
+    }
+}
+
 /// On along φ₁ = −φ₂; none where the quarter shall end, that line is no bound or another bound is in the way.
 fn along_the_end(region: &Region, at: &State, touch: Touch) -> Option<Motion> {
     const AHEAD: f64 = 1e-6;
@@ -202,15 +280,15 @@ fn along_the_end(region: &Region, at: &State, touch: Touch) -> Option<Motion> {
     (region.overstepped(&ahead) < 0.5 * AHEAD).then_some(Motion::Along(track))
 }
 
-/// Which way a bound is run that an arc meets, of a quarter that began where φ₁ + φ₂ is `began`.
-fn onto(track: Track, flow: &Flow<'_>, at: &State, began: f64) -> Motion {
+/// Which way a bound is run that an arc meets, of a quarter that has met φ₁ = φ₂ between such φ₁ + φ₂.
+fn onto(track: Track, flow: &Flow<'_>, at: &State, [_, highest]: [f64; 2]) -> Motion {
     let phi = shape(at);
     let along = track.direction(&phi);
     // A singular arc may turn either way on a bound; the way towards φ₁ = −φ₂ closes the loop. On φ₁ = φ₂ it leads away from where
-    // the quarter began. In a corner of the region the only way is back inside.
+    // the quarter has been. In a corner of the region the only way is back inside.
     let forwards = match flow.motion {
         Motion::Singular => {
-            let outwards = is_start_line(track.wall.edge()) && phi.x + phi.y > began;
+            let outwards = is_start_line(track.wall.edge()) && phi.x + phi.y > highest;
             let away = if outwards { 1.0 } else { -1.0 };
             let towards_end = away * (along.x + along.y);
             if towards_end.abs() > 1e-9 {

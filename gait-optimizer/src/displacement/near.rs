@@ -3,7 +3,7 @@
 use swimmer_files::ArcKind;
 
 use super::flow::Touch;
-use super::search::{SCAN_POINTS, Search};
+use super::search::{Line, Search};
 use super::start_family::{StartFamily, families};
 use super::{DisplacementProblem, certified};
 use crate::momentum::Motion;
@@ -44,8 +44,6 @@ pub fn displacement_near(
         model: &model,
         region: &region,
         sign: problem.heading().sign(),
-        touch: Touch::Ends,
-        scan_points: SCAN_POINTS,
     };
     let leaves = neighbour
         .arcs
@@ -55,13 +53,17 @@ pub fn displacement_near(
     let found = families(flow, &problem.bounds, &region)
         .iter()
         .filter_map(|family| {
+            let line = Line {
+                family,
+                touch: Touch::Ends,
+            };
             let along_bounds = matches!(family, StartFamily::Bounds { .. });
             let found = match leaves {
                 None if along_bounds => search.never_leaving(family),
                 Some(first) if along_bounds == (first > 0) => {
                     let arc = neighbour.arcs.get(first)?;
                     let p = family.nearest(&arc.from.into())?;
-                    search.candidate(family, search.polished(family, p)?)
+                    search.near(line, p)
                 }
                 _ => None,
             };
@@ -71,5 +73,5 @@ pub fn displacement_near(
             let [a, b] = [a, b].map(|candidate| candidate.quarter.end[2].abs());
             a.total_cmp(&b)
         })?;
-    certified(problem, &model, &problem.bounds, &found).filter(|gait| gait.certificate.pass())
+    certified(problem, &model, &found).filter(|gait| gait.certificate.pass())
 }

@@ -5,17 +5,20 @@
 //! one `y_f`, so the place fixes the whole extremal, and a scan over the family with a scalar root search on
 //! `λ₄(t_f) = 0` finds every quarter gait without a guess. One more candidate never leaves the bound at all.
 
+mod shot;
+
 use swimmer_model::Model;
 
 use super::Fates;
-use super::flow::{FINE, Fate, Quarter, Touch, TraceOptions, follow, lasting};
-use super::start_family::{Place, StartFamily};
+use super::flow::{FINE, Quarter, Touch, lasting};
+use super::start_family::StartFamily;
 use crate::arcs::{SMOOTH, Trace};
 use crate::cycle::Cycle;
-use crate::momentum::{Flow, Momentum, Motion, State, shape};
+use crate::momentum::{Flow, Momentum, Motion};
 use crate::numerics::root;
 use crate::region::Region;
 use crate::runge_kutta::StepControl;
+use shot::{Miss, Shot};
 
 /// An extremal that meets all end conditions.
 #[derive(Debug, Clone)]
@@ -49,31 +52,46 @@ pub(crate) struct Search<'a> {
     pub(crate) region: &'a Region,
     /// λ₃.
     pub(crate) sign: f64,
-    /// What the quarter does where it first meets φ₁ = −φ₂; it ends where it meets that line again.
-    pub(crate) touch: Touch,
-    /// Places to look at on each family.
-    pub(crate) scan_points: usize,
 }
+
+/// Quarters that leave a family and do the same where they first meet φ₁ = −φ₂: one parameter.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line<'a> {
+    pub(crate) family: &'a StartFamily,
+    pub(crate) touch: Touch,
+}
+
+/// What quarters do where they first meet φ₁ = −φ₂. They are the same up to there.
+const TOUCHES: [Touch; 3] = [Touch::Ends, Touch::GoesInwards, Touch::GoesOutwards];
 
 /// What a scan saw beside the candidates.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Seen {
+    /// What became of those that end where they first meet φ₁ = −φ₂.
     pub(crate) fates: Fates,
-    /// Extremals that end, whatever their λ₄ there: the family's index, the place on it and λ₃ x.
-    ended: Vec<(usize, f64, f64)>,
+    /// Extremals that end, whatever their λ₄ there: the family's index, what they do where they touch, the place and λ₃ x.
+    ended: Vec<(usize, Touch, f64, f64)>,
 }
 
 impl Seen {
     /// Those of the extremals seen that carry farthest: gaits within the bounds, but no optima, since their λ₄ does not end at zero. Only
-    /// such as may carry a quarter farther than `least`. Each with its family's index, the place on it, and how far it carries, about.
-    pub(crate) fn farthest(&self, least: f64) -> impl Iterator<Item = (usize, f64, f64)> + use<> {
-        const MOST: usize = 24;
+    /// such as may carry a quarter farther than `least`.
+    pub(crate) fn farthest<'f>(
+        &self,
+        families: &'f [StartFamily],
+        least: f64,
+    ) -> impl Iterator<Item = (Line<'f>, f64)> + use<'f> {
+        const MOST: usize = 64;
         /// How far off the coarse scan may be, over L.
         const OFF: f64 = 1e-3;
         let mut ended = self.ended.clone();
-        ended.retain(|(_, _, carried)| *carried > least - OFF);
-        ended.sort_by(|a, b| b.2.total_cmp(&a.2));
-        ended.into_iter().take(MOST)
+        ended.retain(|(.., carried)| *carried > least - OFF);
+        ended.sort_by(|a, b| b.3.total_cmp(&a.3));
+        let places = ended.into_iter().take(MOST);
+        places.filter_map(|(index, touch, p, _)| {
+            let family = families.get(index)?;
+            Some((Line { family, touch }, p))
+        })
     }
 }
 
@@ -87,161 +105,172 @@ const COARSE: StepControl = StepControl {
 };
 /// |λ₄| over L from which on the fine tolerance takes over.
 const NEAR: f64 = 1e-3;
-const MIDDLING: StepControl = StepControl {
+pub(super) const MIDDLING: StepControl = StepControl {
     tolerance: 1e-9,
     longest: 0.5,
 };
 /// Halvings of an interval at whose ends different arcs follow each other, or of which only one end has an extremal that ends.
 const HALVINGS: usize = 10;
-/// Most extremals that these cost on a family: where other arcs follow from place to place, that is rounding.
+/// Most extremals that these cost on a line: where other arcs follow from place to place, that is rounding.
 const MOST_REFINEMENTS: usize = 2 * SCAN_POINTS;
 
-/// An extremal that ends.
-#[derive(Debug, Clone, Copy)]
-struct Miss {
-    lambda4: f64,
-    /// Which arcs follow each other.
-    arcs: u64,
-    /// Whether it heads the right way; what does not is no gait.
-    heads: bool,
-}
-
-/// A place looked at, and the extremal from there where it ends.
-type Look = (f64, Option<Miss>);
+/// A place looked at, and the extremals from there where they end, one for each of [`TOUCHES`].
+type Look = (f64, [Option<Miss>; 3]);
 
 impl<'a> Search<'a> {
-    /// All candidates, in the order of the families, and what became of the rest.
-    pub(crate) fn candidates(&self, families: &[StartFamily]) -> (Vec<Candidate>, Seen) {
+    /// All candidates, in the order of the families, and what became of the rest; so many places of each family are looked at.
+    pub(crate) fn candidates(
+        &self,
+        families: &[StartFamily],
+        places: usize,
+    ) -> (Vec<Candidate>, Seen) {
         let mut seen = Seen::default();
         let mut found = Vec::new();
         for (index, family) in families.iter().enumerate() {
-            self.scan((index, family), &mut seen, &mut found);
+            self.scan((index, family), places, &mut seen, &mut found);
             found.extend(self.never_leaving(family));
         }
         (found, seen)
     }
 
+    /// The lines of a family; only a bound can be run along.
+    fn lines<'f>(&self, family: &'f StartFamily) -> impl Iterator<Item = Line<'f>> + use<'f> {
+        let touches = self.region.has_diagonals();
+        TOUCHES
+            .into_iter()
+            .filter(move |touch| (touches || *touch == Touch::Ends) && family.may(*touch))
+            .map(move |touch| Line { family, touch })
+    }
+
     fn scan(
         &self,
         (index, family): (usize, &StartFamily),
+        places: usize,
         seen: &mut Seen,
         found: &mut Vec<Candidate>,
     ) {
         let [low, high] = family.range();
-        let place =
-            |look: usize| low + (high - low) * (look as f64 + 0.5) / self.scan_points as f64;
-        let mut looks: Vec<Look> = (0..self.scan_points)
+        let place = |look: usize| low + (high - low) * (look as f64 + 0.5) / places as f64;
+        let mut looks: Vec<Look> = (0..places)
             .map(|look| (place(look), self.look((index, family), place(look), seen)))
             .collect();
         // Between the outermost places and the family's own ends, where its arc shrinks to nothing.
         let [before, after] = [(looks.first(), low), (looks.last(), high)].map(|(last, end)| {
-            let (p, _) = last.filter(|look| look.1.is_some())?;
+            let (p, misses) = last.filter(|look| look.1.iter().any(Option::is_some))?;
             let p = end + 1e-7 * (p - end);
-            Some((p, self.missed(family, p, COARSE)))
+            Some((p, self.misses(family, p, misses.map(|miss| miss.is_some()))))
         });
         looks.splice(0..0, before);
         looks.extend(after);
-        let mut left = MOST_REFINEMENTS;
+        let mut left = [MOST_REFINEMENTS; 3];
         for pair in looks.array_windows() {
             self.refine(family, *pair, &mut left, found);
         }
     }
 
-    /// One extremal of the scan.
+    /// The extremals of the scan at one place.
     fn look(
         &self,
         (index, family): (usize, &StartFamily),
         p: f64,
         seen: &mut Seen,
-    ) -> Option<Miss> {
-        let fates = &mut seen.fates;
-        fates.sent += 1;
-        let Some((quarter, final_y)) = self.shoot(family, p, COARSE) else {
-            fates.wrong_way += 1;
-            return None;
-        };
-        match quarter.fate {
-            Fate::Ended if self.ended(&quarter) => {
-                fates.ended += 1;
-                let miss = Miss::of(&quarter, final_y, self.sign);
-                let nearest = fates.nearest.unwrap_or(f64::INFINITY);
-                fates.nearest = Some(nearest.min(miss.lambda4.abs()));
-                seen.ended.push((index, p, self.sign * quarter.end[2]));
-                return Some(miss);
-            }
-            Fate::Ended => fates.ended += 1,
-            Fate::CameBack => fates.came_back += 1,
-            Fate::LeftHorizon => fates.left_horizon += 1,
-            Fate::Stalled | Fate::TooManyArcs => fates.lost += 1,
+    ) -> [Option<Miss>; 3] {
+        let shot = self.shoot(family, p, COARSE);
+        if family.may(Touch::Ends) {
+            seen.fates.count(shot.as_ref());
         }
-        None
+        let mut misses = [None; 3];
+        let Some(shot) = shot else { return misses };
+        for line in self.lines(family) {
+            if let Some(quarter) = self.onwards(&shot, line) {
+                misses[line.touch as usize] = Some(Miss::of(&quarter, shot.final_y, self.sign));
+                let carried = self.sign * quarter.end[2];
+                seen.ended.push((index, line.touch, p, carried));
+            }
+        }
+        misses
     }
 
-    /// Roots between two places: where other arcs follow, or the extremal of one does not end, looks closer. At most
-    /// `left` times.
+    /// Roots between two places: where other arcs follow, or the extremal of one does not end, looks closer. At most `left` times on
+    /// each line.
     fn refine(
         &self,
         family: &StartFamily,
         [a, b]: [Look; 2],
-        left: &mut usize,
+        left: &mut [usize; 3],
         found: &mut Vec<Candidate>,
     ) {
-        let mut open = vec![(a, b, HALVINGS)];
-        while let Some((a, b, halvings)) = open.pop() {
-            let mut ends = [a.1, b.1].into_iter().flatten();
-            if !ends.any(|miss| miss.heads) {
-                continue;
+        let mut open = vec![(a, b, HALVINGS, [true; 3])];
+        while let Some((a, b, halvings, lines)) = open.pop() {
+            let mut closer = [false; 3];
+            for touch in TOUCHES {
+                let line = touch as usize;
+                let ends = [a.1[line], b.1[line]];
+                if !lines[line] || !ends.iter().flatten().any(|miss| miss.heads) {
+                    continue;
+                }
+                let last = halvings == 0 || left[line] == 0;
+                match ends {
+                    [Some(from), Some(to)] if from.arcs == to.arcs || last => {
+                        let line = Line { family, touch };
+                        found.extend(self.between(line, [(a.0, from.lambda4), (b.0, to.lambda4)]));
+                    }
+                    _ if last => {}
+                    _ => {
+                        left[line] -= 1;
+                        closer[line] = true;
+                    }
+                }
             }
-            match (a.1, b.1) {
-                (Some(from), Some(to)) if from.arcs == to.arcs || halvings == 0 || *left == 0 => {
-                    let root = self.root(family, [(a.0, from.lambda4), (b.0, to.lambda4)]);
-                    found.extend(root.and_then(|p| self.candidate(family, p)));
-                }
-                _ if halvings == 0 || *left == 0 => {}
-                _ => {
-                    *left -= 1;
-                    let p = 0.5 * (a.0 + b.0);
-                    let middle = (p, self.missed(family, p, COARSE));
-                    open.push((middle, b, halvings - 1));
-                    open.push((a, middle, halvings - 1));
-                }
+            if closer.contains(&true) {
+                let p = 0.5 * (a.0 + b.0);
+                let middle = (p, self.misses(family, p, closer));
+                open.push((middle, b, halvings - 1, closer));
+                open.push((a, middle, halvings - 1, closer));
             }
         }
     }
 
-    /// The root of `λ₄(t_f)` between two places of the coarse scan: near it at the coarse tolerance, which the bracket holds for,
-    /// then secants at the fine one. None where it does not change its sign, and at a jump.
-    fn root(&self, family: &StartFamily, ends: [(f64, f64); 2]) -> Option<f64> {
+    /// The candidate between two places of the coarse scan, where `λ₄(t_f)` is zero: near it at the coarse tolerance, which the
+    /// bracket holds for, then secants at the fine one. None where it does not change its sign, and at a jump.
+    fn between(&self, line: Line<'_>, ends: [(f64, f64); 2]) -> Option<Candidate> {
         let changes = ends[0].1.signum() * ends[1].1.signum() < 0.0;
-        let coarse = |p| self.miss(family, p, COARSE);
+        let coarse = |p| self.miss(line, p, COARSE);
         let near = changes.then(|| root(ends, NEAR, coarse)).flatten()?;
-        self.polished(family, near)
+        self.near(line, near)
     }
 
-    /// From a place near a root to the root: secants at a middling tolerance, then a few steps at the fine one with the slope
-    /// found there, since the fine shots are what costs. None where the secants lead away.
-    pub(super) fn polished(&self, family: &StartFamily, near: f64) -> Option<f64> {
-        let (p, slope) = self.secants(family, near)?;
-        let mut here = (p, self.miss(family, p, FINE)?);
+    /// The candidate near a place: secants at a middling tolerance, then a few steps at the fine one with the slope found there, since
+    /// the fine shots are what costs. None where the secants lead away.
+    pub(super) fn near(&self, line: Line<'_>, near: f64) -> Option<Candidate> {
+        let (mut p, slope) = self.secants(line, near)?;
+        let lambda4 = |shot: &Shot<'_>| {
+            let quarter = self.onwards(shot, line)?;
+            Some(Miss::of(&quarter, shot.final_y, self.sign).lambda4)
+        };
+        let mut shot = self.shoot(line.family, p, FINE)?;
+        let mut here = lambda4(&shot)?;
         for _ in 0..6 {
-            if here.1.abs() < 1e-14 {
-                return Some(here.0);
+            if here.abs() < 1e-14 {
+                break;
             }
-            let next = here.0 - here.1 / slope;
-            let lambda4 = self.miss(family, next, FINE)?;
-            if lambda4.abs() > 0.5 * here.1.abs() {
+            let next = p - here / slope;
+            let closer = self.shoot(line.family, next, FINE)?;
+            let there = lambda4(&closer)?;
+            if there.abs() > 0.5 * here.abs() {
                 break; // rounding, or a slope that does not hold
             }
-            here = (next, lambda4);
+            (p, shot, here) = (next, closer, there);
         }
-        (here.1.abs() < 1e-10).then_some(here.0)
+        let solved = here.abs() < 1e-10;
+        solved.then(|| self.begun(line, p, &shot)).flatten()
     }
 
     /// Secant method at the middling tolerance: a place with a small `λ₄(t_f)` and the slope there.
-    fn secants(&self, family: &StartFamily, near: f64) -> Option<(f64, f64)> {
-        let mut before = (near, self.miss(family, near, MIDDLING)?);
+    fn secants(&self, line: Line<'_>, near: f64) -> Option<(f64, f64)> {
+        let mut before = (near, self.miss(line, near, MIDDLING)?);
         // Away from the family's end, which may be nearer.
-        let [low, high] = family.range();
+        let [low, high] = line.family.range();
         let aside = if near < 0.5 * (low + high) {
             1e-5
         } else {
@@ -249,7 +278,7 @@ impl<'a> Search<'a> {
         };
         let mut here = near + aside;
         for _ in 0..12 {
-            let lambda4 = self.miss(family, here, MIDDLING)?;
+            let lambda4 = self.miss(line, here, MIDDLING)?;
             let slope = (lambda4 - before.1) / (here - before.0);
             let next = here - lambda4 / slope;
             if !next.is_finite() || (next - near).abs() > 0.05 {
@@ -264,101 +293,47 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// The candidate that leaves a family at p.
-    pub(super) fn candidate(&self, family: &StartFamily, p: f64) -> Option<Candidate> {
-        let (quarter, final_y) = self.shoot(family, p, FINE)?;
-        let whole = match family {
-            StartFamily::StartLine { .. } => quarter,
-            // Again from the start: the multiplier itself must fall to zero at p.
-            StartFamily::Bounds { .. } | StartFamily::EndLine { .. } => {
-                let start = family.start()?;
-                let whole = self.whole(&start, final_y, family.begins_straight());
-                let mut legs = whole.legs.iter();
-                let left = legs.find(|leg| leg.motion == Motion::Singular)?;
-                let place = self.place(family, p, FINE)?.state;
-                ((shape(&left.from) - shape(&place)).norm() < 1e-6).then_some(whole)?
-            }
-        };
-        self.ended(&whole).then_some(Candidate {
-            quarter: whole,
-            momentum: Momentum::of_quarter(self.sign, final_y),
-        })
+    /// What leaves a family at p, whatever its λ₄.
+    pub(super) fn candidate(&self, line: Line<'_>, p: f64) -> Option<Candidate> {
+        self.begun(line, p, &self.shoot(line.family, p, FINE)?)
     }
 
     /// The extremal that runs along the bounds to the very end.
     pub(super) fn never_leaving(&self, family: &StartFamily) -> Option<Candidate> {
-        if family.touched() {
+        let touch = Touch::Ends;
+        if !family.may(touch) {
             return None; // which would be no loop
         }
         let final_y = family.end()?[3];
-        let quarter = self.whole(&family.start()?, final_y, false);
+        let quarter = self.whole(Line { family, touch }, final_y)?;
         let mut legs = quarter.legs.iter();
         let stayed = legs.all(|leg| leg.motion != Motion::Singular);
         let on_the_end = (quarter.end[3] - final_y).abs() < 1e-10;
-        (self.ended(&quarter) && stayed && on_the_end).then(|| Candidate {
-            quarter,
-            momentum: Momentum::of_quarter(self.sign, final_y),
-        })
-    }
-
-    /// The quarter that begins at a place.
-    fn whole(&self, start: &Place, final_y: f64, touched: bool) -> Quarter {
-        let flow = self.flow(final_y, start.motion);
-        let options = self.options(FINE, &start.state, touched);
-        follow(flow, self.region, start.state, options)
+        let momentum = Momentum::of_quarter(self.sign, final_y);
+        (stayed && on_the_end).then_some(Candidate { quarter, momentum })
     }
 
     /// `λ₄(t_f)` over λ₃ of the extremal that leaves a family at p, where that extremal ends.
-    fn miss(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<f64> {
-        Some(self.missed(family, p, control)?.lambda4)
+    fn miss(&self, line: Line<'_>, p: f64, control: StepControl) -> Option<f64> {
+        let shot = self.shoot(line.family, p, control)?;
+        let quarter = self.onwards(&shot, line)?;
+        Some(Miss::of(&quarter, shot.final_y, self.sign).lambda4)
     }
 
-    /// The same, with the arcs.
-    fn missed(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<Miss> {
-        let (quarter, final_y) = self.shoot(family, p, control)?;
-        self.ended(&quarter)
-            .then(|| Miss::of(&quarter, final_y, self.sign))
+    /// The same of some lines of a family from the coarse scan, with the arcs.
+    fn misses(&self, family: &StartFamily, p: f64, which: [bool; 3]) -> [Option<Miss>; 3] {
+        let shot = self.shoot(family, p, COARSE);
+        TOUCHES.map(|touch| {
+            let shot = shot.as_ref().filter(|_| which[touch as usize])?;
+            let quarter = self.onwards(shot, Line { family, touch })?;
+            Some(Miss::of(&quarter, shot.final_y, self.sign))
+        })
     }
 
-    /// The quarter that becomes singular at place p of a family, with its `y_f`. None where the singular control would leave
-    /// the region, or no `y_f` makes the height vanish.
-    fn shoot(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<(Quarter, f64)> {
-        let place = self.place(family, p, control)?;
-        let final_y = family.final_y(self.model, &place, p)?;
-        let Place { state, motion } = place;
-        let phi = shape(&state);
-        let singular = self.flow(final_y, Motion::Singular);
-        let direction = singular.direction(&state);
-        let inwards = match motion {
-            Motion::Singular => direction.y - direction.x,
-            Motion::Along(track) => track.inwards(&phi).dot(&direction),
-        };
-        let began = family.start().map_or(state, |start| start.state);
-        let options = self.options(control, &began, family.touched());
-        (inwards > 0.0).then(|| (follow(singular, self.region, state, options), final_y))
-    }
-
-    /// From a state of a quarter that began in another.
-    fn options(&self, control: StepControl, began: &State, touched: bool) -> TraceOptions {
-        TraceOptions {
-            control,
-            leaves: true,
-            touch: self.touch,
-            touched,
-            began: began[0] + began[1],
-        }
-    }
-
-    fn ended(&self, quarter: &Quarter) -> bool {
-        let touches = self.touch != Touch::Ends;
-        quarter.fate == Fate::Ended && quarter.touched == touches && !quarter.ends_in_a_spike()
-    }
-
-    /// A place, one step of tolerance closer than what is followed from there.
-    fn place(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<Place> {
-        let coarse = control.tolerance > MIDDLING.tolerance;
-        let flow = self.flow(0.0, Motion::Singular);
-        family.place(flow, p, if coarse { MIDDLING } else { FINE })
+    /// How far over L the extremal carries a quarter that leaves a family at p, where it ends.
+    pub(super) fn carried(&self, line: Line<'_>, p: f64, control: StepControl) -> Option<f64> {
+        let shot = self.shoot(line.family, p, control)?;
+        Some(self.sign * self.onwards(&shot, line)?.end[2])
     }
 
     /// An arc of an extremal with this `y_f`.
@@ -367,23 +342,6 @@ impl<'a> Search<'a> {
             model: self.model,
             momentum: Momentum::of_quarter(self.sign, final_y),
             motion,
-        }
-    }
-}
-
-impl Miss {
-    fn of(quarter: &Quarter, final_y: f64, sign: f64) -> Self {
-        let arcs = lasting(&quarter.legs).fold(0, |arcs: u64, leg| {
-            let arc = match leg.motion {
-                Motion::Singular => 1,
-                Motion::Along(track) => 2 + track.index as u64,
-            };
-            arcs.wrapping_mul(31).wrapping_add(arc)
-        });
-        Self {
-            lambda4: quarter.end[3] - final_y,
-            arcs,
-            heads: sign * quarter.end[2] > 0.0,
         }
     }
 }

@@ -7,7 +7,7 @@ use swimmer_files::{ArcKind, Bounds};
 
 use swimmer_model::Model;
 
-use super::flow::{FINE, Fate, Quarter, Touch, TraceOptions, follow, is_end_line, lasting};
+use super::flow::{FINE, Fate, Met, Quarter, Touch, TraceOptions, follow, is_end_line, lasting};
 use crate::arcs::Leg;
 use crate::momentum::{Flow, Momentum, Motion, State, Track, pose, shape};
 use crate::region::{Bound, Region, Wall};
@@ -25,6 +25,7 @@ pub(crate) enum StartFamily {
     EndLine {
         stretches: Vec<Stretch>,
         turn: State,
+        touch: Touch,
     },
 }
 
@@ -71,7 +72,7 @@ pub(crate) fn families(flow: Flow<'_>, bounds: &Bounds, region: &Region) -> Vec<
             state,
             motion: Motion::Along(track),
         };
-        let way = along_bounds(flow, region, start, (Touch::Ends, false));
+        let way = along_bounds(flow, region, start, false);
         let stretches = stretches(&way.legs);
         if way.fate == Fate::Ended && !stretches.is_empty() {
             families.push(StartFamily::Bounds { stretches });
@@ -97,14 +98,20 @@ pub(crate) fn families_on_the_diagonal(
         .then(|| straight_shape(region, index))
         .flatten();
     let ways = on_bounds.chain(straight).filter_map(|start| {
-        let way = along_bounds(flow, region, start, (touch, false));
+        let way = along_bounds(flow, region, start, false);
+        let onwards = way.going_on(touch, (flow, region), options(&start.state, false));
+        let way = onwards.unwrap_or(way);
         let mut stretches = stretches(&way.legs);
         let touching = stretches
             .iter()
             .position(|stretch| stretch.track.index == index)?;
         stretches.truncate(touching + 1);
         let turn = turn(flow, region, stretches.last()?)?;
-        Some(StartFamily::EndLine { stretches, turn })
+        Some(StartFamily::EndLine {
+            stretches,
+            turn,
+            touch,
+        })
     });
     ways.collect()
 }
@@ -114,16 +121,18 @@ fn along_bounds(
     flow: Flow<'_>,
     region: &Region,
     Place { state, motion }: Place,
-    (touch, leaves): (Touch, bool),
+    leaves: bool,
 ) -> Quarter {
-    let options = TraceOptions {
+    let options = options(&state, leaves);
+    follow(Flow { motion, ..flow }, region, state, options)
+}
+
+fn options(began: &State, leaves: bool) -> TraceOptions {
+    TraceOptions {
         control: FINE,
         leaves,
-        touch,
-        touched: false,
-        began: state[0] + state[1],
-    };
-    follow(Flow { motion, ..flow }, region, state, options)
+        met: Met::beginning(began),
+    }
 }
 
 /// Where quarters begin that leave the straight shape along φ₁ = −φ₂; none where the bounds do not allow it.
@@ -143,7 +152,7 @@ fn turn(flow: Flow<'_>, region: &Region, stretch: &Stretch) -> Option<State> {
         state: stretch.from,
         motion: Motion::Along(stretch.track),
     };
-    let way = along_bounds(flow, region, start, (Touch::Ends, true));
+    let way = along_bounds(flow, region, start, true);
     match way.legs.as_slice() {
         [first, next, ..] if next.motion == Motion::Singular => Some(first.to),
         _ => None,
@@ -201,15 +210,23 @@ impl StartFamily {
         }
     }
 
-    /// Whether a quarter has touched φ₁ = −φ₂ where it leaves the family.
-    pub(crate) fn touched(&self) -> bool {
-        matches!(self, Self::EndLine { .. })
+    /// What quarters that leave it may do where they first meet φ₁ = −φ₂: anything, or what they have done.
+    pub(crate) fn may(&self, touch: Touch) -> bool {
+        !matches!(self, Self::EndLine { touch: done, .. } if *done != touch)
     }
 
-    /// Whether the family begins on φ₁ = −φ₂: in the straight shape.
-    pub(crate) fn begins_straight(&self) -> bool {
-        let first = self.stretches().first();
-        first.is_some_and(|first| is_end_line(first.track.wall.edge()))
+    /// Where a quarter has been that leaves the family in a state.
+    pub(crate) fn met(&self, state: &State) -> Met {
+        let begins = self.start().map_or(*state, |start| start.state);
+        let met = Met::beginning(&begins);
+        match self {
+            Self::EndLine {
+                stretches, turn, ..
+            } => stretches
+                .last()
+                .map_or(met, |last| met.and_ran(&last.from, turn)),
+            _ => met,
+        }
     }
 
     /// The state at a place; `flow` only carries the model. None outside the family.
@@ -229,7 +246,9 @@ impl StartFamily {
                 let state = advance(&drive, start, p - stretch.span[0], control)?.z;
                 Some(Place { state, motion })
             }
-            Self::EndLine { stretches, turn } => Some(Place {
+            Self::EndLine {
+                stretches, turn, ..
+            } => Some(Place {
                 state: *turn,
                 motion: Motion::Along(stretches.last()?.track),
             }),

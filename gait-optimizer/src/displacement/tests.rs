@@ -139,6 +139,6 @@ fn a_slit_leads_to_shapes_off_the_bounds() {
     assert_eq!(kinds, [singular, upper, diagonal, singular, diagonal]);
     let model = Model::new(&three_links(0.5).of_unit_length()).unwrap();
     let region = Region::new(&problem.bounds, &problem.swimmer.links);
-    let (around, _) = best(&problem, &model, (&problem.bounds, &region), 0.0);
+    let (around, _) = best(&problem, &model, (&problem.bounds, &region));
     assert!(gait.displacement_over_length > 1.3 * around.unwrap().displacement_over_length);
 }

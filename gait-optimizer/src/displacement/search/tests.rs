@@ -1,9 +1,24 @@
 use super::*;
-use crate::certificate::Condition;
+use crate::certificate::{Condition, turning_number};
+use crate::displacement::best::candidates;
 use crate::displacement::start_family::families;
-use crate::displacement::{DisplacementProblem, certified};
+use crate::displacement::{DisplacementProblem, Heading, certified};
 use swimmer_files::Bounds;
 use swimmer_model::{Links, Swimmer, TangentialDrag};
+
+/// A middle link of this length between side links of length 1.
+fn three_links(middle: f64, chi: f64) -> Swimmer<f64> {
+    Swimmer {
+        links: Links {
+            middle,
+            front: 1.0,
+            back: 1.0,
+        },
+        chi,
+        tangential_drag: TangentialDrag::LogAspect(4.0),
+        sphere_radius: 0.0,
+    }
+}
 
 /// Where λ₃ x of extremals beside a candidate is larger, the second variation of its samples must say so, and the other way round:
 /// two different roads to the same verdict. One extremal is no maximum: l₀ = l₁/2, χ = 1.2, backwards from 2.455 rad within
@@ -15,14 +30,8 @@ fn the_second_variation_agrees_with_the_neighbours() {
         for chi in [1.2, 2.0, 3.6] {
             for (sphere, max_angle) in [(0.0, 3.0), (0.5, 2.8), (1.0, 3.0), (0.0, 6.2)] {
                 let swimmer = Swimmer {
-                    links: Links {
-                        middle: ratio,
-                        front: 1.0,
-                        back: 1.0,
-                    },
-                    chi,
-                    tangential_drag: TangentialDrag::LogAspect(4.0),
                     sphere_radius: sphere * ratio,
+                    ..three_links(ratio, chi)
                 }
                 .of_unit_length();
                 let model = Model::new(&swimmer).unwrap();
@@ -35,17 +44,16 @@ fn the_second_variation_agrees_with_the_neighbours() {
                         model: &model,
                         region: &region,
                         sign,
-                        touch: Touch::Ends,
-                        scan_points: SCAN_POINTS,
                     };
                     let flow = search.flow(0.0, Motion::Singular);
                     for family in families(flow, &bounds, &region) {
-                        let (found, _) = search.candidates(std::slice::from_ref(&family));
+                        let (found, _) =
+                            search.candidates(std::slice::from_ref(&family), SCAN_POINTS);
                         for candidate in found {
                             let Some(gain) = neighbour_gain(&search, &family, &candidate) else {
                                 continue;
                             };
-                            let gait = certified(&problem, &model, &bounds, &candidate).unwrap();
+                            let gait = certified(&problem, &model, &candidate).unwrap();
                             let up = gait.certificate.value(Condition::NoAscent).unwrap();
                             if gain < 0.0 {
                                 maxima += 1;
@@ -84,9 +92,44 @@ fn neighbour_gain(search: &Search<'_>, family: &StartFamily, candidate: &Candida
         StartFamily::EndLine { .. } => return None,
     };
     let x = |p: f64| {
-        let (quarter, _) = search.shoot(family, p, FINE)?;
-        (quarter.fate == Fate::Ended).then_some(search.sign * quarter.end[2])
+        let line = Line {
+            family,
+            touch: Touch::Ends,
+        };
+        search.carried(line, p, FINE)
     };
     let here = x(p)?;
     Some(x(p - BESIDE)?.max(x(p + BESIDE)?) - here)
+}
+
+/// Quarters that touch their images and are kept go round once: what winds or crosses itself is given up where it does.
+#[test]
+fn what_touches_its_images_goes_round_once() {
+    let mut touching = 0;
+    for chi in [0.5, 2.0, 3.6] {
+        for (middle, max_angle) in [(0.5, 2.8), (1.0, 2.2), (1.0, 3.0), (2.5, 2.8)] {
+            let swimmer = three_links(middle, chi).of_unit_length();
+            let model = Model::new(&swimmer).unwrap();
+            let bounds = Bounds {
+                sector: true,
+                ..Bounds::within(max_angle)
+            };
+            let region = Region::new(&bounds, &swimmer.links);
+            for heading in [Heading::Forwards, Heading::Backwards] {
+                let problem = DisplacementProblem {
+                    heading: Some(heading),
+                    bounds,
+                    ..DisplacementProblem::new(swimmer)
+                };
+                let within = (&bounds, &region);
+                for candidate in candidates(&problem, &model, within, SCAN_POINTS).found {
+                    let cycle = candidate.cycle(&model, 64).unwrap();
+                    let turns = turning_number(&cycle.phi);
+                    assert!((turns - 1.0).abs() < 1e-9, "{swimmer:?} {bounds:?} {turns}");
+                    touching += usize::from(!candidate.quarter.is_simple());
+                }
+            }
+        }
+    }
+    assert!(touching >= 20, "{touching}");
 }

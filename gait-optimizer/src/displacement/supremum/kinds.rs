@@ -28,10 +28,10 @@ const ALIKE: f64 = 1e-4;
 /// Quarters that the search for optima meets: the optimum's, and the farthest that is none.
 pub(super) fn met(problem: &DisplacementProblem, model: &Model<f64>, region: &Region) -> Vec<Kind> {
     let within = (&problem.bounds, region);
-    let (optimum, seen) = best(problem, model, within, 0.0);
+    let (optimum, seen) = best(problem, model, within);
     let optimum = optimum.map(|gait| (gait.cycle, gait.displacement_over_length));
     let carried = optimum.as_ref().map_or(0.0, |(_, far)| far.abs());
-    let farthest = seen.farthest(model, problem.heading().sign(), carried * (1.0 + OUTDONE));
+    let farthest = seen.farthest(carried * (1.0 + OUTDONE));
     let met = optimum.into_iter().chain(farthest);
     met.map(|(cycle, far)| (cycle.quarter().to_vec(), far.abs()))
         .collect()

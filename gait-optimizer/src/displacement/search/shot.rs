@@ -1,0 +1,159 @@
+//! One extremal, from a place on a family to where it ends: traced once up to φ₁ = −φ₂, and on from there for each line.
+
+use super::super::Fates;
+use super::super::flow::{FINE, Fate, Met, Quarter, Touch, TraceOptions, follow, lasting};
+use super::super::start_family::{Place, StartFamily};
+use super::{Candidate, Line, MIDDLING, Search};
+use crate::momentum::{Flow, Motion, shape};
+use crate::runge_kutta::StepControl;
+
+/// A quarter up to where it first meets φ₁ = −φ₂, and what it was traced with.
+pub(super) struct Shot<'a> {
+    pub(super) quarter: Quarter,
+    pub(super) final_y: f64,
+    pub(super) flow: Flow<'a>,
+    options: TraceOptions,
+}
+
+/// An extremal that ends.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Miss {
+    pub(super) lambda4: f64,
+    /// Which arcs follow each other.
+    pub(super) arcs: u64,
+    /// Whether it heads the right way; what does not is no gait.
+    pub(super) heads: bool,
+}
+
+impl<'a> Search<'a> {
+    /// The quarter that becomes singular at place p of a family, with its `y_f`. None where the singular control would leave
+    /// the region, or no `y_f` makes the height vanish.
+    pub(super) fn shoot(
+        &self,
+        family: &StartFamily,
+        p: f64,
+        control: StepControl,
+    ) -> Option<Shot<'a>> {
+        let place = self.place(family, p, control)?;
+        let final_y = family.final_y(self.model, &place, p)?;
+        let Place { state, motion } = place;
+        let phi = shape(&state);
+        let flow = self.flow(final_y, Motion::Singular);
+        let direction = flow.direction(&state);
+        let inwards = match motion {
+            Motion::Singular => direction.y - direction.x,
+            Motion::Along(track) => track.inwards(&phi).dot(&direction),
+        };
+        let options = options(control, family.met(&state));
+        (inwards > 0.0).then(|| Shot {
+            quarter: follow(flow, self.region, state, options),
+            final_y,
+            flow,
+            options,
+        })
+    }
+
+    /// What a shot becomes on its line, where that ends as it should.
+    pub(super) fn onwards(&self, shot: &Shot<'_>, line: Line<'_>) -> Option<Quarter> {
+        // From the end line a quarter has gone on along it already.
+        let went_on = !line.family.may(Touch::Ends) && shot.quarter.touched();
+        let quarter = if went_on || line.touch == Touch::Ends {
+            shot.quarter.clone()
+        } else {
+            let flow = (shot.flow, self.region);
+            shot.quarter.going_on(line.touch, flow, shot.options)?
+        };
+        quarter.ended().then_some(quarter)
+    }
+
+    /// A place, one step of tolerance closer than what is followed from there.
+    fn place(&self, family: &StartFamily, p: f64, control: StepControl) -> Option<Place> {
+        let coarse = control.tolerance > MIDDLING.tolerance;
+        let flow = self.flow(0.0, Motion::Singular);
+        family.place(flow, p, if coarse { MIDDLING } else { FINE })
+    }
+
+    /// The quarter that begins where a family does, where it ends.
+    pub(super) fn whole(&self, line: Line<'_>, final_y: f64) -> Option<Quarter> {
+        let Place { state, motion } = line.family.start()?;
+        let flow = self.flow(final_y, motion);
+        let options = options(FINE, Met::beginning(&state));
+        let quarter = follow(flow, self.region, state, options);
+        let shot = Shot {
+            quarter,
+            final_y,
+            flow,
+            options,
+        };
+        self.onwards(&shot, line)
+    }
+
+    /// A shot with all that comes before it.
+    pub(super) fn begun(&self, line: Line<'_>, p: f64, shot: &Shot<'_>) -> Option<Candidate> {
+        let quarter = match line.family {
+            StartFamily::StartLine { .. } => self.onwards(shot, line)?,
+            // Again from the start: the multiplier itself must fall to zero at p.
+            StartFamily::Bounds { .. } | StartFamily::EndLine { .. } => {
+                let whole = self.whole(line, shot.final_y)?;
+                let mut legs = whole.legs.iter();
+                let left = legs.find(|leg| leg.motion == Motion::Singular)?;
+                let place = self.place(line.family, p, FINE)?.state;
+                ((shape(&left.from) - shape(&place)).norm() < 1e-6).then_some(whole)?
+            }
+        };
+        Some(Candidate {
+            quarter,
+            momentum: shot.flow.momentum,
+        })
+    }
+}
+
+impl Fates {
+    /// Counts one more of those that end where they first meet φ₁ = −φ₂.
+    pub(super) fn count(&mut self, shot: Option<&Shot<'_>>) {
+        self.sent += 1;
+        let Some(Shot {
+            quarter, final_y, ..
+        }) = shot
+        else {
+            self.wrong_way += 1;
+            return;
+        };
+        match quarter.fate {
+            Fate::Ended => {
+                self.ended += 1;
+                let missed = (quarter.end[3] - final_y).abs();
+                let nearest = self.nearest.unwrap_or(f64::INFINITY).min(missed);
+                self.nearest = Some(nearest);
+            }
+            Fate::CameBack => self.came_back += 1,
+            Fate::LeftHorizon => self.left_horizon += 1,
+            Fate::Stalled | Fate::TooManyArcs => self.lost += 1,
+        }
+    }
+}
+
+fn options(control: StepControl, met: Met) -> TraceOptions {
+    TraceOptions {
+        control,
+        leaves: true,
+        met,
+    }
+}
+
+impl Miss {
+    pub(super) fn of(quarter: &Quarter, final_y: f64, sign: f64) -> Self {
+        let arcs = lasting(&quarter.legs).fold(0, |arcs: u64, leg| {
+            let arc = match leg.motion {
+                Motion::Singular => 1,
+                Motion::Along(track) => 2 + track.index as u64,
+            };
+            arcs.wrapping_mul(31).wrapping_add(arc)
+        });
+        Self {
+            lambda4: quarter.end[3] - final_y,
+            arcs,
+            heads: sign * quarter.end[2] > 0.0,
+        }
+    }
+}
