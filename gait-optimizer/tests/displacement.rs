@@ -1,6 +1,7 @@
 //! Displacement gaits against the paper, against an independent direct method, and over swimmers and bounds of all kinds.
 
 mod direct;
+mod neighbours;
 mod plane;
 mod swimmers;
 
@@ -9,6 +10,7 @@ use gait_optimizer::{
     ArcKind, DisplacementError, DisplacementProblem, InvalidProblem, OptimalGait, Verdict,
     displacement,
 };
+use neighbours::Neighbours;
 use swimmer_files::GaitFile;
 use swimmer_model::{Links, Swimmer, Tolerance, swim};
 use swimmers::best_simple_displacement;
@@ -360,16 +362,32 @@ fn random_swimmers() {
 }
 
 /// Near a place where two zero-level curves are about to meet little holds the curve, and only narrow pushes there lead up: with even
-/// knots this saddle passed. A criterion of its own arcs, and knots four times as close, said the same.
+/// knots this saddle passed. The model alone says the same, and that other spheres' gaits are none.
 #[test]
 fn a_faint_saddle_is_refused() {
-    let mut swimmer = Swimmer::robot();
-    swimmer.sphere_radius = 0.0395;
-    let mut problem = DisplacementProblem::new(swimmer).with_max_angle(2.8);
-    problem.simple = true;
-    let Err(DisplacementError::Saddle { gait }) = displacement(&problem) else {
+    const HATS: usize = 96;
+    let of = |sphere_radius: f64| {
+        let swimmer = Swimmer {
+            sphere_radius,
+            ..Swimmer::robot()
+        };
+        let problem = DisplacementProblem::new(swimmer).with_max_angle(2.8);
+        displacement(&DisplacementProblem {
+            simple: true,
+            ..problem
+        })
+    };
+    let Err(DisplacementError::Saddle { gait }) = of(0.0395) else {
         panic!("no saddle");
     };
     assert!((gait.displacement_over_length - 0.092_017_722_44).abs() < 1e-10);
     assert_eq!(gait.certify().unwrap().verdict(), Verdict::Fail);
+    let up = Neighbours::of(&gait).steepest(HATS);
+    println!("0.0395: {up}");
+    assert!(up > 0.01, "{up}");
+    for sphere_radius in [0.037, 0.042, 0.071] {
+        let up = Neighbours::of(&of(sphere_radius).unwrap()).steepest(HATS);
+        println!("{sphere_radius}: {up}");
+        assert!(up < -0.2, "{sphere_radius}: {up}");
+    }
 }
