@@ -71,7 +71,7 @@ impl Extremals<'_> {
     pub(super) fn farthest(&self, least: f64) -> Option<(Cycle, f64)> {
         let mut seen = self.seen.farthest(&self.families, least / 4.0);
         seen.find_map(|(line, p)| {
-            if 4.0 * self.search.carried(line, p, MIDDLING)? <= least {
+            if 4.0 * self.search.miss(line, p, MIDDLING)?.carried <= least {
                 return None;
             }
             let candidate = self.search.candidate(line, p)?;

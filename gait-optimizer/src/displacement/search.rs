@@ -133,15 +133,6 @@ impl<'a> Search<'a> {
         (found, seen)
     }
 
-    /// The lines of a family; only a bound can be run along.
-    fn lines<'f>(&self, family: &'f StartFamily) -> impl Iterator<Item = Line<'f>> + use<'f> {
-        let touches = self.region.has_diagonals();
-        TOUCHES
-            .into_iter()
-            .filter(move |touch| (touches || *touch == Touch::Ends) && family.may(*touch))
-            .map(move |touch| Line { family, touch })
-    }
-
     fn scan(
         &self,
         (index, family): (usize, &StartFamily),
@@ -179,14 +170,10 @@ impl<'a> Search<'a> {
         if family.may(Touch::Ends) {
             seen.fates.count(shot.as_ref());
         }
-        let mut misses = [None; 3];
-        let Some(shot) = shot else { return misses };
-        for line in self.lines(family) {
-            if let Some(quarter) = self.onwards(&shot, line) {
-                misses[line.touch as usize] = Some(Miss::of(&quarter, shot.final_y, self.sign));
-                let carried = self.sign * quarter.end[2];
-                seen.ended.push((index, line.touch, p, carried));
-            }
+        let misses = self.misses_of(shot.as_ref(), family, [true; 3]);
+        for (touch, miss) in TOUCHES.into_iter().zip(misses) {
+            seen.ended
+                .extend(miss.map(|miss| (index, touch, p, miss.carried)));
         }
         misses
     }
@@ -206,7 +193,7 @@ impl<'a> Search<'a> {
             for touch in TOUCHES {
                 let line = touch as usize;
                 let ends = [a.1[line], b.1[line]];
-                if !lines[line] || !ends.iter().flatten().any(|miss| miss.heads) {
+                if !lines[line] || !ends.iter().flatten().any(|miss| miss.carried > 0.0) {
                     continue;
                 }
                 let last = halvings == 0 || left[line] == 0;
@@ -235,7 +222,7 @@ impl<'a> Search<'a> {
     /// bracket holds for, then secants at the fine one. None where it does not change its sign, and at a jump.
     fn between(&self, line: Line<'_>, ends: [(f64, f64); 2]) -> Option<Candidate> {
         let changes = ends[0].1.signum() * ends[1].1.signum() < 0.0;
-        let coarse = |p| self.miss(line, p, COARSE);
+        let coarse = |p| Some(self.miss(line, p, COARSE)?.lambda4);
         let near = changes.then(|| root(ends, NEAR, coarse)).flatten()?;
         self.near(line, near)
     }
@@ -244,10 +231,7 @@ impl<'a> Search<'a> {
     /// the fine shots are what costs. None where the secants lead away.
     pub(super) fn near(&self, line: Line<'_>, near: f64) -> Option<Candidate> {
         let (mut p, slope) = self.secants(line, near)?;
-        let lambda4 = |shot: &Shot<'_>| {
-            let quarter = self.onwards(shot, line)?;
-            Some(Miss::of(&quarter, shot.final_y, self.sign).lambda4)
-        };
+        let lambda4 = |shot: &Shot<'_>| Some(self.miss_of(shot, line)?.lambda4);
         let mut shot = self.shoot(line.family, p, FINE)?;
         let mut here = lambda4(&shot)?;
         for _ in 0..6 {
@@ -268,7 +252,7 @@ impl<'a> Search<'a> {
 
     /// Secant method at the middling tolerance: a place with a small `λ₄(t_f)` and the slope there.
     fn secants(&self, line: Line<'_>, near: f64) -> Option<(f64, f64)> {
-        let mut before = (near, self.miss(line, near, MIDDLING)?);
+        let mut before = (near, self.miss(line, near, MIDDLING)?.lambda4);
         // Away from the family's end, which may be nearer.
         let [low, high] = line.family.range();
         let aside = if near < 0.5 * (low + high) {
@@ -278,7 +262,7 @@ impl<'a> Search<'a> {
         };
         let mut here = near + aside;
         for _ in 0..12 {
-            let lambda4 = self.miss(line, here, MIDDLING)?;
+            let lambda4 = self.miss(line, here, MIDDLING)?.lambda4;
             let slope = (lambda4 - before.1) / (here - before.0);
             let next = here - lambda4 / slope;
             if !next.is_finite() || (next - near).abs() > 0.05 {
@@ -313,27 +297,26 @@ impl<'a> Search<'a> {
         (stayed && on_the_end).then_some(Candidate { quarter, momentum })
     }
 
-    /// `λ₄(t_f)` over λ₃ of the extremal that leaves a family at p, where that extremal ends.
-    fn miss(&self, line: Line<'_>, p: f64, control: StepControl) -> Option<f64> {
-        let shot = self.shoot(line.family, p, control)?;
-        let quarter = self.onwards(&shot, line)?;
-        Some(Miss::of(&quarter, shot.final_y, self.sign).lambda4)
+    /// The extremal that leaves a family at p, where it ends.
+    pub(super) fn miss(&self, line: Line<'_>, p: f64, control: StepControl) -> Option<Miss> {
+        self.miss_of(&self.shoot(line.family, p, control)?, line)
     }
 
-    /// The same of some lines of a family from the coarse scan, with the arcs.
+    /// Those on some lines of a family, from the coarse scan.
     fn misses(&self, family: &StartFamily, p: f64, which: [bool; 3]) -> [Option<Miss>; 3] {
-        let shot = self.shoot(family, p, COARSE);
-        TOUCHES.map(|touch| {
-            let shot = shot.as_ref().filter(|_| which[touch as usize])?;
-            let quarter = self.onwards(shot, Line { family, touch })?;
-            Some(Miss::of(&quarter, shot.final_y, self.sign))
-        })
+        self.misses_of(self.shoot(family, p, COARSE).as_ref(), family, which)
     }
 
-    /// How far over L the extremal carries a quarter that leaves a family at p, where it ends.
-    pub(super) fn carried(&self, line: Line<'_>, p: f64, control: StepControl) -> Option<f64> {
-        let shot = self.shoot(line.family, p, control)?;
-        Some(self.sign * self.onwards(&shot, line)?.end[2])
+    fn misses_of(
+        &self,
+        shot: Option<&Shot<'_>>,
+        family: &StartFamily,
+        which: [bool; 3],
+    ) -> [Option<Miss>; 3] {
+        TOUCHES.map(|touch| {
+            let asked = which[touch as usize] && family.may(touch);
+            self.miss_of(shot.filter(|_| asked)?, Line { family, touch })
+        })
     }
 
     /// An arc of an extremal with this `y_f`.

@@ -17,12 +17,13 @@ pub(super) struct Shot<'a> {
 
 /// An extremal that ends.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Miss {
-    pub(super) lambda4: f64,
+pub(crate) struct Miss {
+    /// λ₄ there, over L and λ₃.
+    pub(crate) lambda4: f64,
+    /// λ₃ x there, over L; below zero it heads the wrong way, and is no gait.
+    pub(crate) carried: f64,
     /// Which arcs follow each other.
     pub(super) arcs: u64,
-    /// Whether it heads the right way; what does not is no gait.
-    pub(super) heads: bool,
 }
 
 impl<'a> Search<'a> {
@@ -54,7 +55,7 @@ impl<'a> Search<'a> {
     }
 
     /// What a shot becomes on its line, where that ends as it should.
-    pub(super) fn onwards(&self, shot: &Shot<'_>, line: Line<'_>) -> Option<Quarter> {
+    fn onwards(&self, shot: &Shot<'_>, line: Line<'_>) -> Option<Quarter> {
         // From the end line a quarter has gone on along it already.
         let went_on = !line.family.may(Touch::Ends) && shot.quarter.touched();
         let quarter = if went_on || line.touch == Touch::Ends {
@@ -64,6 +65,20 @@ impl<'a> Search<'a> {
             shot.quarter.going_on(line.touch, flow, shot.options)?
         };
         quarter.ended().then_some(quarter)
+    }
+
+    /// The extremal that a shot becomes on its line, where that ends as it should.
+    pub(super) fn miss_of(&self, shot: &Shot<'_>, line: Line<'_>) -> Option<Miss> {
+        let quarter = self.onwards(shot, line)?;
+        let arcs = lasting(&quarter.legs).fold(0, |arcs: u64, leg| {
+            let arc = leg.motion.bound().map_or(1, |index| 2 + index as u64);
+            arcs.wrapping_mul(31).wrapping_add(arc)
+        });
+        Some(Miss {
+            lambda4: quarter.end[3] - shot.final_y,
+            carried: self.sign * quarter.end[2],
+            arcs,
+        })
     }
 
     /// A place, one step of tolerance closer than what is followed from there.
@@ -138,22 +153,5 @@ fn options(control: StepControl, met: Met) -> TraceOptions {
         control,
         leaves: true,
         met,
-    }
-}
-
-impl Miss {
-    pub(super) fn of(quarter: &Quarter, final_y: f64, sign: f64) -> Self {
-        let arcs = lasting(&quarter.legs).fold(0, |arcs: u64, leg| {
-            let arc = match leg.motion {
-                Motion::Singular => 1,
-                Motion::Along(track) => 2 + track.index as u64,
-            };
-            arcs.wrapping_mul(31).wrapping_add(arc)
-        });
-        Self {
-            lambda4: quarter.end[3] - final_y,
-            arcs,
-            heads: sign * quarter.end[2] > 0.0,
-        }
     }
 }

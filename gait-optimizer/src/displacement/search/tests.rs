@@ -96,7 +96,7 @@ fn neighbour_gain(search: &Search<'_>, family: &StartFamily, candidate: &Candida
             family,
             touch: Touch::Ends,
         };
-        search.carried(line, p, FINE)
+        Some(search.miss(line, p, FINE)?.carried)
     };
     let here = x(p)?;
     Some(x(p - BESIDE)?.max(x(p + BESIDE)?) - here)
