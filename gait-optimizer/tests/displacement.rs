@@ -7,7 +7,7 @@ mod swimmers;
 
 use direct::Direct;
 use gait_optimizer::{
-    ArcKind, DisplacementError, DisplacementProblem, InvalidProblem, OptimalGait, Verdict,
+    ArcKind, DisplacementError, DisplacementProblem, Heading, InvalidProblem, OptimalGait, Verdict,
     displacement,
 };
 use neighbours::Neighbours;
@@ -382,12 +382,59 @@ fn a_faint_saddle_is_refused() {
     };
     assert!((gait.displacement_over_length - 0.092_017_722_44).abs() < 1e-10);
     assert_eq!(gait.certify().unwrap().verdict(), Verdict::Fail);
-    let up = Neighbours::of(&gait).steepest(HATS);
+    let up = Neighbours::of(&gait).steepest(HATS).unwrap();
     println!("0.0395: {up}");
     assert!(up > 0.01, "{up}");
     for sphere_radius in [0.037, 0.042, 0.071] {
-        let up = Neighbours::of(&of(sphere_radius).unwrap()).steepest(HATS);
+        let up = Neighbours::of(&of(sphere_radius).unwrap())
+            .steepest(HATS)
+            .unwrap();
         println!("{sphere_radius}: {up}");
         assert!(up < -0.2, "{sphere_radius}: {up}");
     }
+}
+
+/// The best simple gaits of random swimmers, either way: optima and saddles as the model alone tells them, by second differences.
+fn saddles_of(cases: impl Iterator<Item = usize>) {
+    let random = swimmers::random(20_260_703, 200);
+    let (mut optima, mut saddles, mut wrong) = (0, 0, Vec::new());
+    for case in cases.map(|index| &random[index]) {
+        for heading in [Heading::Forwards, Heading::Backwards] {
+            let found = displacement(&DisplacementProblem {
+                bounds: case.bounds,
+                heading: Some(heading),
+                simple: true,
+                ..DisplacementProblem::new(case.swimmer)
+            });
+            let (gait, is_saddle) = match found {
+                Ok(gait) => (gait, false),
+                Err(DisplacementError::Saddle { gait }) => (*gait, true),
+                Err(_) => continue,
+            };
+            // One that keeps to its bounds has no neighbours.
+            let Some(up) = Neighbours::of(&gait).steepest(96) else {
+                continue;
+            };
+            *(if is_saddle { &mut saddles } else { &mut optima }) += 1;
+            if (up > 0.01) != is_saddle {
+                let name = &case.name;
+                wrong.push(format!(
+                    "{name}, {heading}, a saddle: {is_saddle}, but {up}"
+                ));
+            }
+        }
+    }
+    println!("{optima} optima and {saddles} saddles");
+    assert!(optima > 0 && saddles > 0 && wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn the_model_alone_tells_the_same_saddles() {
+    saddles_of([9, 54, 63, 66, 80, 133, 143, 154].into_iter());
+}
+
+#[test]
+#[ignore = "minutes: part of the soak"]
+fn the_model_alone_tells_the_same_saddles_of_all() {
+    saddles_of(0..200);
 }

@@ -138,9 +138,12 @@ impl Neighbours {
     }
 
     /// The largest eigenvalue of the second differences among pushes that turn nothing, each hat scaled to its own. Below zero where no
-    /// neighbour carries farther.
-    pub(crate) fn steepest(&self, count: usize) -> f64 {
+    /// neighbour carries farther; none where next to nothing is free.
+    pub(crate) fn steepest(&self, count: usize) -> Option<f64> {
         let hats = self.hats(count);
+        if hats.len() < 2 {
+            return None;
+        }
         let c = self.multiplier(&hats);
         let n = hats.len();
         let mut second = DMatrix::zeros(n, n);
@@ -155,8 +158,7 @@ impl Neighbours {
         let turned = DVector::from_fn(n, |i, _| self.first(&hats[i])[1] * scale[i]).normalize();
         let turning = &turned * turned.transpose();
         let off = DMatrix::identity(n, n) - &turning;
-        (&off * scaled * &off - turning)
-            .symmetric_eigenvalues()
-            .max()
+        let reduced = &off * scaled * &off - turning;
+        Some(reduced.symmetric_eigenvalues().max())
     }
 }
