@@ -110,6 +110,7 @@ impl<C: EndCondition> Tracer<'_, C> {
         let mut here = Point::new(&self.flow, start);
         let mut watched = self.watch(&here);
         let mut length = 0.0;
+        // About as long as steps of a method of order eight are.
         let mut try_length = 2.0 * self.control.tolerance.powf(0.125);
         for _ in 0..MOST_STEPS {
             if self.before + length >= self.longest {

@@ -361,11 +361,13 @@ fn random_swimmers() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Pushes that ask the model alone for saddles.
+const HATS: usize = 96;
+
 /// Near a place where two zero-level curves are about to meet little holds the curve, and only narrow pushes there lead up: with even
 /// knots this saddle passed. The model alone says the same, and that other spheres' gaits are none.
 #[test]
 fn a_faint_saddle_is_refused() {
-    const HATS: usize = 96;
     let of = |sphere_radius: f64| {
         let swimmer = Swimmer {
             sphere_radius,
@@ -412,7 +414,7 @@ fn saddles_of(cases: impl Iterator<Item = usize>) {
                 Err(_) => continue,
             };
             // One that keeps to its bounds has no neighbours.
-            let Some(up) = Neighbours::of(&gait).steepest(96) else {
+            let Some(up) = Neighbours::of(&gait).steepest(HATS) else {
                 continue;
             };
             *(if is_saddle { &mut saddles } else { &mut optima }) += 1;

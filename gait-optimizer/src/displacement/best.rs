@@ -96,28 +96,32 @@ pub(super) fn best<'a>(
     within: (&Bounds, &'a Region),
 ) -> (Result<OptimalGait, DisplacementError>, Extremals<'a>) {
     let own = |candidate: &&Candidate| problem.bounds_of(candidate) == problem.bounds;
-    let mut seen = candidates(problem, model, within, SCAN_POINTS);
-    let fates = seen.seen.fates;
+    let mut extremals = candidates(problem, model, within, SCAN_POINTS);
+    let fates = extremals.seen.fates;
     // Where many get lost, a finer scan would only lose more.
-    if !seen.found.iter().any(|candidate| own(&candidate)) && 8 * fates.lost <= fates.sent {
-        seen = candidates(problem, model, within, FINER_SCAN);
+    if !extremals.found.iter().any(|candidate| own(&candidate)) && 8 * fates.lost <= fates.sent {
+        extremals = candidates(problem, model, within, FINER_SCAN);
     }
     let mut refused = None;
-    for candidate in &seen.found {
+    for candidate in &extremals.found {
         let Some(gait) = certified(problem, model, candidate) else {
             continue;
         };
         let is_own = own(&candidate);
         if gait.certificate.holds_among_symmetric() {
-            let found = seen.found.iter();
-            let extremals = Some(found.filter(|one| !is_own || own(one)).count());
-            return (Ok(OptimalGait { extremals, ..gait }), seen);
+            let found = extremals.found.iter();
+            let alike = found.filter(|one| !is_own || own(one)).count();
+            let gait = OptimalGait {
+                extremals: Some(alike),
+                ..gait
+            };
+            return (Ok(gait), extremals);
         }
         if is_own {
             refused.get_or_insert(gait);
         }
     }
-    let fates = seen.seen.fates;
+    let fates = extremals.seen.fates;
     let error = match refused {
         Some(gait) => DisplacementError::NotCertified {
             displacement_over_length: gait.displacement_over_length,
@@ -132,5 +136,5 @@ pub(super) fn best<'a>(
             outdone: None,
         },
     };
-    (Err(error), seen)
+    (Err(error), extremals)
 }

@@ -86,7 +86,7 @@ fn gaits_that_touch_their_images_certify_from_their_file() {
 }
 
 /// A swimmer with L of its own and side links alike.
-fn with(middle: f64, chi: f64) -> Swimmer<f64> {
+pub(super) fn with(middle: f64, chi: f64) -> Swimmer<f64> {
     let mut swimmer = three_links(chi);
     swimmer.links.middle = middle;
     swimmer

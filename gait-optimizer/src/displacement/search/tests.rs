@@ -2,23 +2,10 @@ use super::*;
 use crate::certificate::{Condition, turning_number};
 use crate::displacement::best::candidates;
 use crate::displacement::start_family::families;
+use crate::displacement::tests::with;
 use crate::displacement::{DisplacementProblem, Heading, certified};
 use swimmer_files::Bounds;
-use swimmer_model::{Links, Swimmer, TangentialDrag};
-
-/// A middle link of this length between side links of length 1.
-fn three_links(middle: f64, chi: f64) -> Swimmer<f64> {
-    Swimmer {
-        links: Links {
-            middle,
-            front: 1.0,
-            back: 1.0,
-        },
-        chi,
-        tangential_drag: TangentialDrag::LogAspect(4.0),
-        sphere_radius: 0.0,
-    }
-}
+use swimmer_model::Swimmer;
 
 /// Where λ₃ x of extremals beside a candidate is larger, the second variation of its samples must say so, and the other way round:
 /// two different roads to the same verdict. One extremal is no maximum: l₀ = l₁/2, χ = 1.2, backwards from 2.455 rad within
@@ -31,7 +18,7 @@ fn the_second_variation_agrees_with_the_neighbours() {
             for (sphere, max_angle) in [(0.0, 3.0), (0.5, 2.8), (1.0, 3.0), (0.0, 6.2)] {
                 let swimmer = Swimmer {
                     sphere_radius: sphere * ratio,
-                    ..three_links(ratio, chi)
+                    ..with(ratio, chi)
                 }
                 .of_unit_length();
                 let model = Model::new(&swimmer).unwrap();
@@ -108,7 +95,7 @@ fn what_touches_its_images_goes_round_once() {
     let mut touching = 0;
     for chi in [0.5, 2.0, 3.6] {
         for (middle, max_angle) in [(0.5, 2.8), (1.0, 2.2), (1.0, 3.0), (2.5, 2.8)] {
-            let swimmer = three_links(middle, chi).of_unit_length();
+            let swimmer = with(middle, chi).of_unit_length();
             let model = Model::new(&swimmer).unwrap();
             let bounds = Bounds {
                 sector: true,
