@@ -203,5 +203,5 @@ pub(crate) const SHARE: f64 = 1e-3;
 
 /// What two ways of swimming a gait that moves so far over L may differ by, over L.
 pub(crate) fn again_within(over_length: f64) -> f64 {
-    SWUM_AGAIN.min(SHARE * over_length)
+    SWUM_AGAIN.min(SHARE * over_length.abs())
 }

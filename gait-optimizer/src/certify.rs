@@ -37,7 +37,7 @@ use crate::certificate::{
 use crate::cycle::Cycle;
 use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
-use crate::speed::{MadeFor, certify_speed};
+use crate::speed::{MadeFor, certify_joined, certify_speed};
 pub(crate) use ascent::ways_up;
 use grid::{Along, Degree, Grid};
 use limits::{Limit, Limits};
@@ -140,8 +140,8 @@ fn certify_swum(
     let made_for = Cell::new(None);
     let asked = |gait: &GaitFile, swum| of_samples((&model, &made_for), of, gait, swum);
     AnyGait::from_file(gait)?;
-    // Across whose heading a gait moves is asked of the first sample; of all else it says nothing.
-    let begun = (objective != Objective::Sideways)
+    // Across whose heading a gait moves and where it joins others is asked of the first sample; of all else it says nothing.
+    let begun = (objective != Objective::Sideways && !objective.is_joined())
         .then(|| begun_on_the_diagonal(gait))
         .flatten();
     let swum = swum.filter(|_| begun.is_none());
@@ -166,13 +166,15 @@ fn of_samples(
             samples: gait.u.len(),
         });
     }
-    if objective == Objective::Speed {
+    if objective == Objective::Speed || objective.is_joined() {
         let bounded = GaitFile {
             bounds: *bounds,
             ..gait.clone()
         };
         let region = Region::new(bounds, &swimmer.links);
-        return Ok(certify_speed(model, (&bounded, &curve), &region, made_for));
+        let timed = (&bounded, &curve);
+        let joined = certify_joined(model, timed, &region, objective);
+        return Ok(joined.unwrap_or_else(|| certify_speed(model, timed, &region, made_for)));
     }
     let limits = Limits::new(bounds, &swimmer.links);
     let clockwise = turning_number(&gait.phi) < 0.0;
@@ -298,7 +300,11 @@ fn certify_turned(
             checks.extend(subject.of_weak_optimum(objective, open));
         }
         Objective::Efficiency => checks.extend(subject.of_efficiency(open)),
-        Objective::Speed | Objective::Unspecified => return Err(CertifyError::NoObjective),
+        Objective::Speed
+        | Objective::JoinedForward
+        | Objective::JoinedSideways
+        | Objective::JoinedTurning
+        | Objective::Unspecified => return Err(CertifyError::NoObjective),
     }
     Ok(Certificate::new(checks))
 }

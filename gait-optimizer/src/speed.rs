@@ -51,6 +51,7 @@ pub use problem::HeadingRule;
 pub(crate) use problem::Setting;
 use search::Search;
 pub(crate) use search::told;
+pub(crate) use steer::certify_joined;
 pub use steer::{Joined, SteerProblem, Steering, steer};
 
 /// What is asked for.

@@ -31,6 +31,12 @@ pub enum Objective {
     Sideways,
     /// Net displacement per unit of time under servos' rates, without net rotation.
     Speed,
+    /// Speed along the mean heading, of the gaits that begin and end at the first sample's shape.
+    JoinedForward,
+    /// Speed across the mean heading, of these.
+    JoinedSideways,
+    /// Net rotation per unit of time, of these.
+    JoinedTurning,
     /// Nothing that is known: a gait from elsewhere.
     #[default]
     Unspecified,
@@ -129,14 +135,25 @@ impl GaitFile {
 }
 
 impl Objective {
-    const ALL: [Self; 6] = [
+    const ALL: [Self; 9] = [
         Self::Displacement,
         Self::Efficiency,
         Self::Turning,
         Self::Sideways,
         Self::Speed,
+        Self::JoinedForward,
+        Self::JoinedSideways,
+        Self::JoinedTurning,
         Self::Unspecified,
     ];
+
+    /// Whether the gait is best of those that begin and end at its first sample's shape.
+    pub fn is_joined(self) -> bool {
+        matches!(
+            self,
+            Self::JoinedForward | Self::JoinedSideways | Self::JoinedTurning
+        )
+    }
 
     /// The word in files.
     pub fn word(self) -> &'static str {
@@ -146,6 +163,9 @@ impl Objective {
             Self::Turning => "turning",
             Self::Sideways => "sideways",
             Self::Speed => "speed",
+            Self::JoinedForward => "joined-forward",
+            Self::JoinedSideways => "joined-sideways",
+            Self::JoinedTurning => "joined-turning",
             Self::Unspecified => "unspecified",
         }
     }
@@ -205,7 +225,8 @@ macro_rules! word_in_text {
 
 word_in_text!(
     Objective,
-    "an objective is one of displacement, efficiency, turning, sideways, speed, unspecified"
+    "an objective is one of displacement, efficiency, turning, sideways, speed, joined-forward, joined-sideways, joined-turning, \
+     unspecified"
 );
 word_in_text!(
     ArcKind,

@@ -181,7 +181,8 @@ prop_compose! {
     fn any_gait()(
         steps in prop::collection::vec((1e-9f64..1.0, -6.2..6.2, -6.2..6.2), 8..40),
         objective in prop::sample::select(vec![Objective::Displacement, Objective::Efficiency, Objective::Turning,
-            Objective::Sideways, Objective::Speed, Objective::Unspecified]),
+            Objective::Sideways, Objective::Speed, Objective::JoinedForward, Objective::JoinedSideways,
+            Objective::JoinedTurning, Objective::Unspecified]),
         kinds in prop::collection::vec(prop::sample::select(vec![ArcKind::Singular, ArcKind::Upper, ArcKind::Lower,
             ArcKind::Diagonal, ArcKind::Clearance, ArcKind::Regular, ArcKind::Extreme]), 0..5),
         max_angle in any_angle(), min_angle in any_angle(), sector in any::<bool>(), no_overlap in any::<bool>(), clearance in prop::sample::select(vec![0.0, 1e-3, 0.02]),

@@ -236,9 +236,13 @@ pub enum Objective {
     Turning,
     Sideways,
     Speed,
+    JoinedForward,
+    JoinedSideways,
+    JoinedTurning,
     Unspecified,
 }
 impl Objective {
+    pub fn is_joined(self) -> bool {}
     pub fn word(self) -> &'static str {}
 }
 #[derive(Debug, Clone, PartialEq)]

@@ -59,9 +59,14 @@ impl Certify {
         };
         let certificate = certify(&swimmer.swimmer, &file, objective, &bounds)?;
         let title = format!(
-            "{}, {}, most {objective}, {bounds}",
+            "{}, {}, {} {objective}, {bounds}",
             swimmer.name,
-            self.gait.readable()
+            self.gait.readable(),
+            if objective.is_joined() {
+                "fastest"
+            } else {
+                "most"
+            }
         );
         let checks = certificate.checks();
         let failed = checks.iter().filter(|check| !check.pass).count();

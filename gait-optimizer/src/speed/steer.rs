@@ -5,16 +5,17 @@
 //! arcs through the shape meets all of them the fastest that was met is told, with the certificate that it fails. The shape is the one at which
 //! the three lose least against the fastest gaits that need not join.
 
+mod joint;
 mod shape;
 #[cfg(test)]
 mod tests;
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
-use swimmer_model::{Model, Tolerance, swim};
+use swimmer_model::{Model, Swimmer, Tolerance, swim};
 
 use super::candidate::{bent, candidate, mended};
-use super::certificate::{Asked, of_cycle};
+use super::certificate::{Asked, certificate, of_cycle};
 use super::interior::rough_polygon;
 use super::polish::Polished;
 use super::problem::{Goal, HeadingRule, Setting};
@@ -81,14 +82,26 @@ pub struct Steering {
     pub turning_angle: Option<f64>,
 }
 
-/// The three kinds, in the order of [`Steering`].
-const KINDS: [(Goal, HeadingRule); 3] = [
-    (Goal::Distance, HeadingRule::Forward),
-    (Goal::Distance, HeadingRule::Sideways),
-    (Goal::Rotation, HeadingRule::Any),
+/// What the fastest gait of a kind does.
+type Kind = (Goal, HeadingRule);
+/// The three kinds, in the order of [`Steering`], with what they are called in files and in errors.
+const KINDS: [(Kind, Objective, &str); 3] = [
+    (
+        (Goal::Distance, HeadingRule::Forward),
+        Objective::JoinedForward,
+        "forward",
+    ),
+    (
+        (Goal::Distance, HeadingRule::Sideways),
+        Objective::JoinedSideways,
+        "sideways",
+    ),
+    (
+        (Goal::Rotation, HeadingRule::Any),
+        Objective::JoinedTurning,
+        "turning",
+    ),
 ];
-/// What the kinds are called in errors.
-const NAMES: [&str; 3] = ["forward", "sideways", "turning"];
 
 /// Finds the gaits to steer by, while somebody watches.
 ///
@@ -107,7 +120,7 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
     };
     let turning = Region::new(&turning_bounds, &of.swimmer.links);
     let fast = of.rates[0].max(of.rates[1]);
-    let setting = |(goal, heading), anchor| Setting {
+    let setting = |(goal, heading): Kind, anchor| Setting {
         model: &model,
         region: if goal == Goal::Rotation {
             &turning
@@ -129,7 +142,7 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
         }
     }
     let mut free = Vec::with_capacity(KINDS.len());
-    for (number, kind) in KINDS.into_iter().enumerate() {
+    for (number, (kind, ..)) in KINDS.into_iter().enumerate() {
         let setting = setting(kind, None);
         let starts: Vec<_> = (0..of.starts.max(1))
             .map(|index| starts::start(setting.region, of.seed, index))
@@ -142,7 +155,7 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
         watch(0.5 * (number + 1) as f64 / KINDS.len() as f64);
     }
     let joining = shape::Joining {
-        settings: &|kind: usize, anchor| setting(KINDS[kind], Some(anchor)),
+        settings: &|kind: usize, anchor| setting(KINDS[kind].0, Some(anchor)),
         region: &turning,
         free: &free,
         threads: of.threads,
@@ -159,10 +172,17 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
             .cheapest(&|share| watch(0.5 + 0.5 * share))
             .ok_or_else(|| of_kind(of, 0, free[0].len()))?,
     };
-    let told = |kind: usize, chain: &Polished| {
-        let setting = setting(KINDS[kind], Some(anchor));
-        told(of, &setting, chain, (fast, free[kind][0].speed))
-            .ok_or_else(|| of_kind(of, kind, free[kind].len()))
+    let told = |number: usize, chain: &Polished| {
+        let (kind, objective, _) = KINDS[number];
+        let setting = setting(kind, Some(anchor));
+        let bounds = if kind.0 == Goal::Rotation {
+            &turning_bounds
+        } else {
+            &of.bounds
+        };
+        let of_file = (objective, &of.swimmer, bounds);
+        told(of_file, &setting, chain, (fast, free[number][0].speed))
+            .ok_or_else(|| of_kind(of, number, free[number].len()))
     };
     Ok(Steering {
         shape: anchor.into(),
@@ -176,7 +196,7 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
 
 fn of_kind(problem: &SpeedProblem, kind: usize, chains: usize) -> SpeedError {
     SpeedError::NoJoinedGait {
-        kind: NAMES[kind],
+        kind: KINDS[kind].2,
         bounds: problem.bounds,
         starts: problem.starts,
         chains,
@@ -206,11 +226,7 @@ fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Ve
         &|_| (),
         || (),
         |(), index| {
-            let chain = candidate(setting, chosen[index])?;
-            certified(setting, &chain).or_else(|| {
-                let joins = setting.anchor.is_some() && is_gait(setting, &chain);
-                joins.then_some(chain)
-            })
+            candidate(setting, chosen[index]).and_then(|chain| certified_or_joined(setting, chain))
         },
     );
     let mut chains: Vec<Polished> = finished.into_iter().flatten().collect();
@@ -218,7 +234,8 @@ fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Ve
     chains
 }
 
-/// A chain whose certificate passes, perhaps with short singular arcs put in.
+/// A chain whose certificate passes, perhaps with short singular arcs put in, or with a servo that switches just before gaits join or
+/// just after.
 fn certified(setting: &Setting, chain: &Polished) -> Option<Polished> {
     let passes = |chain: &Polished| {
         let told = cycle(setting, chain, Bounds::default());
@@ -227,7 +244,28 @@ fn certified(setting: &Setting, chain: &Polished) -> Option<Polished> {
     if passes(chain) {
         return Some(chain.clone());
     }
-    bent(setting, chain).filter(passes)
+    if let Some(bent) = bent(setting, chain).filter(passes) {
+        return Some(bent);
+    }
+    let mut chain = chain.clone();
+    for _ in 0..joint::MOST {
+        chain = joint::switched(setting, &chain)?;
+        if passes(&chain) {
+            return Some(chain);
+        }
+        if let Some(bent) = bent(setting, &chain).filter(passes) {
+            return Some(bent);
+        }
+    }
+    None
+}
+
+/// As [`certified`]; where gaits join, a chain that is a gait is one to steer by all the same.
+fn certified_or_joined(setting: &Setting, chain: Polished) -> Option<Polished> {
+    certified(setting, &chain).or_else(|| {
+        let joins = setting.anchor.is_some() && is_gait(setting, &chain);
+        joins.then_some(chain)
+    })
 }
 
 /// Whether all holds that makes a chain a gait of its kind within its bounds and rates, optimal or not.
@@ -253,7 +291,28 @@ fn is_gait(setting: &Setting, chain: &Polished) -> bool {
 
 /// The chain near a neighbour's, whose common shape lies close by.
 fn near(setting: &Setting, neighbour: &Polished) -> Option<Polished> {
-    mended(setting, neighbour.links.clone()).filter(|chain| is_gait(setting, chain))
+    mended(setting, neighbour.links.clone()).and_then(|chain| certified_or_joined(setting, chain))
+}
+
+/// The conditions of a gait of one of the kinds that joins others at its first sample's shape; none for any other objective.
+pub(crate) fn certify_joined(
+    model: &Model<f64>,
+    (file, gait): (&GaitFile, &AnyGait),
+    region: &Region,
+    objective: Objective,
+) -> Option<Certificate> {
+    let (kind, ..) = KINDS.into_iter().find(|kind| kind.1 == objective)?;
+    let asked = asked(kind, file.phi.first().copied());
+    Some(certificate((model, &[]), region, asked, file, gait))
+}
+
+fn asked((goal, heading): Kind, anchor: Option<Vector2<f64>>) -> Asked {
+    Asked {
+        heading,
+        goal,
+        anchor,
+        ..Asked::default()
+    }
 }
 
 /// A chain's cycle from the common shape, the way that leads forward, left or turns left, as a gait with its certificate.
@@ -273,28 +332,21 @@ fn cycle(
     if backward {
         cycle = cycle.reversed(|phi| *phi);
     }
-    let asked = Asked {
-        heading: setting.heading,
-        goal: setting.goal,
-        anchor: setting.anchor,
-        ..Asked::default()
-    };
+    let asked = asked((setting.goal, setting.heading), setting.anchor);
     let (gait, certificate) = of_cycle(setting, asked, bounds, &cycle)?;
     Some((cycle, gait, certificate))
 }
 
 /// A joined chain as an answer; `fast` is the faster servo's rate, `unjoined` the speed of the fastest gait that need not join.
 fn told(
-    problem: &SpeedProblem,
+    of @ (_, _, bounds): (Objective, &Swimmer<f64>, &Bounds),
     setting: &Setting,
     chain: &Polished,
     (fast, unjoined): (f64, f64),
 ) -> Option<Joined> {
-    let (cycle, gait, certificate) = cycle(setting, chain, problem.bounds)?;
+    let (cycle, gait, certificate) = cycle(setting, chain, *bounds)?;
     let stroke = swim(setting.model, &gait, &Tolerance::default());
     let [x, y] = stroke.displacement.into();
-    // It is the fastest only of those that join.
-    let of = (Objective::Unspecified, &problem.swimmer, &problem.bounds);
     Some(Joined {
         rate: chain.speed * fast,
         unjoined_rate: unjoined * fast,

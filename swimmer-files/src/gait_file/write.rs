@@ -7,7 +7,8 @@ use super::GaitFile;
 /// Documentation that heads every file; the reader skips lines that start with `##`.
 const ABOUT: &str = "\
 ## One cycle of a three-link swimmer's gait. Lines with `##` are for people. Lines `# key: value` are the header:
-##   objective      displacement | efficiency | turning | sideways | speed | unspecified
+##   objective      displacement | efficiency | turning | sideways | speed | joined-forward | joined-sideways |
+##                  joined-turning (fastest of the gaits that begin and end at the first sample's shape) | unspecified
 ##   swimmer        name of the swimmer that the gait was made for
 ##   swimmer_hash   SHA-256 of its links, drag and sphere
 ##   bounds         max_angle and min_angle in rad or `none`; sector and no_overlap `true` or `false`;

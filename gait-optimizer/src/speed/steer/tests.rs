@@ -83,3 +83,38 @@ fn a_shape_on_a_bound_is_refused() {
     let error = steer(&robot(Some([2.8, 0.0])), &|_| ()).unwrap_err();
     assert!(matches!(error, SpeedError::Shape { .. }), "{error}");
 }
+
+/// What is certified passes as a file, run backwards too: of the gaits that begin at its first sample's shape, not of all. The forward
+/// gait switches just before that shape, where the costate jumps.
+#[test]
+fn files_of_gaits_that_join_pass() {
+    let swimmer = Swimmer::robot();
+    let problem = SteerProblem {
+        of: SpeedProblem {
+            bounds: Bounds::within(2.8),
+            threads: 2,
+            ..SpeedProblem::new(swimmer, [1.0; 2])
+        },
+        shape: Some([2.2, -1.28]),
+    };
+    let steering = steer(&problem, &|_| ()).unwrap();
+    let certified = |file: &GaitFile, objective| {
+        let certificate = crate::certify(&swimmer, file, objective, &file.bounds).unwrap();
+        certificate.pass()
+    };
+    // This one is slower than if it need not join.
+    let forward = steering.forward.gait_file("robot", false);
+    assert!(!certified(&forward, Objective::Speed));
+    let elsewhere = forward.begun_at(forward.u.len() / 3);
+    assert!(!certified(&elsewhere, forward.objective));
+    for joined in [&steering.forward, &steering.left, &steering.turn] {
+        for backwards in [false, true] {
+            let file = joined.gait_file("robot", backwards);
+            assert!(certified(&file, file.objective), "{}", file.objective);
+            let mut pushed = file.clone();
+            let middle = pushed.phi.len() / 2;
+            pushed.phi[middle].x += 1e-4;
+            assert!(!certified(&pushed, file.objective));
+        }
+    }
+}

@@ -147,7 +147,7 @@ const certifyAsked = computed(() => {
   const own = typeof gait === "string" && gait.includes("\n");
   const question = { swimmer: swimmer.value.toml, gait };
   // A file tells what it is optimal for, and within what.
-  return JSON.stringify(own && !/objective = unspecified/.test(gait) ? question : { ...question, objective, bounds: bounds(shown.value) });
+  return JSON.stringify(own && /^# objective: (?!unspecified)/m.test(gait) ? question : { ...question, objective, bounds: bounds(shown.value) });
 });
 const latestEvidence = new Latest(async (text: string) => {
   try {

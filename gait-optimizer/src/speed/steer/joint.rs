@@ -1,0 +1,78 @@
+//! Switches beside the shape at which gaits join.
+//!
+//! There the costate may jump, so that no neighbour tells which way a servo should turn on the arcs that end there: a polygon that
+//! leaves a short arc out polishes to a chain whose switching function has the wrong sign where it comes to that shape. A short arc
+//! with that servo turning the other way is faster then, and the polish gives it its length.
+
+use nalgebra::Vector2;
+
+use super::super::candidate::mended;
+use super::super::polish::Polished;
+use super::super::problem::Setting;
+use super::super::structure::{Link, Motion};
+use super::super::widened::SHORT;
+
+/// Switches that are put in.
+pub(super) const MOST: usize = 3;
+/// Lengths of a new arc that are tried, over the shortest.
+const LENGTHS: [f64; 2] = [1.0, 16.0];
+
+/// The fastest of the chains that have one servo switch just before gaits join, or just after; none where that is never faster.
+pub(super) fn switched(setting: &Setting, chain: &Polished) -> Option<Polished> {
+    let mut faster: Vec<Polished> = Vec::new();
+    for length in LENGTHS {
+        let short = length * SHORT * chain.layout.period(&chain.z);
+        for (before, servo) in [(true, 0), (true, 1), (false, 0), (false, 1)] {
+            let links = with_switch(setting, chain, (before, servo), short);
+            let polished = links.and_then(|links| mended(setting, links));
+            faster.extend(polished.filter(|other| other.speed > chain.speed * (1.0 + 1e-12)));
+        }
+    }
+    faster
+        .into_iter()
+        .max_by(|a, b| a.speed.total_cmp(&b.speed))
+}
+
+/// The arcs with one more, that begins or ends where gaits join, on which a servo turns the other way; none where no extreme arc of
+/// such a length does.
+fn with_switch(
+    setting: &Setting,
+    chain: &Polished,
+    (before, servo): (bool, usize),
+    short: f64,
+) -> Option<Vec<Link>> {
+    let mut links = chain.links.clone();
+    let joint = links.iter().position(|link| link.anchored)?;
+    links.rotate_left(joint);
+    let old = if before {
+        links.last_mut()?
+    } else {
+        links.first_mut()?
+    };
+    let Motion::Extreme(mut ways) = old.motion else {
+        return None;
+    };
+    let rest = old.time - short;
+    if rest <= 0.0 {
+        return None;
+    }
+    old.time = rest;
+    let old = old.clone();
+    ways[servo] = -ways[servo];
+    let step = Vector2::from(ways).component_mul(&Vector2::from(setting.rates)) * short;
+    let first = links.first_mut()?;
+    let joint = first.corner;
+    if before {
+        links.push(Link::new(
+            joint - step,
+            Vec::new(),
+            Motion::Extreme(ways),
+            short,
+        ));
+    } else {
+        (first.motion, first.time) = (Motion::Extreme(ways), short);
+        let after = Link::new(joint + step, Vec::new(), old.motion, rest);
+        links.insert(1, after);
+    }
+    Some(links)
+}
