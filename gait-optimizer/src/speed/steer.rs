@@ -160,17 +160,15 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
         free: &free,
         threads: of.threads,
     };
+    let none_of = |kind: usize| of_kind(of, kind, free[kind].len());
     let (anchor, [forward, left, turn], shapes) = match problem.shape {
         Some(shape) => {
             let anchor = Vector2::from(shape);
-            let joined = joining
-                .at(anchor)
-                .map_err(|kind| of_kind(of, kind, free[kind].len()))?;
-            (anchor, joined, 1)
+            (anchor, joining.at(anchor).map_err(none_of)?, 1)
         }
         None => joining
             .cheapest(&|share| watch(0.5 + 0.5 * share))
-            .ok_or_else(|| of_kind(of, 0, free[0].len()))?,
+            .map_err(none_of)?,
     };
     let told = |number: usize, chain: &Polished| {
         let (kind, objective, _) = KINDS[number];
@@ -181,8 +179,7 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
             &of.bounds
         };
         let of_file = (objective, &of.swimmer, bounds);
-        told(of_file, &setting, chain, (fast, free[number][0].speed))
-            .ok_or_else(|| of_kind(of, number, free[number].len()))
+        told(of_file, &setting, chain, (fast, free[number][0].speed)).ok_or_else(|| none_of(number))
     };
     Ok(Steering {
         shape: anchor.into(),

@@ -99,22 +99,30 @@ impl Joining<'_, '_> {
     }
 
     /// The shape at which joining costs least of those that are tried, with the gaits, and how many were tried.
-    pub(super) fn cheapest(&self, watch: Watch<'_>) -> Option<(Vector2<f64>, Three, usize)> {
+    ///
+    /// # Errors
+    /// A kind of which no gait passes some shape that all before it pass.
+    pub(super) fn cheapest(&self, watch: Watch<'_>) -> Result<(Vector2<f64>, Three, usize), usize> {
         let mut tried = 0;
+        let mut without = 0;
         let mut best: Option<(Vector2<f64>, Three)> = None;
         let shapes = self.promising();
         for (number, shape) in shapes.iter().enumerate() {
             tried += 1;
-            if let Ok(three) = self.at(*shape)
-                && best
-                    .as_ref()
-                    .is_none_or(|(_, other)| self.cost(&three) < self.cost(other))
-            {
-                best = Some((*shape, three));
+            match self.at(*shape) {
+                Ok(three)
+                    if best
+                        .as_ref()
+                        .is_none_or(|(_, other)| self.cost(&three) < self.cost(other)) =>
+                {
+                    best = Some((*shape, three));
+                }
+                Ok(_) => {}
+                Err(kind) => without = without.max(kind),
             }
             watch(0.8 * (number + 1) as f64 / shapes.len() as f64);
         }
-        let (mut shape, mut three) = best?;
+        let (mut shape, mut three) = best.ok_or(without)?;
         for step in STEPS {
             for _ in 0..MOVES {
                 let ways = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
@@ -129,7 +137,7 @@ impl Joining<'_, '_> {
             }
         }
         watch(1.0);
-        Some((shape, three, tried))
+        Ok((shape, three, tried))
     }
 
     /// What joining costs all three, as shares of their speeds.
