@@ -120,13 +120,13 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
     };
     let turning = Region::new(&turning_bounds, &of.swimmer.links);
     let fast = of.rates[0].max(of.rates[1]);
+    let within = |goal| match goal {
+        Goal::Rotation => (&turning_bounds, &turning),
+        Goal::Distance => (&of.bounds, &region),
+    };
     let setting = |(goal, heading): Kind, anchor| Setting {
         model: &model,
-        region: if goal == Goal::Rotation {
-            &turning
-        } else {
-            &region
-        },
+        region: within(goal).1,
         rates: of.rates.map(|rate| rate / fast),
         beyond: Vec::new(),
         heading,
@@ -173,12 +173,7 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
     let told = |number: usize, chain: &Polished| {
         let (kind, objective, _) = KINDS[number];
         let setting = setting(kind, Some(anchor));
-        let bounds = if kind.0 == Goal::Rotation {
-            &turning_bounds
-        } else {
-            &of.bounds
-        };
-        let of_file = (objective, &of.swimmer, bounds);
+        let of_file = (objective, &of.swimmer, within(kind.0).0);
         told(of_file, &setting, chain, (fast, free[number][0].speed)).ok_or_else(|| none_of(number))
     };
     Ok(Steering {
@@ -238,23 +233,18 @@ fn certified(setting: &Setting, chain: &Polished) -> Option<Polished> {
         let told = cycle(setting, chain, Bounds::default());
         told.is_some_and(|(.., certificate)| certificate.pass())
     };
-    if passes(chain) {
-        return Some(chain.clone());
-    }
-    if let Some(bent) = bent(setting, chain).filter(passes) {
-        return Some(bent);
-    }
     let mut chain = chain.clone();
-    for _ in 0..joint::MOST {
-        chain = joint::switched(setting, &chain)?;
+    let mut switches = joint::MOST;
+    loop {
         if passes(&chain) {
             return Some(chain);
         }
         if let Some(bent) = bent(setting, &chain).filter(passes) {
             return Some(bent);
         }
+        switches = switches.checked_sub(1)?;
+        chain = joint::switched(setting, &chain)?;
     }
-    None
 }
 
 /// As [`certified`]; where gaits join, a chain that is a gait is one to steer by all the same.

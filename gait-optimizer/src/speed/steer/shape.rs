@@ -110,14 +110,12 @@ impl Joining<'_, '_> {
         for (number, shape) in shapes.iter().enumerate() {
             tried += 1;
             match self.at(*shape) {
-                Ok(three)
-                    if best
-                        .as_ref()
-                        .is_none_or(|(_, other)| self.cost(&three) < self.cost(other)) =>
-                {
-                    best = Some((*shape, three));
+                Ok(three) => {
+                    let cheaper = |(_, other): &(_, Three)| self.cost(&three) < self.cost(other);
+                    if best.as_ref().is_none_or(cheaper) {
+                        best = Some((*shape, three));
+                    }
                 }
-                Ok(_) => {}
                 Err(kind) => without = without.max(kind),
             }
             watch(0.8 * (number + 1) as f64 / shapes.len() as f64);
