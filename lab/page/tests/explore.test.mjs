@@ -1,7 +1,7 @@
 // Explore in both browsers, from disk: what is dragged is what the command swims.
 
 import assert from "node:assert/strict";
-import { writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { BROWSERS, Tab } from "./browsers.mjs";
@@ -79,7 +79,7 @@ for (const [name, launch] of Object.entries(BROWSERS)) {
     });
 
     test("files dropped on the page open, and what is neither is refused with a reason", async () => {
-      const [own, gait, wrong] = ["own.toml", "own-gait.txt", "wrong.txt"].map((file) => join(OUT, file));
+      const [own, gait, nameless, wrong] = ["own.toml", "own-gait.txt", "nameless.txt", "wrong.txt"].map((file) => join(OUT, file));
       writeFileSync(own, 'name = "dropped"\n[links]\nmiddle = 0.08\nside = 0.12\n[drag]\nchi = 1.8\nc_t = { log_aspect = 4.0 }\n');
       swimmer("optimize", "displacement", "--swimmer", own, "--max-angle", "2", "-o", gait, "--overwrite");
       writeFileSync(wrong, "neither this nor that\n");
@@ -89,6 +89,14 @@ for (const [name, launch] of Object.entries(BROWSERS)) {
       const [told] = await tab.exact();
       assert.ok(Math.abs(told.displacement_over_length - swum.displacement_over_length) < 1e-9);
       await tab.until(() => document.querySelector(".certificate.pass:not(.stale)") !== null, undefined, "its certificate");
+      // A file that does not tell what it is optimal for is asked what the page asks.
+      writeFileSync(nameless, readFileSync(gait, "utf8").replace("objective: displacement", "objective: unspecified"));
+      const other = await Tab.open(browser);
+      await other.drop(own, nameless);
+      assert.deepEqual((await other.exact())[0], told);
+      await other.until(() => document.querySelector("details.certificate:not(.stale)") !== null, undefined, "its certificate too");
+      assert.deepEqual(other.said, []);
+      await other.close();
       await tab.drop(wrong);
       await tab.until(() => document.querySelector(".error") !== null, undefined, "a refusal");
       assert.match(await tab.text(".error"), /wrong\.txt: .*gait/);
