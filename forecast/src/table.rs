@@ -33,27 +33,33 @@ const FEWEST: usize = 128;
 /// assert!(sent.knot_angles(100)[0].hypot(sent.knot_angles(100)[1]) - 1.2 < 1e-4);
 /// ```
 pub fn table<G: Gait<f64> + ?Sized>(gait: &G, knots: usize) -> Result<GaitTable, TableError> {
-    GaitTable::from_fn(knots, |u| knot(gait, knots, u).into())
+    let knot = knot(gait, knots);
+    GaitTable::from_fn(knots, |u| knot(u).into())
 }
 
-/// The angles of the knot at u \[rad\], before they are rounded to the table's units.
-pub(crate) fn knot<G: Gait<f64> + ?Sized>(gait: &G, knots: usize, u: f64) -> Vector2<f64> {
+/// The angles of a table's knot at u \[rad\], before they are rounded to the table's units.
+pub(crate) fn knot<G: Gait<f64> + ?Sized>(
+    gait: &G,
+    knots: usize,
+) -> impl Fn(f64) -> Vector2<f64> + use<'_, G> {
     let interval = 1.0 / knots as f64;
     let reach = f64::from(*BESIDE.end()) * interval;
-    let beside = |corner: f64| {
-        let off = (u - corner).abs();
-        off.min(1.0 - off) < reach
-    };
-    let corner =
-        (0..gait.pieces()).any(|piece| gait.corner_at_end(piece) && beside(gait.piece_end(piece)));
-    if !corner || knots < FEWEST {
-        return gait.at(u).phi;
+    let pieces = (0..gait.pieces()).filter(|&piece| gait.corner_at_end(piece));
+    let corners: Vec<f64> = pieces.map(|piece| gait.piece_end(piece)).collect();
+    move |u| {
+        let beside = |corner: &f64| {
+            let off = (u - corner).abs();
+            off.min(1.0 - off) < reach
+        };
+        if knots < FEWEST || !corners.iter().any(beside) {
+            return gait.at(u).phi;
+        }
+        let weighed = BESIDE.zip(WEIGHTS).map(|(k, weight)| {
+            let there = u + f64::from(k) * interval;
+            gait.at(there.rem_euclid(1.0)).phi * weight
+        });
+        weighed.sum::<Vector2<f64>>() / WEIGHTS.iter().sum::<f64>()
     }
-    let weighed = BESIDE.zip(WEIGHTS).map(|(k, weight)| {
-        let there = u + f64::from(k) * interval;
-        gait.at(there.rem_euclid(1.0)).phi * weight
-    });
-    weighed.sum::<Vector2<f64>>() / WEIGHTS.iter().sum::<f64>()
 }
 
 #[cfg(test)]

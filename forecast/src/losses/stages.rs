@@ -37,7 +37,8 @@ impl Ways {
     ) -> Result<Self, ForecastError> {
         let knots = played.knots;
         let table = table(gait, knots)?;
-        let designed = |index| knot(gait, knots, index as f64 / knots as f64);
+        let knot = knot(gait, knots);
+        let designed = |index| knot(index as f64 / knots as f64);
         let units = |index| Vector2::from(table.knot(index).map(|unit| f64::from(unit) * 1e-4));
         let servos = &played.servos;
         let (map, plant) = (servos.map(), servos.plant());
