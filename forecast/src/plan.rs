@@ -28,7 +28,7 @@ use crate::tank::Tank;
 use aim::Hit;
 use member::Nets;
 use room::{Room, Sweeps};
-use search::{Seen, quickest};
+use search::{EFFORTS, Seen, quickest};
 
 pub use member::{Kind, Member, Scaled};
 
@@ -249,12 +249,12 @@ pub fn plan(model: &Model<f64>, family: &Family, errand: &Errand) -> Result<Plan
     // Beside a wall the swimmer may have room to bend away from it only.
     let images = [(family.clone(), &nets), (family.mirror(), &nets.mirror())];
     let mut seen = Seen::default();
-    for spare in SPARE {
-        let roomy = Room::new(model, errand, errand.margin + spare);
+    for effort in &EFFORTS {
+        let roomy = Room::new(model, errand, errand.margin + effort.spare);
         let mut found = None;
         for (family, nets) in &images {
             let sweeps = Sweeps::new(&roomy, nets, family);
-            found = quickest(model, errand, &room, &sweeps, found, &mut seen);
+            found = quickest(model, errand, &room, &sweeps, effort, found, &mut seen);
         }
         if let Some(found) = found {
             return Ok(Plan {
@@ -269,9 +269,6 @@ pub fn plan(model: &Model<f64>, family: &Family, errand: &Errand) -> Result<Plan
         margin: errand.margin,
     }))
 }
-
-/// Room that a plan leaves beyond the margin \[m\] where it can: within their dead band servos rest beside the ideal path.
-const SPARE: [f64; 2] = [0.001, 0.0];
 
 /// Whether there is room at the start and, where its heading is given, at the target: straight, and bent to one side at least.
 fn has_room(

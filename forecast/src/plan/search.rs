@@ -11,14 +11,43 @@ use crate::losses::Servos;
 
 /// Where there is no room for the cycles of a leg, so many times as many smaller ones are tried.
 const SMALLER: [u32; 5] = [1, 2, 4, 8, 16];
-/// Pairs of ways out that are tried.
-const PAIRS: usize = 60;
-/// Chains between such a pair that are aimed.
-const AIMED: usize = 4;
 /// A plan whose duration is more than this share of a known one's is not worth its further legs.
 const WORTH: f64 = 0.98;
 /// Headings that are tried where any will do.
 const HEADINGS: usize = 24;
+
+/// How hard a search tries.
+pub(super) struct Effort {
+    /// Room that a plan leaves beyond the margin \[m\]: within their dead band servos rest beside the ideal path.
+    pub(super) spare: f64,
+    /// Whether ways out are looked for also where the largest cycles have room.
+    everywhere: bool,
+    /// Pairs of ways out that are tried.
+    pairs: usize,
+    /// Chains between such a pair that are aimed.
+    aimed: usize,
+}
+
+/// The next where one finds nothing.
+pub(super) const EFFORTS: [Effort; 3] = {
+    let quick = Effort {
+        spare: 0.001,
+        everywhere: false,
+        pairs: 60,
+        aimed: 4,
+    };
+    let narrow = Effort {
+        spare: 0.0,
+        ..quick
+    };
+    let thorough = Effort {
+        spare: 0.0005,
+        everywhere: true,
+        pairs: 500,
+        aimed: 100,
+    };
+    [quick, narrow, thorough]
+};
 
 /// What a search has seen.
 #[derive(Debug, Default)]
@@ -35,6 +64,7 @@ pub(super) fn quickest(
     errand: &Errand,
     room: &Room<'_>,
     sweeps: &Sweeps<'_>,
+    effort: &Effort,
     known: Option<Plan>,
     seen: &mut Seen,
 ) -> Option<Plan> {
@@ -48,13 +78,13 @@ pub(super) fn quickest(
         nets,
         way_in,
     };
-    let outward = ways_out(sweeps, servos, &begun);
+    let outward = ways_out(sweeps, servos, &begun, effort.everywhere);
     let inward = ends(errand).into_iter().filter(|end| {
         let fits = |pose: &Pose<f64>| room.fits(pose, &nalgebra::Vector2::zeros());
         fits(end) && room.fits(&(*end * way_in), &family.shape())
     });
     let inward: Vec<Way> = inward
-        .flat_map(|end| ways_out(sweeps, servos, &(end * way_in)))
+        .flat_map(|end| ways_out(sweeps, servos, &(end * way_in), effort.everywhere))
         .collect();
     let mut pairs: Vec<_> = inward
         .iter()
@@ -63,7 +93,7 @@ pub(super) fn quickest(
     let ways = |(one, other): &(&Way, &Way)| one.duration + other.duration;
     pairs.sort_by(|a, b| ways(a).total_cmp(&ways(b)));
     let mut best = known;
-    for (outward, inward) in pairs.into_iter().take(PAIRS) {
+    for (outward, inward) in pairs.into_iter().take(effort.pairs) {
         let ways = outward.duration + inward.duration;
         let most = best
             .as_ref()
@@ -81,7 +111,7 @@ pub(super) fn quickest(
         seen.met[1] += left.len();
         left.sort_by(|a, b| duration(a).total_cmp(&duration(b)));
         left.retain(|legs| ways + duration(legs) < most);
-        for legs in left.iter().take(AIMED) {
+        for legs in left.iter().take(effort.aimed) {
             let back = inward.steps.iter().rev().map(Step::undone);
             let out = outward.steps.iter().chain(legs).copied();
             let steps: Vec<Step> = out.chain(back).collect();

@@ -22,6 +22,9 @@ const MOST: usize = 4000;
 const APART: [f64; 2] = [0.04, 0.4];
 /// Ways out that are told.
 const WAYS: usize = 24;
+/// Cycles of a step; more only where so many have not led to another pose: the smallest cycles hardly swim.
+const CYCLES: u32 = 64;
+const MOST_CYCLES: u32 = 1024;
 
 /// A way out.
 #[derive(Debug, Clone)]
@@ -38,8 +41,14 @@ struct Node {
     duration: f64,
 }
 
-/// The ways out from this pose at the common shape, the shortest first: the first stays.
-pub(super) fn ways_out(sweeps: &Sweeps<'_>, servos: &Servos, begun: &Pose<f64>) -> Vec<Way> {
+/// The ways out from this pose at the common shape, the shortest first: the first stays. Where the largest cycles have room it is
+/// the only one, unless there shall be ways `everywhere`.
+pub(super) fn ways_out(
+    sweeps: &Sweeps<'_>,
+    servos: &Servos,
+    begun: &Pose<f64>,
+    everywhere: bool,
+) -> Vec<Way> {
     let mut nodes = vec![Node {
         pose: *begun,
         from: None,
@@ -82,11 +91,14 @@ pub(super) fn ways_out(sweeps: &Sweeps<'_>, servos: &Servos, begun: &Pose<f64>) 
                             duration,
                         });
                     }
+                    if cycles >= CYCLES && cell(&there, ALIKE) != cell(&pose, ALIKE) {
+                        break;
+                    }
                     let Some(further) = sweeps.after(&there, &member, cycles) else {
                         break;
                     };
                     (there, cycles) = (further, 2 * cycles);
-                    if cycles > 64 {
+                    if cycles > MOST_CYCLES {
                         break;
                     }
                 }
@@ -95,7 +107,8 @@ pub(super) fn ways_out(sweeps: &Sweeps<'_>, servos: &Servos, begun: &Pose<f64>) 
         if told.insert(cell(&pose, APART)) {
             ways.push(way(&nodes, at));
         }
-        if seen.len() > MOST || ways.len() == WAYS || at == 0 && room > 5.99 * LARGEST {
+        let free = at == 0 && !everywhere && room > 5.99 * LARGEST;
+        if free || seen.len() > MOST || ways.len() == WAYS {
             break;
         }
     }
