@@ -164,7 +164,11 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
     let (anchor, [forward, left, turn], shapes) = match problem.shape {
         Some(shape) => {
             let anchor = Vector2::from(shape);
-            (anchor, joining.at(anchor).map_err(none_of)?, 1)
+            (
+                anchor,
+                joining.certified_at(anchor, None).map_err(none_of)?,
+                1,
+            )
         }
         None => joining
             .cheapest(&|share| watch(0.5 + 0.5 * share))
@@ -195,7 +199,7 @@ fn of_kind(problem: &SpeedProblem, kind: usize, chains: usize) -> SpeedError {
     }
 }
 
-/// The chains that starts lead to, fastest first: those whose certificates pass, and where gaits join the others too that are gaits.
+/// The chains that starts lead to, fastest first: those whose certificates pass, and where gaits join all that are gaits.
 fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Vec<Polished> {
     /// Groups of rough polygons that are finished.
     const GROUPS: usize = 6;
@@ -218,7 +222,11 @@ fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Ve
         &|_| (),
         || (),
         |(), index| {
-            candidate(setting, chosen[index]).and_then(|chain| certified_or_joined(setting, chain))
+            let chain = candidate(setting, chosen[index])?;
+            match setting.anchor {
+                Some(_) => joined(setting, chain),
+                None => certified(setting, chain),
+            }
         },
     );
     let mut chains: Vec<Polished> = finished.into_iter().flatten().collect();
@@ -228,12 +236,11 @@ fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Ve
 
 /// A chain whose certificate passes, perhaps with short singular arcs put in, or with a servo that switches just before gaits join or
 /// just after.
-fn certified(setting: &Setting, chain: &Polished) -> Option<Polished> {
+fn certified(setting: &Setting, mut chain: Polished) -> Option<Polished> {
     let passes = |chain: &Polished| {
         let told = cycle(setting, chain, Bounds::default());
         told.is_some_and(|(.., certificate)| certificate.pass())
     };
-    let mut chain = chain.clone();
     let mut switches = joint::MOST;
     loop {
         if passes(&chain) {
@@ -247,16 +254,8 @@ fn certified(setting: &Setting, chain: &Polished) -> Option<Polished> {
     }
 }
 
-/// As [`certified`]; where gaits join, a chain that is a gait is one to steer by all the same.
-fn certified_or_joined(setting: &Setting, chain: Polished) -> Option<Polished> {
-    certified(setting, &chain).or_else(|| {
-        let joins = setting.anchor.is_some() && is_gait(setting, &chain);
-        joins.then_some(chain)
-    })
-}
-
-/// Whether all holds that makes a chain a gait of its kind within its bounds and rates, optimal or not.
-fn is_gait(setting: &Setting, chain: &Polished) -> bool {
+/// A chain for which all holds that makes it a gait of its kind within its bounds and rates: one to steer by, optimal or not.
+fn joined(setting: &Setting, chain: Polished) -> Option<Polished> {
     const OF_A_GAIT: [Condition; 9] = [
         Condition::Closed,
         Condition::KeepsBounds,
@@ -268,17 +267,16 @@ fn is_gait(setting: &Setting, chain: &Polished) -> bool {
         Condition::FullRate,
         Condition::Heading,
     ];
-    cycle(setting, chain, Bounds::default()).is_some_and(|(.., certificate)| {
-        let checks = certificate.checks().iter();
-        checks
-            .filter(|check| OF_A_GAIT.contains(&check.condition))
-            .all(|check| check.pass)
-    })
+    let (.., certificate) = cycle(setting, &chain, Bounds::default())?;
+    let mut checks = certificate.checks().iter();
+    checks
+        .all(|check| check.pass || !OF_A_GAIT.contains(&check.condition))
+        .then_some(chain)
 }
 
 /// The chain near a neighbour's, whose common shape lies close by.
 fn near(setting: &Setting, neighbour: &Polished) -> Option<Polished> {
-    mended(setting, neighbour.links.clone()).and_then(|chain| certified_or_joined(setting, chain))
+    mended(setting, neighbour.links.clone()).and_then(|chain| joined(setting, chain))
 }
 
 /// The conditions of a gait of one of the kinds that joins others at its first sample's shape; none for any other objective.

@@ -5,19 +5,20 @@ use swimmer_files::Bounds;
 
 use super::super::polish::Polished;
 use super::super::problem::Setting;
-use super::{chains, near};
+use super::{certified, chains, near};
 use crate::numerics::halved;
-use crate::parallel::Watch;
+use crate::parallel::{Watch, in_parallel};
 use crate::region::Region;
 
 /// The common shape stays this far within the bounds \[rad, or over L\].
 pub(super) const MARGIN: f64 = 0.02;
-/// Shapes that are looked at along each joint, and those of them that are tried.
+/// Shapes that are looked at along each joint, those of them that are tried, and of those the ones that are moved.
 const GRID: usize = 41;
-const TRIED: usize = 6;
+const TRIED: usize = 12;
+const MOVED: usize = 4;
 /// Tried shapes are no nearer to each other \[rad\].
 const APART: f64 = 0.3;
-/// The best is moved by these steps as long as that costs less \[rad\].
+/// The best of them are moved by these steps as long as that costs less \[rad\].
 const STEPS: [f64; 2] = [0.12, 0.04];
 /// And so many times at most with each of them.
 const MOVES: usize = 6;
@@ -25,6 +26,8 @@ const MOVES: usize = 6;
 const CORNERS: usize = 14;
 /// Free gaits of a kind that a joined one is looked for near.
 const MODELS: usize = 3;
+/// Gaits of one kind are alike whose speeds differ by less than this share.
+const ALIKE: f64 = 1e-6;
 
 /// The largest |φᵢ| within which the side links cannot come near each other; none where nothing keeps them apart.
 ///
@@ -68,33 +71,62 @@ struct Outlined {
 }
 
 impl Joining<'_, '_> {
-    /// The fastest of each kind through a shape.
+    /// Gaits of a kind through a shape, the fastest first.
+    fn gaits_at(&self, kind: usize, anchor: Vector2<f64>) -> Vec<Polished> {
+        let setting = (self.settings)(kind, anchor);
+        let mut starts = Vec::new();
+        for model in models(&self.free[kind]) {
+            let outline = outline(model);
+            // A swimmer with equal side links swims as well by these images.
+            let images: [Image; 4] = [
+                |phi| *phi,
+                |phi| -phi,
+                |phi| Vector2::new(phi.y, phi.x),
+                |phi| Vector2::new(-phi.y, -phi.x),
+            ];
+            for image in images {
+                let points: Vec<_> = outline.iter().map(image).collect();
+                starts.push(self.through(anchor, &points));
+            }
+        }
+        chains(&setting, &starts, self.threads)
+    }
+
+    /// The fastest of each kind through a shape, certified or not.
+    fn at(&self, anchor: Vector2<f64>) -> Result<Three, usize> {
+        let of = |kind| self.gaits_at(kind, anchor).into_iter().next().ok_or(kind);
+        Ok([of(0)?, of(1)?, of(2)?])
+    }
+
+    /// The fastest of each kind through a shape, of those known and those found: one that is certified, unless another is faster.
     ///
     /// # Errors
-    /// The kind of which none is found.
-    pub(super) fn at(&self, anchor: Vector2<f64>) -> Result<Three, usize> {
+    /// The kind of which there is none.
+    pub(super) fn certified_at(
+        &self,
+        anchor: Vector2<f64>,
+        known: Option<&Three>,
+    ) -> Result<Three, usize> {
         let of = |kind: usize| {
             let setting = (self.settings)(kind, anchor);
-            let mut starts = Vec::new();
-            for model in self.free[kind].iter().take(MODELS) {
-                let outline = outline(model);
-                // A swimmer with equal side links swims as well by these images.
-                let images: [Image; 4] = [
-                    |phi| *phi,
-                    |phi| -phi,
-                    |phi| Vector2::new(phi.y, phi.x),
-                    |phi| Vector2::new(-phi.y, -phi.x),
-                ];
-                for image in images {
-                    let points: Vec<_> = outline.iter().map(image).collect();
-                    starts.push(self.through(anchor, &points));
-                }
-            }
-            chains(&setting, &starts, self.threads)
-                .into_iter()
-                .next()
-                .ok_or(kind)
+            let known = known.map(|three| three[kind].clone());
+            let mut all = self.gaits_at(kind, anchor);
+            all.extend(known);
+            let certified = in_parallel(
+                all.len(),
+                self.threads,
+                &|_| (),
+                || (),
+                |(), index| certified(&setting, all[index].clone()),
+            );
+            let fastest = all.into_iter().reduce(faster)?;
+            let certified = certified.into_iter().flatten().reduce(faster);
+            Some(match certified {
+                Some(chain) if chain.speed > fastest.speed * (1.0 - ALIKE) => chain,
+                _ => fastest,
+            })
         };
+        let of = |kind| of(kind).ok_or(kind);
         Ok([of(0)?, of(1)?, of(2)?])
     }
 
@@ -105,22 +137,42 @@ impl Joining<'_, '_> {
     pub(super) fn cheapest(&self, watch: Watch<'_>) -> Result<(Vector2<f64>, Three, usize), usize> {
         let mut tried = 0;
         let mut without = 0;
-        let mut best: Option<(Vector2<f64>, Three)> = None;
+        let mut found = Vec::new();
         let shapes = self.promising();
         for (number, shape) in shapes.iter().enumerate() {
             tried += 1;
             match self.at(*shape) {
-                Ok(three) => {
-                    let cheaper = |(_, other): &(_, Three)| self.cost(&three) < self.cost(other);
-                    if best.as_ref().is_none_or(cheaper) {
-                        best = Some((*shape, three));
-                    }
-                }
+                Ok(three) => found.push((*shape, three)),
                 Err(kind) => without = without.max(kind),
             }
-            watch(0.8 * (number + 1) as f64 / shapes.len() as f64);
+            watch(0.6 * (number + 1) as f64 / shapes.len() as f64);
         }
-        let (mut shape, mut three) = best.ok_or(without)?;
+        let cheaper =
+            |(_, a): &(_, Three), (_, b): &(_, Three)| self.cost(a).total_cmp(&self.cost(b));
+        found.sort_by(cheaper);
+        found.truncate(MOVED);
+        let moved = in_parallel(
+            found.len(),
+            self.threads,
+            &|_| (),
+            || (),
+            |(), index| self.descended(found[index].clone()),
+        );
+        tried += moved.iter().map(|(.., tried)| tried).sum::<usize>();
+        watch(0.9);
+        let places = moved.into_iter().map(|(shape, three, _)| (shape, three));
+        let (shape, three) = places.min_by(cheaper).ok_or(without)?;
+        let three = self.certified_at(shape, Some(&three))?;
+        watch(1.0);
+        Ok((shape, three, tried))
+    }
+
+    /// The common shape moved as long as that costs less, and how many were tried.
+    fn descended(
+        &self,
+        (mut shape, mut three): (Vector2<f64>, Three),
+    ) -> (Vector2<f64>, Three, usize) {
+        let mut tried = 0;
         for step in STEPS {
             for _ in 0..MOVES {
                 let ways = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
@@ -134,8 +186,7 @@ impl Joining<'_, '_> {
                 (shape, three) = better;
             }
         }
-        watch(1.0);
-        Ok((shape, three, tried))
+        (shape, three, tried)
     }
 
     /// What joining costs all three, as shares of their speeds.
@@ -170,7 +221,7 @@ impl Joining<'_, '_> {
                         points: outline(chain),
                     }
                 };
-                chains.iter().take(MODELS).map(model).collect()
+                models(chains).map(model).collect()
             })
             .collect();
         let farthest = outlines
@@ -236,6 +287,16 @@ impl Joining<'_, '_> {
         }
         corners
     }
+}
+
+fn faster(one: Polished, other: Polished) -> Polished {
+    if other.speed > one.speed { other } else { one }
+}
+
+/// The fastest gaits that a joined one is looked for near: many starts lead to one gait.
+fn models(chains: &[Polished]) -> impl Iterator<Item = &Polished> {
+    let alike = chains.chunk_by(|a, b| a.speed - b.speed < ALIKE * a.speed);
+    alike.filter_map(<[Polished]>::first).take(MODELS)
 }
 
 /// Shapes along a chain, evenly in time.

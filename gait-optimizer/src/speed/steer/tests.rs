@@ -118,3 +118,23 @@ fn files_of_gaits_that_join_pass() {
         }
     }
 }
+
+/// Purcell's fastest sideways gait stays far from where the other two swim: one that is 4 % slower joins them, though most starts lead
+/// to the fastest.
+#[test]
+fn a_slower_gait_joins_where_the_fastest_lies_elsewhere() {
+    let problem = SteerProblem {
+        of: SpeedProblem {
+            bounds: Bounds::within(2.4),
+            threads: 2,
+            ..SpeedProblem::new(Swimmer::purcell(), [1.0; 2])
+        },
+        shape: Some([1.68, 0.6]),
+    };
+    let steering = steer(&problem, &|_| ()).unwrap();
+    let gaits = [&steering.forward, &steering.left, &steering.turn];
+    for (joined, most) in gaits.into_iter().zip([0.01, 0.05, 0.01]) {
+        assert!((-1e-9..most).contains(&joined.cost()), "{}", joined.cost());
+        assert!(joined.gait.certificate.pass());
+    }
+}
