@@ -4,7 +4,8 @@ mod plane;
 mod speed_direct;
 
 use gait_optimizer::{
-    Bounds, Over, SpeedProblem, Uncertainty, certify, fastest, front, robust_speed,
+    Bounds, Over, SpeedProblem, SteerProblem, Uncertainty, certify, fastest, front, robust_speed,
+    steer,
 };
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
@@ -53,6 +54,48 @@ fn by_two_methods(swimmer: Swimmer<f64>, max_angle: f64) {
 fn the_direct_method_agrees() {
     by_two_methods(Swimmer::robot(), 2.0);
     by_two_methods(Swimmer::purcell(), 2.8);
+}
+
+/// Gaits that turn and join others at a shape: the search, and the best that the direct method reaches with a corner held there.
+#[track_caller]
+fn turning_by_two_methods(swimmer: Swimmer<f64>, max_angle: f64, shape: [f64; 2]) {
+    let of = problem(swimmer, max_angle, SpeedProblem::STARTS);
+    let found = steer(
+        &SteerProblem {
+            of,
+            shape: Some(shape),
+        },
+        &|_| (),
+    );
+    let polished = found.unwrap().turn.rate;
+    let shape = Vector2::from(shape);
+    let circles = [
+        (0.6, 0.33),
+        (0.7, 0.2),
+        (0.5, 0.4),
+        (0.3, 0.6),
+        (-0.6, 0.33),
+    ];
+    let climbed = circles
+        .into_iter()
+        .filter_map(|(along, radius)| {
+            let centre = Vector2::repeat(along * max_angle);
+            let circle = |s: f64| centre + Vector2::new(s.cos(), s.sin()) * radius * max_angle;
+            Direct::new(&of, 24, circle).turning_through(shape).climb()
+        })
+        .inspect(|climbed| println!("  {climbed:.14}"))
+        .fold(0.0, f64::max);
+    println!("{max_angle} rad: polish {polished:.14}, direct {climbed:.14}");
+    assert!(
+        (climbed / polished - 1.0).abs() < 1e-8,
+        "{climbed} {polished}"
+    );
+}
+
+#[test]
+fn the_direct_method_agrees_on_gaits_that_turn_through_a_shape() {
+    turning_by_two_methods(Swimmer::purcell(), 2.4, [1.68, 0.6]);
+    turning_by_two_methods(Swimmer::robot(), 2.0, [1.46, 0.56]);
 }
 
 /// The swimmer with another χ.

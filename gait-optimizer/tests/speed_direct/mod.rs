@@ -34,6 +34,8 @@ pub(crate) struct Direct {
     z: DVector<f64>,
     /// Multiplier of the rotation.
     lambda: f64,
+    /// A corner that stays, of a gait that shall turn.
+    turning_through: Option<usize>,
 }
 
 /// A side as it is, and with each coordinate of its ends moved both ways.
@@ -58,6 +60,7 @@ impl Direct {
             sides,
             z: DVector::zeros(3 * sides),
             lambda: 0.0,
+            turning_through: None,
         };
         for k in 0..sides {
             let phi = curve(std::f64::consts::TAU * (k as f64 + 0.3) / sides as f64);
@@ -65,13 +68,18 @@ impl Direct {
                 direct.z[2 * k + joint] = phi[joint].clamp(-0.97 * max_angle, 0.97 * max_angle);
             }
         }
-        for k in 0..sides {
-            let [from, to] = direct.ends(&direct.z, k);
-            let way = to - from;
-            let least = (way.x.abs() / direct.rates[0]).max(way.y.abs() / direct.rates[1]);
-            direct.z[2 * sides + k] = 1.2 * least + 1e-2;
-        }
+        direct.give_time();
         direct
+    }
+
+    /// More than the servos need.
+    fn give_time(&mut self) {
+        for k in 0..self.sides {
+            let [from, to] = self.ends(&self.z, k);
+            let way = to - from;
+            let least = (way.x.abs() / self.rates[0]).max(way.y.abs() / self.rates[1]);
+            self.z[2 * self.sides + k] = 1.2 * least + 1e-2;
+        }
     }
 
     /// For the displacements of these swimmers with these gains and weights; that of the problem's does not count, but it does not
@@ -83,6 +91,18 @@ impl Direct {
             self.swimmers.push((model, *gain));
             self.weights.push(*weight);
         }
+        self
+    }
+
+    /// For the rotation, which need not vanish then, of a gait with the nearest corner here.
+    pub(crate) fn turning_through(mut self, shape: Vector2<f64>) -> Self {
+        let corner = |k: usize| Vector2::new(self.z[2 * k], self.z[2 * k + 1]);
+        let off = |k: &usize| (corner(*k) - shape).norm();
+        let nearest = (0..self.sides).min_by(|a, b| off(a).total_cmp(&off(b)));
+        let nearest = nearest.unwrap_or(0);
+        self.z.fixed_rows_mut::<2>(2 * nearest).copy_from(&shape);
+        self.turning_through = Some(nearest);
+        self.give_time();
         self
     }
 
@@ -127,6 +147,9 @@ impl Direct {
 
     fn worth(&self, whole: &Poses) -> f64 {
         let theta = whole.first().theta;
+        if self.turning_through.is_some() {
+            return -theta.abs().ln();
+        }
         -self.distance(whole).ln() + self.lambda * theta + 0.5 * PRICE * theta.powi(2)
     }
 
@@ -195,7 +218,7 @@ impl Direct {
         self.worth(&whole) + self.period(z).ln() - barrier * logs
     }
 
-    /// Climbs; |d|/(L T) of the polygon, whose rotation vanishes, or none where it does not come to rest.
+    /// Climbs; |d|/(L T) of the polygon, whose rotation vanishes, or |Δθ|/T; none where it does not come to rest.
     pub(crate) fn climb(&mut self) -> Option<f64> {
         let mut barrier = 1e-2;
         let mut damping = 0.0_f64;
@@ -211,8 +234,17 @@ impl Direct {
                 slack.add(&mut dual, -push);
                 apart = apart.max((slack.value * push - barrier).abs());
             }
+            let held = self
+                .turning_through
+                .map(|corner| 2 * corner..2 * corner + 2);
+            for at in held.clone().into_iter().flatten() {
+                (primal[at], dual[at]) = (0.0, 0.0);
+            }
             if apart < 5.0 * barrier && dual.amax() < (10.0 * barrier).max(3e-8) {
                 let theta = whole.first().theta;
+                if barrier <= LAST_BARRIER && held.is_some() {
+                    return Some(theta.abs() / self.period(&self.z));
+                }
                 self.lambda += PRICE * theta;
                 if barrier <= LAST_BARRIER && theta.abs() < 1e-8 {
                     // What is left of the rotation is priced to first order.
@@ -225,6 +257,11 @@ impl Direct {
             let mut matrix = self.second(&mut sides);
             for (slack, push) in slacks.iter().zip(&pushes) {
                 slack.stiffen(&mut matrix, push / slack.value);
+            }
+            for at in held.into_iter().flatten() {
+                matrix.row_mut(at).fill(0.0);
+                matrix.column_mut(at).fill(0.0);
+                matrix[(at, at)] = 1.0;
             }
             let step = loop {
                 let mut damped = matrix.clone();
