@@ -1,8 +1,9 @@
 //! An independent direct method for the fastest gait: a polygon whose corners and times are free.
 //!
 //! Of many swimmers with one gait it climbs the weighted sum of displacements. From the model it takes A(Φ) alone. Slopes
-//! are differences of the swum polygon, second derivatives differences of the slopes; nothing is known of arcs, heights or switching functions. Limits by a primal–dual barrier, the rotation by an
-//! augmented Lagrangian. Where the fastest gait is a polygon, so where it has no singular arc, this is exact.
+//! are differences of the swum polygon, second derivatives differences of the slopes; nothing is known of arcs, heights or switching
+//! functions. Limits by a primal–dual barrier, the rotation, and the heading where it is asked for, by an augmented Lagrangian. Where
+//! the fastest gait is a polygon, so where it has no singular arc, this is exact.
 
 mod limits;
 mod swum;
@@ -246,8 +247,8 @@ impl Direct {
             }
             matrix.set_column(at, &((&columns[0] - &columns[1]) / (2.0 * COARSE)));
         }
-        let mut times = matrix.view_mut((2 * n, 2 * n), (n, n));
         if self.heading.is_none() {
+            let mut times = matrix.view_mut((2 * n, 2 * n), (n, n));
             times.fill(-self.period(&self.z).powi(-2));
         }
         let transposed = matrix.transpose();

@@ -135,12 +135,10 @@ impl Joining<'_, '_> {
     /// # Errors
     /// A kind of which no gait passes some shape that all before it pass.
     pub(super) fn cheapest(&self, watch: Watch<'_>) -> Result<(Vector2<f64>, Three, usize), usize> {
-        let mut tried = 0;
         let mut without = 0;
         let mut found = Vec::new();
         let shapes = self.promising();
         for (number, shape) in shapes.iter().enumerate() {
-            tried += 1;
             match self.at(*shape) {
                 Ok(three) => found.push((*shape, three)),
                 Err(kind) => without = without.max(kind),
@@ -158,7 +156,7 @@ impl Joining<'_, '_> {
             || (),
             |(), index| self.descended(found[index].clone()),
         );
-        tried += moved.iter().map(|(.., tried)| tried).sum::<usize>();
+        let tried = shapes.len() + moved.iter().map(|(.., tried)| tried).sum::<usize>();
         watch(0.9);
         let places = moved.into_iter().map(|(shape, three, _)| (shape, three));
         let (shape, three) = places.min_by(cheaper).ok_or(without)?;
