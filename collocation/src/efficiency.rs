@@ -5,7 +5,9 @@ use gait_optimizer::{
     efficiency_from,
 };
 
-use super::{CollocationError, CollocationProblem, solve};
+use super::error::CollocationError;
+use super::problem::CollocationProblem;
+use super::solve::solve;
 
 /// Circles up to this amplitude are tried \[rad\].
 const LARGEST: f64 = 5.0;

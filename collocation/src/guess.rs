@@ -3,8 +3,9 @@
 use gait_optimizer::region::Bound;
 use nalgebra::{Matrix2xX, Vector2};
 
+use super::error::CollocationError;
 use super::mesh::Mesh;
-use super::{CollocationError, levels};
+use super::path::levels;
 
 /// A quarter that leaves the bounds by more than this share of its largest angle is shrunk; by less, it is drawn inside where it
 /// leaves them.

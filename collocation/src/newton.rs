@@ -11,10 +11,11 @@ mod preconditioner;
 use gait_optimizer::region::{Bound, Level};
 use nalgebra::{Matrix2, Matrix2xX};
 
+use super::error::CollocationError;
 use super::guess::bind_ends;
 use super::mesh::Mesh;
-use super::path::Path;
-use super::{CollocationError, CollocationProblem, HORIZON, levels};
+use super::path::{Path, levels};
+use super::problem::CollocationProblem;
 use preconditioner::Preconditioner;
 
 const MOST_ITERATIONS: usize = 200;
@@ -29,6 +30,8 @@ const LONG_STEP: f64 = 0.4;
 const OFF_CENTRE: f64 = 1e4;
 /// Changes of the shapes over which the gradient's difference is taken \[rad\].
 const DIFFERENCE: f64 = 1e-6;
+/// Without a bound no angle may leave two turns.
+const HORIZON: f64 = 2.0 * std::f64::consts::TAU;
 
 /// One discretised problem.
 #[derive(Debug)]

@@ -4,6 +4,7 @@
 //! quadrature, and from it x and E. So every iterate is a gait of the discretised problem, and the objective is a plain
 //! function of the shapes, whose gradient is found by going back.
 
+use gait_optimizer::region::{Bound, Level};
 use nalgebra::{Matrix2xX, Matrix3xX, Vector2, Vector3};
 use swimmer_model::{FirstDerivatives, Model};
 
@@ -119,4 +120,15 @@ impl Path {
         }
         by_phi
     }
+}
+
+/// How far shapes are within each wall, shape by shape with its number.
+pub(crate) fn levels<'a>(
+    walls: &'a [Bound],
+    shapes: &'a Matrix2xX<f64>,
+) -> impl Iterator<Item = (usize, Level)> + 'a {
+    (0..shapes.ncols() * walls.len()).map(move |i| {
+        let (point, wall) = (i / walls.len(), &walls[i % walls.len()]);
+        (point, wall.smooth_level(&shapes.column(point).into_owned()))
+    })
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2xX, Vector2};
 use swimmer_files::AnyGait;
 
-use super::CollocationError;
+use super::error::CollocationError;
 use super::mesh::Mesh;
 
 /// Samples of a quarter as a gait.

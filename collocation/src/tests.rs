@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use gait_optimizer::region::Region;
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;

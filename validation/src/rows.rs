@@ -2,13 +2,14 @@
 //! a number, one with words lies from `least` to `most`; `within` is how far off it may be (`none` where the paper's number
 //! cannot be reproduced, and the note says why).
 
+mod computed;
 mod displacement;
 mod efficiency;
 
-use gait_optimizer::{BestAmplitude, Condition, OptimalGait};
 use serde::Serialize;
 
 use super::study::Study;
+use computed::Computed;
 
 const PRINTED: &str = include_str!("rows/printed.tsv");
 
@@ -84,9 +85,6 @@ fn cells(line: &'static str) -> Option<[&'static str; 7]> {
     cells.try_into().ok()
 }
 
-/// A quantity's name, and what it came to.
-type Computed = (&'static str, f64);
-
 /// All rows, in the order of the paper.
 pub fn rows(study: &Study) -> Vec<Row> {
     let ours: Vec<Computed> = [
@@ -107,38 +105,6 @@ pub fn rows(study: &Study) -> Vec<Row> {
     };
     PRINTED.lines().skip(1).filter_map(of).collect()
 }
-
-/// How many conditions a gait fails when only its samples are known; NaN where it cannot be asked.
-fn failed_checks(gait: &OptimalGait) -> f64 {
-    gait.certify().map_or(f64::NAN, |certificate| {
-        let checks = certificate.checks().iter();
-        checks.filter(|check| !check.pass).count() as f64
-    })
-}
-
-/// One number of that certificate.
-fn value_of(gait: &OptimalGait, condition: Condition) -> f64 {
-    let certificate = gait.certify().ok();
-    let value = certificate.and_then(|certificate| certificate.value(condition));
-    value.unwrap_or(f64::NAN)
-}
-
-/// The first best amplitude.
-fn first(best: &[BestAmplitude]) -> &BestAmplitude {
-    best.first().unwrap_or(&NONE)
-}
-
-/// The second one.
-fn second(best: &[BestAmplitude]) -> &BestAmplitude {
-    best.get(1).unwrap_or(&NONE)
-}
-
-/// No such amplitude: every comparison with it fails.
-const NONE: BestAmplitude = BestAmplitude {
-    amplitude: f64::NAN,
-    displacement_over_length: f64::NAN,
-    efficiency: f64::NAN,
-};
 
 #[cfg(test)]
 mod tests {

@@ -640,6 +640,8 @@ impl SpeedProblem {
     pub const STARTS: usize = 64;
     pub const GUESSES: usize = 3;
     pub fn new(swimmer: Swimmer<f64>, rates: [f64; 2]) -> Self {}
+}
+impl SpeedProblem {
     pub fn watched(&self, watch: Watch<'_>) -> Result<Fastest, SpeedError> {}
     pub fn atlas(&self, watch: Watch<'_>) -> Result<SpeedAtlas, SpeedError> {}
     pub fn near(&self, neighbour: &Fastest) -> Option<Fastest> {}
@@ -772,7 +774,6 @@ pub fn efficiency_from(
     problem: &EfficiencyProblem,
     direct: &Direct<'_>,
 ) -> Result<OptimalGait, EfficiencyError> {}
-pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {}
 pub fn fastest_within(
     problem: &LimitedProblem,
     watch: Watch<'_>,
@@ -803,6 +804,9 @@ pub fn turning(problem: &TurningProblem) -> Result<Turning, TurningError> {}
 pub mod closed_forms {
     pub fn along_the_point_symmetric_shapes(swimmer: &Swimmer<f64>, phi: f64) -> f64 {}
     pub fn along_the_symmetric_shapes(swimmer: &Swimmer<f64>, phi: f64) -> f64 {}
+}
+pub mod fastest {
+    pub use crate::Fastest;
 }
 pub mod front {
     pub use crate::Front;

@@ -14,7 +14,7 @@ use crate::speed::certificate::within_limits;
 use crate::speed::gauge::Facet;
 use crate::speed::interior::{self, Polygon};
 use crate::speed::phases::{Curve, Phase, polished};
-use crate::speed::problem::{Goal, HeadingRule, Setting};
+use crate::speed::setting::{Goal, HeadingRule, Setting};
 use crate::speed::{SpeedError, selection, starts};
 
 /// Elements of a cycle of several limits, first and last.

@@ -3,6 +3,8 @@
 use super::*;
 use crate::Condition;
 use crate::member::Member;
+use crate::region::Region;
+use crate::speed::certificate::{Asked, certificate};
 use nalgebra::DVector;
 use swimmer_files::AnyGait;
 use swimmer_model::{Model, Tolerance, swim};
@@ -364,8 +366,9 @@ fn the_nominal_optimum_is_not_robust() {
         let file = gait.gait_file("");
         let curve = gait.gait().unwrap();
         let model = Model::new(&Swimmer::robot().of_unit_length()).unwrap();
-        let certificate =
-            crate::speed::certify_ensemble((&model, &members), &problem.bounds, &file, &curve);
+        let region = Region::new(&problem.bounds, &model.swimmer().links);
+        let asked = Asked::default();
+        let certificate = certificate((&model, &members), &region, asked, &file, &curve);
         certificate.value(Condition::SwitchIntegrals).unwrap()
     };
     assert!(residual(&found.fastest.gait) < 1e-8);

@@ -2,7 +2,7 @@
 
 use super::interior::{Polygon, best_polygon};
 use super::polish::{Polished, polish};
-use super::problem::Setting;
+use super::setting::Setting;
 use super::structure::{Hold, Link, Motion, arcs, merge};
 use super::widened;
 

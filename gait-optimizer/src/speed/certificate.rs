@@ -7,24 +7,27 @@
 
 mod affine;
 mod costate;
+mod from_anywhere;
 mod legs;
 mod second_order;
 mod second_variation;
 mod switching;
 mod taken;
+mod within_limits;
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_files::{AnyGait, ArcKind, Bounds, GaitFile};
 use swimmer_model::{Model, Tolerance, crossing_share, swim};
 
-use super::problem::{Goal, HeadingRule, Setting};
+use super::setting::{Goal, HeadingRule, Setting};
 use crate::certificate::{Certificate, Check, Condition, SeenBy, again_within};
 use crate::cycle::Cycle;
 use crate::member::Member;
 use crate::region::Region;
-pub(crate) use costate::{certificate as within_limits, within_its_own};
+pub(crate) use from_anywhere::{MadeFor, certify_speed};
 use legs::{Leg, Legs};
 use switching::Switching;
+pub(crate) use within_limits::{within_its_own, within_limits};
 
 /// A corner this close to a bound rests on it \[rad, or over L\].
 pub(super) const RESTS: f64 = 1e-8;

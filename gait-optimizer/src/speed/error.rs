@@ -80,3 +80,9 @@ pub enum SpeedError {
         uncertified: Option<f64>,
     },
 }
+
+impl From<Immobile> for SpeedError {
+    fn from(error: Immobile) -> Self {
+        Self::Immobile(error)
+    }
+}

@@ -2,7 +2,9 @@
 
 use crate::parallel::{Watch, in_parallel};
 
-use super::{Fastest, SpeedError, SpeedProblem};
+use super::error::SpeedError;
+use super::fastest::Fastest;
+use super::problem::SpeedProblem;
 
 /// Periods of a front, over that of the fastest gait: shorter ones carry less far and slower, longer ones farther and slower.
 const SHORTEST: f64 = 0.3;

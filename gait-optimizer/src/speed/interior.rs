@@ -10,8 +10,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Vector2};
 
 use super::arc::{Jet, Shape};
 use super::chain::{self, Layout, Weights};
-use super::problem::Setting;
 use super::quadrature::Rule;
+use super::setting::Setting;
 
 /// A polygon and what pushes against it.
 #[derive(Debug, Clone)]

@@ -16,7 +16,7 @@ use self::draft::Draft;
 use self::newton::Outcome;
 use super::chain::Net;
 use super::interior::Polygon;
-use super::problem::Setting;
+use super::setting::Setting;
 
 /// Coefficients of each joint's angle on an element.
 const BENDS: usize = 8;

@@ -7,8 +7,8 @@ use nalgebra::DVector;
 use self::conditions::{Conditions, Equation, Look, equations};
 use super::chain::{Layout, Net};
 use super::ensemble::turned;
-use super::problem::Setting;
 use super::quadrature::Rule;
+use super::setting::Setting;
 use super::structure::Link;
 use crate::member::Member;
 

@@ -4,7 +4,7 @@ use swimmer_files::GaitArc;
 
 use super::arc::Shape;
 use super::polish::Polished;
-use super::problem::Setting;
+use super::setting::Setting;
 use crate::cycle::Cycle;
 
 /// Fewest samples on a straight arc and on a curved one.

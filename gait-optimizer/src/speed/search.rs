@@ -3,19 +3,20 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use swimmer_files::Objective;
-use swimmer_model::{Tolerance, swim, wrapped_angle};
+use swimmer_model::Model;
 
-use super::candidate::{bent, candidate};
-use super::certificate::{Asked, of_cycle};
-use super::interior::Polygon;
+use super::candidate::{bent, candidate, mended};
+use super::error::SpeedError;
+use super::fastest::{Fastest, told};
+use super::interior::{Polygon, rough_polygon};
 use super::polish::Polished;
-use super::problem::Setting;
-use super::samples;
-use super::selection::Group;
-use super::{Fastest, SpeedAtlas, SpeedError, SpeedProblem};
-use crate::optimal_gait::OptimalGait;
+use super::problem::{SpeedProblem, validate};
+use super::selection::{Group, groups};
+use super::setting::Setting;
+use super::starts::start;
+use crate::immobile::refuse_immobile;
 use crate::parallel::{Watch, in_parallel};
+use crate::region::Region;
 
 /// Of the time, about, until all rough polygons are there.
 pub(super) const ROUGH_SHARE: f64 = 0.6;
@@ -23,6 +24,87 @@ pub(super) const ROUGH_SHARE: f64 = 0.6;
 const BATCH: usize = 8;
 /// Rough polygons that are slower than this share of the best finished gait are left.
 const HOPELESS: f64 = 0.93;
+
+/// Finds the fastest gait.
+///
+/// # Errors
+/// [`SpeedError`] where the problem makes no sense or no chain can be certified.
+pub fn fastest(problem: &SpeedProblem) -> Result<Fastest, SpeedError> {
+    problem.watched(&|_| ())
+}
+
+impl SpeedProblem {
+    /// As [`fastest`], while somebody watches.
+    ///
+    /// # Errors
+    /// As [`fastest`].
+    pub fn watched(&self, watch: Watch<'_>) -> Result<Fastest, SpeedError> {
+        self.searched(watch, |search, watch| search.run(watch))?
+    }
+
+    /// Every locally fastest gait that the starts lead to, while somebody watches.
+    ///
+    /// # Errors
+    /// [`SpeedError`] where the problem makes no sense.
+    pub fn atlas(&self, watch: Watch<'_>) -> Result<SpeedAtlas, SpeedError> {
+        self.searched(watch, |search, watch| search.all(watch))
+    }
+
+    /// The fastest gait that has the arcs of a neighbouring problem's (another swimmer, other bounds or rates, a little changed),
+    /// with its own certificate. It costs a small part of a search, and tells nothing of other arcs. None where there is no such
+    /// gait, or where it fails its certificate.
+    pub fn near(&self, neighbour: &Fastest) -> Option<Fastest> {
+        validate(self).ok()?;
+        let model = Model::new(&self.swimmer.of_unit_length()).ok()?;
+        let region = Region::new(&self.bounds, &self.swimmer.links);
+        let fast = self.rates[0].max(self.rates[1]);
+        let setting = self.setting(&model, &region);
+        let polished = mended(&setting, neighbour.links.clone())?;
+        let found = told(self, &setting, &polished, fast)?;
+        (found.gait.certificate.pass() && found.gait.arcs.len() <= self.max_corners)
+            .then_some(found)
+    }
+
+    fn searched<R>(
+        &self,
+        watch: Watch<'_>,
+        finish: impl Fn(Search<'_>, Watch<'_>) -> R,
+    ) -> Result<R, SpeedError> {
+        let problem = self;
+        validate(problem)?;
+        let model = Model::new(&problem.swimmer.of_unit_length())?;
+        refuse_immobile(&model, &problem.bounds)?;
+        let region = Region::new(&problem.bounds, &problem.swimmer.links);
+        let fast = problem.rates[0].max(problem.rates[1]);
+        let setting = problem.setting(&model, &region);
+        let roughly = |(): &mut (), index: usize| {
+            rough_polygon(&setting, &start(&region, problem.seed, index))
+        };
+        let share = |share: f64| watch(ROUGH_SHARE * share);
+        let rough = in_parallel(
+            problem.starts.max(1),
+            problem.threads,
+            &share,
+            || (),
+            roughly,
+        );
+        let groups = groups(rough.into_iter().flatten().collect());
+        Ok(finish(Search::new(problem, &setting, fast, &groups), watch))
+    }
+}
+
+/// All locally fastest gaits that were found, and what became of the rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpeedAtlas {
+    /// Certified, fastest first.
+    pub optima: Vec<Fastest>,
+    /// Certified cycles of more corners than were asked for.
+    pub longer: usize,
+    /// Chains of arcs that failed their certificate, and the speed of the fastest of them, |d|/(L T) \[1/s\].
+    pub uncertified: usize,
+    /// See [`Self::uncertified`].
+    pub best_uncertified: Option<f64>,
+}
 
 /// What has been found so far.
 pub(super) struct Search<'a> {
@@ -204,46 +286,4 @@ fn shortest_of_alike(chains: &[(Polished, usize)]) -> Vec<&Polished> {
         }
     }
     best
-}
-
-/// A chain as an answer; none where its samples make no gait.
-pub(crate) fn told(
-    problem: &SpeedProblem,
-    setting: &Setting,
-    chain: &Polished,
-    fast: f64,
-) -> Option<Fastest> {
-    // Run the way that leads forward, and of two mirror images the one that leads to the left.
-    let ahead = wrapped_angle(chain.net.heading());
-    let backward = ahead.cos() < -1e-9 || (ahead.cos() < 1e-9 && ahead < 0.0);
-    let half_turn = if backward { std::f64::consts::PI } else { 0.0 };
-    let forward = wrapped_angle(ahead + half_turn);
-    let sign = if forward < -1e-9 { -1.0 } else { 1.0 };
-    let heading = sign * forward;
-    let mut cycle = samples::cycle(setting, chain, sign);
-    if backward {
-        cycle = cycle.reversed(|phi| *phi);
-    }
-    let asked = Asked {
-        heading: problem.heading,
-        period: problem.period.is_some(),
-        ..Asked::default()
-    };
-    let (gait, certificate) = of_cycle(setting, asked, problem.bounds, &cycle)?;
-    let stroke = swim(setting.model, &gait, &Tolerance::default());
-    let of = (Objective::Speed, &problem.swimmer, &problem.bounds);
-    Some(Fastest {
-        speed_over_length: chain.speed * fast,
-        distance_over_length: chain.net.distance(),
-        period: chain.layout.period(&chain.z) / fast,
-        heading,
-        found: 0,
-        longer: None,
-        uncertified: None,
-        links: chain.links.clone(),
-        gait: OptimalGait {
-            certificate,
-            ..OptimalGait::of_cycle(of, false, cycle, &stroke)
-        },
-    })
 }

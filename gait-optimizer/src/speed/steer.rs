@@ -16,10 +16,12 @@ use swimmer_model::{Model, Swimmer, Tolerance, swim};
 
 use super::candidate::{bent, candidate, mended};
 use super::certificate::{Asked, certificate, of_cycle};
+use super::error::SpeedError;
 use super::interior::rough_polygon;
 use super::polish::Polished;
-use super::problem::{Goal, HeadingRule, Setting};
-use super::{SpeedError, SpeedProblem, samples, selection, starts, validate};
+use super::problem::{SpeedProblem, validate};
+use super::setting::{Goal, HeadingRule, Setting};
+use super::{samples, selection, starts};
 use crate::certificate::{Certificate, Condition};
 use crate::cycle::Cycle;
 use crate::immobile::refuse_immobile;

@@ -5,8 +5,8 @@ use swimmer_files::ArcKind;
 
 use super::arc::{MOST_BENDS, Shape};
 use super::interior::Polygon;
-use super::problem::Setting;
 use super::quadrature::legendre;
+use super::setting::Setting;
 use crate::region::{Bound, Piece};
 
 /// What one arc does.

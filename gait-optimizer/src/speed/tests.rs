@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::{Condition, certify};
-use swimmer_files::Objective;
+use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
+use swimmer_model::Swimmer;
 
 fn within(swimmer: Swimmer<f64>, max: f64) -> SpeedProblem {
     SpeedProblem {

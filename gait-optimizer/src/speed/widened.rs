@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::problem::Setting;
+use super::setting::Setting;
 use super::structure::{Hold, Link, Motion, remove};
 use crate::region::Bound;
 

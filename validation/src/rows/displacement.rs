@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use swimmer_files::AnyGait;
 use swimmer_model::{Fourier, Harmonic, Links, Model, Tolerance, swim};
 
-use super::{Computed, failed_checks, first, second};
+use super::computed::{Computed, failed_checks, first, second};
 use crate::study::{Simple, Study};
 
 /// Section II.B: what is said of the robot.

@@ -4,7 +4,7 @@ use gait_optimizer::{BestAmplitude, Condition, closed_forms};
 use nalgebra::Vector2;
 use swimmer_model::{Model, Swimmer};
 
-use super::{Computed, failed_checks, first, second, value_of};
+use super::computed::{Computed, failed_checks, first, second, value_of};
 use crate::study::{Lighthill, Simple, Study};
 
 /// Section V.A: circles and squares again, for the efficiency.

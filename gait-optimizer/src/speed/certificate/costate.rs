@@ -6,28 +6,21 @@
 //! with the multiplier of rotation; nothing of the search is asked.
 
 use nalgebra::{DMatrix, DVector, Vector2};
-use swimmer_files::{AnyGait, GaitFile};
-use swimmer_model::{Gait as _, Model, Panel, Panels, SecondDerivatives, Tolerance, swim};
+use swimmer_files::AnyGait;
+use swimmer_model::{Gait as _, Model, Panel, SecondDerivatives};
 
-use super::legs::{arcs, pose_at};
-use super::second_variation::Multipliers;
-use super::{RESTS, of_the_curve, taken};
-use crate::certificate::{Certificate, Check, Condition, again_within};
+use super::RESTS;
+use super::legs::pose_at;
+use crate::certificate::{Check, Condition};
 use crate::momentum::Momentum;
 use crate::region::{Bound, Region};
 use crate::speed::gauge::{Facet, Level};
-use crate::speed::quadrature::{Rule, cut};
+use crate::speed::quadrature::Rule;
 
 /// Multipliers below 0 by more are held there.
 const BELOW: f64 = 1e-6;
 /// Times that multipliers below 0 are held there.
 const SIGNS: usize = 6;
-/// Gauss nodes of a part of the cycle, its longest share of the period, and about the most that it turns \[rad\].
-const NODES: usize = 10;
-const LONGEST: f64 = 0.06;
-const TURN: f64 = 0.5;
-/// Fewest parts of an arc.
-const LEAST: usize = 3;
 
 /// One node.
 pub(super) struct Node {
@@ -111,13 +104,20 @@ impl Equations {
     }
 }
 
+/// What the equations tell: a multiplier for each limit that binds at a node, node by node of each part, and that of the rotation.
+pub(super) struct Multipliers {
+    pub(super) nodes: Vec<Vec<Node>>,
+    pub(super) shares: Vec<Vec<Vec<f64>>>,
+    pub(super) rotation: f64,
+}
+
 /// A cycle whose costate is asked for.
 pub(super) struct Costate<'a> {
-    model: &'a Model<f64>,
-    region: &'a Region,
-    limits: &'a [Facet],
+    pub(super) model: &'a Model<f64>,
+    pub(super) region: &'a Region,
+    pub(super) limits: &'a [Facet],
     pub(super) gait: &'a AnyGait,
-    panels: Vec<Panel<f64>>,
+    pub(super) panels: Vec<Panel<f64>>,
     pub(super) period: f64,
     /// Dual to the displacement, over V; and 1/V.
     pub(super) p: Vector2<f64>,
@@ -235,9 +235,9 @@ impl Costate<'_> {
         unknowns.pushes.extend(jumps);
     }
 
-    /// The conditions of limits, costate and multipliers.
-    fn checks(&self, file: &GaitFile) -> Vec<Check> {
-        let parts = parts(self.region, file, self.gait);
+    /// The conditions of limits, costate and multipliers, part by part of the cycle; and the multipliers where the equations
+    /// tell them.
+    pub(super) fn checks(&self, parts: &[(f64, f64)]) -> (Vec<Check>, Option<Multipliers>) {
         let mut equations = Equations::default();
         let mut unknowns = Unknowns {
             rotation: equations.unknown(),
@@ -264,7 +264,7 @@ impl Costate<'_> {
         ];
         if least < Condition::TakesLimit.tolerance() {
             // Nothing tells the costate where no limit binds.
-            return checks;
+            return (checks, None);
         }
         let Unknowns {
             shares,
@@ -277,7 +277,7 @@ impl Costate<'_> {
         let positive: Vec<usize> = positive.collect();
         let Some((x, residual)) = equations.solve(&positive) else {
             checks.push(Condition::CostateWithinLimits.check(f64::NAN));
-            return checks;
+            return (checks, None);
         };
         let off = |own: &Vec<usize>| (own.iter().map(|at| x[*at]).sum::<f64>() - 1.0).abs();
         let hamiltonian = of_nodes().map(off).fold(0.0, f64::max);
@@ -295,67 +295,10 @@ impl Costate<'_> {
         let value = |at: &usize| x[*at];
         let of_node = |own: &Vec<usize>| own.iter().map(value).collect();
         let multipliers = Multipliers {
+            nodes,
             rotation: x[rotation],
             shares: (shares.iter().map(|part| part.iter().map(of_node).collect())).collect(),
         };
-        let second = self.least_second_variation(&parts, &nodes, &multipliers);
-        checks.extend(second.map(|least| Condition::NoFasterNeighbour.check(least)));
-        checks
+        (checks, Some(multipliers))
     }
-}
-
-/// Holds one cycle that takes this period against the conditions. Of the swimmer with L = 1.
-pub(crate) fn certificate(
-    (model, region): (&Model<f64>, &Region),
-    limits: &[Facet],
-    (file, gait): (&GaitFile, &AnyGait),
-    (period, distance): (f64, f64),
-) -> Certificate {
-    let mut checks = of_the_curve(model, region, file, gait);
-    let stroke = swim(model, gait, &Tolerance::default());
-    let d = stroke.displacement;
-    let apart = (d.norm() - distance).abs();
-    checks.extend([
-        Condition::DisplacementSteppedAgain.within(apart, again_within(distance)),
-        Condition::NoRotation.check(stroke.rotation.abs()),
-    ]);
-    let slowness = period / d.norm();
-    let costate = Costate {
-        model,
-        region,
-        limits,
-        gait,
-        panels: Panels::new(model, gait, &Tolerance::default()).collect(),
-        period,
-        p: d / d.norm() * slowness,
-        slowness,
-        rule: Rule::new(NODES),
-    };
-    checks.extend(costate.checks(file));
-    Certificate::new(checks)
-}
-
-/// The same of a gait from anywhere, within the limits that it takes in full.
-pub(crate) fn within_its_own(
-    of: (&Model<f64>, &Region),
-    (file, gait): (&GaitFile, &AnyGait),
-) -> Certificate {
-    let nodes = Rule::new(NODES).nodes;
-    let places = parts(of.1, file, gait).into_iter();
-    let places = places.flat_map(|(from, to)| nodes.iter().map(move |s| from + (to - from) * s));
-    let limits = taken::limits(of.0, gait, places);
-    let end = Panels::new(of.0, gait, &Tolerance::default()).last();
-    let distance = end.map_or(f64::NAN, |panel| {
-        let pose = panel.end_pose();
-        pose.x.hypot(pose.y)
-    });
-    certificate(of, &limits, (file, gait), (1.0, distance))
-}
-
-/// The arcs, cut into parts that are short and turn little.
-fn parts(region: &Region, file: &GaitFile, gait: &AnyGait) -> Vec<(f64, f64)> {
-    let rates = [1.0 / LONGEST, 1.0 / TURN];
-    let arcs = arcs(region, file, gait).into_iter();
-    arcs.flat_map(|arc| cut((arc.from, arc.to), |u| gait.at(u).rate, (rates, LEAST)))
-        .collect()
 }

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, ArcKind, GaitArc, GaitFile};
 use swimmer_model::{Gait as _, Model, Panel, Panels, Tolerance};
 
-use super::super::problem::Goal;
+use super::super::setting::Goal;
 use crate::height_map::legendre::gauss;
 use crate::member::Member;
 use crate::momentum::{Height, Momentum};

@@ -3,7 +3,7 @@
 use swimmer_files::ArcKind;
 
 use super::super::polish::{BENDS, second_variation};
-use super::super::problem::Setting;
+use super::super::setting::Setting;
 use super::super::structure::{Link, Motion, bend, holds, merge};
 use super::legs::Legs;
 use super::switching::along;

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix3x2, Matrix4, Vector2, Vector3, 
 
 use swimmer_model::Gait as _;
 
-use super::costate::{Costate, Node};
+use super::costate::{Costate, Multipliers, Node};
 use crate::region::Bound;
 
 /// What a spread of the limits weighs: enough where limits hardly bind, and what is left of a spread along a polygon is none the less
@@ -19,12 +19,6 @@ const SPREAD: f64 = 1e3;
 const CORNER: f64 = 0.1;
 /// Directions are looked at so close to the end of a part, as a share of the period.
 const BESIDE: f64 = 1e-9;
-
-/// A multiplier for each limit that binds at a node, node by node of each part, and that of the rotation.
-pub(super) struct Multipliers {
-    pub(super) shares: Vec<Vec<Vec<f64>>>,
-    pub(super) rotation: f64,
-}
 
 /// A push of the end of a part.
 struct Push {
@@ -54,14 +48,13 @@ impl Costate<'_> {
     pub(super) fn least_second_variation(
         &self,
         parts: &[(f64, f64)],
-        nodes: &[Vec<Node>],
         multipliers: &Multipliers,
     ) -> Option<f64> {
         let pushes = self.pushes(parts);
         if pushes.len() < 2 {
             return None;
         }
-        let sums = self.sums((parts, nodes), &pushes, multipliers);
+        let sums = self.sums(parts, &pushes, multipliers);
         let distance = self.distance();
         let along = sums.displacement.tr_mul(&self.p.normalize()) / distance;
         let across = sums
@@ -104,12 +97,7 @@ impl Costate<'_> {
         pushes
     }
 
-    fn sums(
-        &self,
-        (parts, nodes): (&[(f64, f64)], &[Vec<Node>]),
-        pushes: &[Push],
-        multipliers: &Multipliers,
-    ) -> Sums {
+    fn sums(&self, parts: &[(f64, f64)], pushes: &[Push], multipliers: &Multipliers) -> Sums {
         let size = pushes.len();
         let square = || DMatrix::zeros(size, size);
         let mut sums = Sums {
@@ -120,7 +108,7 @@ impl Costate<'_> {
             time: DVector::zeros(size),
             displacement: DMatrix::zeros(2, size),
         };
-        for (number, ((from, to), nodes)) in parts.iter().zip(nodes).enumerate() {
+        for (number, ((from, to), nodes)) in parts.iter().zip(&multipliers.nodes).enumerate() {
             let time = (to - from) * self.period;
             let next = (number + 1) % parts.len();
             let moves: Vec<Moves> = self

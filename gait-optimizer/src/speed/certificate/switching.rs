@@ -7,7 +7,7 @@
 use nalgebra::Vector2;
 use swimmer_files::ArcKind;
 
-use super::super::problem::{Goal, HeadingRule};
+use super::super::setting::{Goal, HeadingRule};
 use super::affine::Affine;
 use super::legs::{Leg, Legs, Node};
 use super::{Asked, RESTS, least_squares, on_bound};

@@ -3,7 +3,7 @@
 use nalgebra::{DVector, Matrix4, Vector4};
 
 use super::super::chain::Layout;
-use super::super::problem::{ALONG, Setting};
+use super::super::setting::{ALONG, Setting};
 use crate::region::Bound;
 
 /// One inequality, `value ≥ 0`, with the entries of its slope.

@@ -6,8 +6,8 @@ use super::super::arc::{MOST_PARAMETERS, Shape};
 use super::super::certificate::least_squares;
 use super::super::chain::Layout;
 use super::super::gauge::Facet;
-use super::super::problem::Setting;
 use super::super::quadrature::{cut, legendre};
+use super::super::setting::Setting;
 use super::{BENDS, Phase, begun, side};
 
 /// A turn of the direction by 1 rad counts as much as this share of the period; it is looked at over so short a share.

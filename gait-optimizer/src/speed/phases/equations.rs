@@ -4,8 +4,8 @@ use nalgebra::{Matrix4, Vector2, Vector4};
 
 use super::super::arc::{MOST_PARAMETERS, Place};
 use super::super::gauge::{Facet, Level};
-use super::super::problem::Setting;
 use super::super::quadrature::Rule;
+use super::super::setting::Setting;
 use super::{BENDS, Draft, Phase};
 
 /// One equation.

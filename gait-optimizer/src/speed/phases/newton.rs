@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, DVector, Vector4};
 
 use super::super::arc::{MOST_PARAMETERS, Place};
-use super::super::problem::Setting;
 use super::super::quadrature::Rule;
+use super::super::setting::Setting;
 use super::super::{bordered, chain};
 use super::equations::{Equation, Method, equations};
 use super::{BENDS, Curve, Draft, Phase, side};

@@ -5,8 +5,8 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use super::super::bordered;
 use super::super::chain::{self, Layout, Net};
 use super::super::ensemble;
-use super::super::problem::Setting;
 use super::super::quadrature::Rule;
+use super::super::setting::Setting;
 use super::super::structure::{Hold, Link, Motion};
 use crate::region::{Bound, Level};
 

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 
 use super::super::candidate::mended;
 use super::super::polish::Polished;
-use super::super::problem::Setting;
+use super::super::setting::Setting;
 use super::super::structure::{Link, Motion};
 use super::super::widened::SHORT;
 

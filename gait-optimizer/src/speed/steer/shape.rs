@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use swimmer_files::Bounds;
 
 use super::super::polish::Polished;
-use super::super::problem::Setting;
+use super::super::setting::Setting;
 use super::{certified, chains, near};
 use crate::numerics::halved;
 use crate::parallel::{Watch, in_parallel};

@@ -1,0 +1,189 @@
+//! What is asked, and what every step of the search shares.
+
+use nalgebra::{DVector, Vector2};
+use swimmer_model::Model;
+
+use super::arc::Jet;
+use super::chain::{self, Layout, Net, Weights};
+use super::gauge::Facet;
+use crate::member::Member;
+use crate::region::Region;
+
+/// What is to be the most per unit of time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Goal {
+    /// Net displacement, without net rotation.
+    #[default]
+    Distance,
+    /// Net rotation, wherever the gait leads.
+    Rotation,
+}
+
+/// Where along a straight way limits are looked at: the nodes of a Gauss rule.
+pub(super) const ALONG: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+
+/// Which way the gait shall lead, against its mean heading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum HeadingRule {
+    /// Any way.
+    #[default]
+    Any,
+    /// Along the mean heading.
+    Forward,
+    /// Across it.
+    Sideways,
+}
+
+impl HeadingRule {
+    /// By how much a heading misses, modulo half a turn (the gait run backwards leads the other way); none for any way.
+    pub(crate) fn off(self, heading: f64) -> Option<f64> {
+        use std::f64::consts::{FRAC_PI_2, PI};
+        let aim = match self {
+            Self::Any => return None,
+            Self::Forward => 0.0,
+            Self::Sideways => FRAC_PI_2,
+        };
+        let off = heading - aim;
+        Some(off - PI * (off / PI).round())
+    }
+}
+
+/// What every step of the search shares.
+#[derive(Debug, Clone)]
+pub(crate) struct Setting<'a> {
+    /// Of the swimmer with L = 1.
+    pub(crate) model: &'a Model<f64>,
+    pub(crate) region: &'a Region,
+    /// Largest |φ̇ᵢ|.
+    pub(crate) rates: [f64; 2],
+    /// What else limits the servos.
+    pub(crate) beyond: Vec<Facet>,
+    pub(crate) heading: HeadingRule,
+    /// The period, where it is prescribed.
+    pub(crate) period: Option<f64>,
+    pub(crate) goal: Goal,
+    /// Whose displacements, with these weights, are to be the most; where there are none, the model's own. What holds of the
+    /// whole chain holds of the model alone.
+    pub(crate) members: &'a [(Member, f64)],
+    /// A shape that the gait must pass: there gaits join.
+    pub(crate) anchor: Option<Vector2<f64>>,
+}
+
+impl Setting<'_> {
+    /// The least time in which the servos turn by this.
+    pub(crate) fn time(&self, way: &Vector2<f64>) -> f64 {
+        (way.x.abs() / self.rates[0]).max(way.y.abs() / self.rates[1])
+    }
+
+    /// The least time of a straight way from one shape to another, were the same limit the tightest all along.
+    pub(crate) fn least_time(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
+        let way = to - from;
+        let powers = ALONG.map(|s| self.model.power_matrix(&(from + way * s)));
+        let mean = |limit: &Facet| {
+            let along = powers.iter().map(|power| limit.value(power, &way));
+            along.sum::<f64>() / ALONG.len() as f64
+        };
+        self.beyond.iter().map(mean).fold(self.time(&way), f64::max)
+    }
+
+    /// Everything that limits the servos: four rates, then the rest.
+    pub(crate) fn limits(&self) -> Vec<Facet> {
+        let rates = Facet::of_rates(self.rates).into_iter();
+        rates.chain(self.beyond.iter().copied()).collect()
+    }
+
+    /// What is to be the most per unit of time.
+    pub(crate) fn measure(&self, net: &Net) -> f64 {
+        match self.goal {
+            Goal::Distance => net.distance(),
+            Goal::Rotation => net.rotation.abs(),
+        }
+    }
+
+    /// Whether the heading is prescribed.
+    fn heads(&self) -> bool {
+        self.goal == Goal::Distance && self.heading != HeadingRule::Any
+    }
+
+    /// How many equations hold of a whole chain.
+    pub(crate) fn equality_count(&self) -> usize {
+        usize::from(self.goal == Goal::Distance)
+            + usize::from(self.heads())
+            + usize::from(self.period.is_some())
+    }
+
+    /// Residuals of these equations: rotation, heading and period, as far as they are asked for.
+    pub(crate) fn residuals(&self, net: &Net, period: f64) -> Vec<f64> {
+        let mut values = Vec::with_capacity(3);
+        if self.goal == Goal::Distance {
+            values.push(net.rotation);
+            values.extend(self.heading.off(net.heading()));
+        }
+        values.extend(self.period.map(|asked| period / asked - 1.0));
+        values
+    }
+
+    /// Residuals of these equations, and their slopes.
+    pub(crate) fn equalities(
+        &self,
+        layout: &Layout,
+        jets: &[Jet],
+        z: &DVector<f64>,
+    ) -> (Net, Vec<f64>, Vec<DVector<f64>>) {
+        let slope = |rotation: f64, heading: f64| {
+            let weights = Weights {
+                log_distance: 0.0,
+                rotation,
+                heading,
+            };
+            chain::gradient(layout, jets, z, weights)
+        };
+        let (net, rotation) = slope(1.0, 0.0);
+        let mut slopes = Vec::with_capacity(3);
+        if self.goal == Goal::Distance {
+            slopes.push(rotation);
+        }
+        if self.heads() {
+            slopes.push(slope(0.0, 1.0).1);
+        }
+        if let Some(asked) = self.period {
+            let times = 2 * layout.arcs()..3 * layout.arcs();
+            slopes.push(DVector::from_fn(layout.size, |i, _| {
+                f64::from(u8::from(times.contains(&i))) / asked
+            }));
+        }
+        (net, self.residuals(&net, layout.period(z)), slopes)
+    }
+
+    /// Of −ln of the measure alone, or with the multipliers of the equations.
+    pub(crate) fn weights(&self, net: &Net, multipliers: Option<&[f64]>) -> Weights {
+        let multiplier = |at: usize| {
+            let all = multipliers.unwrap_or_default();
+            all.get(at).copied().unwrap_or(0.0)
+        };
+        match self.goal {
+            Goal::Distance => Weights {
+                // The members' own is added to it.
+                log_distance: if self.members.is_empty() { -1.0 } else { 0.0 },
+                rotation: multiplier(0),
+                heading: if self.heads() { multiplier(1) } else { 0.0 },
+            },
+            Goal::Rotation => Weights {
+                log_distance: 0.0,
+                rotation: -1.0 / net.rotation,
+                heading: 0.0,
+            },
+        }
+    }
+
+    /// What the second derivatives of −ln of the measure have beside those at fixed weights: the square of this.
+    pub(crate) fn of_the_log(
+        &self,
+        net: &Net,
+        (layout, jets): (&Layout, &[Jet]),
+        z: &DVector<f64>,
+    ) -> Option<DVector<f64>> {
+        (self.goal == Goal::Rotation)
+            .then(|| chain::gradient(layout, jets, z, self.weights(net, None)).1)
+    }
+}
