@@ -4,8 +4,8 @@ mod plane;
 mod speed_direct;
 
 use gait_optimizer::{
-    Bounds, Joined, Over, SpeedProblem, SteerProblem, Uncertainty, certify, fastest, front,
-    robust_speed, steer,
+    Bounds, HeadingRule, Joined, Over, SpeedProblem, SteerProblem, Uncertainty, certify, fastest,
+    front, robust_speed, steer,
 };
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
@@ -317,6 +317,21 @@ fn a_wider_bound_is_never_slower_over_many() {
 }
 
 /// Of four straight arcs, in the middle of one of which certificates begin it.
+/// Many starts lead to faster cycles of more corners than are asked for. They must not end the search for the others.
+#[test]
+fn more_starts_are_never_slower() {
+    let of = |starts| {
+        let problem = SpeedProblem {
+            heading: HeadingRule::Forward,
+            ..problem(Swimmer::robot(), 2.6, starts)
+        };
+        fastest(&problem).unwrap()
+    };
+    let (few, many) = (of(SpeedProblem::STARTS), of(1000));
+    assert!(many.longer > Some(few.speed_over_length));
+    assert!(many.speed_over_length > few.speed_over_length * (1.0 - 1e-9));
+}
+
 #[test]
 fn a_file_passes_wherever_it_begins() {
     let found = fastest(&problem(Swimmer::purcell(), 2.0, 8)).unwrap();

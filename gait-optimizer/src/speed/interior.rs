@@ -214,10 +214,9 @@ impl<'a> Method<'a> {
                 }
             }
         }
-        // Sides of a smooth curve may slide along it, which costs steps and changes nothing.
+        // Corners may slide along a straight way or a smooth curve, which costs steps and changes nothing.
         let look = self.look(&here)?;
-        (!self.setting.beyond.is_empty() && here.barrier < 1e-5)
-            .then(|| self.finish(&here, look.net))
+        (here.barrier < 1e-5).then(|| self.finish(&here, look.net))
     }
 
     fn look(&self, here: &Iterate) -> Option<Look> {

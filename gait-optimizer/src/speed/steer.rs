@@ -43,7 +43,7 @@ pub struct SteerProblem {
 pub struct Joined {
     /// |d|/(L T) \[1/s\], or |Δθ|/T \[rad/s\] of the gait that turns.
     pub rate: f64,
-    /// The same of the fastest gait that need not join.
+    /// The same of the fastest gait that was met and need not join.
     pub unjoined_rate: f64,
     /// \[s\]
     pub period: f64,
@@ -160,6 +160,7 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
         settings: &|kind: usize, anchor| setting(KINDS[kind].0, Some(anchor)),
         region: &turning,
         free: &free,
+        seed: of.seed,
         threads: of.threads,
     };
     let none_of = |kind: usize| of_kind(of, kind, free[kind].len());
@@ -178,9 +179,10 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
     };
     let told = |number: usize, chain: &Polished| {
         let (kind, objective, _) = KINDS[number];
-        let setting = setting(kind, Some(anchor));
+        let joined = setting(kind, Some(anchor));
         let of_file = (objective, &of.swimmer, within(kind.0).0);
-        told(of_file, &setting, chain, (fast, free[number][0].speed)).ok_or_else(|| none_of(number))
+        let unjoined = joining.unjoined(number, &setting(kind, None), chain);
+        told(of_file, &joined, chain, (fast, unjoined)).ok_or_else(|| none_of(number))
     };
     Ok(Steering {
         shape: anchor.into(),
@@ -324,7 +326,7 @@ fn cycle(
     Some((cycle, gait, certificate))
 }
 
-/// A joined chain as an answer; `fast` is the faster servo's rate, `unjoined` the speed of the fastest gait that need not join.
+/// A joined chain as an answer; `fast` is the faster servo's rate, `unjoined` the speed of the fastest gait that was met and need not join.
 fn told(
     of @ (_, _, bounds): (Objective, &Swimmer<f64>, &Bounds),
     setting: &Setting,

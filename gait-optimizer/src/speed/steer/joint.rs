@@ -1,8 +1,9 @@
 //! Switches beside the shape at which gaits join.
 //!
 //! There the costate may jump, so that no neighbour tells which way a servo should turn on the arcs that end there: a polygon that
-//! leaves a short arc out polishes to a chain whose switching function has the wrong sign where it comes to that shape. A short arc
-//! with that servo turning the other way is faster then, and the polish gives it its length.
+//! leaves a short arc out polishes to a chain whose switching function has the wrong sign where it comes to that shape, or whose
+//! singular arc comes to a shape of other height than 0. A short extreme arc is faster then, with that servo turning the other way or,
+//! beside a singular arc, at full rate, and the polish gives it its length.
 
 use nalgebra::Vector2;
 
@@ -22,8 +23,8 @@ pub(super) fn switched(setting: &Setting, chain: &Polished) -> Option<Polished> 
     let mut faster: Vec<Polished> = Vec::new();
     for length in LENGTHS {
         let short = length * SHORT * chain.layout.period(&chain.z);
-        for (before, servo) in [(true, 0), (true, 1), (false, 0), (false, 1)] {
-            let links = with_switch(setting, chain, (before, servo), short);
+        for end in [(true, 0), (true, 1), (false, 0), (false, 1)] {
+            let links = with_switch(setting, chain, end, short);
             let polished = links.and_then(|links| mended(setting, links));
             faster.extend(polished.filter(|other| other.speed > chain.speed * (1.0 + 1e-12)));
         }
@@ -33,12 +34,12 @@ pub(super) fn switched(setting: &Setting, chain: &Polished) -> Option<Polished> 
         .max_by(|a, b| a.speed.total_cmp(&b.speed))
 }
 
-/// The arcs with one more, that begins or ends where gaits join, on which a servo turns the other way; none where no extreme arc of
-/// such a length does.
+/// The arcs with one more, extreme, that begins or ends where gaits join; none where the arc there is too short for it, or runs along
+/// a bound.
 fn with_switch(
     setting: &Setting,
     chain: &Polished,
-    (before, servo): (bool, usize),
+    (before, number): (bool, usize),
     short: f64,
 ) -> Option<Vec<Link>> {
     let mut links = chain.links.clone();
@@ -49,16 +50,13 @@ fn with_switch(
     } else {
         links.first_mut()?
     };
-    let Motion::Extreme(mut ways) = old.motion else {
-        return None;
-    };
+    let ways = extreme(old.motion, number)?;
     let rest = old.time - short;
     if rest <= 0.0 {
         return None;
     }
     old.time = rest;
     let old = old.clone();
-    ways[servo] = -ways[servo];
     let step = Vector2::from(ways).component_mul(&Vector2::from(setting.rates)) * short;
     let first = links.first_mut()?;
     let joint = first.corner;
@@ -71,8 +69,27 @@ fn with_switch(
         ));
     } else {
         (first.motion, first.time) = (Motion::Extreme(ways), short);
-        let after = Link::new(joint + step, Vec::new(), old.motion, rest);
+        let after = Link {
+            bends: std::mem::take(&mut first.bends),
+            ..Link::new(joint + step, Vec::new(), old.motion, rest)
+        };
         links.insert(1, after);
     }
     Some(links)
+}
+
+/// One of the two extreme motions that an arc may lack at its end where gaits join.
+fn extreme(motion: Motion, number: usize) -> Option<[f64; 2]> {
+    match motion {
+        Motion::Extreme(mut ways) => {
+            ways[number] = -ways[number];
+            Some(ways)
+        }
+        Motion::Singular { pace, way } => {
+            let mut ways = [way; 2];
+            ways[1 - pace] = [1.0, -1.0][number];
+            Some(ways)
+        }
+        Motion::Straight { .. } | Motion::Curved { .. } => None,
+    }
 }

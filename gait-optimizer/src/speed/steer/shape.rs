@@ -5,6 +5,7 @@ use swimmer_files::Bounds;
 
 use super::super::polish::Polished;
 use super::super::setting::Setting;
+use super::super::starts;
 use super::{certified, chains, near};
 use crate::numerics::halved;
 use crate::parallel::{Watch, in_parallel};
@@ -22,10 +23,13 @@ const APART: f64 = 0.3;
 const STEPS: [f64; 2] = [0.12, 0.04];
 /// And so many times at most with each of them.
 const MOVES: usize = 6;
-/// Corners of a start.
+/// Corners of a start, and of those near a gait that is not certified.
 const CORNERS: usize = 14;
+const FINER: [usize; 5] = [10, 14, 20, 28, 35];
 /// Free gaits of a kind that a joined one is looked for near.
 const MODELS: usize = 3;
+/// Starts of any kind through the shape that is settled on.
+const OTHERS: usize = 32;
 /// Gaits of one kind are alike whose speeds differ by less than this share.
 const ALIKE: f64 = 1e-6;
 
@@ -55,6 +59,7 @@ pub(super) struct Joining<'a, 'm> {
     pub(super) region: &'a Region,
     /// Of each kind the gaits that need not join, fastest first.
     pub(super) free: &'a [Vec<Polished>],
+    pub(super) seed: u64,
     pub(super) threads: usize,
 }
 
@@ -74,22 +79,28 @@ impl Joining<'_, '_> {
     /// Gaits of a kind through a shape, the fastest first.
     fn gaits_at(&self, kind: usize, anchor: Vector2<f64>) -> Vec<Polished> {
         let setting = (self.settings)(kind, anchor);
-        let mut starts = Vec::new();
-        for model in models(&self.free[kind]) {
-            let outline = outline(model);
-            // A swimmer with equal side links swims as well by these images.
-            let images: [Image; 4] = [
-                |phi| *phi,
-                |phi| -phi,
-                |phi| Vector2::new(phi.y, phi.x),
-                |phi| Vector2::new(-phi.y, -phi.x),
-            ];
-            for image in images {
-                let points: Vec<_> = outline.iter().map(image).collect();
-                starts.push(self.through(anchor, &points));
-            }
-        }
-        chains(&setting, &starts, self.threads)
+        let starts = models(&self.free[kind]).flat_map(|model| self.starts(anchor, model, CORNERS));
+        chains(&setting, &starts.collect::<Vec<_>>(), self.threads)
+    }
+
+    /// Closed polygons through a shape near a gait and its images: a swimmer with equal side links swims as well by these.
+    fn starts(
+        &self,
+        anchor: Vector2<f64>,
+        gait: &Polished,
+        corners: usize,
+    ) -> [Vec<Vector2<f64>>; 4] {
+        let outline = outline(gait);
+        let images: [Image; 4] = [
+            |phi| *phi,
+            |phi| -phi,
+            |phi| Vector2::new(phi.y, phi.x),
+            |phi| Vector2::new(-phi.y, -phi.x),
+        ];
+        images.map(|image| {
+            let points: Vec<_> = outline.iter().map(image).collect();
+            self.through(anchor, &points, corners)
+        })
     }
 
     /// The fastest of each kind through a shape, certified or not.
@@ -99,6 +110,7 @@ impl Joining<'_, '_> {
     }
 
     /// The fastest of each kind through a shape, of those known and those found: one that is certified, unless another is faster.
+    /// Where another is, polygons of other numbers of corners near it may show arcs that it lacks.
     ///
     /// # Errors
     /// The kind of which there is none.
@@ -109,25 +121,58 @@ impl Joining<'_, '_> {
     ) -> Result<Three, usize> {
         let of = |kind: usize| {
             let setting = (self.settings)(kind, anchor);
-            let known = known.map(|three| three[kind].clone());
             let mut all = self.gaits_at(kind, anchor);
-            all.extend(known);
-            let certified = in_parallel(
-                all.len(),
-                self.threads,
-                &|_| (),
-                || (),
-                |(), index| certified(&setting, all[index].clone()),
-            );
-            let fastest = all.into_iter().reduce(faster)?;
-            let certified = certified.into_iter().flatten().reduce(faster);
-            Some(match certified {
-                Some(chain) if chain.speed > fastest.speed * (1.0 - ALIKE) => chain,
-                _ => fastest,
-            })
+            // Where the shape lies far from the fastest gaits, the best that passes it may be like none of them.
+            let others = (0..OTHERS).map(|index| starts::start(self.region, self.seed, index));
+            let others = others.map(|points| self.through(anchor, &points, points.len()));
+            all.extend(chains(&setting, &others.collect::<Vec<_>>(), self.threads));
+            all.extend(known.map(|three| three[kind].clone()));
+            let (fastest, certified) = self.fastest(&setting, all)?;
+            if certified {
+                return Some(fastest);
+            }
+            let mut all = self.again(&setting, anchor, &fastest);
+            all.push(fastest);
+            self.fastest(&setting, all).map(|(fastest, _)| fastest)
         };
         let of = |kind| of(kind).ok_or(kind);
         Ok([of(0)?, of(1)?, of(2)?])
+    }
+
+    /// Gaits near one, from polygons of other numbers of corners.
+    fn again(&self, setting: &Setting, anchor: Vector2<f64>, gait: &Polished) -> Vec<Polished> {
+        let starts = FINER.map(|corners| self.starts(anchor, gait, corners));
+        chains(setting, starts.as_flattened(), self.threads)
+    }
+
+    /// The speed of the fastest gait that was met and need not join: where the joined one outdoes those that starts led to, it may
+    /// lead to a faster one itself.
+    pub(super) fn unjoined(&self, kind: usize, free: &Setting, joined: &Polished) -> f64 {
+        let known = self.free[kind][0].speed;
+        if joined.speed <= known {
+            return known;
+        }
+        let corner = joined.links.iter().find(|link| link.anchored);
+        let again = corner.map(|link| self.again(free, link.corner, joined));
+        let fastest = again.into_iter().flatten().next();
+        fastest.map_or(0.0, |chain| chain.speed).max(joined.speed)
+    }
+
+    /// The fastest of some gaits, and whether it is certified: one that is goes before another that is as fast.
+    fn fastest(&self, setting: &Setting, all: Vec<Polished>) -> Option<(Polished, bool)> {
+        let certified = in_parallel(
+            all.len(),
+            self.threads,
+            &|_| (),
+            || (),
+            |(), index| certified(setting, all[index].clone()),
+        );
+        let fastest = all.into_iter().reduce(faster)?;
+        let certified = certified.into_iter().flatten().reduce(faster);
+        Some(match certified {
+            Some(chain) if chain.speed > fastest.speed * (1.0 - ALIKE) => (chain, true),
+            _ => (fastest, false),
+        })
     }
 
     /// The shape at which joining costs least of those that are tried, with the gaits, and how many were tried.
@@ -259,12 +304,17 @@ impl Joining<'_, '_> {
     }
 
     /// A closed polygon that passes the shape first, well within the bounds.
-    fn through(&self, anchor: Vector2<f64>, points: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
-        let every = points.len() / CORNERS;
+    fn through(
+        &self,
+        anchor: Vector2<f64>,
+        points: &[Vector2<f64>],
+        corners: usize,
+    ) -> Vec<Vector2<f64>> {
+        let every = points.len() / corners;
         let mut corners: Vec<Vector2<f64>> = points
             .iter()
             .step_by(every.max(1))
-            .take(CORNERS)
+            .take(corners)
             .copied()
             .collect();
         let off = |corner: &Vector2<f64>| (corner - anchor).norm();

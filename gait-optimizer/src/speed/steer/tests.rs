@@ -138,3 +138,23 @@ fn a_slower_gait_joins_where_the_fastest_lies_elsewhere() {
         assert!(joined.gait.certificate.pass());
     }
 }
+
+/// Through this shape, far from where starts lead, the best sideways gait has a singular arc beside an extreme one that begins at the
+/// shape; without the extreme one it is no optimum.
+#[test]
+fn a_singular_arc_begins_beside_the_shape() {
+    let problem = SteerProblem {
+        of: SpeedProblem {
+            bounds: Bounds::within(1.5),
+            threads: 2,
+            ..SpeedProblem::new(Swimmer::robot(), [1.0; 2])
+        },
+        shape: Some([1.19, 0.525]),
+    };
+    let steering = steer(&problem, &|_| ()).unwrap();
+    let gaits = [&steering.forward, &steering.left, &steering.turn];
+    for (joined, most) in gaits.into_iter().zip([0.03, 0.02, 0.01]) {
+        assert!((-1e-9..most).contains(&joined.cost()), "{}", joined.cost());
+        assert!(joined.gait.certificate.pass());
+    }
+}
