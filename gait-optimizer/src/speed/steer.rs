@@ -326,7 +326,8 @@ fn cycle(
     Some((cycle, gait, certificate))
 }
 
-/// A joined chain as an answer; `fast` is the faster servo's rate, `unjoined` the speed of the fastest gait that was met and need not join.
+/// A joined chain as an answer; `fast` is the faster servo's rate, `unjoined` the speed of the fastest gait that was met and need not
+/// join.
 fn told(
     of @ (_, _, bounds): (Objective, &Swimmer<f64>, &Bounds),
     setting: &Setting,

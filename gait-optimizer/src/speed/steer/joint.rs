@@ -1,4 +1,4 @@
-//! Switches beside the shape at which gaits join.
+//! Short extreme arcs beside the shape at which gaits join.
 //!
 //! There the costate may jump, so that no neighbour tells which way a servo should turn on the arcs that end there: a polygon that
 //! leaves a short arc out polishes to a chain whose switching function has the wrong sign where it comes to that shape, or whose
@@ -18,7 +18,7 @@ pub(super) const MOST: usize = 3;
 /// Lengths of a new arc that are tried, over the shortest.
 const LENGTHS: [f64; 2] = [1.0, 16.0];
 
-/// The fastest of the chains that have one servo switch just before gaits join, or just after; none where that is never faster.
+/// The fastest of the chains with one more extreme arc just before gaits join, or just after; none where that is never faster.
 pub(super) fn switched(setting: &Setting, chain: &Polished) -> Option<Polished> {
     let mut faster: Vec<Polished> = Vec::new();
     for length in LENGTHS {

@@ -23,9 +23,9 @@ const APART: f64 = 0.3;
 const STEPS: [f64; 2] = [0.12, 0.04];
 /// And so many times at most with each of them.
 const MOVES: usize = 6;
-/// Corners of a start, and of those near a gait that is not certified.
+/// Corners of a start, and of those that look again near a gait.
 const CORNERS: usize = 14;
-const FINER: [usize; 5] = [10, 14, 20, 28, 35];
+const CORNERS_AGAIN: [usize; 5] = [10, 14, 20, 28, 35];
 /// Free gaits of a kind that a joined one is looked for near.
 const MODELS: usize = 3;
 /// Starts of any kind through the shape that is settled on.
@@ -146,7 +146,7 @@ impl Joining<'_, '_> {
 
     /// Gaits near one, from polygons of other numbers of corners.
     fn again(&self, setting: &Setting, anchor: Vector2<f64>, gait: &Polished) -> Vec<Polished> {
-        let starts = FINER.map(|corners| self.starts(anchor, gait, corners));
+        let starts = CORNERS_AGAIN.map(|corners| self.starts(anchor, gait, corners));
         chains(setting, starts.as_flattened(), self.threads)
     }
 

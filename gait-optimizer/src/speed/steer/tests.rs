@@ -119,42 +119,35 @@ fn files_of_gaits_that_join_pass() {
     }
 }
 
+/// Through a shape there are three gaits, certified, and each costs no more than so much.
+#[track_caller]
+fn certified_within(swimmer: Swimmer<f64>, max_angle: f64, shape: [f64; 2], most: [f64; 3]) {
+    let problem = SteerProblem {
+        of: SpeedProblem {
+            bounds: Bounds::within(max_angle),
+            threads: 2,
+            ..SpeedProblem::new(swimmer, [1.0; 2])
+        },
+        shape: Some(shape),
+    };
+    let steering = steer(&problem, &|_| ()).unwrap();
+    let gaits = [&steering.forward, &steering.left, &steering.turn];
+    for (joined, most) in gaits.into_iter().zip(most) {
+        assert!((-1e-9..most).contains(&joined.cost()), "{}", joined.cost());
+        assert!(joined.gait.certificate.pass());
+    }
+}
+
 /// Purcell's fastest sideways gait stays far from where the other two swim: one that is 4 % slower joins them, though most starts lead
 /// to the fastest.
 #[test]
 fn a_slower_gait_joins_where_the_fastest_lies_elsewhere() {
-    let problem = SteerProblem {
-        of: SpeedProblem {
-            bounds: Bounds::within(2.4),
-            threads: 2,
-            ..SpeedProblem::new(Swimmer::purcell(), [1.0; 2])
-        },
-        shape: Some([1.68, 0.6]),
-    };
-    let steering = steer(&problem, &|_| ()).unwrap();
-    let gaits = [&steering.forward, &steering.left, &steering.turn];
-    for (joined, most) in gaits.into_iter().zip([0.01, 0.05, 0.01]) {
-        assert!((-1e-9..most).contains(&joined.cost()), "{}", joined.cost());
-        assert!(joined.gait.certificate.pass());
-    }
+    certified_within(Swimmer::purcell(), 2.4, [1.68, 0.6], [0.01, 0.05, 0.01]);
 }
 
 /// Through this shape, far from where starts lead, the best sideways gait has a singular arc beside an extreme one that begins at the
 /// shape; without the extreme one it is no optimum.
 #[test]
 fn a_singular_arc_begins_beside_the_shape() {
-    let problem = SteerProblem {
-        of: SpeedProblem {
-            bounds: Bounds::within(1.5),
-            threads: 2,
-            ..SpeedProblem::new(Swimmer::robot(), [1.0; 2])
-        },
-        shape: Some([1.19, 0.525]),
-    };
-    let steering = steer(&problem, &|_| ()).unwrap();
-    let gaits = [&steering.forward, &steering.left, &steering.turn];
-    for (joined, most) in gaits.into_iter().zip([0.03, 0.02, 0.01]) {
-        assert!((-1e-9..most).contains(&joined.cost()), "{}", joined.cost());
-        assert!(joined.gait.certificate.pass());
-    }
+    certified_within(Swimmer::robot(), 1.5, [1.19, 0.525], [0.03, 0.02, 0.01]);
 }
