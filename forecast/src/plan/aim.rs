@@ -23,6 +23,19 @@ pub(super) struct Aim<'a> {
     pub(super) way_in: Pose<f64>,
 }
 
+/// A chain that is to be aimed: by its legs alone. Many small cycles of the ways beside walls would magnify every correction.
+pub(super) struct Chain<'a> {
+    pub(super) out: &'a [Step],
+    pub(super) legs: Vec<Step>,
+    pub(super) back: Vec<Step>,
+}
+
+impl Chain<'_> {
+    fn steps(&self) -> Vec<Step> {
+        [self.out, &self.legs, &self.back].concat()
+    }
+}
+
 /// A chain that gets there.
 pub(super) struct Hit {
     pub(super) steps: Vec<Step>,
@@ -33,12 +46,15 @@ pub(super) struct Hit {
 
 impl Aim<'_> {
     /// A chain, played, and aimed until it hits; none where it does not. `begun`: the pose at the common shape.
-    pub(super) fn hit(&self, begun: &Pose<f64>, steps: &[Step]) -> Result<Option<Hit>, PlanError> {
+    pub(super) fn hit(
+        &self,
+        begun: &Pose<f64>,
+        mut chain: Chain<'_>,
+    ) -> Result<Option<Hit>, PlanError> {
+        let [out, legs, back] =
+            [chain.out, &chain.legs, &chain.back].map(|steps| self.nets.after(steps));
         // Where any heading will do, the one that the chain was made for.
-        let of_model = steps.iter().fold(*begun, |pose, step| {
-            pose * super::member::repeated(&self.nets.of(&step.member), step.cycles)
-        });
-        let heading = (of_model * self.way_in.inverse()).theta;
+        let heading = (*begun * out * legs * back * self.way_in.inverse()).theta;
         let target = Pose::new(
             self.errand.to.x,
             self.errand.to.y,
@@ -46,9 +62,8 @@ impl Aim<'_> {
         );
         let mut aimed_at = target;
         let mut best: Option<Hit> = None;
-        let mut steps = steps.to_vec();
         for _ in 0..SHOTS {
-            let shot = self.play(&target, &steps)?;
+            let shot = self.play(&target, chain.steps())?;
             // What is played ends this far from where the model ends that was aimed.
             let missed_by = aimed_at.inverse() * shot.reached;
             aimed_at = target * missed_by.inverse();
@@ -62,29 +77,29 @@ impl Aim<'_> {
             if good {
                 break;
             }
-            let wanted = begun.inverse() * (aimed_at * self.way_in);
+            let wanted = (*begun * out).inverse() * (aimed_at * self.way_in) * back.inverse();
             let servos = &self.errand.servos;
-            let Some(mut next) = settled(self.nets, self.family, servos, &wanted, &steps, 1.0)
+            let Some(mut next) = settled(self.nets, self.family, servos, &wanted, &chain.legs, 1.0)
             else {
                 break;
             };
             // What is played jumps where the period does, by a tick: it does so once.
-            for (next, before) in next.iter_mut().zip(&steps) {
+            for (next, before) in next.iter_mut().zip(&chain.legs) {
                 if next.cycles == before.cycles {
                     next.period = next.period.max(before.period);
                 }
             }
-            steps = next;
+            chain.legs = next;
         }
         Ok(best.filter(|best| best.off[0] < ACCEPTED[0] && best.off[1] < ACCEPTED[1]))
     }
 
-    fn play(&self, target: &Pose<f64>, steps: &[Step]) -> Result<Hit, PlanError> {
-        let tables = self.tables(steps)?;
+    fn play(&self, target: &Pose<f64>, steps: Vec<Step>) -> Result<Hit, PlanError> {
+        let tables = self.tables(&steps)?;
         let way = played(&tables, &self.errand.servos);
         let reached = self.errand.from * leads_to(self.model, &way);
         Ok(Hit {
-            steps: steps.to_vec(),
+            steps,
             off: distance(&reached, target),
             reached,
             way,

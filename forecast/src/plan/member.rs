@@ -200,6 +200,13 @@ impl Nets {
         }
     }
 
+    /// What some steps bring.
+    pub(super) fn after(&self, steps: &[Step]) -> Pose<f64> {
+        steps.iter().fold(Pose::identity(), |pose, step| {
+            pose * repeated(&self.of(&step.member), step.cycles)
+        })
+    }
+
     /// What a cycle of a member brings.
     pub(super) fn of(&self, member: &Member) -> Pose<f64> {
         let poses = &self.poses[member.kind as usize];

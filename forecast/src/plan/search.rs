@@ -2,7 +2,7 @@
 
 use swimmer_model::{Model, Pose};
 
-use super::aim::Aim;
+use super::aim::{Aim, Chain};
 use super::legs::{LARGEST, chains, settled, with_cycles};
 use super::room::{Room, Sweeps};
 use super::way_out::{Way, ways_out};
@@ -58,6 +58,16 @@ pub(super) struct Seen {
     pub(super) refused: Option<PlanError>,
 }
 
+/// A way out of the start and one into the target.
+struct Pair<'a> {
+    outward: &'a Way,
+    inward: &'a Way,
+    /// What legs between them have to bring.
+    wanted: Pose<f64>,
+    /// A chain of them takes about this long at least \[s\].
+    least: f64,
+}
+
 /// The quickest plan with these gaits, where there is one that is quicker than a known one: else that one.
 pub(super) fn quickest(
     model: &Model<f64>,
@@ -86,21 +96,35 @@ pub(super) fn quickest(
     let inward: Vec<Way> = inward
         .flat_map(|end| ways_out(sweeps, servos, &(end * way_in), effort.everywhere))
         .collect();
-    let mut pairs: Vec<_> = inward
-        .iter()
-        .flat_map(|inward| outward.iter().map(move |outward| (outward, inward)))
-        .collect();
-    let ways = |(one, other): &(&Way, &Way)| one.duration + other.duration;
-    pairs.sort_by(|a, b| ways(a).total_cmp(&ways(b)));
+    let pairs = inward.iter().flat_map(|inward| {
+        outward.iter().map(|outward| {
+            let wanted = outward.there.inverse() * inward.there;
+            let least = nets.least(family, &wanted) + outward.duration + inward.duration;
+            Pair {
+                outward,
+                inward,
+                wanted,
+                least,
+            }
+        })
+    });
+    // The quickest at best first.
+    let mut pairs: Vec<Pair> = pairs.collect();
+    pairs.sort_by(|a, b| a.least.total_cmp(&b.least));
     let mut best = known;
-    for (outward, inward) in pairs.into_iter().take(effort.pairs) {
+    for pair in pairs.into_iter().take(effort.pairs) {
+        let Pair {
+            outward,
+            inward,
+            wanted,
+            least,
+        } = pair;
         let ways = outward.duration + inward.duration;
         let most = best
             .as_ref()
             .map_or(f64::INFINITY, |best| best.duration * WORTH);
-        let wanted = outward.there.inverse() * inward.there;
-        if ways + nets.least(family, &wanted) > most {
-            continue;
+        if least > most {
+            break;
         }
         let between = chains(nets, family, servos, &wanted);
         seen.met[0] += between.len();
@@ -112,10 +136,12 @@ pub(super) fn quickest(
         left.sort_by(|a, b| duration(a).total_cmp(&duration(b)));
         left.retain(|legs| ways + duration(legs) < most);
         for legs in left.iter().take(effort.aimed) {
-            let back = inward.steps.iter().rev().map(Step::undone);
-            let out = outward.steps.iter().chain(legs).copied();
-            let steps: Vec<Step> = out.chain(back).collect();
-            let hit = match aim.hit(&begun, &steps) {
+            let chain = Chain {
+                out: &outward.steps,
+                legs: legs.clone(),
+                back: inward.steps.iter().rev().map(Step::undone).collect(),
+            };
+            let hit = match aim.hit(&begun, chain) {
                 Ok(Some(hit)) => hit,
                 Ok(None) => continue,
                 Err(error) => {

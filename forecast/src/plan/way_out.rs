@@ -21,7 +21,7 @@ const MOST: usize = 4000;
 /// Ways out that are told lead so far apart \[m, rad\].
 const APART: [f64; 2] = [0.04, 0.4];
 /// Ways out that are told.
-const WAYS: usize = 24;
+const WAYS: usize = 60;
 /// Cycles of a step; more only where so many have not led to another pose: the smallest cycles hardly swim.
 const CYCLES: u32 = 64;
 const MOST_CYCLES: u32 = 1024;
