@@ -18,6 +18,7 @@ mod fastest;
 mod front;
 pub(crate) mod gauge;
 pub(crate) mod interior;
+mod pairs;
 pub(crate) mod phases;
 mod polish;
 mod problem;
@@ -32,6 +33,7 @@ mod structure;
 #[cfg(test)]
 mod tests;
 mod widened;
+mod within_rates;
 
 pub(crate) use candidate::mended;
 pub(crate) use certificate::{MadeFor, certify_speed};

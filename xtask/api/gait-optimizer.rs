@@ -265,6 +265,7 @@ pub struct Fastest {
     pub period: f64,
     pub heading: f64,
     pub gait: OptimalGait,
+    pub starts: usize,
     pub found: usize,
     pub longer: Option<f64>,
     pub uncertified: Option<f64>,
@@ -638,8 +639,11 @@ pub struct SpeedProblem {
 impl SpeedProblem {
     pub const MAX_CORNERS: usize = 16;
     pub const STARTS: usize = 64;
+    pub const STARTS_OF_A_HEADING: usize = 256;
     pub const GUESSES: usize = 3;
     pub fn new(swimmer: Swimmer<f64>, rates: [f64; 2]) -> Self {}
+    #[must_use]
+    pub fn led(self, heading: HeadingRule) -> Self {}
 }
 impl SpeedProblem {
     pub fn watched(&self, watch: Watch<'_>) -> Result<Fastest, SpeedError> {}

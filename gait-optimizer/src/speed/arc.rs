@@ -11,7 +11,7 @@ use crate::batch::{Batch, Connection, First};
 use crate::region::{Clearance, Piece};
 
 /// Most coefficients of a bent arc.
-pub(crate) const MOST_BENDS: usize = 16;
+pub(crate) const MOST_BENDS: usize = 24;
 /// Both ends, and the bends.
 pub(crate) const MOST_PARAMETERS: usize = 4 + MOST_BENDS;
 

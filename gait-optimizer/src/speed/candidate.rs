@@ -1,11 +1,15 @@
 //! From a start to a polished chain: polygon, arcs, polish, and the arcs mended where the polish shows them wrong.
 
+use super::arc::MOST_BENDS;
 use super::interior::{Polygon, best_polygon};
 use super::polish::{Polished, polish};
 use super::setting::Setting;
 use super::structure::{Hold, Link, Motion, arcs, merge};
 use super::widened;
+use super::within_rates::within_rates;
 
+/// Sides of a finished polygon for each of a rough one.
+pub(super) const SIDES: usize = 2;
 /// Times that the arcs are mended.
 const MENDS: usize = 8;
 /// By how much the second variation of a gait that joins others may be negative.
@@ -16,9 +20,9 @@ const OVERSTEPPED: f64 = 1e-10;
 /// First guesses of a singular arc, over half of any new arc's.
 const LENGTHS: [f64; 3] = [1.0, 3.0, 9.0];
 
-/// The chain that a rough polygon leads to.
-pub(crate) fn candidate(setting: &Setting, rough: &Polygon) -> Option<Polished> {
-    let polygon = best_polygon(setting, rough, 2)?;
+/// The chain that a rough polygon leads to, with so many times its sides.
+pub(crate) fn candidate(setting: &Setting, rough: &Polygon, times: usize) -> Option<Polished> {
+    let polygon = best_polygon(setting, rough, times)?;
     let links = arcs(setting, &polygon)?;
     let polished = mended(setting, links)?;
     // A polish that lost what the polygon had went astray.
@@ -26,11 +30,34 @@ pub(crate) fn candidate(setting: &Setting, rough: &Polygon) -> Option<Polished> 
 }
 
 /// Polishes, and mends the arcs until they fit: bounds that are overstepped hold, corners that rest on a bound become arcs along
-/// it, arcs that run backwards go, and bounds that pull let go.
+/// it, arcs that run backwards go, ends of singular arcs at which a servo is too fast become extreme, and bounds that pull let go.
 pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished> {
     for _ in 0..MENDS {
         widened::along_bounds(setting, &mut links);
-        let polished = polish(setting, &links)?;
+        let Some(polished) = polish(setting, &links) else {
+            if std::env::var("ZZC").is_ok() {
+                eprintln!("   polish fails {} arcs", links.len());
+                for l in &links {
+                    eprintln!(
+                        "        {:?} {:?} t {:.5} held {:?} bends {}",
+                        l.corner.as_slice(),
+                        l.motion,
+                        l.time,
+                        l.held,
+                        l.bends.len()
+                    );
+                }
+            }
+            return None;
+        };
+        if std::env::var("ZZC").is_ok() {
+            eprintln!(
+                "   polish {} arcs {} convexity {}",
+                polished.speed,
+                links.len(),
+                polished.convexity
+            );
+        }
         let mut next = polished.links.clone();
         if widened::without_backwards(&mut next) {
             merge(&mut next);
@@ -38,6 +65,10 @@ pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished
                 return None;
             }
             links = next;
+            continue;
+        }
+        if let Some(slower) = within_rates(setting, &polished) {
+            links = slower;
             continue;
         }
         let mut changed = false;
@@ -63,16 +94,49 @@ pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished
             } else {
                 0.0
             };
-            return (polished.convexity > least).then_some(polished);
+            if polished.convexity > least {
+                return Some(polished);
+            }
+            // Few bends may follow a long singular arc so loosely that it hardly matters where it ends.
+            if polished.convexity < -NEARLY || !with_more_bends(&mut next) {
+                return None;
+            }
         }
         links = next;
     }
     None
 }
 
+/// What a chain passes as: itself, with more bends, or with short singular arcs that its polygon had no corners left for.
+pub(super) fn certified<T>(
+    setting: &Setting,
+    chain: &Polished,
+    passes: impl Fn(&Polished) -> Option<T>,
+) -> Option<T> {
+    let finer = || {
+        let mut links = chain.links.clone();
+        with_more_bends(&mut links).then(|| mended(setting, links))?
+    };
+    passes(chain)
+        .or_else(|| passes(&finer()?))
+        .or_else(|| passes(&bent(setting, chain)?))
+}
+
+/// Gives singular arcs as many bends as they may have; whether one had fewer.
+fn with_more_bends(links: &mut [Link]) -> bool {
+    let mut more = false;
+    for link in links {
+        if matches!(link.motion, Motion::Singular { .. }) && link.bends.len() < MOST_BENDS {
+            link.bends.resize(MOST_BENDS, 0.0);
+            more = true;
+        }
+    }
+    more
+}
+
 /// The chain with short singular arcs at the corners of extreme arcs, between themselves or with arcs along bounds, where that is
 /// faster; none where it is nowhere.
-pub(super) fn bent(setting: &Setting, chain: &Polished) -> Option<Polished> {
+fn bent(setting: &Setting, chain: &Polished) -> Option<Polished> {
     let mut best: Option<Polished> = None;
     let mut corner = 0;
     loop {

@@ -24,7 +24,9 @@ pub struct Fastest {
     pub heading: f64,
     /// The gait, timed as it shall run.
     pub gait: OptimalGait,
-    /// How many of the starts led here.
+    /// Closed curves that were started from, and how many of them led here.
+    pub starts: usize,
+    /// See [`Self::starts`].
     pub found: usize,
     /// |d|/(L T) of a cycle with more corners than were asked for, where one is better by more than 1e-6 of it.
     pub longer: Option<f64>,
@@ -65,6 +67,7 @@ pub(crate) fn told(
         distance_over_length: chain.net.distance(),
         period: chain.layout.period(&chain.z) / fast,
         heading,
+        starts: 0,
         found: 0,
         longer: None,
         uncertified: None,

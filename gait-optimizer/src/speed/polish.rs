@@ -115,7 +115,7 @@ pub(crate) fn second_variation(setting: &Setting, links: &[Link]) -> Option<f64>
 fn written(setting: &Setting, links: &[Link]) -> (Layout, DVector<f64>) {
     let shapes = links
         .iter()
-        .map(|link| link.motion.shape(setting, BENDS))
+        .map(|link| link.motion.shape(setting, link.bends.len().max(BENDS)))
         .collect();
     let layout = Layout::new(shapes);
     let mut z = DVector::zeros(layout.size);

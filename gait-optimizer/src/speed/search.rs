@@ -1,18 +1,20 @@
 //! From rough polygons to the fastest chain that is certified.
 
+use std::cell::OnceCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
 use swimmer_model::Model;
 
-use super::candidate::{bent, candidate, mended};
+use super::candidate::{SIDES, candidate, certified, mended};
 use super::error::SpeedError;
 use super::fastest::{Fastest, told};
 use super::interior::{Polygon, rough_polygon};
+use super::pairs::pairs;
 use super::polish::Polished;
 use super::problem::{SpeedProblem, validate};
 use super::selection::{Group, groups};
-use super::setting::Setting;
+use super::setting::{HeadingRule, Setting};
 use super::starts::start;
 use crate::immobile::refuse_immobile;
 use crate::parallel::{Watch, in_parallel};
@@ -22,6 +24,8 @@ use crate::region::Region;
 pub(super) const ROUGH_SHARE: f64 = 0.6;
 /// Groups that are finished at a time.
 const BATCH: usize = 8;
+/// Sides of a finished polygon for each of a rough one where the chain that fewer lead to is not certified.
+const MORE_SIDES: [usize; 2] = [3, 4];
 /// Rough polygons that are slower than this share of the best finished gait are left.
 const HOPELESS: f64 = 0.93;
 
@@ -77,19 +81,17 @@ impl SpeedProblem {
         let region = Region::new(&problem.bounds, &problem.swimmer.links);
         let fast = problem.rates[0].max(problem.rates[1]);
         let setting = problem.setting(&model, &region);
-        let roughly = |(): &mut (), index: usize| {
-            rough_polygon(&setting, &start(&region, problem.seed, index))
-        };
+        let random = (0..problem.starts.max(1)).map(|index| start(&region, problem.seed, index));
+        let mut starts: Vec<_> = random.collect();
+        if problem.heading != HeadingRule::Any {
+            starts.extend(pairs(problem, &setting));
+        }
+        let roughly = |(): &mut (), index: usize| rough_polygon(&setting, &starts[index]);
         let share = |share: f64| watch(ROUGH_SHARE * share);
-        let rough = in_parallel(
-            problem.starts.max(1),
-            problem.threads,
-            &share,
-            || (),
-            roughly,
-        );
+        let rough = in_parallel(starts.len(), problem.threads, &share, || (), roughly);
         let groups = groups(rough.into_iter().flatten().collect());
-        Ok(finish(Search::new(problem, &setting, fast, &groups), watch))
+        let search = Search::new(problem, &setting, fast, (starts.len(), &groups));
+        Ok(finish(search, watch))
     }
 }
 
@@ -112,9 +114,19 @@ pub(super) struct Search<'a> {
     setting: &'a Setting<'a>,
     /// The faster servo's rate.
     fast: f64,
+    /// Closed curves that were started from.
+    starts: usize,
     groups: &'a [Group],
-    /// Chains, fastest first, each with the group that it comes from.
-    chains: Vec<(Polished, usize)>,
+    /// Fastest first.
+    chains: Vec<Finished>,
+}
+
+/// A chain that a group led to.
+struct Finished {
+    chain: Polished,
+    group: usize,
+    /// Its gait, where one is certified, once that has been asked for.
+    certified: OnceCell<Option<Fastest>>,
 }
 
 impl<'a> Search<'a> {
@@ -122,12 +134,13 @@ impl<'a> Search<'a> {
         problem: &'a SpeedProblem,
         setting: &'a Setting<'a>,
         fast: f64,
-        groups: &'a [Group],
+        (starts, groups): (usize, &'a [Group]),
     ) -> Self {
         Self {
             problem,
             setting,
             fast,
+            starts,
             groups,
             chains: Vec::new(),
         }
@@ -137,7 +150,7 @@ impl<'a> Search<'a> {
     pub(super) fn run(mut self, watch: Watch<'_>) -> Result<Fastest, SpeedError> {
         let mut done = 0;
         loop {
-            let best = self.chains.first().map_or(0.0, |(best, _)| best.speed);
+            let best = self.chains.first().map_or(0.0, |best| best.chain.speed);
             let left = self.groups.get(done);
             let hopeless = |speed: f64| left.is_none_or(|group| group.speed() < HOPELESS * speed);
             if hopeless(best) {
@@ -169,13 +182,13 @@ impl<'a> Search<'a> {
             );
         }
         let (mut optima, mut longer, mut uncertified) = (Vec::new(), 0, Vec::new());
-        for chain in shortest_of_alike(&self.chains) {
-            match self.certified(chain) {
+        for one in shortest_of_alike(&self.chains) {
+            match self.certified(one) {
                 Some(answer) if answer.gait.arcs.len() <= self.problem.max_corners => {
                     optima.push(answer);
                 }
                 Some(_) => longer += 1,
-                None => uncertified.push(chain.speed * self.fast),
+                None => uncertified.push(one.chain.speed * self.fast),
             }
         }
         SpeedAtlas {
@@ -187,24 +200,41 @@ impl<'a> Search<'a> {
     }
 
     /// A chain as an answer, where its certificate passes.
-    fn certified(&self, chain: &Polished) -> Option<Fastest> {
-        let Self {
-            problem,
-            setting,
-            fast,
-            ref chains,
-            ..
-        } = *self;
-        let passes = |answer: &Fastest| answer.gait.certificate.pass();
-        let first = told(problem, setting, chain, fast).filter(passes);
-        // Where the polygon had no corner left for a short singular arc the certificate shows it.
-        let bent = || told(problem, setting, &bent(setting, chain)?, fast).filter(passes);
-        let mut answer = first.or_else(bent)?;
+    fn certified(&self, one: &Finished) -> Option<Fastest> {
+        let mut answer = one
+            .certified
+            .get_or_init(|| self.looked_into(one))
+            .clone()?;
+        answer.starts = self.starts;
         // Two of one group stand for the same starts.
-        let here = chains.iter().filter(|(one, _)| alike(one, chain));
-        let here: BTreeSet<usize> = here.map(|(_, group)| *group).collect();
+        let here = self.chains.iter().filter(|other| alike(other, one));
+        let here: BTreeSet<usize> = here.map(|other| other.group).collect();
         answer.found = here.into_iter().map(|group| self.groups[group].count).sum();
         Some(answer)
+    }
+
+    /// The certified gait of a chain, or of one that more sides of its polygon show.
+    fn looked_into(&self, one: &Finished) -> Option<Fastest> {
+        let setting = self.setting;
+        let passes = |chain: &Polished| {
+            let found = told(self.problem, setting, chain, self.fast)?;
+            found.gait.certificate.pass().then_some(found)
+        };
+        let from_more_sides = |times: usize| {
+            let polygons = self.groups[one.group].chosen.iter();
+            let mut chains = polygons.filter_map(|polygon| candidate(setting, polygon, times));
+            chains.find_map(|chain| certified(setting, &chain, passes))
+        };
+        let found = certified(setting, &one.chain, passes);
+        if found.is_some() || self.is_long(one) {
+            return found;
+        }
+        MORE_SIDES.into_iter().find_map(from_more_sides)
+    }
+
+    /// Whether a chain has more corners than are asked for.
+    fn is_long(&self, one: &Finished) -> bool {
+        one.chain.links.len() > self.problem.max_corners
     }
 
     /// Finishes what was chosen of some groups.
@@ -224,12 +254,16 @@ impl<'a> Search<'a> {
             || (),
             |(), index| {
                 let (polygon, group) = jobs[index];
-                Some((candidate(self.setting, polygon)?, group))
+                Some(Finished {
+                    chain: candidate(self.setting, polygon, SIDES)?,
+                    group,
+                    certified: OnceCell::new(),
+                })
             },
         );
         self.chains.extend(finished.into_iter().flatten());
         self.chains
-            .sort_by(|(a, _), (b, _)| b.speed.total_cmp(&a.speed));
+            .sort_by(|a, b| b.chain.speed.total_cmp(&a.chain.speed));
     }
 
     /// The fastest chain that is certified.
@@ -243,8 +277,12 @@ impl<'a> Search<'a> {
         let (mut longer, mut uncertified) = (None, None);
         for best in shortest_of_alike(chains) {
             let better = |speed: &mut Option<f64>| {
-                speed.get_or_insert(best.speed * fast);
+                speed.get_or_insert(best.chain.speed * fast);
             };
+            // Of those the fastest is told.
+            if self.is_long(best) && longer.is_some() {
+                continue;
+            }
             let Some(mut answer) = self.certified(best) else {
                 better(&mut uncertified);
                 continue;
@@ -270,22 +308,23 @@ impl<'a> Search<'a> {
 }
 
 /// Whether two chains are as fast as each other.
-fn alike(a: &Polished, b: &Polished) -> bool {
-    (a.speed - b.speed).abs() <= 1e-9 * b.speed
+fn alike(a: &Finished, b: &Finished) -> bool {
+    (a.chain.speed - b.chain.speed).abs() <= 1e-9 * b.chain.speed
 }
 
 /// One chain of each speed, fastest first: the one of the shortest period, as a gait run several times over is as fast as the
 /// gait.
-fn shortest_of_alike(chains: &[(Polished, usize)]) -> Vec<&Polished> {
-    let mut best: Vec<&Polished> = Vec::new();
-    for (chain, _) in chains {
+fn shortest_of_alike(chains: &[Finished]) -> Vec<&Finished> {
+    let period = |one: &Finished| one.chain.layout.period(&one.chain.z);
+    let mut best: Vec<&Finished> = Vec::new();
+    for one in chains {
         match best.last_mut() {
-            Some(last) if alike(chain, last) => {
-                if chain.layout.period(&chain.z) < last.layout.period(&last.z) * (1.0 - 1e-9) {
-                    *last = chain;
+            Some(last) if alike(one, last) => {
+                if period(one) < period(last) * (1.0 - 1e-9) {
+                    *last = one;
                 }
             }
-            _ => best.push(chain),
+            _ => best.push(one),
         }
     }
     best

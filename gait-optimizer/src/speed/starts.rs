@@ -26,6 +26,16 @@ const CIRCLES: [([f64; 2], f64); 12] = [
     ([0.3, 0.6], 0.3),
     ([0.6, -0.3], 0.3),
 ];
+/// A map of shapes.
+pub(super) type Image = fn(&Vector2<f64>) -> Vector2<f64>;
+
+/// The mirror images of a body: along it, across it, and both. The last two are of the same swimmer where its side links are alike.
+pub(super) const IMAGES: [Image; 3] = [
+    |phi| -phi,
+    |phi| Vector2::new(phi.y, phi.x),
+    |phi| Vector2::new(-phi.y, -phi.x),
+];
+
 /// The largest angle looked at where nothing bounds it.
 const REACH: f64 = 3.5;
 

@@ -14,7 +14,7 @@ use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{Model, Swimmer, Tolerance, swim};
 
-use super::candidate::{bent, candidate, mended};
+use super::candidate::{self, SIDES, candidate, mended};
 use super::certificate::{Asked, certificate, of_cycle};
 use super::error::SpeedError;
 use super::interior::rough_polygon;
@@ -226,7 +226,7 @@ fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Ve
         &|_| (),
         || (),
         |(), index| {
-            let chain = candidate(setting, chosen[index])?;
+            let chain = candidate(setting, chosen[index], SIDES)?;
             match setting.anchor {
                 Some(_) => joined(setting, chain),
                 None => certified(setting, chain),
@@ -238,20 +238,17 @@ fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Ve
     chains
 }
 
-/// A chain whose certificate passes, perhaps with short singular arcs put in, or with a servo that switches just before gaits join or
-/// just after.
+/// A chain whose certificate passes, perhaps with more bends, with short singular arcs put in, or with a servo that switches just
+/// before gaits join or just after.
 fn certified(setting: &Setting, mut chain: Polished) -> Option<Polished> {
     let passes = |chain: &Polished| {
-        let told = cycle(setting, chain, Bounds::default());
-        told.is_some_and(|(.., certificate)| certificate.pass())
+        let (.., certificate) = cycle(setting, chain, Bounds::default())?;
+        certificate.pass().then(|| chain.clone())
     };
     let mut switches = joint::MOST;
     loop {
-        if passes(&chain) {
-            return Some(chain);
-        }
-        if let Some(bent) = bent(setting, &chain).filter(passes) {
-            return Some(bent);
+        if let Some(certified) = candidate::certified(setting, &chain, passes) {
+            return Some(certified);
         }
         switches = switches.checked_sub(1)?;
         chain = joint::switched(setting, &chain)?;

@@ -97,16 +97,16 @@ impl Objective for Speed {
             ));
         };
         let uncertain = self.robustly.load(file)?;
+        let heading = match self.heading {
+            Heading::Any => HeadingRule::Any,
+            Heading::Forward => HeadingRule::Forward,
+            Heading::Sideways => HeadingRule::Sideways,
+        };
         let problem = SpeedProblem {
             bounds,
-            heading: match self.heading {
-                Heading::Any => HeadingRule::Any,
-                Heading::Forward => HeadingRule::Forward,
-                Heading::Sideways => HeadingRule::Sideways,
-            },
             period: self.period,
             threads: threads::available(),
-            ..SpeedProblem::new(file.swimmer, rates)
+            ..SpeedProblem::new(file.swimmer, rates).led(heading)
         };
         let (mut farthest, mut robustness) = (None, None);
         let found = task.watched(SEARCHING, |watch| -> Outcome<_> {
@@ -183,7 +183,7 @@ fn told(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
         )
         .row(
             "found",
-            format!("from {} of {} starts", found.found, SpeedProblem::STARTS),
+            format!("from {} of {} starts", found.found, found.starts),
         );
     tell_arcs(&mut answer, &found.gait.arcs);
     answer
@@ -191,7 +191,7 @@ fn told(kind: &str, file: &SwimmerFile, found: &Fastest) -> Document {
         .key("corners", found.gait.corners().to_vec())
         .key("max_corners", SpeedProblem::MAX_CORNERS)
         // Closed curves that were started from, and how many led to this gait.
-        .key("starts", SpeedProblem::STARTS)
+        .key("starts", found.starts)
         .key("found", found.found)
         // Of a certified cycle with more corners, where one is better by more than 1e-6 of it.
         .key("longer_speed_over_length_per_s", found.longer)

@@ -5,7 +5,7 @@ use swimmer_files::Bounds;
 
 use super::super::polish::Polished;
 use super::super::setting::Setting;
-use super::super::starts;
+use super::super::starts::{self, IMAGES, Image};
 use super::{certified, chains, near};
 use crate::numerics::halved;
 use crate::parallel::{Watch, in_parallel};
@@ -64,8 +64,6 @@ pub(super) struct Joining<'a, 'm> {
 }
 
 type Three = [Polished; 3];
-/// A map of shapes.
-type Image = fn(&Vector2<f64>) -> Vector2<f64>;
 
 /// What is asked of a free gait to guess what joining it costs.
 struct Outlined {
@@ -83,7 +81,7 @@ impl Joining<'_, '_> {
         chains(&setting, &starts.collect::<Vec<_>>(), self.threads)
     }
 
-    /// Closed polygons through a shape near a gait and its images: a swimmer with equal side links swims as well by these.
+    /// Closed polygons through a shape near a gait and its images.
     fn starts(
         &self,
         anchor: Vector2<f64>,
@@ -91,16 +89,13 @@ impl Joining<'_, '_> {
         corners: usize,
     ) -> [Vec<Vector2<f64>>; 4] {
         let outline = outline(gait);
-        let images: [Image; 4] = [
-            |phi| *phi,
-            |phi| -phi,
-            |phi| Vector2::new(phi.y, phi.x),
-            |phi| Vector2::new(-phi.y, -phi.x),
-        ];
-        images.map(|image| {
+        let through = |image: Image| {
             let points: Vec<_> = outline.iter().map(image).collect();
             self.through(anchor, &points, corners)
-        })
+        };
+        let [along, across, both] = IMAGES;
+        let itself: Image = |phi| *phi;
+        [itself, along, across, both].map(through)
     }
 
     /// The fastest of each kind through a shape, certified or not.

@@ -1,0 +1,66 @@
+//! A cycle and an image of it, one after the other: where a heading is prescribed that the fastest cycle has not, the two may lead
+//! by turns to either side of it.
+
+use nalgebra::Vector2;
+
+use super::interior::{Polygon, rough_polygon};
+use super::problem::SpeedProblem;
+use super::selection::groups;
+use super::setting::{HeadingRule, Setting};
+use super::starts::{IMAGES, start};
+use crate::parallel::in_parallel;
+
+/// Starts that lead to cycles of any heading, and how many different ones of those are paired.
+const STARTS: usize = 32;
+const CYCLES: usize = 6;
+
+/// Closed polygons of pairs of the fastest cycles of any heading.
+pub(super) fn pairs(problem: &SpeedProblem, setting: &Setting) -> Vec<Vec<Vector2<f64>>> {
+    let any = Setting {
+        heading: HeadingRule::Any,
+        ..setting.clone()
+    };
+    let rough = in_parallel(
+        STARTS.min(problem.starts),
+        problem.threads,
+        &|_| (),
+        || (),
+        |(), index| rough_polygon(&any, &start(setting.region, problem.seed, index)),
+    );
+    let groups = groups(rough.into_iter().flatten().collect());
+    let cycles = groups
+        .iter()
+        .take(CYCLES)
+        .filter_map(|group| group.chosen.first());
+    cycles.flat_map(pairs_of).collect()
+}
+
+/// A cycle with each of its images, run either way.
+fn pairs_of(cycle: &Polygon) -> Vec<Vec<Vector2<f64>>> {
+    let corners: Vec<Vector2<f64>> = (0..cycle.layout.arcs())
+        .map(|corner| cycle.layout.corner(&cycle.z, corner))
+        .collect();
+    let mut all = Vec::with_capacity(2 * IMAGES.len());
+    for image in IMAGES {
+        let mut other: Vec<Vector2<f64>> = corners.iter().map(image).collect();
+        all.push(joined(&corners, &other));
+        other.reverse();
+        all.push(joined(&corners, &other));
+    }
+    all
+}
+
+/// Two polygons, one after the other, from where they are nearest to each other.
+fn joined(one: &[Vector2<f64>], other: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
+    let mut nearest = (f64::INFINITY, 0, 0);
+    for (i, a) in one.iter().enumerate() {
+        for (j, b) in other.iter().enumerate() {
+            let off = (a - b).norm();
+            if off < nearest.0 {
+                nearest = (off, i, j);
+            }
+        }
+    }
+    let (_, i, j) = nearest;
+    [&one[i..], &one[..i], &other[j..], &other[..j]].concat()
+}
