@@ -30,8 +30,8 @@ use crate::threads;
 /// hold together, and with --max-rate; the answer says which of them binds on what share of the cycle.
 ///
 /// Fastest means the best of all cycles of at most 16 corners: a chain of unlike cycles may always beat each of them, and a
-/// longer cycle that was met and is better by more than 1e-6 is told. The gait is timed as it shall run, with its corners where
-/// a servo turns round.
+/// longer cycle that was met and is better by more than 1e-6 is told: with a prescribed heading often a cycle and its mirror image
+/// in turn. The gait is timed as it shall run, with its corners where a servo turns round.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Speed {
     /// No servo turns faster than this angle a second; a second one is that of joint 2
