@@ -207,10 +207,13 @@ fn nothing_faster(pairs: usize, starts: usize, heading: HeadingRule, of_kind: Ki
     for pair in 0..pairs {
         let max_angle = rng.random_range(1.2..3.1);
         let problem = problem(random_swimmer(&mut rng), max_angle, 0).led(heading);
-        // A cycle of more corners than are asked for may be faster: that is told as well.
+        // Where a heading is prescribed a faster cycle of more corners is told as well, or a chain that is not certified.
         let found = fastest(&problem).map(|found| {
-            let longer = found.longer.unwrap_or_default();
-            found.speed_over_length.max(longer)
+            let others = [found.longer, found.uncertified].into_iter().flatten();
+            match heading {
+                HeadingRule::Any => found.speed_over_length,
+                _ => others.fold(found.speed_over_length, f64::max),
+            }
         });
         let mut best = 0.0_f64;
         for _ in 0..starts {
@@ -245,7 +248,7 @@ fn nothing_faster(pairs: usize, starts: usize, heading: HeadingRule, of_kind: Ki
 #[test]
 fn nothing_from_random_starts_is_faster() {
     nothing_faster(1, 6, HeadingRule::Any, |direct| direct);
-    nothing_faster(1, 4, HeadingRule::Sideways, left);
+    nothing_faster(1, 10, HeadingRule::Sideways, left);
 }
 
 #[test]

@@ -124,7 +124,7 @@ pub fn robust_speed(
         ..setting.clone()
     };
     let mut fastest = told(problem, &weighed, &found.point, design.fast).ok_or_else(lost)?;
-    fastest.found = optimum.found;
+    (fastest.starts, fastest.found) = (optimum.starts, optimum.found);
     let nominal = ensemble.values(&design, &design.start);
     let gait = &mut fastest.gait;
     let turns = Condition::NobodyTurns.check(turns_nobody(&ensemble, &gait.cycle)?);

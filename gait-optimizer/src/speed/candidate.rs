@@ -107,19 +107,22 @@ pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished
     None
 }
 
-/// What a chain passes as: itself, with more bends, or with short singular arcs that its polygon had no corners left for.
+/// What a chain passes as: itself, with more bends, or, unless it is long, with short singular arcs that its polygon had no corners
+/// left for: that costs many a polish.
 pub(super) fn certified<T>(
     setting: &Setting,
     chain: &Polished,
+    long: bool,
     passes: impl Fn(&Polished) -> Option<T>,
 ) -> Option<T> {
     let finer = || {
         let mut links = chain.links.clone();
         with_more_bends(&mut links).then(|| mended(setting, links))?
     };
+    let bent = || if long { None } else { bent(setting, chain) };
     passes(chain)
         .or_else(|| passes(&finer()?))
-        .or_else(|| passes(&bent(setting, chain)?))
+        .or_else(|| passes(&bent()?))
 }
 
 /// Gives singular arcs as many bends as they may have; whether one had fewer.

@@ -11,8 +11,8 @@ use super::starts::{IMAGES, start};
 use crate::parallel::in_parallel;
 
 /// Starts that lead to cycles of any heading, and how many different ones of those are paired.
-const STARTS: usize = 32;
-const CYCLES: usize = 6;
+const STARTS: usize = 64;
+const CYCLES: usize = 12;
 
 /// Closed polygons of pairs of the fastest cycles of any heading.
 pub(super) fn pairs(problem: &SpeedProblem, setting: &Setting) -> Vec<Vec<Vector2<f64>>> {

@@ -223,10 +223,11 @@ impl<'a> Search<'a> {
         let from_more_sides = |times: usize| {
             let polygons = self.groups[one.group].chosen.iter();
             let mut chains = polygons.filter_map(|polygon| candidate(setting, polygon, times));
-            chains.find_map(|chain| certified(setting, &chain, passes))
+            chains.find_map(|chain| certified(setting, &chain, false, passes))
         };
-        let found = certified(setting, &one.chain, passes);
-        if found.is_some() || self.is_long(one) {
+        let long = self.is_long(one);
+        let found = certified(setting, &one.chain, long, passes);
+        if found.is_some() || long {
             return found;
         }
         MORE_SIDES.into_iter().find_map(from_more_sides)
