@@ -34,30 +34,7 @@ pub(crate) fn candidate(setting: &Setting, rough: &Polygon, times: usize) -> Opt
 pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished> {
     for _ in 0..MENDS {
         widened::along_bounds(setting, &mut links);
-        let Some(polished) = polish(setting, &links) else {
-            if std::env::var("ZZC").is_ok() {
-                eprintln!("   polish fails {} arcs", links.len());
-                for l in &links {
-                    eprintln!(
-                        "        {:?} {:?} t {:.5} held {:?} bends {}",
-                        l.corner.as_slice(),
-                        l.motion,
-                        l.time,
-                        l.held,
-                        l.bends.len()
-                    );
-                }
-            }
-            return None;
-        };
-        if std::env::var("ZZC").is_ok() {
-            eprintln!(
-                "   polish {} arcs {} convexity {}",
-                polished.speed,
-                links.len(),
-                polished.convexity
-            );
-        }
+        let polished = polish(setting, &links)?;
         let mut next = polished.links.clone();
         if widened::without_backwards(&mut next) {
             merge(&mut next);

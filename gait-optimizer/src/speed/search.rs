@@ -191,6 +191,10 @@ impl<'a> Search<'a> {
                 None => uncertified.push(one.chain.speed * self.fast),
             }
         }
+        // What chains are certified as may be slower than they are, and alike.
+        let speed = |found: &Fastest| found.speed_over_length;
+        optima.sort_by(|a, b| speed(b).total_cmp(&speed(a)));
+        optima.dedup_by(|a, b| (speed(a) - speed(b)).abs() <= 1e-9 * speed(b));
         SpeedAtlas {
             optima,
             longer,
@@ -276,27 +280,42 @@ impl<'a> Search<'a> {
             ..
         } = *self;
         let (mut longer, mut uncertified) = (None, None);
-        for best in shortest_of_alike(chains) {
-            let better = |speed: &mut Option<f64>| {
-                speed.get_or_insert(best.chain.speed * fast);
-            };
-            // Of those the fastest is told.
-            if self.is_long(best) && longer.is_some() {
+        let mut answer: Option<Fastest> = None;
+        for one in shortest_of_alike(chains) {
+            let speed = one.chain.speed * fast;
+            // What a chain is certified as may be slower than the chain.
+            if answer
+                .as_ref()
+                .is_some_and(|answer| answer.speed_over_length >= speed)
+            {
+                break;
+            }
+            // Of long ones the fastest is told.
+            if self.is_long(one) && longer.is_some() {
                 continue;
             }
-            let Some(mut answer) = self.certified(best) else {
-                better(&mut uncertified);
-                continue;
-            };
-            if answer.gait.arcs.len() > problem.max_corners {
-                better(&mut longer);
-                continue;
+            match self.certified(one) {
+                None => {
+                    uncertified.get_or_insert(speed);
+                }
+                Some(found) if found.gait.arcs.len() > problem.max_corners => {
+                    longer.get_or_insert(found.speed_over_length);
+                }
+                Some(found) => {
+                    let known = answer
+                        .as_ref()
+                        .map_or(0.0, |answer| answer.speed_over_length);
+                    if found.speed_over_length > known {
+                        answer = Some(found);
+                    }
+                }
             }
+        }
+        if let Some(mut answer) = answer {
             let clearly = |speed: Option<f64>| {
                 speed.filter(|speed| *speed > answer.speed_over_length * (1.0 + 1e-6))
             };
-            answer.longer = clearly(longer);
-            answer.uncertified = clearly(uncertified);
+            (answer.longer, answer.uncertified) = (clearly(longer), clearly(uncertified));
             return Ok(answer);
         }
         Err(SpeedError::NoGait {
