@@ -386,7 +386,6 @@ fn long_singular_arcs_are_followed_closely() {
     assert!(by_two_methods(links, 3.244_072_132_870_433_4, 2.4) > 0.011);
 }
 
-/// Of four straight arcs, in the middle of one of which certificates begin it.
 /// Many starts lead to faster cycles of more corners than are asked for. They must not end the search for the others.
 #[test]
 fn more_starts_are_never_slower() {
@@ -402,6 +401,7 @@ fn more_starts_are_never_slower() {
     assert!(many.speed_over_length > few.speed_over_length * (1.0 - 1e-9));
 }
 
+/// Of four straight arcs, in the middle of one of which certificates begin it.
 #[test]
 fn a_file_passes_wherever_it_begins() {
     let found = fastest(&problem(Swimmer::purcell(), 2.0, 8)).unwrap();

@@ -3,12 +3,11 @@
 
 use nalgebra::Vector2;
 
-use super::interior::{Polygon, rough_polygon};
+use super::interior::Polygon;
 use super::problem::SpeedProblem;
-use super::selection::groups;
+use super::selection::rough_groups;
 use super::setting::{HeadingRule, Setting};
 use super::starts::{IMAGES, start};
-use crate::parallel::in_parallel;
 
 /// Starts that lead to cycles of any heading, and how many different ones of those are paired.
 const STARTS: usize = 64;
@@ -20,14 +19,10 @@ pub(super) fn pairs(problem: &SpeedProblem, setting: &Setting) -> Vec<Vec<Vector
         heading: HeadingRule::Any,
         ..setting.clone()
     };
-    let rough = in_parallel(
-        STARTS.min(problem.starts),
-        problem.threads,
-        &|_| (),
-        || (),
-        |(), index| rough_polygon(&any, &start(setting.region, problem.seed, index)),
-    );
-    let groups = groups(rough.into_iter().flatten().collect());
+    let starts =
+        (0..STARTS.min(problem.starts)).map(|index| start(setting.region, problem.seed, index));
+    let starts: Vec<_> = starts.collect();
+    let groups = rough_groups(&any, &starts, problem.threads, &|_| ());
     let cycles = groups
         .iter()
         .take(CYCLES)

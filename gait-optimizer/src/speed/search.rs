@@ -9,11 +9,11 @@ use swimmer_model::Model;
 use super::candidate::{SIDES, candidate, certified, mended};
 use super::error::SpeedError;
 use super::fastest::{Fastest, told};
-use super::interior::{Polygon, rough_polygon};
+use super::interior::Polygon;
 use super::pairs::pairs;
 use super::polish::Polished;
 use super::problem::{SpeedProblem, validate};
-use super::selection::{Group, groups};
+use super::selection::{Group, rough_groups};
 use super::setting::{HeadingRule, Setting};
 use super::starts::start;
 use crate::immobile::refuse_immobile;
@@ -86,10 +86,8 @@ impl SpeedProblem {
         if problem.heading != HeadingRule::Any {
             starts.extend(pairs(problem, &setting));
         }
-        let roughly = |(): &mut (), index: usize| rough_polygon(&setting, &starts[index]);
         let share = |share: f64| watch(ROUGH_SHARE * share);
-        let rough = in_parallel(starts.len(), problem.threads, &share, || (), roughly);
-        let groups = groups(rough.into_iter().flatten().collect());
+        let groups = rough_groups(&setting, &starts, problem.threads, &share);
         let search = Search::new(problem, &setting, fast, (starts.len(), &groups));
         Ok(finish(search, watch))
     }

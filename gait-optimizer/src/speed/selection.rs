@@ -1,6 +1,10 @@
 //! Which of the rough polygons are worth finishing.
 
-use super::interior::Polygon;
+use nalgebra::Vector2;
+
+use super::interior::{Polygon, rough_polygon};
+use super::setting::Setting;
+use crate::parallel::{Watch, in_parallel};
 
 /// Polygons as fast and as long as each other, but for this share, lie near one gait.
 const ALIKE: f64 = 3e-3;
@@ -20,6 +24,18 @@ impl Group {
     pub(crate) fn speed(&self) -> f64 {
         self.chosen.first().map_or(0.0, |first| first.speed)
     }
+}
+
+/// The groups of the rough polygons that starts lead to, fastest first.
+pub(super) fn rough_groups(
+    setting: &Setting,
+    starts: &[Vec<Vector2<f64>>],
+    threads: usize,
+    watch: Watch<'_>,
+) -> Vec<Group> {
+    let roughly = |(): &mut (), index: usize| rough_polygon(setting, &starts[index]);
+    let rough = in_parallel(starts.len(), threads, watch, || (), roughly);
+    groups(rough.into_iter().flatten().collect())
 }
 
 /// The groups of some polygons, fastest first.

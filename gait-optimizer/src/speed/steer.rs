@@ -17,7 +17,6 @@ use swimmer_model::{Model, Swimmer, Tolerance, swim};
 use super::candidate::{self, SIDES, candidate, mended};
 use super::certificate::{Asked, certificate, of_cycle};
 use super::error::SpeedError;
-use super::interior::rough_polygon;
 use super::polish::Polished;
 use super::problem::{SpeedProblem, validate};
 use super::setting::{Goal, HeadingRule, Setting};
@@ -207,14 +206,7 @@ fn of_kind(problem: &SpeedProblem, kind: usize, chains: usize) -> SpeedError {
 fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Vec<Polished> {
     /// Groups of rough polygons that are finished.
     const GROUPS: usize = 6;
-    let rough = in_parallel(
-        starts.len(),
-        threads,
-        &|_| (),
-        || (),
-        |(), index| rough_polygon(setting, &starts[index]),
-    );
-    let groups = selection::groups(rough.into_iter().flatten().collect());
+    let groups = selection::rough_groups(setting, starts, threads, &|_| ());
     let chosen: Vec<_> = groups
         .iter()
         .take(GROUPS)
