@@ -197,7 +197,7 @@ fn a_target_at_a_wall_is_reached_by_many_small_cycles() {
     reached_straight(to, heading);
 }
 
-/// Nor does it hang on the last digits of the gaits: by these, of plates 60 µm farther apart, there was no way once.
+/// Nor does it hang on the last digits of the gaits: these are of plates 60 µm farther apart.
 #[test]
 fn a_target_at_a_wall_is_reached_by_slightly_other_gaits() {
     let (model, _) = robot();
