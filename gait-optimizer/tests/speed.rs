@@ -11,8 +11,9 @@ use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use swimmer_files::AnyGait;
-use swimmer_model::{Gait as _, Links, Swimmer};
+use swimmer_model::{Gait as _, Links, Model, Swimmer};
 
+use plane::Pose;
 use speed_direct::Direct;
 
 fn problem(swimmer: Swimmer<f64>, max_angle: f64, starts: usize) -> SpeedProblem {
@@ -384,6 +385,71 @@ fn long_singular_arcs_are_followed_closely() {
     let side = 0.112_559_416_085_393_66;
     let links = [0.077_485_900_962_984_09, side, side];
     assert!(by_two_methods(links, 3.244_072_132_870_433_4, 2.4) > 0.011);
+}
+
+/// A curve of angles run at full rate: what it brings, its time and ∫θ dt.
+#[derive(Clone, Copy, Default)]
+struct Run(Pose, f64, f64);
+
+impl Run {
+    fn along(model: &Model<f64>, points: &[Vector2<f64>]) -> Self {
+        points.windows(2).fold(Self::default(), |run, side| {
+            let pose = Pose::along(model, [side[0], side[1]]);
+            let time = (side[1] - side[0]).amax();
+            run.then(Self(pose, time, 0.5 * time * pose.theta))
+        })
+    }
+
+    fn then(self, next: Self) -> Self {
+        let turned = self.2 + next.2 + next.1 * self.0.theta;
+        Self(self.0 * next.0, self.1 + next.1, turned)
+    }
+
+    fn times(self, count: usize) -> Self {
+        (0..count).fold(Self::default(), |run, _| run.then(self))
+    }
+}
+
+/// Why fastest means of so many corners where the heading is prescribed: a cycle may tack. It leads to one side of the heading so many
+/// times, turns, leads to the other side as often and turns back, the faster the less often it turns.
+#[test]
+fn tacks_come_near_the_fastest_of_any_heading() {
+    let swimmer = Swimmer::robot();
+    let found = fastest(&problem(swimmer, 2.4, 12)).unwrap();
+    let gait = AnyGait::from_file(&found.gait.gait_file("")).unwrap();
+    let model = Model::new(&swimmer.of_unit_length()).unwrap();
+    let cycle: Vec<Vector2<f64>> = (0..=2000)
+        .map(|k| gait.at(f64::from(k) / 2e3).phi)
+        .collect();
+    // Of the mirror image, which turns the other way, all the opposite.
+    let run = |points: &[Vector2<f64>]| {
+        let image: Vec<Vector2<f64>> = points.iter().map(|phi| -phi).collect();
+        [points, &image].map(|points| Run::along(&model, points))
+    };
+    let legs = run(&cycle);
+    // To the mirror image of where it begins, round a square some times until the other tack leads best.
+    let way = |size: f64, rounds: usize| {
+        let corners = [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
+        let mut points = vec![cycle[0], Vector2::zeros()];
+        for _ in 0..rounds {
+            points.extend(corners.map(|corner| Vector2::from(corner) * size));
+        }
+        points.push(-cycle[0]);
+        run(&points)
+    };
+    let tacks = |ways: [Run; 2], often: usize| {
+        let pass = |side: usize| legs[side].times(often).then(ways[side]);
+        let Run(pose, time, turned) = pass(0).then(pass(1));
+        let heading = pose.y.atan2(pose.x) - turned / time;
+        assert!(pose.theta.abs() < 1e-9 && heading.sin().abs() < 1e-9);
+        pose.x.hypot(pose.y) / time
+    };
+    let tries = (0..400).map(|k| way(0.1 * f64::from(1 + k % 23), k as usize / 23));
+    let best = tries.max_by(|a, b| tacks(*a, 1000).total_cmp(&tacks(*b, 1000)));
+    let speeds = [1, 10, 100, 1000, 10_000].map(|often| tacks(best.unwrap(), often));
+    let fastest = found.speed_over_length;
+    println!("{speeds:?}, fastest of any heading {fastest}");
+    assert!(speeds.is_sorted() && speeds[4] < fastest && speeds[4] > 0.999 * fastest);
 }
 
 /// Many starts lead to faster cycles of more corners than are asked for. They must not end the search for the others.

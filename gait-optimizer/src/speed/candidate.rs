@@ -24,9 +24,25 @@ const LENGTHS: [f64; 3] = [1.0, 3.0, 9.0];
 pub(crate) fn candidate(setting: &Setting, rough: &Polygon, times: usize) -> Option<Polished> {
     let polygon = best_polygon(setting, rough, times)?;
     let links = arcs(setting, &polygon)?;
-    let polished = mended(setting, links)?;
     // A polish that lost what the polygon had went astray.
-    (polished.speed > polygon.speed * (1.0 - 1e-4)).then_some(polished)
+    let keeps = |chain: &Polished| chain.speed > polygon.speed * (1.0 - 1e-4);
+    let once = lap(setting, &links);
+    let of_links = |links| mended(setting, links).filter(keeps);
+    once.into_iter().chain([links]).find_map(of_links)
+}
+
+/// The links of one lap of a chain that runs a shorter one several times over.
+fn lap(setting: &Setting, links: &[Link]) -> Option<Vec<Link>> {
+    const SAME: f64 = 1e-2;
+    let count = links.len();
+    let repeats = |lap: &usize| {
+        let later = links.iter().cycle().skip(*lap);
+        let mut pairs = links.iter().zip(later);
+        count.is_multiple_of(*lap)
+            && pairs.all(|(a, b)| a.motion == b.motion && (a.corner - b.corner).norm() < SAME)
+    };
+    let lap = (3..=count / 2).find(repeats)?;
+    setting.period.is_none().then(|| links[..lap].to_vec())
 }
 
 /// Polishes, and mends the arcs until they fit: bounds that are overstepped hold, corners that rest on a bound become arcs along
@@ -84,22 +100,26 @@ pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished
     None
 }
 
-/// What a chain passes as: itself, with more bends, or, unless it is long, with short singular arcs that its polygon had no corners
-/// left for: that costs many a polish.
-pub(super) fn certified<T>(
+/// What a chain passes as: itself, or with more bends.
+pub(super) fn certified_closely<T>(
     setting: &Setting,
     chain: &Polished,
-    long: bool,
     passes: impl Fn(&Polished) -> Option<T>,
 ) -> Option<T> {
     let finer = || {
         let mut links = chain.links.clone();
         with_more_bends(&mut links).then(|| mended(setting, links))?
     };
-    let bent = || if long { None } else { bent(setting, chain) };
-    passes(chain)
-        .or_else(|| passes(&finer()?))
-        .or_else(|| passes(&bent()?))
+    passes(chain).or_else(|| passes(&finer()?))
+}
+
+/// The same, or with short singular arcs that its polygon had no corners left for: that costs many a polish.
+pub(super) fn certified<T>(
+    setting: &Setting,
+    chain: &Polished,
+    passes: impl Fn(&Polished) -> Option<T>,
+) -> Option<T> {
+    certified_closely(setting, chain, &passes).or_else(|| passes(&bent(setting, chain)?))
 }
 
 /// Gives singular arcs as many bends as they may have; whether one had fewer.

@@ -1,5 +1,5 @@
-//! A cycle and an image of it, one after the other: where a heading is prescribed that the fastest cycle has not, the two may lead
-//! by turns to either side of it.
+//! A cycle and an image of it, one after the other: where a heading is prescribed that the fastest cycle has not, the two may tack,
+//! leading to either side of it in turn.
 
 use nalgebra::Vector2;
 

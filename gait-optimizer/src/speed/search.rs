@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use swimmer_model::Model;
 
-use super::candidate::{SIDES, candidate, certified, mended};
+use super::candidate::{SIDES, candidate, certified, certified_closely, mended};
 use super::error::SpeedError;
 use super::fastest::{Fastest, told};
 use super::interior::Polygon;
@@ -215,7 +215,7 @@ impl<'a> Search<'a> {
         Some(answer)
     }
 
-    /// The certified gait of a chain, or of one that more sides of its polygon show.
+    /// The certified gait of a chain, or, unless it is longer than was asked for, of one that more sides of its polygon show.
     fn looked_into(&self, one: &Finished) -> Option<Fastest> {
         let setting = self.setting;
         let passes = |chain: &Polished| {
@@ -225,14 +225,13 @@ impl<'a> Search<'a> {
         let from_more_sides = |times: usize| {
             let polygons = self.groups[one.group].chosen.iter();
             let mut chains = polygons.filter_map(|polygon| candidate(setting, polygon, times));
-            chains.find_map(|chain| certified(setting, &chain, false, passes))
+            chains.find_map(|chain| certified(setting, &chain, passes))
         };
-        let long = self.is_long(one);
-        let found = certified(setting, &one.chain, long, passes);
-        if found.is_some() || long {
-            return found;
+        if self.is_long(one) {
+            return certified_closely(setting, &one.chain, passes);
         }
-        MORE_SIDES.into_iter().find_map(from_more_sides)
+        certified(setting, &one.chain, passes)
+            .or_else(|| MORE_SIDES.into_iter().find_map(from_more_sides))
     }
 
     /// Whether a chain has more corners than are asked for.

@@ -239,7 +239,7 @@ fn certified(setting: &Setting, mut chain: Polished) -> Option<Polished> {
     };
     let mut switches = joint::MOST;
     loop {
-        if let Some(certified) = candidate::certified(setting, &chain, false, passes) {
+        if let Some(certified) = candidate::certified(setting, &chain, passes) {
             return Some(certified);
         }
         switches = switches.checked_sub(1)?;

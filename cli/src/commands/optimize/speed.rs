@@ -1,7 +1,7 @@
 //! `swimmer optimize speed`: the fastest gait that servos can play.
 
 use gait_optimizer::{
-    Fastest, HeadingRule, OptimalGait, SpeedError, SpeedProblem, front, robust_speed,
+    Fastest, HeadingRule, OptimalGait, SpeedError, SpeedProblem, fastest, front, robust_speed,
 };
 use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
 
@@ -30,8 +30,9 @@ use crate::threads;
 /// hold together, and with --max-rate; the answer says which of them binds on what share of the cycle.
 ///
 /// Fastest means the best of all cycles of at most 16 corners: a chain of unlike cycles may always beat each of them, and a
-/// longer cycle that was met and is better by more than 1e-6 is told: with a prescribed heading often a cycle and its mirror image
-/// in turn. The gait is timed as it shall run, with its corners where a servo turns round.
+/// longer cycle that was met and is better by more than 1e-6 is told. With a prescribed heading there often is one, as a cycle may
+/// tack: lead to either side of the heading in turn, the faster the less often it turns, up to the speed of the fastest gait of any
+/// heading, which is told beside it. The gait is timed as it shall run, with its corners where a servo turns round.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Speed {
     /// No servo turns faster than this angle a second; a second one is that of joint 2
@@ -130,6 +131,9 @@ impl Objective for Speed {
         if let Some(robustness) = &robustness {
             tell_robustness(&mut answer, robustness, "|d|/(L T)");
         }
+        if robustness.is_none() && self.period.is_none() && heading != HeadingRule::Any {
+            tell_any_heading(&mut answer, &problem, found.speed_over_length)?;
+        }
         let servo = file
             .servo
             .or(self.bounds.playable().then(ServoFile::default));
@@ -139,6 +143,19 @@ impl Objective for Speed {
         }
         Ok(Found::gait(answer, task, gait, None))
     }
+}
+
+/// Adds how fast the fastest gait of any heading is beside one whose heading is prescribed.
+fn tell_any_heading(answer: &mut Document, led: &SpeedProblem, speed: f64) -> Outcome<()> {
+    let any = fastest(&led.led(HeadingRule::Any))?.speed_over_length;
+    answer.key("any_heading_speed_over_length_per_s", any).row(
+        "any heading",
+        format!(
+            "{:.2} % faster: long cycles that tack come near it",
+            (any / speed - 1.0) * 100.0
+        ),
+    );
+    Ok(())
 }
 
 /// Adds how a gait of this period is played by these servos, and says where it is beyond the robot of the file.
