@@ -25,7 +25,7 @@ mod starts;
 use swimmer_files::{Bounds, Objective};
 use swimmer_model::{Model, Swimmer};
 
-use crate::extremal::Walls;
+use crate::extremal::walls;
 use crate::immobile::{Immobile, refuse_immobile};
 use crate::optimal_gait::OptimalGait;
 use crate::parallel::Watch;
@@ -206,7 +206,7 @@ pub fn atlas_watched(problem: &AtlasProblem, watch: Watch<'_>) -> Result<Atlas, 
         let asked = efficiency::Efficiency {
             problem,
             model: &model,
-            walls: &Walls::new(&problem.bounds, &problem.swimmer.links),
+            walls: &walls(&problem.bounds, &problem.swimmer.links),
         };
         return Ok(pipeline::run(problem, &model, &asked, watch));
     }

@@ -17,7 +17,7 @@ use swimmer_model::{Model, Swimmer};
 
 use crate::certificate::{Condition, crossings, simple_and_turning_once};
 use crate::extremal::gait::{Order, gait};
-use crate::extremal::{Extremal, Unpolished, Walls, polish};
+use crate::extremal::{Extremal, Unpolished, polish, walls};
 use crate::immobile::refuse_immobile;
 use crate::optimal_gait::{EfficiencyFigures, OptimalGait};
 use crate::problem::{GaitClass, InvalidProblem, validated};
@@ -217,7 +217,7 @@ pub fn efficiency_from(
 ) -> Result<OptimalGait, EfficiencyError> {
     let model = problem.validated()?;
     refuse_immobile(&model, &problem.bounds)?;
-    let everywhere = Walls::new(&Bounds::default(), &problem.swimmer.links);
+    let everywhere = walls(&Bounds::default(), &problem.swimmer.links);
     let extremal = polish(&model, &everywhere, direct.gait, true)
         .ok()
         .and_then(|found| same_gait(&model, found, direct.efficiency, problem.branch.sign()))
@@ -347,7 +347,7 @@ fn finished(
 
 /// Whether a free gait keeps the bounds: then it is the optimum under them too.
 fn keeps_bounds(problem: &EfficiencyProblem, gait: &OptimalGait) -> bool {
-    let walls = Walls::new(&problem.bounds, &problem.swimmer.links);
+    let walls = walls(&problem.bounds, &problem.swimmer.links);
     gait.phi()
         .iter()
         .all(|phi| walls.nearest(phi).is_none_or(|(_, depth)| depth <= 0.0))

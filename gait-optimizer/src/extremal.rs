@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `equations` | the reduced flow, free of position and heading, with its linearisation |
 //! | `flow` | flow maps with exact Jacobians |
-//! | `wall` | bounds of the joint angles as curves to run along |
+//! | `wall` | bounds of the joint angles, as curves to run along |
 //! | `shooting` | multiple shooting over arcs: a quarter, or a closed curve without symmetry |
 //! | `guess` | states and momenta from any closed curve |
 //! | `structure` | which arcs a curve is made of, and what a solution says of that |
@@ -29,11 +29,12 @@ use swimmer_model::{Gait, Model};
 
 use crate::certify::ascents_of_efficiency;
 use crate::cycle::Cycle;
+use crate::region::Region;
 use equations::shape;
 use guess::Trajectory;
 use shooting::{Chain, Class, Solved, Unsolved, solve};
 use structure::{next_structure, of_curve};
-pub(crate) use wall::Walls;
+pub(crate) use wall::walls;
 
 /// How often a structure may be changed.
 const MOST_STRUCTURES: usize = 12;
@@ -66,7 +67,7 @@ pub(crate) enum Unpolished {
 /// meant is for the caller to compare. It may be a saddle.
 pub(crate) fn polish<G: Gait<f64> + ?Sized>(
     model: &Model<f64>,
-    walls: &Walls,
+    walls: &Region,
     gait: &G,
     quarter: bool,
 ) -> Result<Extremal, Unpolished> {
@@ -83,7 +84,7 @@ pub(crate) fn polish<G: Gait<f64> + ?Sized>(
 /// Solves a chain, structure after structure.
 pub(crate) fn polish_chain(
     model: &Model<f64>,
-    walls: &Walls,
+    walls: &Region,
     class: Class,
     guess: Chain,
 ) -> Result<Extremal, Unpolished> {

@@ -13,6 +13,7 @@ use swimmer_files::{ArcKind, Bounds};
 use swimmer_model::Links;
 
 pub(crate) use clearance::Piece;
+use clearance::tips_meet;
 pub use clearance::{Clearance, Level};
 
 /// A straight bound: `normal · Φ ≤ offset`, with a unit normal that points out.
@@ -26,7 +27,7 @@ pub struct Edge {
     pub kind: ArcKind,
 }
 
-/// One bound of a region.
+/// One bound of a region, or one smooth curve of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bound {
     /// One of the angles, or both alike.
@@ -35,20 +36,13 @@ pub enum Bound {
     Clearance(Clearance),
 }
 
-/// One smooth curve of a bound, also beyond the stretch on which it decides.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Wall {
-    /// A bound of one angle, or of both alike.
-    Straight(Edge),
-    /// One piece of the bound that keeps the side links apart.
-    Curved(Clearance, Piece),
-}
-
 /// Where all bounds hold. Convex but for the clearance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
     edges: Vec<Edge>,
     clearance: Option<Clearance>,
+    /// Where the tips meet at φ₁, φ₂ > 0; the other corner is its negative.
+    corner: Option<Vector2<f64>>,
     /// Beyond this |Φ| the search does not look \[rad\]; farther than any corner where a bound binds.
     pub(crate) horizon: f64,
 }
@@ -95,11 +89,11 @@ impl Bound {
         }
     }
 
-    /// The smooth curve that it is at a shape.
-    pub(crate) fn wall(&self, phi: &Vector2<f64>) -> Wall {
+    /// The smooth curve that it is at a shape, also beyond the stretch on which that decides.
+    pub(crate) fn held_at(&self, phi: &Vector2<f64>) -> Self {
         match self {
-            Self::Straight(edge) => Wall::Straight(*edge),
-            Self::Clearance(clearance) => Wall::Curved(*clearance, clearance.piece(phi)),
+            Self::Straight(_) => *self,
+            Self::Clearance(clearance) => Self::Clearance(clearance.held_to(clearance.piece(phi))),
         }
     }
 
@@ -160,39 +154,6 @@ impl Bound {
     }
 }
 
-impl Wall {
-    /// What an arc along it is called.
-    pub(crate) fn kind(&self) -> ArcKind {
-        self.edge().map_or(ArcKind::Clearance, |edge| edge.kind)
-    }
-
-    /// The edge, where it is straight.
-    pub(crate) fn edge(&self) -> Option<&Edge> {
-        match self {
-            Self::Straight(edge) => Some(edge),
-            Self::Curved(..) => None,
-        }
-    }
-
-    /// Whether it is the bound on the distance from tip to tip.
-    pub(crate) fn is_tips(&self) -> bool {
-        matches!(self, Self::Curved(_, Piece::Tips))
-    }
-
-    /// The margin with its derivatives.
-    pub(crate) fn level(&self, phi: &Vector2<f64>) -> Level {
-        match self {
-            Self::Straight(edge) => Bound::Straight(*edge).level(phi),
-            Self::Curved(clearance, piece) => clearance.level(*piece, phi),
-        }
-    }
-
-    /// The shape on it nearest to this one, or (where it is curved) near it.
-    pub(crate) fn onto(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        onto(phi, |phi| self.level(phi))
-    }
-}
-
 /// A shape near this one where a margin vanishes, by Newton's method along its gradient; the unchanged shape where that fails.
 fn onto(phi: &Vector2<f64>, level: impl Fn(&Vector2<f64>) -> Level) -> Vector2<f64> {
     const STEPS: usize = 40;
@@ -225,6 +186,7 @@ impl Region {
     /// The region for a swimmer with these links \[m\]; the clearance is measured over their total length.
     pub fn new(bounds: &Bounds, links: &Links<f64>) -> Self {
         let length = links.middle + links.front + links.back;
+        let corner = tips_meet(links);
         let links = Links {
             middle: links.middle / length,
             front: links.front / length,
@@ -278,6 +240,7 @@ impl Region {
                 .no_overlap
                 .then(|| Clearance::new(&links, clearance))
                 .flatten(),
+            corner,
             horizon: farthest.unwrap_or(Self::HORIZON),
         }
     }
@@ -307,6 +270,13 @@ impl Region {
                 .filter(|_| index == self.edges.len())
                 .map(Bound::Clearance),
         }
+    }
+
+    /// The corner of the forbidden shapes on the same side as a shape, where the bound has one.
+    pub(crate) fn corner(&self, phi: &Vector2<f64>) -> Option<Vector2<f64>> {
+        let side = if phi.x + phi.y < 0.0 { -1.0 } else { 1.0 };
+        let bound = self.clearance.filter(Clearance::has_corner);
+        Some(bound.and(self.corner)? * side)
     }
 
     /// Whether the sector's sides, φ₁ = φ₂ and φ₁ = −φ₂, are bounds.

@@ -12,14 +12,15 @@ use crate::certificate::{Certificate, Condition};
 use crate::closed_curve::Functional;
 use crate::efficiency::{Branch, EfficiencyProblem, best_symmetric};
 use crate::extremal::gait::{Order, gait};
-use crate::extremal::{Walls, polish};
+use crate::extremal::polish;
 use crate::numerics::halved;
 use crate::optimal_gait::OptimalGait;
+use crate::region::Region;
 
 pub(super) struct Efficiency<'a> {
     pub(super) problem: &'a AtlasProblem,
     pub(super) model: &'a Model<f64>,
-    pub(super) walls: &'a Walls,
+    pub(super) walls: &'a Region,
 }
 
 impl MultiStart for Efficiency<'_> {

@@ -8,7 +8,8 @@ use super::{ContinuationProblem, OtherSide, Start};
 use crate::efficiency::{EfficiencyProblem, best_symmetric};
 use crate::extremal::continuation::{alike, mirrored, other_side, within_walls};
 use crate::extremal::gait::{Order, gait};
-use crate::extremal::{Extremal, Walls, polish, polish_chain};
+use crate::extremal::{Extremal, polish, polish_chain, walls};
+use crate::region::Region;
 
 pub(super) struct Efficiency<'a> {
     pub(super) problem: &'a ContinuationProblem,
@@ -23,8 +24,8 @@ impl Efficiency<'_> {
             .map_err(|error| error.to_string())
     }
 
-    fn walls(&self, value: f64) -> Walls {
-        Walls::new(
+    fn walls(&self, value: f64) -> Region {
+        walls(
             &self.problem.bounds_at(value),
             &self.problem.swimmer_at(value).links,
         )

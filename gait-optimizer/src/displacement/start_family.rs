@@ -10,7 +10,7 @@ use swimmer_model::Model;
 use super::flow::{FINE, Fate, Met, Quarter, Touch, TraceOptions, follow, is_end_line, lasting};
 use crate::arcs::Leg;
 use crate::momentum::{Flow, Momentum, Motion, State, Track, pose, shape};
-use crate::region::{Bound, Region, Wall};
+use crate::region::{Bound, Region};
 use crate::runge_kutta::{Point, StepControl, advance};
 
 /// A line of places.
@@ -65,8 +65,8 @@ pub(crate) fn families(flow: Flow<'_>, bounds: &Bounds, region: &Region) -> Vec<
         let Some(mut track) = Track::new(region, index, &shape, way) else {
             continue;
         };
-        if let Wall::Curved(clearance, piece) = &mut track.wall {
-            *piece = clearance.after_tip(0);
+        if let Bound::Clearance(clearance) = &mut track.wall {
+            *clearance = clearance.held_to(clearance.after_tip(0));
         }
         let start = Place {
             state,

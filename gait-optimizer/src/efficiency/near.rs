@@ -3,7 +3,7 @@
 use super::chain::Origin;
 use super::{EfficiencyProblem, Found, finished};
 use crate::extremal::continuation::within_walls;
-use crate::extremal::{Extremal, Walls, polish, polish_chain};
+use crate::extremal::{Extremal, polish, polish_chain, walls};
 use crate::optimal_gait::OptimalGait;
 
 /// An efficiency gait from which the gaits of neighbouring problems are found: another swimmer or other bounds, a little changed.
@@ -51,7 +51,7 @@ impl EfficiencySeed {
         if !self.gait.symmetric {
             return None;
         }
-        let walls = Walls::new(&problem.bounds, &problem.swimmer.links);
+        let walls = walls(&problem.bounds, &problem.swimmer.links);
         let extremal = match &self.extremal {
             Some(Extremal { solved, class }) => {
                 polish_chain(&model, &walls, *class, within_walls(&walls, &solved.chain))

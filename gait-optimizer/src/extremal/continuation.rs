@@ -10,8 +10,9 @@ use swimmer_model::{Links, Model};
 
 use super::equations::Motion;
 use super::shooting::{Chain, Entry, solve};
-use super::wall::Walls;
+use super::wall::walls;
 use super::{Extremal, Unpolished, polish_chain};
+use crate::region::Region;
 
 /// How tight the bounds are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,7 +59,7 @@ pub(crate) struct Path<'a> {
 }
 
 impl Path<'_> {
-    fn walls(&self, at: Tightness) -> Walls {
+    fn walls(&self, at: Tightness) -> Region {
         let links = self.model.swimmer().links;
         let bounds = Bounds {
             max_angle: Some(at.max_angle),
@@ -71,7 +72,7 @@ impl Path<'_> {
             front: links.front * at.share.max(1e-3),
             back: links.back * at.share.max(1e-3),
         };
-        Walls::new(&bounds, if at.share > 0.0 { &shortened } else { &links })
+        walls(&bounds, if at.share > 0.0 { &shortened } else { &links })
     }
 
     /// Follows a gait from one tightness to another.
@@ -144,7 +145,7 @@ impl Path<'_> {
 }
 
 /// The same arcs along walls that have moved.
-pub(crate) fn within_walls(walls: &Walls, chain: &Chain) -> Chain {
+pub(crate) fn within_walls(walls: &Region, chain: &Chain) -> Chain {
     let mut chain = chain.clone();
     for arc in &mut chain.arcs {
         if let Motion::Along(wall) = &mut arc.motion

@@ -17,7 +17,7 @@
 use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
 use swimmer_model::{FirstDerivatives, Model};
 
-use super::wall::Wall;
+use crate::region::Bound;
 
 /// φ₁, φ₂, direction ψ, body momentum `μ_x`, `μ_y`, `μ_θ`.
 pub(crate) type State = [f64; STATE];
@@ -32,7 +32,7 @@ pub(crate) enum Motion {
     /// Nothing: a free extremal.
     Free,
     /// A bound of the joint angles; the direction stays tangent to it.
-    Along(Wall),
+    Along(Bound),
 }
 
 /// Rates of the state and of q with their derivatives with respect to the state.
@@ -280,12 +280,13 @@ mod tests {
     fn the_linearisation_is_the_derivative_of_the_rates() {
         for (model, z) in cases() {
             let links = &model.swimmer().links;
-            let straight = Wall::Straight(Edge {
+            let straight = Bound::Straight(Edge {
                 normal: Vector2::new(0.6, 0.8),
                 offset: 1.0,
                 kind: ArcKind::Upper,
             });
-            let curved = Wall::Curved(Clearance::new(links, 0.01).unwrap(), Piece::Tip(0));
+            let clearance = Clearance::new(links, 0.01).unwrap();
+            let curved = Bound::Clearance(clearance.held_to(Piece::Tip(0)));
             for motion in [Motion::Free, Motion::Along(straight), Motion::Along(curved)] {
                 let exact = linear(&model, &motion, &z);
                 let plain = rate(&model, &motion, &z);

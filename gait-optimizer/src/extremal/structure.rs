@@ -12,7 +12,7 @@ use swimmer_model::Model;
 use super::equations::{Motion, State, Turning, momentum, shape};
 use super::guess::Trajectory;
 use super::shooting::{Chain, Class, Entry};
-use super::wall::{Wall, Walls};
+use crate::region::{Bound, Region};
 use samples::Samples;
 use spans::{SHORTEST, Span, contacts, held, joined, rebuilt, runs};
 
@@ -26,7 +26,7 @@ const SHORT: f64 = 0.05;
 
 /// What a bound pushes: ψ' of the free extremal less ψ' along the bound, positive where it pushes inwards. (The length S is
 /// the string here: where the field would bulge it beyond the bound, ψ' stays behind.)
-pub(crate) fn multiplier(model: &Model<f64>, wall: &Wall, state: &State) -> f64 {
+pub(crate) fn multiplier(model: &Model<f64>, wall: &Bound, state: &State) -> f64 {
     let phi = shape(state);
     let (sin, cos) = state[2].sin_cos();
     let local = Turning::at(model, &phi, state[2]);
@@ -46,7 +46,7 @@ pub(crate) fn multiplier(model: &Model<f64>, wall: &Wall, state: &State) -> f64 
 /// The structure that a solution asks for next; none where it is right as it is.
 pub(crate) fn next_structure(
     model: &Model<f64>,
-    walls: &Walls,
+    walls: &Region,
     class: Class,
     chain: &Chain,
 ) -> Option<(Chain, Class)> {
@@ -170,7 +170,7 @@ pub(crate) fn simpler(model: &Model<f64>, class: Class, chain: &Chain) -> Option
 }
 
 /// The structure of a sampled curve: it runs along a bound where it comes near it.
-pub(crate) fn of_curve(swum: &Trajectory, walls: &Walls, quarter: bool) -> (Chain, Class) {
+pub(crate) fn of_curve(swum: &Trajectory, walls: &Region, quarter: bool) -> (Chain, Class) {
     let near = |state: &State| {
         let nearest = walls.nearest(&shape(state));
         nearest

@@ -57,13 +57,17 @@ fn cases() -> [Case; 4] {
     ]
 }
 
+fn unbounded(model: &Model<f64>) -> Region {
+    walls(&Bounds::default(), &model.swimmer().links)
+}
+
 #[test]
 fn the_published_optima_are_reached_as_quarters_and_as_closed_curves() {
     let mut found = Vec::new();
     for case in cases() {
         let model = case.model();
         let [quarter, closed] = [true, false]
-            .map(|quarter| polish(&model, &Walls::default(), &case.gait(), quarter).unwrap());
+            .map(|quarter| polish(&model, &unbounded(&model), &case.gait(), quarter).unwrap());
         for extremal in [&quarter, &closed] {
             assert!(extremal.solved.residual <= 1e-10);
             assert_eq!(extremal.solved.chain.arcs.len(), 1);
@@ -85,7 +89,7 @@ fn a_bound_is_followed_where_it_pushes_and_a_loose_one_changes_nothing() {
     let case = &cases()[0];
     let model = case.model();
     let at = |max_angle: f64, quarter: bool| {
-        let walls = Walls::new(&Bounds::within(max_angle), &case.swimmer.links);
+        let walls = walls(&Bounds::within(max_angle), &case.swimmer.links);
         polish(&model, &walls, &case.gait(), quarter).unwrap()
     };
     let free = at(2.0, true);
@@ -134,7 +138,7 @@ fn a_quarter_knows_the_ascents_without_its_symmetry() {
     for case in cases() {
         let model = case.model();
         let [quarter, closed] = [true, false]
-            .map(|quarter| polish(&model, &Walls::default(), &case.gait(), quarter).unwrap());
+            .map(|quarter| polish(&model, &unbounded(&model), &case.gait(), quarter).unwrap());
         let counts = [
             quarter.ascents(&model),
             without_symmetry(&quarter, &model),
@@ -158,7 +162,7 @@ fn a_quarter_knows_the_ascents_without_its_symmetry() {
     };
     let curve = gait.gait().unwrap();
     let [quarter, closed] =
-        [true, false].map(|quarter| polish(&model, &Walls::default(), &curve, quarter).unwrap());
+        [true, false].map(|quarter| polish(&model, &unbounded(&model), &curve, quarter).unwrap());
     assert_eq!(quarter.ascents(&model), Some(0));
     assert_eq!(without_symmetry(&quarter, &model), Some(1));
     assert_eq!(closed.ascents(&model), Some(1));
@@ -170,7 +174,7 @@ fn a_quarter_knows_the_ascents_without_its_symmetry() {
 fn an_optimum_has_no_ascent_and_the_saddle_beyond_a_fold_has_one() {
     let case = &cases()[3];
     let model = case.model();
-    let free = polish(&model, &Walls::default(), &case.gait(), true).unwrap();
+    let free = polish(&model, &unbounded(&model), &case.gait(), true).unwrap();
     let path = continuation::Path {
         model: &model,
         clearance: 0.0,
@@ -201,7 +205,7 @@ fn polished(
     quarter: bool,
 ) -> OptimalGait {
     let model = &Model::new(&swimmer.of_unit_length()).unwrap();
-    let walls = Walls::new(bounds, &swimmer.links);
+    let walls = walls(bounds, &swimmer.links);
     let extremal = polish(model, &walls, curve, quarter).unwrap();
     let order = gait::Order {
         swimmer,

@@ -1,25 +1,24 @@
-//! Walls as an extremal runs along them, and all walls of a full cycle.
+//! Bounds as an extremal runs along them, and all bounds of a full cycle.
 
 use nalgebra::Vector2;
-use swimmer_files::{ArcKind, Bounds};
+use swimmer_files::Bounds;
 use swimmer_model::Links;
 
-pub(crate) use crate::region::Wall;
-use crate::region::{Bound, Clearance, Edge, Level, Piece, Region};
+use crate::region::{Bound, Level, Piece, Region};
 
-impl Wall {
+impl Bound {
     /// dψ over the arc length of a curve that keeps tangent to the bound.
     pub(crate) fn turning(&self, phi: &Vector2<f64>, e: &Vector2<f64>) -> f64 {
         match self {
             Self::Straight(_) => 0.0,
-            Self::Curved(..) => {
+            Self::Clearance(_) => {
                 let level = self.level(phi);
                 -e.dot(&(level.hessian * e)) / level.gradient.dot(&Vector2::new(-e.y, e.x))
             }
         }
     }
 
-    /// [`Wall::turning`] and its derivatives with respect to φ₁, φ₂, ψ.
+    /// [`Bound::turning`] and its derivatives with respect to φ₁, φ₂, ψ.
     ///
     /// Those of the Hessian are central differences: they steer Newton's iteration, and what it converges to does not
     /// depend on them.
@@ -53,18 +52,9 @@ impl Wall {
         )
     }
 
-    /// Whether both are the same bound, perhaps at another place.
-    pub(crate) fn is_like(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Straight(a), Self::Straight(b)) => a.normal == b.normal,
-            (Self::Curved(_, a), Self::Curved(_, b)) => a == b,
-            _ => false,
-        }
-    }
-
     /// The tangent's direction nearest to ψ.
-    pub(crate) fn tangent(&self, phi: &Vector2<f64>, psi: f64) -> f64 {
-        let gradient = self.level(phi).gradient;
+    pub(crate) fn direction_near(&self, phi: &Vector2<f64>, psi: f64) -> f64 {
+        let gradient = self.gradient(phi);
         let along = gradient.y.atan2(gradient.x) + std::f64::consts::FRAC_PI_2;
         let halves: f64 = (psi - along) / std::f64::consts::PI;
         along + halves.round() * std::f64::consts::PI
@@ -75,87 +65,41 @@ impl Wall {
 /// rounding.
 const HAIR: f64 = 1e-8;
 
-/// All bounds of a full cycle.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Walls {
-    edges: Vec<Edge>,
-    clearance: Option<Clearance>,
-    /// Where the tips meet at φ₁, φ₂ > 0, where that is a corner; the other corner is its negative.
-    corner: Option<Vector2<f64>>,
-}
-
-/// The corner of the forbidden shapes at φ₁, φ₂ > 0 where the tips of the side links meet: the three links are the sides
-/// of a triangle.
-fn tips_meet(links: &Links<f64>) -> Option<Vector2<f64>> {
-    let outer = |own: f64, other: f64| {
-        let middle = links.middle;
-        ((other * other - middle * middle - own * own) / (2.0 * middle * own)).acos()
+/// The bounds of a full cycle for a swimmer with these links \[m\]. Those that only make sense for quarters (a lower bound, the
+/// sector) are not among them.
+pub(crate) fn walls(bounds: &Bounds, links: &Links<f64>) -> Region {
+    let wider = |length: f64| length * (1.0 + if bounds.clearance > 0.0 { 0.0 } else { HAIR });
+    let of_cycles = Bounds {
+        min_angle: None,
+        sector: false,
+        ..*bounds
     };
-    let corner = Vector2::new(
-        outer(links.front, links.back),
-        outer(links.back, links.front),
-    );
-    corner
-        .iter()
-        .all(|angle| angle.is_finite())
-        .then_some(corner)
+    let links = Links {
+        front: wider(links.front),
+        back: wider(links.back),
+        ..*links
+    };
+    Region::new(&of_cycles, &links)
 }
 
-impl Walls {
-    /// The bounds for a swimmer with these links \[m\]. Those that only make sense for quarters (a lower bound, the sector)
-    /// are not among them.
-    pub(crate) fn new(bounds: &Bounds, links: &Links<f64>) -> Self {
-        let wider = |length: f64| length * (1.0 + if bounds.clearance > 0.0 { 0.0 } else { HAIR });
-        let links = &Links {
-            middle: links.middle,
-            front: wider(links.front),
-            back: wider(links.back),
-        };
-        let region = Region::new(bounds, links);
-        let clearance = region.bounds().find_map(|bound| match bound {
-            Bound::Clearance(clearance) => Some(clearance),
-            Bound::Straight(_) => None,
-        });
-        let both_ways = |edge: &&Edge| matches!(edge.kind, ArcKind::Upper | ArcKind::Clearance);
-        Self {
-            edges: region.edges().iter().filter(both_ways).copied().collect(),
-            corner: clearance
-                .filter(Clearance::has_corner)
-                .and_then(|_| tips_meet(links)),
-            clearance,
-        }
-    }
-
+impl Region {
     /// The bound that a shape is farthest beyond, or nearest to, with how far; none without bounds.
-    pub(crate) fn nearest(&self, phi: &Vector2<f64>) -> Option<(Wall, f64)> {
-        let straight = self
-            .edges
-            .iter()
-            .map(|edge| (Wall::Straight(*edge), -edge.margin(phi)));
+    pub(crate) fn nearest(&self, phi: &Vector2<f64>) -> Option<(Bound, f64)> {
         // A tip over the other side link's joint is bounded by its angle alone, which is a straight bound.
-        let curved = self.clearance.iter().filter_map(|clearance| {
-            let piece = clearance.piece(phi);
-            let at_joint = matches!(piece, Piece::TipToJoint(_));
-            (!at_joint).then(|| (Wall::Curved(*clearance, piece), -clearance.margin(phi)))
-        });
-        straight.chain(curved).max_by(|a, b| a.1.total_cmp(&b.1))
+        let at_joint = |bound: &Bound| matches!(bound.piece(phi), Some(Piece::TipToJoint(_)));
+        let bounds = self.bounds().filter(|bound| !at_joint(bound));
+        let depths = bounds.map(|bound| (bound.held_at(phi), -bound.margin(phi)));
+        depths.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// The corner of the forbidden shapes on the same side as a shape.
-    pub(crate) fn corner(&self, phi: &Vector2<f64>) -> Option<Vector2<f64>> {
-        let side = if phi.x + phi.y < 0.0 { -1.0 } else { 1.0 };
-        self.corner.map(|corner| corner * side)
-    }
-
-    /// This region's wall that is like another's.
-    pub(crate) fn like(&self, wall: &Wall) -> Option<Wall> {
-        match wall {
-            Wall::Straight(_) => self
-                .edges
-                .iter()
-                .map(|edge| Wall::Straight(*edge))
-                .find(|own| own.is_like(wall)),
-            Wall::Curved(_, piece) => self.clearance.map(|own| Wall::Curved(own, *piece)),
-        }
+    /// This region's bound that is another's, perhaps at another place.
+    pub(crate) fn like(&self, other: &Bound) -> Option<Bound> {
+        self.bounds().find_map(|own| match (own, other) {
+            (Bound::Straight(a), Bound::Straight(b)) => (a.normal == b.normal).then_some(own),
+            (Bound::Clearance(a), Bound::Clearance(b)) => {
+                Some(Bound::Clearance(a.held_to(b.held?)))
+            }
+            _ => None,
+        })
     }
 }

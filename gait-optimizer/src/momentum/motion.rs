@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use swimmer_files::ArcKind;
 
-use crate::region::{Piece, Region, Wall};
+use crate::region::{Bound, Piece, Region};
 
 /// What an arc runs along.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,8 +53,8 @@ impl Motion {
 pub(crate) struct Track {
     /// Place of the bound in the region.
     pub(crate) index: usize,
-    /// What of it is run along.
-    pub(crate) wall: Wall,
+    /// Held to the piece that is run along.
+    pub(crate) wall: Bound,
     /// 1 with the region on the left, −1 with the region on the right.
     pub(crate) way: f64,
 }
@@ -64,7 +64,7 @@ impl Track {
     pub(crate) fn new(region: &Region, index: usize, phi: &Vector2<f64>, way: f64) -> Option<Self> {
         Some(Self {
             index,
-            wall: region.bound(index)?.wall(phi),
+            wall: region.bound(index)?.held_at(phi),
             way,
         })
     }
@@ -90,30 +90,30 @@ impl Track {
 
     /// The direction with the region on the left.
     fn left(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        self.wall.level(phi).tangent()
+        self.wall.tangent(phi)
     }
 
     /// What is left of the piece, with its slope in Φ; none where it does not end.
     pub(crate) fn piece_end(&self, phi: &Vector2<f64>) -> Option<(f64, Vector2<f64>)> {
         match &self.wall {
-            Wall::Curved(clearance, piece) => clearance.piece_end(*piece, phi),
-            Wall::Straight(_) => None,
+            Bound::Clearance(clearance) => clearance.piece_end(clearance.piece(phi), phi),
+            Bound::Straight(_) => None,
         }
     }
 
     /// The piece after this one. Round a forbidden zone they follow each other as front tip, tips, back tip.
     pub(crate) fn next_piece(&self) -> Option<Self> {
-        let Wall::Curved(clearance, piece) = self.wall else {
+        let Bound::Clearance(clearance) = self.wall else {
             return None;
         };
         let forwards = self.way > 0.0;
-        let next = match piece {
+        let next = match clearance.held? {
             Piece::Tips => Piece::Tip(usize::from(forwards)),
             Piece::Tip(tip) if forwards == (tip == 0) => clearance.after_tip(tip),
             _ => return None,
         };
         Some(Self {
-            wall: Wall::Curved(clearance, next),
+            wall: Bound::Clearance(clearance.held_to(next)),
             ..*self
         })
     }

@@ -43,6 +43,8 @@ pub struct Level {
 pub struct Clearance {
     links: Links<f64>,
     distance: f64,
+    /// The piece that it is held to, a smooth curve also where another one decides; none for all of them.
+    pub(crate) held: Option<Piece>,
 }
 
 impl Clearance {
@@ -51,6 +53,7 @@ impl Clearance {
         (links.front + links.back > links.middle - distance).then_some(Self {
             links: *links,
             distance,
+            held: None,
         })
     }
 
@@ -70,8 +73,19 @@ impl Clearance {
         free.min(PI - HAIR)
     }
 
+    /// Held to this piece.
+    pub(crate) fn held_to(self, piece: Piece) -> Self {
+        Self {
+            held: Some(piece),
+            ..self
+        }
+    }
+
     /// Which piece decides at a shape.
     pub(crate) fn piece(&self, phi: &Vector2<f64>) -> Piece {
+        if let Some(held) = self.held {
+            return held;
+        }
         if self.links.overlap(phi) > 0.0 {
             // Crossing: out by the tip that has the shorter way.
             let [front, back] = self.heights(phi);
@@ -101,7 +115,8 @@ impl Clearance {
     /// The margin with its derivatives, from the piece that decides.
     pub(crate) fn deciding_level(&self, phi: &Vector2<f64>) -> Level {
         let mut level = self.level(self.piece(phi), phi);
-        if self.links.overlap(phi) <= 0.0 && level.value + self.distance < 0.0 {
+        let crosses = self.links.overlap(phi) > 0.0;
+        if self.held.is_none() && !crosses && level.value + self.distance < 0.0 {
             // Not crossing, and beyond the other link's line: the distance to it grows on the other side.
             level = Level {
                 value: -level.value - 2.0 * self.distance,
@@ -259,6 +274,19 @@ impl Clearance {
         hessian[(tip, tip)] = -product * cos;
         root_level(self.tip_to_joint(phi, tip), gradient, hessian)
     }
+}
+
+/// The corner of the forbidden shapes at φ₁, φ₂ > 0 where the tips of the side links meet: the three links are the sides
+/// of a triangle.
+pub(super) fn tips_meet(links: &Links<f64>) -> Option<Vector2<f64>> {
+    let middle = links.middle;
+    let outer = |own: f64, other: f64| {
+        ((other * other - middle * middle - own * own) / (2.0 * middle * own)).acos()
+    };
+    let (front, back) = (links.front, links.back);
+    let corner = Vector2::new(outer(front, back), outer(back, front));
+    let is_one = corner.iter().all(|angle| angle.is_finite());
+    is_one.then_some(corner)
 }
 
 /// Which of both forbidden zones is nearer: 1 where both angles are positive.

@@ -2,7 +2,7 @@
 
 use crate::extremal::equations::{Motion, State, shape};
 use crate::extremal::shooting::{Chain, Class, Entry, Stretch};
-use crate::extremal::wall::{Wall, Walls};
+use crate::region::{Bound, Piece, Region};
 
 /// A free one is named only where it begins at a corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +23,7 @@ pub(super) const SHORTEST: f64 = 1e-7;
 /// What runs of overstepping become: arcs along the bound, narrower than the overstepping, or (past both sides of the tips'
 /// corner) a bend round it. `edges` are the ends of the arc that oversteps, marked where they are corners already.
 pub(super) fn contacts(
-    walls: &Walls,
+    walls: &Region,
     class: Class,
     over: Vec<Run>,
     edges: [(bool, f64); 2],
@@ -65,7 +65,7 @@ pub(super) fn contacts(
 /// What runs of a sampled curve near bounds become: arcs along them, with a bend between two round the tips' corner. Short
 /// ones there are nothing but the bend.
 pub(super) fn held(
-    walls: &Walls,
+    walls: &Region,
     class: Class,
     near: &[Run],
     total: f64,
@@ -86,7 +86,7 @@ pub(super) fn held(
         // Tip to tip comes between the two sides, and is nothing but the corner where there is one.
         let corner = walls
             .corner(&shape(&at(last.from)))
-            .filter(|_| group.len() > 1 || starts_quarter(class, first) || first.wall.is_tips());
+            .filter(|_| group.len() > 1 || starts_quarter(class, first) || is_tips(first));
         let Some(corner) = corner else {
             spans.extend(
                 group
@@ -96,11 +96,11 @@ pub(super) fn held(
             );
             continue;
         };
-        let comes_along = group.len() > 1 && !first.wall.is_tips() && lasts(first);
+        let comes_along = group.len() > 1 && !is_tips(first) && lasts(first);
         if comes_along {
             spans.push(along(first, Entry::Smooth));
         }
-        if !last.wall.is_tips() && lasts(last) {
+        if !is_tips(last) && lasts(last) {
             // Without a gap to what comes before.
             let from = if comes_along { first.to } else { last.from };
             spans.push(Span {
@@ -116,7 +116,12 @@ pub(super) fn held(
 }
 
 fn round_tip(run: &Run) -> bool {
-    matches!(run.wall, Wall::Curved(..))
+    matches!(run.wall, Bound::Clearance(_))
+}
+
+/// Along the bound on the distance from tip to tip.
+fn is_tips(run: &Run) -> bool {
+    matches!(&run.wall, Bound::Clearance(clearance) if clearance.held == Some(Piece::Tips))
 }
 
 /// A quarter that begins beyond the bound of the tips is bent there against its mirror image.
@@ -158,15 +163,15 @@ pub(super) fn joined(spans: Vec<Span>, least: f64) -> Vec<Span> {
 /// A stretch of samples that are all beyond, or on, one bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Run {
-    pub(super) wall: Wall,
+    pub(super) wall: Bound,
     pub(super) from: f64,
     pub(super) to: f64,
 }
 
 /// Runs of equal marks along a curve. A run ends halfway to the next sample.
-pub(super) fn runs(rows: impl Iterator<Item = (f64, Option<Wall>)>) -> Vec<Run> {
+pub(super) fn runs(rows: impl Iterator<Item = (f64, Option<Bound>)>) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
-    let mut before: Option<(f64, Option<Wall>)> = None;
+    let mut before: Option<(f64, Option<Bound>)> = None;
     for (at, mark) in rows {
         let boundary = before.map_or(at, |(last, _)| 0.5 * (last + at));
         let last = before.and_then(|(_, last)| last);
@@ -228,7 +233,7 @@ pub(crate) fn rebuilt(
             let phi = wall.onto(&shape(&state));
             state[0] = phi.x;
             state[1] = phi.y;
-            state[2] = wall.tangent(&phi, state[2]);
+            state[2] = wall.direction_near(&phi, state[2]);
             chain.arcs.push(Stretch {
                 motion: span.motion,
                 entry,
