@@ -337,7 +337,7 @@ fn finished(
     gait.certificate = gait.certificate.with(simple.to_vec());
     let power_variation = gait.certificate.value(Condition::ConstantPower);
     gait.efficiency_figures = Some(EfficiencyFigures {
-        residual: extremal.solved.residual,
+        residual: extremal.residual,
         power_variation: power_variation.unwrap_or(f64::NAN),
         method: origin.method,
         direct_efficiency: origin.direct_efficiency,

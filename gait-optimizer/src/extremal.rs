@@ -32,7 +32,7 @@ use crate::cycle::Cycle;
 use crate::region::Region;
 use equations::shape;
 use guess::Trajectory;
-use shooting::{Chain, Class, Solved, Unsolved, solve};
+use shooting::{Chain, Class, Unsolved, solve};
 use structure::{next_structure, of_curve};
 pub(crate) use wall::walls;
 
@@ -44,8 +44,11 @@ const ASCENTS_OF: usize = 256;
 /// An extremal: arcs that satisfy every first-order condition.
 #[derive(Debug, Clone)]
 pub(crate) struct Extremal {
-    pub(crate) solved: Solved,
-    pub(crate) class: Class,
+    pub(crate) chain: Chain,
+    /// Largest residual: angles in radians, momenta over |p|, the scale condition over the length.
+    pub(crate) residual: f64,
+    /// Sign of the Jacobian's determinant; it changes at a fold of the family of solutions.
+    pub(crate) orientation: f64,
 }
 
 /// Why a curve could not be polished.
@@ -77,44 +80,29 @@ pub(crate) fn polish<G: Gait<f64> + ?Sized>(
             .is_none_or(|(_, depth)| depth < -structure::NEAR)
     };
     let swum = Trajectory::new(model, gait, inside).ok_or(Unpolished::NoGuess)?;
-    let (chain, class) = of_curve(&swum, walls, quarter);
-    polish_chain(model, walls, class, chain)
+    polish_chain(model, walls, of_curve(&swum, walls, quarter))
 }
 
 /// Solves a chain, structure after structure.
 pub(crate) fn polish_chain(
     model: &Model<f64>,
     walls: &Region,
-    class: Class,
     guess: Chain,
 ) -> Result<Extremal, Unpolished> {
-    let (mut chain, mut class) = (guess, class);
+    let mut chain = guess;
     for _ in 0..MOST_STRUCTURES {
         let arcs = chain.arcs.len();
-        let solved = match solve(model, class, chain.clone()) {
-            Ok(solved) => solved,
-            Err(reason) => {
-                let (shorter, same) = structure::simpler(model, class, &chain)
-                    .ok_or(Unpolished::Shooting { arcs, reason })?;
-                class = same;
-                solve(model, class, shorter).map_err(|_| Unpolished::Shooting { arcs, reason })?
-            }
-        };
-        match next_structure(model, walls, class, &solved.chain) {
-            None => {
-                return Ok(Extremal { solved, class });
-            }
-            Some(next) => (chain, class) = next,
+        let extremal = solve(model, chain.clone()).or_else(|reason| {
+            let shorter = structure::simpler(model, &chain);
+            let solved = shorter.and_then(|shorter| solve(model, shorter).ok());
+            solved.ok_or(Unpolished::Shooting { arcs, reason })
+        })?;
+        match next_structure(model, walls, &extremal.chain) {
+            None => return Ok(extremal),
+            Some(next) => chain = next,
         }
     }
     Err(Unpolished::Structure)
-}
-
-/// The free quarter near a guess, without a look at bounds; none where Newton's method finds none.
-pub(crate) fn free_quarter(model: &Model<f64>, guess: Chain) -> Option<Extremal> {
-    let class = Class::Quarter;
-    let solved = solve(model, class, guess).ok()?;
-    Some(Extremal { solved, class })
 }
 
 impl Extremal {
@@ -122,13 +110,17 @@ impl Extremal {
     /// cannot be followed.
     pub(crate) fn ascents(&self, model: &Model<f64>) -> Option<usize> {
         let cycle = self.cycle(model, ASCENTS_OF)?;
-        let symmetric = self.class == Class::Quarter;
-        Some(ascents_of_efficiency(model, &cycle, symmetric))
+        Some(ascents_of_efficiency(model, &cycle, self.is_quarter()))
+    }
+
+    /// Whether it is a quarter of a gait with the paper's two symmetries.
+    pub(crate) fn is_quarter(&self) -> bool {
+        self.chain.class == Class::Quarter
     }
 
     /// Lighthill's efficiency ξ = `c_t/|p|²` of a swimmer with L = 1.
     pub(crate) fn efficiency(&self, model: &Model<f64>) -> f64 {
-        let first = self.solved.chain.states.first();
+        let first = self.chain.states.first();
         first.map_or(f64::NAN, |z| {
             model.side_drag() / (z[3] * z[3] + z[4] * z[4])
         })
@@ -136,38 +128,28 @@ impl Extremal {
 
     /// The full cycle in about so many samples; none where an arc cannot be followed.
     pub(crate) fn cycle(&self, model: &Model<f64>, samples: usize) -> Option<Cycle> {
-        let parts = if self.class == Class::Quarter { 4 } else { 1 };
-        sampled::sampled(model, self.class, &self.solved.chain, samples / parts)
+        let parts = usize::from(self.chain.class.parts());
+        sampled::sampled(model, &self.chain, samples / parts)
     }
 
     /// Net displacement of the cycle over L in the frame of its first shape: p S/|p|².
     pub(crate) fn displacement(&self) -> Vector2<f64> {
-        let Chain { arcs, states } = &self.solved.chain;
-        let parts = if self.class == Class::Quarter {
-            4.0
-        } else {
-            1.0
-        };
-        let length: f64 = arcs.iter().map(|arc| arc.length).sum();
-        let p = states.first().map(|z| Vector2::new(z[3], z[4]));
+        let length = f64::from(self.chain.class.parts()) * self.chain.length();
+        let p = self.chain.states.first().map(|z| Vector2::new(z[3], z[4]));
         p.map_or(Vector2::repeat(f64::NAN), |p| {
-            p * (parts * length / p.norm_squared())
+            p * (length / p.norm_squared())
         })
     }
 
     /// λ₃ = p·x̂ in the frame of the first shape: the sign of X for a quarter.
     pub(crate) fn heading(&self) -> f64 {
-        self.solved.chain.states.first().map_or(f64::NAN, |z| z[3])
+        self.chain.states.first().map_or(f64::NAN, |z| z[3])
     }
 
     /// The first shape.
     pub(crate) fn start(&self) -> Vector2<f64> {
-        self.solved
-            .chain
-            .states
-            .first()
-            .map(shape)
-            .unwrap_or_default()
+        let first = self.chain.states.first();
+        first.map(shape).unwrap_or_default()
     }
 }
 

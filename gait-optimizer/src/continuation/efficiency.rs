@@ -48,7 +48,7 @@ impl Efficiency<'_> {
             samples: self.problem.samples.clamp(64, 1 << 14),
         };
         let gait = gait(&order, &extremal).map_err(|error| error.to_string())?;
-        let residual = extremal.solved.residual;
+        let residual = extremal.residual;
         Ok(BranchPoint::new(value, gait, residual, Some(extremal)))
     }
 
@@ -101,17 +101,17 @@ impl Family for Efficiency<'_> {
     ) -> Result<BranchPoint, String> {
         let (model, walls) = (self.model(value)?, self.walls(value));
         let extremal = here.extremal.as_ref().ok_or("it is no efficiency gait")?;
-        let chain = &extremal.solved.chain;
+        let chain = &extremal.chain;
         let secant = before.and_then(|before| {
             let factor = (value - here.value) / (here.value - before.value);
-            let last = &before.extremal.as_ref()?.solved.chain;
+            let last = &before.extremal.as_ref()?.chain;
             (alike(last, chain) && factor > 0.0 && factor <= FARTHEST)
                 .then(|| mirrored(last, chain, factor))
         });
         let mut reason = String::new();
         for guess in secant.into_iter().chain([chain.clone()]) {
             let guess = within_walls(&walls, &guess);
-            match polish_chain(&model, &walls, extremal.class, guess) {
+            match polish_chain(&model, &walls, guess) {
                 Ok(extremal) => return self.kept(value, &model, extremal),
                 Err(error) => reason = error.to_string(),
             }

@@ -6,8 +6,9 @@ use swimmer_model::Model;
 use super::fourier::{FARTHEST, Maximum, Objective, best_circles, best_ellipses, climb, series};
 use super::{Branch, EfficiencyError, Method};
 use crate::certificate::crossings;
+use crate::extremal::Extremal;
 use crate::extremal::guess::quarter_of_curve;
-use crate::extremal::{Extremal, free_quarter};
+use crate::extremal::shooting::solve;
 
 /// Where an extremal comes from.
 #[derive(Debug, Clone, Copy)]
@@ -180,7 +181,7 @@ impl<'a> Ladder<'a> {
 /// The extremal that shooting in so many pieces finds near a series.
 fn shot(model: &Model<f64>, maximum: &Maximum, pieces: usize) -> Option<Extremal> {
     let curve = |s| series(&maximum.coefficients, s);
-    let extremal = free_quarter(model, quarter_of_curve(model, &curve, pieces)?)?;
+    let extremal = solve(model, quarter_of_curve(model, &curve, pieces)?).ok()?;
     same_gait(model, extremal, maximum.value.efficiency(), maximum.value.x)
 }
 

@@ -53,8 +53,8 @@ impl EfficiencySeed {
         }
         let walls = walls(&problem.bounds, &problem.swimmer.links);
         let extremal = match &self.extremal {
-            Some(Extremal { solved, class }) => {
-                polish_chain(&model, &walls, *class, within_walls(&walls, &solved.chain))
+            Some(Extremal { chain, .. }) => {
+                polish_chain(&model, &walls, within_walls(&walls, chain))
             }
             None => polish(&model, &walls, &self.gait.gait().ok()?, true),
         };

@@ -139,8 +139,7 @@ impl Path<'_> {
 
     fn step(&self, here: &Extremal, at: Tightness) -> Result<Extremal, Unpolished> {
         let walls = self.walls(at);
-        let chain = within_walls(&walls, &here.solved.chain);
-        polish_chain(self.model, &walls, here.class, chain)
+        polish_chain(self.model, &walls, within_walls(&walls, &here.chain))
     }
 }
 
@@ -202,13 +201,12 @@ pub(crate) fn other_side(
     before: &Extremal,
     last: &Extremal,
 ) -> Option<Extremal> {
-    let (here, turn) = (&before.solved.chain, &last.solved.chain);
+    let (here, turn) = (&before.chain, &last.chain);
     if !alike(here, turn) {
         return None;
     }
     [1.0, 1.5, 2.0, 0.7].into_iter().find_map(|factor| {
-        let solved = solve(model, before.class, mirrored(here, turn, factor)).ok()?;
-        let class = before.class;
-        (solved.orientation * before.solved.orientation < 0.0).then_some(Extremal { solved, class })
+        let other = solve(model, mirrored(here, turn, factor)).ok()?;
+        (other.orientation * before.orientation < 0.0).then_some(other)
     })
 }

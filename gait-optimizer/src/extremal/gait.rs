@@ -3,7 +3,6 @@
 use swimmer_files::{AnyGait, Bounds, Objective};
 use swimmer_model::{Gait, Model, Swimmer, Tolerance, swim};
 
-use super::shooting::Class;
 use super::{Extremal, Unpolished};
 use crate::certificate::Condition;
 use crate::certify::{certified, slopes_open};
@@ -41,7 +40,7 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
         }
         samples = more(samples, off);
     };
-    let symmetric = extremal.class == Class::Quarter;
+    let symmetric = extremal.is_quarter();
     let stroke = swim(model, &curve, &Tolerance::new(1e-12));
     let of = (Objective::Efficiency, swimmer, order.bounds);
     // The arcs know these closer than the samples do: d is parallel to p, and p · d is the length.
@@ -56,7 +55,7 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
     // What the arcs say of themselves, against the samples swum.
     let swum = stroke.displacement;
     gait.certificate = gait.certificate.with(vec![
-        Condition::ShootingResidual.check(extremal.solved.residual),
+        Condition::ShootingResidual.check(extremal.residual),
         Condition::MomentumAlongDisplacement
             .check((swum.perp(&d) / (swum.norm() * d.norm())).abs()),
         Condition::MomentumScale.check((swum.norm() / d.norm() - 1.0).abs()),

@@ -4,7 +4,7 @@ use nalgebra::{Vector2, Vector3};
 use swimmer_model::{Gait, Model, Tolerance, TrajectoryPoint, trajectory};
 
 use super::equations::{Motion, State, Turning};
-use super::shooting::{Chain, Entry, Stretch};
+use super::shooting::{Chain, Class, Entry, Stretch};
 use crate::runge_kutta::{Point, StepControl, advance};
 
 /// A closed curve swum once, densely.
@@ -196,6 +196,7 @@ pub(crate) fn quarter_of_curve(
         [phi.x, phi.y, psi, p * cos, -p * sin, p * (y - end_y)]
     });
     Some(Chain {
+        class: Class::Quarter,
         states: states.collect(),
         arcs: vec![Stretch {
             motion: Motion::Free,

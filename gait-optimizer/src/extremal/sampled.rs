@@ -14,12 +14,7 @@ const FEWEST: usize = 4;
 /// The full cycle of a chain at so many equal steps of power length, arc by arc. Where an arc begins is a corner: the curvature
 /// jumps there (the direction too at a corner of the forbidden shapes), and no interpolation shall reach across. None where an arc
 /// cannot be followed.
-pub(crate) fn sampled(
-    model: &Model<f64>,
-    class: Class,
-    chain: &Chain,
-    samples: usize,
-) -> Option<Cycle> {
+pub(crate) fn sampled(model: &Model<f64>, chain: &Chain, samples: usize) -> Option<Cycle> {
     let total = chain.length();
     let bent = |arc: &Stretch| matches!(arc.entry, Entry::Corner(_));
     let starts_bent = chain.arcs.first().is_some_and(bent);
@@ -54,7 +49,7 @@ pub(crate) fn sampled(
     }
     out.along.push(total);
     out.phi.push(last?);
-    Some(match class {
+    Some(match chain.class {
         Class::Quarter => out.unfolded([!starts_bent, true]),
         Class::Closed { .. } => out.closed(),
     })

@@ -13,21 +13,12 @@ mod conditions;
 use nalgebra::DVector;
 use swimmer_model::Model;
 
+use super::Extremal;
 use super::equations::STATE;
 use super::flow::FINE;
 use crate::numerics::damped;
 pub(crate) use chain::{Chain, Class, Entry, Stretch};
 use conditions::assemble;
-
-/// A solved chain.
-#[derive(Debug, Clone)]
-pub(crate) struct Solved {
-    pub(crate) chain: Chain,
-    /// Largest residual: angles in radians, momenta over |p|, the scale condition over the length.
-    pub(crate) residual: f64,
-    /// Sign of the Jacobian's determinant; it changes at a fold of the family of solutions.
-    pub(crate) orientation: f64,
-}
 
 /// Why an iteration gave up.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -54,7 +45,7 @@ const NEAR: f64 = 1e-5;
 const LONGEST_TURN: f64 = 0.4;
 
 /// Solves a chain from a guess.
-pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<Solved, Unsolved> {
+pub(crate) fn solve(model: &Model<f64>, guess: Chain) -> Result<Extremal, Unsolved> {
     if !guess.is_whole() {
         return Err(Unsolved::Malformed);
     }
@@ -65,12 +56,12 @@ pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<So
         .max(f64::MIN_POSITIVE);
     let mut chain = guess;
     let mut tolerance = COARSE;
-    let mut here = assemble(model, class, &chain, scale, tolerance).ok_or(Unsolved::Lost)?;
+    let mut here = assemble(model, &chain, scale, tolerance).ok_or(Unsolved::Lost)?;
     let mut orientation = 0.0;
     for _ in 0..MOST_ITERATIONS {
         if here.largest() < NEAR && tolerance > FINE {
             tolerance = FINE;
-            here = assemble(model, class, &chain, scale, tolerance).ok_or(Unsolved::Lost)?;
+            here = assemble(model, &chain, scale, tolerance).ok_or(Unsolved::Lost)?;
         }
         let residual = here.largest();
         if residual.is_nan() {
@@ -91,7 +82,7 @@ pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<So
         let mut factors = damped(longest_factor(&chain, step)).take_while(|&factor| factor >= 1e-3);
         let next = factors.find_map(|factor| {
             let moved = chain.moved(step, factor);
-            let trial = assemble(model, class, &moved, scale, tolerance)?;
+            let trial = assemble(model, &moved, scale, tolerance)?;
             (trial.norm() < (1.0 - 1e-4 * factor) * norm).then_some((moved, trial))
         });
         let Some(next) = next else {
@@ -101,7 +92,7 @@ pub(crate) fn solve(model: &Model<f64>, class: Class, guess: Chain) -> Result<So
     }
     let residual = here.largest();
     if residual <= ACCEPTED {
-        Ok(Solved {
+        Ok(Extremal {
             chain,
             residual,
             orientation,

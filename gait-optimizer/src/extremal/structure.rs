@@ -44,14 +44,9 @@ pub(crate) fn multiplier(model: &Model<f64>, wall: &Bound, state: &State) -> f64
 }
 
 /// The structure that a solution asks for next; none where it is right as it is.
-pub(crate) fn next_structure(
-    model: &Model<f64>,
-    walls: &Region,
-    class: Class,
-    chain: &Chain,
-) -> Option<(Chain, Class)> {
-    let total = chain.length();
-    let samples = Samples::new(model, class, chain)?;
+pub(crate) fn next_structure(model: &Model<f64>, walls: &Region, chain: &Chain) -> Option<Chain> {
+    let (total, class) = (chain.length(), chain.class);
+    let samples = Samples::new(model, chain)?;
     let least = SHORTEST * total;
     let mut spans: Vec<Span> = Vec::new();
     let mut changed = false;
@@ -59,7 +54,7 @@ pub(crate) fn next_structure(
     for (index, arc) in chain.arcs.iter().enumerate() {
         let to = from + arc.length.max(0.0);
         let mut entry = arc.entry;
-        if matches!(entry, Entry::Corner(_)) && !samples.bends_round(chain, class, index) {
+        if matches!(entry, Entry::Corner(_)) && !samples.bends_round(chain, index) {
             entry = Entry::Smooth;
             changed = true;
         }
@@ -125,9 +120,9 @@ pub(crate) fn next_structure(
 
 /// The same chain with its shortest arc left out, where that makes sense: a free arc between two along the same bound, or
 /// an arc along a bound. Near such a change of structure the shooting of the longer chain is singular.
-pub(crate) fn simpler(model: &Model<f64>, class: Class, chain: &Chain) -> Option<(Chain, Class)> {
+pub(crate) fn simpler(model: &Model<f64>, chain: &Chain) -> Option<Chain> {
     let total = chain.length();
-    let samples = Samples::new(model, class, chain)?;
+    let samples = Samples::new(model, chain)?;
     let motion = |index: usize| chain.arcs.get(index).map(|arc| arc.motion);
     let (out, _) = chain
         .arcs
@@ -166,11 +161,11 @@ pub(crate) fn simpler(model: &Model<f64>, class: Class, chain: &Chain) -> Option
         }
     }
     let round = |length: f64| samples.swum.at(length);
-    Some(rebuilt(class, &spans, total, round))
+    Some(rebuilt(chain.class, &spans, total, round))
 }
 
 /// The structure of a sampled curve: it runs along a bound where it comes near it.
-pub(crate) fn of_curve(swum: &Trajectory, walls: &Region, quarter: bool) -> (Chain, Class) {
+pub(crate) fn of_curve(swum: &Trajectory, walls: &Region, quarter: bool) -> Chain {
     let near = |state: &State| {
         let nearest = walls.nearest(&shape(state));
         nearest

@@ -69,8 +69,8 @@ fn the_published_optima_are_reached_as_quarters_and_as_closed_curves() {
         let [quarter, closed] = [true, false]
             .map(|quarter| polish(&model, &unbounded(&model), &case.gait(), quarter).unwrap());
         for extremal in [&quarter, &closed] {
-            assert!(extremal.solved.residual <= 1e-10);
-            assert_eq!(extremal.solved.chain.arcs.len(), 1);
+            assert!(extremal.residual <= 1e-10);
+            assert_eq!(extremal.chain.arcs.len(), 1);
         }
         let (xi, again) = (quarter.efficiency(&model), closed.efficiency(&model));
         assert!((xi / again - 1.0).abs() < 1e-11, "{xi} {again}");
@@ -97,13 +97,13 @@ fn a_bound_is_followed_where_it_pushes_and_a_loose_one_changes_nothing() {
     let mut before = free.efficiency(&model);
     for max_angle in [1.4, 1.35, 1.3] {
         let (quarter, closed) = (at(max_angle, true), at(max_angle, false));
-        assert_eq!(quarter.solved.chain.arcs.len(), 3, "free, bound, free");
-        assert_eq!(closed.solved.chain.arcs.len(), 8);
+        assert_eq!(quarter.chain.arcs.len(), 3, "free, bound, free");
+        assert_eq!(closed.chain.arcs.len(), 8);
         let xi = quarter.efficiency(&model);
         assert!((xi / closed.efficiency(&model) - 1.0).abs() < 1e-11);
         assert!(xi < before, "a tighter bound costs efficiency");
         before = xi;
-        let bound = quarter.solved.chain.arcs[1];
+        let bound = quarter.chain.arcs[1];
         assert!(matches!(bound.motion, Motion::Along(_)) && bound.length > 0.0);
     }
 }
@@ -120,7 +120,7 @@ fn a_saddle_has_ways_up() {
             let point = gait.at(s / std::f64::consts::TAU);
             (point.phi, point.rate / std::f64::consts::TAU)
         };
-        free_quarter(&model, guess::quarter_of_curve(&model, &curve, 8).unwrap()).unwrap()
+        solve(&model, guess::quarter_of_curve(&model, &curve, 8).unwrap()).unwrap()
     };
     let saddle = from_ellipse([1.6, 3.6]);
     assert!((saddle.efficiency(&model) - 0.005_709_875_641).abs() < 1e-11);
@@ -192,8 +192,8 @@ fn an_optimum_has_no_ascent_and_the_saddle_beyond_a_fold_has_one() {
         panic!("{end:?}");
     };
     assert!((fold.max_angle - 2.730_041).abs() < 2e-6, "{fold:?}");
-    assert!(other.solved.residual <= 1e-10);
-    assert!(other.solved.orientation * wide.solved.orientation < 0.0);
+    assert!(other.residual <= 1e-10);
+    assert!(other.orientation * wide.orientation < 0.0);
     assert_eq!(ascents(&other), 1);
 }
 

@@ -27,6 +27,7 @@ pub(crate) struct Stretch {
 /// A chain of arcs with the state at the start of every piece.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Chain {
+    pub(crate) class: Class,
     pub(crate) arcs: Vec<Stretch>,
     pub(crate) states: Vec<State>,
 }
@@ -42,6 +43,16 @@ pub(crate) enum Class {
         /// A line that the first shape is held on: a point and the direction across it; for curves without a bound arc.
         line: Option<(Vector2<f64>, Vector2<f64>)>,
     },
+}
+
+impl Class {
+    /// How many of such chains, one after the other, make a cycle.
+    pub(crate) fn parts(self) -> u8 {
+        match self {
+            Self::Quarter => 4,
+            Self::Closed { .. } => 1,
+        }
+    }
 }
 
 impl Chain {

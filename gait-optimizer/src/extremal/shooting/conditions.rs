@@ -50,7 +50,6 @@ impl Ending<'_> {
 /// All equations of a chain with their Jacobian, its pieces integrated to a local `tolerance`; none where a piece cannot be integrated.
 pub(super) fn assemble(
     model: &Model<f64>,
-    class: Class,
     chain: &Chain,
     scale: f64,
     tolerance: f64,
@@ -92,7 +91,7 @@ pub(super) fn assemble(
             equations.continued(ending, start.state, start.column, 3..STATE);
             equations.along_its_bound(&start);
         } else {
-            match class {
+            match chain.class {
                 Class::Quarter => equations.quarter_ends(&start, last),
                 Class::Closed { turn, line } => {
                     equations.meets(last, chain.arcs.last()?, &start, turn);

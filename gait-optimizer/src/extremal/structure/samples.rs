@@ -18,8 +18,8 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    pub(super) fn new(model: &Model<f64>, class: Class, chain: &Chain) -> Option<Self> {
-        let turn = match class {
+    pub(super) fn new(model: &Model<f64>, chain: &Chain) -> Option<Self> {
+        let turn = match chain.class {
             Class::Closed { turn, .. } => turn,
             Class::Quarter => 0.0,
         };
@@ -55,12 +55,12 @@ impl Samples {
 
     /// Whether a curve bends round the corner where an arc begins, and not away from it. The forbidden shapes lie beyond
     /// the corner, so the bend is to that side; a quarter is bent against its mirror image.
-    pub(super) fn bends_round(&self, chain: &Chain, class: Class, index: usize) -> bool {
+    pub(super) fn bends_round(&self, chain: &Chain, index: usize) -> bool {
         let last = |number: usize| Some(self.of_arc(number).next_back()?.1[2]);
         let Some((_, start)) = self.of_arc(index).next() else {
             return false;
         };
-        let before = match (index.checked_sub(1), class) {
+        let before = match (index.checked_sub(1), chain.class) {
             (Some(before), _) => last(before),
             (None, Class::Quarter) => Some(1.5 * std::f64::consts::PI - start[2]),
             (None, Class::Closed { turn, .. }) => {

@@ -198,7 +198,7 @@ pub(crate) fn rebuilt(
     bound_spans: &[Span],
     total: f64,
     at: impl Fn(f64) -> State,
-) -> (Chain, Class) {
+) -> Chain {
     let mut class = class;
     let mut begin = 0.0;
     if let Class::Closed { line, .. } = &mut class {
@@ -214,6 +214,7 @@ pub(crate) fn rebuilt(
         }
     }
     let mut chain = Chain {
+        class,
         arcs: Vec::new(),
         states: Vec::new(),
     };
@@ -222,7 +223,7 @@ pub(crate) fn rebuilt(
     let end = begin + total;
     for span in bound_spans {
         if span.from > here {
-            free_arc(&mut chain, entry, [here, span.from], total, class, &at);
+            free_arc(&mut chain, entry, [here, span.from], total, &at);
             entry = Entry::Smooth;
         }
         if let Entry::Corner(_) = span.entry {
@@ -246,9 +247,9 @@ pub(crate) fn rebuilt(
         here = span.to;
     }
     if end > here {
-        free_arc(&mut chain, entry, [here, end], total, class, &at);
+        free_arc(&mut chain, entry, [here, end], total, &at);
     }
-    (chain, class)
+    chain
 }
 
 fn free_arc(
@@ -256,14 +257,9 @@ fn free_arc(
     entry: Entry,
     [from, to]: [f64; 2],
     total: f64,
-    class: Class,
     at: &impl Fn(f64) -> State,
 ) {
-    let cycles = match class {
-        Class::Quarter => 0.25,
-        Class::Closed { .. } => 1.0,
-    };
-    let share = (to - from) / total * cycles;
+    let share = (to - from) / total / f64::from(chain.class.parts());
     let pieces = (1..200_usize)
         .find(|&count| count as f64 >= share * PIECES)
         .unwrap_or(200);
