@@ -12,5 +12,5 @@ mod shooting;
 mod trace;
 
 pub(crate) use flow::{ClosedOrbit, Launch, ReturnCondition};
-pub(crate) use shooting::{Closed, Loop, Section, close};
+pub(crate) use shooting::{Guess, Section, close};
 pub(crate) use trace::{traced, traced_from};

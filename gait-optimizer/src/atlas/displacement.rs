@@ -19,7 +19,7 @@ use crate::certificate::Condition;
 use crate::certify::{certified, ways_up};
 use crate::closed_curve::Functional;
 use crate::displacement::{DisplacementProblem, Heading, best_symmetric};
-use crate::loops::{Closed, close, traced};
+use crate::loops::{ClosedOrbit, close, traced};
 use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
 
@@ -99,8 +99,8 @@ impl Displacement<'_> {
         let (model, region) = (self.model, self.region);
         guesses(functional, model, region, coarse)
             .into_iter()
-            .filter_map(|guess| close(model, region, guess.section, guess.from, guess.length))
-            .filter_map(|closed| self.gait(&closed))
+            .filter_map(|guess| close(model, region, guess))
+            .filter_map(|orbit| self.gait(&orbit))
             .map(certified)
             .filter(|gait| {
                 gait.certificate
@@ -109,9 +109,9 @@ impl Displacement<'_> {
     }
 
     /// A closed loop as a gait, not yet certified.
-    fn gait(&self, closed: &Closed) -> Option<OptimalGait> {
+    fn gait(&self, orbit: &ClosedOrbit) -> Option<OptimalGait> {
         let (problem, model) = (self.problem, self.model);
-        let cycle = traced(model, closed, problem.samples)?;
+        let cycle = traced(model, orbit, problem.samples)?;
         let stroke = cycle.swum(model)?;
         let symmetric =
             Outline::new(&cycle.phi).is_symmetric() && stroke.displacement.y.abs() < 1e-8;

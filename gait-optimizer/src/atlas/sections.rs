@@ -4,22 +4,13 @@ use nalgebra::{DMatrix, Vector2};
 use swimmer_model::Model;
 
 use crate::closed_curve::Functional;
-use crate::loops::{Loop, Section};
+use crate::loops::{Guess, Section};
 use crate::region::Region;
 
 /// A coarse node nearer than this to a bound lies on it [rad].
 const ON_BOUND: f64 = 0.06;
 /// Places where a loop without a bound arc is opened.
 const FREE_GATES: usize = 3;
-
-/// A loop to close.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Guess {
-    pub(crate) section: Section,
-    pub(crate) from: Loop,
-    /// About how long the loop is \[rad\].
-    pub(crate) length: f64,
-}
 
 /// Guesses for a coarse curve that runs counter-clockwise, the most promising first.
 pub(crate) fn guesses(
@@ -71,10 +62,7 @@ pub(crate) fn guesses(
                 along: bound.tangent(&at),
                 bound: Some(index),
             },
-            from: Loop {
-                place: 0.0,
-                angle: angle(node),
-            },
+            angle: angle(node),
             length,
         });
     }
@@ -100,10 +88,7 @@ pub(crate) fn guesses(
                     along: Vector2::new(-ahead.y, ahead.x),
                     bound: None,
                 },
-                from: Loop {
-                    place: 0.0,
-                    angle: angle(node),
-                },
+                angle: angle(node),
                 length,
             });
         }

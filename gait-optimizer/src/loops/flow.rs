@@ -19,9 +19,10 @@ const AT_START: f64 = 1e-7;
 /// The height may start this much below zero on a bound, over L.
 const SLACK: f64 = 1e-9;
 
-/// An orbit that came back, or not.
+/// An orbit that came back.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ClosedOrbit {
+    pub(crate) momentum: Momentum,
     pub(crate) legs: Vec<Leg>,
     pub(crate) end: State,
 }
@@ -78,7 +79,7 @@ impl Launch<'_> {
         };
         let (legs, returned) = tracer.chain(start, MOST_ARCS, |tracer, leg, event| {
             if event.is_some_and(|event| self.returns(event, leg, tracer.before)) {
-                return Err(Some(Returned));
+                return Err(true);
             }
             let next = match event {
                 Some(Event::HeightGone) => Some(Motion::Singular),
@@ -89,17 +90,20 @@ impl Launch<'_> {
                 _ => None,
             };
             next.and_then(|next| self.entered(next, &leg.to))
-                .ok_or(None)
+                .ok_or(false)
         });
-        let end = legs.last()?.to;
-        returned.flatten().map(|Returned| ClosedOrbit { legs, end })
+        (returned == Some(true)).then_some(ClosedOrbit {
+            momentum: self.momentum,
+            end: legs.last()?.to,
+            legs,
+        })
     }
 
     /// Whether an arc's end is the orbit's, which is so long \[rad\].
-    fn returns(&self, event: Event<Returned>, leg: &Leg, length: f64) -> bool {
+    fn returns(&self, event: Event<()>, leg: &Leg, length: f64) -> bool {
         let off = (shape(&leg.to) - self.start).norm();
         let is_start = match event {
-            Event::End(Returned) => return true,
+            Event::End(()) => return true,
             Event::HeightGone => {
                 let exit = leg.motion.bound().map(ReturnCondition::Exit);
                 exit == Some(self.until) && off < self.near
@@ -125,26 +129,23 @@ impl Launch<'_> {
     }
 }
 
-/// The line across the curve at the start is crossed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Returned;
-
 impl EndCondition for Launch<'_> {
-    type End = Returned;
+    /// The line across the curve at the start is crossed.
+    type End = ();
 
-    fn watched(&self, motion: &Motion) -> impl Iterator<Item = Returned> {
+    fn watched(&self, motion: &Motion) -> impl Iterator<Item = ()> {
         let ends = motion
             .bound()
             .map_or(ReturnCondition::Line, ReturnCondition::Along);
-        (self.until == ends).then_some(Returned).into_iter()
+        (self.until == ends).then_some(()).into_iter()
     }
 
-    fn value(&self, _: Returned, at: &Point<6>) -> (f64, f64) {
+    fn value(&self, (): (), at: &Point<6>) -> (f64, f64) {
         let (phi, rate) = (shape(&at.z), shape(&at.rate));
         (-(phi - self.start).dot(&self.ahead), -rate.dot(&self.ahead))
     }
 
-    fn counts(&self, _: Returned, after: &Point<6>, length: f64) -> bool {
+    fn counts(&self, (): (), after: &Point<6>, length: f64) -> bool {
         let near = self.until != ReturnCondition::Line
             || (shape(&after.z) - self.start).norm() < self.near;
         length > self.shortest && near

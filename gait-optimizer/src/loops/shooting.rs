@@ -20,21 +20,18 @@ pub(crate) struct Section {
     pub(crate) bound: Option<usize>,
 }
 
-/// A guess: a start and the momentum's direction.
+/// A loop to close.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Loop {
-    /// Place along the section \[rad\].
-    pub(crate) place: f64,
-    /// Angle of p against the heading at the start \[rad\].
+pub(crate) struct Guess {
+    pub(crate) section: Section,
+    /// Angle of p against the heading at the section's start \[rad\].
     pub(crate) angle: f64,
+    /// About how long the loop is \[rad\].
+    pub(crate) length: f64,
 }
 
-/// A closed loop.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Closed {
-    pub(crate) momentum: Momentum,
-    pub(crate) orbit: ClosedOrbit,
-}
+/// Place along the section and angle of p against the heading at the start \[rad\].
+type At = Vector2<f64>;
 
 const COARSE: StepControl = StepControl {
     tolerance: 1e-8,
@@ -51,38 +48,20 @@ const STRIDE: f64 = 0.12;
 const NEAR: f64 = 1e-4;
 const CLOSED: f64 = 1e-11;
 
-impl Loop {
-    fn moved(&self, step: &Vector2<f64>) -> Self {
-        Self {
-            place: self.place + step.x,
-            angle: self.angle + step.y,
-        }
-    }
-}
-
 struct Problem<'a> {
     model: &'a Model<f64>,
     region: &'a Region,
-    section: Section,
-    /// About how long the orbit is \[rad\].
-    length: f64,
+    guess: Guess,
 }
 
-/// Closes a loop from a guess; `length` is about how long it is.
-pub(crate) fn close(
-    model: &Model<f64>,
-    region: &Region,
-    section: Section,
-    guess: Loop,
-    length: f64,
-) -> Option<Closed> {
+/// Closes a loop from a guess.
+pub(crate) fn close(model: &Model<f64>, region: &Region, guess: Guess) -> Option<ClosedOrbit> {
     let problem = Problem {
         model,
         region,
-        section,
-        length,
+        guess,
     };
-    let mut here = guess;
+    let mut here = At::new(0.0, guess.angle);
     let mut control = COARSE;
     let (mut miss, mut orbit) = problem.shoot(&here, control)?;
     for _ in 0..ROUNDS {
@@ -93,7 +72,7 @@ pub(crate) fn close(
         let step = problem.step(&here, &miss, control)?;
         let mut factors = damped((STRIDE / step.amax()).min(1.0)).take(8);
         let better = factors.find_map(|factor| {
-            let there = here.moved(&(step * factor));
+            let there = here + step * factor;
             let (new, new_lap) = problem.shoot(&there, control)?;
             (new.norm() < miss.norm()).then_some((there, new, new_lap))
         });
@@ -105,30 +84,24 @@ pub(crate) fn close(
             break;
         }
     }
-    let start = problem.start(&here);
-    (control.tolerance <= FINE.tolerance && miss.norm() < CLOSED).then_some(Closed {
-        momentum: Momentum::of_zero(model, &start, here.angle)?,
-        orbit,
-    })
+    (control.tolerance <= FINE.tolerance && miss.norm() < CLOSED).then_some(orbit)
 }
 
 impl Problem<'_> {
-    fn start(&self, at: &Loop) -> Vector2<f64> {
-        let straight = self.section.at + self.section.along * at.place;
-        match self
-            .section
-            .bound
-            .and_then(|index| self.region.bound(index))
-        {
+    fn start(&self, at: &At) -> Vector2<f64> {
+        let section = &self.guess.section;
+        let straight = section.at + section.along * at.x;
+        match section.bound.and_then(|index| self.region.bound(index)) {
             Some(bound) => bound.onto(&straight),
             None => straight,
         }
     }
 
     /// Place, heading and the part of the displacement across p that the orbit ends with.
-    fn shoot(&self, at: &Loop, control: StepControl) -> Option<(Vector3<f64>, ClosedOrbit)> {
+    fn shoot(&self, at: &At, control: StepControl) -> Option<(Vector3<f64>, ClosedOrbit)> {
+        let section = &self.guess.section;
         let start = self.start(at);
-        let momentum = Momentum::of_zero(self.model, &start, at.angle)?;
+        let momentum = Momentum::of_zero(self.model, &start, at.y)?;
         let state = [start.x, start.y, 0.0, 0.0, 0.0, 0.0];
         let (height, ..) = momentum.evaluate(self.model, &shape(&state), &pose(&state));
         let ahead = height.singular_direction();
@@ -138,12 +111,11 @@ impl Problem<'_> {
             momentum,
             start,
             first: Motion::Singular,
-            until: self
-                .section
+            until: section
                 .bound
                 .map_or(ReturnCondition::Line, ReturnCondition::Exit),
             ahead,
-            shortest: 0.5 * self.length,
+            shortest: 0.5 * self.guess.length,
             near: 1.0,
             control,
         };
@@ -151,7 +123,7 @@ impl Problem<'_> {
         let end = orbit.end;
         let off = Vector2::new(end[0], end[1]) - start;
         let miss = Vector3::new(
-            off.dot(&self.section.along),
+            off.dot(&section.along),
             end[4],
             momentum.p.perp(&Vector2::new(end[2], end[3])),
         );
@@ -159,14 +131,14 @@ impl Problem<'_> {
     }
 
     /// The Gauss–Newton step, by differences.
-    fn step(&self, at: &Loop, miss: &Vector3<f64>, control: StepControl) -> Option<Vector2<f64>> {
+    fn step(&self, at: &At, miss: &Vector3<f64>, control: StepControl) -> Option<Vector2<f64>> {
         let h = if control.tolerance < 1e-10 {
             1e-6
         } else {
             1e-4
         };
         let column = |way: Vector2<f64>| {
-            let [there, back] = [h, -h].map(|h| self.shoot(&at.moved(&(way * h)), control));
+            let [there, back] = [h, -h].map(|h| self.shoot(&(at + way * h), control));
             match (there, back) {
                 (Some((a, _)), Some((b, _))) => Some((a - b) / (2.0 * h)),
                 (Some((a, _)), None) => Some((a - miss) / h),

@@ -3,7 +3,6 @@
 use swimmer_model::Model;
 
 use super::flow::ClosedOrbit;
-use super::shooting::Closed;
 use crate::arcs::{ByPower, Leg, Trace};
 use crate::cycle::Cycle;
 use crate::momentum::{Flow, Motion, State, pose};
@@ -20,22 +19,22 @@ const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
 const LASTING: f64 = 1e-9;
 
 /// Traces a loop with about this many samples, from where it crosses φ₁ = φ₂ > 0 farthest out, or from its own start.
-pub(crate) fn traced(model: &Model<f64>, closed: &Closed, samples: usize) -> Option<Cycle> {
-    let home = home(model, closed, &lasting(&closed.orbit));
-    traced_from(model, closed, home, samples)
+pub(crate) fn traced(model: &Model<f64>, orbit: &ClosedOrbit, samples: usize) -> Option<Cycle> {
+    let home = home(model, orbit, &lasting(orbit));
+    traced_from(model, orbit, home, samples)
 }
 
 /// Traces a loop from a state on one of its lasting legs, or from its own start.
 pub(crate) fn traced_from(
     model: &Model<f64>,
-    closed: &Closed,
+    orbit: &ClosedOrbit,
     start: Option<(usize, State)>,
     samples: usize,
 ) -> Option<Cycle> {
-    let total = closed.orbit.end[5];
-    let legs = lasting(&closed.orbit);
+    let total = orbit.end[5];
+    let legs = lasting(orbit);
     let (first, state) = start.unwrap_or((0, legs.first()?.from));
-    let momentum = closed.momentum.seen_from(&pose(&state));
+    let momentum = orbit.momentum.seen_from(&pose(&state));
     let mut route: Vec<(Motion, f64)> = Vec::with_capacity(legs.len() + 1);
     let leg = legs.get(first)?;
     route.push((leg.motion, leg.to[5] - state[5]));
@@ -57,13 +56,13 @@ pub(crate) fn traced_from(
 }
 
 /// Where the loop crosses φ₁ = φ₂ > 0: the leg, and the state there.
-fn home(model: &Model<f64>, closed: &Closed, legs: &[Leg]) -> Option<(usize, State)> {
+fn home(model: &Model<f64>, orbit: &ClosedOrbit, legs: &[Leg]) -> Option<(usize, State)> {
     const LOOKS: usize = 48;
     let mut best: Option<(usize, State)> = None;
     for (index, leg) in legs.iter().enumerate() {
         let system = ByPower(Flow {
             model,
-            momentum: closed.momentum,
+            momentum: orbit.momentum,
             motion: leg.motion,
         });
         let step = (leg.to[5] - leg.from[5]) / LOOKS as f64;

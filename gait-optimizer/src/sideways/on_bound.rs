@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use crate::cycle::Cycle;
-use crate::loops::{Closed, ClosedOrbit, Launch, ReturnCondition, Section, traced_from};
+use crate::loops::{ClosedOrbit, Launch, ReturnCondition, Section, traced_from};
 use crate::momentum::{Momentum, Motion, Track};
 use crate::numerics::{halved, root};
 use crate::region::{Bound, Edge, Region};
@@ -39,11 +39,8 @@ pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) ->
                 sign,
             };
             for rotation in family.roots() {
-                let trace = family.shoot(rotation, FINE).and_then(|orbit| {
-                    let momentum = family.momentum(rotation);
-                    traced_from(model, &Closed { momentum, orbit }, None, samples)
-                });
-                found.extend(trace);
+                let orbit = family.shoot(rotation, FINE);
+                found.extend(orbit.and_then(|orbit| traced_from(model, &orbit, None, samples)));
             }
         }
     }
@@ -105,19 +102,15 @@ struct Family<'a> {
 }
 
 impl Family<'_> {
-    fn momentum(&self, rotation: f64) -> Momentum {
-        Momentum {
-            p: Vector2::new(0.0, self.sign),
-            c: rotation,
-        }
-    }
-
     fn shoot(&self, rotation: f64, control: StepControl) -> Option<ClosedOrbit> {
         let bound = self.start.bound?;
         let launch = Launch {
             model: self.model,
             region: self.region,
-            momentum: self.momentum(rotation),
+            momentum: Momentum {
+                p: Vector2::new(0.0, self.sign),
+                c: rotation,
+            },
             start: self.start.at,
             first: Motion::Along(Track::new(self.region, bound, &self.start.at, 1.0)?),
             until: ReturnCondition::Along(bound),
