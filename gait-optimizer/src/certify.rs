@@ -27,7 +27,7 @@ use std::cell::Cell;
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
 use swimmer_model::{
-    InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, crossing_share, swim,
+    InvalidSamples, InvalidSwimmer, Links, Model, Swimmer, Tolerance, crossing_share, swim,
 };
 
 use crate::certificate::{
@@ -40,7 +40,7 @@ use crate::region::Region;
 use crate::speed::{MadeFor, certify_joined, certify_speed};
 pub(crate) use ascent::ways_up;
 use grid::{Along, Degree, Grid};
-use limits::{Limit, Limits};
+use limits::Limit;
 use path::Path;
 use resolution::{Rounding, with_uncertainty};
 pub(crate) use second_variation::ascents_of_efficiency;
@@ -80,7 +80,8 @@ pub enum CertifyError {
 /// A gait made ready to be asked.
 struct Subject<'a> {
     model: &'a Model<f64>,
-    limits: Limits,
+    bounds: &'a Bounds,
+    region: Region,
     grid: Grid,
     shapes: Vec<Vector2<f64>>,
     path: Path,
@@ -176,7 +177,6 @@ fn of_samples(
         let joined = certify_joined(model, timed, &region, objective);
         return Ok(joined.unwrap_or_else(|| certify_speed(model, timed, &region, made_for)));
     }
-    let limits = Limits::new(bounds, &swimmer.links);
     let clockwise = turning_number(&gait.phi) < 0.0;
     let reversed = clockwise.then(|| gait.reversed());
     let (gait, curve) = (
@@ -185,7 +185,7 @@ fn of_samples(
     );
     let swum = swum.filter(|_| !clockwise);
     let swum = swum.unwrap_or_else(|| swim(model, &curve, &Tolerance::default()).displacement);
-    certify_turned(model, gait, objective, limits, (&curve, swum))
+    certify_turned((model, swimmer, objective, bounds), gait, (&curve, swum))
 }
 
 impl OptimalGait {
@@ -267,13 +267,11 @@ fn sampling(objective: Objective, open: Openness) -> [Check; 2] {
 
 /// As [`certify`] of a counter-clockwise gait, with its curve and that one's displacement.
 fn certify_turned(
-    model: &Model<f64>,
+    (model, swimmer, objective, bounds): (&Model<f64>, &Swimmer<f64>, Objective, &Bounds),
     gait: &GaitFile,
-    objective: Objective,
-    limits: Limits,
     (curve, swum): (&AnyGait, Vector2<f64>),
 ) -> Result<Certificate, CertifyError> {
-    let subject = Subject::new(model, gait, limits);
+    let subject = Subject::new(model, gait, (bounds, &swimmer.links));
     let open = subject.openness();
     let sampling = sampling(objective, open);
     let coarse = sampling.iter().any(|check| !check.pass);
@@ -310,9 +308,15 @@ fn certify_turned(
 }
 
 impl<'a> Subject<'a> {
-    fn new(model: &'a Model<f64>, gait: &GaitFile, limits: Limits) -> Self {
+    /// The links are those of the swimmer \[m\].
+    fn new(
+        model: &'a Model<f64>,
+        gait: &GaitFile,
+        (bounds, links): (&'a Bounds, &Links<f64>),
+    ) -> Self {
+        let region = Region::new(bounds, links);
         let along = if gait.arcs.is_empty() {
-            touching(&limits, gait)
+            touching(&region, gait)
         } else {
             grid::told_by_arcs(gait)
         };
@@ -324,7 +328,8 @@ impl<'a> Subject<'a> {
             symmetric: is_symmetric(gait),
             written: 2.0 * Rounding::of(gait).phi,
             model,
-            limits,
+            bounds,
+            region,
             grid,
             shapes,
         }
@@ -349,7 +354,7 @@ impl<'a> Subject<'a> {
             _ => f64::NAN,
         };
         let mut checks = vec![at_samples(Condition::Closed.check(gap))];
-        if self.limits.region.is_of_quarters() {
+        if self.region.is_of_quarters() {
             let off = if self.symmetric { 0.0 } else { 1.0 };
             let seen_by = if coarse {
                 SeenBy::Spacing
@@ -359,13 +364,12 @@ impl<'a> Subject<'a> {
             let check = Condition::PapersSymmetries.check(off);
             checks.push(check.seen_by(seen_by));
         }
-        let overstepped = self
-            .all_limits()
-            .map(|(_, limit)| -limit.margin)
-            .reduce(f64::max);
+        let nodes = 0..self.grid.nodes.len();
+        let limits = nodes.flat_map(|node| self.limits_at(node));
+        let overstepped = limits.map(|limit| -limit.margin).reduce(f64::max);
         let overstepped = overstepped.map(|by| Condition::KeepsBounds.check(by));
         checks.extend(overstepped.map(at_samples));
-        if self.limits.bounds.no_overlap {
+        if self.bounds.no_overlap {
             let crosses = crossing_share(&self.model.swimmer().links, curve);
             let folds = if crosses.folds { 1.0 } else { 0.0 };
             checks.push(at_samples(Condition::NothingFolded.check(folds)));
@@ -373,7 +377,7 @@ impl<'a> Subject<'a> {
         for (curved, condition) in [(false, Condition::OnBound), (true, Condition::OnClearance)] {
             let off = (0..self.grid.nodes.len())
                 .filter(|&node| self.along(node) == Along::Bound)
-                .map(|node| self.bound_followed(node))
+                .map(|node| self.bound_followed(node).map(|(_, limit)| limit))
                 .filter(|limit| limit.is_some_and(|limit| limit.curved) == curved)
                 .map(|limit| limit.map_or(f64::NAN, |limit| limit.margin.abs()))
                 .reduce(worse);
@@ -386,7 +390,7 @@ impl<'a> Subject<'a> {
     fn of_its_loop(&self, gait: &GaitFile) -> [Check; 2] {
         // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
         let quarter = gait.u.partition_point(|&u| u <= 0.25 + 1e-12);
-        let simple = if self.limits.region.has_diagonals() {
+        let simple = if self.region.has_diagonals() {
             gait.phi.get(..quarter).unwrap_or_default()
         } else {
             &gait.phi
@@ -423,11 +427,11 @@ fn lesser(a: f64, b: f64) -> f64 {
 }
 
 /// Which intervals between knots lie on a bound, for a gait that does not tell.
-fn touching(limits: &Limits, gait: &GaitFile) -> Vec<Along> {
+fn touching(region: &Region, gait: &GaitFile) -> Vec<Along> {
     let written = 2.0 * Rounding::of(gait).phi;
     let on_bound = |[a, b]: &[Vector2<f64>; 2], u: f64| {
         let quarter = (0..3).find(|&q| u < 0.25 * (q + 1) as f64).unwrap_or(3);
-        let (from, to) = (limits.at(a, quarter), limits.at(b, quarter));
+        let [from, to] = [a, b].map(|phi| Limit::all(region, phi, quarter));
         let touches =
             |limit: &Limit| limit.margin.abs() <= Condition::OnBound.tolerance() + written;
         from.iter()

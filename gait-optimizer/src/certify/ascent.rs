@@ -4,7 +4,6 @@ use nalgebra::Vector2;
 use swimmer_model::Model;
 
 use super::Subject;
-use super::limits::Limits;
 use super::second_variation::{Ascents, Neighbours};
 use super::variation::Gain;
 use crate::certificate::turning_number;
@@ -24,8 +23,7 @@ pub(crate) fn ways_up(model: &Model<f64>, gait: &OptimalGait) -> Vec<Curve> {
     if turning_number(&file.phi) < 0.0 {
         file = file.reversed();
     }
-    let limits = Limits::new(&gait.bounds, &gait.swimmer.links);
-    let subject = Subject::new(model, &file, limits);
+    let subject = Subject::new(model, &file, (&gait.bounds, &gait.swimmer.links));
     let Some(momentum) = subject.weak_momentum(Gain::Displacement) else {
         return Vec::new();
     };

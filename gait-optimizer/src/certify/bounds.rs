@@ -10,17 +10,14 @@ use crate::certificate::Condition;
 const ASIDE: f64 = 1e-6;
 
 impl Subject<'_> {
-    /// Every bound at every node.
-    pub(super) fn all_limits(&self) -> impl Iterator<Item = (usize, Limit)> {
-        (0..self.grid.nodes.len()).flat_map(|node| {
-            let limits = self.limits_at(node);
-            limits.into_iter().map(move |limit| (node, limit))
-        })
+    /// Every bound at a node.
+    pub(super) fn limits_at(&self, node: usize) -> Vec<Limit> {
+        self.limits(&self.shapes.get(node).copied().unwrap_or_default(), node)
     }
 
-    pub(super) fn limits_at(&self, node: usize) -> Vec<Limit> {
-        let shape = self.shapes.get(node).copied().unwrap_or_default();
-        self.limits.at(&shape, self.quarter(node))
+    /// Every bound at a shape near a node.
+    fn limits(&self, shape: &Vector2<f64>, node: usize) -> Vec<Limit> {
+        Limit::all(&self.region, shape, self.quarter(node))
     }
 
     /// Which quarter of the cycle a node belongs to; where two meet, the one of its piece.
@@ -37,14 +34,8 @@ impl Subject<'_> {
             .unwrap_or(3)
     }
 
-    /// The bound that a node of a bound arc runs along: near, and in the direction of the motion.
-    pub(super) fn bound_followed(&self, node: usize) -> Option<Limit> {
-        let limits = self.limits_at(node);
-        limits.get(self.bound_followed_at(node)?).copied()
-    }
-
-    /// Its place among the bounds.
-    fn bound_followed_at(&self, node: usize) -> Option<usize> {
+    /// The bound that a node of a bound arc runs along, near and in the direction of the motion, with its place among the bounds.
+    pub(super) fn bound_followed(&self, node: usize) -> Option<(usize, Limit)> {
         let rate = self.path.places.get(node)?.rate;
         // At a corner between two bounds the normal may be the other's; a bound farther away is still not followed.
         let askew = |limit: &Limit| {
@@ -56,9 +47,7 @@ impl Subject<'_> {
             far + (limit.normal.dot(&rate) / rate.norm()).abs()
         };
         let limits = self.limits_at(node).into_iter().enumerate();
-        limits
-            .min_by(|(_, a), (_, b)| askew(a).total_cmp(&askew(b)))
-            .map(|(at, _)| at)
+        limits.min_by(|(_, a), (_, b)| askew(a).total_cmp(&askew(b)))
     }
 
     /// On which side of the motion the bound lies that a bound arc runs along: 1 for the right, −1 for the left. Where an arc
@@ -74,9 +63,9 @@ impl Subject<'_> {
         // Right on the links' clearance its slope may point either way by rounding, so both sides are asked.
         let place = self.path.places.get(inside)?;
         let right = place.right() * ASIDE;
-        let bound = self.bound_followed_at(inside)?;
+        let (bound, _) = self.bound_followed(inside)?;
         let margin = |shape: Vector2<f64>| {
-            let limits = self.limits.at(&shape, self.quarter(inside));
+            let limits = self.limits(&shape, inside);
             limits.get(bound).map(|limit| limit.margin)
         };
         let (on_right, on_left) = (margin(place.phi + right)?, margin(place.phi - right)?);
@@ -93,7 +82,7 @@ impl Subject<'_> {
         };
         let (into, out) = (before.rate.normalize(), after.rate.normalize());
         let curved = |shape: Vector2<f64>, node: usize| {
-            let limits = self.limits.at(&shape, self.quarter(node));
+            let limits = self.limits(&shape, node);
             limits.into_iter().find(|limit| limit.curved)
         };
         let (Some(here), Some(first), Some(second)) = (

@@ -105,7 +105,7 @@ impl Grid {
     fn append(&mut self, u: &[f64], along: Along) {
         let (first, count) = (self.nodes.len(), u.len());
         let windows = |from: usize, to: usize| {
-            [stencil::around, stencil::coarsely_around].map(|window| window(from, to, count))
+            [0, stencil::FEWER].map(|fewer| stencil::around(from, to, count, fewer))
         };
         let places = |low: usize, width: usize| u.get(low..low + width).unwrap_or_default();
         let even = even_before(u);

@@ -4,17 +4,9 @@
 //! between φ₁ = φ₂ > 0 and φ₁ = −φ₂, φ₂ > 0; the other quarters are its images.
 
 use nalgebra::Vector2;
-use swimmer_files::{ArcKind, Bounds};
-use swimmer_model::Links;
+use swimmer_files::ArcKind;
 
-use crate::region::Region;
-
-/// The bounds of a gait.
-#[derive(Debug, Clone)]
-pub(super) struct Limits {
-    pub(super) bounds: Bounds,
-    pub(super) region: Region,
-}
+use crate::region::{Bound, Region};
 
 /// One bound at one shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,18 +19,10 @@ pub(super) struct Limit {
     pub(super) curved: bool,
 }
 
-impl Limits {
-    /// The links are those of the swimmer \[m\].
-    pub(super) fn new(bounds: &Bounds, links: &Links<f64>) -> Self {
-        Self {
-            bounds: *bounds,
-            region: Region::new(bounds, links),
-        }
-    }
-
-    /// All bounds at a shape in one quarter of the cycle (0 to 3), always in the same order.
-    pub(super) fn at(&self, phi: &Vector2<f64>, quarter: usize) -> Vec<Limit> {
-        let limit = |bound: crate::region::Bound| {
+impl Limit {
+    /// All bounds of a region at a shape in one quarter of the cycle (0 to 3), always in the same order.
+    pub(super) fn all(region: &Region, phi: &Vector2<f64>, quarter: usize) -> Vec<Self> {
+        let limit = |bound: Bound| {
             let of_quarter = matches!(bound.kind(), ArcKind::Lower | ArcKind::Diagonal);
             // The images are their own inverses.
             let quarter = if of_quarter { quarter } else { 0 };
@@ -51,13 +35,13 @@ impl Limits {
             } else {
                 (bound.margin(&shape), shape.normalize())
             };
-            Limit {
+            Self {
                 margin,
                 normal: image(out, quarter),
-                curved: matches!(bound, crate::region::Bound::Clearance(_)),
+                curved: bound.edge().is_none(),
             }
         };
-        self.region.bounds().map(limit).collect()
+        region.bounds().map(limit).collect()
     }
 }
 
@@ -74,6 +58,8 @@ pub(super) fn image(v: Vector2<f64>, quarter: usize) -> Vector2<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use swimmer_files::Bounds;
+    use swimmer_model::Links;
 
     /// Gaits may start in the corner of the forbidden shapes, where the distance of the tips is zero, and so is its slope.
     #[test]
@@ -86,9 +72,9 @@ mod tests {
                 front: 1.0,
                 back: 1.0,
             };
-            let limits = Limits::new(&bounds, &links);
+            let region = Region::new(&bounds, &links);
             for corner in [1.0, -1.0].map(|side| Vector2::repeat(side * (-0.5 * middle).acos())) {
-                let at = limits.at(&corner, 0);
+                let at = Limit::all(&region, &corner, 0);
                 let curved = at.iter().find(|limit| limit.curved).unwrap();
                 assert!(curved.margin.abs() < 1e-7, "{middle}: {}", curved.margin);
                 assert!((curved.normal.norm() - 1.0).abs() < 1e-12, "{middle}");

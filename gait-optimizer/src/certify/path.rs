@@ -211,7 +211,7 @@ pub(super) fn stepped(model: &Model<f64>, grid: &Grid, shapes: &[Vector2<f64>]) 
         steps.map(move |from| (first, from, (from + stride).min(last), last))
     });
     ends.fold([0.0; 3], |[x, y, theta], (first, from, to, last)| {
-        let (low, width) = stencil::around(from - first, to - first, last + 1 - first);
+        let (low, width) = stencil::around(from - first, to - first, last + 1 - first, 0);
         let stencil = first + low..=first + low + width - 1;
         let places = grid.places(&stencil);
         let shapes = shapes.get(stencil).unwrap_or_default();

@@ -11,7 +11,6 @@ use swimmer_model::Model;
 
 use super::Subject;
 use super::grid::Node;
-use super::limits::Limits;
 use super::path::{Here, Path, Place};
 use super::variation::{Element, Form, Gain, Push};
 use crate::certificate::{Check, Condition};
@@ -74,7 +73,7 @@ impl Subject<'_> {
         };
         let mut checks = Vec::new();
         if self.symmetric
-            && !self.limits.region.is_of_quarters()
+            && !self.region.is_of_quarters()
             && let Some(of_any) = of(false)
         {
             checks.push(Check {
@@ -275,8 +274,8 @@ impl Neighbours<'_> {
 /// has, or of any kind.
 pub(crate) fn ascents_of_efficiency(model: &Model<f64>, cycle: &Cycle, symmetric: bool) -> usize {
     let bounds = Bounds::default();
-    let limits = Limits::new(&bounds, &model.swimmer().links);
-    let subject = Subject::new(model, &cycle.file(bounds), limits);
+    let within = (&bounds, &model.swimmer().links);
+    let subject = Subject::new(model, &cycle.file(bounds), within);
     let neighbours = Neighbours {
         gain: Gain::Efficiency,
         momentum: subject.effort_momentum(),

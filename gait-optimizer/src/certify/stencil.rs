@@ -6,7 +6,7 @@
 /// Samples that the finer polynomial takes.
 pub(super) const MOST: usize = 9;
 /// How many fewer the coarser one takes.
-const FEWER: usize = 2;
+pub(super) const FEWER: usize = 2;
 
 /// One weight for each sample of a stencil; those beyond the stencil are zero.
 pub(super) type Weights = [f64; MOST];
@@ -66,23 +66,10 @@ pub(super) fn integral(places: &[f64], from: f64, to: f64) -> Weights {
     sum
 }
 
-/// First sample and number of samples of the stencil round the stretch `from..=to`, within `0..count`.
-pub(super) fn around(from: usize, to: usize, count: usize) -> (usize, usize) {
-    window(from, to, count, MOST)
-}
-
-/// The coarser stencil for the same stretch.
-pub(super) fn coarsely_around(from: usize, to: usize, count: usize) -> (usize, usize) {
-    window(
-        from,
-        to,
-        count,
-        MOST.min(count).saturating_sub(FEWER).max(2),
-    )
-}
-
-fn window(from: usize, to: usize, count: usize, width: usize) -> (usize, usize) {
-    let width = width.min(count);
+/// First sample and number of samples of the stencil round the stretch `from..=to`, within `0..count`, of so many samples fewer
+/// than the finer polynomial takes.
+pub(super) fn around(from: usize, to: usize, count: usize, fewer: usize) -> (usize, usize) {
+    let width = (MOST.min(count).saturating_sub(fewer)).max(2).min(count);
     let beside = width.saturating_sub(to + 1 - from) / 2;
     (
         from.saturating_sub(beside).min(count.saturating_sub(width)),
@@ -115,12 +102,12 @@ mod tests {
 
     #[test]
     fn stencils_stay_within_their_piece() {
-        assert_eq!(around(0, 0, 20), (0, 9));
-        assert_eq!(around(10, 10, 20), (6, 9));
-        assert_eq!(around(10, 11, 20), (7, 9));
-        assert_eq!(around(19, 19, 20), (11, 9));
-        assert_eq!(around(2, 3, 4), (0, 4));
-        assert_eq!(coarsely_around(10, 10, 20), (7, 7));
-        assert_eq!(coarsely_around(1, 2, 4), (1, 2));
+        assert_eq!(around(0, 0, 20, 0), (0, 9));
+        assert_eq!(around(10, 10, 20, 0), (6, 9));
+        assert_eq!(around(10, 11, 20, 0), (7, 9));
+        assert_eq!(around(19, 19, 20, 0), (11, 9));
+        assert_eq!(around(2, 3, 4, 0), (0, 4));
+        assert_eq!(around(10, 10, 20, FEWER), (7, 7));
+        assert_eq!(around(1, 2, 4, FEWER), (1, 2));
     }
 }
