@@ -18,7 +18,7 @@ mod trace;
 
 pub(crate) use event::Event;
 use event::{MOST_EVENTS, Watched, first_event};
-pub(crate) use trace::{ByPower, SMOOTH, Trace};
+pub(crate) use trace::{ByPower, SMOOTH, sampled};
 
 use crate::momentum::{Flow, Motion, State, shape};
 use crate::numerics::locate;

@@ -1,4 +1,4 @@
-//! A chain of arcs followed once more, state by state at equal steps of power length, for its samples and what is read off them.
+//! A chain of arcs followed once more at equal steps of power length, for its samples.
 
 use nalgebra::Vector2;
 use swimmer_model::Model;
@@ -6,14 +6,6 @@ use swimmer_model::Model;
 use crate::cycle::Samples;
 use crate::momentum::{Flow, Momentum, Motion, State, shape};
 use crate::runge_kutta::{Point, StepControl, System, advance};
-
-/// The arcs, each with its states from its beginning to its end.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Trace {
-    pub(crate) arcs: Vec<(Motion, Vec<State>)>,
-    /// The direction in which each arc sets out and the one that it ends in.
-    directions: Vec<[Vector2<f64>; 2]>,
-}
 
 const CONTROL: StepControl = StepControl {
     tolerance: 1e-13,
@@ -36,87 +28,66 @@ impl System<6> for ByPower<'_> {
     }
 }
 
-impl Trace {
-    /// Follows arcs of these power lengths, one after the other, with about so many intervals in all. States fall on the `cuts`,
-    /// shares of the whole. None where an integration fails.
-    pub(crate) fn new(
-        (model, momentum): (&Model<f64>, Momentum),
-        start: State,
-        route: &[(Motion, f64)],
-        cuts: &[f64],
-        intervals: usize,
-    ) -> Option<Self> {
-        let total: f64 = route.iter().map(|(_, length)| length).sum();
-        let mut trace = Self {
-            arcs: Vec::with_capacity(route.len()),
-            directions: Vec::with_capacity(route.len()),
+/// The samples of arcs of these power lengths, one after the other, with about so many intervals in all, and the directions in which
+/// they set out and end. Samples fall on the `cuts`, shares of the whole. Where they are `closed` there may be a corner at the
+/// first sample, where the last arc meets it. None where an integration fails.
+pub(crate) fn sampled(
+    (model, momentum): (&Model<f64>, Momentum),
+    start: State,
+    route: &[(Motion, f64)],
+    (cuts, intervals): (&[f64], usize),
+    closed: bool,
+) -> Option<(Samples, [Vector2<f64>; 2])> {
+    let total: f64 = route.iter().map(|(_, length)| length).sum();
+    let mut samples = Samples {
+        phi: vec![shape(&start)],
+        along: vec![start[5]],
+        ..Samples::default()
+    };
+    let mut directions: Vec<[Vector2<f64>; 2]> = Vec::with_capacity(route.len());
+    let (mut here, mut done) = (start, 0.0);
+    for &(motion, length) in route {
+        let system = ByPower(Flow {
+            model,
+            momentum,
+            motion,
+        });
+        let fewest = match motion {
+            Motion::Along(track) if track.wall.edge().is_some() => FEWEST,
+            _ => FEWEST_CURVED,
         };
-        let (mut here, mut done) = (start, 0.0);
-        for &(motion, length) in route {
-            let system = ByPower(Flow {
-                model,
-                momentum,
-                motion,
-            });
-            let fewest = match motion {
-                Motion::Along(track) if track.wall.edge().is_some() => FEWEST,
-                _ => FEWEST_CURVED,
-            };
-            let mut states = vec![here];
-            let (from, to) = (done / total, (done + length) / total);
-            let inner = cuts
-                .iter()
-                .filter(|&&cut| cut > from + 1e-6 && cut < to - 1e-6);
-            let ends: Vec<f64> = inner.copied().chain([to]).collect();
-            let starts = [from].into_iter().chain(ends.iter().copied());
-            for (from, to) in starts.zip(&ends) {
-                let count = (fewest..intervals)
-                    .find(|&count| count as f64 >= intervals as f64 * (to - from))
-                    .unwrap_or(intervals.max(fewest));
-                let step = (to - from) * total / count as f64;
-                let mut point = Point::new(&system, here);
-                for _ in 0..count {
-                    point = advance(&system, point, step, CONTROL)?;
-                    states.push(point.z);
-                }
-                here = point.z;
+        let (sets_out, first) = (system.0.direction(&here), samples.phi.len() - 1);
+        let (from, to) = (done / total, (done + length) / total);
+        let inner = cuts
+            .iter()
+            .filter(|&&cut| cut > from + 1e-6 && cut < to - 1e-6);
+        let ends: Vec<f64> = inner.copied().chain([to]).collect();
+        let starts = [from].into_iter().chain(ends.iter().copied());
+        for (from, to) in starts.zip(&ends) {
+            let count = (fewest..intervals)
+                .find(|&count| count as f64 >= intervals as f64 * (to - from))
+                .unwrap_or(intervals.max(fewest));
+            let step = (to - from) * total / count as f64;
+            let mut point = Point::new(&system, here);
+            for _ in 0..count {
+                point = advance(&system, point, step, CONTROL)?;
+                samples.phi.push(shape(&point.z));
+                samples.along.push(point.z[5]);
             }
-            let ends = [states.first()?, &here].map(|z| system.0.direction(z));
-            trace.directions.push(ends);
-            trace.arcs.push((motion, states));
-            done += length;
+            here = point.z;
         }
-        Some(trace)
-    }
-
-    /// The direction in which it sets out and the one that it ends in.
-    pub(crate) fn ends(&self) -> Option<[Vector2<f64>; 2]> {
-        Some([self.directions.first()?[0], self.directions.last()?[1]])
-    }
-
-    /// The samples; of a closed curve there may be a corner at the first, where the last arc meets it.
-    pub(crate) fn samples(&self, closed: bool) -> Samples {
-        let mut samples = Samples::default();
-        let mut before = self
-            .directions
-            .last()
-            .map(|ends| ends[1])
-            .filter(|_| closed);
-        for ((motion, states), [sets_out, ends]) in self.arcs.iter().zip(&self.directions) {
-            let from = samples.phi.len().saturating_sub(1);
-            if before.is_some_and(|before| (sets_out - before).norm() > SMOOTH) {
-                samples.corners.push(from);
-            }
-            before = Some(*ends);
-            let new = states.iter().skip(usize::from(!samples.phi.is_empty()));
-            for z in new {
-                samples.phi.push(shape(z));
-                samples.along.push(z[5]);
-            }
-            samples
-                .arcs
-                .push((motion.kind(), from, samples.phi.len() - 1));
+        let before = directions.last();
+        if before.is_some_and(|[_, before]| (sets_out - before).norm() > SMOOTH) {
+            samples.corners.push(first);
         }
-        samples
+        directions.push([sets_out, system.0.direction(&here)]);
+        let last = samples.phi.len() - 1;
+        samples.arcs.push((motion.kind(), first, last));
+        done += length;
     }
+    let [sets_out, ends] = [directions.first()?[0], directions.last()?[1]];
+    if closed && (sets_out - ends).norm() > SMOOTH {
+        samples.corners.insert(0, 0);
+    }
+    Some((samples, [sets_out, ends]))
 }

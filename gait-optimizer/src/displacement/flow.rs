@@ -153,7 +153,7 @@ pub(crate) fn follow(
         region,
         control: options.control,
         leaves: options.leaves,
-        ends: &Ends { region },
+        ends: &Ends(region),
         before: 0.0,
         longest: LONGEST_CURVE,
     };
@@ -213,9 +213,7 @@ enum End {
     Horizon,
 }
 
-struct Ends<'a> {
-    region: &'a Region,
-}
+struct Ends<'a>(&'a Region);
 
 impl EndCondition for Ends<'_> {
     type End = End;
@@ -223,7 +221,7 @@ impl EndCondition for Ends<'_> {
     fn watched(&self, motion: &Motion) -> impl Iterator<Item = End> {
         let ends = [
             (!on_diagonal(motion)).then_some(End::Antidiagonal),
-            (!self.region.has_diagonals()).then_some(End::Diagonal),
+            (!self.0.has_diagonals()).then_some(End::Diagonal),
             Some(End::Horizon),
         ];
         ends.into_iter().flatten()
@@ -236,7 +234,7 @@ impl EndCondition for Ends<'_> {
             End::Diagonal => (phi.y - phi.x, rate.y - rate.x),
             End::Horizon => {
                 let reach = phi.norm();
-                (self.region.horizon - reach, -phi.dot(&rate) / reach)
+                (self.0.horizon - reach, -phi.dot(&rate) / reach)
             }
         }
     }

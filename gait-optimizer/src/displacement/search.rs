@@ -12,7 +12,7 @@ use swimmer_model::Model;
 use super::Fates;
 use super::flow::{FINE, Quarter, Touch, lasting};
 use super::start_family::StartFamily;
-use crate::arcs::{SMOOTH, Trace};
+use crate::arcs::{SMOOTH, sampled};
 use crate::cycle::Cycle;
 use crate::momentum::{Flow, Momentum, Motion};
 use crate::numerics::root;
@@ -36,11 +36,11 @@ impl Candidate {
         let route: Vec<_> = legs()
             .map(|leg| (leg.motion, leg.to[5] - leg.from[5]))
             .collect();
-        let trace = Trace::new((model, self.momentum), start, &route, &[], samples)?;
-        let [first, last] = trace.ends()?;
+        let how = (&[] as &[f64], samples);
+        let (samples, [first, last]) = sampled((model, self.momentum), start, &route, how, false)?;
         // Square to φ₁ = φ₂ (φ₁ = −φ₂) is a direction without a part along it.
         let square = [first.x + first.y, last.x - last.y].map(|along| along.abs() < SMOOTH);
-        Some(trace.samples(false).unfolded(square))
+        Some(samples.unfolded(square))
     }
 }
 

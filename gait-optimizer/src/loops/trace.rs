@@ -3,7 +3,7 @@
 use swimmer_model::Model;
 
 use super::flow::ClosedOrbit;
-use crate::arcs::{ByPower, Leg, Trace};
+use crate::arcs::{ByPower, Leg, sampled};
 use crate::cycle::Cycle;
 use crate::momentum::{Flow, Motion, State, pose};
 use crate::numerics::locate;
@@ -51,8 +51,9 @@ pub(crate) fn traced_from(
         whole
     });
     let start = [state[0], state[1], 0.0, 0.0, 0.0, 0.0];
-    let trace = Trace::new((model, momentum), start, &route, &QUARTERS, samples)?;
-    Some(trace.samples(true).closed())
+    let how = (QUARTERS.as_slice(), samples);
+    let (samples, _) = sampled((model, momentum), start, &route, how, true)?;
+    Some(samples.closed())
 }
 
 /// Where the loop crosses φ₁ = φ₂ > 0: the leg, and the state there.
