@@ -30,13 +30,6 @@ pub struct Check {
     pub(crate) seen_by: SeenBy,
 }
 
-/// From where a number is held against its tolerance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Side {
-    AtMost,
-    AtLeast,
-}
-
 /// What a condition is seen by, which tells what samples may leave open in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SeenBy {
@@ -105,11 +98,6 @@ impl Serialize for Certificate {
 impl Certificate {
     pub(crate) fn new(checks: Vec<Check>) -> Self {
         Self { checks }
-    }
-
-    /// Of what is yet to be asked.
-    pub(crate) fn unasked() -> Self {
-        Self::new(Vec::new())
     }
 
     /// The same with further conditions.

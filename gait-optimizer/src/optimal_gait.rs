@@ -75,8 +75,7 @@ impl OptimalGait {
         let model = Model::new(&swimmer.of_unit_length());
         let over_length = stroke.displacement_over_length();
         let first = cycle.phi.first().copied().unwrap_or_default();
-        let quarter = cycle.u.partition_point(|&u| u < 0.25 - 1e-12);
-        let last = cycle.phi.get(quarter).copied().unwrap_or_default();
+        let last = cycle.quarter().last().copied().unwrap_or_default();
         Self {
             objective,
             swimmer: *swimmer,
@@ -91,7 +90,7 @@ impl OptimalGait {
             end_angle: last.y,
             arcs: cycle.arcs(symmetric),
             links_cross: model.map_or(f64::NAN, |model| cycle.links_cross(&model)),
-            certificate: Certificate::unasked(),
+            certificate: Certificate::new(Vec::new()),
             efficiency_figures: None,
             outdone_over_length: None,
             extremals: None,

@@ -2,7 +2,7 @@
 
 use swimmer_files::GaitFile;
 
-use super::{Check, SeenBy, Side};
+use super::{Check, SeenBy};
 
 /// Conditions with what they say, their keys, and what their numbers are held against: from above (`<=`) or from below (`>=`).
 macro_rules! conditions {
@@ -21,15 +21,23 @@ macro_rules! conditions {
                 }
             }
 
-            fn holds(self) -> (Side, f64) {
+            /// What its number is held against where nothing more is open.
+            pub(crate) fn tolerance(self) -> f64 {
                 match self {
-                    $(Self::$name => (conditions!(@ $side), $tolerance),)+
+                    $(Self::$name => $tolerance,)+
+                }
+            }
+
+            /// Whether its number is held against the tolerance from below.
+            pub fn is_from_below(self) -> bool {
+                match self {
+                    $(Self::$name => conditions!(@ $side),)+
                 }
             }
         }
     };
-    (@ <=) => { Side::AtMost };
-    (@ >=) => { Side::AtLeast };
+    (@ <=) => { false };
+    (@ >=) => { true };
 }
 
 conditions! {
@@ -190,16 +198,6 @@ conditions! {
 }
 
 impl Condition {
-    /// What its number is held against where nothing more is open.
-    pub(crate) fn tolerance(self) -> f64 {
-        self.holds().1
-    }
-
-    /// Whether its number is held against the tolerance from below.
-    pub fn is_from_below(self) -> bool {
-        self.holds().0 == Side::AtLeast
-    }
-
     /// The condition asked: this number was found. NaN fails.
     pub(crate) fn check(self, value: f64) -> Check {
         self.open(value, 0.0)
@@ -207,18 +205,16 @@ impl Condition {
 
     /// The same, where this much more is open.
     pub(crate) fn open(self, value: f64, open: f64) -> Check {
-        let (side, tolerance) = self.holds();
-        match side {
-            Side::AtMost => self.within(value, tolerance + open),
-            Side::AtLeast => self.within(value, tolerance - open),
-        }
+        let open = if self.is_from_below() { -open } else { open };
+        self.within(value, self.tolerance() + open)
     }
 
     /// The same against the tolerance that this very gait asks for.
     pub(crate) fn within(self, value: f64, tolerance: f64) -> Check {
-        let pass = match self.holds().0 {
-            Side::AtMost => value <= tolerance,
-            Side::AtLeast => value >= tolerance,
+        let pass = if self.is_from_below() {
+            value >= tolerance
+        } else {
+            value <= tolerance
         };
         Check {
             condition: self,
