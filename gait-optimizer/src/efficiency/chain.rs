@@ -73,17 +73,28 @@ pub(crate) fn extremal_from(
     (branch, method): (Branch, Method),
     start: [f64; 2],
 ) -> Result<(Extremal, Origin), EfficiencyError> {
-    let mut ladder = Ladder::new(model, branch, start);
     let mut last: Option<(usize, Maximum)> = None;
     let mut saddle = None;
     let alone = method == Method::Fourier;
     for (order, panels, gain, bridges) in LADDER {
-        let maximum = ladder.climb_to(order, panels, gain)?;
+        // Each order is started from the one below.
+        let (mut from, before) = match &last {
+            Some((_, below)) => (below.coefficients.clone(), below.value.efficiency()),
+            None => (start.to_vec(), f64::NAN),
+        };
+        from.resize(2 * order, 0.0);
+        let mut objective = Objective::new(model, order, panels);
+        let maximum = climb(|x| objective.expansion(x), &from, gain);
+        let maximum = maximum.ok_or(EfficiencyError::RunsAway {
+            branch,
+            amplitude: start[0],
+            order,
+            efficiency: before,
+            farthest: FARTHEST,
+        })?;
         let efficiency = maximum.value.efficiency();
         let bridges = if alone {
-            let settled = last.as_ref().is_some_and(|(_, before)| {
-                (efficiency / before.value.efficiency() - 1.0).abs() < SETTLED
-            });
+            let settled = (efficiency / before - 1.0).abs() < SETTLED;
             if settled { SETTLED_PIECES } else { &[] }
         } else {
             bridges
@@ -131,50 +142,6 @@ fn simple(branch: Branch, order: usize, maximum: &Maximum) -> Result<(), Efficie
             efficiency: maximum.value.efficiency(),
             crossings,
         }),
-    }
-}
-
-/// Fourier gaits of rising order, each started from the one below.
-struct Ladder<'a> {
-    model: &'a Model<f64>,
-    branch: Branch,
-    amplitude: f64,
-    coefficients: Vec<f64>,
-    efficiency: f64,
-}
-
-impl<'a> Ladder<'a> {
-    fn new(model: &'a Model<f64>, branch: Branch, start: [f64; 2]) -> Self {
-        Self {
-            model,
-            branch,
-            amplitude: start[0],
-            coefficients: start.to_vec(),
-            efficiency: f64::NAN,
-        }
-    }
-
-    fn climb_to(
-        &mut self,
-        order: usize,
-        panels: usize,
-        least_gain: f64,
-    ) -> Result<Maximum, EfficiencyError> {
-        let mut objective = Objective::new(self.model, order, panels);
-        let mut from = self.coefficients.clone();
-        from.resize(2 * order, 0.0);
-        let maximum = climb(|x| objective.expansion(x), &from, least_gain).ok_or(
-            EfficiencyError::RunsAway {
-                branch: self.branch,
-                amplitude: self.amplitude,
-                order,
-                efficiency: self.efficiency,
-                farthest: FARTHEST,
-            },
-        )?;
-        self.coefficients.clone_from(&maximum.coefficients);
-        self.efficiency = maximum.value.efficiency();
-        Ok(maximum)
     }
 }
 
