@@ -263,13 +263,7 @@ impl Region {
     }
 
     pub(crate) fn bound(&self, index: usize) -> Option<Bound> {
-        match self.edges.get(index) {
-            Some(edge) => Some(Bound::Straight(*edge)),
-            None => self
-                .clearance
-                .filter(|_| index == self.edges.len())
-                .map(Bound::Clearance),
-        }
+        self.bounds().nth(index)
     }
 
     /// The corner of the forbidden shapes on the same side as a shape, where the bound has one.

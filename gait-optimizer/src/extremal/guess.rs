@@ -1,7 +1,7 @@
 //! From any closed curve to a guess for the shooting: states along it, with the momenta that fit it best.
 
 use nalgebra::{Vector2, Vector3};
-use swimmer_model::{Gait, Model, Tolerance, TrajectoryPoint, trajectory};
+use swimmer_model::{Gait, Model, Tolerance, TrajectoryPoint, trajectory, wrapped_angle};
 
 use super::equations::{Motion, State, Turning};
 use super::shooting::{Chain, Class, Entry, Stretch};
@@ -190,7 +190,7 @@ pub(crate) fn quarter_of_curve(
     let mut psi = 0.75 * std::f64::consts::PI;
     let states = points.iter().map(|&[s, _, y, theta]| {
         let (phi, rate) = curve(s);
-        psi += wrapped(rate.y.atan2(rate.x) - psi);
+        psi += wrapped_angle(rate.y.atan2(rate.x) - psi);
         let (sin, cos) = theta.sin_cos();
         // No momentum of rotation at the end: the gait is a mirror image of itself there.
         [phi.x, phi.y, psi, p * cos, -p * sin, p * (y - end_y)]
@@ -207,11 +207,6 @@ pub(crate) fn quarter_of_curve(
     })
 }
 
-/// An angle less its whole turns.
-fn wrapped(angle: f64) -> f64 {
-    angle - (angle / std::f64::consts::TAU).round() * std::f64::consts::TAU
-}
-
 /// Directions of motion, each within half a turn of the one before. A rate of zero keeps the direction.
 fn directions(rates: &[Vector2<f64>]) -> Vec<f64> {
     let mut directions = Vec::with_capacity(rates.len());
@@ -219,7 +214,7 @@ fn directions(rates: &[Vector2<f64>]) -> Vec<f64> {
     for rate in rates {
         let raw = rate.y.atan2(rate.x);
         let psi = match last {
-            Some(before) if rate.norm() > 0.0 => before + wrapped(raw - before),
+            Some(before) if rate.norm() > 0.0 => before + wrapped_angle(raw - before),
             Some(before) => before,
             None => raw,
         };
