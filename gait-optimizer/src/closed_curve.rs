@@ -10,7 +10,7 @@ mod functional;
 mod hessian;
 
 pub(crate) use basis::Basis;
-pub(crate) use functional::{Functional, Values, Workspace};
+pub(crate) use functional::{Functional, Values, Workspace, column};
 pub(crate) use hessian::Weights;
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector4};
 
 use super::barrier::{Barrier, MOST};
 use super::objective::{Aim, Expansion};
-use crate::closed_curve::{Functional, Values, Weights, Workspace};
+use crate::closed_curve::{Functional, Values, Weights, Workspace, column};
 use crate::region::Level;
 
 /// When to stop, and how close to the bounds.
@@ -41,6 +41,10 @@ pub(crate) struct Newton<'a> {
     margins: Vec<[Level; MOST]>,
     pressure: Vec<[f64; MOST]>,
     local: Vec<Matrix2<f64>>,
+    /// Weights of the barrier, of what keeps steps short and of the rotation that is left, which change as an iteration goes on.
+    weight: f64,
+    damping: f64,
+    penalty: f64,
 }
 
 /// One accepted point.
@@ -52,12 +56,12 @@ struct Here {
 }
 
 impl<'a> Newton<'a> {
-    pub(crate) fn new(functional: Functional<'a>, aim: Aim, barrier: Barrier) -> Self {
+    pub(crate) fn new(functional: Functional<'a>, barrier: Barrier) -> Self {
         let (nodes, unknowns) = (functional.basis.nodes(), functional.unknowns());
         let none = barrier.margins(&Vector2::zeros());
         Self {
             functional,
-            aim,
+            aim: Aim { energy_weight: 1.0 },
             barrier,
             work: functional.workspace(),
             matrix: DMatrix::zeros(unknowns, unknowns),
@@ -66,32 +70,30 @@ impl<'a> Newton<'a> {
             margins: vec![none; nodes],
             pressure: vec![[0.0; MOST]; nodes],
             local: vec![Matrix2::zeros(); nodes],
+            weight: 0.0,
+            damping: 0.0,
+            penalty: 0.0,
         }
-    }
-
-    /// Aims elsewhere from now on.
-    pub(crate) fn set_aim(&mut self, aim: Aim) {
-        self.aim = aim;
     }
 
     /// The stationary curve that the iteration runs into from a start inside the barrier; none where it does not settle.
     pub(crate) fn solve(
         &mut self,
+        aim: Aim,
         start: &DMatrix<f64>,
         settings: &Settings,
     ) -> Option<Stationary> {
         let mut coefficients = start.clone();
-        let mut barrier = settings.barrier.0;
+        let (first, last) = settings.barrier;
+        (self.aim, self.weight, self.damping, self.penalty) = (aim, first, 1e-2, 1.0);
         let mut values = self.functional.gradients(&coefficients, &mut self.work);
         self.look_at_margins()?;
         for (pressure, margins) in self.pressure.iter_mut().zip(&self.margins) {
             for (z, margin) in pressure.iter_mut().zip(margins) {
-                *z = barrier / margin.value;
+                *z = first / margin.value;
             }
         }
         let mut rotation = 0.0;
-        let mut damping = 1e-2;
-        let mut penalty = 1.0;
         for _ in 0..settings.iterations {
             if !(values.energy.is_finite() && values.displacement.norm() > 0.0) {
                 return None;
@@ -101,35 +103,28 @@ impl<'a> Newton<'a> {
                 expansion: self.aim.expansion(&values),
                 rotation,
             };
-            self.first_order(&here, barrier);
+            self.first_order(&here);
             let scale = self.scale();
             let residual = self.residual(scale);
-            let level = if barrier > settings.barrier.1 {
-                settings.residual.max(0.1 * barrier)
+            let level = if self.weight > last {
+                settings.residual.max(0.1 * self.weight)
             } else {
                 settings.residual
             };
             let settled = residual < level && values.rotation.abs() < 10.0 * level.sqrt();
-            if settled && barrier <= settings.barrier.1 {
+            if settled && self.weight <= last {
                 return Some(Stationary {
                     coefficients,
                     values,
                 });
             }
             if settled {
-                barrier = (barrier * 0.1).max(settings.barrier.1);
-                self.first_order(&here, barrier);
+                self.weight = (self.weight * 0.1).max(last);
+                self.first_order(&here);
             }
             self.second_order(&here);
-            let (step, new) = self.accepted(
-                &coefficients,
-                &here,
-                scale,
-                &mut damping,
-                &mut penalty,
-                barrier,
-            )?;
-            self.press(&step, &new, barrier);
+            let (step, new) = self.accepted(&coefficients, &here, scale)?;
+            self.press(&step, &new);
             coefficients = new.coefficients;
             rotation = step.rotation;
             values = self.functional.gradients(&coefficients, &mut self.work);
@@ -139,28 +134,20 @@ impl<'a> Newton<'a> {
     }
 
     /// One step, with more damping until it is accepted.
-    fn accepted(
-        &mut self,
-        from: &DMatrix<f64>,
-        here: &Here,
-        scale: f64,
-        damping: &mut f64,
-        penalty: &mut f64,
-        barrier: f64,
-    ) -> Option<(Step, New)> {
+    fn accepted(&mut self, from: &DMatrix<f64>, here: &Here, scale: f64) -> Option<(Step, New)> {
         for _ in 0..24 {
-            if let Some(step) = self.step(here, *damping * scale) {
-                *penalty = penalty.max(2.0 * step.rotation.abs());
-                if let Some(new) = self.try_step(from, &step, here, barrier, *penalty) {
+            if let Some(step) = self.step(here, self.damping * scale) {
+                self.penalty = self.penalty.max(2.0 * step.rotation.abs());
+                if let Some(new) = self.try_step(from, &step, here) {
                     if new.ratio > 0.7 && new.length > 0.9 {
-                        *damping = (*damping * 0.15).max(1e-9);
+                        self.damping = (self.damping * 0.15).max(1e-9);
                     } else if new.ratio < 0.2 {
-                        *damping *= 3.0;
+                        self.damping *= 3.0;
                     }
                     return Some((step, new));
                 }
             }
-            *damping = (*damping * 6.0).max(1e-6);
+            self.damping = (self.damping * 6.0).max(1e-6);
         }
         None
     }
@@ -181,8 +168,7 @@ impl<'a> Newton<'a> {
     /// Margins at the nodes of the curve; none where one is not positive.
     fn look_at_margins(&mut self) -> Option<()> {
         for (node, margins) in self.margins.iter_mut().enumerate() {
-            let phi = Vector2::new(self.work.phi[(0, node)], self.work.phi[(1, node)]);
-            *margins = self.barrier.margins(&phi);
+            *margins = self.barrier.margins(&column(&self.work.phi, node));
             if margins.iter().any(|margin| margin.value <= 0.0) {
                 return None;
             }
@@ -191,7 +177,7 @@ impl<'a> Newton<'a> {
     }
 
     /// Gradient of the Lagrangian with the barrier's own multipliers, and of Δθ.
-    fn first_order(&mut self, here: &Here, barrier: f64) {
+    fn first_order(&mut self, here: &Here) {
         let mut weights = here.expansion.gradient;
         weights.z += here.rotation;
         self.gradient.gemv(1.0, &self.work.gradients, &weights, 0.0);
@@ -200,7 +186,7 @@ impl<'a> Newton<'a> {
         for (node, margins) in self.margins.iter().enumerate() {
             let mut pull = Vector2::zeros();
             for margin in margins.iter().take(count) {
-                pull -= margin.gradient * (barrier / margin.value);
+                pull -= margin.gradient * (self.weight / margin.value);
             }
             let values = self.functional.basis.values.column(node);
             for (j, value) in values.iter().enumerate() {
@@ -290,15 +276,8 @@ impl<'a> Newton<'a> {
     }
 
     /// The point after a step, cut to stay inside the barrier; none where the merit does not fall.
-    fn try_step(
-        &mut self,
-        from: &DMatrix<f64>,
-        step: &Step,
-        here: &Here,
-        barrier: f64,
-        penalty: f64,
-    ) -> Option<New> {
-        let merit_here = self.merit(&here.values, barrier, penalty, true)?;
+    fn try_step(&mut self, from: &DMatrix<f64>, step: &Step, here: &Here) -> Option<New> {
+        let merit_here = self.merit(&here.values, true)?;
         let mut length = 1.0;
         for _ in 0..8 {
             let mut there = from.clone();
@@ -311,31 +290,29 @@ impl<'a> Newton<'a> {
                 add(&mut there, correction, &step.unspin);
                 values = self.functional.values(&there, &mut self.work);
             }
-            match self.merit(&values, barrier, penalty, false) {
-                Some(merit) => {
-                    let gain = merit_here - merit;
-                    let wish = length * (step.expected + penalty * here.values.rotation.abs());
-                    if gain >= 1e-4 * wish.abs() - 1e-13 * (1.0 + merit_here.abs()) {
-                        return Some(New {
-                            coefficients: there,
-                            ratio: if wish > 1e-11 {
-                                gain / (0.5 * wish)
-                            } else {
-                                1.0
-                            },
-                            length,
-                        });
-                    }
-                    return None;
-                }
-                None => length *= 0.5,
-            }
+            let Some(merit) = self.merit(&values, false) else {
+                length *= 0.5;
+                continue;
+            };
+            let gain = merit_here - merit;
+            let wish = length * (step.expected + self.penalty * here.values.rotation.abs());
+            let ratio = if wish > 1e-11 {
+                gain / (0.5 * wish)
+            } else {
+                1.0
+            };
+            let falls = gain >= 1e-4 * wish.abs() - 1e-13 * (1.0 + merit_here.abs());
+            return falls.then_some(New {
+                coefficients: there,
+                ratio,
+                length,
+            });
         }
         None
     }
 
     /// Objective, barrier and penalty of the curve at hand; none outside the barrier. `old` takes the margins at hand.
-    fn merit(&self, values: &Values, barrier: f64, penalty: f64, old: bool) -> Option<f64> {
+    fn merit(&self, values: &Values, old: bool) -> Option<f64> {
         let count = self.barrier.count();
         let mut logs = 0.0;
         for (node, before) in self.margins.iter().enumerate() {
@@ -343,8 +320,7 @@ impl<'a> Newton<'a> {
                 logs += before.iter().take(count).map(|m| m.value.ln()).sum::<f64>();
                 continue;
             }
-            let phi = Vector2::new(self.work.phi[(0, node)], self.work.phi[(1, node)]);
-            let margins = self.barrier.margins(&phi);
+            let margins = self.barrier.margins(&column(&self.work.phi, node));
             for (margin, before) in margins.iter().zip(before).take(count) {
                 // No margin may shrink to a hundredth at once.
                 if margin.value.is_nan() || margin.value <= 0.01 * before.value {
@@ -353,12 +329,13 @@ impl<'a> Newton<'a> {
                 logs += margin.value.ln();
             }
         }
-        let merit = self.aim.value(values) - barrier * logs + penalty * values.rotation.abs();
+        let priced = self.aim.value(values) - self.weight * logs;
+        let merit = priced + self.penalty * values.rotation.abs();
         merit.is_finite().then_some(merit)
     }
 
     /// New multipliers of the margins.
-    fn press(&mut self, step: &Step, new: &New, barrier: f64) {
+    fn press(&mut self, step: &Step, new: &New) {
         let count = self.barrier.count();
         for (node, (pressures, margins)) in self.pressure.iter_mut().zip(&self.margins).enumerate()
         {
@@ -367,12 +344,11 @@ impl<'a> Newton<'a> {
             for (j, value) in values.iter().enumerate() {
                 moved += Vector2::new(step.by[2 * j], step.by[2 * j + 1]) * *value;
             }
-            let phi = Vector2::new(self.work.phi[(0, node)], self.work.phi[(1, node)]);
-            let after = self.barrier.margins(&phi);
+            let after = self.barrier.margins(&column(&self.work.phi, node));
             for ((z, margin), after) in pressures.iter_mut().zip(margins).zip(&after).take(count) {
-                let wanted = barrier / margin.value
+                let wanted = self.weight / margin.value
                     - *z / margin.value * margin.gradient.dot(&moved) * new.length;
-                let central = barrier / after.value.max(1e-300);
+                let central = self.weight / after.value.max(1e-300);
                 *z = wanted.clamp(0.05 * central, 20.0 * central);
             }
         }

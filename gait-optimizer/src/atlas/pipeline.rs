@@ -97,7 +97,7 @@ pub(super) fn run<S: MultiStart>(
         count,
         problem.threads,
         &|share| watch(STARTS * share),
-        || Newton::new(functional, Aim { energy_weight: 1.0 }, barrier),
+        || Newton::new(functional, barrier),
         |newton, index| {
             let curve = match known.get(index.wrapping_sub(problem.starts)) {
                 Some(known) => fitted(known, &basis, &barrier),
@@ -212,8 +212,8 @@ fn coarse<S: MultiStart>(
     let mut curve = start;
     let mut last = None;
     for &energy_weight in S::ENERGY_WEIGHTS {
-        newton.set_aim(Aim { energy_weight });
-        let Some(stationary) = newton.solve(&curve, &S::SETTINGS) else {
+        let aim = Aim { energy_weight };
+        let Some(stationary) = newton.solve(aim, &curve, &S::SETTINGS) else {
             break;
         };
         let points = polygon(basis, &stationary.coefficients);
