@@ -107,12 +107,7 @@ impl Cycle {
     }
 
     pub(crate) fn gait(&self) -> Result<AnyGait, InvalidSamples> {
-        let corners: Vec<usize> = self
-            .corners
-            .iter()
-            .filter_map(|corner| self.u.iter().position(|u| u.to_bits() == corner.to_bits()))
-            .collect();
-        AnyGait::from_samples(&self.u, &self.phi, &corners)
+        AnyGait::from_file(&self.file(Bounds::default()))
     }
 
     /// One cycle swum by the model, which shares no code with the arcs; none where the samples make no gait.
