@@ -12,7 +12,6 @@
 //! of displacement are no saddles among all closed curves, are listed in any case, each counted as one start that ended in it.
 
 mod barrier;
-mod curve;
 mod displacement;
 pub(crate) mod distinct;
 mod efficiency;

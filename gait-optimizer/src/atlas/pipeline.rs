@@ -5,13 +5,12 @@ use swimmer_files::AnyGait;
 use swimmer_model::{Model, Stroke, Tolerance, swim};
 
 use super::barrier::Barrier;
-use super::curve::{is_simple, polygon};
 use super::distinct::{Outline, Symmetries, classes};
 use super::newton::{Newton, Settings, Stationary};
 use super::objective::Aim;
 use super::starts::{fitted, off_centre, start};
 use super::{Atlas, AtlasProblem, Optimum, StartCurves};
-use crate::certificate::double_area;
+use crate::certificate::{crossings, double_area, turning_number};
 use crate::closed_curve::{Basis, Functional};
 use crate::optimal_gait::OptimalGait;
 use crate::parallel::{Watch, in_parallel};
@@ -23,6 +22,9 @@ const SAME_COARSE: (f64, f64) = (1e-3, 0.05);
 const SAME: (f64, f64) = (1e-7, 0.02);
 /// A curve that comes this near to the horizon has left \[rad\].
 const LEAVING: f64 = 0.3;
+
+/// Sides of the polygon that a coarse curve is looked at as.
+const SIDES: usize = 240;
 
 /// About what share of the work the starts are; the rest is polish.
 const STARTS: f64 = 0.5;
@@ -164,6 +166,11 @@ pub(super) fn run<S: MultiStart>(
     atlas
 }
 
+/// Whether a closed polygon turns once and never crosses itself.
+fn is_simple(points: &[Vector2<f64>]) -> bool {
+    (turning_number(points).abs() - 1.0).abs() < 1e-6 && crossings(points) == 0
+}
+
 /// What a coarse curve brings, if it can be swum.
 fn value_of<S: MultiStart>(model: &Model<f64>, points: &[Vector2<f64>]) -> Option<f64> {
     let sides = points.len().saturating_sub(1) as f64;
@@ -216,7 +223,9 @@ fn coarse<S: MultiStart>(
         let Some(stationary) = newton.solve(aim, &curve, &S::SETTINGS) else {
             break;
         };
-        let points = polygon(basis, &stationary.coefficients);
+        let points: Vec<_> = (0..=SIDES)
+            .map(|k| basis.shape(&stationary.coefficients, (k % SIDES) as f64 / SIDES as f64))
+            .collect();
         let far = points.iter().map(Vector2::amax).fold(0.0, f64::max);
         if may_leave && far > Region::HORIZON - LEAVING {
             return Ended::Left;
