@@ -27,6 +27,7 @@ use serde::{Serialize, Serializer};
 use swimmer_files::{ArcKind, Bounds, Objective};
 use swimmer_model::{InvalidSwimmer, Swimmer};
 
+use crate::certificate::{Certificate, Condition};
 use crate::displacement::Heading;
 use crate::efficiency::Branch;
 use crate::optimal_gait::OptimalGait;
@@ -411,16 +412,22 @@ fn all<F: Family>(
         events: Vec::new(),
     };
     for (branch, track) in tracks.into_iter().enumerate() {
-        found
-            .points
-            .extend(track.kept.into_iter().map(|kept| Point {
-                branch,
-                value: kept.value,
-                gait: kept.gait,
-                residual: kept.residual,
-            }));
+        let points = track.kept.into_iter();
+        found.points.extend(points.map(|kept| Point {
+            branch,
+            value: kept.value,
+            residual: residual(&kept.gait.certificate),
+            gait: kept.gait,
+        }));
         found.events.extend(track.events);
     }
     found.events.extend(meetings);
     Ok(found)
+}
+
+/// What is left of the equations that a gait on the way was solved from.
+fn residual(certificate: &Certificate) -> f64 {
+    let residuals = [Condition::ShootingResidual, Condition::FinalLambda4];
+    let mut told = residuals.into_iter().filter_map(|of| certificate.value(of));
+    told.next().unwrap_or(f64::NAN)
 }

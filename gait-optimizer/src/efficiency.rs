@@ -16,7 +16,7 @@ use swimmer_files::{AnyGait, Bounds};
 use swimmer_model::{Model, Swimmer};
 
 use crate::certificate::{Condition, crossings, simple_and_turning_once};
-use crate::extremal::gait::{Order, gait};
+use crate::extremal::gait::gait;
 use crate::extremal::{Extremal, Unpolished, polish, walls};
 use crate::immobile::refuse_immobile;
 use crate::optimal_gait::{EfficiencyFigures, OptimalGait};
@@ -325,13 +325,8 @@ fn finished(
     extremal: Extremal,
     origin: Origin,
 ) -> Result<Found, Unpolished> {
-    let order = Order {
-        swimmer: &problem.swimmer,
-        model,
-        bounds,
-        samples: 4 * problem.quarter_samples.max(16),
-    };
-    let mut gait = gait(&order, &extremal)?;
+    let samples = 4 * problem.quarter_samples.max(16);
+    let mut gait = gait((&problem.swimmer, model, bounds), &extremal, samples)?;
     // An atlas lists gaits that cross themselves as well.
     let simple = simple_and_turning_once(gait.phi(), gait.phi());
     gait.certificate = gait.certificate.with(simple.to_vec());

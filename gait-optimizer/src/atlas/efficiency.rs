@@ -11,7 +11,7 @@ use super::pipeline::MultiStart;
 use crate::certificate::{Certificate, Condition};
 use crate::closed_curve::Functional;
 use crate::efficiency::{Branch, EfficiencyProblem, best_symmetric};
-use crate::extremal::gait::{Order, gait};
+use crate::extremal::gait::gait;
 use crate::extremal::polish;
 use crate::numerics::halved;
 use crate::optimal_gait::OptimalGait;
@@ -79,13 +79,9 @@ impl MultiStart for Efficiency<'_> {
 impl Efficiency<'_> {
     fn solved(&self, start: &Shifted, quarter: bool) -> Option<OptimalGait> {
         let extremal = polish(self.model, self.walls, start, quarter).ok()?;
-        let order = Order {
-            swimmer: &self.problem.swimmer,
-            model: self.model,
-            bounds: &self.problem.bounds,
-            samples: self.problem.samples,
-        };
-        gait(&order, &extremal).ok()
+        let problem = self.problem;
+        let of = (&problem.swimmer, self.model, &problem.bounds);
+        gait(of, &extremal, problem.samples).ok()
     }
 
     /// A symmetric gait again from its quarter, so that it starts and is told as those of the quarter solvers are.

@@ -17,24 +17,17 @@ pub(super) const FIGURES: usize = 4;
 pub(super) struct BranchPoint {
     pub(super) value: f64,
     pub(super) gait: OptimalGait,
-    pub(super) residual: f64,
     /// Its arcs, from which the next one is shot, where it is one of most efficiency.
     pub(super) extremal: Option<Extremal>,
     outline: Outline,
 }
 
 impl BranchPoint {
-    pub(super) fn new(
-        value: f64,
-        gait: OptimalGait,
-        residual: f64,
-        extremal: Option<Extremal>,
-    ) -> Self {
+    pub(super) fn new(value: f64, gait: OptimalGait, extremal: Option<Extremal>) -> Self {
         Self {
             value,
             outline: Outline::new(gait.phi()),
             gait,
-            residual,
             extremal,
         }
     }

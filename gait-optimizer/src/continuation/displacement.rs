@@ -3,7 +3,6 @@
 use super::branch_point::BranchPoint;
 use super::follow::Family;
 use super::{ContinuationProblem, Start};
-use crate::certificate::Condition;
 use crate::displacement::{DisplacementProblem, Heading, every};
 use crate::optimal_gait::OptimalGait;
 
@@ -57,8 +56,7 @@ fn heading(gait: &OptimalGait) -> Heading {
 }
 
 fn kept(value: f64, gait: OptimalGait) -> BranchPoint {
-    let residual = gait.certificate.value(Condition::FinalLambda4);
-    BranchPoint::new(value, gait, residual.unwrap_or(f64::NAN), None)
+    BranchPoint::new(value, gait, None)
 }
 
 /// Those that are optima, at least among gaits with their symmetries.

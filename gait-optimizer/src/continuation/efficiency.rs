@@ -7,7 +7,7 @@ use super::follow::Family;
 use super::{ContinuationProblem, OtherSide, Start};
 use crate::efficiency::{EfficiencyProblem, best_symmetric};
 use crate::extremal::continuation::{alike, mirrored, other_side, within_walls};
-use crate::extremal::gait::{Order, gait};
+use crate::extremal::gait::gait;
 use crate::extremal::{Extremal, polish, polish_chain, walls};
 use crate::region::Region;
 
@@ -37,19 +37,12 @@ impl Efficiency<'_> {
         model: &Model<f64>,
         extremal: Extremal,
     ) -> Result<BranchPoint, String> {
-        let (swimmer, bounds) = (
-            self.problem.swimmer_at(value),
-            self.problem.bounds_at(value),
-        );
-        let order = Order {
-            swimmer: &swimmer,
-            model,
-            bounds: &bounds,
-            samples: self.problem.samples.clamp(64, 1 << 14),
-        };
-        let gait = gait(&order, &extremal).map_err(|error| error.to_string())?;
-        let residual = extremal.residual;
-        Ok(BranchPoint::new(value, gait, residual, Some(extremal)))
+        let problem = self.problem;
+        let (swimmer, bounds) = (problem.swimmer_at(value), problem.bounds_at(value));
+        let samples = problem.samples.clamp(64, 1 << 14);
+        let gait = gait((&swimmer, model, &bounds), &extremal, samples);
+        let gait = gait.map_err(|error| error.to_string())?;
+        Ok(BranchPoint::new(value, gait, Some(extremal)))
     }
 
     fn polished<G: Gait<f64> + ?Sized>(

@@ -13,22 +13,13 @@ const MOST_SAMPLES: usize = 8192;
 /// What the power between samples may vary by, over its mean.
 const CONSTANT_POWER: f64 = 1e-6;
 
-/// What a gait is made for.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Order<'a> {
-    /// The swimmer as it is, and the model of the same with L = 1.
-    pub(crate) swimmer: &'a Swimmer<f64>,
-    pub(crate) model: &'a Model<f64>,
-    pub(crate) bounds: &'a Bounds,
-    /// Samples of a cycle.
-    pub(crate) samples: usize,
-}
-
-/// An extremal as a gait, with the certificate of its file; whether that passes is for the caller to see. Where the interpolated samples
-/// do not keep the power constant, or leave slopes open that the certificate asks for, there are more of them than were asked for.
-pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait, Unpolished> {
-    let Order { model, swimmer, .. } = *order;
-    let mut samples = order.samples;
+/// An extremal as a gait of a swimmer, whose model has L = 1, with the certificate of its file; whether that passes is for the caller to see.
+/// Where the interpolated samples do not keep the power constant, or leave slopes open that the certificate asks for, there are more of them than were asked for.
+pub(crate) fn gait(
+    (swimmer, model, bounds): (&Swimmer<f64>, &Model<f64>, &Bounds),
+    extremal: &Extremal,
+    mut samples: usize,
+) -> Result<OptimalGait, Unpolished> {
     let (cycle, curve) = loop {
         let cycle = extremal.cycle(model, samples).ok_or(Unpolished::Trace)?;
         let curve = cycle.gait().map_err(|_| Unpolished::Trace)?;
@@ -42,7 +33,7 @@ pub(crate) fn gait(order: &Order<'_>, extremal: &Extremal) -> Result<OptimalGait
     };
     let symmetric = extremal.is_quarter();
     let stroke = swim(model, &curve, &Tolerance::new(1e-12));
-    let of = (Objective::Efficiency, swimmer, order.bounds);
+    let of = (Objective::Efficiency, swimmer, bounds);
     // The arcs know these closer than the samples do: d is parallel to p, and p · d is the length.
     let (d, efficiency) = (extremal.displacement(), extremal.efficiency(model));
     let mut gait = certified(OptimalGait {

@@ -207,13 +207,7 @@ fn polished(
     let model = &Model::new(&swimmer.of_unit_length()).unwrap();
     let walls = walls(bounds, &swimmer.links);
     let extremal = polish(model, &walls, curve, quarter).unwrap();
-    let order = gait::Order {
-        swimmer,
-        model,
-        bounds,
-        samples: 1024,
-    };
-    gait::gait(&order, &extremal).unwrap()
+    gait::gait((swimmer, model, bounds), &extremal, 1024).unwrap()
 }
 
 /// Free and bounded closed curves, found without using their symmetries, certified.
