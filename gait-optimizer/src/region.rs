@@ -67,10 +67,7 @@ impl Edge {
 impl Bound {
     /// What an arc along it is called.
     pub fn kind(&self) -> ArcKind {
-        match self {
-            Self::Straight(edge) => edge.kind,
-            Self::Clearance(_) => ArcKind::Clearance,
-        }
+        self.edge().map_or(ArcKind::Clearance, |edge| edge.kind)
     }
 
     /// The edge, where it is straight.

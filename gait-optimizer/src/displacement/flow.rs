@@ -159,7 +159,7 @@ pub(crate) fn follow(
     };
     let mut met = options.met;
     let (legs, fate) = tracer.chain(start, MOST_ARCS, |tracer, leg, event| {
-        let edge = edge_along(&leg.motion);
+        let edge = leg.motion.track().and_then(|track| track.wall.edge());
         if is_start_line(edge) {
             met = met.and_started(&leg.to);
         }
@@ -250,15 +250,7 @@ impl EndCondition for Ends<'_> {
 
 /// Running along a side of the sector.
 fn on_diagonal(motion: &Motion) -> bool {
-    matches!(motion, Motion::Along(track) if track.wall.kind() == ArcKind::Diagonal)
-}
-
-/// The edge that an arc runs along.
-fn edge_along(motion: &Motion) -> Option<&Edge> {
-    match motion {
-        Motion::Along(track) => track.wall.edge(),
-        Motion::Singular => None,
-    }
+    motion.kind() == ArcKind::Diagonal
 }
 
 /// On along φ₁ = −φ₂; none where the quarter shall end, that line is no bound or another bound is in the way.

@@ -15,36 +15,36 @@ pub(crate) enum Motion {
 }
 
 impl Motion {
+    /// The bound that is run along; none for the singular control.
+    pub(crate) fn track(&self) -> Option<&Track> {
+        match self {
+            Self::Singular => None,
+            Self::Along(track) => Some(track),
+        }
+    }
+
     /// What an arc of it is called.
     pub(crate) fn kind(&self) -> ArcKind {
-        match self {
-            Self::Singular => ArcKind::Singular,
-            Self::Along(track) => track.wall.kind(),
-        }
+        self.track()
+            .map_or(ArcKind::Singular, |track| track.wall.kind())
     }
 
     /// Place of the bound that is run along; none for the singular control.
     pub(crate) fn bound(&self) -> Option<usize> {
-        match self {
-            Self::Singular => None,
-            Self::Along(track) => Some(track.index),
-        }
+        self.track().map(|track| track.index)
     }
 
     /// What is left of the bound's piece, with its slope in Φ; none where it does not end.
     pub(crate) fn piece_end(&self, phi: &Vector2<f64>) -> Option<(f64, Vector2<f64>)> {
-        match self {
-            Self::Singular => None,
-            Self::Along(track) => track.piece_end(phi),
+        match self.track()?.wall {
+            Bound::Clearance(clearance) => clearance.piece_end(clearance.piece(phi), phi),
+            Bound::Straight(_) => None,
         }
     }
 
     /// Along the bound's next piece, where there is one.
     pub(crate) fn next_piece(&self) -> Option<Self> {
-        match self {
-            Self::Singular => None,
-            Self::Along(track) => track.next_piece().map(Self::Along),
-        }
+        self.track()?.next_piece().map(Self::Along)
     }
 }
 
@@ -79,26 +79,13 @@ impl Track {
 
     /// Unit direction of motion; smooth also beyond the piece's end.
     pub(crate) fn direction(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        self.left(phi) * self.way
+        self.wall.tangent(phi) * self.way
     }
 
     /// Unit normal that points into the region.
     pub(crate) fn inwards(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        let along = self.left(phi);
+        let along = self.wall.tangent(phi);
         Vector2::new(-along.y, along.x)
-    }
-
-    /// The direction with the region on the left.
-    fn left(&self, phi: &Vector2<f64>) -> Vector2<f64> {
-        self.wall.tangent(phi)
-    }
-
-    /// What is left of the piece, with its slope in Φ; none where it does not end.
-    pub(crate) fn piece_end(&self, phi: &Vector2<f64>) -> Option<(f64, Vector2<f64>)> {
-        match &self.wall {
-            Bound::Clearance(clearance) => clearance.piece_end(clearance.piece(phi), phi),
-            Bound::Straight(_) => None,
-        }
     }
 
     /// The piece after this one. Round a forbidden zone they follow each other as front tip, tips, back tip.
