@@ -86,6 +86,20 @@ pub(crate) fn locate<P>(
 /// How much larger than its square what a step of Newton's leaves is allowed to be.
 const SQUARED: f64 = 100.0;
 
+/// Where a value lies among places that grow: the place before it, and its share of the way to the next one.
+pub(crate) fn between(places: &[f64], at: f64) -> (usize, f64) {
+    let last = places.len().saturating_sub(1).max(1);
+    let after = places.partition_point(|&place| place <= at).clamp(1, last);
+    let place = |i: usize| places.get(i).copied().unwrap_or(0.0);
+    let (from, to) = (place(after - 1), place(after));
+    let share = if to > from {
+        (at - from) / (to - from)
+    } else {
+        0.0
+    };
+    (after - 1, share)
+}
+
 /// Shares of a step to try, each half of the one before.
 pub(crate) fn damped(most: f64) -> impl Iterator<Item = f64> {
     std::iter::successors(Some(most), |share| Some(0.5 * share))

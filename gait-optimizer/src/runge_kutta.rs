@@ -52,6 +52,14 @@ pub(crate) struct StepControl {
     pub(crate) longest: f64,
 }
 
+impl StepControl {
+    /// Steps as long as this error lets them be.
+    pub(crate) const fn to(tolerance: f64) -> Self {
+        let longest = f64::INFINITY;
+        Self { tolerance, longest }
+    }
+}
+
 /// An accepted step: where it ended, how long it was, and what to try next.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Accepted<const N: usize> {

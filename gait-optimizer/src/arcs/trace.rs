@@ -7,10 +7,7 @@ use crate::cycle::Samples;
 use crate::momentum::{Flow, Momentum, Motion, State, shape};
 use crate::runge_kutta::{Point, StepControl, System, advance};
 
-const CONTROL: StepControl = StepControl {
-    tolerance: 1e-13,
-    longest: f64::INFINITY,
-};
+const CONTROL: StepControl = StepControl::to(1e-13);
 /// Fewest intervals of an arc: the interpolation takes five samples on the same side of a corner, and needs more where the arc is
 /// curved.
 const FEWEST: usize = 8;

@@ -7,6 +7,7 @@
 use nalgebra::Vector2;
 
 use crate::certificate::to_side;
+use crate::numerics::between;
 
 /// Points that a curve is compared at.
 const POINTS: usize = 96;
@@ -34,18 +35,9 @@ impl Outline {
             lengths.push(total);
         }
         let at = |length: f64| {
-            let after = lengths
-                .partition_point(|&l| l <= length)
-                .clamp(1, lengths.len().saturating_sub(1).max(1));
-            let place = |i: usize| lengths.get(i).copied().unwrap_or(0.0);
+            let (before, share) = between(&lengths, length);
             let point = |i: usize| polygon.get(i).copied().unwrap_or_default();
-            let (from, to) = (place(after - 1), place(after));
-            let share = if to > from {
-                (length - from) / (to - from)
-            } else {
-                0.0
-            };
-            point(after - 1).lerp(&point(after), share)
+            point(before).lerp(&point(before + 1), share)
         };
         Self(
             (0..POINTS)

@@ -24,11 +24,6 @@ pub(crate) struct Mapped {
 /// Local tolerance of whatever is kept.
 pub(crate) const FINE: f64 = 1e-13;
 
-const CONTROL: StepControl = StepControl {
-    tolerance: FINE,
-    longest: f64::INFINITY,
-};
-
 /// Rates of the state, of q and of their sensitivities.
 fn variational(model: &Model<f64>, motion: &Motion, z: &[f64; WIDE]) -> [f64; WIDE] {
     let local = linear(model, motion, &state(z));
@@ -66,10 +61,7 @@ pub(crate) fn mapped(
     }
     let sign = if length < 0.0 { -1.0 } else { 1.0 };
     let system = |z: &[f64; WIDE]| variational(model, motion, z).map(|value| sign * value);
-    let control = StepControl {
-        tolerance,
-        ..CONTROL
-    };
+    let control = StepControl::to(tolerance);
     let end = advance(&system, Point::new(&system, z), length.abs(), control)?;
     let mut by_start = [[0.0; STATE]; RATES];
     for (row, from) in by_start.iter_mut().zip(end.z[RATES..].chunks_exact(STATE)) {
@@ -95,7 +87,12 @@ pub(crate) fn flowed(
     for (value, from) in z.iter_mut().zip(start) {
         *value = *from;
     }
-    let end = advance(&system, Point::new(&system, z), length, CONTROL)?;
+    let end = advance(
+        &system,
+        Point::new(&system, z),
+        length,
+        StepControl::to(FINE),
+    )?;
     Some((state(&end.z), end.z[STATE]))
 }
 

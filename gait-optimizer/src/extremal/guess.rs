@@ -5,6 +5,7 @@ use swimmer_model::{Gait, Model, Tolerance, TrajectoryPoint, trajectory, wrapped
 
 use super::equations::{Motion, State, Turning};
 use super::shooting::{Chain, Class, Entry, Stretch};
+use crate::numerics::between;
 use crate::runge_kutta::{Point, StepControl, advance};
 
 /// A closed curve swum once, densely.
@@ -122,20 +123,9 @@ impl Trajectory {
     pub(crate) fn at(&self, length: f64) -> State {
         let total = self.total();
         let laps = (length / total).floor();
-        let within = length - laps * total;
-        let after = self
-            .length
-            .partition_point(|&s| s <= within)
-            .clamp(1, self.length.len().saturating_sub(1).max(1));
+        let (before, share) = between(&self.length, length - laps * total);
         let pick = |i: usize| self.states.get(i).copied().unwrap_or_default();
-        let place = |i: usize| self.length.get(i).copied().unwrap_or(0.0);
-        let (from, to) = (place(after - 1), place(after));
-        let share = if to > from {
-            (within - from) / (to - from)
-        } else {
-            0.0
-        };
-        let (low, high) = (pick(after - 1), pick(after));
+        let (low, high) = (pick(before), pick(before + 1));
         let mut state: State = std::array::from_fn(|i| low[i] + share * (high[i] - low[i]));
         state[2] += laps * self.turn;
         state
@@ -149,10 +139,7 @@ pub(crate) fn quarter_of_curve(
     curve: &impl Fn(f64) -> (Vector2<f64>, Vector2<f64>),
     pieces: usize,
 ) -> Option<Chain> {
-    const CONTROL: StepControl = StepControl {
-        tolerance: 1e-9,
-        longest: f64::INFINITY,
-    };
+    const CONTROL: StepControl = StepControl::to(1e-9);
     let speed = |rate: &Vector2<f64>, phi: &Vector2<f64>| {
         rate.dot(&(model.power_matrix(phi) * rate)).sqrt()
     };

@@ -54,7 +54,8 @@ pub(crate) struct Launch<'a> {
     pub(crate) shortest: f64,
     /// … and no end farther than this from the start \[rad\].
     pub(crate) near: f64,
-    pub(crate) control: StepControl,
+    /// Of the integration.
+    pub(crate) tolerance: f64,
 }
 
 impl Launch<'_> {
@@ -69,8 +70,8 @@ impl Launch<'_> {
             },
             region: self.region,
             control: StepControl {
-                longest: self.control.longest.min(LONGEST_STEP),
-                ..self.control
+                tolerance: self.tolerance,
+                longest: LONGEST_STEP,
             },
             leaves: true,
             ends: self,

@@ -7,7 +7,6 @@ use super::flow::{ClosedOrbit, Launch, ReturnCondition};
 use crate::momentum::{Momentum, Motion, pose, shape};
 use crate::numerics::damped;
 use crate::region::Region;
-use crate::runge_kutta::StepControl;
 
 /// A one-parameter family of starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,14 +32,9 @@ pub(crate) struct Guess {
 /// Place along the section and angle of p against the heading at the start \[rad\].
 type At = Vector2<f64>;
 
-const COARSE: StepControl = StepControl {
-    tolerance: 1e-8,
-    longest: 0.15,
-};
-const FINE: StepControl = StepControl {
-    tolerance: 1e-13,
-    longest: 0.15,
-};
+/// Tolerances of the integration.
+const COARSE: f64 = 1e-8;
+const FINE: f64 = 1e-13;
 const ROUNDS: usize = 30;
 /// Longest steps in place and angle.
 const STRIDE: f64 = 0.12;
@@ -62,18 +56,18 @@ pub(crate) fn close(model: &Model<f64>, region: &Region, guess: Guess) -> Option
         guess,
     };
     let mut here = At::new(0.0, guess.angle);
-    let mut control = COARSE;
-    let (mut miss, mut orbit) = problem.shoot(&here, control)?;
+    let mut tolerance = COARSE;
+    let (mut miss, mut orbit) = problem.shoot(&here, tolerance)?;
     for _ in 0..ROUNDS {
-        if miss.norm() < NEAR && control.tolerance > FINE.tolerance {
-            control = FINE;
-            (miss, orbit) = problem.shoot(&here, control)?;
+        if miss.norm() < NEAR && tolerance > FINE {
+            tolerance = FINE;
+            (miss, orbit) = problem.shoot(&here, tolerance)?;
         }
-        let step = problem.step(&here, &miss, control)?;
+        let step = problem.step(&here, &miss, tolerance)?;
         let mut factors = damped((STRIDE / step.amax()).min(1.0)).take(8);
         let better = factors.find_map(|factor| {
             let there = here + step * factor;
-            let (new, new_lap) = problem.shoot(&there, control)?;
+            let (new, new_lap) = problem.shoot(&there, tolerance)?;
             (new.norm() < miss.norm()).then_some((there, new, new_lap))
         });
         let Some((there, new, new_lap)) = better else {
@@ -84,7 +78,7 @@ pub(crate) fn close(model: &Model<f64>, region: &Region, guess: Guess) -> Option
             break;
         }
     }
-    (control.tolerance <= FINE.tolerance && miss.norm() < CLOSED).then_some(orbit)
+    (tolerance <= FINE && miss.norm() < CLOSED).then_some(orbit)
 }
 
 impl Problem<'_> {
@@ -98,7 +92,7 @@ impl Problem<'_> {
     }
 
     /// Place, heading and the part of the displacement across p that the orbit ends with.
-    fn shoot(&self, at: &At, control: StepControl) -> Option<(Vector3<f64>, ClosedOrbit)> {
+    fn shoot(&self, at: &At, tolerance: f64) -> Option<(Vector3<f64>, ClosedOrbit)> {
         let section = &self.guess.section;
         let start = self.start(at);
         let momentum = Momentum::of_zero(self.model, &start, at.y)?;
@@ -117,7 +111,7 @@ impl Problem<'_> {
             ahead,
             shortest: 0.5 * self.guess.length,
             near: 1.0,
-            control,
+            tolerance,
         };
         let orbit = launch.orbit()?;
         let end = orbit.end;
@@ -131,14 +125,10 @@ impl Problem<'_> {
     }
 
     /// The Gauss–Newton step, by differences.
-    fn step(&self, at: &At, miss: &Vector3<f64>, control: StepControl) -> Option<Vector2<f64>> {
-        let h = if control.tolerance < 1e-10 {
-            1e-6
-        } else {
-            1e-4
-        };
+    fn step(&self, at: &At, miss: &Vector3<f64>, tolerance: f64) -> Option<Vector2<f64>> {
+        let h = if tolerance < 1e-10 { 1e-6 } else { 1e-4 };
         let column = |way: Vector2<f64>| {
-            let [there, back] = [h, -h].map(|h| self.shoot(&(at + way * h), control));
+            let [there, back] = [h, -h].map(|h| self.shoot(&(at + way * h), tolerance));
             match (there, back) {
                 (Some((a, _)), Some((b, _))) => Some((a - b) / (2.0 * h)),
                 (Some((a, _)), None) => Some((a - miss) / h),

@@ -9,10 +9,7 @@ use crate::momentum::{Flow, Motion, State, pose};
 use crate::numerics::locate;
 use crate::runge_kutta::{Point, StepControl, advance};
 
-const CONTROL: StepControl = StepControl {
-    tolerance: 1e-13,
-    longest: f64::INFINITY,
-};
+const CONTROL: StepControl = StepControl::to(1e-13);
 /// Samples fall on the quarters of the cycle, where a symmetric loop has its images meet.
 const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
 /// Arcs below this share of the cycle are crossings of a corner, not arcs.

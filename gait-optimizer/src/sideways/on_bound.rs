@@ -11,21 +11,15 @@ use crate::loops::{ClosedOrbit, Launch, ReturnCondition, Section, traced_from};
 use crate::momentum::{Momentum, Motion, Track};
 use crate::numerics::{halved, root};
 use crate::region::{Bound, Edge, Region};
-use crate::runge_kutta::StepControl;
 
 /// Places looked at along an edge.
 const PLACES: u32 = 160;
 /// Multipliers looked at, from −RANGE to RANGE, over L.
 const LOOKS: u32 = 80;
 const RANGE: f64 = 0.8;
-const COARSE: StepControl = StepControl {
-    tolerance: 1e-7,
-    longest: 0.15,
-};
-const FINE: StepControl = StepControl {
-    tolerance: 1e-13,
-    longest: 0.15,
-};
+/// Tolerances of the integration.
+const COARSE: f64 = 1e-7;
+const FINE: f64 = 1e-13;
 
 /// All loops that close, traced.
 pub(super) fn candidates(model: &Model<f64>, region: &Region, samples: usize) -> Vec<Cycle> {
@@ -102,7 +96,7 @@ struct Family<'a> {
 }
 
 impl Family<'_> {
-    fn shoot(&self, rotation: f64, control: StepControl) -> Option<ClosedOrbit> {
+    fn shoot(&self, rotation: f64, tolerance: f64) -> Option<ClosedOrbit> {
         let bound = self.start.bound?;
         let launch = Launch {
             model: self.model,
@@ -117,13 +111,13 @@ impl Family<'_> {
             ahead: self.start.along,
             shortest: 0.5,
             near: f64::INFINITY,
-            control,
+            tolerance,
         };
         launch.orbit()
     }
 
-    fn miss(&self, rotation: f64, control: StepControl) -> Option<f64> {
-        let end = self.shoot(rotation, control)?.end;
+    fn miss(&self, rotation: f64, tolerance: f64) -> Option<f64> {
+        let end = self.shoot(rotation, tolerance)?.end;
         let off = (Vector2::new(end[0], end[1]) - self.start.at).norm();
         (off < 1e-6).then_some(end[4])
     }
