@@ -320,6 +320,13 @@ impl Played {
             torque: _,
             no_load_rate: _,
         } = self.servos.file;
+        let wrong = |name, value, problem| {
+            Err(ForecastError::Servo {
+                name,
+                value,
+                problem,
+            })
+        };
         let positive = [
             ("largest angle [rad]", max_angle),
             ("largest rate [rad/s]", max_rate),
@@ -328,19 +335,11 @@ impl Played {
         ];
         for (name, value) in positive {
             if value.is_nan() || value <= 0.0 {
-                return Err(ForecastError::Servo {
-                    name,
-                    value,
-                    problem: "give a number above 0",
-                });
+                return wrong(name, value, "give a number above 0");
             }
         }
         if !(dead_band >= 0.0 && dead_band.is_finite()) {
-            return Err(ForecastError::Servo {
-                name: "dead band [rad]",
-                value: dead_band,
-                problem: "give 0 or a number above",
-            });
+            return wrong("dead band [rad]", dead_band, "give 0 or a number above");
         }
         Ok(())
     }

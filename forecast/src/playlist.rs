@@ -106,7 +106,8 @@ pub fn tables<G: Gait<f64>>(steps: &[Repeated<G>]) -> Result<Vec<PlaylistTable>,
         let mut left = step.cycles;
         let missing = SHORTEST_S - duration(&open);
         if !open.is_empty() {
-            let taken = cycles_in(missing, step.period).min(left);
+            // Whole cycles that last at least so long, at least one.
+            let taken = ((missing / step.period).ceil() as u32).max(1).min(left);
             open.push((step, number, taken));
             left -= taken;
             if duration(&open) >= SHORTEST_S {
@@ -125,11 +126,6 @@ pub fn tables<G: Gait<f64>>(steps: &[Repeated<G>]) -> Result<Vec<PlaylistTable>,
         tables.push(table_of(shape, &open, 1)?);
     }
     Ok(tables)
-}
-
-/// Whole cycles that last at least so long, at least one.
-fn cycles_in(seconds: f64, period: f64) -> u32 {
-    ((seconds / period).ceil() as u32).max(1)
 }
 
 /// Cycles of one step in a table: of which, its number, and how many.

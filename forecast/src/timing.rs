@@ -159,11 +159,37 @@ impl Curve {
         all.map(|s| s.weight * s.turn).sum::<f64>() / max_rate
     }
 
+    /// The k with ∫ max(τ, k p) du = T. The left side is convex and grows with k, piecewise linear for a finite rule; from the
+    /// right end Newton's method descends to the root and meets it exactly.
+    fn poured(&self, period: f64, max_rate: f64) -> f64 {
+        let mut k = period / self.length;
+        for _ in 0..STEPS {
+            let (mut time, mut slope) = (0.0, 0.0);
+            for s in self.samples.iter().flatten() {
+                let (floor, poured) = (s.turn / max_rate, k * s.power_root);
+                time += s.weight * floor.max(poured);
+                if poured > floor {
+                    slope += s.weight * s.power_root;
+                }
+            }
+            let excess = time - period;
+            if excess <= 0.0 || slope <= 0.0 {
+                break;
+            }
+            let next = k - excess / slope;
+            if next >= k {
+                break;
+            }
+            k = next;
+        }
+        k
+    }
+
     /// The timing of least energy with a period \[s\] that is no shorter than the shortest, and joints of at most `max_rate`
     /// \[rad/s\] (infinite for no limit).
     fn timing(&self, period: f64, max_rate: f64) -> Timing {
         let (length, all) = (self.length, || self.samples.iter().flatten());
-        let k = pour(all, period, max_rate, period / length);
+        let k = self.poured(period, max_rate);
         let floor = |s: &Sample| s.turn / max_rate;
         let slowness = |s: &Sample| floor(s).max(k * s.power_root);
         let moving = || all().filter(|s| s.power_root > 0.0);
@@ -206,37 +232,6 @@ impl Curve {
             ..timing
         }
     }
-}
-
-/// The k with ∫ max(τ, k p) du = T. The left side is convex and grows with k, piecewise linear for a finite rule; from the
-/// right end Newton's method descends to the root and meets it exactly.
-fn pour<'a, I: Iterator<Item = &'a Sample>>(
-    samples: impl Fn() -> I,
-    period: f64,
-    max_rate: f64,
-    start: f64,
-) -> f64 {
-    let mut k = start;
-    for _ in 0..STEPS {
-        let (mut time, mut slope) = (0.0, 0.0);
-        for s in samples() {
-            let (floor, poured) = (s.turn / max_rate, k * s.power_root);
-            time += s.weight * floor.max(poured);
-            if poured > floor {
-                slope += s.weight * s.power_root;
-            }
-        }
-        let excess = time - period;
-        if excess <= 0.0 || slope <= 0.0 {
-            break;
-        }
-        let next = k - excess / slope;
-        if next >= k {
-            break;
-        }
-        k = next;
-    }
-    k
 }
 
 impl Timing {
