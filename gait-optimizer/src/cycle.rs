@@ -131,14 +131,6 @@ impl Samples {
         self.along.get(sample).map_or(1.0, |along| along / whole)
     }
 
-    fn gait_arcs(&self) -> impl DoubleEndedIterator<Item = GaitArc> + Clone {
-        self.arcs.iter().map(|&(kind, from, to)| GaitArc {
-            kind,
-            from: self.place(from),
-            to: self.place(to),
-        })
-    }
-
     /// The cycle of a closed curve.
     pub(crate) fn closed(&self) -> Cycle {
         let mut phi = self.phi.clone();
@@ -146,11 +138,16 @@ impl Samples {
         if let (Some(first), Some(last)) = (phi.first().copied(), phi.last_mut()) {
             *last = first;
         }
+        let arcs = self.arcs.iter().map(|&(kind, from, to)| GaitArc {
+            kind,
+            from: self.place(from),
+            to: self.place(to),
+        });
         Cycle {
             u: (0..phi.len()).map(|i| self.place(i)).collect(),
             phi,
             corners: self.corners.iter().map(|&i| self.place(i)).collect(),
-            arcs: self.gait_arcs().collect(),
+            arcs: arcs.collect(),
         }
     }
 

@@ -241,7 +241,10 @@ fn within_bounds(
     model: &Model<f64>,
     free: &Found,
 ) -> Result<OptimalGait, EfficiencyError> {
-    if keeps_bounds(problem, &free.gait) {
+    let walls = walls(&problem.bounds, &problem.swimmer.links);
+    let depths = free.gait.phi().iter().filter_map(|phi| walls.nearest(phi));
+    // A free gait that keeps the bounds is the optimum under them too.
+    if depths.map(|(_, depth)| depth).all(|depth| depth <= 0.0) {
         return Ok(OptimalGait {
             bounds: problem.bounds,
             ..free.gait.clone()
@@ -338,12 +341,4 @@ fn finished(
         direct_efficiency: origin.direct_efficiency,
     });
     Ok(Found { gait, extremal })
-}
-
-/// Whether a free gait keeps the bounds: then it is the optimum under them too.
-fn keeps_bounds(problem: &EfficiencyProblem, gait: &OptimalGait) -> bool {
-    let walls = walls(&problem.bounds, &problem.swimmer.links);
-    gait.phi()
-        .iter()
-        .all(|phi| walls.nearest(phi).is_none_or(|(_, depth)| depth <= 0.0))
 }

@@ -245,7 +245,7 @@ fn even_before(u: &[f64]) -> Vec<usize> {
 }
 
 /// The knot at u.
-fn knot(file: &GaitFile, u: f64) -> Option<usize> {
+pub(super) fn knot(file: &GaitFile, u: f64) -> Option<usize> {
     let after = file.u.partition_point(|&knot| knot < u - SAME);
     (file.u.get(after)? - u).abs().le(&SAME).then_some(after)
 }

@@ -10,6 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::Gait as _;
 
+use super::grid::knot;
 use crate::certificate::{Certificate, Check, Condition, SeenBy};
 
 /// Numbers with more digits than these were not rounded by a writer.
@@ -75,15 +76,7 @@ impl Rounding {
         if let (Some(first), Some(last)) = (first, phi.last_mut()) {
             *last = first;
         }
-        let place = |old: f64| {
-            let at = gait.u.partition_point(|&u| u < old - 1e-12);
-            let same = gait.u.get(at).is_some_and(|u| (u - old).abs() <= 1e-12);
-            if same {
-                u.get(at).copied().unwrap_or(old)
-            } else {
-                old
-            }
-        };
+        let place = |old: f64| knot(gait, old).map_or(old, |at| u[at]);
         let mut moved = gait.clone();
         for arc in &mut moved.arcs {
             (arc.from, arc.to) = (place(arc.from), place(arc.to));

@@ -16,13 +16,11 @@ pub(crate) struct Weights {
     pub(crate) energy: f64,
 }
 
-/// Second derivatives by the joint angles of something more that depends on a node's shape alone: a barrier at a bound.
-pub(crate) type LocalTerm = Matrix2<f64>;
-
 impl Functional<'_> {
-    /// The Hessian of the weighted sum, into [`Workspace::hessian`]. [`Functional::gradients`] must have been asked of the
+    /// The Hessian of the weighted sum, into [`Workspace::hessian`]; `local` are second derivatives by the joint angles of something
+    /// more that depends on a node's shape alone: a barrier at a bound. [`Functional::gradients`] must have been asked of the
     /// same curve before.
-    pub(crate) fn hessian(&self, weights: &Weights, local: &[LocalTerm], work: &mut Workspace) {
+    pub(crate) fn hessian(&self, weights: &Weights, local: &[Matrix2<f64>], work: &mut Workspace) {
         work.hessian.fill(0.0);
         work.running.fill(0.0);
         for panel in 0..self.basis.panels() {
@@ -98,7 +96,13 @@ impl Functional<'_> {
     }
 
     /// Adds a node's own second derivatives to the upper triangle.
-    fn add_local(&self, weights: &Weights, extra: &LocalTerm, work: &mut Workspace, node: usize) {
+    fn add_local(
+        &self,
+        weights: &Weights,
+        extra: &Matrix2<f64>,
+        work: &mut Workspace,
+        node: usize,
+    ) {
         let weight = WEIGHTS[node % STAGES];
         let slope = column(&work.slope, node);
         let second = &work.derivatives[node];

@@ -15,7 +15,7 @@
 //! λ₄ = `μ_θ` and `λ₁,₂ = WΦ' − Aᵀμ`, up to a common factor; nothing here is singular on the symmetry lines.
 
 use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
-use swimmer_model::{FirstDerivatives, Model};
+use swimmer_model::Model;
 
 use crate::region::Bound;
 
@@ -84,11 +84,7 @@ pub(crate) struct Turning {
 impl Turning {
     /// At a shape and direction.
     pub(crate) fn at(model: &Model<f64>, phi: &Vector2<f64>, psi: f64) -> Self {
-        Self::of(&model.first_derivatives(phi), psi)
-    }
-
-    /// Where the model has these derivatives.
-    pub(crate) fn of(d: &FirstDerivatives<f64>, psi: f64) -> Self {
+        let d = model.first_derivatives(phi);
         let (sin, cos) = psi.sin_cos();
         let e = Vector2::new(cos, sin);
         let we = d.power * e;
