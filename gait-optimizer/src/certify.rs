@@ -19,6 +19,7 @@ mod resolution;
 mod second_variation;
 mod singular;
 mod stencil;
+mod subject;
 mod symmetry;
 mod variation;
 
@@ -26,25 +27,21 @@ use std::cell::Cell;
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile, Objective};
-use swimmer_model::{
-    InvalidSamples, InvalidSwimmer, Links, Model, Swimmer, Tolerance, crossing_share, swim,
-};
+use swimmer_model::{InvalidSamples, InvalidSwimmer, Model, Swimmer, Tolerance, swim};
 
 use crate::certificate::{
-    Certificate, Check, Condition, SHARE, SWUM_AGAIN, SeenBy, Verdict, simple_and_turning_once,
-    turning_number,
+    Certificate, Check, Condition, SHARE, SWUM_AGAIN, SeenBy, Verdict, turning_number,
 };
 use crate::cycle::Cycle;
 use crate::optimal_gait::OptimalGait;
 use crate::region::Region;
 use crate::speed::{MadeFor, certify_joined, certify_speed};
 pub(crate) use ascent::ways_up;
-use grid::{Along, Degree, Grid};
-use limits::Limit;
-use path::Path;
-use resolution::{Rounding, with_uncertainty};
+use grid::{Degree, Grid};
+use resolution::with_uncertainty;
 pub(crate) use second_variation::ascents_of_efficiency;
-use symmetry::{begun_on_the_diagonal, is_symmetric};
+use subject::{Openness, Subject};
+use symmetry::begun_on_the_diagonal;
 
 /// Directions closer than this make no corner \[rad\].
 const SMOOTH: f64 = 1e-6;
@@ -75,30 +72,6 @@ pub enum CertifyError {
         "cannot certify a gait without knowing what it shall be optimal for: name displacement, efficiency, turning, sideways or speed"
     )]
     NoObjective,
-}
-
-/// A gait made ready to be asked.
-struct Subject<'a> {
-    model: &'a Model<f64>,
-    bounds: &'a Bounds,
-    region: Region,
-    grid: Grid,
-    shapes: Vec<Vector2<f64>>,
-    path: Path,
-    /// The same by the coarser polynomials.
-    coarse: Path,
-    symmetric: bool,
-    /// How far from a bound a sample on it may be written \[rad\].
-    written: f64,
-}
-
-/// What the sampling leaves open.
-#[derive(Debug, Clone, Copy)]
-struct Openness {
-    /// Relative error of slopes.
-    slope: f64,
-    /// Error of poses, over L and in radians.
-    pose: f64,
 }
 
 /// Holds a gait against the necessary conditions of an optimum for `objective` within `bounds`.
@@ -307,111 +280,6 @@ fn certify_turned(
     Ok(Certificate::new(checks))
 }
 
-impl<'a> Subject<'a> {
-    /// The links are those of the swimmer \[m\].
-    fn new(
-        model: &'a Model<f64>,
-        gait: &GaitFile,
-        (bounds, links): (&'a Bounds, &Links<f64>),
-    ) -> Self {
-        let region = Region::new(bounds, links);
-        let along = if gait.arcs.is_empty() {
-            touching(&region, gait)
-        } else {
-            grid::told_by_arcs(gait)
-        };
-        let (grid, shapes) = Grid::new(gait, &along);
-        let path = Path::new(model, &grid, &shapes, Degree::Fine);
-        Self {
-            coarse: path.again(&grid, &shapes, Degree::Coarse),
-            path,
-            symmetric: is_symmetric(gait),
-            written: 2.0 * Rounding::of(gait).phi,
-            model,
-            bounds,
-            region,
-            grid,
-            shapes,
-        }
-    }
-
-    fn openness(&self) -> Openness {
-        let slopes = self.path.places.iter().zip(&self.coarse.places);
-        let slope = slopes
-            .map(|(fine, coarse)| (fine.rate - coarse.rate).norm() / fine.rate.norm())
-            .fold(0.0, f64::max);
-        Openness {
-            slope,
-            pose: self.path.pose_distance(&self.coarse),
-        }
-    }
-
-    /// Closure and bounds: what does not depend on the objective. Samples that are too coarse show no symmetry.
-    fn of_the_curve(&self, gait: &GaitFile, curve: &AnyGait, coarse: bool) -> Vec<Check> {
-        let at_samples = |check: Check| check.seen_by(SeenBy::Samples);
-        let gap = match (gait.phi.first(), gait.phi.last()) {
-            (Some(first), Some(last)) => (last - first).norm(),
-            _ => f64::NAN,
-        };
-        let mut checks = vec![at_samples(Condition::Closed.check(gap))];
-        if self.region.is_of_quarters() {
-            let off = if self.symmetric { 0.0 } else { 1.0 };
-            let seen_by = if coarse {
-                SeenBy::Spacing
-            } else {
-                SeenBy::Curve
-            };
-            let check = Condition::PapersSymmetries.check(off);
-            checks.push(check.seen_by(seen_by));
-        }
-        let nodes = 0..self.grid.nodes.len();
-        let limits = nodes.flat_map(|node| self.limits_at(node));
-        let overstepped = limits.map(|limit| -limit.margin).reduce(f64::max);
-        let overstepped = overstepped.map(|by| Condition::KeepsBounds.check(by));
-        checks.extend(overstepped.map(at_samples));
-        if self.bounds.no_overlap {
-            let crosses = crossing_share(&self.model.swimmer().links, curve);
-            let folds = if crosses.folds { 1.0 } else { 0.0 };
-            checks.push(at_samples(Condition::NothingFolded.check(folds)));
-        }
-        for (curved, condition) in [(false, Condition::OnBound), (true, Condition::OnClearance)] {
-            let off = (0..self.grid.nodes.len())
-                .filter(|&node| self.along(node) == Along::Bound)
-                .map(|node| self.bound_followed(node).map(|(_, limit)| limit))
-                .filter(|limit| limit.is_some_and(|limit| limit.curved) == curved)
-                .map(|limit| limit.map_or(f64::NAN, |limit| limit.margin.abs()))
-                .reduce(worse);
-            checks.extend(off.map(|off| at_samples(condition.check(off))));
-        }
-        checks
-    }
-
-    /// Whether the curve is simple and turns once.
-    fn of_its_loop(&self, gait: &GaitFile) -> [Check; 2] {
-        // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
-        let quarter = gait.u.partition_point(|&u| u <= 0.25 + 1e-12);
-        let simple = if self.region.has_diagonals() {
-            gait.phi.get(..quarter).unwrap_or_default()
-        } else {
-            &gait.phi
-        };
-        simple_and_turning_once(&gait.phi, simple).map(|check| check.seen_by(SeenBy::Samples))
-    }
-
-    fn along(&self, node: usize) -> Along {
-        self.grid
-            .nodes
-            .get(node)
-            .map_or(Along::Free, |node| node.along)
-    }
-
-    /// y over L at a quarter of the cycle.
-    fn y_at_the_quarter(&self) -> f64 {
-        let y: Vec<f64> = self.path.places.iter().map(|place| place.pose[1]).collect();
-        self.grid.interpolated(&y, 0.25)
-    }
-}
-
 /// The larger, and NaN rather than either.
 fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {
@@ -424,29 +292,4 @@ fn worse(a: f64, b: f64) -> f64 {
 /// The smaller, and NaN rather than either.
 fn lesser(a: f64, b: f64) -> f64 {
     -worse(-a, -b)
-}
-
-/// Which intervals between knots lie on a bound, for a gait that does not tell.
-fn touching(region: &Region, gait: &GaitFile) -> Vec<Along> {
-    let written = 2.0 * Rounding::of(gait).phi;
-    let on_bound = |[a, b]: &[Vector2<f64>; 2], u: f64| {
-        let quarter = (0..3).find(|&q| u < 0.25 * (q + 1) as f64).unwrap_or(3);
-        let [from, to] = [a, b].map(|phi| Limit::all(region, phi, quarter));
-        let touches =
-            |limit: &Limit| limit.margin.abs() <= Condition::OnBound.tolerance() + written;
-        from.iter()
-            .zip(&to)
-            .any(|(from, to)| touches(from) && touches(to))
-    };
-    gait.phi
-        .array_windows()
-        .zip(gait.u.array_windows())
-        .map(|(pair, &[from, to])| {
-            if on_bound(pair, f64::midpoint(from, to)) {
-                Along::Bound
-            } else {
-                Along::Free
-            }
-        })
-        .collect()
 }
