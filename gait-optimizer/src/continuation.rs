@@ -17,6 +17,7 @@ mod branch_crossing;
 mod branch_point;
 mod displacement;
 mod efficiency;
+mod error;
 mod follow;
 mod parameter;
 #[cfg(test)]
@@ -25,7 +26,7 @@ mod tests;
 use serde::ser::SerializeStruct as _;
 use serde::{Serialize, Serializer};
 use swimmer_files::{ArcKind, Bounds, Objective};
-use swimmer_model::{InvalidSwimmer, Swimmer};
+use swimmer_model::Swimmer;
 
 use crate::certificate::{Certificate, Condition};
 use crate::displacement::Heading;
@@ -33,6 +34,7 @@ use crate::efficiency::Branch;
 use crate::optimal_gait::OptimalGait;
 use crate::parallel::Watch;
 use branch_point::BranchPoint;
+pub use error::ContinuationError;
 use follow::{Family, Track};
 pub use parameter::Parameter;
 
@@ -239,113 +241,7 @@ pub struct Continuation {
     pub events: Vec<Event>,
 }
 
-/// Why nothing can be followed.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ContinuationError {
-    /// The swimmer's parameters are out of range.
-    #[error("cannot follow gaits of this swimmer: {0}")]
-    Swimmer(#[from] InvalidSwimmer),
-    /// Another objective, or a start of another one.
-    #[error(
-        "gaits can be followed for the objectives displacement and efficiency, with starts of the same objective, not for \
-         `{objective}` from here"
-    )]
-    Objective {
-        /// Asked for.
-        objective: Objective,
-    },
-    /// The range makes no sense.
-    #[error("cannot follow {parameter} from {from} to {to}: {problem}")]
-    Range {
-        /// The parameter.
-        parameter: Parameter,
-        /// Asked for.
-        from: f64,
-        /// Asked for.
-        to: f64,
-        /// What is wrong.
-        problem: &'static str,
-    },
-    /// A size makes no sense.
-    #[error("{steps} steps, {starts} branches: give 1 to 10000 steps and 1 to 16 branches")]
-    Size {
-        /// Asked for.
-        steps: usize,
-        /// Asked for.
-        starts: usize,
-    },
-    /// There is no gait to begin with.
-    #[error("no gait to follow from {parameter} = {from} (branch {branch}): {reason}")]
-    NoStart {
-        /// The parameter.
-        parameter: Parameter,
-        /// Its first value.
-        from: f64,
-        /// Which start.
-        branch: usize,
-        /// Why.
-        reason: String,
-    },
-}
-
-impl ContinuationError {
-    /// Whether the problem itself makes no sense, rather than having no gait to begin with.
-    pub fn is_bad_input(&self) -> bool {
-        !matches!(self, Self::NoStart { .. })
-    }
-}
-
 impl ContinuationProblem {
-    fn validate(&self) -> Result<(), ContinuationError> {
-        let (parameter, from, to) = (self.parameter, self.from, self.to);
-        let range = |problem| {
-            Err(ContinuationError::Range {
-                parameter,
-                from,
-                to,
-                problem,
-            })
-        };
-        if !(from.is_finite() && to.is_finite()) {
-            return range("both must be finite numbers");
-        }
-        if (to - from).abs() <= 1e-9 * from.abs().max(to.abs()) {
-            return range("they are the same");
-        }
-        if parameter != Parameter::SphereRadius && from.min(to) <= 0.0 {
-            return range("both must be above 0");
-        }
-        if from.min(to) < 0.0 {
-            return range("no value may be below 0");
-        }
-        if parameter == Parameter::MaxAngle && from.max(to) > std::f64::consts::TAU {
-            return range("a largest angle is at most one turn, 6.283 rad");
-        }
-        if !(1..=10_000).contains(&self.steps) || !(1..=16).contains(&self.starts.len()) {
-            return Err(ContinuationError::Size {
-                steps: self.steps,
-                starts: self.starts.len(),
-            });
-        }
-        self.swimmer_at(from).validate()?;
-        self.swimmer_at(to).validate()?;
-        let fits = |start: &Start| match start {
-            Start::Efficiency(_) => self.objective == Objective::Efficiency,
-            Start::Displacement { .. } => self.objective == Objective::Displacement,
-            Start::Gait(gait) => gait.objective == self.objective,
-        };
-        let known = matches!(
-            self.objective,
-            Objective::Efficiency | Objective::Displacement
-        );
-        if !known || !self.starts.iter().all(fits) {
-            return Err(ContinuationError::Objective {
-                objective: self.objective,
-            });
-        }
-        Ok(())
-    }
-
     fn swimmer_at(&self, value: f64) -> Swimmer<f64> {
         self.parameter.swimmer(&self.swimmer, value)
     }
