@@ -137,12 +137,6 @@ impl OptimalGait {
         self
     }
 
-    /// The cycle as a swimmer turned end for end runs it, backwards so that it stays as far across to the same side:
-    /// (φ₁, φ₂) → (−φ₂, −φ₁).
-    pub(crate) fn turned_end_for_end(&self) -> Cycle {
-        self.cycle.reversed(|phi| Vector2::new(-phi.y, -phi.x))
-    }
-
     /// Fractions of the period of the samples, 0 to 1, at constant power.
     pub fn u(&self) -> &[f64] {
         &self.cycle.u

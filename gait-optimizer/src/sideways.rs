@@ -133,7 +133,8 @@ pub fn sideways(problem: &SidewaysProblem, watch: Watch<'_>) -> Result<Sideways,
 /// The gait of a swimmer that was turned end for end, as the swimmer itself runs it; none where it is not certified.
 fn from_the_other_end(problem: &SidewaysProblem, found: &Sideways) -> Option<Sideways> {
     let model = Model::new(&problem.swimmer.of_unit_length()).ok()?;
-    let cycle = found.gait.turned_end_for_end();
+    // Backwards, so that it stays as far across to the same side.
+    let cycle = found.gait.cycle.reversed(|phi| -phi.yx());
     let gait = certified(gait((problem, &model), cycle)?);
     gait.certificate.pass().then(|| Sideways {
         lateral_over_length: gait.lateral_over_length,

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Vector2};
 use swimmer_model::Model;
 
-use crate::closed_curve::Functional;
+use crate::closed_curve::{Functional, column};
 use crate::loops::{Guess, Section};
 use crate::region::Region;
 
@@ -22,10 +22,7 @@ pub(crate) fn guesses(
     let mut work = functional.workspace();
     let values = functional.values(coarse, &mut work);
     let nodes = functional.basis.nodes();
-    let shape = |node: usize| {
-        let node = node % nodes;
-        Vector2::new(work.phi[(0, node)], work.phi[(1, node)])
-    };
+    let shape = |node: usize| column(&work.phi, node % nodes);
     let length: f64 = (0..nodes)
         .map(|node| (shape(node + 1) - shape(node)).norm())
         .sum();

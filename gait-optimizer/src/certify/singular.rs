@@ -8,21 +8,11 @@ use nalgebra::Vector2;
 use swimmer_files::Objective;
 
 use super::grid::Along;
+use super::path::Place;
 use super::variation::Gain;
 use super::{Degree, Openness, Subject, lesser, worse};
 use crate::certificate::{Check, Condition};
-use crate::momentum::Momentum;
-
-/// What the height does at one node.
-#[derive(Debug, Clone, Copy)]
-struct Look {
-    height: f64,
-    gradient: Vector2<f64>,
-    /// Unit vector to the left of the motion.
-    left: Vector2<f64>,
-    /// How far a wrong pose can change the height, per unit of pose.
-    pose_leverage: f64,
-}
+use crate::momentum::{Height, Momentum};
 
 impl Subject<'_> {
     /// All checks of a weak optimum. A sideways gait is stationary with its start, or it is a loop of most displacement
@@ -56,23 +46,11 @@ impl Subject<'_> {
             // Nothing is gained, so nothing is optimal.
             return vec![Condition::Gains.check(self.gained(gain))];
         };
-        let looks: Vec<Look> = self
-            .path
-            .places
-            .iter()
-            .map(|place| {
-                let (height, ..) = momentum.evaluate(self.model, &place.phi, &place.pose);
-                let curvature = place.first.curvature();
-                Look {
-                    height: height.value,
-                    gradient: height.gradient,
-                    left: Vector2::new(-place.rate.y, place.rate.x) / place.rate.norm(),
-                    pose_leverage: 2.0 * curvature.norm(),
-                }
-            })
-            .collect();
-        let mut checks = self.on_free_arcs(&looks, open);
-        checks.extend(self.on_bounds(&looks, open));
+        let places = self.path.places.iter();
+        let heights = places.map(|place| momentum.evaluate(self.model, &place.phi, &place.pose).0);
+        let heights: Vec<Height> = heights.collect();
+        let mut checks = self.on_free_arcs(&heights, open);
+        checks.extend(self.on_bounds(&heights, open));
         checks.extend(self.ascents(gain, momentum));
         checks
     }
@@ -97,25 +75,29 @@ impl Subject<'_> {
         starts.fold(0.0, worse) - d.y.abs()
     }
 
-    fn on_free_arcs(&self, looks: &[Look], open: Openness) -> Vec<Check> {
+    fn on_free_arcs(&self, heights: &[Height], open: Openness) -> Vec<Check> {
         let free = || {
-            looks
-                .iter()
-                .enumerate()
-                .filter(|(node, _)| self.along(*node) == Along::Free)
-                .map(|(_, look)| look)
+            let nodes = heights.iter().zip(&self.path.places).enumerate();
+            nodes.filter(|(node, _)| self.along(*node) == Along::Free)
         };
         if free().next().is_none() {
             return Vec::new();
         }
-        let largest = |value: &dyn Fn(&Look) -> f64| free().map(value).fold(0.0, worse);
+        let largest = |value: &dyn Fn(&Height, &Place) -> f64| {
+            let values = free().map(|(_, (height, place))| value(height, place));
+            values.fold(0.0, worse)
+        };
         // Zero-level curves may cross where a gait has a corner: there the slope vanishes, and no distance goes by it.
-        let steepest = largest(&|look| look.gradient.norm());
-        let slope_at = |look: &Look| look.gradient.norm().max(1e-3 * steepest);
-        let leverage = largest(&|look| look.pose_leverage / slope_at(look));
-        let open = leverage * open.pose;
-        let off_zero = |look: &Look| look.height.abs() / slope_at(look);
-        let mut checks = vec![Condition::OnZeroHeight.open(largest(&off_zero), open)];
+        let steepest = largest(&|height, _| height.gradient.norm());
+        let slope_at = |height: &Height| height.gradient.norm().max(1e-3 * steepest);
+        // How far a wrong pose can move the zero, per unit of pose.
+        let leverage = |height: &Height, place: &Place| {
+            2.0 * place.first.curvature().norm() / slope_at(height)
+        };
+        let open = largest(&leverage) * open.pose;
+        let off_zero = |height: &Height| height.value.abs() / slope_at(height);
+        let off = largest(&|height, _| off_zero(height));
+        let mut checks = vec![Condition::OnZeroHeight.open(off, open)];
         let exits = self
             .grid
             .pieces
@@ -123,23 +105,18 @@ impl Subject<'_> {
             .filter(|piece| piece.along == Along::Bound)
             .flat_map(|piece| [*piece.nodes.start(), *piece.nodes.end()])
             .filter(|&node| self.meets_free(node))
-            .filter_map(|node| looks.get(node).map(off_zero))
+            .filter_map(|node| heights.get(node).map(off_zero))
             .reduce(worse);
         checks.extend(exits.map(|off| Condition::LeavesAtZero.open(off, open)));
         // Not where a piece ends: there two zero-level curves may cross.
-        let inner = |node: usize| {
-            self.along(node) == Along::Free
-                && self.grid.before(node).is_some()
-                && self.grid.before(node + 1).is_some()
-        };
-        let least = looks
-            .iter()
-            .enumerate()
+        let inner =
+            |node: usize| self.grid.before(node).is_some() && self.grid.before(node + 1).is_some();
+        let least = free()
             .filter(|(node, _)| inner(*node))
-            .map(|(_, look)| look.gradient.dot(&look.left))
+            .map(|(_, (height, place))| -height.gradient.dot(&place.right()))
             .fold(f64::INFINITY, |a, b| if b.is_nan() { b } else { a.min(b) });
         checks.push(Condition::GrowsInwards.check(least));
-        let (h_u, hamiltonian) = self.drift_of_h_u(looks);
+        let (h_u, hamiltonian) = self.drift_of_h_u(heights);
         let tolerance = (Condition::Stationary.tolerance() + open) * steepest.max(1.0);
         checks.push(Condition::Stationary.within(h_u, tolerance));
         let rate = self
@@ -152,18 +129,16 @@ impl Subject<'_> {
         checks
     }
 
-    fn on_bounds(&self, looks: &[Look], open: Openness) -> Vec<Check> {
-        let multiplier = |(node, look): (usize, &Look)| Some(look.height * self.bound_side(node)?);
-        let least = looks
+    fn on_bounds(&self, heights: &[Height], open: Openness) -> Option<Check> {
+        let multiplier =
+            |(node, height): (usize, &Height)| Some(height.value * self.bound_side(node)?);
+        let least = heights
             .iter()
             .enumerate()
             .filter(|(node, _)| self.along(*node) == Along::Bound)
             .map(|at| multiplier(at).unwrap_or(f64::NAN))
             .reduce(lesser);
-        least
-            .map(|least| Condition::HeightOnBound.open(least, 4.0 * open.pose))
-            .into_iter()
-            .collect()
+        least.map(|least| Condition::HeightOnBound.open(least, 4.0 * open.pose))
     }
 
     /// Whether another, free piece begins or ends where this node of a bound arc lies.
@@ -184,11 +159,11 @@ impl Subject<'_> {
     }
 
     /// The largest `|H_u|`, and H, that the costate equations leave along a free piece when `H_u = 0` where it begins.
-    fn drift_of_h_u(&self, looks: &[Look]) -> (f64, f64) {
-        let forces: Vec<Vector2<f64>> = looks
+    fn drift_of_h_u(&self, heights: &[Height]) -> (f64, f64) {
+        let forces: Vec<Vector2<f64>> = heights
             .iter()
             .zip(&self.path.places)
-            .map(|(look, place)| Vector2::new(place.rate.y, -place.rate.x) * look.height)
+            .map(|(height, place)| Vector2::new(place.rate.y, -place.rate.x) * height.value)
             .collect();
         let integrals = self.grid.integrals(&forces, Vector2::zeros(), Degree::Fine);
         let mut worst = (0.0_f64, 0.0_f64);
