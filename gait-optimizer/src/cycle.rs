@@ -17,6 +17,11 @@ pub struct Arc {
     pub to: [f64; 2],
 }
 
+/// The power at a shape whose joints turn at a rate.
+pub(crate) fn power(model: &Model<f64>, phi: &Vector2<f64>, rate: &Vector2<f64>) -> f64 {
+    rate.dot(&(model.power_matrix(phi) * rate))
+}
+
 /// A full cycle, sampled.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Cycle {

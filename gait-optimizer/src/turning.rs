@@ -32,7 +32,7 @@ pub use error::TurningError;
 
 use crate::certificate::double_area;
 use crate::certify::certified;
-use crate::cycle::Samples;
+use crate::cycle::{Samples, power};
 use crate::height_map::legendre::gauss;
 use crate::height_map::{LevelSearch, level_seeds};
 use crate::momentum::Motion;
@@ -242,9 +242,7 @@ fn power_lengths(gait: &AnyGait, u: &[f64], model: &Model<f64>) -> Vec<f64> {
     for [a, b] in u.array_windows() {
         for (s, w) in nodes.iter().zip(&weights) {
             let point = gait.at(a + 0.5 * (s + 1.0) * (b - a));
-            let power = point
-                .rate
-                .dot(&(model.power_matrix(&point.phi) * point.rate));
+            let power = power(model, &point.phi, &point.rate);
             length += 0.5 * (b - a) * w * power.max(0.0).sqrt();
         }
         lengths.push(length);

@@ -17,7 +17,7 @@ const POINTS: usize = 96;
 pub(crate) struct Outline(Vec<Vector2<f64>>);
 
 /// The maps of the plane of shapes that leave a swimmer the same.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Symmetries {
     /// The side links are alike.
     pub(crate) swap: bool,

@@ -54,11 +54,7 @@ impl BranchPoint {
 
     /// Largest distance of the curves \[rad\].
     pub(super) fn apart(&self, other: &Self) -> f64 {
-        let none = Symmetries {
-            swap: false,
-            turns: false,
-        };
-        self.outline.apart(&other.outline, none)
+        self.outline.apart(&other.outline, Symmetries::default())
     }
 
     /// How far two gaits are apart, over what a step may change.

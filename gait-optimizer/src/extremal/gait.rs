@@ -6,6 +6,7 @@ use swimmer_model::{Gait, Model, Swimmer, Tolerance, swim};
 use super::{Extremal, Unpolished};
 use crate::certificate::Condition;
 use crate::certify::{certified, slopes_open};
+use crate::cycle::power;
 use crate::optimal_gait::OptimalGait;
 
 /// Samples of a cycle are not made more beyond this.
@@ -69,9 +70,7 @@ fn power_variation(model: &Model<f64>, u: &[f64], gait: &AnyGait) -> f64 {
     let (mut least, mut most, mut sum) = (f64::INFINITY, 0.0_f64, 0.0);
     for [from, to] in u.array_windows() {
         let middle = gait.at(0.5 * (from + to));
-        let power = middle
-            .rate
-            .dot(&(model.power_matrix(&middle.phi) * middle.rate));
+        let power = power(model, &middle.phi, &middle.rate);
         least = least.min(power);
         most = most.max(power);
         sum += power;

@@ -5,6 +5,7 @@ use swimmer_model::{Gait, Model, Tolerance, TrajectoryPoint, trajectory, wrapped
 
 use super::equations::{Motion, State, Turning};
 use super::shooting::{Chain, Class, Entry, Stretch};
+use crate::cycle::power;
 use crate::numerics::between;
 use crate::runge_kutta::{Point, StepControl, advance};
 
@@ -41,7 +42,7 @@ impl Trajectory {
         let speeds: Vec<f64> = points
             .iter()
             .zip(&rates)
-            .map(|(point, rate)| rate.dot(&(model.power_matrix(&point.phi) * rate)).sqrt())
+            .map(|(point, rate)| power(model, &point.phi, rate).sqrt())
             .collect();
         for [from, to] in speeds.array_windows() {
             so_far += 0.5 * (from + to) / SAMPLES as f64;
@@ -140,12 +141,9 @@ pub(crate) fn quarter_of_curve(
     pieces: usize,
 ) -> Option<Chain> {
     const CONTROL: StepControl = StepControl::to(1e-9);
-    let speed = |rate: &Vector2<f64>, phi: &Vector2<f64>| {
-        rate.dot(&(model.power_matrix(phi) * rate)).sqrt()
-    };
     let length = |z: &[f64; 2]| {
         let (phi, rate) = curve(z[0]);
-        [1.0, speed(&rate, &phi)]
+        [1.0, power(model, &phi, &rate).sqrt()]
     };
     let whole = Point::new(&length, [0.0; 2]);
     let total = advance(&length, whole, std::f64::consts::FRAC_PI_2, CONTROL)?.z[1];

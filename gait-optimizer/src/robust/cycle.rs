@@ -6,7 +6,7 @@ use swimmer_model::{Model, SymmetricFourier};
 
 use super::nodes::Nodes;
 use super::quarter::ArcCurve;
-use crate::cycle::{Cycle, Samples};
+use crate::cycle::{Cycle, Samples, power};
 
 /// Samples of an arc.
 const SAMPLES: u32 = 128;
@@ -25,17 +25,9 @@ pub(super) fn of_arcs(
     let mut quarter = Samples::default();
     let mut length = 0.0;
     for (kind, curve) in kinds.zip(curves) {
-        let speed: Vec<f64> = curve
-            .phi
-            .iter()
-            .zip(&curve.slope)
-            .map(|(phi, slope)| {
-                slope
-                    .dot(&(model.power_matrix(phi) * slope))
-                    .max(0.0)
-                    .sqrt()
-            })
-            .collect();
+        let moving = curve.phi.iter().zip(&curve.slope);
+        let speed = moving.map(|(phi, slope)| power(model, phi, slope).max(0.0).sqrt());
+        let speed: Vec<f64> = speed.collect();
         let lengths = nodes.integrals(&speed);
         let first = quarter.phi.len().saturating_sub(1);
         for sample in u32::from(!quarter.phi.is_empty())..=SAMPLES {

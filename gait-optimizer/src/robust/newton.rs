@@ -107,9 +107,7 @@ fn jacobian(
     let columns: Vec<DVector<f64>> = (0..x.len())
         .map(|i| {
             let mut x = x.clone();
-            if let Some(component) = x.get_mut(i) {
-                *component += DIFFERENCE;
-            }
+            x[i] += DIFFERENCE;
             (residual(&x) - here) / DIFFERENCE
         })
         .collect();

@@ -130,12 +130,8 @@ pub(super) fn equalise<D: Design>(
 
 /// Moves weight to active member `i` from the first.
 fn shift(members: &mut [(Lowest, f64)], i: usize, by: f64) {
-    if let Some((_, weight)) = members.get_mut(i) {
-        *weight += by;
-    }
-    if let Some((_, weight)) = members.first_mut() {
-        *weight -= by;
-    }
+    members[i].1 += by;
+    members[0].1 -= by;
 }
 
 /// Value of each active member but the first, less the first's; and their size.
