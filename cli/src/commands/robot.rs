@@ -17,6 +17,7 @@ mod playlist;
 mod port;
 mod port_owner;
 pub(super) mod preflight;
+mod rest;
 mod servo;
 mod setup;
 mod stop;

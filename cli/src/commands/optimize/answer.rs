@@ -1,46 +1,15 @@
-//! What the answers of several objectives share: the pace of a cycle, a quarter, arcs, and how an answer ends.
+//! What the answers of several objectives share: a quarter, arcs, and how an answer ends.
 
 use std::path::Path;
 
 use gait_optimizer::{Arc, Condition, Method, Objective, OptimalGait};
-use swimmer_files::{AnyGait, SwimmerFile};
+use swimmer_files::AnyGait;
 
 use super::timing::Timed;
 use super::{Found, Task};
 use crate::document::Document;
 use crate::own_robot::PERIOD_S;
 use crate::quantity;
-
-/// How the answer of a fastest gait begins, from its speed \[1/s\] and the way of a cycle, both over L, and its period \[s\].
-pub(super) fn at_pace(
-    kind: &str,
-    file: &SwimmerFile,
-    (speed, distance): (f64, f64),
-    period: f64,
-) -> Document {
-    let length = file.swimmer.total_length();
-    let [pace, way] = [speed, distance].map(|one| quantity::length(one * length));
-    let mut answer = Document::new(format!(
-        "{}: the {kind} gait swims {way} in {period:.2} s, {pace} a second",
-        file.name
-    ));
-    answer
-        .key("speed_over_length_per_s", speed)
-        .key("speed_m_per_s", speed * length)
-        .key("displacement_over_length", distance)
-        .key("displacement_m", distance * length)
-        .key("period_s", period)
-        .row(
-            "speed",
-            format!("{pace} a second   |d|/(L T) = {speed:.10} 1/s"),
-        )
-        .row(
-            "displacement",
-            format!("{way} per cycle   |d|/L = {distance:.10}"),
-        )
-        .row("period", format!("{period:.6} s"));
-    answer
-}
 
 /// Adds what is told of the quarter of a gait with the paper's symmetries.
 pub(super) fn tell_quarter(answer: &mut Document, gait: &OptimalGait) {

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use gait_optimizer::{LimitedError, LimitedProblem, Torque, fastest_within};
 use swimmer_files::{Bounds, SwimmerFile};
 
-use super::answer::{at_pace, tell_arcs};
-use super::speed::{SEARCHING, tell_as_played};
+use super::answer::tell_arcs;
+use super::pace::{SEARCHING, at_pace, tell_as_played};
 use super::{Found, Task};
 use crate::failure::{Failure, Outcome};
 use crate::quantity;

@@ -8,6 +8,7 @@ mod efficiency;
 mod front;
 mod limited;
 mod no_optimum;
+mod pace;
 mod robust;
 mod sideways;
 mod speed;

@@ -1,13 +1,14 @@
 //! `swimmer optimize speed`: the fastest gait that servos can play.
 
 use gait_optimizer::{
-    Fastest, HeadingRule, OptimalGait, SpeedError, SpeedProblem, fastest, front, robust_speed,
+    Fastest, HeadingRule, SpeedError, SpeedProblem, fastest, front, robust_speed,
 };
-use swimmer_files::{AnyGait, ServoFile, SwimmerFile};
+use swimmer_files::{ServoFile, SwimmerFile};
 
-use super::answer::{at_pace, tell_arcs};
+use super::answer::tell_arcs;
 use super::front::FrontFile;
 use super::limited::{Limits, within};
+use super::pace::{SEARCHING, at_pace, tell_as_played};
 use super::robust::{Robustly, as_written, refused, tell_robustness};
 use super::{Found, Objective, Task};
 use crate::arguments::{rate, seconds, watts};
@@ -15,7 +16,7 @@ use crate::bounds::WholeBounds;
 use crate::document::Document;
 use crate::failure::{Failure, Outcome};
 use crate::new_file::may_be_written;
-use crate::own_robot::{PlayedSpeed, say_if_beyond, servo_rates};
+use crate::own_robot::servo_rates;
 use crate::quantity;
 use crate::threads;
 
@@ -59,9 +60,6 @@ pub(crate) struct Speed {
     #[arg(long, value_name = "FILE.svg|.csv", conflicts_with_all = ["period", "robust", "gain"])]
     front: Option<FrontFile>,
 }
-
-/// What the progress of a search for the fastest gait says.
-pub(super) const SEARCHING: &str = "looking for the fastest gait";
 
 /// Which way a gait leads.
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
@@ -156,33 +154,6 @@ fn tell_any_heading(answer: &mut Document, led: &SpeedProblem, speed: f64) -> Ou
         ),
     );
     Ok(())
-}
-
-/// Adds how a gait of this period is played by these servos, and says where it is beyond the robot of the file.
-pub(super) fn tell_as_played(
-    answer: &mut Document,
-    file: &SwimmerFile,
-    servo: Option<ServoFile>,
-    (gait, period): (&OptimalGait, f64),
-) {
-    let Ok(curve) = AnyGait::from_file(&gait.gait_file(&file.name)) else {
-        return;
-    };
-    let played = servo.and_then(|servo| PlayedSpeed::new(file, servo, &curve, period));
-    let period = played.as_ref().map_or(period, |played| played.period_s);
-    say_if_beyond(file, &curve, (period * 1e3).ceil() / 1e3);
-    if let Some(played) = played {
-        answer.row(
-            "as played",
-            format!(
-                "{} a second, a cycle in {:.3} s: table, ticks and servos take {:.2} %",
-                quantity::length(played.speed_m_per_s),
-                played.period_s,
-                played.lost_share * 100.0
-            ),
-        );
-        answer.key("played", played);
-    }
 }
 
 /// What is told of a gait of this kind before what robustness, servos and the front bring.

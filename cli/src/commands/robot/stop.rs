@@ -11,9 +11,9 @@ use link_protocol::StateName;
 
 use super::access::{Access, LOOK_AGAIN, Reached};
 use super::answers::{Done, E_STOPPED, STOPPED, state};
-use super::motion::{TO_REST, wait_for_rest};
 use super::port::{AnyPort, Pace, session_seed};
 use super::port_owner::{Ask, HeldBy, Relayed, Unanswered};
+use super::rest::{TO_REST, wait_for_rest};
 use super::{Estop, Stop};
 use crate::failure::{Failure, Outcome};
 use crate::output::{Output, aside};
