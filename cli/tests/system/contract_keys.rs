@@ -121,3 +121,17 @@ fn the_fastest_gait_has_the_keys_of_the_contract() {
     assert_eq!(found["max_corners"], 16);
     assert!(found["seconds"].is_number());
 }
+
+#[test]
+fn a_prescribed_heading_tells_the_limit_of_tacks() {
+    let words = "optimize speed --swimmer robot --max-rate 1 --max-angle 2.4 --json";
+    let words: Vec<&str> = words.split(' ').collect();
+    let any = swimmer(&words).with_status(0).json();
+    assert!(any["any_heading_speed_over_length_per_s"].is_null());
+    let led = swimmer(&[&words[..], &["--heading", "forward"]].concat());
+    let led = led.with_status(0).json();
+    let limit = number(&led, "any_heading_speed_over_length_per_s");
+    let speed = number(&any, "speed_over_length_per_s");
+    assert!((limit / speed - 1.0).abs() < 1e-9, "{limit} {speed}");
+    assert!(number(&led, "speed_over_length_per_s") < limit);
+}

@@ -146,13 +146,15 @@ impl Objective for Speed {
 /// Adds how fast the fastest gait of any heading is beside one whose heading is prescribed.
 fn tell_any_heading(answer: &mut Document, led: &SpeedProblem, speed: f64) -> Outcome<()> {
     let any = fastest(&led.led(HeadingRule::Any))?.speed_over_length;
-    answer.key("any_heading_speed_over_length_per_s", any).row(
-        "any heading",
-        format!(
+    answer.key("any_heading_speed_over_length_per_s", any);
+    let more = any / speed - 1.0;
+    if more > 1e-6 {
+        let told = format!(
             "{:.2} % faster: long cycles that tack come near it",
-            (any / speed - 1.0) * 100.0
-        ),
-    );
+            more * 100.0
+        );
+        answer.row("any heading", told);
+    }
     Ok(())
 }
 
