@@ -203,19 +203,17 @@ fn the_direct_method_agrees_everywhere() {
 
 /// By what shares something from random starts is faster: from ellipses of any place, size and tilt, with a second wave.
 fn faster(pairs: usize, starts: usize, heading: HeadingRule, of_kind: Kind) -> Vec<f64> {
+    // Where a heading is prescribed cycles of more corners may tack, and are faster.
+    let sides = match heading {
+        HeadingRule::Any => 24,
+        HeadingRule::Forward | HeadingRule::Sideways => SpeedProblem::MAX_CORNERS,
+    };
     let mut rng = ChaCha8Rng::seed_from_u64(51);
     let (mut beaten, mut rested) = (Vec::new(), 0);
     for pair in 0..pairs {
         let max_angle = rng.random_range(1.2..3.1);
         let problem = problem(random_swimmer(&mut rng), max_angle, 0).led(heading);
-        // Where a heading is prescribed a faster cycle of more corners is told as well, or a chain that is not certified.
-        let found = fastest(&problem).map(|found| {
-            let others = [found.longer, found.uncertified].into_iter().flatten();
-            match heading {
-                HeadingRule::Any => found.speed_over_length,
-                _ => others.fold(found.speed_over_length, f64::max),
-            }
-        });
+        let found = fastest(&problem).map(|found| found.speed_over_length);
         let mut best = 0.0_f64;
         for _ in 0..starts {
             let mut draw = |largest: f64| rng.random_range(-largest..largest);
@@ -228,7 +226,7 @@ fn faster(pairs: usize, starts: usize, heading: HeadingRule, of_kind: Kind) -> V
                 (centre + first + second[0] * (2.0 * s).cos() + second[1] * (2.0 * s).sin())
                     * max_angle
             };
-            if let Some(speed) = of_kind(Direct::new(&problem, 24, curve)).climb() {
+            if let Some(speed) = of_kind(Direct::new(&problem, sides, curve)).climb() {
                 rested += 1;
                 best = best.max(speed);
             }
@@ -265,20 +263,11 @@ fn nothing_from_many_random_starts_is_faster() {
     nothing_faster(20, 50, HeadingRule::Any, |direct| direct);
 }
 
-/// With a prescribed heading hardly anything is: long chains have many locally fastest ones beside each other.
 #[test]
 #[ignore = "soak: half an hour"]
-fn hardly_anything_that_is_led_is_faster() {
-    for (heading, of_kind) in [
-        (HeadingRule::Sideways, left as Kind),
-        (HeadingRule::Forward, forward),
-    ] {
-        let beaten = faster(20, 30, heading, of_kind);
-        assert!(
-            beaten.len() <= 1 && beaten.iter().all(|share| *share < 0.01),
-            "{beaten:?}"
-        );
-    }
+fn nothing_of_as_many_corners_that_is_led_is_faster() {
+    nothing_faster(20, 30, HeadingRule::Sideways, left);
+    nothing_faster(20, 30, HeadingRule::Forward, forward);
 }
 
 /// Random swimmers: links, drag ratio and sphere.

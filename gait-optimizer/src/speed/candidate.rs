@@ -12,7 +12,7 @@ use super::within_rates::within_rates;
 pub(super) const SIDES: usize = 2;
 /// Times that the arcs are mended.
 const MENDS: usize = 8;
-/// By how much the second variation of a gait that joins others may be negative.
+/// By how much the second variation of a chain may be negative.
 const NEARLY: f64 = 1e-4;
 /// A corner may overstep a bound by this \[rad, or over L\].
 const OVERSTEPPED: f64 = 1e-10;
@@ -81,19 +81,9 @@ pub(crate) fn mended(setting: &Setting, mut links: Vec<Link>) -> Option<Polished
             });
         }
         if !changed {
-            // Where gaits join, an arc may be left that a little more speed would take out: the certificate tells.
-            let least = if setting.anchor.is_some() {
-                -NEARLY
-            } else {
-                0.0
-            };
-            if polished.convexity > least {
-                return Some(polished);
-            }
-            // Few bends may follow a long singular arc so loosely that it hardly matters where it ends.
-            if polished.convexity < -NEARLY || !with_more_bends(&mut next) {
-                return None;
-            }
+            // Few bends may follow a long singular arc so loosely that it hardly matters where it ends, and where gaits join an arc may
+            // be left that a little more speed would take out: the certificate tells.
+            return (polished.convexity > -NEARLY).then_some(polished);
         }
         links = next;
     }
