@@ -433,7 +433,7 @@ fn tacks_come_near_the_fastest_of_any_heading() {
         assert!(pose.theta.abs() < 1e-9 && heading.sin().abs() < 1e-9);
         pose.x.hypot(pose.y) / time
     };
-    let tries = (0..400).map(|k| way(0.1 * f64::from(1 + k % 23), k as usize / 23));
+    let tries = (0..400_u16).map(|k| way(0.1 * f64::from(1 + k % 23), usize::from(k / 23)));
     let best = tries.max_by(|a, b| tacks(*a, 1000).total_cmp(&tacks(*b, 1000)));
     let speeds = [1, 10, 100, 1000, 10_000].map(|often| tacks(best.unwrap(), often));
     let fastest = found.speed_over_length;
