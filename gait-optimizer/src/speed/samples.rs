@@ -60,7 +60,7 @@ pub(crate) fn cycle_from(setting: &Setting, polished: &Polished, sign: f64, firs
             cycle.phi.push(phi * sign);
         }
         begun += links[k].time;
-        let kind = links[k].motion.kind(|index| setting.region.bound(index));
+        let kind = links[k].motion.kind(setting.region);
         cycle.corners.push(from);
         cycle.arcs.push(GaitArc {
             kind,

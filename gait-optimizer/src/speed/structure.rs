@@ -7,7 +7,7 @@ use super::arc::{MOST_BENDS, Shape};
 use super::interior::Polygon;
 use super::quadrature::legendre;
 use super::setting::Setting;
-use crate::region::{Bound, Piece};
+use crate::region::{Bound, Piece, Region};
 
 /// What one arc does.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,15 +16,8 @@ pub(crate) enum Motion {
     Extreme([f64; 2]),
     /// Servo `pace` at full rate, this way; the other free within its own.
     Singular { pace: usize, way: f64 },
-    /// Along a straight bound of the other joint.
-    Straight { bound: usize, pace: usize, way: f64 },
-    /// Along a piece of the clearance.
-    Curved {
-        bound: usize,
-        piece: Piece,
-        pace: usize,
-        way: f64,
-    },
+    /// Along a straight bound, or a piece of the clearance, servo `pace` at full rate.
+    Along { bound: Hold, pace: usize, way: f64 },
 }
 
 /// A corner and the arc that follows it.
@@ -77,44 +70,43 @@ impl Motion {
     pub(crate) fn pace(&self) -> (usize, f64) {
         match *self {
             Self::Extreme(ways) => (0, ways[0]),
-            Self::Singular { pace, way }
-            | Self::Straight { pace, way, .. }
-            | Self::Curved { pace, way, .. } => (pace, way),
+            Self::Singular { pace, way } | Self::Along { pace, way, .. } => (pace, way),
         }
     }
 
     /// The bound that it runs along.
     pub(crate) fn bound(&self) -> Option<Hold> {
         match *self {
-            Self::Straight { bound, .. } => Some(Hold(bound, None)),
-            Self::Curved { bound, piece, .. } => Some(Hold(bound, Some(piece))),
+            Self::Along { bound, .. } => Some(bound),
             Self::Extreme(_) | Self::Singular { .. } => None,
         }
     }
 
     /// The word in files.
-    pub(crate) fn kind(&self, bound: impl Fn(usize) -> Option<Bound>) -> ArcKind {
+    pub(crate) fn kind(&self, region: &Region) -> ArcKind {
         match *self {
             Self::Extreme(_) => ArcKind::Extreme,
             Self::Singular { .. } => ArcKind::Singular,
-            Self::Straight { bound: index, .. } => {
-                bound(index).map_or(ArcKind::Upper, |bound| bound.kind())
+            Self::Along { bound, .. } => {
+                let bound = region.bound(bound.0);
+                bound.map_or(ArcKind::Upper, |bound| bound.kind())
             }
-            Self::Curved { .. } => ArcKind::Clearance,
         }
     }
 
     pub(crate) fn shape(&self, setting: &Setting, bends: usize) -> Shape {
         match *self {
-            Self::Extreme(_) | Self::Straight { .. } => Shape::Straight,
+            Self::Extreme(_) => Shape::Straight,
             Self::Singular { pace, .. } => Shape::Bent {
                 joint: 1 - pace,
                 bends: bends.min(MOST_BENDS),
             },
-            Self::Curved {
-                bound, piece, pace, ..
-            } => match setting.region.bound(bound) {
-                Some(Bound::Clearance(clearance)) => Shape::Along {
+            Self::Along {
+                bound: Hold(bound, piece),
+                pace,
+                ..
+            } => match (setting.region.bound(bound), piece) {
+                (Some(Bound::Clearance(clearance)), Some(piece)) => Shape::Along {
                     clearance,
                     piece,
                     pace,
@@ -176,15 +168,15 @@ fn cut_corners(links: &mut Vec<Link>) {
         let next = (at + 1) % links.len();
         let (before, after) = (&links[at], &links[next]);
         if let (
-            Motion::Straight {
+            Motion::Along {
+                bound: first_bound @ Hold(_, None),
                 pace: one,
                 way: first,
-                ..
             },
-            Motion::Straight {
+            Motion::Along {
+                bound: second_bound @ Hold(_, None),
                 pace: two,
                 way: second,
-                ..
             },
         ) = (before.motion, after.motion)
             && one != two
@@ -198,17 +190,12 @@ fn cut_corners(links: &mut Vec<Link>) {
             from[one] -= first * cut;
             to[two] += second * cut;
             // Before the cut only the first bound holds, after it only the second.
-            let bound = |motion: &Motion| match motion {
-                Motion::Straight { bound, .. } => *bound,
-                _ => usize::MAX,
-            };
-            let (first_bound, second_bound) = (bound(&before.motion), bound(&after.motion));
             links[at].time -= cut;
             links[next].time -= cut;
             links[next].corner = to;
-            links[next].held = vec![Hold(second_bound, None)];
-            let held = vec![Hold(first_bound, None)];
-            links.insert(at + 1, Link::new(from, held, Motion::Extreme(ways), cut));
+            links[next].held = vec![second_bound];
+            let extreme = Link::new(from, vec![first_bound], Motion::Extreme(ways), cut);
+            links.insert(at + 1, extreme);
         }
         at += 1;
     }
@@ -307,16 +294,8 @@ fn motion(setting: &Setting, polygon: &Polygon, side: usize, from: &[Hold], to: 
     let both = from
         .iter()
         .find(|hold| to.iter().any(|other| other.0 == hold.0));
-    if let Some(&Hold(bound, piece)) = both {
-        return match setting.region.bound(bound) {
-            Some(Bound::Clearance(clearance)) => Motion::Curved {
-                bound,
-                piece: piece.unwrap_or_else(|| clearance.piece(&(0.5 * (start + end)))),
-                pace,
-                way,
-            },
-            _ => Motion::Straight { bound, pace, way },
-        };
+    if let Some(&bound) = both {
+        return Motion::Along { bound, pace, way };
     }
     Motion::Singular { pace, way }
 }

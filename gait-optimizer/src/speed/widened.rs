@@ -4,7 +4,6 @@ use nalgebra::Vector2;
 
 use super::setting::Setting;
 use super::structure::{Hold, Link, Motion, remove};
-use crate::region::Bound;
 
 /// Half of a new arc's first guess, over the period.
 pub(super) const SHORT: f64 = 3e-3;
@@ -50,9 +49,7 @@ fn along(
     hold: Hold,
     [before, at, after]: [Vector2<f64>; 3],
 ) -> Option<(Motion, Vector2<f64>)> {
-    let Hold(bound, piece) = hold;
-    let of = setting.region.bound(bound)?;
-    let inwards = of.gradient(&at);
+    let inwards = setting.region.bound(hold.0)?.gradient(&at);
     if inwards.dot(&(before - at)) <= 0.0 || inwards.dot(&(after - at)) <= 0.0 {
         return None;
     }
@@ -61,15 +58,10 @@ fn along(
     let turning = tangent / setting.time(&tangent);
     let shares = [0, 1].map(|joint| turning[joint].abs() / setting.rates[joint]);
     let pace = usize::from(shares[1] > shares[0]);
-    let way = turning[pace].signum();
-    let motion = match (of, piece) {
-        (Bound::Clearance(_), Some(piece)) => Motion::Curved {
-            bound,
-            piece,
-            pace,
-            way,
-        },
-        _ => Motion::Straight { bound, pace, way },
+    let motion = Motion::Along {
+        bound: hold,
+        pace,
+        way: turning[pace].signum(),
     };
     Some((motion, turning))
 }

@@ -4,11 +4,10 @@ use swimmer_files::ArcKind;
 
 use super::super::polish::{BENDS, second_variation};
 use super::super::setting::Setting;
-use super::super::structure::{Link, Motion, bend, holds, merge};
+use super::super::structure::{Hold, Link, Motion, bend, holds, merge};
 use super::legs::Legs;
 use super::switching::along;
 use super::{Asked, RESTS, on_bound};
-use crate::region::Bound;
 
 /// The least eigenvalue of the second variation of ln T − ln |d| where all equations of the arcs hold to first order; none where
 /// the arcs are none.
@@ -23,15 +22,11 @@ pub(super) fn least(setting: &Setting, legs: &Legs, asked: Asked) -> Option<f64>
                 Motion::Extreme(leg.ways)
             } else if on_bound(leg) {
                 let middle = leg.panels.get(leg.panels.len() / 2)?.first()?;
-                let (bound, kind) = along(setting.region, middle)?;
-                match kind {
-                    Bound::Clearance(clearance) => Motion::Curved {
-                        bound,
-                        piece: clearance.piece(&middle.phi),
-                        pace,
-                        way,
-                    },
-                    Bound::Straight(_) => Motion::Straight { bound, pace, way },
+                let (index, bound) = along(setting.region, middle)?;
+                Motion::Along {
+                    bound: Hold(index, bound.piece(&middle.phi)),
+                    pace,
+                    way,
                 }
             } else {
                 Motion::Singular { pace, way }

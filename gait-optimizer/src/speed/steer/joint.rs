@@ -90,6 +90,6 @@ fn extreme(motion: Motion, number: usize) -> Option<[f64; 2]> {
             ways[1 - pace] = [1.0, -1.0][number];
             Some(ways)
         }
-        Motion::Straight { .. } | Motion::Curved { .. } => None,
+        Motion::Along { .. } => None,
     }
 }
