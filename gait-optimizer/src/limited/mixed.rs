@@ -14,7 +14,7 @@ use crate::speed::certificate::within_limits;
 use crate::speed::gauge::Facet;
 use crate::speed::interior::{self, Polygon};
 use crate::speed::phases::{Curve, Phase, polished};
-use crate::speed::setting::{Goal, HeadingRule, Setting};
+use crate::speed::setting::{Asked, Setting};
 use crate::speed::{SpeedError, selection, starts};
 
 /// Elements of a cycle of several limits, first and last.
@@ -167,11 +167,8 @@ impl LimitedProblem {
                 .rates
                 .map_or([NONE; 2], |rates| rates.map(|rate| rate / unit)),
             beyond: self.facets_over_length(unit).split_off(known),
-            heading: HeadingRule::Any,
-            period: None,
-            goal: Goal::Distance,
+            asked: Asked::default(),
             members: &[],
-            anchor: None,
         }
     }
 

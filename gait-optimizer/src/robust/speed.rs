@@ -27,7 +27,7 @@ struct Chains<'a> {
     setting: &'a Setting<'a>,
     start: Polished,
     /// The faster servo's rate.
-    fast: f64,
+    unit: f64,
 }
 
 impl Design for Chains<'_> {
@@ -46,7 +46,7 @@ impl Design for Chains<'_> {
     }
 
     fn unit(&self) -> f64 {
-        self.fast
+        self.unit
     }
 
     /// Newton's method on all conditions, the arcs mended where they no longer fit.
@@ -116,14 +116,14 @@ pub fn robust_speed(
     let design = Chains {
         start: mended(&setting, optimum.links.clone()).ok_or_else(lost)?,
         setting: &setting,
-        fast: problem.rates[0].max(problem.rates[1]),
+        unit: problem.fast(),
     };
     let found = find(&design, &ensemble, over)?;
     let weighed = Setting {
         members: &found.weighted,
         ..setting.clone()
     };
-    let mut fastest = told(problem, &weighed, &found.point, design.fast).ok_or_else(lost)?;
+    let mut fastest = told(problem, &weighed, &found.point).ok_or_else(lost)?;
     (fastest.starts, fastest.found) = (optimum.starts, optimum.found);
     let nominal = ensemble.values(&design, &design.start);
     let gait = &mut fastest.gait;

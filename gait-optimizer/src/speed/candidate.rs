@@ -42,7 +42,11 @@ fn lap(setting: &Setting, links: &[Link]) -> Option<Vec<Link>> {
             && pairs.all(|(a, b)| a.motion == b.motion && (a.corner - b.corner).norm() < SAME)
     };
     let lap = (3..=count / 2).find(repeats)?;
-    setting.period.is_none().then(|| links[..lap].to_vec())
+    setting
+        .asked
+        .period
+        .is_none()
+        .then(|| links[..lap].to_vec())
 }
 
 /// Polishes, and mends the arcs until they fit: bounds that are overstepped hold, corners that rest on a bound become arcs along

@@ -19,7 +19,8 @@ use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_files::{AnyGait, ArcKind, Bounds, GaitFile};
 use swimmer_model::{Model, Tolerance, crossing_share, swim};
 
-use super::setting::{Goal, HeadingRule, Setting};
+pub(crate) use super::setting::Asked;
+use super::setting::{Goal, Setting};
 use crate::certificate::{Certificate, Check, Condition, SeenBy, again_within};
 use crate::cycle::Cycle;
 use crate::member::Member;
@@ -32,17 +33,6 @@ pub(crate) use within_limits::{within_its_own, within_limits};
 /// A corner this close to a bound rests on it \[rad, or over L\].
 pub(super) const RESTS: f64 = 1e-8;
 
-/// What was asked for.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Asked {
-    pub(crate) heading: HeadingRule,
-    /// Whether the period was prescribed.
-    pub(crate) period: bool,
-    pub(crate) goal: Goal,
-    /// Where gaits join: there the costate may jump any way.
-    pub(crate) anchor: Option<Vector2<f64>>,
-}
-
 impl Asked {
     /// Whether gaits join at a shape.
     pub(super) fn joins(&self, phi: &Vector2<f64>) -> bool {
@@ -54,14 +44,13 @@ impl Asked {
 /// A cycle as a gait, held against the conditions; none where its samples make no gait.
 pub(super) fn of_cycle(
     setting: &Setting,
-    asked: Asked,
     bounds: Bounds,
     cycle: &Cycle,
 ) -> Option<(AnyGait, Certificate)> {
     let gait = cycle.gait().ok()?;
     let file = cycle.file(bounds);
     let of = (setting.model, setting.members);
-    let certificate = certificate(of, setting.region, asked, &file, &gait);
+    let certificate = certificate(of, setting.region, setting.asked, &file, &gait);
     Some((gait, certificate))
 }
 
@@ -107,13 +96,14 @@ pub(crate) fn certificate(
         region,
         rates: legs.rates,
         beyond: Vec::new(),
-        heading: asked.heading,
-        period: asked.period.then_some(1.0),
-        goal: asked.goal,
+        // Times are shares of the period here.
+        asked: Asked {
+            period: asked.period.map(|_| 1.0),
+            ..asked
+        },
         members,
-        anchor: asked.anchor,
     };
-    match second_order::least(&setting, &legs, asked) {
+    match second_order::least(&setting, &legs) {
         // No shift is left that keeps all equations.
         Some(f64::INFINITY) => {}
         Some(least) if least.is_finite() => {

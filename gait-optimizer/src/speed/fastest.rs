@@ -3,7 +3,7 @@
 use swimmer_files::Objective;
 use swimmer_model::{Tolerance, swim, wrapped_angle};
 
-use super::certificate::{Asked, of_cycle};
+use super::certificate::of_cycle;
 use super::polish::Polished;
 use super::problem::SpeedProblem;
 use super::samples;
@@ -37,12 +37,8 @@ pub struct Fastest {
 }
 
 /// A chain as an answer; none where its samples make no gait.
-pub(crate) fn told(
-    problem: &SpeedProblem,
-    setting: &Setting,
-    chain: &Polished,
-    fast: f64,
-) -> Option<Fastest> {
+pub(crate) fn told(problem: &SpeedProblem, setting: &Setting, chain: &Polished) -> Option<Fastest> {
+    let fast = problem.fast();
     // Run the way that leads forward, and of two mirror images the one that leads to the left.
     let ahead = wrapped_angle(chain.net.heading());
     let backward = ahead.cos() < -1e-9 || (ahead.cos() < 1e-9 && ahead < 0.0);
@@ -54,12 +50,7 @@ pub(crate) fn told(
     if backward {
         cycle = cycle.reversed(|phi| *phi);
     }
-    let asked = Asked {
-        heading: problem.heading,
-        period: problem.period.is_some(),
-        ..Asked::default()
-    };
-    let (gait, certificate) = of_cycle(setting, asked, problem.bounds, &cycle)?;
+    let (gait, certificate) = of_cycle(setting, problem.bounds, &cycle)?;
     let stroke = swim(setting.model, &gait, &Tolerance::default());
     let of = (Objective::Speed, &problem.swimmer, &problem.bounds);
     Some(Fastest {

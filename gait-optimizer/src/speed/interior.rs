@@ -158,7 +158,7 @@ impl<'a> Method<'a> {
 
     /// How far the first corner is from where gaits join.
     fn anchored(&self, z: &DVector<f64>) -> Option<[f64; 2]> {
-        let off = self.layout.corner(z, 0) - self.setting.anchor?;
+        let off = self.layout.corner(z, 0) - self.setting.asked.anchor?;
         Some([off.x, off.y])
     }
 
@@ -185,7 +185,11 @@ impl<'a> Method<'a> {
             return None;
         }
         let pushes = inequalities.iter().map(|one| first / one.value);
-        let anchored = if self.setting.anchor.is_some() { 2 } else { 0 };
+        let anchored = if self.setting.asked.anchor.is_some() {
+            2
+        } else {
+            0
+        };
         let mut here = Iterate {
             pushes: pushes.collect(),
             y: vec![0.0; self.setting.equality_count() + anchored],
@@ -230,7 +234,7 @@ impl<'a> Method<'a> {
         }
         let weights = self.setting.weights(&net, Some(y));
         let (_, mut gradient) = chain::gradient(layout, &jets, z, weights);
-        let late = match self.setting.period {
+        let late = match self.setting.asked.period {
             Some(period) => y[self.setting.equality_count() - 1] / period,
             None => 0.0,
         };

@@ -4,7 +4,7 @@ use swimmer_files::Bounds;
 use swimmer_model::{Model, Swimmer};
 
 use super::error::SpeedError;
-use super::setting::{Goal, HeadingRule, Setting};
+use super::setting::{Asked, HeadingRule, Setting};
 use crate::region::Region;
 
 /// The fastest gait of which swimmer, within what.
@@ -69,19 +69,25 @@ impl SpeedProblem {
         }
     }
 
+    /// The faster servo's rate \[rad/s\].
+    pub(crate) fn fast(&self) -> f64 {
+        self.rates[0].max(self.rates[1])
+    }
+
     /// The problem in units in which the faster servo turns by 1 rad.
     pub(crate) fn setting<'a>(&self, model: &'a Model<f64>, region: &'a Region) -> Setting<'a> {
-        let fast = self.rates[0].max(self.rates[1]);
+        let fast = self.fast();
         Setting {
             model,
             region,
             rates: self.rates.map(|rate| rate / fast),
             beyond: Vec::new(),
-            heading: self.heading,
-            period: self.period.map(|period| period * fast),
-            goal: Goal::Distance,
+            asked: Asked {
+                heading: self.heading,
+                period: self.period.map(|period| period * fast),
+                ..Asked::default()
+            },
             members: &[],
-            anchor: None,
         }
     }
 }

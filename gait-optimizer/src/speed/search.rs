@@ -61,10 +61,9 @@ impl SpeedProblem {
         validate(self).ok()?;
         let model = Model::new(&self.swimmer.of_unit_length()).ok()?;
         let region = Region::new(&self.bounds, &self.swimmer.links);
-        let fast = self.rates[0].max(self.rates[1]);
         let setting = self.setting(&model, &region);
         let polished = mended(&setting, neighbour.links.clone())?;
-        let found = told(self, &setting, &polished, fast)?;
+        let found = told(self, &setting, &polished)?;
         (found.gait.certificate.pass() && found.gait.arcs.len() <= self.max_corners)
             .then_some(found)
     }
@@ -74,21 +73,25 @@ impl SpeedProblem {
         watch: Watch<'_>,
         finish: impl Fn(Search<'_>, Watch<'_>) -> R,
     ) -> Result<R, SpeedError> {
-        let problem = self;
-        validate(problem)?;
-        let model = Model::new(&problem.swimmer.of_unit_length())?;
-        refuse_immobile(&model, &problem.bounds)?;
-        let region = Region::new(&problem.bounds, &problem.swimmer.links);
-        let fast = problem.rates[0].max(problem.rates[1]);
-        let setting = problem.setting(&model, &region);
-        let random = (0..problem.starts.max(1)).map(|index| start(&region, problem.seed, index));
+        validate(self)?;
+        let model = Model::new(&self.swimmer.of_unit_length())?;
+        refuse_immobile(&model, &self.bounds)?;
+        let region = Region::new(&self.bounds, &self.swimmer.links);
+        let setting = self.setting(&model, &region);
+        let random = (0..self.starts.max(1)).map(|index| start(&region, self.seed, index));
         let mut starts: Vec<_> = random.collect();
-        if problem.heading != HeadingRule::Any {
-            starts.extend(pairs(problem, &setting));
+        if self.heading != HeadingRule::Any {
+            starts.extend(pairs(self, &setting));
         }
         let share = |share: f64| watch(ROUGH_SHARE * share);
-        let groups = rough_groups(&setting, &starts, problem.threads, &share);
-        let search = Search::new(problem, &setting, fast, (starts.len(), &groups));
+        let groups = rough_groups(&setting, &starts, self.threads, &share);
+        let search = Search {
+            problem: self,
+            setting: &setting,
+            starts: starts.len(),
+            groups: &groups,
+            chains: Vec::new(),
+        };
         Ok(finish(search, watch))
     }
 }
@@ -110,8 +113,6 @@ pub struct SpeedAtlas {
 pub(super) struct Search<'a> {
     problem: &'a SpeedProblem,
     setting: &'a Setting<'a>,
-    /// The faster servo's rate.
-    fast: f64,
     /// Closed curves that were started from.
     starts: usize,
     groups: &'a [Group],
@@ -127,23 +128,7 @@ struct Finished {
     certified: OnceCell<Option<Fastest>>,
 }
 
-impl<'a> Search<'a> {
-    pub(super) fn new(
-        problem: &'a SpeedProblem,
-        setting: &'a Setting<'a>,
-        fast: f64,
-        (starts, groups): (usize, &'a [Group]),
-    ) -> Self {
-        Self {
-            problem,
-            setting,
-            fast,
-            starts,
-            groups,
-            chains: Vec::new(),
-        }
-    }
-
+impl Search<'_> {
     /// Finishes group after group until no other can be as fast, or none is left.
     pub(super) fn run(mut self, watch: Watch<'_>) -> Result<Fastest, SpeedError> {
         let mut done = 0;
@@ -155,7 +140,7 @@ impl<'a> Search<'a> {
                 // A faster chain may be longer than was asked for, or fail its certificate.
                 let answer = self.answer();
                 let speed = answer.as_ref().map_or(0.0, |found| found.speed_over_length);
-                if left.is_none() || hopeless(speed / self.fast) {
+                if left.is_none() || hopeless(speed / self.problem.fast()) {
                     return answer;
                 }
             }
@@ -186,7 +171,7 @@ impl<'a> Search<'a> {
                     optima.push(answer);
                 }
                 Some(_) => longer += 1,
-                None => uncertified.push(one.chain.speed * self.fast),
+                None => uncertified.push(one.chain.speed * self.problem.fast()),
             }
         }
         // What chains are certified as may be slower than they are, and alike.
@@ -219,7 +204,7 @@ impl<'a> Search<'a> {
     fn looked_into(&self, one: &Finished) -> Option<Fastest> {
         let setting = self.setting;
         let passes = |chain: &Polished| {
-            let found = told(self.problem, setting, chain, self.fast)?;
+            let found = told(self.problem, setting, chain)?;
             found.gait.certificate.pass().then_some(found)
         };
         let from_more_sides = |times: usize| {
@@ -270,16 +255,11 @@ impl<'a> Search<'a> {
 
     /// The fastest chain that is certified.
     fn answer(&self) -> Result<Fastest, SpeedError> {
-        let Self {
-            problem,
-            fast,
-            ref chains,
-            ..
-        } = *self;
+        let problem = self.problem;
         let (mut longer, mut uncertified) = (None, None);
         let mut answer: Option<Fastest> = None;
-        for one in shortest_of_alike(chains) {
-            let speed = one.chain.speed * fast;
+        for one in shortest_of_alike(&self.chains) {
+            let speed = one.chain.speed * problem.fast();
             // What a chain is certified as may be slower than the chain.
             if answer
                 .as_ref()
@@ -318,7 +298,7 @@ impl<'a> Search<'a> {
         Err(SpeedError::NoGait {
             bounds: problem.bounds,
             starts: problem.starts,
-            chains: chains.len(),
+            chains: self.chains.len(),
             uncertified,
         })
     }

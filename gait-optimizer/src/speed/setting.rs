@@ -48,6 +48,17 @@ impl HeadingRule {
     }
 }
 
+/// What is asked of a gait, beside bounds and limits.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Asked {
+    pub(crate) heading: HeadingRule,
+    /// The period, where it is prescribed.
+    pub(crate) period: Option<f64>,
+    pub(crate) goal: Goal,
+    /// A shape that it must pass: there gaits join, and the costate may jump any way.
+    pub(crate) anchor: Option<Vector2<f64>>,
+}
+
 /// What every step of the search shares.
 #[derive(Debug, Clone)]
 pub(crate) struct Setting<'a> {
@@ -58,15 +69,10 @@ pub(crate) struct Setting<'a> {
     pub(crate) rates: [f64; 2],
     /// What else limits the servos.
     pub(crate) beyond: Vec<Facet>,
-    pub(crate) heading: HeadingRule,
-    /// The period, where it is prescribed.
-    pub(crate) period: Option<f64>,
-    pub(crate) goal: Goal,
+    pub(crate) asked: Asked,
     /// Whose displacements, with these weights, are to be the most; where there are none, the model's own. What holds of the
     /// whole chain holds of the model alone.
     pub(crate) members: &'a [(Member, f64)],
-    /// A shape that the gait must pass: there gaits join.
-    pub(crate) anchor: Option<Vector2<f64>>,
 }
 
 impl Setting<'_> {
@@ -94,7 +100,7 @@ impl Setting<'_> {
 
     /// What is to be the most per unit of time.
     pub(crate) fn measure(&self, net: &Net) -> f64 {
-        match self.goal {
+        match self.asked.goal {
             Goal::Distance => net.distance(),
             Goal::Rotation => net.rotation.abs(),
         }
@@ -102,24 +108,24 @@ impl Setting<'_> {
 
     /// Whether the heading is prescribed.
     fn heads(&self) -> bool {
-        self.goal == Goal::Distance && self.heading != HeadingRule::Any
+        self.asked.goal == Goal::Distance && self.asked.heading != HeadingRule::Any
     }
 
     /// How many equations hold of a whole chain.
     pub(crate) fn equality_count(&self) -> usize {
-        usize::from(self.goal == Goal::Distance)
+        usize::from(self.asked.goal == Goal::Distance)
             + usize::from(self.heads())
-            + usize::from(self.period.is_some())
+            + usize::from(self.asked.period.is_some())
     }
 
     /// Residuals of these equations: rotation, heading and period, as far as they are asked for.
     pub(crate) fn residuals(&self, net: &Net, period: f64) -> Vec<f64> {
         let mut values = Vec::with_capacity(3);
-        if self.goal == Goal::Distance {
+        if self.asked.goal == Goal::Distance {
             values.push(net.rotation);
-            values.extend(self.heading.off(net.heading()));
+            values.extend(self.asked.heading.off(net.heading()));
         }
-        values.extend(self.period.map(|asked| period / asked - 1.0));
+        values.extend(self.asked.period.map(|asked| period / asked - 1.0));
         values
     }
 
@@ -140,13 +146,13 @@ impl Setting<'_> {
         };
         let (net, rotation) = slope(1.0, 0.0);
         let mut slopes = Vec::with_capacity(3);
-        if self.goal == Goal::Distance {
+        if self.asked.goal == Goal::Distance {
             slopes.push(rotation);
         }
         if self.heads() {
             slopes.push(slope(0.0, 1.0).1);
         }
-        if let Some(asked) = self.period {
+        if let Some(asked) = self.asked.period {
             let times = 2 * layout.arcs()..3 * layout.arcs();
             slopes.push(DVector::from_fn(layout.size, |i, _| {
                 f64::from(u8::from(times.contains(&i))) / asked
@@ -161,7 +167,7 @@ impl Setting<'_> {
             let all = multipliers.unwrap_or_default();
             all.get(at).copied().unwrap_or(0.0)
         };
-        match self.goal {
+        match self.asked.goal {
             Goal::Distance => Weights {
                 // The members' own is added to it.
                 log_distance: if self.members.is_empty() { -1.0 } else { 0.0 },
@@ -183,7 +189,7 @@ impl Setting<'_> {
         (layout, jets): (&Layout, &[Jet]),
         z: &DVector<f64>,
     ) -> Option<DVector<f64>> {
-        (self.goal == Goal::Rotation)
+        (self.asked.goal == Goal::Rotation)
             .then(|| chain::gradient(layout, jets, z, self.weights(net, None)).1)
     }
 }

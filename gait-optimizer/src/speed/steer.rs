@@ -120,21 +120,14 @@ pub fn steer(problem: &SteerProblem, watch: Watch<'_>) -> Result<Steering, Speed
         ..of.bounds
     };
     let turning = Region::new(&turning_bounds, &of.swimmer.links);
-    let fast = of.rates[0].max(of.rates[1]);
+    let fast = of.fast();
     let within = |goal| match goal {
         Goal::Rotation => (&turning_bounds, &turning),
         Goal::Distance => (&of.bounds, &region),
     };
-    let setting = |(goal, heading): Kind, anchor| Setting {
-        model: &model,
-        region: within(goal).1,
-        rates: of.rates.map(|rate| rate / fast),
-        beyond: Vec::new(),
-        heading,
-        period: None,
-        goal,
-        members: &[],
-        anchor,
+    let setting = |kind: Kind, anchor| Setting {
+        asked: asked(kind, anchor),
+        ..of.setting(&model, within(kind.0).1)
     };
     if let Some(shape) = problem.shape {
         let margin = -turning.overstepped(&Vector2::from(shape));
@@ -219,7 +212,7 @@ fn chains(setting: &Setting, starts: &[Vec<Vector2<f64>>], threads: usize) -> Ve
         || (),
         |(), index| {
             let chain = candidate(setting, chosen[index], SIDES)?;
-            match setting.anchor {
+            match setting.asked.anchor {
                 Some(_) => joined(setting, chain),
                 None => certified(setting, chain),
             }
@@ -302,7 +295,7 @@ fn cycle(
     let mut links = chain.links.iter();
     let first = links.position(|link| link.anchored).unwrap_or(0);
     let mut cycle = samples::cycle_from(setting, chain, 1.0, first);
-    let backward = match (setting.goal, setting.heading) {
+    let backward = match (setting.asked.goal, setting.asked.heading) {
         (Goal::Rotation, _) => chain.net.rotation < 0.0,
         (Goal::Distance, HeadingRule::Sideways) => chain.net.heading().sin() < 0.0,
         (Goal::Distance, _) => chain.net.heading().cos() < 0.0,
@@ -310,8 +303,7 @@ fn cycle(
     if backward {
         cycle = cycle.reversed(|phi| *phi);
     }
-    let asked = asked((setting.goal, setting.heading), setting.anchor);
-    let (gait, certificate) = of_cycle(setting, asked, bounds, &cycle)?;
+    let (gait, certificate) = of_cycle(setting, bounds, &cycle)?;
     Some((cycle, gait, certificate))
 }
 

@@ -132,7 +132,7 @@ pub(crate) fn arcs(setting: &Setting, polygon: &Polygon) -> Option<Vec<Link>> {
         })
         .collect();
     // Begin where the motion changes.
-    let anchored = |k: usize| k == 0 && setting.anchor.is_some();
+    let anchored = |k: usize| k == 0 && setting.asked.anchor.is_some();
     let first = (0..n).find(|&k| anchored(k) || sides[k].0 != sides[(k + n - 1) % n].0)?;
     let mut links: Vec<Link> = Vec::new();
     for k in (0..n).map(|k| (first + k) % n) {

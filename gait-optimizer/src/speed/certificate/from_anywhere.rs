@@ -65,16 +65,16 @@ fn certify_at_rates(
         };
         certificate((model, &[]), region, asked, file, gait)
     };
-    let free = of((HeadingRule::Any, false));
+    let free = of((HeadingRule::Any, None));
     if free.pass() {
         return free;
     }
     [
-        (HeadingRule::Forward, false),
-        (HeadingRule::Sideways, false),
-        (HeadingRule::Any, true),
-        (HeadingRule::Forward, true),
-        (HeadingRule::Sideways, true),
+        (HeadingRule::Forward, None),
+        (HeadingRule::Sideways, None),
+        (HeadingRule::Any, Some(1.0)),
+        (HeadingRule::Forward, Some(1.0)),
+        (HeadingRule::Sideways, Some(1.0)),
     ]
     .into_iter()
     .map(of)

@@ -7,11 +7,11 @@ use super::super::setting::Setting;
 use super::super::structure::{Hold, Link, Motion, bend, holds, merge};
 use super::legs::Legs;
 use super::switching::along;
-use super::{Asked, RESTS, on_bound};
+use super::{RESTS, on_bound};
 
 /// The least eigenvalue of the second variation of ln T − ln |d| where all equations of the arcs hold to first order; none where
 /// the arcs are none.
-pub(super) fn least(setting: &Setting, legs: &Legs, asked: Asked) -> Option<f64> {
+pub(super) fn least(setting: &Setting, legs: &Legs) -> Option<f64> {
     let links: Option<Vec<Link>> = legs
         .all
         .iter()
@@ -34,7 +34,7 @@ pub(super) fn least(setting: &Setting, legs: &Legs, asked: Asked) -> Option<f64>
             Some(Link {
                 corner: leg.from,
                 held: holds(setting, &leg.from, RESTS),
-                anchored: asked.joins(&leg.from),
+                anchored: setting.asked.joins(&leg.from),
                 motion,
                 time: leg.share,
                 bends: Vec::new(),

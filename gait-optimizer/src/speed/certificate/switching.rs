@@ -91,7 +91,7 @@ impl<'a> Switching<'a> {
                 rest: 0.0,
             });
         }
-        if !asked.period {
+        if asked.period.is_none() {
             rows.push(Affine {
                 weights: vec![(SPEED, 1.0)],
                 rest: -1.0,
@@ -333,7 +333,7 @@ impl<'a> Switching<'a> {
         if !jumps.is_empty() {
             checks.push(Condition::SpeedAtContact.check(least(&jumps)));
         }
-        if self.asked.period {
+        if self.asked.period.is_some() {
             // A longer period never leads less far.
             let further = self.solution.get(SPEED).copied().unwrap_or(f64::NAN);
             checks.push(Condition::FurtherTime.check(further));

@@ -47,7 +47,7 @@ pub(super) fn equations(setting: &Setting, links: &[Link]) -> Vec<Equation> {
         for &hold in &link.held {
             equations.push(Equation::Held { corner: arc, hold });
         }
-        if let Some(anchor) = setting.anchor.filter(|_| link.anchored) {
+        if let Some(anchor) = setting.asked.anchor.filter(|_| link.anchored) {
             for joint in 0..2 {
                 equations.push(Equation::Anchored {
                     corner: arc,
