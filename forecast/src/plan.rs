@@ -23,7 +23,7 @@ use swimmer_model::{Model, Pose, wrapped_angle};
 
 use crate::losses::Servos;
 use crate::path::Polyline;
-use crate::playlist::{Repeated, leads_to, step_period};
+use crate::playlist::{Repeated, leads_to};
 use crate::tank::Tank;
 use aim::Hit;
 use member::Nets;
@@ -71,16 +71,6 @@ pub struct Step {
 }
 
 impl Step {
-    /// At the servos' full rate.
-    fn new(family: &Family, servos: &Servos, member: Member, cycles: u32) -> Self {
-        let (_, period) = &family.gaits[member.kind as usize];
-        Self {
-            member,
-            cycles,
-            period: step_period(period * member.scale, servos.file.max_rate),
-        }
-    }
-
     /// As it is played.
     fn repeated(&self, family: &Family) -> Repeated<Scaled> {
         Repeated {

@@ -78,9 +78,7 @@ impl Aim<'_> {
                 break;
             }
             let wanted = (*begun * out).inverse() * (aimed_at * self.way_in) * back.inverse();
-            let servos = &self.errand.servos;
-            let Some(mut next) = settled(self.nets, self.family, servos, &wanted, &chain.legs, 1.0)
-            else {
+            let Some(mut next) = settled(self.nets, &wanted, &chain.legs, 1.0) else {
                 break;
             };
             // What is played jumps where the period does, by a tick: it does so once.

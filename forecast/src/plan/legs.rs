@@ -3,10 +3,8 @@
 use nalgebra::{DVector, Matrix3xX, Vector3};
 use swimmer_model::{Pose, wrapped_angle};
 
-use crate::losses::Servos;
-
+use super::Step;
 use super::member::{Kind, Member, Nets, SMALLEST, repeated};
-use super::{Family, Step};
 
 /// Legs of a chain: their scales meet the three coordinates of a target.
 const MOST: usize = 3;
@@ -23,16 +21,9 @@ const MOST_CYCLES: f64 = 400.0;
 const MET: f64 = 1e-10;
 
 /// All chains that are found to bring what is wanted, from the common shape to the common shape.
-pub(super) fn chains(
-    nets: &Nets,
-    family: &Family,
-    servos: &Servos,
-    wanted: &Pose<f64>,
-) -> Vec<Vec<Step>> {
+pub(super) fn chains(nets: &Nets, wanted: &Pose<f64>) -> Vec<Vec<Step>> {
     let of = |word| Search {
         nets,
-        family,
-        servos,
         wanted: *wanted,
         word,
     };
@@ -57,8 +48,6 @@ fn words() -> Vec<[Kind; MOST]> {
 
 struct Search<'a> {
     nets: &'a Nets,
-    family: &'a Family,
-    servos: &'a Servos,
     wanted: Pose<f64>,
     word: [Kind; MOST],
 }
@@ -115,11 +104,7 @@ impl Search<'_> {
     }
 
     fn full(&self, kind: Kind) -> Pose<f64> {
-        self.nets.of(&Member {
-            kind,
-            backwards: false,
-            scale: 1.0,
-        })
+        self.nets.of(&kind.of_scale(1.0))
     }
 
     /// As if cycles could be cut anywhere: a real number of each.
@@ -147,17 +132,10 @@ impl Search<'_> {
                 backwards: *amount < 0.0,
                 scale,
             };
-            Step::new(self.family, self.servos, member, cycles as u32)
+            self.nets.step(member, cycles as u32)
         });
         let steps: Vec<Step> = steps.collect();
-        settled(
-            self.nets,
-            self.family,
-            self.servos,
-            &self.wanted,
-            &steps,
-            LARGEST,
-        )
+        settled(self.nets, &self.wanted, &steps, LARGEST)
     }
 }
 
@@ -165,8 +143,6 @@ impl Search<'_> {
 /// are none. Of all that do those nearest to the steps' own; none larger than `largest`.
 pub(super) fn settled(
     nets: &Nets,
-    family: &Family,
-    servos: &Servos,
     wanted: &Pose<f64>,
     steps: &[Step],
     largest: f64,
@@ -195,10 +171,10 @@ pub(super) fn settled(
                 scale: scale.min(1.0),
                 ..step.member
             };
-            *step = Step::new(family, servos, member, step.cycles);
+            *step = nets.step(member, step.cycles);
             if scale > largest {
                 beyond = true;
-                *step = with_cycles(nets, family, servos, step, step.cycles + 1);
+                *step = with_cycles(nets, step, step.cycles + 1);
             }
         }
         if !beyond {
@@ -209,19 +185,13 @@ pub(super) fn settled(
 }
 
 /// A leg of so many cycles that brings about the same.
-pub(super) fn with_cycles(
-    nets: &Nets,
-    family: &Family,
-    servos: &Servos,
-    leg: &Step,
-    cycles: u32,
-) -> Step {
+pub(super) fn with_cycles(nets: &Nets, leg: &Step, cycles: u32) -> Step {
     let share = nets.share(&leg.member) * f64::from(leg.cycles) / f64::from(cycles);
     let member = Member {
         scale: nets.scale(leg.member.kind, share),
         ..leg.member
     };
-    Step::new(family, servos, member, cycles)
+    nets.step(member, cycles)
 }
 
 /// A pose near the identity as three numbers.

@@ -7,7 +7,7 @@ use swimmer_model::{Gait, GaitPoint, Model, Pose, wrapped_angle};
 
 use super::{Family, Step};
 use crate::losses::Servos;
-use crate::playlist::{leads_to, played, tables};
+use crate::playlist::{leads_to, played, step_period, tables};
 
 /// A kind of gait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -105,11 +105,16 @@ impl Gait<f64> for Scaled {
 }
 
 /// Net poses of all members as the servos play them, between scales by the polynomial through those at Chebyshev points: what a
-/// gait brings depends on its scale analytically, and what tables and dead bands take of it hardly less smoothly.
+/// gait brings depends on its scale analytically, and what tables and dead bands take of it hardly less smoothly. And how long their
+/// cycles take.
 #[derive(Debug)]
 pub(super) struct Nets {
     scales: Vec<f64>,
     poses: [Vec<[f64; 3]>; 3],
+    /// Of the gaits of the family \[s\].
+    periods: [f64; 3],
+    /// Of the servos \[rad/s\].
+    max_rate: f64,
 }
 
 /// Scales that are swum.
@@ -129,12 +134,17 @@ impl Nets {
             let angle = std::f64::consts::PI * k as f64 / (POINTS - 1) as f64;
             0.5 * (1.0 + SMALLEST) + 0.5 * (1.0 - SMALLEST) * angle.cos()
         };
-        let scales: Vec<f64> = (0..POINTS).map(scale).collect();
         let way_in = family.way_in(model);
+        let unswum = Self {
+            scales: (0..POINTS).map(scale).collect(),
+            poses: Default::default(),
+            periods: family.gaits.each_ref().map(|(_, period)| *period),
+            max_rate: servos.file.max_rate,
+        };
         let of = |kind: Kind| {
             let at = |&scale: &f64| {
                 let after = |cycles| {
-                    let step = Step::new(family, servos, kind.of_scale(scale), cycles);
+                    let step = unswum.step(kind.of_scale(scale), cycles);
                     let tables = tables(&[step.repeated(family)])?;
                     Ok(leads_to(model, &played(&tables, servos)) * way_in)
                 };
@@ -142,12 +152,22 @@ impl Nets {
                 let pose = after(1)?.inverse() * after(2)?;
                 Ok([pose.x, pose.y, pose.theta])
             };
-            scales.iter().map(at).collect::<Result<Vec<_>, _>>()
+            unswum.scales.iter().map(at).collect::<Result<Vec<_>, _>>()
         };
         Ok(Self {
             poses: [of(Kind::Forward)?, of(Kind::Left)?, of(Kind::Turn)?],
-            scales,
+            ..unswum
         })
+    }
+
+    /// So many cycles at the servos' full rate.
+    pub(super) fn step(&self, member: Member, cycles: u32) -> Step {
+        let period = self.periods[member.kind as usize] * member.scale;
+        Step {
+            member,
+            cycles,
+            period: step_period(period, self.max_rate),
+        }
     }
 
     /// The same in a mirror along the body.
@@ -160,13 +180,14 @@ impl Nets {
         Self {
             scales: self.scales.clone(),
             poses,
+            ..*self
         }
     }
 
     /// What is wanted takes about this long at least \[s\].
-    pub(super) fn least(&self, family: &Family, wanted: &Pose<f64>) -> f64 {
+    pub(super) fn least(&self, wanted: &Pose<f64>) -> f64 {
         let (mut speed, mut rate) = (0.0_f64, 0.0_f64);
-        for (kind, (_, period)) in Kind::ALL.into_iter().zip(&family.gaits) {
+        for (kind, period) in Kind::ALL.into_iter().zip(self.periods) {
             let net = self.of(&kind.of_scale(1.0));
             speed = speed.max(net.position().norm() / period);
             rate = rate.max(net.theta.abs() / period);

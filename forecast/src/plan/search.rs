@@ -7,7 +7,6 @@ use super::legs::{LARGEST, chains, settled, with_cycles};
 use super::room::{Room, Sweeps};
 use super::way_out::{Way, ways_out};
 use super::{Errand, Plan, PlanError, Step, duration};
-use crate::losses::Servos;
 
 /// Where there is no room for the cycles of a leg, so many times as many smaller ones are tried.
 const SMALLER: [u32; 5] = [1, 2, 4, 8, 16];
@@ -78,7 +77,7 @@ pub(super) fn quickest(
     known: Option<Plan>,
     seen: &mut Seen,
 ) -> Option<Plan> {
-    let (family, nets, servos) = (sweeps.family, sweeps.nets, &errand.servos);
+    let (family, nets) = (sweeps.family, sweeps.nets);
     let way_in = family.way_in(model);
     let begun = errand.from * way_in;
     let aim = Aim {
@@ -88,18 +87,18 @@ pub(super) fn quickest(
         nets,
         way_in,
     };
-    let outward = ways_out(sweeps, servos, &begun, effort.everywhere);
+    let outward = ways_out(sweeps, &begun, effort.everywhere);
     let inward = ends(errand).into_iter().filter(|end| {
         let fits = |pose: &Pose<f64>| room.fits(pose, &nalgebra::Vector2::zeros());
         fits(end) && room.fits(&(*end * way_in), &family.shape())
     });
     let inward: Vec<Way> = inward
-        .flat_map(|end| ways_out(sweeps, servos, &(end * way_in), effort.everywhere))
+        .flat_map(|end| ways_out(sweeps, &(end * way_in), effort.everywhere))
         .collect();
     let pairs = inward.iter().flat_map(|inward| {
         outward.iter().map(|outward| {
             let wanted = outward.there.inverse() * inward.there;
-            let least = nets.least(family, &wanted) + outward.duration + inward.duration;
+            let least = nets.least(&wanted) + outward.duration + inward.duration;
             Pair {
                 outward,
                 inward,
@@ -126,11 +125,11 @@ pub(super) fn quickest(
         if least > most {
             break;
         }
-        let between = chains(nets, family, servos, &wanted);
+        let between = chains(nets, &wanted);
         seen.met[0] += between.len();
         let mut left: Vec<_> = between
             .iter()
-            .filter_map(|legs| fitted(sweeps, servos, &outward.there, &wanted, legs))
+            .filter_map(|legs| fitted(sweeps, &outward.there, &wanted, legs))
             .collect();
         seen.met[1] += left.len();
         left.sort_by(|a, b| duration(a).total_cmp(&duration(b)));
@@ -171,23 +170,21 @@ pub(super) fn ends(errand: &Errand) -> Vec<Pose<f64>> {
 /// Legs that leave the walls alone, from this pose on, and bring what is wanted: each with the largest cycles that have room.
 fn fitted(
     sweeps: &Sweeps<'_>,
-    servos: &Servos,
     begun: &Pose<f64>,
     wanted: &Pose<f64>,
     legs: &[Step],
 ) -> Option<Vec<Step>> {
-    let (family, nets) = (sweeps.family, sweeps.nets);
     let mut pose = *begun;
     let mut chosen = Vec::with_capacity(legs.len());
     for leg in legs {
         let (leg, there) = SMALLER.iter().find_map(|&times| {
-            let leg = with_cycles(nets, family, servos, leg, leg.cycles * times);
+            let leg = with_cycles(sweeps.nets, leg, leg.cycles * times);
             Some((leg, sweeps.after(&pose, &leg.member, leg.cycles)?))
         })?;
         chosen.push(leg);
         pose = there;
     }
-    let settled = settled(nets, family, servos, wanted, &chosen, LARGEST)?;
+    let settled = settled(sweeps.nets, wanted, &chosen, LARGEST)?;
     let mut pose = *begun;
     for leg in &settled {
         pose = sweeps.after(&pose, &leg.member, leg.cycles)?;

@@ -12,7 +12,6 @@ use super::Step;
 use super::legs::LARGEST;
 use super::member::{Kind, Member};
 use super::room::{Sweeps, sizes};
-use crate::losses::Servos;
 
 /// Poses are alike within \[m, rad\].
 const ALIKE: [f64; 2] = [0.005, 0.05];
@@ -43,12 +42,7 @@ struct Node {
 
 /// The ways out from this pose at the common shape, the shortest first: the first stays. Where the largest cycles have room it is
 /// the only one, unless there shall be ways `everywhere`.
-pub(super) fn ways_out(
-    sweeps: &Sweeps<'_>,
-    servos: &Servos,
-    begun: &Pose<f64>,
-    everywhere: bool,
-) -> Vec<Way> {
+pub(super) fn ways_out(sweeps: &Sweeps<'_>, begun: &Pose<f64>, everywhere: bool) -> Vec<Way> {
     let mut nodes = vec![Node {
         pose: *begun,
         from: None,
@@ -81,7 +75,7 @@ pub(super) fn ways_out(
                 room += member.scale;
                 let mut cycles = 1;
                 loop {
-                    let step = Step::new(sweeps.family, servos, member, cycles);
+                    let step = sweeps.nets.step(member, cycles);
                     let duration = time + f64::from(cycles) * step.period;
                     if !seen.contains(&cell(&there, ALIKE)) {
                         open.push(Reverse((Time(duration), nodes.len())));
