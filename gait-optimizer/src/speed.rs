@@ -8,12 +8,12 @@
 //! curve alone ([`certificate`]).
 
 mod arc;
-mod bordered;
 mod candidate;
 pub(crate) mod certificate;
 mod chain;
 mod ensemble;
 mod error;
+mod expansion;
 mod fastest;
 mod front;
 pub(crate) mod gauge;

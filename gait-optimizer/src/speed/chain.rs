@@ -1,5 +1,7 @@
 //! A closed chain of arcs: its net displacement, rotation and mean heading, with their slopes.
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_model::Model;
 
@@ -46,6 +48,11 @@ impl Layout {
 
     pub(crate) fn time_index(&self, arc: usize) -> usize {
         2 * self.arcs() + arc
+    }
+
+    /// Indices of all times.
+    pub(crate) fn times(&self) -> Range<usize> {
+        2 * self.arcs()..3 * self.arcs()
     }
 
     pub(crate) fn bends_index(&self, arc: usize) -> usize {
@@ -101,8 +108,7 @@ impl Layout {
         let value = |arc: usize| {
             self.shapes[arc].value(model, rule, &self.ends(z, arc), self.bends(z, arc))
         };
-        let arcs = self.arcs();
-        net((0..arcs).map(value), &z.as_slice()[2 * arcs..3 * arcs])
+        net((0..self.arcs()).map(value), &z.as_slice()[self.times()])
     }
 
     /// Index of an arc's parameter.
@@ -188,8 +194,7 @@ pub(crate) fn gradient(
     z: &DVector<f64>,
     weights: Weights,
 ) -> (Net, DVector<f64>) {
-    let arcs = layout.arcs();
-    let times = &z.as_slice()[2 * arcs..3 * arcs];
+    let times = &z.as_slice()[layout.times()];
     let (before, net) = net(jets.iter().map(|jet| jet.value), times);
     let d = net.displacement;
     let distance = d.norm();

@@ -9,7 +9,7 @@ use limits::Inequality;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Vector2};
 
 use super::arc::{Jet, Shape};
-use super::chain::{self, Layout, Weights};
+use super::chain::{self, Layout};
 use super::quadrature::Rule;
 use super::setting::Setting;
 
@@ -127,7 +127,6 @@ struct Look {
     /// Residuals of the equalities, and their slopes.
     values: Vec<f64>,
     slopes: Vec<DVector<f64>>,
-    weights: Weights,
     /// Of the Lagrangian without the inequalities.
     gradient: DVector<f64>,
 }
@@ -238,8 +237,8 @@ impl<'a> Method<'a> {
             Some(period) => y[self.setting.equality_count() - 1] / period,
             None => 0.0,
         };
-        for side in 0..layout.arcs() {
-            gradient[layout.time_index(side)] += 1.0 / layout.period(z) + late;
+        for time in layout.times() {
+            gradient[time] += 1.0 / layout.period(z) + late;
         }
         for (joint, off) in self.anchored(z).into_iter().flatten().enumerate() {
             gradient[joint] += y[values.len()];
@@ -254,26 +253,17 @@ impl<'a> Method<'a> {
             net,
             values,
             slopes,
-            weights,
             gradient,
         })
     }
 
     /// Second derivatives with the inequalities eliminated, and minus the barrier's gradient.
     fn system(&self, here: &Iterate, look: &Look) -> (DMatrix<f64>, DVector<f64>) {
-        let arcs = self.layout.arcs();
-        let of = (&self.layout, self.setting.model, &self.rule);
-        let mut matrix = chain::hessian(of, &look.jets, &here.z, look.weights, false);
-        let period = self.layout.period(&here.z);
-        for one in 2 * arcs..3 * arcs {
-            for other in 2 * arcs..3 * arcs {
-                matrix[(one, other)] -= 1.0 / (period * period);
-            }
-        }
-        let of = (&self.layout, look.jets.as_slice());
-        if let Some(slope) = self.setting.of_the_log(&look.net, of, &here.z) {
-            matrix.ger(1.0, &slope, &slope, 1.0);
-        }
+        let (of, with) = (
+            (&self.layout, &self.rule, look.jets.as_slice()),
+            (&look.net, here.y.as_slice()),
+        );
+        let mut matrix = self.setting.hessian(of, &here.z, with, false);
         let mut right = -&look.gradient;
         for (one, push) in look.inequalities.iter().zip(&here.pushes) {
             let stiffness = push / one.value;

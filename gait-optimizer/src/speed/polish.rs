@@ -4,9 +4,10 @@ mod conditions;
 
 use nalgebra::DVector;
 
-use self::conditions::{Conditions, Equation, Look, equations};
+use self::conditions::{Conditions, Equation, equations};
 use super::chain::{Layout, Net};
 use super::ensemble::turned;
+use super::expansion::Expansion;
 use super::quadrature::Rule;
 use super::setting::Setting;
 use super::structure::Link;
@@ -28,7 +29,7 @@ pub(crate) struct Polished {
 
 /// Quadrature points on an arc.
 pub(super) const POINTS: usize = 32;
-const MOST_STEPS: usize = 40;
+const MOST_STEPS: usize = 39;
 /// Most times that a solution gives way to the other of its fold.
 const FOLDS: usize = 4;
 /// Residuals below this are rounding.
@@ -107,7 +108,7 @@ pub(crate) fn second_variation(setting: &Setting, links: &[Link]) -> Option<f64>
         rule: &rule,
         equations: &equations(setting, links),
     };
-    let (_, y) = conditions.look(&z, None)?.newton()?;
+    let y = conditions.look(&z, None)?.nearest_multipliers()?;
     Some(conditions.look(&z, Some(&y))?.convexity().0)
 }
 
@@ -134,7 +135,7 @@ fn written(setting: &Setting, links: &[Link]) -> (Layout, DVector<f64>) {
 struct Solution {
     z: DVector<f64>,
     y: DVector<f64>,
-    look: Look,
+    look: Expansion,
     /// Least eigenvalue of the second variation, and its shift.
     convexity: f64,
     weakest: DVector<f64>,
@@ -142,33 +143,30 @@ struct Solution {
 
 /// Newton's method from `z`; none where it does not converge.
 fn solve(conditions: &Conditions, mut z: DVector<f64>) -> Option<Solution> {
-    let mut y: Option<DVector<f64>> = None;
+    let mut y = conditions.look(&z, None)?.nearest_multipliers()?;
     let mut best = f64::INFINITY;
     let mut stalls = 0;
     for _ in 0..MOST_STEPS {
-        let look = conditions.look(&z, y.as_ref())?;
-        let residual = look.residual();
-        if y.is_some() {
-            if residual < ROUNDING {
-                break;
-            }
-            stalls = if residual < 0.5 * best { 0 } else { stalls + 1 };
-            best = best.min(residual);
-            if stalls > 3 && best < 1e-9 {
-                break;
-            }
-            if stalls > 12 {
-                return None;
-            }
+        let look = conditions.look(&z, Some(&y))?;
+        let residual = look.residual(&y);
+        if residual < ROUNDING {
+            break;
         }
-        let (step, next) = look.newton()?;
+        stalls = if residual < 0.5 * best { 0 } else { stalls + 1 };
+        best = best.min(residual);
+        if stalls > 3 && best < 1e-9 {
+            break;
+        }
+        if stalls > 12 {
+            return None;
+        }
+        let (step, next) = look.step()?;
         let scale = (0.3 / step.amax()).min(1.0);
         z += step * scale;
-        y = Some(next);
+        y = next;
     }
-    let y = y?;
     let look = conditions.look(&z, Some(&y))?;
-    if look.residual() > 1e-9 {
+    if look.residual(&y) > 1e-9 {
         return None;
     }
     let (convexity, weakest) = look.convexity();

@@ -1,11 +1,12 @@
 //! What is asked, and what every step of the search shares.
 
-use nalgebra::{DVector, Vector2};
+use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_model::Model;
 
 use super::arc::Jet;
 use super::chain::{self, Layout, Net, Weights};
 use super::gauge::Facet;
+use super::quadrature::Rule;
 use crate::member::Member;
 use crate::region::Region;
 
@@ -153,7 +154,7 @@ impl Setting<'_> {
             slopes.push(slope(0.0, 1.0).1);
         }
         if let Some(asked) = self.asked.period {
-            let times = 2 * layout.arcs()..3 * layout.arcs();
+            let times = layout.times();
             slopes.push(DVector::from_fn(layout.size, |i, _| {
                 f64::from(u8::from(times.contains(&i))) / asked
             }));
@@ -182,14 +183,29 @@ impl Setting<'_> {
         }
     }
 
-    /// What the second derivatives of −ln of the measure have beside those at fixed weights: the square of this.
-    pub(crate) fn of_the_log(
+    /// Second derivatives of ln of the period less that of the measure of the model alone, with the multipliers of the equations;
+    /// by central differences or one-sided ones.
+    pub(super) fn hessian(
         &self,
-        net: &Net,
-        (layout, jets): (&Layout, &[Jet]),
+        (layout, rule, jets): (&Layout, &Rule, &[Jet]),
         z: &DVector<f64>,
-    ) -> Option<DVector<f64>> {
-        (self.asked.goal == Goal::Rotation)
-            .then(|| chain::gradient(layout, jets, z, self.weights(net, None)).1)
+        (net, multipliers): (&Net, &[f64]),
+        central: bool,
+    ) -> DMatrix<f64> {
+        let weights = self.weights(net, Some(multipliers));
+        let of = (layout, self.model, rule);
+        let mut hessian = chain::hessian(of, jets, z, weights, central);
+        if self.asked.goal == Goal::Rotation {
+            // The weight changes with the measure.
+            let (_, slope) = chain::gradient(layout, jets, z, self.weights(net, None));
+            hessian.ger(1.0, &slope, &slope, 1.0);
+        }
+        let period = layout.period(z);
+        for one in layout.times() {
+            for other in layout.times() {
+                hessian[(one, other)] -= 1.0 / (period * period);
+            }
+        }
+        hessian
     }
 }

@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, DVector, Vector4};
 
 use super::super::arc::{MOST_PARAMETERS, Place};
+use super::super::expansion::Expansion;
 use super::super::quadrature::Rule;
 use super::super::setting::Setting;
-use super::super::{bordered, chain};
 use super::equations::{Equation, Method, equations};
 use super::{BENDS, Curve, Draft, Phase, side};
 
@@ -31,18 +31,6 @@ pub(super) enum Outcome {
     Gone(usize, Box<Draft>),
     /// The method does not converge.
     Lost,
-}
-
-struct Look {
-    net: chain::Net,
-    /// Of ln of the period less that of the distance.
-    gradient: DVector<f64>,
-    /// Rotation, then the equations.
-    values: DVector<f64>,
-    slopes: DMatrix<f64>,
-    /// What each multiplier weighs in the stationarity: the slopes, but for what stands in for some of it.
-    forces: DMatrix<f64>,
-    hessian: DMatrix<f64>,
 }
 
 pub(super) fn solve(setting: &Setting, draft: Draft) -> Outcome {
@@ -78,12 +66,7 @@ impl Method<'_> {
                     return Outcome::Lost;
                 }
             }
-            let newton = bordered::step(
-                (&look.hessian, &look.gradient),
-                &look.forces,
-                (&look.slopes, &look.values),
-            );
-            let Some((step, next)) = newton else {
+            let Some((step, next)) = look.step() else {
                 return Outcome::Lost;
             };
             if y.is_some() {
@@ -148,41 +131,17 @@ impl Method<'_> {
         layout.shapes[element].place(&layout.ends(z, element), layout.bends(z, element), s)
     }
 
-    fn look(&self, y: Option<&DVector<f64>>) -> Option<Look> {
+    fn look(&self, y: Option<&DVector<f64>>) -> Option<Expansion> {
         let Self { setting, draft, .. } = self;
         let Draft { layout, z, .. } = draft;
-        let jets = layout.jets(setting.model, &self.path, z);
-        let (net, equalities, equality_slopes) = setting.equalities(layout, &jets, z);
-        if net.distance().is_nan() || net.distance() < 1e-9 {
-            return None;
-        }
-        let (_, mut gradient) = chain::gradient(layout, &jets, z, setting.weights(&net, None));
-        let period = layout.period(z);
-        let times = 2 * layout.arcs()..3 * layout.arcs();
-        let global = equalities.len();
-        let count = global + self.equations.len();
-        let mut values = DVector::zeros(count);
-        let mut slopes = DMatrix::zeros(count, layout.size);
-        for (row, (value, slope)) in equalities.iter().zip(&equality_slopes).enumerate() {
-            values[row] = *value;
-            slopes.set_row(row, &slope.transpose());
-        }
-        let mut hessian = match y {
-            Some(y) => {
-                let of = (layout, setting.model, &self.path);
-                let weights = setting.weights(&net, Some(&y.as_slice()[..global]));
-                chain::hessian(of, &jets, z, weights, true)
-            }
-            None => DMatrix::identity(layout.size, layout.size),
-        };
-        for one in times.clone() {
-            gradient[one] += 1.0 / period;
-            if y.is_some() {
-                for other in times.clone() {
-                    hessian[(one, other)] -= 1.0 / (period * period);
-                }
-            }
-        }
+        let mut look = Expansion::new(setting, (layout, &self.path), (z, y), self.equations.len())?;
+        let Expansion {
+            values,
+            slopes,
+            hessian,
+            ..
+        } = &mut look;
+        let global = setting.equality_count();
         for (row, equation) in (global..).zip(&self.equations) {
             let Some((element, place, level)) = self.level(equation) else {
                 if let Equation::Even { element } = *equation {
@@ -217,15 +176,8 @@ impl Method<'_> {
                 }
             }
         }
-        let forces = self.forces(&slopes, global);
-        Some(Look {
-            net,
-            gradient,
-            values,
-            slopes,
-            forces,
-            hessian,
-        })
+        look.forces = Some(self.forces(&look.slopes, global));
+        Some(look)
     }
 
     /// What each multiplier weighs in the stationarity.
@@ -264,17 +216,10 @@ impl Method<'_> {
         self.draft
     }
 
-    fn solved(self, look: &Look, y: &DVector<f64>) -> Outcome {
+    fn solved(self, look: &Expansion, y: &DVector<f64>) -> Outcome {
         let wanted = self.wanted(y, look.values.len() - self.equations.len());
         let (draft, net) = (self.so_far(), look.net);
         let speed = net.distance() / draft.layout.period(&draft.z);
         Outcome::Solved(Box::new(Curve { draft, net, speed }), wanted)
-    }
-}
-
-impl Look {
-    fn residual(&self, y: &DVector<f64>) -> f64 {
-        let dual = &self.gradient + &self.forces * y;
-        dual.amax().max(self.values.amax())
     }
 }

@@ -1,0 +1,125 @@
+//! What the fastest gait has least, ln of its period less that of its measure, expanded about a chain under equations; and the step
+//! of Newton's method from there.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::chain::{self, Layout, Net};
+use super::ensemble;
+use super::quadrature::Rule;
+use super::setting::Setting;
+
+/// To second order of what is to be the least, to first of the equations.
+pub(super) struct Expansion {
+    pub(super) net: Net,
+    /// Of what is to be the least.
+    pub(super) gradient: DVector<f64>,
+    /// Of the equations, those of the whole chain first.
+    pub(super) values: DVector<f64>,
+    pub(super) slopes: DMatrix<f64>,
+    /// Second derivatives of the Lagrangian; 1 where its multipliers are not known.
+    pub(super) hessian: DMatrix<f64>,
+    /// What each multiplier weighs in the stationarity, where that is not its slope.
+    pub(super) forces: Option<DMatrix<f64>>,
+}
+
+impl Expansion {
+    /// With what holds of the whole chain, and room for so many more equations; none where the chain leads nowhere.
+    pub(super) fn new(
+        setting: &Setting,
+        (layout, rule): (&Layout, &Rule),
+        (z, y): (&DVector<f64>, Option<&DVector<f64>>),
+        more: usize,
+    ) -> Option<Self> {
+        let jets = layout.jets(setting.model, rule, z);
+        let (net, equalities, equality_slopes) = setting.equalities(layout, &jets, z);
+        let measure = setting.measure(&net);
+        if !measure.is_finite() || measure < 1e-9 {
+            return None;
+        }
+        let (_, mut gradient) = chain::gradient(layout, &jets, z, setting.weights(&net, None));
+        let (slope, bend) = ensemble::expansion((layout, rule), z, setting.members);
+        gradient += slope;
+        for index in layout.times() {
+            gradient[index] += 1.0 / layout.period(z);
+        }
+        let count = equalities.len() + more;
+        let mut values = DVector::zeros(count);
+        let mut slopes = DMatrix::zeros(count, layout.size);
+        for (row, (value, slope)) in equalities.iter().zip(&equality_slopes).enumerate() {
+            values[row] = *value;
+            slopes.set_row(row, &slope.transpose());
+        }
+        let hessian = match y {
+            Some(y) => {
+                let of = (layout, rule, jets.as_slice());
+                setting.hessian(of, z, (&net, y.as_slice()), true) + bend
+            }
+            None => DMatrix::identity(layout.size, layout.size),
+        };
+        Some(Self {
+            net,
+            gradient,
+            values,
+            slopes,
+            hessian,
+            forces: None,
+        })
+    }
+
+    /// How far from stationary under the equations.
+    pub(super) fn residual(&self, y: &DVector<f64>) -> f64 {
+        let pull = match &self.forces {
+            Some(forces) => forces * y,
+            None => self.slopes.tr_mul(y),
+        };
+        (&self.gradient + pull).amax().max(self.values.amax())
+    }
+
+    /// The step, and the multipliers after it: `H dz + F y = −gradient`, `J dz = −values`, F being the forces; none where that has
+    /// no finite solution.
+    pub(super) fn step(&self) -> Option<(DVector<f64>, DVector<f64>)> {
+        let (size, count) = (self.gradient.len(), self.values.len());
+        let mut matrix = DMatrix::zeros(size + count, size + count);
+        let mut put = |at, shape, part: &DMatrix<f64>| matrix.view_mut(at, shape).copy_from(part);
+        put((0, 0), (size, size), &self.hessian);
+        put((size, 0), (count, size), &self.slopes);
+        match &self.forces {
+            Some(forces) => put((0, size), (size, count), forces),
+            None => put((0, size), (size, count), &self.slopes.transpose()),
+        }
+        let mut right = DVector::zeros(size + count);
+        right.rows_mut(0, size).copy_from(&-&self.gradient);
+        right.rows_mut(size, count).copy_from(&-&self.values);
+        let all = matrix.lu().solve(&right)?;
+        let finite = all.iter().all(|value| value.is_finite());
+        finite.then(|| {
+            let (step, multipliers) = (all.rows(0, size), all.rows(size, count));
+            (step.into_owned(), multipliers.into_owned())
+        })
+    }
+
+    /// The multipliers that come nearest to a stationary point.
+    pub(super) fn nearest_multipliers(&self) -> Option<DVector<f64>> {
+        let svd = self.slopes.transpose().svd(true, true);
+        svd.solve(&-&self.gradient, 1e-12).ok()
+    }
+
+    /// Least eigenvalue of the second variation where all equations hold to first order, and its shift.
+    pub(super) fn convexity(&self) -> (f64, DVector<f64>) {
+        let size = self.gradient.len();
+        // An orthonormal basis of the shifts: what is left of the unit vectors beside the slopes.
+        let qr = self.slopes.transpose().qr();
+        let q = qr.q();
+        let projector = DMatrix::identity(size, size) - &q * q.transpose();
+        let eigen = projector.symmetric_eigen();
+        let free: Vec<usize> = (0..size).filter(|&k| eigen.eigenvalues[k] > 0.5).collect();
+        if free.is_empty() {
+            return (f64::INFINITY, DVector::zeros(size));
+        }
+        let basis = DMatrix::from_fn(size, free.len(), |i, j| eigen.eigenvectors[(i, free[j])]);
+        let reduced = basis.tr_mul(&(&self.hessian * &basis));
+        let eigen = reduced.symmetric_eigen();
+        let (least, value) = eigen.eigenvalues.argmin();
+        (value, basis * eigen.eigenvectors.column(least))
+    }
+}
