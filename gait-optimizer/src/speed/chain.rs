@@ -32,6 +32,22 @@ impl Layout {
         }
     }
 
+    /// Arcs of one shape from corner to corner that do not bend yet, each with the time that its number and its ends tell.
+    pub(crate) fn of_corners(
+        corners: &[Vector2<f64>],
+        shape: Shape,
+        time: impl Fn(usize, [Vector2<f64>; 2]) -> f64,
+    ) -> (Self, DVector<f64>) {
+        let layout = Self::new(vec![shape; corners.len()]);
+        let mut z = DVector::zeros(layout.size);
+        for (k, corner) in corners.iter().enumerate() {
+            let next = corners[(k + 1) % corners.len()];
+            z.fixed_rows_mut::<2>(2 * k).copy_from(corner);
+            z[layout.time_index(k)] = time(k, [*corner, next]);
+        }
+        (layout, z)
+    }
+
     pub(crate) fn arcs(&self) -> usize {
         self.shapes.len()
     }

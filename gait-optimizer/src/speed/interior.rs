@@ -49,50 +49,35 @@ const POINTS: usize = 6;
 /// About the best polygon near a start whose corners lie strictly within the bounds; none where the method stalls or the gait
 /// does not swim.
 pub(crate) fn rough_polygon(setting: &Setting, start: &[Vector2<f64>]) -> Option<Polygon> {
-    let n = start.len();
-    let layout = Layout::new(vec![Shape::Straight; n]);
-    let mut z = DVector::zeros(layout.size);
-    for (corner, phi) in start.iter().enumerate() {
-        z[2 * corner] = phi.x;
-        z[2 * corner + 1] = phi.y;
-    }
-    for side in 0..n {
-        let [from, to] = layout.ends(&z, side);
-        z[layout.time_index(side)] = 1.3 * setting.least_time(&from, &to) + 1e-3;
-    }
+    let time = |_, [from, to]: [Vector2<f64>; 2]| 1.3 * setting.least_time(&from, &to) + 1e-3;
+    let (layout, z) = Layout::of_corners(start, Shape::Straight, time);
     Method::new(setting, layout, f64::INFINITY).solve(z, [FIRST_BARRIER, ROUGH_BARRIER])
 }
 
 /// The best polygon of so many times as many sides near a rough one.
 pub(crate) fn best_polygon(setting: &Setting, rough: &Polygon, times: usize) -> Option<Polygon> {
     let n = times * rough.layout.arcs();
-    let layout = Layout::new(vec![Shape::Straight; n]);
-    let mut z = DVector::zeros(layout.size);
     // Limits that are all flat have corners, which stay where they are. Else most of a cycle is smooth: its sides take about as long
     // as each other.
     let even = !setting.beyond.is_empty();
     let time = rough.period() / n as f64;
     let part = 1.0 / times as f64;
-    for corner in 0..n {
-        let (side, share) = (corner / times, (corner % times) as f64 * part);
-        let [from, to] = rough.layout.ends(&rough.z, side);
-        let (phi, time) = if even {
-            (rough.at(corner as f64 / n as f64), time)
+    let corner = |k: usize| {
+        if even {
+            return rough.at(k as f64 / n as f64);
+        }
+        let [from, to] = rough.layout.ends(&rough.z, k / times);
+        from + (to - from) * ((k % times) as f64 * part)
+    };
+    let corners: Vec<Vector2<f64>> = (0..n).map(corner).collect();
+    let (layout, z) = Layout::of_corners(&corners, Shape::Straight, |side, [from, to]| {
+        if even {
+            // What is limited by the shape may be tighter where the new sides are.
+            time.max(1.01 * setting.least_time(&from, &to))
         } else {
-            let own = rough.z[rough.layout.time_index(side)];
-            (from + (to - from) * share, part * own)
-        };
-        z[2 * corner] = phi.x;
-        z[2 * corner + 1] = phi.y;
-        z[layout.time_index(corner)] = time;
-    }
-    // What is limited by the shape may be tighter where the new sides are.
-    for side in (0..n).filter(|_| even) {
-        let [from, to] = layout.ends(&z, side);
-        let least = 1.01 * setting.least_time(&from, &to);
-        let time = &mut z[layout.time_index(side)];
-        *time = time.max(least);
-    }
+            part * rough.z[rough.layout.time_index(side / times)]
+        }
+    });
     let longest = if even { LONGEST * time } else { f64::INFINITY };
     Method::new(setting, layout, longest).solve(z, [ROUGH_BARRIER, LAST_BARRIER])
 }
@@ -109,7 +94,7 @@ struct Method<'a> {
 struct Iterate {
     z: DVector<f64>,
     /// Multipliers of the equalities.
-    y: Vec<f64>,
+    y: DVector<f64>,
     /// Multipliers of the inequalities.
     pushes: Vec<f64>,
     barrier: f64,
@@ -134,7 +119,7 @@ struct Look {
 /// A step in all unknowns.
 struct Direction {
     z: DVector<f64>,
-    y: Vec<f64>,
+    y: DVector<f64>,
     pushes: Vec<f64>,
     /// Shares of it that stay inside.
     longest: f64,
@@ -163,10 +148,7 @@ impl<'a> Method<'a> {
 
     fn merit(&self, z: &DVector<f64>, barrier: f64, penalty: f64) -> f64 {
         let inequalities = self.inequalities(z);
-        if inequalities
-            .iter()
-            .any(|one| one.value.is_nan() || one.value <= 0.0)
-        {
+        if !inequalities.iter().all(|one| one.value > 0.0) {
             return f64::INFINITY;
         }
         let logs: f64 = inequalities.iter().map(|one| one.value.ln()).sum();
@@ -191,7 +173,7 @@ impl<'a> Method<'a> {
         };
         let mut here = Iterate {
             pushes: pushes.collect(),
-            y: vec![0.0; self.setting.equality_count() + anchored],
+            y: DVector::zeros(self.setting.equality_count() + anchored),
             z,
             barrier: first,
             damping: 0.0,
@@ -231,7 +213,7 @@ impl<'a> Method<'a> {
         if measure.is_nan() || measure < 1e-9 {
             return None;
         }
-        let weights = self.setting.weights(&net, Some(y));
+        let weights = self.setting.weights(&net, Some(y.as_slice()));
         let (_, mut gradient) = chain::gradient(layout, &jets, z, weights);
         let late = match self.setting.asked.period {
             Some(period) => y[self.setting.equality_count() - 1] / period,
@@ -259,10 +241,8 @@ impl<'a> Method<'a> {
 
     /// Second derivatives with the inequalities eliminated, and minus the barrier's gradient.
     fn system(&self, here: &Iterate, look: &Look) -> (DMatrix<f64>, DVector<f64>) {
-        let (of, with) = (
-            (&self.layout, &self.rule, look.jets.as_slice()),
-            (&look.net, here.y.as_slice()),
-        );
+        let of = (&self.layout, &self.rule, look.jets.as_slice());
+        let with = (&look.net, here.y.as_slice());
         let mut matrix = self.setting.hessian(of, &here.z, with, false);
         let mut right = -&look.gradient;
         for (one, push) in look.inequalities.iter().zip(&here.pushes) {
@@ -325,8 +305,10 @@ impl<'a> Method<'a> {
             pushes.push(d_push);
         }
         longest = longest.min(0.5 / step.rows(0, 2 * self.layout.arcs()).amax().max(1e-12));
-        let after = dy.iter().zip(&here.y).map(|(d, y)| (d + y).abs());
-        here.penalty = here.penalty.max(2.0 * after.fold(0.0, f64::max));
+        let after = (&dy + &here.y).abs();
+        here.penalty = here
+            .penalty
+            .max(2.0 * after.iter().copied().fold(0.0, f64::max));
         Some(Direction {
             z: step,
             y: dy,
@@ -345,9 +327,7 @@ impl<'a> Method<'a> {
             let after = self.merit(&there, here.barrier, here.penalty);
             if after <= merit + 1e-10 * merit.abs().max(1.0) {
                 here.z = there;
-                for (y, d) in here.y.iter_mut().zip(&direction.y) {
-                    *y += length * d;
-                }
+                here.y += &direction.y * length;
                 let now = self.inequalities(&here.z);
                 let steps = here.pushes.iter_mut().zip(&direction.pushes);
                 for ((push, d), one) in steps.zip(&now) {
@@ -399,24 +379,21 @@ fn newton_step(
     right: &DVector<f64>,
     values: &[f64],
     slopes: &[DVector<f64>],
-) -> Option<(DVector<f64>, Vec<f64>)> {
-    let free = factors.solve(right);
+) -> Option<(DVector<f64>, DVector<f64>)> {
+    let mut step = factors.solve(right);
     let ways: Vec<DVector<f64>> = slopes.iter().map(|slope| factors.solve(slope)).collect();
     let count = slopes.len();
-    if count == 0 {
-        return free
-            .iter()
-            .all(|value| value.is_finite())
-            .then_some((free, Vec::new()));
-    }
     let schur = DMatrix::from_fn(count, count, |i, j| slopes[i].dot(&ways[j]));
-    let rest = DVector::from_fn(count, |i, _| slopes[i].dot(&free) + values[i]);
-    let dy = schur.lu().solve(&rest)?;
-    let mut step = free;
+    let rest = DVector::from_fn(count, |i, _| slopes[i].dot(&step) + values[i]);
+    // Nothing has no factors.
+    let dy = if count == 0 {
+        rest
+    } else {
+        schur.lu().solve(&rest)?
+    };
     for (way, dy) in ways.iter().zip(dy.iter()) {
         step -= way * *dy;
     }
-    step.iter()
-        .all(|value| value.is_finite())
-        .then(|| (step, dy.iter().copied().collect()))
+    let finite = step.iter().all(|value| value.is_finite());
+    finite.then_some((step, dy))
 }

@@ -50,7 +50,6 @@ impl Draft {
             phase_of.extend(parts.iter().map(|_| number));
             spans.extend(parts.into_iter().map(|(from, to)| (from, to - from)));
         }
-        let layout = Layout::new(vec![Shape::Free { bends: BENDS }; spans.len()]);
         let place = |&(from, length): &(f64, f64)| {
             let at = |k: usize| curve(from + length * k as f64 / LOOKS as f64);
             (0..=LOOKS).map(at).collect()
@@ -74,13 +73,9 @@ impl Draft {
                 places[run].clone_from_slice(&swept);
             }
         }
-        let mut z = DVector::zeros(layout.size);
-        for (element, &(_, length)) in spans.iter().enumerate() {
-            let corner = places[element][0];
-            z[2 * element] = corner.x;
-            z[2 * element + 1] = corner.y;
-            z[layout.time_index(element)] = length * period;
-        }
+        let corners: Vec<Vector2<f64>> = places.iter().map(|places| places[0]).collect();
+        let time = |element: usize, _| spans[element].1 * period;
+        let (layout, mut z) = Layout::of_corners(&corners, Shape::Free { bends: BENDS }, time);
         for (element, places) in places.iter().enumerate() {
             let [start, end] = layout.ends(&z, element);
             for joint in 0..2 {
