@@ -3,7 +3,7 @@
 //! Every arc is a graph over one joint angle that runs at an even rate, so time is linear along it. Values and slopes are
 //! those of one and the same quadrature: a Newton method on them converges to rounding.
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 use swimmer_model::Model;
 
 use super::quadrature::{Rule, legendre};
@@ -235,6 +235,17 @@ fn bend<const P: usize>(
         place.d_phi[4 + first + k][joint] = up;
         place.d_rate[4 + first + k][joint] = along;
     }
+}
+
+/// So many bends of a joint's angle, the nearest to what it is off the straight line at some places.
+pub(crate) fn fitted(places: &[(f64, f64)], count: usize) -> Option<Vec<f64>> {
+    let matrix = DMatrix::from_fn(places.len(), count, |i, k| {
+        let s = places[i].0;
+        s * (1.0 - s) * legendre(count, 2.0 * s - 1.0)[k]
+    });
+    let right = DVector::from_fn(places.len(), |i, _| places[i].1);
+    let bends = matrix.svd(true, true).solve(&right, 1e-9).ok()?;
+    Some(bends.iter().copied().collect())
 }
 
 fn add(sum: &mut [f64; 4], weight: f64, terms: [f64; 4]) {

@@ -15,7 +15,7 @@ mod switching;
 mod taken;
 mod within_limits;
 
-use nalgebra::{DMatrix, DVector, Vector2};
+use nalgebra::Vector2;
 use swimmer_files::{AnyGait, ArcKind, Bounds, GaitFile};
 use swimmer_model::{Model, Tolerance, crossing_share, swim};
 
@@ -152,22 +152,6 @@ fn of_the_curve(
     }
     let checks = checks.into_iter();
     checks.map(|check| check.seen_by(SeenBy::Samples)).collect()
-}
-
-/// Least squares: the unknowns, and the residuals of the equations.
-pub(super) fn least_squares(rows: &[(Vec<f64>, f64)], unknowns: usize) -> (Vec<f64>, Vec<f64>) {
-    let matrix = DMatrix::from_fn(rows.len(), unknowns, |i, j| rows[i].0[j]);
-    let right = DVector::from_fn(rows.len(), |i, _| rows[i].1);
-    let solution = matrix
-        .clone()
-        .svd(true, true)
-        .solve(&right, 1e-12)
-        .unwrap_or_else(|_| DVector::from_element(unknowns, f64::NAN));
-    let rest = matrix * &solution - right;
-    (
-        solution.iter().copied().collect(),
-        rest.iter().copied().collect(),
-    )
 }
 
 /// Whether an arc is one along a bound.

@@ -1,11 +1,10 @@
 //! Which arcs a polygon is made of: what pushes against each of its sides, and which corners rest on bounds.
 
-use nalgebra::{DMatrix, DVector, Vector2};
+use nalgebra::Vector2;
 use swimmer_files::ArcKind;
 
-use super::arc::{MOST_BENDS, Shape};
+use super::arc::{MOST_BENDS, Shape, fitted};
 use super::interior::Polygon;
-use super::quadrature::legendre;
 use super::setting::Setting;
 use crate::region::{Bound, Piece, Region};
 
@@ -211,7 +210,7 @@ pub(crate) fn bend(links: &mut [Link], most: usize) {
         let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
         let way = to - from;
         let count = link.between.len().min(most);
-        let rows: Vec<(f64, f64)> = link
+        let places: Vec<(f64, f64)> = link
             .between
             .iter()
             .map(|phi| {
@@ -220,16 +219,11 @@ pub(crate) fn bend(links: &mut [Link], most: usize) {
             })
             .filter(|(s, _)| *s > 0.0 && *s < 1.0)
             .collect();
-        if count == 0 || rows.len() < count {
+        if count == 0 || places.len() < count {
             continue;
         }
-        let matrix = DMatrix::from_fn(rows.len(), count, |i, j| {
-            let s = rows[i].0;
-            s * (1.0 - s) * legendre(count, 2.0 * s - 1.0)[j]
-        });
-        let right = DVector::from_fn(rows.len(), |i, _| rows[i].1);
-        if let Ok(bends) = matrix.svd(true, true).solve(&right, 1e-9) {
-            link.bends = bends.iter().copied().collect();
+        if let Some(bends) = fitted(&places, count) {
+            link.bends = bends;
         }
     }
 }

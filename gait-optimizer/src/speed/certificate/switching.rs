@@ -4,13 +4,13 @@
 //! heading is prescribed), Ωᵢ being the rates in radians a cycle; V = |d|/T, unless the period is prescribed. At a switch of σᵢ that is free to happen σᵢ = 0, which leaves no choice
 //! of σ; a corner that rests on a bound lets σ jump along its normal and leaves one.
 
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_files::ArcKind;
 
 use super::super::setting::{Goal, HeadingRule};
 use super::affine::Affine;
 use super::legs::{Leg, Legs, Node};
-use super::{Asked, RESTS, least_squares, on_bound};
+use super::{Asked, RESTS, on_bound};
 use crate::certificate::{Check, Condition};
 use crate::region::{Bound, Region};
 
@@ -36,7 +36,7 @@ pub(crate) struct Switching<'a> {
     asked: Asked,
     /// σ₁ at both ends of each extreme leg.
     ends: Vec<Option<[Affine; 2]>>,
-    solution: Vec<f64>,
+    solution: DVector<f64>,
     residual: f64,
     double_switches: usize,
 }
@@ -48,7 +48,7 @@ impl<'a> Switching<'a> {
             legs,
             asked,
             ends: vec![None; legs.all.len()],
-            solution: Vec::new(),
+            solution: DVector::zeros(0),
             residual: 0.0,
             double_switches: 0,
         };
@@ -103,18 +103,16 @@ impl<'a> Switching<'a> {
                 rows.push(this.height(node).times(node.weight.sqrt()));
             }
         }
-        let table: Vec<(Vec<f64>, f64)> = rows
-            .iter()
-            .map(|row| {
-                let mut weights = vec![0.0; unknowns];
-                for (column, weight) in &row.weights {
-                    weights[*column] += weight;
-                }
-                (weights, -row.rest)
-            })
-            .collect();
-        let (solution, rest) = least_squares(&table, unknowns);
-        this.solution = solution;
+        let mut matrix = DMatrix::zeros(rows.len(), unknowns);
+        for (number, row) in rows.iter().enumerate() {
+            for (column, weight) in &row.weights {
+                matrix[(number, *column)] += weight;
+            }
+        }
+        let right = DVector::from_fn(rows.len(), |number, _| -rows[number].rest);
+        let solution = matrix.clone().svd(true, true).solve(&right, 1e-12);
+        this.solution = solution.unwrap_or_else(|_| DVector::from_element(unknowns, f64::NAN));
+        let rest = matrix * &this.solution - right;
         this.residual = rest.iter().fold(0.0, |most: f64, one| {
             if one.is_nan() {
                 f64::NAN

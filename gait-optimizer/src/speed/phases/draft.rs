@@ -2,11 +2,10 @@
 
 use nalgebra::{DVector, Vector2};
 
-use super::super::arc::{MOST_PARAMETERS, Shape};
-use super::super::certificate::least_squares;
+use super::super::arc::{self, MOST_PARAMETERS, Shape};
 use super::super::chain::Layout;
 use super::super::gauge::Facet;
-use super::super::quadrature::{cut, legendre};
+use super::super::quadrature::cut;
 use super::super::setting::Setting;
 use super::{BENDS, Phase, begun, side};
 
@@ -79,19 +78,16 @@ impl Draft {
         for (element, places) in places.iter().enumerate() {
             let [start, end] = layout.ends(&z, element);
             for joint in 0..2 {
-                let rows: Vec<(Vec<f64>, f64)> = (1..LOOKS)
-                    .map(|k| {
-                        let s = k as f64 / LOOKS as f64;
-                        let hump = s * (1.0 - s);
-                        let values = legendre(fitted, 2.0 * s - 1.0);
-                        let row = values.iter().take(fitted).map(|p| hump * p).collect();
-                        let straight = start + (end - start) * s;
-                        (row, (places[k] - straight)[joint])
-                    })
-                    .collect();
-                let (bends, _) = least_squares(&rows, fitted);
-                let at = layout.bends_index(element) + BENDS * joint;
-                z.rows_mut(at, fitted).copy_from_slice(&bends);
+                let off = |k: usize| {
+                    let s = k as f64 / LOOKS as f64;
+                    let straight = start + (end - start) * s;
+                    (s, (places[k] - straight)[joint])
+                };
+                let off: Vec<(f64, f64)> = (1..LOOKS).map(off).collect();
+                if let Some(bends) = arc::fitted(&off, fitted) {
+                    let at = layout.bends_index(element) + BENDS * joint;
+                    z.rows_mut(at, fitted).copy_from_slice(&bends);
+                }
             }
         }
         Self {
