@@ -57,12 +57,7 @@ impl Shape {
         }
     }
 
-    /// The shape at s in \[0, 1\].
-    pub(crate) fn at(&self, ends: &[Vector2<f64>; 2], bends: &[f64], s: f64) -> Vector2<f64> {
-        self.place::<MOST_PARAMETERS>(ends, bends, s).phi
-    }
-
-    /// With slopes along P parameters: all four coordinates of the ends at least.
+    /// The place at s in \[0, 1\], with slopes along P parameters: all four coordinates of the ends at least.
     pub(crate) fn place<const P: usize>(
         &self,
         [from, to]: &[Vector2<f64>; 2],

@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_model::Model;
 
-use super::arc::{Jet, Shape};
+use super::arc::{Jet, MOST_PARAMETERS, Place, Shape};
 use super::quadrature::Rule;
 
 /// How a chain is written as one vector: the corners (2n), the times of the arcs (n), then the bends of each.
@@ -85,8 +85,7 @@ impl Layout {
         for arc in 0..self.arcs() {
             let time = z[self.time_index(arc)];
             if left <= time {
-                let (ends, bends) = (self.ends(z, arc), self.bends(z, arc));
-                return self.shapes[arc].at(&ends, bends, left / time);
+                return self.place(z, arc, left / time).phi;
             }
             left -= time;
         }
@@ -102,6 +101,11 @@ impl Layout {
         z.as_slice()
             .get(from..from + self.shapes[arc].bends())
             .unwrap_or_default()
+    }
+
+    /// A place on an arc, s in \[0, 1\].
+    pub(crate) fn place(&self, z: &DVector<f64>, arc: usize, s: f64) -> Place<MOST_PARAMETERS> {
+        self.shapes[arc].place(&self.ends(z, arc), self.bends(z, arc), s)
     }
 
     pub(crate) fn jet(&self, model: &Model<f64>, rule: &Rule, z: &DVector<f64>, arc: usize) -> Jet {

@@ -115,8 +115,7 @@ impl Curve {
     pub(crate) fn refined(&self, setting: &Setting, elements: usize) -> Option<Self> {
         let mut phases = self.phases().to_vec();
         for (number, phase) in phases.iter_mut().enumerate() {
-            let phase_of = self.draft.phase_of.iter();
-            let own = phase_of.filter(|of| **of == number).count();
+            let own = self.draft.elements_of(number).count();
             let off = self.draft.off_limits(setting, number);
             let enough = |times: &usize| off < OFF * (*times as f64).powf(ORDER);
             phase.parts = own * (1..MOST_PARTS).find(enough).unwrap_or(MOST_PARTS);

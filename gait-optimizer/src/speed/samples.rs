@@ -41,8 +41,7 @@ pub(crate) fn cycle_from(setting: &Setting, polished: &Polished, sign: f64, firs
     let mut begun = 0.0;
     for k in (0..n).map(|k| (first + k) % n) {
         let share = links[k].time / period;
-        let shape = layout.shapes[k];
-        let fewest = if shape == Shape::Straight {
+        let fewest = if layout.shapes[k] == Shape::Straight {
             STRAIGHT
         } else {
             CURVED
@@ -52,12 +51,10 @@ pub(crate) fn cycle_from(setting: &Setting, polished: &Polished, sign: f64, firs
             .unwrap_or(SAMPLES)
             .max(fewest);
         let from = begun / period;
-        let ends = layout.ends(z, k);
         for step in 0..count {
             let s = step as f64 / count as f64;
             cycle.u.push(from + share * s);
-            let phi = shape.at(&ends, layout.bends(z, k), s);
-            cycle.phi.push(phi * sign);
+            cycle.phi.push(layout.place(z, k, s).phi * sign);
         }
         begun += links[k].time;
         let kind = links[k].motion.kind(setting.region);

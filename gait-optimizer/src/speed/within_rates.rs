@@ -1,6 +1,6 @@
 //! Ends of singular arcs at which the servo that is free would be too fast: extreme arcs take over there.
 
-use super::arc::{MOST_BENDS, MOST_PARAMETERS};
+use super::arc::MOST_BENDS;
 use super::polish::Polished;
 use super::setting::Setting;
 use super::structure::{Link, Motion, bend, merge};
@@ -36,9 +36,7 @@ fn cut(setting: &Setting, chain: &Polished, arc: usize) -> Option<Vec<Link>> {
         return None;
     };
     let free = 1 - pace;
-    let ends = chain.layout.ends(&chain.z, arc);
-    let bends = chain.layout.bends(&chain.z, arc);
-    let place = |s: f64| chain.layout.shapes[arc].place::<MOST_PARAMETERS>(&ends, bends, s);
+    let place = |s: f64| chain.layout.place(&chain.z, arc, s);
     let rate = |s: f64| place(s).rate[free] / link.time;
     let too_fast = |s: &f64| rate(*s).abs() > setting.rates[free] * (1.0 + TOO_FAST);
     let share = |looks: usize| looks as f64 / LOOKS as f64;

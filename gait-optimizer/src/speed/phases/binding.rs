@@ -238,11 +238,7 @@ impl Method<'_> {
     /// put in begins at 0; none where it makes no sense.
     fn leaves_bound(&self, element: usize, bounds: &[usize], cells: &[Phase]) -> Option<Phase> {
         let Draft {
-            phases,
-            phase_of,
-            layout,
-            z,
-            ..
+            phases, phase_of, ..
         } = &self.draft;
         let (elements, count) = (phase_of.len(), cells.len());
         let numbers = [
@@ -261,11 +257,7 @@ impl Method<'_> {
         if !held || !keep || limits.len() != 2 {
             return None;
         }
-        let length = |number: usize| {
-            let own = (0..elements).filter(|element| phase_of[*element] == number);
-            own.map(|own| z[layout.time_index(own)]).sum::<f64>() / layout.period(z)
-        };
-        let [one, two] = numbers.map(length);
+        let [one, two] = numbers.map(|number| self.draft.time_of(number) / self.draft.period());
         let place = self.place(element, 0.0);
         Some(Phase {
             from: 0.0,

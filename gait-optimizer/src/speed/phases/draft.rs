@@ -2,7 +2,7 @@
 
 use nalgebra::{DVector, Vector2};
 
-use super::super::arc::{self, MOST_PARAMETERS, Shape};
+use super::super::arc::{self, Shape};
 use super::super::chain::Layout;
 use super::super::gauge::Facet;
 use super::super::quadrature::cut;
@@ -103,22 +103,30 @@ impl Draft {
         self.layout.period(&self.z)
     }
 
+    /// The elements of a phase.
+    pub(super) fn elements_of(&self, number: usize) -> impl Iterator<Item = usize> {
+        (0..self.layout.arcs()).filter(move |element| self.phase_of[*element] == number)
+    }
+
+    /// The time that a phase takes.
+    pub(super) fn time_of(&self, number: usize) -> f64 {
+        let elements = self.elements_of(number);
+        elements.map(|k| self.z[self.layout.time_index(k)]).sum()
+    }
+
     /// By how much of them the limits of a phase are missed between the nodes where they hold.
     pub(super) fn off_limits(&self, setting: &Setting, number: usize) -> f64 {
         let (layout, limits) = (&self.layout, setting.limits());
-        let elements = (0..layout.arcs()).filter(|element| self.phase_of[*element] == number);
         let off = |(element, look): (usize, usize)| {
             let s = look as f64 / LOOKS as f64;
-            let ends = layout.ends(&self.z, element);
-            let bends = layout.bends(&self.z, element);
-            let place = layout.shapes[element].place::<MOST_PARAMETERS>(&ends, bends, s);
+            let place = layout.place(&self.z, element, s);
             let power = setting.model.power_matrix(&place.phi);
             let time = self.z[layout.time_index(element)];
             let own = self.phases[number].limits.iter();
             own.map(|limit| (limits[*limit].value(&power, &place.rate) / time - 1.0).abs())
                 .fold(0.0, f64::max)
         };
-        elements
+        self.elements_of(number)
             .flat_map(|element| (0..=LOOKS).map(move |look| (element, look)))
             .map(off)
             .fold(0.0, f64::max)

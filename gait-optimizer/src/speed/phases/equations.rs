@@ -135,52 +135,38 @@ impl Method<'_> {
         &self,
         equation: &Equation,
     ) -> Option<(usize, Place<MOST_PARAMETERS>, Level)> {
-        let time = |element| self.draft.z[self.draft.layout.time_index(element)];
-        Some(match *equation {
-            Equation::Limit {
-                element,
-                node,
-                limit,
-            } => {
-                let place = self.place(element, self.nodes.nodes[node]);
-                let level = self.limit_level(limit, &place, time(element));
-                (element, place, level)
+        let (element, s) = match *equation {
+            Equation::Limit { element, node, .. } => (element, self.nodes.nodes[node]),
+            Equation::Along { element, node, .. } => (element, self.inner.nodes[node]),
+            Equation::Corner { element, .. } | Equation::Even { element } => (element, 0.0),
+            Equation::Meets { element, s, .. } | Equation::Tangent { element, s, .. } => {
+                (element, s)
             }
-            Equation::Meets { element, s, limit } => {
-                let place = self.place(element, s);
-                let level = self.limit_level(limit, &place, time(element));
-                (element, place, level)
+        };
+        let place = self.place(element, s);
+        let level = match *equation {
+            Equation::Limit { limit, .. } | Equation::Meets { limit, .. } => {
+                let time = self.draft.z[self.draft.layout.time_index(element)];
+                self.limit_level(limit, &place, time)
             }
-            Equation::Along {
-                element,
-                node,
-                bound,
-            } => {
-                let place = self.place(element, self.inner.nodes[node]);
-                let level = self.bound_level(bound, &place.phi);
-                (element, place, level)
+            Equation::Along { bound, .. } | Equation::Corner { bound, .. } => {
+                self.bound_level(bound, &place.phi)
             }
-            Equation::Corner { element, bound } => {
-                let place = self.place(element, 0.0);
-                let level = self.bound_level(bound, &place.phi);
-                (element, place, level)
-            }
-            Equation::Tangent { element, s, bound } => {
-                let place = self.place(element, s);
+            Equation::Tangent { bound, .. } => {
                 let margin = self.bound_level(bound, &place.phi);
                 let rate = Vector4::new(place.rate.x, place.rate.y, 0.0, 0.0);
                 let mut slope = margin.curved * rate;
                 slope[2] = margin.slope[0];
                 slope[3] = margin.slope[1];
-                let level = Level {
+                Level {
                     value: margin.slope.dot(&rate),
                     slope,
                     curved: Matrix4::zeros(),
-                };
-                (element, place, level)
+                }
             }
             Equation::Even { .. } => return None,
-        })
+        };
+        Some((element, place, level))
     }
 
     /// Time less what a limit takes.

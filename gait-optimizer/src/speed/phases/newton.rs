@@ -110,25 +110,13 @@ impl Method<'_> {
 
     /// The phase that has lost its length.
     fn gone(&self) -> Option<usize> {
-        let Draft {
-            phases,
-            phase_of,
-            layout,
-            z,
-            ..
-        } = &self.draft;
-        let mut lengths = vec![0.0; phases.len()];
-        for (element, &phase) in phase_of.iter().enumerate() {
-            lengths[phase] += z[layout.time_index(element)];
-        }
-        let shortest = lengths.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
-        let (phase, length) = shortest?;
-        (*length < GONE * layout.period(z)).then_some(phase)
+        let times = (0..self.draft.phases.len()).map(|phase| (phase, self.draft.time_of(phase)));
+        let (phase, shortest) = times.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (shortest < GONE * self.draft.period()).then_some(phase)
     }
 
     pub(super) fn place(&self, element: usize, s: f64) -> Place<MOST_PARAMETERS> {
-        let Draft { layout, z, .. } = &self.draft;
-        layout.shapes[element].place(&layout.ends(z, element), layout.bends(z, element), s)
+        self.draft.layout.place(&self.draft.z, element, s)
     }
 
     fn look(&self, y: Option<&DVector<f64>>) -> Option<Expansion> {
@@ -200,14 +188,12 @@ impl Method<'_> {
     fn so_far(mut self) -> Draft {
         let mut begun = 0.0;
         for number in 0..self.draft.phases.len() {
-            let elements = 0..self.draft.layout.arcs();
-            let mut own = elements.filter(|&element| self.draft.phase_of[element] == number);
-            let (layout, z) = (&self.draft.layout, &self.draft.z);
-            let time: f64 = own.clone().map(|k| z[layout.time_index(k)]).sum();
-            let place = own.next().map(|first| self.place(first, 0.5));
+            let first = self.draft.elements_of(number).next();
+            let place = first.map(|first| self.place(first, 0.5));
+            let length = self.draft.time_of(number) / self.draft.period();
             let phase = &mut self.draft.phases[number];
             phase.from = begun;
-            begun += time / layout.period(z);
+            begun += length;
             phase.to = begun;
             if let Some(place) = place {
                 phase.side = side(self.setting, &phase.limits, &place.phi, &place.rate);

@@ -322,14 +322,7 @@ impl Joining<'_, '_> {
             .min_by(|&a, &b| off(&corners[a]).total_cmp(&off(&corners[b])))
             .unwrap_or(0);
         corners.rotate_left(nearest);
-        for corner in &mut corners {
-            for _ in 0..100 {
-                if self.region.overstepped(corner) < -MARGIN {
-                    break;
-                }
-                *corner *= 0.97;
-            }
-        }
+        let mut corners = starts::within(self.region, corners);
         if let Some(first) = corners.first_mut() {
             *first = anchor;
         }
@@ -361,11 +354,7 @@ fn outline(chain: &Polished) -> Vec<Vector2<f64>> {
             arc += 1;
         }
         let s = ((time - before) / chain.links[arc].time).clamp(0.0, 1.0);
-        let (ends, bends) = (
-            chain.layout.ends(&chain.z, arc),
-            chain.layout.bends(&chain.z, arc),
-        );
-        points.push(chain.layout.shapes[arc].at(&ends, bends, s));
+        points.push(chain.layout.place(&chain.z, arc, s).phi);
     }
     points
 }
