@@ -124,30 +124,20 @@ pub(crate) fn arcs(setting: &Setting, polygon: &Polygon) -> Option<Vec<Link>> {
     let held: Vec<Vec<Hold>> = (0..n)
         .map(|corner| holds(setting, &layout.corner(&polygon.z, corner), RESTS))
         .collect();
-    let sides: Vec<(Motion, f64)> = (0..n)
-        .map(|side| {
-            let motion = motion(setting, polygon, side, &held[side], &held[(side + 1) % n]);
-            (motion, polygon.z[layout.time_index(side)])
-        })
-        .collect();
-    // Begin where the motion changes.
-    let anchored = |k: usize| k == 0 && setting.asked.anchor.is_some();
-    let first = (0..n).find(|&k| anchored(k) || sides[k].0 != sides[(k + n - 1) % n].0)?;
-    let mut links: Vec<Link> = Vec::new();
-    for k in (0..n).map(|k| (first + k) % n) {
-        let (motion, time) = sides[k];
-        let corner = layout.corner(&polygon.z, k);
-        match links.last_mut() {
-            Some(last) if last.motion == motion && !anchored(k) => {
-                last.time += time;
-                last.between.push(corner);
-            }
-            _ => links.push(Link {
-                anchored: anchored(k),
-                ..Link::new(corner, held[k].clone(), motion, time)
-            }),
+    let side = |k: usize| {
+        let motion = motion(setting, polygon, k, &held[k], &held[(k + 1) % n]);
+        let time = polygon.z[layout.time_index(k)];
+        Link {
+            anchored: k == 0 && setting.asked.anchor.is_some(),
+            ..Link::new(layout.corner(&polygon.z, k), held[k].clone(), motion, time)
         }
-    }
+    };
+    let mut links: Vec<Link> = (0..n).map(side).collect();
+    // Begin where the motion changes.
+    let begins = |&k: &usize| links[k].anchored || links[k].motion != links[(k + n - 1) % n].motion;
+    let first = (0..n).find(begins)?;
+    links.rotate_left(first);
+    merge(&mut links);
     for k in (0..links.len()).rev() {
         if links[k].time <= SHORTEST * period {
             remove(&mut links, k);
