@@ -127,12 +127,8 @@ impl LimitedProblem {
         let power = model.power_matrix(&Vector2::zeros());
         let facets = self.facets_over_length(1.0);
         let least = |joint: usize| {
-            let mut turn = Vector2::zeros();
-            turn[joint] = 1.0;
-            facets
-                .iter()
-                .map(|facet| facet.value(&power, &turn))
-                .fold(0.0, f64::max)
+            let takes = |facet: &Facet| facet.value(&power, &Vector2::ith(joint, 1.0));
+            facets.iter().map(takes).fold(0.0, f64::max)
         };
         1.0 / least(0).min(least(1))
     }

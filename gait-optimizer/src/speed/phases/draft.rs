@@ -58,18 +58,13 @@ impl Draft {
             let phase: &Phase = &phases[phase_of[element]];
             (phase.limits.len() == 2 && phase.bound.is_none()).then_some(&phase.limits)
         };
-        let mut first = 0;
-        while first < spans.len() {
-            let own = limits(first);
-            let more = (first..spans.len()).take_while(|&element| limits(element) == own);
-            let run = first..first + more.count();
-            first = run.end;
-            let way = run
-                .clone()
-                .map(|element| (&phases[phase_of[element]], spans[element].1 * period));
-            let way: Vec<(&Phase, f64)> = way.collect();
-            if let Some(swept) = own.and_then(|_| swept(setting, &way, &places[run.clone()])) {
-                places[run].clone_from_slice(&swept);
+        let elements: Vec<usize> = (0..spans.len()).collect();
+        for run in elements.chunk_by(|one, other| limits(*one) == limits(*other)) {
+            let way = |&element: &usize| (&phases[phase_of[element]], spans[element].1 * period);
+            let way: Vec<(&Phase, f64)> = run.iter().map(way).collect();
+            let places = &mut places[run[0]..run[0] + run.len()];
+            if let Some(swept) = limits(run[0]).and_then(|_| swept(setting, &way, places)) {
+                places.clone_from_slice(&swept);
             }
         }
         let corners: Vec<Vector2<f64>> = places.iter().map(|places| places[0]).collect();
