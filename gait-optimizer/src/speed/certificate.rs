@@ -114,17 +114,6 @@ pub(crate) fn certificate(
     Certificate::new(checks)
 }
 
-/// How far, as a share, a gait's servos are from their rates; nothing for what is no gait.
-pub(crate) fn off_full_rate(
-    model: &Model<f64>,
-    region: &Region,
-    file: &GaitFile,
-    gait: &AnyGait,
-) -> f64 {
-    Legs::new((model, &[]), region, Goal::Distance, file, gait)
-        .map_or(0.0, |legs| legs.off_full_rate())
-}
-
 /// Closure, bounds and links.
 fn of_the_curve(
     model: &Model<f64>,

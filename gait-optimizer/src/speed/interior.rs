@@ -12,6 +12,7 @@ use super::arc::{Jet, Shape};
 use super::chain::{self, Layout};
 use super::quadrature::Rule;
 use super::setting::Setting;
+use crate::numerics::damped;
 
 /// A polygon and what pushes against it.
 #[derive(Debug, Clone)]
@@ -321,8 +322,7 @@ impl<'a> Method<'a> {
     /// Goes as far along a direction as the merit does not rise; whether it moved.
     fn move_along(&self, here: &mut Iterate, direction: &Direction) -> bool {
         let merit = self.merit(&here.z, here.barrier, here.penalty);
-        let mut length = direction.longest;
-        for _ in 0..25 {
+        for length in damped(direction.longest).take(25) {
             let there = &here.z + &direction.z * length;
             let after = self.merit(&there, here.barrier, here.penalty);
             if after <= merit + 1e-10 * merit.abs().max(1.0) {
@@ -338,7 +338,6 @@ impl<'a> Method<'a> {
                 }
                 return true;
             }
-            length *= 0.5;
         }
         false
     }

@@ -5,10 +5,11 @@ use std::cell::Cell;
 use swimmer_files::{AnyGait, GaitFile};
 use swimmer_model::Model;
 
-use super::{Asked, certificate, off_full_rate, within_its_own};
+use super::legs::Legs;
+use super::{Asked, certificate, within_its_own};
 use crate::certificate::{Certificate, Condition};
 use crate::region::Region;
-use crate::speed::setting::HeadingRule;
+use crate::speed::setting::{Goal, HeadingRule};
 
 /// Whose limits a gait was made for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +38,8 @@ pub(crate) fn certify_speed(
         Some(MadeFor::Others) => return others(),
         None => {}
     }
-    let off = off_full_rate(model, region, file, gait);
+    let legs = Legs::new((model, &[]), region, Goal::Distance, file, gait);
+    let off = legs.map_or(0.0, |legs| legs.off_full_rate());
     let takes = |within: &Certificate| within.value(Condition::TakesLimit) > Some(NEARLY);
     let meant = |within: &Certificate| within.pass() || off > CLEARLY && takes(within);
     let slower = off > Condition::FullRate.tolerance();

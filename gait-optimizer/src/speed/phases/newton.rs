@@ -8,6 +8,7 @@ use super::super::quadrature::Rule;
 use super::super::setting::Setting;
 use super::equations::{Equation, Method, equations};
 use super::{BENDS, Curve, Draft, Phase, side};
+use crate::numerics::damped;
 
 /// Quadrature points of the path on an element.
 const POINTS: usize = 24;
@@ -86,14 +87,13 @@ impl Method<'_> {
         let times = 2 * elements..3 * elements;
         let shrinks = times.map(|at| -step[at] / (SHRINKS * self.draft.z[at]));
         let most = (step.rows(0, 3 * elements).amax() / STRIDE).max(1.0);
-        let mut scale = 1.0 / shrinks.fold(most, f64::max);
+        let longest = 1.0 / shrinks.fold(most, f64::max);
         let (begun, sided) = (self.draft.z.clone(), self.sided());
-        for _ in 0..HALVINGS {
+        for scale in damped(longest).take(HALVINGS) {
             self.draft.z = &begun + step * scale;
             if self.sided() >= sided {
                 break;
             }
-            scale *= 0.5;
         }
     }
 
