@@ -178,7 +178,7 @@ impl Net {
 }
 
 /// Weights of ln |d|, rotation and heading in a sum.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Weights {
     pub(crate) log_distance: f64,
     pub(crate) rotation: f64,

@@ -23,8 +23,7 @@ pub(super) fn expansion(
 ) -> (DVector<f64>, DMatrix<f64>) {
     let weights = Weights {
         log_distance: 1.0,
-        rotation: 0.0,
-        heading: 0.0,
+        ..Weights::default()
     };
     let size = layout.size;
     let (mut sum, mut slope) = (0.0, DVector::zeros(size));

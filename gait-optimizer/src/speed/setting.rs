@@ -139,9 +139,9 @@ impl Setting<'_> {
     ) -> (Net, Vec<f64>, Vec<DVector<f64>>) {
         let slope = |rotation: f64, heading: f64| {
             let weights = Weights {
-                log_distance: 0.0,
                 rotation,
                 heading,
+                ..Weights::default()
             };
             chain::gradient(layout, jets, z, weights)
         };
@@ -176,9 +176,8 @@ impl Setting<'_> {
                 heading: if self.heads() { multiplier(1) } else { 0.0 },
             },
             Goal::Rotation => Weights {
-                log_distance: 0.0,
                 rotation: -1.0 / net.rotation,
-                heading: 0.0,
+                ..Weights::default()
             },
         }
     }

@@ -83,10 +83,9 @@ impl Method<'_> {
 
     /// Goes along a step, as far as no element loses more than so much of its time, and as velocities stay on their sides.
     fn go(&mut self, step: &DVector<f64>) {
-        let elements = self.draft.layout.arcs();
-        let times = 2 * elements..3 * elements;
+        let times = self.draft.layout.times();
+        let most = (step.rows(0, times.end).amax() / STRIDE).max(1.0);
         let shrinks = times.map(|at| -step[at] / (SHRINKS * self.draft.z[at]));
-        let most = (step.rows(0, 3 * elements).amax() / STRIDE).max(1.0);
         let longest = 1.0 / shrinks.fold(most, f64::max);
         let (begun, sided) = (self.draft.z.clone(), self.sided());
         for scale in damped(longest).take(HALVINGS) {
