@@ -68,7 +68,14 @@ fn turns_nobody(ensemble: &Ensemble<'_>, cycle: &Cycle) -> Result<f64, RobustErr
         let swum = cycle.turned(member.gain).swum(&member.model);
         swum.map_or(f64::NAN, |stroke| stroke.rotation.abs())
     });
-    let rotation = turns.fold(0.0, |most, one| if one <= most { most } else { one });
+    let worst = |most: f64, one: f64| {
+        if one <= most || most.is_nan() {
+            most
+        } else {
+            one
+        }
+    };
+    let rotation = turns.fold(0.0, worst);
     if rotation.is_nan() || rotation > Condition::NobodyTurns.tolerance() {
         return Err(RobustError::Turns { rotation });
     }
