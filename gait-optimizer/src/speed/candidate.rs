@@ -34,6 +34,10 @@ pub(crate) fn candidate(setting: &Setting, rough: &Polygon, times: usize) -> Opt
 /// The links of one lap of a chain that runs a shorter one several times over.
 fn lap(setting: &Setting, links: &[Link]) -> Option<Vec<Link>> {
     const SAME: f64 = 1e-2;
+    // A gait that joins others passes where they join once.
+    if setting.asked.period.is_some() || setting.asked.anchor.is_some() {
+        return None;
+    }
     let count = links.len();
     let repeats = |lap: &usize| {
         let later = links.iter().cycle().skip(*lap);
@@ -42,11 +46,7 @@ fn lap(setting: &Setting, links: &[Link]) -> Option<Vec<Link>> {
             && pairs.all(|(a, b)| a.motion == b.motion && (a.corner - b.corner).norm() < SAME)
     };
     let lap = (3..=count / 2).find(repeats)?;
-    setting
-        .asked
-        .period
-        .is_none()
-        .then(|| links[..lap].to_vec())
+    Some(links[..lap].to_vec())
 }
 
 /// Polishes, and mends the arcs until they fit: bounds that are overstepped hold, corners that rest on a bound become arcs along

@@ -63,9 +63,8 @@ impl SpeedProblem {
         let region = Region::new(&self.bounds, &self.swimmer.links);
         let setting = self.setting(&model, &region);
         let polished = mended(&setting, neighbour.links.clone())?;
-        let found = told(self, &setting, &polished)?;
-        (found.gait.certificate.pass() && found.gait.arcs.len() <= self.max_corners)
-            .then_some(found)
+        certified_closely(&setting, &polished, |chain| passed(self, &setting, chain))
+            .filter(|found| found.gait.arcs.len() <= self.max_corners)
     }
 
     fn searched<R>(
@@ -186,7 +185,7 @@ impl Search<'_> {
         }
     }
 
-    /// A chain as an answer, where its certificate passes.
+    /// A chain as an answer, where what it leads to is certified.
     fn certified(&self, one: &Finished) -> Option<Fastest> {
         let mut answer = one
             .certified
@@ -203,10 +202,7 @@ impl Search<'_> {
     /// The certified gait of a chain, or, unless it is longer than was asked for, of one that more sides of its polygon show.
     fn looked_into(&self, one: &Finished) -> Option<Fastest> {
         let setting = self.setting;
-        let passes = |chain: &Polished| {
-            let found = told(self.problem, setting, chain)?;
-            found.gait.certificate.pass().then_some(found)
-        };
+        let passes = |chain: &Polished| passed(self.problem, setting, chain);
         let from_more_sides = |times: usize| {
             let polygons = self.groups[one.group].chosen.iter();
             let mut chains = polygons.filter_map(|polygon| candidate(setting, polygon, times));
@@ -302,6 +298,11 @@ impl Search<'_> {
             uncertified,
         })
     }
+}
+
+/// A chain as an answer, where its certificate passes.
+fn passed(problem: &SpeedProblem, setting: &Setting, chain: &Polished) -> Option<Fastest> {
+    told(problem, setting, chain).filter(|found| found.gait.certificate.pass())
 }
 
 /// Whether two chains are as fast as each other.
