@@ -201,7 +201,7 @@ fn the_direct_method_agrees_everywhere() {
     }
 }
 
-/// By what shares something from random starts is faster: from ellipses of any place, size and tilt, with a second wave.
+/// By what shares something from random starts is faster than what is told: from ellipses of any place, size and tilt, with a second wave.
 fn faster(pairs: usize, starts: usize, heading: HeadingRule, of_kind: Kind) -> Vec<f64> {
     // Where a heading is prescribed cycles of more corners may tack, and are faster.
     let sides = match heading {
@@ -213,7 +213,14 @@ fn faster(pairs: usize, starts: usize, heading: HeadingRule, of_kind: Kind) -> V
     for pair in 0..pairs {
         let max_angle = rng.random_range(1.2..3.1);
         let problem = problem(random_swimmer(&mut rng), max_angle, 0).led(heading);
-        let found = fastest(&problem).map(|found| found.speed_over_length);
+        // A polygon may come near a longer cycle, which is told as such.
+        let found = fastest(&problem).map(|found| {
+            let longer = [found.longer, found.uncertified].into_iter().flatten();
+            match heading {
+                HeadingRule::Any => found.speed_over_length,
+                _ => longer.fold(found.speed_over_length, f64::max),
+            }
+        });
         let mut best = 0.0_f64;
         for _ in 0..starts {
             let mut draw = |largest: f64| rng.random_range(-largest..largest);
@@ -265,7 +272,7 @@ fn nothing_from_many_random_starts_is_faster() {
 
 #[test]
 #[ignore = "soak: half an hour"]
-fn nothing_of_as_many_corners_that_is_led_is_faster() {
+fn nothing_of_as_many_corners_that_is_led_is_faster_than_is_told() {
     nothing_faster(20, 30, HeadingRule::Sideways, left);
     nothing_faster(20, 30, HeadingRule::Forward, forward);
 }
