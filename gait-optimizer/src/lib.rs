@@ -10,6 +10,8 @@
 //! | module | what lives there |
 //! |---|---|
 //! | `problem` | what every problem has to be before anything is searched |
+//! | `immobile` | swimmers that no gait moves, refused before anything is searched |
+//! | `optimal_gait` | what every search returns: a gait with its figures and its certificate |
 //! | `displacement` | the problem, the search for the quarter gait, the result |
 //! | `momentum` | the multipliers as a momentum that the body carries, and the height: what a push of the curve gains; the flow of an arc |
 //! | `height_map` | height functions in minimum-perturbation coordinates, their zero-level curves, the area rule |
@@ -22,7 +24,6 @@
 //! | [`region`] | the bounds: straight ones of the joint angles, and the curved one that keeps the side links apart |
 //! | `arcs` | an arc of most displacement, integrated until an event ends it, and chains followed once more; of quarters and of closed curves |
 //! | `displacement::flow` | what follows an arc of a quarter, and where quarters end |
-//! | `displacement::trace` | a quarter traced once more, with the conditions that its arcs tell |
 //! | `displacement::start_family` | where singular arcs may begin: φ₁ = φ₂, and chains of bounds from there |
 //! | `efficiency` | the small and the large Lighthill gait: Fourier series, then `extremal`, bounds followed |
 //! | `extremal` | extremals of the efficiency as curves of shapes: reduced flow, shooting over arcs, second-order test |
@@ -31,11 +32,13 @@
 //! | `limited` | the fastest gait within limits on rates, power and torque |
 //! | `turning` | the simple closed gait that turns most: round a region of the curvature |
 //! | `robust` | gaits for a swimmer that is not known exactly: best worst case, best mean |
+//! | `member` | one swimmer of an uncertain family, with what its servos turn over what they are told |
 //! | `certificate` | every condition with its key and tolerance, and checks |
 //! | `certify` | conditions asked of any closed curve, from its samples alone: the certificate of turning, sideways and atlas gaits |
 //! | [`closed_forms`] | formulas of the paper's appendix, mended |
 //! | `simple_shapes` | circles and squares over their amplitude |
 //! | `numerics` | halving, roots, damped steps |
+//! | `parallel` | jobs over threads, with somebody who watches |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
 //!
 //! ```
