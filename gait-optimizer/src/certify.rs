@@ -279,17 +279,3 @@ fn certify_turned(
     }
     Ok(Certificate::new(checks))
 }
-
-/// The larger, and NaN rather than either.
-fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() {
-        f64::NAN
-    } else {
-        a.max(b)
-    }
-}
-
-/// The smaller, and NaN rather than either.
-fn lesser(a: f64, b: f64) -> f64 {
-    -worse(-a, -b)
-}

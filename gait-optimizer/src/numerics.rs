@@ -1,4 +1,19 @@
-//! Where something changes along a line: halving, roots by regula falsi and by Newton's method, steps that are damped.
+//! Where something changes along a line: halving, roots by regula falsi and by Newton's method, steps that are damped. And the worst
+//! of some numbers.
+
+/// The larger, and NaN rather than either.
+pub(crate) fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() {
+        f64::NAN
+    } else {
+        a.max(b)
+    }
+}
+
+/// The smaller, and NaN rather than either.
+pub(crate) fn lesser(a: f64, b: f64) -> f64 {
+    -worse(-a, -b)
+}
 
 /// The ends of an interval halved so often, the lower one the last place where a property is seen to hold that is taken to hold at
 /// its beginning and not at its end.
@@ -108,6 +123,15 @@ pub(crate) fn damped(most: f64) -> impl Iterator<Item = f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_number_hides_one_that_is_none() {
+        for values in [[f64::NAN, 1.0], [1.0, f64::NAN]] {
+            assert!(values.into_iter().fold(0.0, worse).is_nan());
+            assert!(values.into_iter().fold(f64::INFINITY, lesser).is_nan());
+        }
+        assert!((worse(1.0, 2.0) - 2.0).abs() + (lesser(1.0, 2.0) - 1.0).abs() < 1e-15);
+    }
 
     #[test]
     fn a_root_is_found_and_a_jump_is_none() {

@@ -10,9 +10,10 @@ use nalgebra::Vector2;
 use super::grid::Along;
 use super::path::{Path, Place};
 use super::variation::Gain;
-use super::{Degree, Openness, Subject, lesser, worse};
+use super::{Degree, Openness, Subject};
 use crate::certificate::{Check, Condition};
 use crate::momentum::Momentum;
+use crate::numerics::{lesser, worse};
 
 impl Subject<'_> {
     /// All checks of an optimum of efficiency.

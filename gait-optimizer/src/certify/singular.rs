@@ -10,9 +10,10 @@ use swimmer_files::Objective;
 use super::grid::Along;
 use super::path::Place;
 use super::variation::Gain;
-use super::{Degree, Openness, Subject, lesser, worse};
+use super::{Degree, Openness, Subject};
 use crate::certificate::{Check, Condition};
 use crate::momentum::{Height, Momentum};
+use crate::numerics::{lesser, worse};
 
 impl Subject<'_> {
     /// All checks of a weak optimum. A sideways gait is stationary with its start, or it is a loop of most displacement
@@ -114,7 +115,7 @@ impl Subject<'_> {
         let least = free()
             .filter(|(node, _)| inner(*node))
             .map(|(_, (height, place))| -height.gradient.dot(&place.right()))
-            .fold(f64::INFINITY, |a, b| if b.is_nan() { b } else { a.min(b) });
+            .fold(f64::INFINITY, lesser);
         checks.push(Condition::GrowsInwards.check(least));
         let (h_u, hamiltonian) = self.drift_of_h_u(heights);
         let tolerance = (Condition::Stationary.tolerance() + open) * steepest.max(1.0);

@@ -10,8 +10,8 @@ use super::limits::Limit;
 use super::path::Path;
 use super::resolution::Rounding;
 use super::symmetry::is_symmetric;
-use super::worse;
 use crate::certificate::{Check, Condition, SeenBy, simple_and_turning_once};
+use crate::numerics::worse;
 use crate::region::Region;
 
 /// A gait made ready to be asked.

@@ -9,6 +9,7 @@ use super::{Over, RobustError, Robustness, Uncertainty};
 use crate::certificate::Condition;
 use crate::cycle::Cycle;
 use crate::member::Member;
+use crate::numerics::worse;
 use crate::parallel::Watch;
 use crate::region::Region;
 use crate::speed::{Fastest, Polished, Setting, SpeedProblem, mended, speed_of, told};
@@ -68,14 +69,7 @@ fn turns_nobody(ensemble: &Ensemble<'_>, cycle: &Cycle) -> Result<f64, RobustErr
         let swum = cycle.turned(member.gain).swum(&member.model);
         swum.map_or(f64::NAN, |stroke| stroke.rotation.abs())
     });
-    let worst = |most: f64, one: f64| {
-        if one <= most || most.is_nan() {
-            most
-        } else {
-            one
-        }
-    };
-    let rotation = turns.fold(0.0, worst);
+    let rotation = turns.fold(0.0, worse);
     if rotation.is_nan() || rotation > Condition::NobodyTurns.tolerance() {
         return Err(RobustError::Turns { rotation });
     }

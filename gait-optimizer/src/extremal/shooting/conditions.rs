@@ -9,6 +9,7 @@ use swimmer_model::Model;
 use super::chain::{Chain, Class, Entry, Stretch};
 use crate::extremal::equations::{Motion, STATE, State, shape};
 use crate::extremal::flow::{Mapped, mapped};
+use crate::numerics::worse;
 
 /// Residuals and Jacobian under construction, row by row.
 pub(super) struct Equations {
@@ -122,14 +123,7 @@ impl Equations {
 
     /// NaN where any residual is.
     pub(super) fn largest(&self) -> f64 {
-        let worse = |a: f64, b: &f64| {
-            if b.is_nan() || b.abs() > a {
-                b.abs()
-            } else {
-                a
-            }
-        };
-        self.residual.iter().fold(0.0, worse)
+        self.residual.iter().map(|one| one.abs()).fold(0.0, worse)
     }
 
     fn add(&mut self, value: f64, slopes: impl IntoIterator<Item = (usize, f64)>) {

@@ -71,12 +71,14 @@ fn certify_at_rates(
     if free.pass() {
         return free;
     }
+    // Times are shares of its own period here.
+    let own = Some(1.0);
     [
         (HeadingRule::Forward, None),
         (HeadingRule::Sideways, None),
-        (HeadingRule::Any, Some(1.0)),
-        (HeadingRule::Forward, Some(1.0)),
-        (HeadingRule::Sideways, Some(1.0)),
+        (HeadingRule::Any, own),
+        (HeadingRule::Forward, own),
+        (HeadingRule::Sideways, own),
     ]
     .into_iter()
     .map(of)

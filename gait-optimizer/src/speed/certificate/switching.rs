@@ -12,6 +12,7 @@ use super::affine::Affine;
 use super::legs::{Leg, Legs, Node};
 use super::{Asked, RESTS, on_bound};
 use crate::certificate::{Check, Condition};
+use crate::numerics::{lesser, worse};
 use crate::region::{Bound, Region};
 
 /// Columns of the least squares.
@@ -113,13 +114,7 @@ impl<'a> Switching<'a> {
         let solution = matrix.clone().svd(true, true).solve(&right, 1e-12);
         this.solution = solution.unwrap_or_else(|_| DVector::from_element(unknowns, f64::NAN));
         let rest = matrix * &this.solution - right;
-        this.residual = rest.iter().fold(0.0, |most: f64, one| {
-            if one.is_nan() {
-                f64::NAN
-            } else {
-                most.max(one.abs())
-            }
-        });
+        this.residual = rest.iter().map(|one| one.abs()).fold(0.0, worse);
         this
     }
 
@@ -285,15 +280,7 @@ impl<'a> Switching<'a> {
         let signs: Vec<f64> = (0..self.legs.all.len())
             .flat_map(|k| self.least_sign(k))
             .collect();
-        let least = |values: &[f64]| {
-            values.iter().copied().fold(f64::INFINITY, |least, one| {
-                if one.is_nan() {
-                    f64::NAN
-                } else {
-                    least.min(one)
-                }
-            })
-        };
+        let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, lesser);
         if !signs.is_empty() {
             checks.push(Condition::SwitchingSigns.check(least(&signs)));
         }
