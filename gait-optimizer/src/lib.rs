@@ -37,7 +37,7 @@
 //! | `certify` | conditions asked of any closed curve, from its samples alone: the certificate of turning, sideways and atlas gaits |
 //! | [`closed_forms`] | formulas of the paper's appendix, mended |
 //! | `simple_shapes` | circles and squares over their amplitude |
-//! | `numerics` | halving, roots, damped steps |
+//! | `numerics` | halving, roots, damped steps, the worst of some numbers |
 //! | `parallel` | jobs over threads, with somebody who watches |
 //! | `runge_kutta` | the integrator: order 8, steps that end where an event is |
 //!
