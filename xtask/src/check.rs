@@ -2,7 +2,6 @@
 
 use std::process::Command;
 
-use crate::api;
 use crate::book;
 use crate::debian;
 use crate::emulator;
@@ -38,7 +37,6 @@ pub(crate) fn all() -> Outcome {
             &format!("run `cargo fmt --manifest-path {FUZZ}`"),
         )
     });
-    steps.take("public API, examples, packages", api::check);
     if let Some(toolchain) = toolchain {
         for_the_chip(&mut steps, &toolchain);
     }

@@ -1,6 +1,5 @@
 //! The project's own chores, so that no one has to remember a command line: `cargo xtask --help` lists them.
 
-mod api;
 mod bench;
 mod binary_info;
 mod book;
@@ -73,12 +72,6 @@ enum Chore {
     Emulator,
     /// Unpacks Debian's Slurm under target/slurm, for the test of job arrays.
     Slurm,
-    /// Writes what each library offers to xtask/api, and tells which entry points have no example.
-    Api {
-        /// Write nothing: fail where a list is stale or an entry point has no example.
-        #[arg(long)]
-        check: bool,
-    },
     /// Builds the Python wheel, installs it under target/python, and tests it: pytest, mypy, stubtest, notebooks.
     Python,
     /// Runs our benches, then the Python peers beside them, and prints the ratios.
@@ -165,7 +158,6 @@ fn perform(chore: Chore) -> Outcome {
         Chore::Release { dry_run } => release::prepare(dry_run),
         Chore::Slurm => slurm::unpack(),
         Chore::Emulator => emulator::install(),
-        Chore::Api { check } => api::list(Path::new("."), check),
         Chore::Python => python::test(true),
         Chore::Bench { peers } => bench::run_all(&peers),
         Chore::Fuzz { target, seconds } => fuzz::run_targets(target.as_deref(), seconds),
