@@ -24,7 +24,7 @@ mod toolchain;
 mod tools;
 mod uf2;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
