@@ -1,4 +1,4 @@
-//! How long direct collocation takes, its own re-integration included.
+//! Benchmark of direct collocation, re-integration included.
 
 use collocation::{CollocationProblem, solve};
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -1,4 +1,4 @@
-//! From a problem to a certified gait with collocation in between: circles, collocation, and the optimiser's polish.
+//! Certified efficiency gaits by collocation: starts from circles, collocates, and polishes with the optimiser's shooting.
 
 use gait_optimizer::{
     Direct, EfficiencyProblem, Objective, OptimalGait, SimpleShape, best_amplitudes,
@@ -9,14 +9,14 @@ use super::error::CollocationError;
 use super::problem::CollocationProblem;
 use super::solve::solve;
 
-/// Circles up to this amplitude are tried \[rad\].
+/// Largest amplitude of the circles that serve as initial guesses \[rad\].
 const LARGEST: f64 = 5.0;
 
-/// The gait of most Lighthill efficiency of a branch, found by collocation from the locally best circles, then polished and
-/// certified by the optimiser. What collocation itself says of it is in the figures' `direct_efficiency`.
+/// Returns the gait with the greatest Lighthill efficiency of a branch: collocated from the locally best circles, then polished
+/// and certified by the optimiser. `EfficiencyFigures::direct_efficiency` keeps the efficiency of the collocation itself.
 ///
 /// # Errors
-/// [`CollocationError`]: what is wrong with the problem, or that there is no such gait.
+/// [`CollocationError`] if the problem is invalid or no such gait was found.
 ///
 /// ```
 /// use gait_optimizer::{Branch, EfficiencyProblem};
@@ -43,7 +43,7 @@ pub fn efficiency(problem: &EfficiencyProblem) -> Result<OptimalGait, Collocatio
             };
             Ok(efficiency_from(problem, &direct)?)
         })
-        // The best one, else the first error.
+        // The best gait, or the first error if there is none.
         .reduce(|best, next| match (&best, &next) {
             (Err(_), Ok(_)) => next,
             (Ok(gait), Ok(other)) if other.efficiency > gait.efficiency => next,

@@ -1,74 +1,74 @@
-//! Why there is no collocated gait.
+//! Errors of direct collocation.
 
 use gait_optimizer::{Branch, EfficiencyError, InvalidProblem};
 use thiserror::Error;
 
-/// Why a collocation was given up.
+/// Failure of a direct collocation.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CollocationError {
     /// A parameter is out of range.
     #[error("direct collocation: {name} is {value}; {problem}")]
     Problem {
-        /// Which parameter.
+        /// Name of the parameter.
         name: &'static str,
         /// Its value.
         value: f64,
-        /// What it must be.
+        /// Requirement that the value violates.
         problem: &'static str,
     },
-    /// The guess is no quarter gait.
+    /// The initial guess is not a quarter of a symmetric gait.
     #[error(
         "direct collocation cannot start from this gait: {problem}; give one whose first quarter runs from φ₁ = φ₂ > 0 to \
          φ₁ = −φ₂"
     )]
     Guess {
-        /// What is wrong with it.
+        /// Property that the guess lacks.
         problem: &'static str,
     },
-    /// The guess swims to the other side, where ln x has no value.
+    /// The initial guess has the wrong sign of x, so that the objective ln(±x) is undefined.
     #[error(
         "the guess for direct collocation swims {x:.3e} a quarter, while x shall have the sign of {wanted:+}; start from a gait \
          that goes the wanted way"
     )]
     WrongWay {
-        /// Its x.
+        /// Displacement x of the guess's quarter, in the model's unit of length.
         x: f64,
-        /// The wanted sign.
+        /// Required sign, +1 or −1.
         wanted: f64,
     },
-    /// The iteration came to no optimum.
+    /// The iteration did not converge.
     #[error(
         "direct collocation stopped after {iterations} iterations at ξ = {efficiency:.3e} without an optimum; start nearer to \
          one, such as from the optimal Fourier gait"
     )]
     Stalled {
-        /// Iterations done on the last mesh.
+        /// Number of iterations on the last mesh.
         iterations: usize,
-        /// Lighthill's efficiency there.
+        /// Lighthill efficiency of the last iterate.
         efficiency: f64,
     },
-    /// No circle of any size is locally best on the branch.
+    /// No circle has a locally greatest efficiency on the branch.
     #[error(
         "direct collocation has no start: no circle is a locally best gait with the {branch} gait's sign of X"
     )]
     NoStart {
-        /// Which gait.
+        /// Requested branch.
         branch: Branch,
     },
-    /// The problem makes no sense; or the collocated gait could not be polished, or is not the gait that was asked for.
+    /// The problem is invalid, the polish failed, or the polished gait is not on the requested branch.
     #[error(transparent)]
     Polish(#[from] EfficiencyError),
-    /// An optimum of the discretisation alone: its control swims otherwise.
+    /// A spurious optimum of the discretisation: re-integration of its control gives another efficiency.
     #[error(
         "direct collocation found ξ = {efficiency:.3e} on {points} points, but its control makes {again:.3e} when integrated \
          again: a spurious optimum of a coarse mesh; start nearer to the wanted gait or take more elements"
     )]
     Spurious {
-        /// Lighthill's efficiency as collocated.
+        /// Lighthill efficiency of the collocation.
         efficiency: f64,
-        /// The same, integrated again.
+        /// Lighthill efficiency after re-integration.
         again: f64,
-        /// Points of the mesh.
+        /// Number of mesh points.
         points: usize,
     },
 }

@@ -1,4 +1,4 @@
-//! Where the iteration starts: the first quarter of any gait.
+//! Initial guess of the iteration: the first quarter of a given gait, sampled on the mesh.
 
 use gait_optimizer::region::Bound;
 use nalgebra::{Matrix2xX, Vector2};
@@ -7,14 +7,14 @@ use super::error::CollocationError;
 use super::mesh::Mesh;
 use super::path::levels;
 
-/// A quarter that leaves the bounds by more than this share of its largest angle is shrunk; by less, it is drawn inside where it
-/// leaves them.
+/// Violation of the bounds, relative to the largest angle, above which the whole quarter is scaled down. A smaller violation is
+/// corrected point by point.
 const HAIR: f64 = 0.01;
 const SHRINK: f64 = 0.99;
 const SMALLEST: f64 = 1e-6;
 
-/// The shapes of a quarter at the points of a mesh, its ends moved on to the symmetry lines, and brought inside the bounds by a
-/// margin.
+/// Returns the shapes of a quarter at the mesh points, with the ends projected onto the symmetry lines and all points inside the
+/// bounds by a margin.
 pub(crate) fn on_mesh(
     shape: &dyn Fn(f64) -> Vector2<f64>,
     mesh: &Mesh,
@@ -37,7 +37,7 @@ pub(crate) fn on_mesh(
     while room(&shapes) < -HAIR * shapes.amax() && shapes.amax() > SMALLEST {
         shapes *= SHRINK;
     }
-    // Narrow bounds leave not even the straight swimmer as much as is wished for wide ones.
+    // Within narrow bounds even the straight swimmer has less margin than requested.
     let margin = margin.min(0.1 * shapes.amax());
     for mut phi in shapes.column_iter_mut() {
         for wall in walls {
@@ -55,7 +55,7 @@ pub(crate) fn on_mesh(
     }
 }
 
-/// Moves the first shape to φ₁ = φ₂ and the last to φ₁ = −φ₂.
+/// Projects the first shape onto φ₁ = φ₂ and the last onto φ₁ = −φ₂.
 pub(crate) fn bind_ends(shapes: &mut Matrix2xX<f64>) {
     let last = shapes.ncols() - 1;
     let (first, end) = (shapes.column(0).mean(), shapes.column(last));

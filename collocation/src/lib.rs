@@ -1,19 +1,20 @@
-//! Gaits of most Lighthill efficiency by direct collocation (paper, section V, where GPOPS-II does this): the second method, which
-//! shares with the optimiser only A and W and where the bounds are. [`efficiency()`] has a gait polished and certified;
-//! [`solve`] is collocation alone, with bounds as well.
+//! Direct collocation for gaits of greatest Lighthill efficiency (paper, section V, which uses GPOPS-II). It is the second method
+//! next to the optimiser's shooting and shares with it only A, W and the bounds. [`efficiency()`] returns a polished and
+//! certified gait; [`solve`] is the collocation alone, with or without bounds.
 //!
-//! The problem on a quarter gait, t = 0 … 1: states z = (φ₁, φ₂, x, θ, E), control u = Φ̇, from φ₁ = φ₂ to φ₁ = −φ₂, make
-//! `x_f²/E_f` greatest, |φᵢ| ≤ `φ_max`. It is discretised by Legendre–Gauss–Radau collocation on an even mesh (`radau`, `mesh`),
-//! fine enough that the states, integrated again with the interpolated control, agree; else there is no answer. A coarse mesh
-//! comes first: free gaits are so smooth that it mostly does, and with bounds the fine one starts where it ends.
+//! The optimal control problem on a quarter gait, t = 0 … 1: states z = (φ₁, φ₂, x, θ, E), control u = Φ̇, from φ₁ = φ₂ to
+//! φ₁ = −φ₂, maximise `x_f²/E_f` subject to |φᵢ| ≤ `φ_max`. Legendre–Gauss–Radau collocation on a uniform mesh discretises it
+//! (`radau`, `mesh`). A result is returned only if re-integration of the states with the interpolated control agrees. A coarse
+//! mesh is solved first. It usually suffices for gaits without bounds, which are smooth; with bounds it is the initial guess of
+//! the fine mesh.
 //!
 //! # Why a solver of our own
 //!
-//! As φ̇ = u, θ, x and E can be solved for in one sweep (`path`), every iterate obeys the state equations and the merit function
-//! is the objective with its barrier (`newton`), so neither filter nor restoration is needed, and Newton's equation is small
-//! enough for conjugate gradients. Of the published crates `clarabel` is for convex problems only, `argmin` has no constraints,
-//! `ipopt` binds to C, `interiors` builds its matrices anew at every call; `ripopt` and `pounce-rs`, ports of Ipopt in
-//! Rust, are under the EPL and bring a second linear algebra.
+//! Since φ̇ = u, the states θ, x and E follow from the shapes in one sweep (`path`). Every iterate satisfies the state equations,
+//! the merit function is the objective with its barrier (`newton`), and neither a filter nor a restoration phase is needed. The
+//! Newton system is small enough for conjugate gradients. Of the published crates, `clarabel` is limited to convex problems,
+//! `argmin` has no constraints, `ipopt` binds to C, and `interiors` reallocates its matrices in every call; `ripopt` and
+//! `pounce-rs`, ports of Ipopt to Rust, are under the EPL and depend on a second linear algebra library.
 
 mod efficiency;
 mod error;

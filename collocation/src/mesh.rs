@@ -1,17 +1,17 @@
-//! The mesh of a quarter gait: elements of one length and degree, end to end over t = 0 … 1.
+//! Uniform mesh of a quarter gait: elements of equal length and degree over t = 0 … 1.
 
 use nalgebra::{DVector, Matrix2xX, Vector2};
 
 use super::radau::Rule;
 
-/// Even elements; neighbours share a point.
+/// Uniform mesh; neighbouring elements share a point.
 #[derive(Debug, Clone)]
 pub(crate) struct Mesh {
     pub(crate) rule: Rule,
     pub(crate) elements: usize,
     /// Times of all points, 0 to 1.
     pub(crate) times: DVector<f64>,
-    /// Quadrature weights of all points. The first is no node; where it counts, it counts as much as the last.
+    /// Quadrature weights of all points. The first point is not a collocation node; it has the weight of the last.
     pub(crate) weights: DVector<f64>,
 }
 
@@ -34,17 +34,17 @@ impl Mesh {
         }
     }
 
-    /// How many points.
+    /// Number of points.
     pub(crate) fn len(&self) -> usize {
         self.times.len()
     }
 
-    /// The first point of each element.
+    /// Index of the first point of each element.
     pub(crate) fn firsts(&self) -> impl DoubleEndedIterator<Item = usize> + use<> {
         (0..self.len() - 1).step_by(self.rule.degree())
     }
 
-    /// The value at a time on the polynomials through the points, such as a shape.
+    /// Interpolates `values`, one column per point, at time `t`.
     pub(crate) fn shape(&self, values: &Matrix2xX<f64>, t: f64) -> Vector2<f64> {
         let degree = self.rule.degree();
         let place = t.clamp(0.0, 1.0) * self.elements as f64;

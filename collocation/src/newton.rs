@@ -1,10 +1,10 @@
-//! The interior-point iteration on the shapes.
+//! Primal–dual interior-point method on the shapes, with a line search and an inexact Newton step.
 //!
-//! Iterates stay strictly inside the walls and on the state equations, so the barrier function itself is the merit function. The
-//! walls' multipliers are iterated beside the shapes, without which Newton's method takes many more steps along walls. A
-//! step solves Newton's equation by conjugate gradients, which ask for the Hessian along one direction at a time (the
-//! gradient's difference along it) and notice where it is not convex. What makes the equation stiff is known: the energy of
-//! the steps from point to point and the walls. Preconditioned with these two (`preconditioner`), a few products do.
+//! Iterates stay strictly inside the bounds and satisfy the state equations, so the barrier function is the merit function. The
+//! multipliers of the bounds are dual variables of their own; without them Newton's method takes many more steps along active
+//! bounds. Conjugate gradients solve the Newton system. They need the Hessian only as products with one direction at a time
+//! (finite difference of the gradient) and detect negative curvature. Two terms make the system stiff: the energy of the steps
+//! between points, and the bounds. Both are in the preconditioner (`preconditioner`), so a few products suffice.
 
 mod preconditioner;
 
@@ -20,34 +20,34 @@ use preconditioner::Preconditioner;
 
 const MOST_ITERATIONS: usize = 200;
 const MOST_PRODUCTS: usize = 200;
-/// Share of the residual that is left of Newton's equation; more exact steps cost more than they save.
+/// Relative residual at which conjugate gradients stop; a more exact step costs more than it saves.
 const INEXACT: f64 = 0.05;
-/// Steps below this \[rad\] end the iteration.
+/// Step length below which the iteration has converged \[rad\].
 const SMALL_STEP: f64 = 1e-7;
-/// Longest step of any angle \[rad\], so that the iteration stays with the gait it was started from.
+/// Largest change of an angle in one step \[rad\], so that the iteration stays near the gait from which it was started.
 const LONG_STEP: f64 = 0.4;
-/// How many times larger or smaller than barrier over margin a multiplier may be.
+/// Largest factor between a multiplier and barrier over margin, its value on the central path.
 const OFF_CENTRE: f64 = 1e4;
-/// Changes of the shapes over which the gradient's difference is taken \[rad\].
+/// Step of the finite difference of the gradient \[rad\].
 const DIFFERENCE: f64 = 1e-6;
-/// Without a bound no angle may leave two turns.
+/// Limit of the angles if there is no bound: two turns \[rad\].
 const HORIZON: f64 = 2.0 * std::f64::consts::TAU;
 
-/// One discretised problem.
+/// Interior-point iteration of one discretised problem.
 #[derive(Debug)]
 pub(crate) struct Newton<'a> {
     problem: &'a CollocationProblem<'a>,
     mesh: &'a Mesh,
     walls: &'a [Bound],
     path: Path,
-    /// How much the walls' logarithms count for now.
+    /// Barrier parameter.
     barrier: f64,
-    /// Density of each wall's multiplier at each point, in the order of [`levels`].
+    /// Density of each bound's multiplier at each point, in the order of [`levels`].
     multipliers: Vec<f64>,
 }
 
 impl<'a> Newton<'a> {
-    /// From shapes inside the walls, and where the barrier begins.
+    /// Starts from shapes strictly inside the bounds, with the initial barrier parameter.
     pub(crate) fn new(
         problem: &'a CollocationProblem<'a>,
         mesh: &'a Mesh,
@@ -66,7 +66,7 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// Iterates to an optimum, the barrier down to where it ends.
+    /// Iterates until convergence while the barrier parameter decreases to `last_barrier`.
     pub(crate) fn run(mut self, last_barrier: f64) -> Result<Path, CollocationError> {
         let (x, wanted) = (self.path.final_x, self.problem.sign);
         let wrong_way = CollocationError::WrongWay { x, wanted };
@@ -82,7 +82,7 @@ impl<'a> Newton<'a> {
                     (self.path, here) = (path, value);
                     convex && length >= 0.9 && (settled || -slope <= self.barrier)
                 }
-                // As flat as rounding lets the objective be.
+                // Stationary to rounding.
                 None if -slope <= 1e-11 => true,
                 None => break,
             };
@@ -100,20 +100,21 @@ impl<'a> Newton<'a> {
         })
     }
 
-    /// The barrier function; none where the path leaves the walls or the horizon, or x has the wrong sign.
+    /// Barrier function. Returns `None` if the path leaves the bounds or the horizon, or if x has the wrong sign.
     fn merit(&self, path: &Path) -> Option<f64> {
         let mut value = path.objective(self.problem.sign)?;
         if path.phi.amax() > HORIZON {
             return None;
         }
         for (point, Level { value: margin, .. }) in levels(self.walls, &path.phi) {
-            // Outside, a logarithm is no number.
+            // The logarithm of a negative margin is NaN.
             value -= self.barrier * self.mesh.weights[point] * margin.ln();
         }
         value.is_finite().then_some(value)
     }
 
-    /// Of the barrier function, per shape, the ends on their lines; from that of the objective.
+    /// Gradient of the barrier function with respect to each shape, with both ends restricted to their symmetry lines; `slope` is
+    /// the gradient of the objective.
     fn gradient(&self, slope: &Matrix2xX<f64>) -> Matrix2xX<f64> {
         let mut gradient = slope.clone();
         for (point, level) in levels(self.walls, &self.path.phi) {
@@ -124,8 +125,8 @@ impl<'a> Newton<'a> {
         gradient
     }
 
-    /// Newton's step of the barrier problem, or as much of it as is convex: the barrier function's derivative along it, the change
-    /// of the shapes, and whether the Hessian was positive along all that was tried.
+    /// Newton step of the barrier problem by truncated conjugate gradients. Returns the directional derivative of the barrier
+    /// function, the change of the shapes, and `true` if no direction of negative curvature was met.
     fn step(&self, inexact: f64) -> (f64, Matrix2xX<f64>, bool) {
         let slope = self.path.slope(self.mesh);
         let gradient = self.gradient(&slope);
@@ -178,13 +179,13 @@ impl<'a> Newton<'a> {
         (gradient.dot(&shapes), shapes, convex)
     }
 
-    /// Backtracks until the barrier function falls as it should: how far, the path there, and its value.
+    /// Backtracking line search with the Armijo condition. Returns step length, path and barrier function.
     fn search(&self, step: &Matrix2xX<f64>, slope: f64, here: f64) -> Option<(f64, Path, f64)> {
         let rounding = 1e-14 * (1.0 + here.abs());
         let mut length = (LONG_STEP / step.amax()).min(1.0);
         for _ in 0..30 {
             let phi = &self.path.phi + step * length;
-            // What lies outside is told before it is swum.
+            // Reject shapes outside the bounds before the states are integrated.
             let inside = levels(self.walls, &phi).all(|(_, level)| level.value > 0.0);
             let path = inside.then(|| Path::new(self.problem.model, self.mesh, phi));
             if let Some(path) = path
@@ -198,7 +199,7 @@ impl<'a> Newton<'a> {
         None
     }
 
-    /// The dual step that goes with a step of the shapes, and back near to the central path of the new ones.
+    /// Updates the multipliers by the dual step, then limits their distance from the central path of the new shapes.
     fn move_multipliers(&mut self, step: &Matrix2xX<f64>, length: f64, next: &Path) {
         let walls = levels(self.walls, &self.path.phi).zip(levels(self.walls, &next.phi));
         for (((point, level), (_, there)), multiplier) in walls.zip(&mut self.multipliers) {

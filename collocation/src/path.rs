@@ -1,8 +1,8 @@
-//! A candidate: the shapes at all points of the mesh, and everything that the state equations make of them.
+//! Iterate of the collocation: shapes at all mesh points, and the states and derivatives that follow from them.
 //!
-//! The collocated state equations are solved, not constrained. φ̇ = u makes u the slope of the polynomials; θ then follows by
-//! quadrature, and from it x and E. So every iterate is a gait of the discretised problem, and the objective is a plain
-//! function of the shapes, whose gradient is found by going back.
+//! The collocated state equations are solved instead of imposed as constraints. Since φ̇ = u, the control is the slope of the
+//! polynomials; θ follows by quadrature, then x and E. Every iterate is therefore feasible, and the objective is an unconstrained
+//! function of the shapes. A backward (adjoint) sweep gives its gradient.
 
 use gait_optimizer::region::{Bound, Level};
 use nalgebra::{Matrix2xX, Matrix3xX, Vector2, Vector3};
@@ -10,8 +10,7 @@ use swimmer_model::{FirstDerivatives, Model};
 
 use super::mesh::Mesh;
 
-/// The shapes and the states that follow: one column or entry per point of the mesh. The first point is no node and has no
-/// rates.
+/// Shapes and states, one column or entry per mesh point. The first point is not a collocation node and has no rates.
 #[derive(Debug, Clone)]
 pub(crate) struct Path {
     pub(crate) phi: Matrix2xX<f64>,
@@ -72,37 +71,37 @@ impl Path {
         }
     }
 
-    /// ξ of a quarter: `c_t L x_f²/E_f`, `t_f = 1`.
+    /// Lighthill efficiency of the quarter: `c_t L x_f²/E_f` with `t_f = 1`.
     pub(crate) fn efficiency(&self, model: &Model<f64>) -> f64 {
         let per_power = model.side_drag() * model.swimmer().total_length();
         per_power * self.final_x * self.final_x / self.final_energy
     }
 
-    /// ln E − 2 ln(±x), what is made least; the sign is the wanted one of x. None where x has the other sign.
+    /// Objective to be minimised, ln E − 2 ln(±x), for the required sign of x. Returns `None` if x has the other sign.
     pub(crate) fn objective(&self, sign: f64) -> Option<f64> {
         let (x, energy) = (sign * self.final_x, self.final_energy);
         let value = energy.ln() - 2.0 * x.ln();
         (x > 0.0 && energy > 0.0 && value.is_finite()).then_some(value)
     }
 
-    /// The gradient of ln E − 2 ln x, per shape, by going back from the last element to the first.
+    /// Gradient of ln E − 2 ln x with respect to each shape, by a backward sweep over the elements.
     pub(crate) fn slope(&self, mesh: &Mesh) -> Matrix2xX<f64> {
         let (rule, per_time) = (&mesh.rule, mesh.elements as f64);
         let (of_x, of_energy) = (-2.0 / self.final_x, 1.0 / self.final_energy);
         let mut by_phi = Matrix2xX::<f64>::zeros(self.phi.ncols());
-        // ∂x_f/∂θ of a node alone, and of all later elements.
+        // ∂x_f/∂θ of a single node and of all later elements.
         let pull = -self.rates.row(1).transpose().component_mul(&mesh.weights);
         let mut later = 0.0;
         for first in mesh.firsts().rev() {
             for (node, slopes) in rule.slopes.column_iter().enumerate() {
                 let point = first + 1 + node;
                 let (weight, physics) = (mesh.weights[point], &self.physics[point]);
-                // A turn at a node turns the nodes after it, by the quadrature's shares, and all later elements.
+                // A rotation at a node rotates the nodes after it, by the weights of the quadrature, and all later elements.
                 let pulls = pull.rows(first + 1, rule.degree());
                 let turned = rule.integrals.row(node).tr_dot(&pulls);
                 let by_theta = later + turned / (per_time * weight);
                 let rate = self.control.column(point);
-                // What `x_f` gains from the body velocity.
+                // ∂x_f/∂(body velocity).
                 let (cos, sin) = (self.heading[(0, point)], self.heading[(1, point)]);
                 let carry = Vector3::new(cos, -sin, by_theta) * (of_x * weight);
                 let energy = of_energy * weight;
@@ -122,7 +121,7 @@ impl Path {
     }
 }
 
-/// How far shapes are within each wall, shape by shape with its number.
+/// Margins of all shapes to all bounds, as pairs of point index and level.
 pub(crate) fn levels<'a>(
     walls: &'a [Bound],
     shapes: &'a Matrix2xX<f64>,

@@ -1,4 +1,4 @@
-//! What is to be solved, and how finely.
+//! Inputs of a direct collocation.
 
 use gait_optimizer::region::{Bound, Region};
 use gait_optimizer::{Branch, EfficiencyProblem};
@@ -8,23 +8,23 @@ use swimmer_model::Model;
 use super::error::CollocationError;
 use super::radau;
 
-/// What is to be solved, and how finely.
+/// Inputs of a direct collocation: swimmer, bounds, branch and mesh.
 #[derive(Debug, Clone, Copy)]
 pub struct CollocationProblem<'a> {
-    /// The swimmer, its side links alike.
+    /// Swimmer with side links of equal length.
     pub model: &'a Model<f64>,
-    /// Bounds of the shapes; `max_angle` and `no_overlap` apply.
+    /// Bounds of the shapes, of which `max_angle` and `no_overlap` are used.
     pub bounds: Bounds,
-    /// Whether x shall be positive or negative: +1 or −1.
+    /// Required sign of x: +1 or −1.
     pub sign: f64,
-    /// Elements of the last mesh. A first one with a quarter of them comes before, and without bounds may do.
+    /// Number of elements of the fine mesh. A mesh with a quarter of them is solved first and may suffice if there are no bounds.
     pub elements: usize,
     /// Degree of the elements.
     pub degree: usize,
 }
 
 impl<'a> CollocationProblem<'a> {
-    /// The problem without bounds on 80 elements of degree 5.
+    /// Problem without bounds on 80 elements of degree 5.
     pub fn new(model: &'a Model<f64>, sign: f64) -> Self {
         Self {
             model,
@@ -35,7 +35,7 @@ impl<'a> CollocationProblem<'a> {
         }
     }
 
-    /// With |φᵢ| ≤ `max_angle` \[rad\].
+    /// Adds the bound |φᵢ| ≤ `max_angle` \[rad\].
     #[must_use]
     pub fn with_max_angle(mut self, max_angle: f64) -> Self {
         self.bounds.max_angle = Some(max_angle);

@@ -1,29 +1,29 @@
-//! Legendre–Gauss–Radau collocation on one element of unit length, for any degree.
+//! Legendre–Gauss–Radau collocation on one element of unit length.
 //!
-//! The element's right end is a node, its left end is none, so that the last node of an element is the first point of the
-//! next (the "flipped" points; the Radau IIA method). Source: D. Garg et al., *Direct trajectory optimization and costate
+//! The right end of the element is a node, the left end is not, so the last node of an element is the first point of the next
+//! (the "flipped" points; the Radau IIA method). Source: D. Garg et al., *Direct trajectory optimization and costate
 //! estimation of finite-horizon and infinite-horizon optimal control problems using a Radau pseudospectral method*,
 //! Comput. Optim. Appl. 49 (2011), with the barycentric differentiation matrix of J.-P. Berrut and L. N. Trefethen,
 //! *Barycentric Lagrange interpolation*, SIAM Review 46 (2004).
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
-/// Highest degree in use; more elements serve better than higher ones.
+/// Highest supported degree; more elements are more accurate than higher degrees.
 pub(crate) const HIGHEST_DEGREE: usize = 16;
 
-/// The rule of a degree d: a polynomial of degree d through d + 1 points, collocated at the last d of them.
+/// Collocation rule of degree d: a polynomial of degree d through d + 1 points, collocated at the last d of them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Rule {
-    /// The d + 1 points: 0, then the nodes, the last of them 1.
+    /// The d + 1 points: 0, then the nodes, the last of which is 1.
     pub(crate) points: DVector<f64>,
-    /// Slope at each node (columns) per value at each point (rows).
+    /// Differentiation matrix: slope at each node (column) per value at each point (row).
     pub(crate) slopes: DMatrix<f64>,
-    /// Integral from 0 to each node (columns) per value at each node (rows).
+    /// Integration matrix: integral from 0 to each node (column) per value at each node (row).
     pub(crate) integrals: DMatrix<f64>,
 }
 
 impl Rule {
-    /// Of a degree, which is brought between 1 and [`HIGHEST_DEGREE`].
+    /// Returns the rule of a degree, clamped to 1 … [`HIGHEST_DEGREE`].
     pub(crate) fn new(degree: usize) -> Self {
         let degree = degree.clamp(1, HIGHEST_DEGREE);
         let points = points(degree);
@@ -40,10 +40,10 @@ impl Rule {
             barycentric[i] / barycentric[j + 1] / (points[j + 1] - points[i])
         });
         for j in 0..degree {
-            // A constant has no slope.
+            // The slope of a constant is zero.
             slopes[(j + 1, j)] = -slopes.column(j).sum();
         }
-        // Over the nodes alone differentiation is the inverse of integration from 0.
+        // On the nodes alone, integration from 0 is the inverse of differentiation.
         let integrals = slopes.rows(1, degree).into_owned().try_inverse();
         Self {
             integrals: integrals.unwrap_or_else(|| DMatrix::zeros(degree, degree)),
@@ -56,12 +56,12 @@ impl Rule {
         self.integrals.nrows()
     }
 
-    /// Quadrature weights of the d nodes over the whole element.
+    /// Quadrature weights of the d nodes on the element.
     pub(crate) fn weights(&self) -> DVectorView<'_, f64> {
         self.integrals.column(self.degree() - 1)
     }
 
-    /// What each of the d + 1 points counts in the value at `tau`: Lagrange's polynomials.
+    /// Values of the d + 1 Lagrange polynomials at `tau`.
     pub(crate) fn shares(&self, tau: f64) -> DVector<f64> {
         let points = &self.points;
         DVector::from_fn(points.len(), |i, _| {
@@ -77,9 +77,9 @@ impl Rule {
     }
 }
 
-/// 0 and the zeros of `P_d − P_{d−1}`, brought from \[−1, 1\] to \[0, 1\]: eigenvalues of the Jacobi matrix of Legendre's
-/// polynomials, its last entry such that 1 is one of them (G. H. Golub, *Some modified matrix eigenvalue problems*, SIAM
-/// Review 15 (1973)).
+/// Returns 0 and the zeros of `P_d − P_{d−1}`, mapped from \[−1, 1\] to \[0, 1\]. They are the eigenvalues of the Jacobi matrix of
+/// the Legendre polynomials with its last entry modified so that 1 is an eigenvalue (G. H. Golub, *Some modified matrix
+/// eigenvalue problems*, SIAM Review 15 (1973)).
 fn points(degree: usize) -> DVector<f64> {
     let d = degree as f64;
     let mut jacobi = DMatrix::zeros(degree, degree);
@@ -150,7 +150,7 @@ mod tests {
             };
             let best = 2 * power - 2;
             assert!((integral(best) - 1.0 / f64::from(best + 1)).abs() < 1e-13);
-            // One degree more is not exact.
+            // The next degree is not exact.
             assert!((integral(best + 1) - 1.0 / f64::from(best + 2)).abs() > 1e-22);
         }
     }

@@ -1,4 +1,4 @@
-//! What direct collocation returns: the quarter gait, and what it was checked against.
+//! Result of direct collocation: the quarter gait with the figures of its check.
 
 use nalgebra::{Matrix2xX, Vector2};
 use swimmer_files::AnyGait;
@@ -6,38 +6,38 @@ use swimmer_files::AnyGait;
 use super::error::CollocationError;
 use super::mesh::Mesh;
 
-/// Samples of a quarter as a gait.
+/// Number of samples per quarter when the solution is converted to a gait.
 const SAMPLES: usize = 256;
 
 /// A collocated optimum.
 #[derive(Debug, Clone)]
 pub struct CollocationSolution {
-    /// Lighthill's efficiency ξ.
+    /// Lighthill efficiency ξ.
     pub efficiency: f64,
-    /// ξ of the whole quarter integrated again with the interpolated control.
+    /// ξ after re-integration of the quarter with the interpolated control.
     pub efficiency_again: f64,
-    /// Largest overstepping of a bound between nodes, in rad, or over L for the distance of links.
+    /// Largest violation of a bound between nodes \[rad; over L for the clearance of the links\].
     pub overstepped: f64,
     pub(crate) phi: Matrix2xX<f64>,
     pub(crate) mesh: Mesh,
 }
 
 impl CollocationSolution {
-    /// Joint angles at a time 0 … 1, on the solution's own polynomials.
+    /// Joint angles at time `t` in 0 … 1, on the polynomials of the solution.
     pub fn phi(&self, t: f64) -> Vector2<f64> {
         self.mesh.shape(&self.phi, t)
     }
 
-    /// The whole cycle, by the paper's two symmetries, smooth throughout: of a solution that keeps off the corners of its bounds.
+    /// Returns the whole cycle by the paper's two symmetries. It is smooth if the solution does not touch a corner of the bounds.
     ///
     /// # Errors
-    /// [`CollocationError::Guess`]: its samples make no closed curve; never for a solution that this crate made.
+    /// [`CollocationError::Guess`] if the samples are not a closed curve, which does not occur for a solution of [`crate::solve`].
     pub fn gait(&self) -> Result<AnyGait, CollocationError> {
         let quarters = |i: usize| i as f64 / SAMPLES as f64;
         let phi = |i: usize| {
             let (half, step) = (i / (2 * SAMPLES), i % (2 * SAMPLES));
             let phi = self.phi(quarters(step.min(2 * SAMPLES - step)));
-            // On φ₁ = −φ₂ the way back is the way there, mirrored; the second half is the first turned by half a turn.
+            // The second quarter is the first, mirrored at φ₁ = −φ₂; the second half is the first half rotated by π.
             let phi = if step > SAMPLES { -phi.yx() } else { phi };
             if half > 0 { -phi } else { phi }
         };

@@ -1,4 +1,4 @@
-//! From a guess to an answer: a coarse mesh, then a fine one, and the states integrated again.
+//! Solution by a coarse mesh, then a fine one, with re-integration of the states as a check.
 
 use gait_optimizer::region::Bound;
 use nalgebra::{Matrix2xX, Vector2};
@@ -12,21 +12,20 @@ use super::problem::CollocationProblem;
 use super::solution::CollocationSolution;
 use super::{guess, radau};
 
-/// Relative difference of ξ from that of the gait integrated again: more, and it is no gait but an optimum of the mesh.
+/// Largest relative difference of ξ from that of the re-integrated gait. A larger one marks a spurious optimum of the mesh.
 const TOLERANCE: f64 = 1e-6;
-/// The same on the first mesh, for an answer without bounds and for a start of the second mesh with them.
+/// The same limit on the coarse mesh, for a result without bounds or for the initial guess of the fine mesh with bounds.
 const AGREED: f64 = 1e-10;
 const ROUGH: f64 = 1e-3;
-/// How many times fewer elements than the last mesh the first has.
+/// Ratio of the numbers of elements of the fine and the coarse mesh.
 const COARSER: usize = 4;
-/// Where the barrier begins, where one mesh hands it on to the other, and where it ends; it counts against an objective,
-/// ln E − 2 ln x, of order one.
+/// Barrier parameter at the start, at the change of meshes and at the end. The objective, ln E − 2 ln x, is of order one.
 const FIRST_BARRIER: f64 = 1e-2;
 const HANDED_ON: f64 = 1e-5;
 const LAST_BARRIER: f64 = 1e-10;
 
 impl CollocationProblem<'_> {
-    /// The optimum of one mesh, if its ξ agrees with that of the gait integrated again.
+    /// Solves one mesh and checks ξ against the re-integrated gait.
     fn solved(
         &self,
         walls: &[Bound],
@@ -38,8 +37,8 @@ impl CollocationProblem<'_> {
         let mesh = Mesh::new(elements, self.degree);
         let phi = guess::on_mesh(shape, &mesh, walls, barriers[0])?;
         let path = Newton::new(self, &mesh, walls, phi, barriers[0]).run(barriers[1])?;
-        // φ̇ = u holds for polynomials whatever the mesh. What a coarse mesh gets wrong are θ, x and E, and a spurious optimum of
-        // the discretisation lives on just that: along the same polynomials they follow again by a rule of the highest degree.
+        // φ̇ = u is exact for polynomials on any mesh. A coarse mesh has errors in θ, x and E, and a spurious optimum exploits
+        // them. So these states are integrated again along the same polynomials by the rule of the highest degree.
         let fine = Mesh::new(elements, radau::HIGHEST_DEGREE);
         let along = |t: &f64| mesh.shape(&path.phi, *t);
         let phi: Vec<_> = fine.times.iter().map(along).collect();
@@ -64,12 +63,12 @@ impl CollocationProblem<'_> {
     }
 }
 
-/// Solves from the first quarter of a gait that starts on φ₁ = φ₂ > 0 and runs counter-clockwise; one that leaves the bounds is
-/// shrunk.
+/// Solves the problem from the first quarter of `guess`, a gait that starts on φ₁ = φ₂ > 0 and runs counter-clockwise. A guess
+/// that leaves the bounds is scaled down.
 ///
 /// # Errors
-/// [`CollocationError`]: what is wrong with the problem or the guess, where the iteration stopped, or that the
-/// mesh is too coarse. A gait that does not survive its own re-integration is never returned.
+/// [`CollocationError`] if the problem or the guess is invalid, the iteration does not converge, or the mesh is too coarse. A
+/// gait whose re-integration disagrees is never returned.
 ///
 /// ```
 /// use collocation::{CollocationProblem, solve};

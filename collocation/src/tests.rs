@@ -1,4 +1,4 @@
-//! The solver as a whole: known gaits, the maximum principle, bounds, and what it must refuse.
+//! Tests of the whole solver: known gaits, Pontryagin's principle, bounds, and refused inputs.
 
 use std::cell::Cell;
 
@@ -25,13 +25,13 @@ fn solved(model: &Model<f64>, sign: f64, amplitude: f64) -> CollocationSolution 
     solve(&problem, &circle(amplitude)).unwrap()
 }
 
-/// Shapes of the quarter, evenly in time.
+/// Shapes of the quarter at uniform times.
 fn shapes(solution: &CollocationSolution) -> Vec<Vector2<f64>> {
     let times = (0..=1000).map(|step| f64::from(step) / 1000.0);
     times.map(|t| solution.phi(t)).collect()
 }
 
-/// The numbers of both optima of Purcell's swimmer, from circles.
+/// Reproduces both efficiency optima of Purcell's swimmer from circles.
 #[test]
 fn purcell_both_gaits_from_circles() {
     let small = solved(&purcell(), 1.0, 1.3);
@@ -62,7 +62,7 @@ fn a_bound_that_does_not_bind_changes_nothing() {
     assert!((bounded.efficiency - free.efficiency).abs() < 1e-12);
 }
 
-/// The large gait crosses its links. Kept from it, it gives up efficiency, touches, and stays out of the forbidden zone.
+/// The links of the large gait cross. With the crossing forbidden, its efficiency falls, and it touches the bound of the links.
 #[test]
 fn links_are_kept_apart() {
     let model = purcell();
@@ -110,7 +110,7 @@ fn what_is_wrong_is_said() {
     assert!(matches!(still, Err(CollocationError::Guess { .. })));
 }
 
-/// Any swimmer, any quarter curve, any bound: an answer that its own re-integration confirms, or a reason.
+/// Any swimmer, curve and bound give either a solution that re-integration confirms, or an error.
 #[test]
 fn never_a_wrong_gait() {
     let swimmers = (0.3..3.0_f64, 1.05..6.0_f64, 0.0..1.2_f64);

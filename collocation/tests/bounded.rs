@@ -1,4 +1,4 @@
-//! Bounded efficiency gaits: by arcs of the maximum principle and by direct collocation, which share no equations but A and W.
+//! Bounded efficiency gaits by Pontryagin's principle and by direct collocation, which share only A and W.
 
 use collocation::{CollocationProblem, CollocationSolution, solve};
 use gait_optimizer::{
@@ -31,7 +31,7 @@ fn by_collocation(
     let model = Model::new(&swimmer.of_unit_length()).unwrap();
     let sign = gait.displacement_over_length.signum();
     let problem = CollocationProblem::new(&model, sign).with_max_angle(max_angle);
-    // Every eighth sample, to two digits: a guess, no more.
+    // Every eighth sample, to two digits, is the initial guess.
     let (u, phi): (Vec<_>, Vec<_>) = gait
         .u()
         .iter()

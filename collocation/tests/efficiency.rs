@@ -1,4 +1,4 @@
-//! Collocation from circles against shooting from Fourier series: the same gaits, found on ways that share only A and W.
+//! Collocation from circles against shooting from Fourier series: both must find the same gaits, and share only A and W.
 
 use gait_optimizer::{Bounds, Branch, EfficiencyProblem, efficiency};
 use swimmer_model::Swimmer;
@@ -20,7 +20,7 @@ fn both_ways_find_the_same_gaits() {
             let figures = gait.efficiency_figures.unwrap();
             assert!(figures.residual <= 1e-10, "{branch}: {}", figures.residual);
             assert!(figures.power_variation < 1e-8, "{branch}");
-            // Collocation's own value: it knows nothing of the shooting.
+            // The efficiency of the collocation itself, before the polish by shooting.
             let direct = figures.direct_efficiency.unwrap();
             assert!(
                 (direct / shot.efficiency - 1.0).abs() < 1e-6,

@@ -1,6 +1,6 @@
-//! What is stiff in Newton's equation: the energy of straight steps from point to point, and the walls. Linear elements
-//! precondition polynomials of any degree alike (M. O. Deville, E. H. Mund, *Finite-element preconditioning for pseudospectral
-//! solutions of elliptic problems*, SIAM J. Sci. Stat. Comput. 11 (1990)).
+//! Preconditioner of the Newton system: energy of linear steps between neighbouring points, plus the bounds. Linear finite
+//! elements precondition polynomials of any degree (M. O. Deville, E. H. Mund, *Finite-element preconditioning for
+//! pseudospectral solutions of elliptic problems*, SIAM J. Sci. Stat. Comput. 11 (1990)).
 
 use nalgebra::{Matrix2, Matrix2xX, Vector2};
 
@@ -8,11 +8,11 @@ use crate::guess::bind_ends;
 use crate::mesh::Mesh;
 use crate::path::Path;
 
-/// How much stiffer than the energy's the ends are held on their lines.
+/// Stiffness that holds the ends on their symmetry lines, relative to that of the energy.
 const HELD: f64 = 1e6;
 
-/// A chain of blocks, neighbours coupled by minus `links`, with each block the inverse of what is left of it once all before are
-/// eliminated.
+/// Factorised block tridiagonal matrix. Neighbours are coupled by minus `links`; each block is the inverse of its Schur
+/// complement after elimination of all blocks before it.
 #[derive(Debug)]
 pub(super) struct Preconditioner {
     blocks: Vec<Matrix2<f64>>,
@@ -20,7 +20,7 @@ pub(super) struct Preconditioner {
 }
 
 impl Preconditioner {
-    /// With what the walls add to the block of each point.
+    /// Assembles and factorises the matrix; `walls` is the contribution of the bounds to the block of each point.
     pub(super) fn new(path: &Path, mesh: &Mesh, walls: &[Matrix2<f64>]) -> Self {
         let power = |point: usize| path.physics[point].power / path.final_energy;
         let last = mesh.len() - 1;
@@ -52,7 +52,7 @@ impl Preconditioner {
         Self { blocks, links }
     }
 
-    /// Solves for a right-hand side.
+    /// Solves the system for one right-hand side.
     pub(super) fn solve(&self, right: &Matrix2xX<f64>) -> Matrix2xX<f64> {
         let mut solution = right.clone();
         for (point, link) in self.links.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! First and second derivatives of the whole barrier function, by differences.
+//! Checks of the first and second derivatives of the barrier function by finite differences.
 
 use super::*;
 use gait_optimizer::region::Region;
@@ -8,7 +8,7 @@ use swimmer_model::{Circle, Gait, Model, Swimmer};
 
 const SIZE: f64 = 1e-4;
 
-/// A gait that is no optimum.
+/// Shapes that are not optimal.
 fn somewhere(mesh: &Mesh, amplitude: f64) -> Matrix2xX<f64> {
     let circle = Circle { amplitude };
     let shapes: Vec<_> = mesh
@@ -19,7 +19,7 @@ fn somewhere(mesh: &Mesh, amplitude: f64) -> Matrix2xX<f64> {
     Matrix2xX::from_columns(&shapes)
 }
 
-/// The step solves H Δ = −g: the gradient, itself checked by differences, changes along Δ by −g.
+/// The step solves H Δ = −g: along Δ the gradient changes by −g. The gradient itself is checked by differences.
 #[test]
 fn gradient_and_hessian_are_exact() {
     let model = Model::new(&Swimmer::purcell()).unwrap();
@@ -36,7 +36,7 @@ fn gradient_and_hessian_are_exact() {
     let newton = make(phi.clone());
     let (_, step, convex) = newton.step(1e-6);
     assert!(convex);
-    // Any change of the shapes that keeps both ends on their lines.
+    // A change of the shapes that keeps both ends on their symmetry lines.
     for k in 0..6 {
         let mut wave = Matrix2xX::zeros(mesh.len());
         for (mut shape, t) in wave.column_iter_mut().zip(&mesh.times) {
