@@ -1,18 +1,18 @@
-//! Where a checkout of the sources keeps what an emulated board needs.
+//! Paths of the emulator's files within a checkout of the sources.
 
 use std::path::{Path, PathBuf};
 
 use crate::{BoardConfig, BoardKind};
 
-/// The scripts' folder in a checkout.
+/// Folder of the scripts in a checkout.
 const SCRIPTS: &str = "emulator/board";
-/// The images' folder in cargo's target folder; `cargo xtask firmware` leaves them there.
+/// Folder of the firmware images in cargo's target folder, written by `cargo xtask firmware`.
 const IMAGES: &str = "firmware-images";
 
 impl BoardConfig {
-    /// A board of the checkout that `place` lies in, or of `place` itself where it lies in none: scripts in `emulator/board`,
-    /// firmware in `firmware-images` of `target`, or of the checkout's own `target` folder. What is not there
-    /// [`missing`](Self::missing) tells.
+    /// Returns the configuration for the checkout that contains `place`, or for `place` itself if no checkout contains it. The
+    /// scripts are in `emulator/board`, the firmware is in `firmware-images` of `target` or of the checkout's `target` folder.
+    /// [`missing`](Self::missing) checks that the files exist.
     pub fn of_checkout(place: &Path, target: Option<&Path>, kind: BoardKind) -> Self {
         let root = place
             .ancestors()

@@ -1,4 +1,4 @@
-//! What the emulated board tells of itself, in emulated time.
+//! Events of the emulated board, stamped with emulated time.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -7,32 +7,32 @@ use serde::Deserialize;
 
 use crate::log::{Chunk, LogLine};
 
-/// One period of the servos' PWM slice, as its registers stood when the counter wrapped: exact, without the emulator's
-/// rounding of edges.
+/// One period of the servos' PWM slice, from its registers at the wrap of the counter. Exact, unlike the pin edges, which the
+/// emulator rounds.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct Period {
-    /// When it began, emulated ns.
+    /// Start \[emulated ns\].
     at: f64,
     /// Compare values of front and back servo.
     front: u32,
     back: u32,
-    /// The counter runs from 0 to this.
+    /// Highest count.
     top: u32,
     /// Clock divider.
     divider: f64,
     /// System clock \[Hz\].
     clock: f64,
-    /// Cycles that the core was awake since the period before, and of these in the control task.
+    /// Cycles for which the core was awake in the previous period; the next field counts those in the control task.
     busy: u64,
     control: u64,
-    /// And of these in the tick itself.
+    /// Cycles of the control task that were spent in the tick.
     tick: u64,
-    /// Lines of flash that were not in its cache meanwhile; see [`Board::put_flash_behind_cache`](crate::Board::put_flash_behind_cache).
+    /// Number of flash cache misses; see [`Board::put_flash_behind_cache`](crate::Board::put_flash_behind_cache).
     pub misses: u64,
 }
 
 impl Period {
-    /// When it began.
+    /// Start of the period.
     pub fn at(&self) -> Duration {
         nanos(self.at)
     }
@@ -42,32 +42,32 @@ impl Period {
         [self.front, self.back]
     }
 
-    /// Pulses of front and back servo \[µs\]; 0 for none.
+    /// Pulses of front and back servo \[µs\]; 0 if the pulses are off.
     pub fn pulses_us(&self) -> [f64; 2] {
         [self.front, self.back].map(|compare| f64::from(compare) * self.step_us())
     }
 
-    /// How long it is \[µs\].
+    /// Length of the period \[µs\].
     pub fn length_us(&self) -> f64 {
         f64::from(self.top + 1) * self.step_us()
     }
 
-    /// How long the core was awake in the period before it \[ms at 125 MHz\].
+    /// Time for which the core was awake in the previous period \[ms at 125 MHz\].
     pub fn busy_ms(&self) -> f64 {
         self.busy as f64 / 125e3
     }
 
-    /// How much of that the control task took: its tick and the bytes that came \[ms at 125 MHz\].
+    /// Part of it that the control task took, for its tick and for received bytes \[ms at 125 MHz\].
     pub fn control_ms(&self) -> f64 {
         self.control as f64 / 125e3
     }
 
-    /// How much of that the tick took that ended in the period \[ms at 125 MHz\].
+    /// Part of it that the tick took which ended in the period \[ms at 125 MHz\].
     pub fn tick_ms(&self) -> f64 {
         self.tick as f64 / 125e3
     }
 
-    /// Whether both servos get pulses.
+    /// Returns `true` if both servos receive pulses.
     pub fn powered(&self) -> bool {
         self.front > 0 && self.back > 0
     }
@@ -77,24 +77,24 @@ impl Period {
     }
 }
 
-/// A servo pin went up or down.
+/// Edge of a servo pin.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct Edge {
     at: f64,
-    /// Which servo.
+    /// Servo of the pin.
     pub pin: Servo,
-    /// Up or down.
+    /// `true` for a rising edge.
     pub high: bool,
 }
 
 impl Edge {
-    /// When.
+    /// Emulated time of the event.
     pub fn at(&self) -> Duration {
         nanos(self.at)
     }
 }
 
-/// Which servo.
+/// Servo of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Servo {
@@ -104,112 +104,111 @@ pub enum Servo {
     Back,
 }
 
-/// The LED was switched.
+/// Change of the LED.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct Led {
     at: f64,
-    /// On or off.
+    /// `true` if the LED is lit.
     pub on: bool,
 }
 
 impl Led {
-    /// When.
+    /// Emulated time of the event.
     pub fn at(&self) -> Duration {
         nanos(self.at)
     }
 }
 
-/// The watchdog reset the chip.
+/// Reset of the chip by the watchdog.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct Reset {
     at: f64,
-    /// The watchdog's REASON register: 1 its timer ran out, 2 the firmware asked for it.
+    /// REASON register of the watchdog: 1 if its timer ran out, 2 if the firmware requested the reset.
     pub reason: u32,
 }
 
 impl Reset {
-    /// When.
+    /// Emulated time of the event.
     pub fn at(&self) -> Duration {
         nanos(self.at)
     }
 }
 
-/// Code changed by [`Board::patch`](crate::Board::patch) ran for the first time.
+/// First execution of code that [`Board::patch`](crate::Board::patch) changed.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct PatchReached {
     at: f64,
 }
 
 impl PatchReached {
-    /// When.
+    /// Emulated time of the event.
     pub fn at(&self) -> Duration {
         nanos(self.at)
     }
 }
 
-/// The power went.
+/// Loss of power.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct PowerCut {
     at: f64,
 }
 
 impl PowerCut {
-    /// When.
+    /// Emulated time of the event.
     pub fn at(&self) -> Duration {
         nanos(self.at)
     }
 }
 
-/// The firmware handed the chip over to the loader in its boot ROM, which ends with
-/// [`Board::boot_rom_reset`](crate::Board::boot_rom_reset).
+/// Entry into the loader of the boot ROM, which ends with [`Board::boot_rom_reset`](crate::Board::boot_rom_reset).
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct Loader {
     at: f64,
-    /// Pins that show its activity, a bit each.
+    /// Pins that show its activity, one bit per pin.
     pub activity_pins: u32,
-    /// Interfaces it shall not have: 1 the drive, 2 picotool's.
+    /// Disabled interfaces: bit 0 the drive, bit 1 picotool's.
     pub disabled_interfaces: u32,
 }
 
 impl Loader {
-    /// When.
+    /// Emulated time of the event.
     pub fn at(&self) -> Duration {
         nanos(self.at)
     }
 }
 
-/// Everything since the last time it was taken.
+/// All events since the last call of `take_events`.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 pub struct Events {
-    /// The servos' periods.
+    /// Periods of the servos.
     pub periods: Vec<Period>,
-    /// Edges of the servos' pins.
+    /// Edges of the servo pins.
     pub edges: Vec<Edge>,
-    /// The LED.
+    /// Changes of the LED.
     pub led: Vec<Led>,
     /// Resets by the watchdog.
     pub resets: Vec<Reset>,
-    /// When the power was cut, as [`Board::cut_power_after`](crate::Board::cut_power_after) asked.
+    /// Losses of power requested by [`Board::cut_power_after`](crate::Board::cut_power_after).
     pub power_cuts: Vec<PowerCut>,
-    /// When the chip was handed over to its loader.
+    /// Entries into the loader.
     pub loader: Vec<Loader>,
-    /// When patched code first ran.
+    /// First executions of patched code.
     pub patch_reached: Vec<PatchReached>,
-    /// Sectors of flash erased.
+    /// Number of erased flash sectors.
     pub erased: u32,
-    /// Pages of flash programmed.
+    /// Number of programmed flash pages.
     pub programmed: u32,
-    /// Bytes that the board was too busy to take from its UART, since it was switched on.
+    /// Bytes lost because the board did not read its UART in time, since power-on.
     pub lost: u64,
-    /// What the emulator had to say, and how often.
+    /// Warnings of the emulator, with their counts.
     pub warnings: BTreeMap<String, u32>,
-    /// The firmware's log.
+    /// Log of the firmware.
     #[serde(skip)]
     pub log: Vec<LogLine>,
 }
 
 impl Events {
-    /// Adds those of a later time.
+    /// Appends later events.
     pub fn append(&mut self, later: Self) {
         self.periods.extend(later.periods);
         self.edges.extend(later.edges);
@@ -228,23 +227,23 @@ impl Events {
     }
 }
 
-/// The firmware's stack.
+/// Stack use of the firmware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 pub struct Stack {
-    /// Bytes never written since the power came on.
+    /// Bytes never written since power-on.
     pub left: u32,
-    /// Bytes there are.
+    /// Size of the stack in bytes.
     pub size: u32,
 }
 
 impl Stack {
-    /// Most bytes that were in use, but for what was reserved and never written.
+    /// Greatest number of bytes in use. Reserved bytes that were never written do not count.
     pub fn used(&self) -> u32 {
         self.size - self.left
     }
 }
 
-/// The board's answer to a command.
+/// Reply of the emulator process to a command.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Answer {
     pub(crate) now: f64,
@@ -264,7 +263,7 @@ pub(crate) struct Answer {
     pub(crate) symbols: BTreeMap<String, u32>,
 }
 
-/// Emulated time of a whole number of nanoseconds or nearly so, never negative.
+/// Converts emulated nanoseconds to a duration, rounded to whole nanoseconds and clamped at zero.
 pub(crate) fn nanos(at: f64) -> Duration {
     Duration::from_secs_f64(at.max(0.0) * 1e-9)
 }

@@ -1,8 +1,8 @@
-//! The real firmware, run: the very ELF file that is flashed, on an emulated RP2040 ([rp2040js]), as a [`Device`](host_link::port::Device) in virtual
-//! time. What the twin is to the brain, this is to the whole image: UART, PWM, flash, ADC and watchdog included.
+//! Runs the firmware image on an emulated RP2040 ([rp2040js]) as a [`Device`](host_link::port::Device) in virtual time. The ELF
+//! file is the one that is flashed; UART, PWM, flash, ADC and watchdog are included. The twin runs only the player.
 //!
-//! The emulator is a Node.js program (`board/` beside this crate). It lives only while it is told to run, so sessions over a
-//! [`VirtualPort`](host_link::port::VirtualPort) are as deterministic as with a twin.
+//! The emulator is a Node.js program (folder `board/`). Emulated time advances only during a run command, so sessions over a
+//! [`VirtualPort`](host_link::port::VirtualPort) are as deterministic as with the twin.
 //!
 //! [rp2040js]: https://github.com/wokwi/rp2040js
 //!
@@ -19,7 +19,7 @@
 //! use host_link::Robot;
 //! use twin::{TwinConfig, World};
 //!
-//! /// What the firmware of this checkout calls itself.
+//! /// Version of this checkout's firmware.
 //! fn version(tank: &TwinConfig) -> Result<String, Box<dyn std::error::Error>> {
 //!     let board = Board::start(&BoardConfig::of_checkout(".".as_ref(), None, BoardKind::NanoConnect))?;
 //!     let robot = EmulatedRobot::new(board, World::new(tank)?)?;

@@ -1,4 +1,4 @@
-//! The firmware's log in words: what it writes are numbers, whose words only its ELF file has (defmt).
+//! Decoder of the firmware's defmt log: the board writes indices, and the ELF file has the format strings.
 
 use std::fmt;
 use std::path::Path;
@@ -9,29 +9,29 @@ use serde::Deserialize;
 
 use crate::events::nanos;
 
-/// How much a line of the log matters.
+/// Severity of a log line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LogLevel {
-    /// Every step.
+    /// Single steps.
     Trace,
-    /// For whoever works on the firmware.
+    /// Details for development of the firmware.
     Debug,
-    /// What went as it should.
+    /// Normal events.
     Info,
-    /// What did not, and was coped with.
+    /// Faults that were handled.
     Warn,
-    /// What did not, a crash among it.
+    /// Faults that were not handled, crashes included.
     Error,
 }
 
-/// A line of the firmware's log.
+/// Line of the firmware's log.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LogLine {
-    /// When it was written, emulated time.
+    /// Emulated time at which it was written.
     pub at: Duration,
-    /// How much it matters.
+    /// Severity.
     pub level: LogLevel,
-    /// What it says.
+    /// Text.
     pub text: String,
 }
 
@@ -49,14 +49,14 @@ impl fmt::Display for LogLine {
     }
 }
 
-/// Bytes of the log as the board hands them out.
+/// Bytes of the log as the emulator returns them.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Chunk {
     at: f64,
     bytes: Vec<u8>,
 }
 
-/// The log's words, and the beginning of a line whose end has not come yet.
+/// Decoder with the format strings and the incomplete last frame.
 #[derive(Debug)]
 pub(crate) struct Log {
     words: Words,
@@ -69,12 +69,12 @@ enum Words {
     Known(Box<Table>),
     /// The firmware has no log.
     None,
-    /// There are some, in an encoding of another age: why they cannot be read.
+    /// The log has an unsupported encoding; the text is the reason.
     Unreadable(String),
 }
 
 impl Log {
-    /// The log of a firmware, with what its ELF file says of it.
+    /// Reads the format strings from the firmware's ELF file.
     pub(crate) fn of_firmware(elf: &Path) -> Self {
         let words = match std::fs::read(elf) {
             Ok(elf) => Words::of(&elf),
@@ -86,7 +86,7 @@ impl Log {
         }
     }
 
-    /// The lines that end within a chunk.
+    /// Returns the lines that end within a chunk.
     pub(crate) fn read(&mut self, chunk: &Chunk) -> Vec<LogLine> {
         let at = nanos(chunk.at);
         let table = match &self.words {
@@ -99,7 +99,7 @@ impl Log {
             }
         };
         self.begun.extend_from_slice(&chunk.bytes);
-        // A frame ends at a zero.
+        // A zero byte ends a frame.
         let Some(end) = self.begun.iter().rposition(|byte| *byte == 0) else {
             return Vec::new();
         };
@@ -141,7 +141,7 @@ fn warning(at: Duration, text: String) -> LogLine {
     }
 }
 
-/// Plain prints have no level.
+/// Level of a frame; plain prints have no level.
 fn level(frame: &Frame<'_>) -> LogLevel {
     let Some(level) = frame.level() else {
         return LogLevel::Info;

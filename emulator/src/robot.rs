@@ -1,4 +1,4 @@
-//! The emulated board in a tank: its pulses drive the twin's servos, and the twin's cameras watch.
+//! Emulated board in the twin's tank: its pulses drive the twin's servos, and the twin's cameras track it.
 
 use std::collections::VecDeque;
 use std::error::Error;
@@ -10,18 +10,18 @@ use twin::{VirtualRobot, World};
 
 use crate::{Board, EmulatorError, Events, Line, LogLine, Period};
 
-/// A robot whose brain is the real firmware.
+/// Virtual robot that runs the firmware image.
 #[derive(Debug)]
 pub struct EmulatedRobot {
     board: Board,
     line: Line,
     world: World,
-    /// How far the robot has lived; the board may be ahead, within `quiet`.
+    /// Time up to which the tank has advanced; the board may be ahead, within `quiet`.
     now: Duration,
     quiet: Quiet,
-    /// Pulses that the world has not seen yet.
+    /// Periods that the tank has not processed yet.
     ahead: VecDeque<Period>,
-    /// When the board's power went.
+    /// Time at which the board lost its power.
     dark_from: Duration,
     events: Events,
     heard: Duration,
@@ -30,7 +30,7 @@ pub struct EmulatedRobot {
     failed: Option<EmulatorError>,
 }
 
-/// Until when nothing arrives, and how long what is sent takes to where it can be answered.
+/// Interval without arrivals at the board, within which the board may run ahead.
 #[derive(Debug, Clone, Copy, Default)]
 struct Quiet {
     until: Duration,
@@ -46,10 +46,10 @@ impl fmt::Debug for LogReader {
 }
 
 impl EmulatedRobot {
-    /// A board in its world, with its radio connected; both clocks must stand at zero.
+    /// Places a board in a tank, with its radio connected. Both clocks must be at zero.
     ///
     /// # Errors
-    /// [`EmulatorError`] when the board does not answer.
+    /// [`EmulatorError`] if the board does not reply.
     pub fn new(mut board: Board, world: World) -> Result<Self, EmulatorError> {
         board.set_connected(true)?;
         Ok(Self {
@@ -68,10 +68,10 @@ impl EmulatedRobot {
         })
     }
 
-    /// Talks over the USB cable, which is plugged in, and not over the radio, which nobody is connected to.
+    /// Plugs in the USB cable and disconnects the radio; the port is then the USB cable.
     ///
     /// # Errors
-    /// [`EmulatorError`] when the board does not answer.
+    /// [`EmulatorError`] if the board does not reply.
     pub fn over_usb(mut self) -> Result<Self, EmulatorError> {
         self.line = Line::Usb;
         self.board.set_connected(false)?;
@@ -79,14 +79,14 @@ impl EmulatedRobot {
         Ok(self)
     }
 
-    /// Shows every line of the firmware's log to `reader`, when it is written.
+    /// Passes every line of the firmware's log to `reader`.
     #[must_use]
     pub fn with_log_reader(mut self, reader: impl FnMut(&LogLine) + Send + 'static) -> Self {
         self.reader = Some(LogReader(Box::new(reader)));
         self
     }
 
-    /// Keeps no events: for a robot that lives long with nobody to take them.
+    /// Discards events, for a long run in which nobody takes them.
     #[must_use]
     pub fn without_events(mut self) -> Self {
         self.keeps_events = false;
@@ -98,17 +98,17 @@ impl EmulatedRobot {
         &mut self.board
     }
 
-    /// What the board did since this was last called.
+    /// Takes the events since the last call.
     pub fn take_events(&mut self) -> Events {
         std::mem::take(&mut self.events)
     }
 
-    /// When the last byte that came over the line was in the board's UART, or on its way through the cable.
+    /// Time at which the last received byte reached the board's UART or USB port.
     pub fn last_heard(&self) -> Duration {
         self.heard
     }
 
-    /// Remembers the first failure: a device has no way to tell it.
+    /// Performs an action and keeps the first failure, since the trait `Device` cannot return errors.
     fn attempt(&mut self, act: impl FnOnce(&mut Self) -> Result<(), EmulatorError>) {
         if self.failed.is_none() {
             self.failed = act(self).err();
@@ -121,7 +121,7 @@ impl EmulatedRobot {
             self.board.run_past_byte(until.max(to), travel)?;
             self.take_news();
         }
-        // The servos see each period's pulses from its start on.
+        // The pulses of a period act from its start.
         while let Some(period) = self.ahead.pop_front_if(|period| period.at() <= to) {
             self.world.advance(period.at());
             self.world.set_pulses(pulses_ns(&period));
@@ -194,7 +194,7 @@ impl VirtualRobot for EmulatedRobot {
     }
 }
 
-/// Both pulses in whole nanoseconds, or none.
+/// Both pulses in whole nanoseconds. Returns `None` if the pulses are off.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 16-bit counts of 320 ns
 fn pulses_ns(period: &Period) -> Option<[u32; 2]> {
     period

@@ -1,11 +1,11 @@
-//! What a board is started from, and what of it is missing.
+//! Configuration of an emulated board, with a check that all its files exist.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use super::EmulatorError;
 
-/// Which board the firmware was built for.
+/// Board for which the firmware was built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BoardKind {
     /// Arduino Nano RP2040 Connect.
@@ -15,7 +15,7 @@ pub enum BoardKind {
 }
 
 impl BoardKind {
-    /// The word in the names of images and features.
+    /// Name of the board in file names of images and in cargo features.
     pub fn word(self) -> &'static str {
         match self {
             Self::NanoConnect => "nano-connect",
@@ -24,19 +24,19 @@ impl BoardKind {
     }
 }
 
-/// What is needed to start a board.
+/// Files from which an emulated board is started.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoardConfig {
     /// The folder of `serve.mjs` with its `node_modules`.
     pub scripts: PathBuf,
     /// The firmware's ELF file, as it is flashed.
     pub firmware: PathBuf,
-    /// The board it was built for.
+    /// Board for which the firmware was built.
     pub kind: BoardKind,
 }
 
 impl BoardConfig {
-    /// The first thing that is needed and not there: firmware, script, emulator or Node.js.
+    /// Returns the first missing requirement: firmware, script, emulator or Node.js; `None` if all exist.
     pub fn missing(&self) -> Option<EmulatorError> {
         let script = self.scripts.join("serve.mjs");
         let emulator = self.scripts.join("node_modules/rp2040js");

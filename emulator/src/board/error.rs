@@ -1,37 +1,37 @@
-//! Why an emulated board cannot start or go on.
+//! Errors of the emulated board.
 
 use std::path::PathBuf;
 
-/// Why the emulated board does not do what it was told.
+/// Failure to start or to run the emulated board.
 #[derive(Debug, thiserror::Error)]
 pub enum EmulatorError {
-    /// Something that a start needs is not there.
+    /// A required file is missing.
     #[error("the emulated board cannot start: {what} is not at {path}; {advice}")]
     Missing {
-        /// What.
+        /// Description of the file.
         what: &'static str,
-        /// Where it was looked for.
+        /// Expected path.
         path: PathBuf,
-        /// What to do.
+        /// Command that creates the file.
         advice: &'static str,
     },
     /// Node could not be started.
     #[error("the emulated board cannot start: running `node`: {0}; install Node.js 18 or newer")]
     Node(#[source] std::io::Error),
-    /// The process went away.
+    /// The process ended unexpectedly.
     #[error("the emulated board ended while it was asked to `{command}`: {why}")]
     Gone {
-        /// What it was asked.
+        /// Command that was running.
         command: String,
-        /// What is known.
+        /// Known reason.
         why: String,
     },
-    /// The emulation itself failed.
+    /// The emulator reported an error.
     #[error("the emulated board failed while it was asked to `{command}`:\n{why}")]
     Failed {
-        /// What it was asked.
+        /// Command that was running.
         command: String,
-        /// Its own words.
+        /// Error text of the emulator.
         why: String,
     },
 }

@@ -1,4 +1,4 @@
-//! What a hand does to the board from outside: plugs, pins, buttons, the mains switch.
+//! External inputs of the board: cables, pins, buttons and the power switch.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use serde_json::json;
 use super::{Board, EmulatorError};
 
 impl Board {
-    /// The radio's STATE pin.
+    /// Sets the STATE pin of the radio.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -15,7 +15,7 @@ impl Board {
         self.perform(&json!({ "do": "connected", "up": up }))
     }
 
-    /// Voltage at the battery's ADC pin \[V\], 0 to 3.3.
+    /// Sets the voltage at the battery's ADC pin \[V\], 0 to 3.3.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -23,7 +23,7 @@ impl Board {
         self.perform(&json!({ "do": "battery", "volts": volts }))
     }
 
-    /// The power goes when so many more bytes of flash have been erased or programmed.
+    /// Cuts the power after `flash_bytes` more bytes of flash have been erased or programmed.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -31,7 +31,7 @@ impl Board {
         self.perform(&json!({ "do": "cut", "flashBytes": flash_bytes }))
     }
 
-    /// How long the flash chip takes to erase a sector from now on; 45 ms at first.
+    /// Sets the time that the flash chip takes to erase a sector; initially 45 ms.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -39,7 +39,7 @@ impl Board {
         self.perform(&json!({ "do": "erase_time", "ns": time.as_nanos() as f64 }))
     }
 
-    /// A computer's cable in the USB socket: with it in, the computer finds the device and opens its port. It brings no power.
+    /// Plugs or unplugs a USB cable. If plugged, the computer enumerates the device and opens its port. It does not power the board.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -47,7 +47,7 @@ impl Board {
         self.perform(&json!({ "do": "plugged", "in": plugged }))
     }
 
-    /// The presence jumper, from its pin to ground.
+    /// Opens or closes the presence jumper, which connects its pin to ground.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -55,7 +55,7 @@ impl Board {
         self.perform(&json!({ "do": "jumper", "closed": closed }))
     }
 
-    /// The BOOTSEL button (a Pico has one).
+    /// Presses or releases the BOOTSEL button of a Pico.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -63,7 +63,7 @@ impl Board {
         self.perform(&json!({ "do": "button", "pressed": pressed }))
     }
 
-    /// Off and on again: RAM is lost, flash stays.
+    /// Switches the power off and on: RAM is lost, flash stays.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -71,7 +71,7 @@ impl Board {
         self.perform(&json!({ "do": "power_cycle" }))
     }
 
-    /// The reset pin: RAM stays, the watchdog's scratch registers do not.
+    /// Resets by the reset pin: RAM stays, the watchdog's scratch registers are cleared.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -79,7 +79,7 @@ impl Board {
         self.perform(&json!({ "do": "pin_reset" }))
     }
 
-    /// The reset with which the chip's boot ROM ends the writing of flash over USB: by the watchdog, though nothing hung.
+    /// Resets as the boot ROM does after flash was written over USB: by the watchdog, without a hung task.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -87,7 +87,7 @@ impl Board {
         self.perform(&json!({ "do": "boot_rom_reset" }))
     }
 
-    /// A debugger's reset, of the core alone: RAM, the watchdog's scratch registers and its last reason stay.
+    /// Resets the core alone, as a debugger does: RAM, the watchdog's scratch registers and its last reason stay.
     ///
     /// # Errors
     /// As [`Self::run`].
