@@ -1,4 +1,4 @@
-//! Which shapes a real swimmer cannot take because two of its links would lie across each other.
+//! Shapes at which two links cross, which a robot with plates cannot take.
 //!
 //! The side links meet well inside |φ| < π: along φ₁ = φ₂ from arccos(−l₀/2l₁) on. Adjacent links share a joint and
 //! overlap only where a side link is folded flat onto the middle one, |φ| = π; that shape counts as crossing (the set is
@@ -8,8 +8,7 @@ use crate::{Links, Model, Scalar};
 use nalgebra::Vector2;
 
 impl<T: Scalar> Links<T> {
-    /// How far the side links overlap at shape Φ \[m\]: positive where they cross, negative where they do not,
-    /// continuous in between.
+    /// Overlap of the side links at shape Φ \[m\]: positive if they cross, negative if they do not, and continuous in between.
     ///
     /// The lines of the side links meet in a triangle over the middle link, with sides l₀ sin φ₂ / d and l₀ sin φ₁ / d,
     /// d = −sin(φ₁ + φ₂) (law of sines). The links cross if both sides are positive and not longer than the links: four
@@ -29,7 +28,7 @@ impl<T: Scalar> Links<T> {
         above(T::one()).max(above(-T::one()))
     }
 
-    /// Whether two links cross at shape Φ: the side links each other, or one of them folded onto the middle link.
+    /// Returns `true` if the side links cross at shape Φ, or if one of them is folded onto the middle link.
     pub fn cross(&self, phi: &Vector2<T>) -> bool {
         self.overlap(phi) > T::zero()
             || flatness(phi.x) >= T::zero()
@@ -38,17 +37,18 @@ impl<T: Scalar> Links<T> {
 }
 
 impl<T: Scalar> Model<T> {
-    /// Whether two links cross at shape Φ ([`Links::cross`]).
+    /// Returns `true` if two links cross at shape Φ ([`Links::cross`]).
     pub fn links_cross(&self, phi: &Vector2<T>) -> bool {
         self.swimmer().links.cross(phi)
     }
 }
 
-/// A side link this close to |φ| = π lies on the middle one \[rad\]: solvers and files meet a bound no better.
+/// Distance from |φ| = π \[rad\] below which a side link counts as folded onto the middle link; solvers and files are no more
+/// accurate at a bound.
 const FLAT: f64 = 1e-8;
 
-/// How far inside |φ| = π to rounding the angle lies \[rad\], whatever full turns it holds: not negative where the link is
-/// folded flat, continuous around there.
+/// Negative distance of the angle, modulo full turns, from |φ| = π, plus [`FLAT`] \[rad\]: not negative if the link is folded
+/// flat, and continuous near that shape.
 pub(crate) fn flatness<T: Scalar>(phi: T) -> T {
     let (sin, cos) = phi.sin_cos();
     if cos < T::zero() {

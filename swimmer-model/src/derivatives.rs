@@ -1,4 +1,4 @@
-//! What the exact derivatives of A and W are handed out in, and the connection's curvature made from them.
+//! Exact derivatives of A and W, and the curvature of the connection.
 
 use crate::Scalar;
 use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
@@ -27,8 +27,8 @@ pub struct SecondDerivatives<T> {
     pub d2_power: [Matrix2<T>; 3],
 }
 
-/// A, W and the connection's curvature F at one shape, with how the part of F along a covector changes: all that an arc of most
-/// displacement asks of a shape, at much less than the price of every second derivative.
+/// A, W and the curvature F of the connection at one shape, with the derivatives of F along a covector. An arc of greatest
+/// displacement needs no more, and this costs much less than all second derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeighedCurvature<T> {
     /// A(Φ), rows (x, y, θ).

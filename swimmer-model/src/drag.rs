@@ -1,7 +1,7 @@
-//! How the tangential drag coefficient c_t is tied to the fluid's viscosity μ.
+//! Relation between the tangential drag coefficient c_t and the fluid's viscosity μ.
 //!
-//! Without a sphere only χ = c_n/c_t matters. With one, the ratio c_t/μ decides how large the sphere's drag is beside
-//! the links', and a fit of (r_s, χ) depends on the form chosen here.
+//! Without a sphere only χ = c_n/c_t matters. With a sphere, c_t/μ determines the sphere's drag relative to that of the links,
+//! and a fit of (r_s, χ) depends on the form chosen here.
 
 use crate::Scalar;
 
@@ -10,9 +10,9 @@ use crate::Scalar;
 pub enum TangentialDrag<T> {
     /// One value for all links from a common ln(l/a): c_t/μ = 2π / ln(l/a).
     LogAspect(T),
-    /// Link by link from the half thickness a \[m\]: c_t/μ = 2π / ln(l_i/a).
+    /// One value per link from the half thickness a \[m\]: c_t/μ = 2π / ln(l_i/a).
     HalfThickness(T),
-    /// c_t/μ given outright, for all links.
+    /// c_t/μ, common to all links.
     OverViscosity(T),
 }
 

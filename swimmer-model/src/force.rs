@@ -1,20 +1,20 @@
-//! The fluid's force along the links, for whoever wants to see what drives the swimmer.
+//! Distribution of the fluid's force along the links.
 
 use crate::{Model, Scalar};
 use nalgebra::Vector2;
 
-/// One link in the middle link's frame, and the force per length that the fluid puts on it. Between the ends both run straight.
+/// Link in the middle link's frame with the fluid's force per length, which is linear between the ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkForce<T> {
-    /// Where the link begins and ends \[m\].
+    /// Ends of the link \[m\].
     pub ends: [Vector2<T>; 2],
     /// Force per length over μ at those ends \[m/s\].
     pub density: [Vector2<T>; 2],
 }
 
 impl<T: Scalar> Model<T> {
-    /// The fluid's force on the back, the middle and the front link at shape Φ with joint rates Φ̇ \[rad/s\], by resistive force
-    /// theory: −c_t along the link, −c_n across it, times the local velocity. The sphere's force is not among them.
+    /// Force of the fluid on the back, middle and front link at shape Φ with joint rates Φ̇ \[rad/s\], by resistive force theory:
+    /// −c_t along the link and −c_n across it, times the local velocity. The force on the sphere is not included.
     ///
     /// ```
     /// use nalgebra::Vector2;
@@ -35,7 +35,7 @@ impl<T: Scalar> Model<T> {
             |point: &Vector2<T>| Vector2::new(body.x - body.z * point.y, body.y + body.z * point.x);
         let (sin1, cos1) = phi.x.sin_cos();
         let (sin2, cos2) = phi.y.sin_cos();
-        // What the joints add at the tips; the joints themselves are carried with the middle link.
+        // Velocity that the joint rates add at the tips. The joints themselves move with the middle link.
         let turned = [
             Vector2::new(sin2, cos2) * (links.back * rate.y),
             Vector2::zeros(),
@@ -79,8 +79,7 @@ mod tests {
         (a.perp(&f) + 4.0 * middle + b.perp(&g)) * (b - a).norm() / 6.0
     }
 
-    /// What each servo must give to turn its side link against the fluid, from the balance of that link about its joint, is W Φ̇:
-    /// nothing of W is asked for it.
+    /// The torque of each servo, from the balance of its side link about the joint and without W, equals W Φ̇.
     #[test]
     fn the_torques_of_the_joints_are_w_times_their_rates() {
         let mut uneven = Swimmer::<f64>::robot();
@@ -108,7 +107,7 @@ mod tests {
         }
     }
 
-    /// With those of the sphere, the forces and the torques of the links balance.
+    /// The forces and torques of links and sphere add up to zero.
     #[test]
     fn forces_and_torques_balance() {
         let (phi, rate) = (Vector2::new(0.9, -1.4), Vector2::new(0.7, 1.3));

@@ -1,4 +1,4 @@
-//! Where the body lies at a shape: what touches walls, and what is drawn.
+//! Outline of the body at a shape, for drawings and distances to walls.
 
 use crate::{Links, Scalar};
 use nalgebra::Vector2;
@@ -42,7 +42,7 @@ mod tests {
         }
     }
 
-    /// Where the outline's side links cross, the model says so.
+    /// The model reports crossing links exactly if the outline crosses itself.
     #[test]
     fn the_outline_crosses_where_the_links_do() {
         let links = Swimmer::<f64>::robot().links;

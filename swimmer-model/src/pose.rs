@@ -1,4 +1,4 @@
-//! Where the swimmer is: positions and headings in the plane, SE(2).
+//! Poses in the plane: elements of SE(2).
 
 use crate::Scalar;
 use core::ops::Mul;
@@ -78,7 +78,7 @@ impl<T: Scalar> Pose<T> {
     pub fn exp(twist: &Vector3<T>) -> Self {
         let half = twist.z * T::from_f64(0.5);
         let (sin, cos) = half.sin_cos();
-        // sin(h)/h, whose series serves where the quotient would lose its meaning.
+        // sin(h)/h; the series replaces the quotient near h = 0.
         let sinc = if half.abs() < T::EPSILON.sqrt() {
             T::one() - half * half / T::from_f64(6.0)
         } else {

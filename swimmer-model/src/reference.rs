@@ -1,4 +1,4 @@
-//! Test problems written once: each with its values and tolerances, for tests, benches and other crates.
+//! Reference problems with values and tolerances, shared by the tests and benches of all crates.
 //!
 //! Values were computed in two independent ways; tolerances are half a unit of the last digit kept.
 
@@ -69,7 +69,7 @@ pub struct BestAmplitude {
     pub displacement_tolerance: f64,
 }
 
-/// The circle that swims farthest forwards.
+/// Circle with the greatest forward displacement.
 pub const BEST_CIRCLE: BestAmplitude = BestAmplitude {
     amplitude: 1.633_162_5,
     amplitude_tolerance: 5e-8,
@@ -77,7 +77,7 @@ pub const BEST_CIRCLE: BestAmplitude = BestAmplitude {
     displacement_tolerance: 1e-10,
 };
 
-/// The circle that swims farthest backwards.
+/// Circle with the greatest backward displacement.
 pub const SECOND_CIRCLE: BestAmplitude = BestAmplitude {
     amplitude: 3.647_415,
     amplitude_tolerance: 5e-7,
@@ -85,7 +85,7 @@ pub const SECOND_CIRCLE: BestAmplitude = BestAmplitude {
     displacement_tolerance: 5e-8,
 };
 
-/// The square that swims farthest forwards.
+/// Square with the greatest forward displacement.
 pub const BEST_SQUARE: BestAmplitude = BestAmplitude {
     amplitude: 1.390_607_7,
     amplitude_tolerance: 5e-8,

@@ -1,4 +1,4 @@
-//! The grand resistance matrix at θ = 0 as trigonometric polynomials.
+//! Grand resistance matrix at θ = 0 as trigonometric polynomials.
 //!
 //! Seen from the middle link, a side link of length l at angle φ has the body/body block M, the body/joint block n and
 //! the joint/joint block u, all linear in five functions of φ (k_t = c_t l, k_n = χ c_t l, h = l₀/2, b = l/2):
@@ -190,8 +190,8 @@ impl<T: Scalar> SideLink<T> {
         }
     }
 
-    /// How fast the link slips along itself, across itself at its centre, and turns, each times the root of its
-    /// resistance, for the body velocity `body` and the joint rate `rate`. The squares add up to its power.
+    /// Tangential, normal and angular velocity of the link's centre for the body velocity `body` and the joint rate `rate`, each
+    /// times the root of its resistance. The sum of their squares is the power of the link.
     #[inline(always)]
     pub(crate) fn slips(&self, (sin, cos): (T, T), body: &Vector3<T>, rate: T) -> Vector3<T> {
         let (x, y, turn) = (self.mirror * body.x, body.y, self.mirror * body.z);

@@ -1,4 +1,4 @@
-//! The one number type of the physics: `f32` on the chip, `f64` on the host.
+//! Number type of the physics: `f32` on the chip, `f64` on the host.
 //!
 //! Transcendental functions go straight to `libm`, never to the platform's own library, so that host and chip compute
 //! the same digits. The trait is open: an automatic-differentiation number can stand in (the tests do exactly that).
@@ -56,7 +56,7 @@ macro_rules! through_libm {
             const EPSILON: Self = <$t>::EPSILON;
 
             #[inline]
-            #[allow(clippy::cast_possible_truncation)] // rounding to the nearest is what is asked for
+            #[allow(clippy::cast_possible_truncation)] // rounding to the nearest is intended
             fn from_f64(value: f64) -> Self {
                 value as Self
             }
@@ -94,8 +94,8 @@ macro_rules! through_libm {
 through_libm!(f32, sincosf, libm::sqrtf, logf, atan2f, floorf);
 through_libm!(f64, sincos, sqrt, log, atan2, floor);
 
-/// The root rounded to the nearest, which is one and the same wherever it is taken. In a browser by the machine's instruction,
-/// which `libm` asks for on other machines only.
+/// Square root rounded to the nearest, the same on every platform. In a browser it is the machine's instruction, which `libm`
+/// uses on other platforms only.
 #[inline]
 fn sqrt(value: f64) -> f64 {
     #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]

@@ -1,4 +1,4 @@
-//! What a swimmer is: three links, their drag, and a sphere on the middle one.
+//! Parameters of a swimmer: three links, their drag, and a sphere on the middle link.
 
 use crate::{Scalar, TangentialDrag};
 use core::fmt;
@@ -8,9 +8,9 @@ use core::fmt;
 pub struct Links<T> {
     /// l₀, the middle link, centred at (x, y) with heading θ.
     pub middle: T,
-    /// l₁, hung on the front end of the middle link, at angle φ₁.
+    /// l₁, attached to the front end of the middle link at angle φ₁.
     pub front: T,
-    /// l₂, hung on the back end of the middle link, at angle φ₂.
+    /// l₂, attached to the back end of the middle link at angle φ₂.
     pub back: T,
 }
 
@@ -21,18 +21,18 @@ pub struct Swimmer<T> {
     pub links: Links<T>,
     /// χ = c_n/c_t, normal over tangential resistance coefficient; 2 for an infinitely slender rod.
     pub chi: T,
-    /// How c_t is tied to the viscosity.
+    /// Relation of c_t to the viscosity.
     pub tangential_drag: TangentialDrag<T>,
-    /// Radius r_s \[m\] of the sphere at the middle link's centre; 0 for none.
+    /// Radius r_s \[m\] of the sphere at the middle link's centre; 0 without a sphere.
     pub sphere_radius: T,
 }
 
-/// Why a set of parameters is no swimmer.
+/// Invalid parameter of a swimmer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InvalidSwimmer {
     /// A quantity that must be finite and positive is not.
     NotPositive {
-        /// Which quantity.
+        /// Name of the quantity.
         name: &'static str,
         /// Its value.
         value: f64,
@@ -78,7 +78,7 @@ impl fmt::Display for InvalidSwimmer {
 
 impl core::error::Error for InvalidSwimmer {}
 
-/// ln(l/a) common to all links that brings out the paper's robot figures.
+/// Common ln(l/a) that reproduces the paper's results for the robot.
 const ROBOT_LOG_ASPECT: f64 = 4.543;
 
 impl<T: Scalar> Swimmer<T> {
@@ -106,7 +106,7 @@ impl<T: Scalar> Swimmer<T> {
         }
     }
 
-    /// The robot's links (7.1 cm, 13.7 cm) as slender rods: χ = 2 and no sphere. Where a fit starts.
+    /// The robot's links (7.1 cm, 13.7 cm) as slender rods: χ = 2 and no sphere. Initial guess of a fit.
     pub fn robot_slender() -> Self {
         let side = T::from_f64(0.137);
         Self {
@@ -121,12 +121,12 @@ impl<T: Scalar> Swimmer<T> {
         }
     }
 
-    /// L = l₀ + l₁ + l₂ \[m\], the length that every non-dimensional result is taken over.
+    /// L = l₀ + l₁ + l₂ \[m\], the reference length of every non-dimensional result.
     pub fn total_length(&self) -> T {
         self.links.middle + self.links.front + self.links.back
     }
 
-    /// The same swimmer measured in its own length: L = 1, every other quantity unchanged.
+    /// Scales the swimmer to L = 1 with every dimensionless ratio unchanged.
     #[must_use]
     pub fn of_unit_length(&self) -> Self {
         let length = self.total_length();
@@ -147,7 +147,7 @@ impl<T: Scalar> Swimmer<T> {
         }
     }
 
-    /// c_t/μ of the side links, the reference drag of Lighthill's efficiency; the mean of both where they differ.
+    /// c_t/μ of the side links, the reference drag of Lighthill's efficiency; the mean of both if they differ.
     pub fn side_drag(&self) -> T {
         let drag = |length| self.tangential_drag.over_viscosity(length);
         (drag(self.links.front) + drag(self.links.back)) / T::from_f64(2.0)
@@ -156,7 +156,7 @@ impl<T: Scalar> Swimmer<T> {
     /// Checks that these parameters describe a swimmer.
     ///
     /// # Errors
-    /// Names the first quantity that is out of range, with its value.
+    /// [`InvalidSwimmer`] names the first quantity that is out of range, with its value.
     pub fn validate(&self) -> Result<(), InvalidSwimmer> {
         let positive = |name, value: T| {
             if value.is_finite() && value > T::zero() {

@@ -1,6 +1,6 @@
 //! Gaits as truncated Fourier series: the paper's doubly symmetric one (Appendix C) and the general closed curve.
 //!
-//! The coefficients live in any storage that can be borrowed as a slice: an array, a slice, or a `Vec` on the host.
+//! The coefficients may be in any storage that can be borrowed as a slice: an array, a slice, or a `Vec` on the host.
 
 use super::{Gait, GaitPoint, from_diagonals, two_pi, wrapped};
 use crate::Scalar;

@@ -1,7 +1,7 @@
 //! Gaits: closed curves Φ(u) of joint angles over one cycle, u from 0 to 1.
 //!
-//! Displacement does not depend on how fast a gait is run, so u is any parameter of the curve; energy does, and takes u
-//! for time over the period. Counter-clockwise in the (φ₁, φ₂) plane is forward (X > 0) for small loops.
+//! Displacement is independent of the time parametrisation, so u may be any parameter of the curve. For the energy, u is time
+//! over the period. A small loop run counter-clockwise in the (φ₁, φ₂) plane swims forwards (X > 0).
 
 mod fourier;
 mod reversed;
@@ -34,8 +34,8 @@ impl<T: Scalar> GaitPoint<T> {
 
 /// A closed curve of joint angles, made of one or more smooth pieces.
 ///
-/// Only [`at`](Gait::at) must be written for a gait that is smooth all round. One that is not tells where its pieces
-/// end, so that integration never steps across a corner.
+/// A gait that is smooth everywhere only implements [`at`](Gait::at). A gait with corners also returns the ends of its pieces,
+/// so that no integration step crosses a corner.
 pub trait Gait<T: Scalar> {
     /// Angles and rate at `u`; any `u` is taken modulo 1.
     fn at(&self, u: T) -> GaitPoint<T>;
@@ -50,7 +50,7 @@ pub trait Gait<T: Scalar> {
         T::one()
     }
 
-    /// Whether dΦ/du jumps where piece `i` ends (for the last piece: across u = 1).
+    /// Returns `true` if dΦ/du jumps at the end of piece `i` (for the last piece: across u = 1).
     fn corner_at_end(&self, _i: usize) -> bool {
         false
     }

@@ -1,4 +1,4 @@
-//! Any gait run backwards: time reversal undoes a stroke.
+//! Time-reversed gait, whose stroke is the inverse of the original.
 
 use super::{Gait, GaitPoint};
 use crate::Scalar;
@@ -34,7 +34,7 @@ impl<T: Scalar, G: Gait<T>> Gait<T> for Reversed<G> {
 }
 
 impl<G> Reversed<G> {
-    /// The piece of the forward gait whose end is the end of piece `i`; none for the last.
+    /// Piece of the forward gait with the same end as piece `i`. Returns `None` for the last piece.
     fn mirrored<T: Scalar>(&self, i: usize) -> Option<usize>
     where
         G: Gait<T>,

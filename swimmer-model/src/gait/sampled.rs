@@ -1,9 +1,9 @@
-//! A gait given by samples: what gait files and tables hold.
+//! Gait interpolated through samples, as gait files and tables hold them.
 //!
 //! Between knots a cubic Hermite polynomial, C¹, fourth order. The slope at a knot is the derivative there of the
-//! polynomial through the five nearest knots on the same side of every corner: exact for quartics, local, and never
-//! looking across a corner. Knots may be spaced as one likes. The curve closes exactly, because knot 0 is also the knot
-//! at u = 1.
+//! polynomial through the five nearest knots on the same side of every corner: exact for quartics, local, and independent of
+//! knots beyond a corner. The spacing of the knots is arbitrary. The curve closes exactly, because knot 0 is also the knot at
+//! u = 1.
 
 use super::{Gait, GaitPoint, wrapped};
 use crate::Scalar;
@@ -30,12 +30,12 @@ pub struct Sampled<'a, T> {
     corners: &'a [usize],
 }
 
-/// Why samples make no gait.
+/// Violation of the rules for samples of a gait.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InvalidSamples {
     /// A closed curve needs at least two different knots.
     TooFew {
-        /// How many there are.
+        /// Number of knots.
         knots: usize,
     },
     /// As many u as Φ are needed.
@@ -45,9 +45,9 @@ pub enum InvalidSamples {
         /// Number of Φ.
         phi: usize,
     },
-    /// The first knot must stand at u = 0.
+    /// The first knot must be at u = 0.
     Start {
-        /// Where it stands.
+        /// u of the first knot.
         u: f64,
     },
     /// u must increase from knot to knot, stay below 1 (but for a last knot that repeats the first), and be finite.
@@ -109,7 +109,7 @@ impl fmt::Display for InvalidSamples {
 
 impl core::error::Error for InvalidSamples {}
 
-/// Knots that a slope is made from.
+/// Number of knots that determine a slope.
 const STENCIL: usize = 5;
 
 impl<'a, T: Scalar> Sampled<'a, T> {
@@ -117,7 +117,7 @@ impl<'a, T: Scalar> Sampled<'a, T> {
     /// rounding is accepted and left out. `corners` are the numbers of the knots where the rate may jump, increasing.
     ///
     /// # Errors
-    /// Says which knot breaks which of these rules.
+    /// [`InvalidSamples`] names the knot and the rule that it violates.
     pub fn new(
         u: &'a [T],
         phi: &'a [Vector2<T>],
@@ -164,7 +164,7 @@ impl<'a, T: Scalar> Sampled<'a, T> {
         self.u.len()
     }
 
-    /// dΦ/du at a knot, from before it and from after it: the same but at a corner.
+    /// dΦ/du before and after a knot; both are equal except at a corner.
     pub fn slopes(&self, knot: usize) -> [Vector2<T>; 2] {
         let knot = knot.cast_signed();
         let after = self.slope(knot, 1);
@@ -264,7 +264,7 @@ fn largest<T: Scalar>(v: Vector2<T>) -> T {
 impl<T: Scalar> Gait<T> for Sampled<'_, T> {
     fn at(&self, u: T) -> GaitPoint<T> {
         let u = wrapped(u);
-        // The last knot not beyond u; knot 0 stands at 0, so there is one.
+        // The last knot not beyond u. It exists, since knot 0 is at 0.
         let i = self
             .u
             .partition_point(|&knot| knot <= u)
@@ -276,7 +276,7 @@ impl<T: Scalar> Gait<T> for Sampled<'_, T> {
         let (m0, m1) = (self.slope(i, 1), self.slope(i + 1, -1));
         let s = (u - self.unrolled_u(i)) / h;
         let (two, three) = (T::from_f64(2.0), T::from_f64(3.0));
-        // Newton's form of the cubic: start, chord, and how far both slopes stand off the chord.
+        // Newton form of the cubic: start, chord, and deviation of both slopes from the chord.
         let chord = (end - start) / h;
         let (off0, off1) = (m0 - chord, m1 - chord);
         let rest = T::one() - s;

@@ -1,4 +1,4 @@
-//! How much of a cycle a real swimmer could not follow because its links would cross.
+//! Share of a cycle with crossing links, which a robot could not follow.
 
 use super::extremes::zero;
 use super::legendre::{N, Rule, Series};
@@ -6,26 +6,26 @@ use crate::crossing::flatness;
 use crate::{Gait, Links, Scalar};
 use nalgebra::Vector2;
 
-/// The part of a gait whose shapes have crossing links, from 0 to 1.
+/// Share of a gait with crossing links, from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrossingShare<T> {
     /// Share of the cycle's u, the time as parametrised.
     pub of_cycle: T,
-    /// Share of the curve's length in the plane of joint angles, whatever its timing.
+    /// Share of the curve's length in the plane of joint angles, independent of its timing.
     pub of_length: T,
-    /// Whether a side link lies on the middle one or sweeps through it, be it for an instant.
+    /// `true` if a side link lies on the middle link or passes through it at any time.
     pub folds: bool,
 }
 
-/// Looks are at least this dense over a cycle.
+/// Least number of samples over a cycle.
 const LOOKS: usize = 256;
 
-/// An overlap below this share of the middle link is a touch: samples of a gait that runs along the border of a crossing
-/// lie to either side of it by rounding.
+/// Overlap, relative to the middle link, below which links only touch. Samples of a gait that runs along the boundary of the
+/// crossing set lie on either side of it by rounding.
 const TOUCH: f64 = 1e-8;
 
-/// Share of a gait with crossing links ([`Links::cross`]), where side links that touch do not cross. Beginnings and ends are
-/// located exactly; a crossing that comes and goes between two of 256 looks may be missed.
+/// Returns the share of a gait with crossing links ([`Links::cross`]); links that touch do not cross. Starts and ends of
+/// crossings are located exactly. A crossing that begins and ends between two of 256 samples may be missed.
 ///
 /// ```
 /// use swimmer_model::{Circle, Swimmer, crossing_share};
@@ -45,7 +45,7 @@ pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
         }
     });
     let (mut length, mut crossing_length) = (T::zero(), T::zero());
-    // Lengths cost more than looks, and most gaits have nothing to share.
+    // Lengths cost more than samples, and most gaits have no crossing.
     if crossing > T::zero() {
         stretches(links, gait, |from, to, crosses| {
             let stretch = arc_length(gait, from, to);
@@ -67,16 +67,17 @@ pub fn crossing_share<T: Scalar, G: Gait<T> + ?Sized>(
     }
 }
 
-/// What is seen of a gait at one place.
+/// Sample of a gait.
 struct Look<T> {
     phi: Vector2<T>,
-    /// How far the side links overlap.
+    /// Overlap of the side links.
     overlap: T,
-    /// [`flatness`] of the flatter one.
+    /// Larger [`flatness`] of the two side links.
     flat: T,
 }
 
-/// Visits all stretches of a cycle, from u to u and whether links cross there; says whether a side link is ever folded flat.
+/// Visits all intervals of a cycle with their ends u and whether links cross within. Returns `true` if a side link is ever
+/// folded flat.
 fn stretches<T: Scalar, G: Gait<T> + ?Sized>(
     links: &Links<T>,
     gait: &G,
@@ -91,7 +92,7 @@ fn stretches<T: Scalar, G: Gait<T> + ?Sized>(
             phi,
         }
     };
-    // A link that only sweeps through |φ| = π lies there for no time: it must lie there still a little further on.
+    // A link that only passes through |φ| = π is not folded for a finite time: it must still be folded a little later.
     let lies = |at: &Look<T>, from: T, towards: T| {
         at.flat >= T::zero() && look(from + (towards - from) * T::from_f64(0.01)).flat >= T::zero()
     };
@@ -140,9 +141,9 @@ fn stretches<T: Scalar, G: Gait<T> + ?Sized>(
 }
 
 impl<T: Scalar> Look<T> {
-    /// Whether a side link is folded flat here, at the look before, or on the short way between them.
+    /// Returns `true` if a side link is folded flat at this sample, at the previous one, or on the short way between them.
     fn folds_after(&self, before: &Self) -> bool {
-        // Flatness has this value where no side link points backwards.
+        // Value of the flatness if no side link points backwards.
         let forwards = -T::one();
         before.flat >= T::zero()
             || self.flat >= T::zero()
@@ -152,7 +153,7 @@ impl<T: Scalar> Look<T> {
     }
 }
 
-/// Whether a side link passes through |φ| = π on the short way between two shapes.
+/// Returns `true` if a side link passes through |φ| = π on the short way between two shapes.
 fn fold_between<T: Scalar>(from: &Vector2<T>, to: &Vector2<T>) -> bool {
     let through = |from: T, to: T| {
         let ((sin, cos), (next_sin, next_cos)) = (from.sin_cos(), to.sin_cos());

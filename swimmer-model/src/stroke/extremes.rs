@@ -1,12 +1,12 @@
 //! Event location: the exact largest and smallest values of y and θ along a cycle.
 //!
-//! Within a panel the rate is a polynomial. Its zeros are bracketed between nodes; where it only dips towards zero, the
-//! bottom of the dip is located first, so that a pair of close zeros is not missed.
+//! Within a panel the rate is a polynomial. Its zeros are bracketed between nodes. If the rate has an extremum near zero, that is
+//! located first, so that a pair of close zeros is not missed.
 
 use super::legendre::{N, Rule, Series};
 use crate::Scalar;
 
-/// Smallest and largest value met so far.
+/// Smallest and largest value so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range<T> {
     min: T,
@@ -62,13 +62,13 @@ impl<T: Scalar> Range<T> {
     }
 }
 
-/// Of opposite sign.
+/// Returns `true` if the signs are opposite.
 fn differ<T: Scalar>(a: T, b: T) -> bool {
     (a > T::zero() && b < T::zero()) || (a < T::zero() && b > T::zero())
 }
 
-/// A zero of `f` between two places where it differs in sign, to rounding, by the Illinois variant of the false
-/// position: an end that stays twice has its value halved, so that both ends close in.
+/// Returns a zero of `f` between two points of opposite sign, to rounding, by the Illinois variant of regula falsi: the value at
+/// an end that is kept twice is halved, so that both ends converge.
 pub(super) fn zero<T: Scalar>(mut left: T, mut right: T, f: impl Fn(T) -> T) -> T {
     let half = T::from_f64(0.5);
     let (mut at_left, mut at_right) = (f(left), f(right));
@@ -78,7 +78,7 @@ pub(super) fn zero<T: Scalar>(mut left: T, mut right: T, f: impl Fn(T) -> T) -> 
         let last = place;
         place = (left * at_right - right * at_left) / (at_right - at_left);
         if !(place > left && place < right) {
-            // The zero lies at an end to rounding.
+            // The zero is at an end to rounding.
             return place.max(left).min(right);
         }
         let value = f(place);

@@ -1,4 +1,4 @@
-//! One cycle swum: displacement, rotation, energy and efficiency of a gait, and the path between.
+//! Integration of one cycle: displacement, rotation, energy and efficiency of a gait, and the path of the swimmer.
 //!
 //! Because Φ(u) is given, θ is an integral of a known function and x, y are integrals once θ is known. So the cycle is
 //! cut into panels, each with a Gauss–Legendre rule whose polynomials are integrated exactly: no differential equation
@@ -17,30 +17,30 @@ use crate::{Gait, Model, Pose, Scalar};
 use extremes::Range;
 use nalgebra::Vector2;
 
-/// How closely a cycle is integrated.
+/// Accuracy of the integration of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Bound on the estimated error of the dense output on each panel: of positions over L, of headings in radians, both
-    /// over the gait's size in radians; of energies over those of the body held fast. Values for the whole cycle are
-    /// mostly some orders better. A bound below the rounding of the number type is raised to it.
+    /// over the gait's size in radians; of energies over those with the body held fast. Values for the whole cycle are usually
+    /// orders of magnitude more accurate. A bound below the rounding of the number type is raised to it.
     pub relative: f64,
 }
 
 impl Tolerance {
-    /// A tolerance from its value.
+    /// Creates a tolerance.
     pub const fn new(relative: f64) -> Self {
         Self { relative }
     }
 }
 
 impl Default for Tolerance {
-    /// 1e-12: as good as `f64` gets; `f32` takes its own rounding instead.
+    /// 1e-12, close to the rounding of `f64`; for `f32` its own rounding applies.
     fn default() -> Self {
         Self::new(1e-12)
     }
 }
 
-/// What one cycle of a gait brings about.
+/// Result of one cycle of a gait.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke<T> {
     /// Net displacement (X, Y) \[m\] over one cycle; X along the middle link's heading at the gait's first point.
@@ -51,12 +51,11 @@ pub struct Stroke<T> {
     pub delta_y: T,
     /// Δθ \[rad\]: half of max − min of θ over the cycle.
     pub delta_theta: T,
-    /// ∫₀¹ P du over μ \[m³\], P = Φ′ᵀWΦ′: the energy of a cycle of period 1 run as parametrised.
+    /// ∫₀¹ P du over μ \[m³\], P = Φ′ᵀWΦ′: energy of a cycle of period 1 as parametrised.
     pub energy: T,
-    /// ∫₀¹ √P du over √μ. Its square is the energy of a cycle of period 1 run at constant power, the least for this
-    /// curve.
+    /// ∫₀¹ √P du over √μ. Its square is the energy of a cycle of period 1 at constant power, the least for this curve.
     pub power_length: T,
-    /// L \[m\] of the swimmer that swam.
+    /// Length L of the swimmer \[m\].
     pub total_length: T,
     /// c_t/μ of its side links.
     pub side_drag: T,
@@ -64,12 +63,12 @@ pub struct Stroke<T> {
 
 impl<T: Scalar> Stroke<T> {
     /// Lighthill's efficiency ξ = c_t L V̄² / P̄ as parametrised (paper, definition of ξ), with V̄ = |net displacement|
-    /// per period. Zero for a gait that spends nothing.
+    /// per period. Zero for a gait without energy.
     pub fn efficiency(&self) -> T {
         self.lighthill(self.energy)
     }
 
-    /// ξ of the same curve run at constant power, the best any timing can make of it.
+    /// ξ of the same curve at constant power, the greatest of all time parametrisations.
     pub fn efficiency_constant_power(&self) -> T {
         self.lighthill(self.power_length * self.power_length)
     }
@@ -88,7 +87,7 @@ impl<T: Scalar> Stroke<T> {
     }
 }
 
-/// Swims one cycle.
+/// Integrates one cycle.
 pub fn swim<T: Scalar, G: Gait<T> + ?Sized>(
     model: &Model<T>,
     gait: &G,
@@ -115,7 +114,7 @@ pub fn swim<T: Scalar, G: Gait<T> + ?Sized>(
     }
 }
 
-/// One instant of a swum cycle.
+/// State of the swimmer at one time of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrajectoryPoint<T> {
     /// Fraction of the cycle, 0 to 1.
@@ -128,7 +127,7 @@ pub struct TrajectoryPoint<T> {
     pub energy: T,
 }
 
-/// Swims one cycle and hands out `intervals + 1` instants evenly spaced in u, both ends included.
+/// Integrates one cycle and passes `intervals + 1` states, evenly spaced in u with both ends, to `visit`.
 ///
 /// ```
 /// use swimmer_model::{Circle, Model, Swimmer, Tolerance, swim, trajectory};

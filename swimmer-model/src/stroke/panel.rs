@@ -1,4 +1,4 @@
-//! Panels: the stretches of a cycle within which rates are one polynomial each, and the walk along them.
+//! Panels: intervals of a cycle on which the rates are polynomials, and the adaptive subdivision into them.
 
 use super::Tolerance;
 use super::extremes::Range;
@@ -6,7 +6,7 @@ use super::legendre::{N, Rule, Series};
 use crate::{Gait, Model, Pose, Scalar};
 use nalgebra::Vector3;
 
-/// A stretch of a swum cycle with its dense output.
+/// Interval of an integrated cycle with its dense output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Panel<T> {
     start: T,
@@ -19,7 +19,7 @@ pub struct Panel<T> {
 }
 
 impl<T: Scalar> Panel<T> {
-    /// By the rule of M nodes.
+    /// Integrates an interval with the rule of M nodes.
     fn new<const M: usize, G: Gait<T> + ?Sized>(
         model: &Model<T>,
         gait: &G,
@@ -36,7 +36,7 @@ impl<T: Scalar> Panel<T> {
             let rate = point.rate;
             body[j] = a * rate;
             turning[j] = body[j].z;
-            // Nonnegative by physics; rounding at a standstill must not make a NaN of its root.
+            // Not negative by physics; clamped so that rounding near a standstill does not make its root NaN.
             power[j] = (w.m11 * rate.x * rate.x
                 + (w.m12 + w.m21) * rate.x * rate.y
                 + w.m22 * rate.y * rate.y)
@@ -60,22 +60,22 @@ impl<T: Scalar> Panel<T> {
         }
     }
 
-    /// u at which the panel begins.
+    /// Start of the panel.
     pub fn start(&self) -> T {
         self.start
     }
 
-    /// u at which the panel ends.
+    /// End of the panel.
     pub fn end(&self) -> T {
         self.start + self.half_width + self.half_width
     }
 
-    /// Pose where the panel begins.
+    /// Pose at the start of the panel.
     pub fn start_pose(&self) -> Pose<T> {
         self.pose
     }
 
-    /// Pose where the panel ends.
+    /// Pose at the end of the panel.
     pub fn end_pose(&self) -> Pose<T> {
         self.moved(self.rates.map(|r| r.whole_integral()))
     }
@@ -112,7 +112,7 @@ impl<T: Scalar> Panel<T> {
         self.half_width * self.root_power.integral(self.local(u))
     }
 
-    /// Widens the ranges of y and θ by this panel's.
+    /// Extends the ranges of y and θ by those of this panel.
     pub(super) fn extend_ranges(&self, y: &mut Range<T>, theta: &mut Range<T>) {
         y.extend(self.pose.y, self.half_width, &self.rates[1]);
         theta.extend(self.pose.theta, self.half_width, &self.rates[2]);
@@ -123,7 +123,7 @@ impl<T: Scalar> Panel<T> {
         Pose::new(self.pose.x + x, self.pose.y + y, self.pose.theta + theta)
     }
 
-    /// u as s in [−1, 1].
+    /// Maps u to s in [−1, 1].
     fn local(&self, u: T) -> T {
         let one = T::one();
         let s = if self.half_width > T::zero() {
@@ -134,36 +134,36 @@ impl<T: Scalar> Panel<T> {
         s.max(-one).min(one)
     }
 
-    /// Error estimate of the dense output over what is allowed, for a panel by the rule of M nodes: at most 1 is good enough.
+    /// Error estimate of the dense output relative to the tolerance, for a panel with M nodes; at most 1 is accepted.
     ///
-    /// What is left out of a rate is about as large as its last coefficients; its integral is M times smaller.
+    /// The truncation error of a rate is about as large as its last coefficients; that of its integral is M times smaller.
     fn excess<const M: usize>(&self, scale: &Scale<T>) -> T {
         let [x, y, theta] = self.rates.map(|r| r.tail::<M>());
         let motion = (x.max(y) / scale.length).max(theta) / scale.size;
         let energy = self.power.tail::<M>() / scale.power;
-        // Where a gait nearly stands still √P has nearly a kink, and no such gain.
+        // If a gait almost stands still, √P almost has a kink, and its integral is no more accurate.
         let power_length = self.root_power.tail::<M>() / scale.power.sqrt();
         let integral = (motion.max(energy) / T::from_f64(M as f64)).max(power_length);
         integral * self.half_width / scale.tolerance
     }
 }
 
-/// What counts as large for this swimmer and gait.
+/// Scales of the error estimate for this swimmer and gait.
 #[derive(Clone, Copy, Debug)]
 struct Scale<T> {
     /// L.
     length: T,
     /// Size of the gait in the plane of joint angles.
     size: T,
-    /// Power of the gait run evenly with the body held fast.
+    /// Mean power of the gait with the body held fast.
     power: T,
     tolerance: T,
 }
 
-/// Walks one cycle panel by panel: every smooth piece of the gait is halved, and its halves again, until each part is
-/// resolved to the tolerance.
+/// Iterator over the panels of one cycle. Every smooth piece of the gait is bisected until each part is resolved to the
+/// tolerance.
 ///
-/// The work is bounded: a curve that no reasonable number of panels resolves (noise, say) is finished coarsely.
+/// The work is bounded: a curve that would need too many panels (noise, for example) is integrated coarsely.
 ///
 /// ```
 /// use swimmer_model::{Circle, Model, Panels, Swimmer, Tolerance};
@@ -180,40 +180,40 @@ pub struct Panels<'a, T, G: ?Sized> {
     gait: &'a G,
     scale: Scale<T>,
     pose: Pose<T>,
-    /// Number of the piece after this one.
+    /// Index of the next piece.
     next_piece: usize,
-    /// This piece, from u to u.
+    /// Start and end of this piece.
     piece: (T, T),
     /// The next panel is part `index` of 2^`level` equal parts of the piece.
     level: u32,
     index: u32,
-    /// Halvings that may still be spent.
+    /// Remaining number of bisections.
     halvings: u32,
 }
 
-/// Points at which a gait's largest rate is looked for.
+/// Number of samples for the estimate of the gait's largest rate.
 const RATE_SAMPLES: usize = 32;
 
-/// Nodes of a panel where pieces are narrow.
+/// Number of nodes per panel if the pieces are narrow.
 const FEW: usize = 8;
 
-/// A gait of so many pieces has narrow ones: samples.
+/// Number of pieces from which they count as narrow, as for sampled gaits.
 const NARROW_PIECES: usize = 64;
 
-/// No panel is wider than this, so that no symmetry of a gait can fool the error estimate.
+/// Greatest width of a panel, so that no symmetry of a gait can defeat the error estimate.
 const WIDEST: f64 = 0.25;
 
-/// No panel is narrowed below this: a kink that a gait does not declare is passed at this width.
+/// Least width of a panel; an undeclared kink is integrated at this width.
 const NARROWEST: f64 = 1.0 / 1_048_576.0;
 
-/// Halvings for a whole cycle; a smooth gait takes some tens, an undeclared corner twenty.
+/// Number of bisections per cycle; a smooth gait needs some tens, an undeclared corner twenty.
 const HALVINGS: u32 = 5000;
 
-/// From this level on a wider panel is tried after every pair, else only where it promises to do.
+/// Level from which a wider panel is tried after every pair; below it, only if the error estimate promises success.
 const DEEP: u32 = 8;
 
 impl<'a, T: Scalar, G: Gait<T> + ?Sized> Panels<'a, T, G> {
-    /// From the gait's first point, at the origin with θ = 0.
+    /// Starts at the gait's first point, at the origin with θ = 0.
     pub fn new(model: &'a Model<T>, gait: &'a G, tolerance: &Tolerance) -> Self {
         let sample = |i: usize| {
             gait.at(T::from_f64((i as f64 + 0.5) / RATE_SAMPLES as f64))
@@ -221,7 +221,7 @@ impl<'a, T: Scalar, G: Gait<T> + ?Sized> Panels<'a, T, G> {
         };
         let rate = (0..RATE_SAMPLES).map(sample).fold(T::zero(), T::max);
         let rate = if rate > T::zero() { rate } else { T::one() };
-        // Rounding of u alone moves the shape by the rate times ε.
+        // Rounding of u changes the shape by the rate times ε.
         let rounding = T::from_f64(2.0) * T::EPSILON * (T::from_f64(4.0) + rate);
         let scale = Scale {
             length: model.swimmer().total_length(),
@@ -243,7 +243,7 @@ impl<'a, T: Scalar, G: Gait<T> + ?Sized> Panels<'a, T, G> {
         }
     }
 
-    /// Goes on to the next piece of the gait; none at the end of the cycle.
+    /// Enters the next piece of the gait. Returns `None` at the end of the cycle.
     fn enter_next_piece(&mut self) -> Option<()> {
         let pieces = self.gait.pieces().max(1);
         let start = self.piece.1;
@@ -266,7 +266,7 @@ impl<'a, T: Scalar, G: Gait<T> + ?Sized> Panels<'a, T, G> {
         None
     }
 
-    /// A panel with its excess, by fewer nodes where these will do.
+    /// Integrates a panel with its excess, with fewer nodes if these suffice.
     fn panel(&self, start: T, width: T) -> (Panel<T>, T) {
         if self.gait.pieces() >= NARROW_PIECES {
             let few = Panel::new::<FEW, G>(self.model, self.gait, start, width, self.pose);
@@ -280,7 +280,7 @@ impl<'a, T: Scalar, G: Gait<T> + ?Sized> Panels<'a, T, G> {
         (panel, excess)
     }
 
-    /// u at which part `index` of the piece begins.
+    /// Start of part `index` of the piece.
     fn part(&self, index: u32) -> T {
         let (start, end) = self.piece;
         let parts = 1_u32 << self.level;
@@ -311,7 +311,7 @@ impl<T: Scalar, G: Gait<T> + ?Sized> Iterator for Panels<'_, T, G> {
             }
             self.pose = panel.end_pose();
             self.index += 1;
-            // Twice as wide costs about 2¹¹ in the last coefficients.
+            // Twice the width multiplies the last coefficients by about 2¹¹.
             let promising = excess < T::from_f64(1e-3) || self.level > DEEP || self.halvings == 0;
             if promising
                 && self.index.is_multiple_of(2)
