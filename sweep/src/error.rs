@@ -1,13 +1,13 @@
-//! What can go wrong with a sweep.
+//! Errors of sweeps.
 
 use std::path::PathBuf;
 
 use swimmer_files::FileError;
 
-/// Why a sweep could not be planned, run, merged or mapped.
+/// Failure to plan, run, merge or map a sweep.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
-    /// A file of it could not be read or written, or what stands in it cannot be meant.
+    /// A file of the sweep could not be read or written, or its content is invalid.
     #[error(transparent)]
     File(#[from] FileError),
     /// The folder holds another plan.
@@ -17,18 +17,18 @@ pub enum SweepError {
     OtherPlan {
         /// The folder.
         folder: PathBuf,
-        /// The hash of the plan that is there.
+        /// Hash of the existing plan.
         there: String,
-        /// The hash of the one to be written.
+        /// Hash of the plan to be written.
         ours: String,
     },
-    /// The folder is not empty, and what is in it is no sweep.
+    /// The folder is not empty and does not contain a sweep.
     #[error("the folder {} is not empty and holds no plan; name another one with -o, or empty it", folder.display())]
     Taken {
         /// The folder.
         folder: PathBuf,
     },
-    /// The plan's text is not what its hash says.
+    /// The text of the plan does not match its hash.
     #[error(
         "{} was changed after it was made: its text no longer has the hash in its first line; plan again, into a new folder",
         path.display()
@@ -37,27 +37,27 @@ pub enum SweepError {
         /// The plan.
         path: PathBuf,
     },
-    /// The plan was made by another version, whose answers may differ.
+    /// The plan was written by another version, whose results may differ.
     #[error("{} was made by version {theirs}, this is {ours}: run it with that version, or plan again", path.display())]
     OtherVersion {
         /// The plan.
         path: PathBuf,
-        /// Its version.
+        /// Version that wrote the plan.
         theirs: String,
-        /// Ours.
+        /// Version of this program.
         ours: String,
     },
-    /// Blocks are missing or broken.
+    /// Blocks are missing or damaged.
     #[error(
         "{missing} of {blocks} blocks are not there or not whole (the first is block {first}): run the rest with `swimmer sweep run`, \
          which passes over what is finished"
     )]
     Unfinished {
-        /// How many.
+        /// Number of missing blocks.
         missing: u64,
-        /// Of so many.
+        /// Number of blocks of the plan.
         blocks: u64,
-        /// The lowest.
+        /// Lowest missing block.
         first: u64,
     },
     /// A table could not be written.
@@ -65,16 +65,16 @@ pub enum SweepError {
     Table {
         /// The table.
         path: PathBuf,
-        /// What the writer said.
+        /// Error of the writer.
         problem: String,
     },
-    /// No map can be drawn of this plan.
+    /// The plan cannot be mapped; the text is the reason.
     #[error("no map can be drawn: {0}")]
     NoMap(String),
 }
 
 impl SweepError {
-    /// Whether what was asked for makes no sense, rather than that it did not work.
+    /// Returns `true` if the request is invalid, and `false` if a valid request failed.
     pub fn is_bad_input(&self) -> bool {
         match self {
             Self::File(error) => !matches!(error, FileError::Write { .. }),

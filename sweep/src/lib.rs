@@ -1,26 +1,26 @@
-//! Thousands of designs: the best gait of each, on as many machines as there are, as one table.
+//! Sweeps over thousands of designs: the best gait of each, computed on any number of machines, as one table.
 //!
-//! A *spec* (TOML) names a swimmer, an objective and axes. [`Plan::of_spec`] makes a *plan* of it: immutable, with a hash of its
-//! content, and a rule instead of a list, so that 10⁸ tasks cost no more than ten. A *task* is one design; its key is its number,
-//! and [`Plan::point`] gives the values of its axes. Tasks run in *blocks* of consecutive keys: a block is what is run, skipped
-//! and written as a whole. Inside a block neighbours start from each other's gaits (`warm`), in an order that the block's keys
-//! fix, so that an answer depends neither on the split over machines nor on threads. A finished block is a *part*, one file with
-//! its hash; [`merge`] makes one Parquet file of all parts, sorted by key.
+//! A *spec* (TOML) names a swimmer, an objective and axes. [`Plan::of_spec`] converts it to a *plan*, which is immutable and has a
+//! hash of its content. The plan is a rule, not a list, so 10⁸ tasks need no more memory than ten. A *task* is one design. Its
+//! key is its number, and [`Plan::point`] returns the values of its axes. Tasks run in *blocks* of consecutive keys; a block is
+//! run, skipped and written as a whole. Within a block, neighbours start from each other's gaits (`warm`) in an order that the
+//! keys determine. A result therefore depends neither on the number of machines nor on threads. A finished block is a *part*, one
+//! file with its hash; [`merge`] writes one Parquet file of all parts, sorted by key.
 //!
-//! | module | what lives there |
+//! | module | contents |
 //! |---|---|
-//! | `spec` | what people write |
-//! | `plan` | what it becomes: the rule from a key to a point |
-//! | `field` | what an axis can change |
-//! | `objective` | one design solved, from nothing or from its neighbour's gait |
-//! | `warm` | a block: its order, and when a neighbour's gait is trusted |
-//! | `row` | what is kept of a design |
-//! | `part` | a finished block on the disk |
-//! | `run` | blocks over shards and threads |
-//! | `status` | how far all shards are, and what a design cost |
-//! | `merge` | all parts as one Parquet file |
-//! | `map` | two axes of a grid as a picture's numbers; folds, the Pareto set, designs that their neighbours beat |
-//! | `slurm` | the script of a job array |
+//! | `spec` | reader of the spec |
+//! | `plan` | plan: the rule from a key to a point |
+//! | `field` | parameters that an axis can vary |
+//! | `objective` | solution of one design, by a search or from a neighbour's gait |
+//! | `warm` | solution of a block: its order, and the check of warm starts |
+//! | `row` | result of a design |
+//! | `part` | file of a finished block |
+//! | `run` | execution of blocks over shards and threads |
+//! | `status` | progress of all shards, and time per design |
+//! | `merge` | Parquet file of all parts |
+//! | `map` | data of a map over two axes; folds, Pareto set, doubtful designs |
+//! | `slurm` | script of a job array |
 //!
 //! ```
 //! use sweep::{Plan, Running, Shard, Slice, doubts, map, merge, run, status, time_limit};

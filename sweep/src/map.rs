@@ -1,5 +1,5 @@
-//! A finished grid as numbers to draw: quantities over two axes, lines where the kind of gait changes, the Pareto set of speed
-//! and efficiency.
+//! Data of a map of a finished grid: quantities over two axes, lines at which the arcs of the gait change, and the Pareto set of
+//! speed and efficiency.
 
 mod doubt;
 
@@ -12,17 +12,18 @@ use crate::{Design, Field, Plan, SweepError, part};
 pub(crate) use doubt::among;
 pub use doubt::{Doubt, DoubtKind, doubts};
 
-/// Which two axes, and where on the others.
+/// Two-dimensional slice of a grid.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Slice {
-    /// Numbers of the axes to the right and upwards.
+    /// Indices of the horizontal and the vertical axis.
     pub axes: [usize; 2],
-    /// An index for every axis; those of the two do not matter.
+    /// Index of the value on every axis; those of the two mapped axes are ignored.
     pub at: Vec<u64>,
 }
 
 impl Slice {
-    /// The first two axes, at the first value of each other one; none where the plan is no grid of two axes or more.
+    /// Slice of the first two axes at the first value of each other axis. Returns `None` if the plan is not a grid with at least
+    /// two axes.
     pub fn first(plan: &Plan) -> Option<Self> {
         let axes = plan.axes().iter().enumerate();
         let mut drawn = axes.filter(|(_, axis)| axis.name.compares());
@@ -37,29 +38,29 @@ impl Slice {
 /// An axis of a map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MapAxis {
-    /// The field.
+    /// Name of the field.
     pub name: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// In the order of the plan.
+    /// Values in the order of the plan.
     pub values: Vec<f64>,
 }
 
-/// What is mapped: one row for each value of the second axis, one number for each of the first.
+/// Mapped quantity: one row per value of the second axis, one number per value of the first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Quantity {
     /// Its name.
     pub name: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// None where there is no gait.
+    /// `None` if the design has no gait.
     pub values: Vec<Vec<Option<f64>>>,
 }
 
-/// A design that no other one beats in speed and in efficiency at once.
+/// Design on the Pareto front of speed and efficiency.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Pareto {
-    /// The task.
+    /// Key of the task.
     pub key: u64,
     /// |d|/(L T) \[1/s\].
     pub speed: f64,
@@ -67,28 +68,28 @@ pub struct Pareto {
     pub efficiency: f64,
 }
 
-/// A map, as `sweep map --export` writes it.
+/// Map, as `sweep map --export` writes it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Map {
     /// `swimmer-sweep-map 1`.
     pub format: &'static str,
-    /// The plan's hash.
+    /// Hash of the plan.
     pub plan: String,
-    /// What the gaits are best at.
+    /// Objective of the gaits.
     pub objective: &'static str,
-    /// To the right, upwards.
+    /// Horizontal and vertical axis.
     pub axes: [MapAxis; 2],
-    /// Those that any design of the slice has.
+    /// Quantities that at least one design of the slice has.
     pub quantities: Vec<Quantity>,
-    /// Arcs of each gait.
+    /// Arcs of each gait, or `None`.
     pub structure: Vec<Vec<Option<String>>>,
     /// `optimal`, `uncertified` or `none`.
     pub status: Vec<Vec<&'static str>>,
-    /// Lines of points (values of both axes) between designs whose gaits are of different arcs, or of which one has none.
+    /// Polylines (values of both axes) between designs whose gaits have different arcs, or of which one has no gait.
     pub folds: Vec<Vec<[f64; 2]>>,
-    /// Of the whole plan, slowest first; empty without rates.
+    /// Pareto front of the whole plan, slowest first; empty without servo rates.
     pub pareto: Vec<Pareto>,
-    /// Of the whole plan.
+    /// Number of designs of the whole plan without a gait.
     #[serde(skip)]
     pub designs_without_gait: u64,
 }
@@ -109,10 +110,10 @@ const QUANTITIES: [Told; 7] = [
     ("period_s", "s", |row| row.period_s),
 ];
 
-/// The map of a slice of a finished grid.
+/// Returns the map of a slice of a finished grid.
 ///
 /// # Errors
-/// [`SweepError::NoMap`] where the slice is none of the plan's, [`SweepError::Unfinished`] where a part is missing.
+/// [`SweepError::NoMap`] if the slice does not match the plan, [`SweepError::Unfinished`] if a part is missing.
 pub fn map(plan: &Plan, folder: &Path, slice: &Slice) -> Result<Map, SweepError> {
     let [across, up] = slice.axes;
     let axes = plan.axes();
@@ -205,7 +206,7 @@ pub fn map(plan: &Plan, folder: &Path, slice: &Slice) -> Result<Map, SweepError>
     })
 }
 
-/// What the gaits of a slice are best at.
+/// Objective of the gaits of a slice.
 fn objective(plan: &Plan, slice: &Slice) -> &'static str {
     let aims = plan.objectives();
     let axis = plan
@@ -219,7 +220,7 @@ fn objective(plan: &Plan, slice: &Slice) -> &'static str {
 }
 
 const MOST_CELLS: u64 = 1 << 22;
-/// Designs that are sifted at a time.
+/// Number of designs after which the Pareto front is reduced.
 const FRONT: usize = 1 << 14;
 
 fn whole(index: u64) -> usize {
@@ -241,7 +242,7 @@ fn pareto(row: &Row) -> Option<Pareto> {
     })
 }
 
-/// Keeps what nothing beats, slowest first.
+/// Reduces the designs to their Pareto front, slowest first.
 fn keep_front(front: &mut Vec<Pareto>) {
     front.sort_by(|a, b| {
         b.speed
@@ -258,7 +259,7 @@ fn keep_front(front: &mut Vec<Pareto>) {
     front.reverse();
 }
 
-/// Borders between cells of different arcs, joined where they run straight on.
+/// Borders between cells with different arcs; collinear segments are joined.
 fn folds(axes: &[MapAxis; 2], cells: &[Vec<Row>]) -> Vec<Vec<[f64; 2]>> {
     let [x, y] = axes;
     let (columns, rows) = (x.values.len(), y.values.len());
@@ -301,7 +302,7 @@ fn folds(axes: &[MapAxis; 2], cells: &[Vec<Row>]) -> Vec<Vec<[f64; 2]>> {
     lines
 }
 
-/// Ends of the cells of an axis: halfway between its values, and as far beyond the outer ones.
+/// Cell borders of an axis: midpoints of its values, extrapolated at both ends.
 pub(crate) fn borders(values: &[f64]) -> Vec<f64> {
     let halfway = |a: f64, b: f64| 0.5 * (a + b);
     let mut ends: Vec<f64> = values
@@ -327,7 +328,7 @@ pub(crate) fn borders(values: &[f64]) -> Vec<f64> {
 }
 
 impl MapAxis {
-    /// Ends of its cells: one more than it has values.
+    /// Cell borders, one more than the number of values.
     pub fn borders(&self) -> Vec<f64> {
         borders(&self.values)
     }

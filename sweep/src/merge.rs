@@ -1,4 +1,4 @@
-//! All parts as one Parquet file, sorted by key, a row group at a time; the same bytes whoever ran the blocks.
+//! Merges all parts into one Parquet file, sorted by key, one row group at a time. The bytes do not depend on who ran the blocks.
 
 use std::fs::File;
 use std::io::{self, BufWriter};
@@ -17,24 +17,24 @@ use swimmer_files::stream_atomically;
 use crate::row::Row;
 use crate::{Aim, Field, Plan, SweepError, part};
 
-/// What was merged.
+/// Counts of a merged table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Merged {
-    /// Rows of the table.
+    /// Number of rows.
     #[serde(rename = "done")]
     pub tasks: u64,
     /// Designs without a gait.
     pub failed: u64,
-    /// Gaits whose certificate passes.
+    /// Number of gaits whose certificate passes.
     pub certified: u64,
 }
 
-/// The column of an axis of objectives, as words: `objective` is what was maximised.
+/// Name of the column of an objective axis. The column `objective` has the maximised value.
 const BEST_FOR: &str = "best_for";
-/// Rows of a row group, at least; what is held at once.
+/// Least number of rows of a row group, which is held in memory.
 const GROUP: usize = 1 << 16;
 
-/// Quantities of a row that are numbers.
+/// Numeric quantity of a row: column name and accessor.
 type Number = (&'static str, fn(&Row) -> Option<f64>);
 
 const NUMBERS: [Number; 11] = [
@@ -57,7 +57,7 @@ const NUMBERS: [Number; 11] = [
 /// (`optimal`, `uncertified` or `none`), `certified`, `warm` and `reason`. Its metadata has the plan and its hash.
 ///
 /// # Errors
-/// [`SweepError::Unfinished`], or that the table cannot be written, in which case there is none.
+/// [`SweepError::Unfinished`] if parts are missing, or the error of the writer. No table is left behind.
 pub fn merge(plan: &Plan, folder: &Path, table: &Path) -> Result<Merged, SweepError> {
     let lost: Vec<u64> = (0..plan.blocks())
         .filter(|block| part::read(plan, folder, *block).is_none())

@@ -1,5 +1,5 @@
-//! A finished block on the disk: rows between the plan's hash and their own, so that a part of another plan, and one that is not
-//! whole, are known as such.
+//! File of a finished block: rows between the plan's hash and their own hash, so that a part of another plan or an incomplete part
+//! is recognised.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,10 +12,10 @@ use crate::{Plan, SweepError};
 
 const MAGIC: &[u8] = b"swimmer-sweep-part 1\n";
 const HASH: usize = 32;
-/// Parts of a folder.
+/// Number of parts per folder.
 const FOLDER: u64 = 1000;
 
-/// Where a block's part lies.
+/// Path of a block's part.
 pub(crate) fn path(folder: &Path, block: u64) -> PathBuf {
     folder
         .join("parts")
@@ -23,7 +23,7 @@ pub(crate) fn path(folder: &Path, block: u64) -> PathBuf {
         .join(format!("{block:09}.part"))
 }
 
-/// Puts a finished block into its place.
+/// Writes a finished block.
 pub(crate) fn write(
     plan: &Plan,
     folder: &Path,
@@ -46,7 +46,7 @@ fn head(plan: &Plan, block: u64) -> Vec<u8> {
     [MAGIC, plan.hash_bytes(), &block.to_le_bytes()].concat()
 }
 
-/// The rows of a block, where its part is there and whole.
+/// Reads the rows of a block. Returns `None` if its part is missing or incomplete.
 pub(crate) fn read(plan: &Plan, folder: &Path, block: u64) -> Option<Vec<Row>> {
     let bytes = fs::read(path(folder, block)).ok()?;
     let (told, hash) = bytes.split_at_checked(bytes.len().checked_sub(HASH)?)?;

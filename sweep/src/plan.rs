@@ -1,4 +1,4 @@
-//! An immutable plan: a rule that gives every task's design, and the hash of its content.
+//! Immutable plan of a sweep: the rule that maps a task to its design, and the hash of its content.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,42 +13,42 @@ use swimmer_files::{FileError, SwimmerFile, write_atomically};
 use crate::field::Design as DesignPoint;
 use crate::{Aim, Field, SweepError};
 
-/// How the values between two ends lie.
+/// Spacing of the values between two ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scale {
-    /// Equal differences.
+    /// Linear: equal differences.
     Lin,
-    /// Equal ratios.
+    /// Logarithmic: equal ratios.
     Log,
 }
 
-/// The values of an axis.
+/// Values of an axis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Values {
-    /// These.
+    /// Explicit list.
     List {
-        /// In any order.
+        /// Values in any order.
         values: Vec<f64>,
     },
-    /// From one end to the other: a grid of `count`, or anywhere between them in a random or Sobol design.
+    /// Interval: `count` values in a grid, or any value in a random or Sobol design.
     Range {
-        /// The first.
+        /// First value.
         from: f64,
-        /// The last.
+        /// Last value.
         to: f64,
-        /// How many of a grid; 0 in the other designs.
+        /// Number of values in a grid; 0 in the other designs.
         count: u64,
-        /// How they lie.
+        /// Spacing.
         scale: Scale,
     },
 }
 
-/// What changes from design to design, and how.
+/// Axis of a sweep: a parameter and its values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
-    /// What it changes.
+    /// Parameter.
     pub name: Field,
     /// Its values.
     #[serde(flatten)]
@@ -56,7 +56,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Values of a grid.
+    /// Number of values in a grid.
     pub fn count(&self) -> u64 {
         match &self.values {
             Values::List { values } => values.len() as u64,
@@ -64,7 +64,7 @@ impl Axis {
         }
     }
 
-    /// Value number `index` of a grid.
+    /// Value with this index in a grid.
     pub fn value(&self, index: u64) -> f64 {
         match &self.values {
             Values::List { values } => usize::try_from(index)
@@ -79,7 +79,7 @@ impl Axis {
         }
     }
 
-    /// The value at a share (0 to 1) of the way.
+    /// Value at a fraction (0 to 1) of the interval.
     fn between(&self, share: f64) -> f64 {
         match &self.values {
             Values::List { .. } => f64::NAN,
@@ -93,13 +93,13 @@ impl Axis {
     }
 }
 
-/// Which points of the axes are designs.
+/// Selection of the designs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase", tag = "kind")]
 pub enum Design {
     /// Every combination of the axes' values; the last axis changes fastest.
     Grid,
-    /// Points drawn evenly and independently.
+    /// Independent, uniformly distributed points.
     Random {
         /// How many.
         count: u64,
@@ -299,7 +299,7 @@ impl Plan {
         &self.content.axis
     }
 
-    /// Which points of the axes are designs.
+    /// Selection of the designs.
     pub fn design(&self) -> Design {
         self.content.design
     }

@@ -1,18 +1,18 @@
-//! What is kept of a design.
+//! Result of one design.
 
 use gait_optimizer::OptimalGait;
 use serde::{Deserialize, Serialize};
 
-/// One design's answer. Quantities are none where there is no gait, or where the objective knows no such thing.
+/// Result of one design. A quantity is `None` if there is no gait or if the objective does not define it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Row {
-    /// The task.
+    /// Key of the task.
     pub key: u64,
-    /// Why there is no gait; none where there is one.
+    /// Reason if there is no gait; `None` otherwise.
     pub reason: Option<String>,
-    /// Whether the gait was found from its neighbour's rather than by a search.
+    /// `true` if the gait was found from a neighbour's gait instead of by a search.
     pub warm: bool,
-    /// What was maximised: |X|/L, ξ, L/s, rad or |Y|/L.
+    /// Maximised value: |X|/L, ξ, L/s, rad or |Y|/L.
     pub objective: Option<f64>,
     /// X/L of a cycle, signed.
     pub displacement_over_length: Option<f64>,
@@ -22,7 +22,7 @@ pub struct Row {
     pub rotation_rad: Option<f64>,
     /// Lighthill's ξ at constant power.
     pub efficiency: Option<f64>,
-    /// |d|/(L T) \[1/s\] in the shortest period that the servos' rates allow; none without rates.
+    /// |d|/(L T) \[1/s\] in the shortest period that the servo rates allow; `None` without rates.
     pub speed_over_length_per_s: Option<f64>,
     /// That period \[s\].
     pub period_s: Option<f64>,
@@ -34,14 +34,14 @@ pub struct Row {
     pub end_angle_rad: Option<f64>,
     /// Share of the cycle with crossing links.
     pub links_cross: Option<f64>,
-    /// The kinds of the arcs in order, of a quarter or of the cycle.
+    /// Kinds of the arcs in order, of a quarter or of the cycle.
     pub arcs: Option<String>,
-    /// Whether the certificate passes; none where there is no gait.
+    /// `true` if the certificate passes; `None` if there is no gait.
     pub certified: Option<bool>,
 }
 
 impl Row {
-    /// The row of a design without a gait.
+    /// Row of a design without a gait.
     pub(crate) fn without(key: u64, reason: String) -> Self {
         Self {
             key,
@@ -50,7 +50,7 @@ impl Row {
         }
     }
 
-    /// The row of a gait, as far as the gait itself tells it.
+    /// Row of a gait, with the quantities that the gait determines.
     pub(crate) fn of(gait: &OptimalGait, rates: Option<[f64; 2]>) -> Self {
         let distance = gait
             .displacement_over_length
@@ -74,7 +74,7 @@ impl Row {
         }
     }
 
-    /// What the design came to: `optimal`, `uncertified` or `none`.
+    /// Status of the design: `optimal`, `uncertified` or `none`.
     pub fn status(&self) -> &'static str {
         match self.certified {
             Some(true) => "optimal",
@@ -89,7 +89,7 @@ fn arcs(gait: &OptimalGait) -> String {
     words.join(" ")
 }
 
-/// Time \[s\] that servos of these rates need for the samples' sides; a bent side counts as its chord.
+/// Shortest period \[s\] at these servo rates along the polygon of the samples.
 fn shortest_period(gait: &OptimalGait, rates: [f64; 2]) -> f64 {
     let sides = gait.phi().iter().zip(gait.phi().iter().skip(1));
     sides

@@ -1,4 +1,4 @@
-//! Blocks over shards and threads.
+//! Execution of blocks over shards and threads.
 
 use std::fs::{self, OpenOptions};
 use std::io::Write as _;
@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use crate::warm::{self, Cost};
 use crate::{Plan, SweepError, part};
 
-/// A part of a sweep: every `of`-th block, from block `number` − 1 on.
+/// Share of a sweep: every `of`-th block, from block `number` − 1 on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     number: u64,
@@ -17,15 +17,15 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// All blocks.
+    /// Shard of all blocks.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Shard `number` (from 1) of so many; none where there is no such shard.
+    /// Shard `number` (from 1) of `of`. Returns `None` if `number` is out of range.
     pub fn new(number: u64, of: u64) -> Option<Self> {
         (number >= 1 && number <= of).then_some(Self { number, of })
     }
 
-    /// How many of a plan's blocks are its own.
+    /// Number of the plan's blocks in this shard.
     pub fn blocks(self, plan: &Plan) -> u64 {
         let blocks = plan.blocks();
         blocks / self.of + u64::from(self.number <= blocks % self.of)
@@ -42,16 +42,16 @@ impl std::fmt::Display for Shard {
     }
 }
 
-/// How a shard is run.
+/// Options of the execution of a shard.
 #[derive(Clone, Copy)]
 pub struct Running<'a> {
-    /// Which blocks.
+    /// Shard to run.
     pub shard: Shard,
-    /// Threads to work on, each on a block of its own; the answers do not depend on them.
+    /// Number of threads, each with its own block. Results do not depend on it.
     pub threads: usize,
-    /// A clock \[s\], for what designs cost.
+    /// Clock \[s\] for the computation time per design.
     pub seconds: &'a (dyn Fn() -> f64 + Sync),
-    /// Is told how many of the shard's blocks are finished, and how many of them were before.
+    /// Callback with the progress after each block.
     pub watch: &'a (dyn Fn(Ran) + Sync),
 }
 
@@ -64,28 +64,28 @@ impl std::fmt::Debug for Running<'_> {
     }
 }
 
-/// How far a run is.
+/// Progress of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Ran {
-    /// Tasks of the finished blocks.
+    /// Number of tasks in finished blocks.
     #[serde(rename = "done")]
     pub tasks: u64,
-    /// Of these, designs without a gait.
+    /// Number of those without a gait.
     pub failed: u64,
-    /// Blocks of the shard.
+    /// Number of blocks of the shard.
     pub blocks: u64,
-    /// Finished, in this run or before.
+    /// Number of finished blocks, earlier runs included.
     #[serde(skip)]
     pub done: u64,
-    /// Of these, those that were there already.
+    /// Number of blocks finished by earlier runs.
     #[serde(rename = "blocks_skipped")]
     pub skipped: u64,
 }
 
-/// Runs a shard: every block of it that is not there, or not whole.
+/// Runs every block of a shard that is missing or incomplete.
 ///
 /// # Errors
-/// The first part that cannot be written, as where the disk is full; what is finished by then stays.
+/// The error of the first part that cannot be written. Finished parts remain.
 pub fn run(plan: &Plan, folder: &Path, running: &Running<'_>) -> Result<Ran, SweepError> {
     let shard = running.shard;
     let blocks = shard.blocks(plan);
@@ -163,10 +163,10 @@ fn finished(
     })
 }
 
-/// Where what designs cost is noted, beside the answers, which never tell times.
+/// Folder of the computation times, which are kept apart from the results.
 pub(crate) const COSTS: &str = "costs";
 
-/// One line for a block: `block,tasks,cold,warm,cold_s,warm_s`. It helps to plan; that it cannot be written is no reason to fail.
+/// Appends a line for a block: `block,tasks,cold,warm,cold_s,warm_s`. It only serves planning, so a failure is ignored.
 fn note(folder: &Path, shard: Shard, block: u64, tasks: usize, cost: &Cost) {
     let Cost {
         cold,

@@ -1,40 +1,40 @@
-//! The script of a Slurm job array: one shard a task of the array, requeued where its node is lost.
+//! Script of a Slurm job array: one shard per task of the array, requeued if its node fails.
 
 use std::path::Path;
 
 use crate::{Plan, Status};
 
-/// How a sweep is put to Slurm.
+/// Options of the Slurm script.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Slurm<'a> {
-    /// Shards, each a task of the array.
+    /// Number of shards, each a task of the array.
     pub shards: u64,
-    /// Cores of each.
+    /// Cores per shard.
     pub cores: u64,
-    /// Its limit \[min\].
+    /// Time limit per shard \[min\].
     pub minutes: u64,
-    /// The program, as the nodes see it.
+    /// Path of the program on the nodes.
     pub program: &'a Path,
-    /// The folder of the sweep, as the nodes see it.
+    /// Folder of the sweep on the nodes.
     pub folder: &'a Path,
-    /// More options of `sbatch`, as `--partition=short`.
+    /// Further options of `sbatch`, such as `--partition=short`.
     pub options: &'a [String],
 }
 
-/// No limit is shorter \[min\].
+/// Shortest time limit \[min\].
 const SHORTEST: f64 = 5.0;
-/// Over the time that is expected: nodes differ, and so do designs.
-const ROOM: f64 = 2.0;
+/// Factor over the expected time, since nodes and designs differ.
+const MARGIN: f64 = 2.0;
 
-/// The limit of a shard \[min\] by what designs cost so far; none where nothing was timed.
+/// Time limit of a shard \[min\] from the mean time per design so far. Returns `None` if no design was timed.
 pub fn time_limit(status: &Status, shards: u64, cores: u64) -> Option<u64> {
     let each = status.left_s? / (shards.max(1) * cores.max(1)) as f64;
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // positive, saturates
-    Some((ROOM * each / 60.0).max(SHORTEST).ceil() as u64)
+    Some((MARGIN * each / 60.0).max(SHORTEST).ceil() as u64)
 }
 
 impl Slurm<'_> {
-    /// The script.
+    /// Returns the text of the script.
     pub fn script(&self, plan: &Plan) -> String {
         let folder = quoted(&self.folder.display().to_string());
         let logs = self.folder.join("slurm-%A_%a.log");
@@ -67,7 +67,7 @@ impl Slurm<'_> {
     }
 }
 
-/// A word of the shell.
+/// Quotes a word for the shell.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+%=:,@".contains(c);
     if !word.is_empty() && word.chars().all(plain) {

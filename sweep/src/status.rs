@@ -1,4 +1,4 @@
-//! How far all shards are, and what a design cost.
+//! Progress of all shards, and computation time per design.
 
 use std::fs;
 use std::path::Path;
@@ -8,43 +8,43 @@ use serde::Serialize;
 use crate::run::COSTS;
 use crate::{Plan, SweepError, part};
 
-/// A sweep's progress.
+/// Progress of a sweep.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Status {
-    /// The plan's hash.
+    /// Hash of the plan.
     pub plan: String,
-    /// Designs of the plan.
+    /// Number of designs of the plan.
     pub tasks: u64,
-    /// Designs of finished blocks.
+    /// Number of designs in finished blocks.
     pub done: u64,
-    /// Of these, those without a gait.
+    /// Number of those without a gait.
     pub failed: u64,
-    /// Of these, gaits whose certificate does not pass.
+    /// Number of those whose certificate does not pass.
     pub uncertified: u64,
-    /// Of these, gaits that were followed from their neighbour's.
+    /// Number of those found from a neighbour's gait.
     pub warm: u64,
-    /// Blocks of the plan.
+    /// Number of blocks of the plan.
     pub blocks: u64,
-    /// Finished and whole.
+    /// Number of finished blocks.
     pub blocks_done: u64,
-    /// There, but not whole, or of another plan: run again, they are made anew.
+    /// Number of incomplete blocks and of blocks of another plan; a run replaces them.
     pub blocks_broken: u64,
-    /// Bytes of all parts.
+    /// Size of all parts in bytes.
     pub bytes: u64,
-    /// Core seconds of a search, the mean; none before one was timed.
+    /// Mean core seconds of a search; `None` before the first was timed.
     pub cold_s: Option<f64>,
-    /// Core seconds of a step from a neighbour, the mean.
+    /// Mean core seconds of a step from a neighbour's gait.
     pub warm_s: Option<f64>,
-    /// Core seconds of a design, all told.
+    /// Mean core seconds of a design, searches and steps together.
     pub design_s: Option<f64>,
-    /// Core seconds that are left, by that.
+    /// Remaining core seconds at that mean.
     pub left_s: Option<f64>,
 }
 
-/// Looks at every part and every note of costs.
+/// Reads every part and the computation times.
 ///
 /// # Errors
-/// None as yet; a part that cannot be read counts as missing.
+/// Currently none; a part that cannot be read counts as missing.
 pub fn status(plan: &Plan, folder: &Path) -> Result<Status, SweepError> {
     let mut status = Status {
         plan: plan.hash(),
@@ -80,7 +80,7 @@ pub fn status(plan: &Plan, folder: &Path) -> Result<Status, SweepError> {
     Ok(status)
 }
 
-/// Tasks, searches, steps, and the seconds of both; a line cut short by a kill is passed over.
+/// Sums of tasks, searches, steps, and the seconds of both. An incomplete line is skipped.
 fn costs(folder: &Path) -> [f64; 5] {
     let mut sums = [0.0; 5];
     let files = fs::read_dir(folder.join(COSTS)).into_iter().flatten();

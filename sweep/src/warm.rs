@@ -1,12 +1,12 @@
-//! A block solved: in which order, and when a neighbour's gait is trusted.
+//! Solution of a block by warm starts (continuation over neighbouring designs), with checks against searches.
 //!
-//! A block's keys are visited row by row of the grid's last axis, every second row backwards, so that each task is a step away
-//! from the one before. Every `anchor` tasks one is solved from nothing, and so is the last of each run of neighbours. Between two
-//! such *anchors* each task starts from the gait before it. What followed counts only if it arrives at the second anchor with that
-//! anchor's own gait: as good to 10⁻⁷, of the same arcs. Where it arrives with another, the middle is solved from nothing and both
-//! halves are asked the same, down to single tasks. So a gait that loses its place to another kind of gait is noticed unless that
-//! one wins between two anchors only; and every gait, followed or searched, carries its own certificate. In the end neighbours of
-//! unlike gaits try each other's ([`again`]).
+//! The keys of a block are visited along the rows of the grid's last axis, every second row backwards, so that consecutive tasks
+//! are neighbours. Every `anchor`-th task, and the last task of each run of neighbours, is solved by a search. Between two such
+//! *anchors* each task starts from the gait before it. The continued gaits are accepted only if the last one agrees with the
+//! second anchor's gait: equal to 10⁻⁷, with the same arcs. Otherwise the middle task is solved by a search and both halves are
+//! treated likewise, down to single tasks. So a change of the best branch is detected unless the other branch is best only
+//! between two anchors. Every gait has its own certificate. At the end, neighbours with different arcs try each other's gaits
+//! ([`again`]).
 
 mod again;
 
@@ -16,13 +16,13 @@ use crate::objective::{Answer, Solve, Solved, Solver};
 use crate::row::Row;
 use crate::{Aim, Axis, Design, Field, Plan};
 
-/// The gaits of larger blocks are not held, and so not compared.
+/// Largest block whose gaits are kept and compared at the end.
 const MOST_COMPARED: u64 = 4_096;
 
-/// Counts of a block, and its time.
+/// Counts and computation times of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Cost {
-    /// Designs solved from nothing, and from their neighbour; what was thrown away counts, too.
+    /// Number of searches and, in the next field, of warm starts; discarded results count too.
     pub(crate) cold: u64,
     pub(crate) warm: u64,
     /// \[s\]
@@ -30,7 +30,7 @@ pub(crate) struct Cost {
     pub(crate) warm_s: f64,
 }
 
-/// Rows of a block, by key.
+/// Solves a block and returns its rows by key.
 pub(crate) fn block(plan: &Plan, block: u64, seconds: &dyn Fn() -> f64) -> (Vec<Row>, Cost) {
     let content = plan.content();
     let solver = Solver {
@@ -80,7 +80,7 @@ fn solved(
     (rows.collect(), visit.cost)
 }
 
-/// The keys of a block as runs in which each is the neighbour of the one before.
+/// Splits the keys of a block into runs of consecutive neighbours.
 fn runs(plan: &Plan, block: u64) -> Vec<Vec<u64>> {
     let keys = plan.keys(block);
     let row = match plan.design() {
@@ -110,7 +110,7 @@ fn runs(plan: &Plan, block: u64) -> Vec<Vec<u64>> {
     runs
 }
 
-/// Whether two tasks of a grid differ by one step of one axis.
+/// Returns `true` if two tasks of a grid differ by one step of one axis.
 fn beside(plan: &Plan, a: u64, b: u64) -> bool {
     let (a, b) = (plan.indices(a), plan.indices(b));
     a.iter().zip(&b).map(|(a, b)| a.abs_diff(*b)).sum::<u64>() == 1
@@ -120,7 +120,7 @@ struct Visit<'a> {
     plan: &'a Plan,
     solver: &'a dyn Solve,
     seconds: &'a dyn Fn() -> f64,
-    /// Whether neighbours are compared in the end, so that their gaits are kept.
+    /// `true` if neighbours are compared at the end, for which their gaits are kept.
     compares: bool,
     answers: BTreeMap<u64, Answer>,
     cost: Cost,
@@ -145,7 +145,7 @@ impl Visit<'_> {
         }
     }
 
-    /// All between the first and the last of these keys, whose answers are known.
+    /// Solves all tasks between the first and the last of these keys, whose results are known.
     fn between(&mut self, keys: &[u64], first: &Answer, last: &Answer) {
         let Some(middle) = (keys.len() > 2).then_some(keys.len() / 2) else {
             return;
@@ -164,7 +164,7 @@ impl Visit<'_> {
         self.between(&keys[middle..], &found, last);
     }
 
-    /// The gaits between, each from the one before; none where they do not lead to the last one's.
+    /// Continues the gaits from one key to the next. Returns `None` if they do not arrive at the last key's gait.
     fn followed(&mut self, keys: &[u64], near: &Solved, goal: &Solved) -> Option<Vec<Solved>> {
         let mut found: Vec<Solved> = Vec::with_capacity(keys.len());
         for &key in &keys[1..] {
@@ -177,7 +177,7 @@ impl Visit<'_> {
         found.pop()?.same(goal).then_some(found)
     }
 
-    /// The answer to a task that differs in the servos' rates alone, where there is one already.
+    /// Result of a task that differs only in the servo rates, if it is known already.
     fn twin(&self, key: u64, just_found: &[Solved]) -> Option<Answer> {
         if !self.compares {
             return None;
@@ -247,7 +247,7 @@ mod tests {
         assert_eq!(runs(&plan, 1), [vec![10, 11]]);
     }
 
-    /// Two kinds of gait; the second is better in some columns of the grid alone.
+    /// Model of two branches, of which the second is better in some columns of the grid only.
     struct Two {
         columns: std::ops::Range<u64>,
     }
@@ -288,7 +288,7 @@ mod tests {
         }
     }
 
-    /// The best gait does not depend on the servos' rates, so it is found once for all of them.
+    /// The best gait does not depend on the servo rates, so one search serves all of them.
     #[test]
     fn rates_cost_nothing() {
         let text = "swimmer = \"purcell\"\nobjective = \"displacement\"\n[bounds]\nmax_angle = 2.4\n\
@@ -303,7 +303,7 @@ mod tests {
             let plan = plan(&text);
             let (timed, of_all) = block(&plan, 0, &|| 0.0);
             assert_eq!(timed.len(), 15);
-            // Fewer gaits are sought than there are designs.
+            // Fewer gaits are solved than there are designs.
             assert!(of_all.cold + of_all.warm < 15, "{of_all:?} {cost:?}");
             let mut turns = BTreeMap::new();
             for row in timed {
@@ -329,7 +329,7 @@ mod tests {
         }
     }
 
-    /// Keys whose answer is not the better kind, though it is there; of a grid of 17 columns.
+    /// Keys of a grid with 17 columns whose result is not the better branch, although it exists.
     fn missed(rows: u64, anchor: u64, columns: std::ops::Range<u64>) -> Vec<u64> {
         let plan = plan(&format!(
             "swimmer = \"purcell\"\nobjective = \"displacement\"\nanchor = {anchor}\nblock = 1000\n\
@@ -350,19 +350,18 @@ mod tests {
             .collect()
     }
 
-    /// The limit that the book names: a better kind that begins and ends between two searches is not seen, unless another row
-    /// meets it.
+    /// The documented limit: a better branch that begins and ends between two searches is missed, unless another row finds it.
     #[test]
     fn a_better_kind_between_two_searches() {
         assert_eq!(missed(1, 16, 5..9), [5, 6, 7, 8]);
         assert!(missed(1, 1, 5..9).is_empty());
         assert!(missed(1, 4, 5..9).is_empty());
-        // Searches lie elsewhere in each row, and what one finds is carried to its neighbours.
+        // The anchors differ from row to row, and a branch that one finds is passed on to its neighbours.
         assert!(missed(8, 16, 5..9).is_empty());
         assert!(missed(3, 8, 4..7).is_empty());
     }
 
-    /// A sphere that grows: the gait changes its kind on the way, and each answer is the one found from nothing.
+    /// For a growing sphere the branch changes on the way, and each result equals that of a search.
     #[test]
     fn what_is_followed_is_what_is_found_from_nothing() {
         let text = "swimmer = \"purcell\"\nobjective = \"displacement\"\n\

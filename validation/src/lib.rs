@@ -1,4 +1,4 @@
-//! The paper as a test: [`Study`] computes what it shows, and [`rows`] holds each number that it prints against that.
+//! Reproduction of the paper: [`Study`] computes its results, and [`rows`] compares each printed number with them.
 //!
 //! ```
 //! use validation::{Study, rows};

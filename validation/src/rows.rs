@@ -1,6 +1,6 @@
-//! Each number that the paper prints beside the same number computed. What it prints is data, `printed.tsv`: a row without words is
-//! a number, one with words lies from `least` to `most`; `within` is how far off it may be (`none` where the paper's number
-//! cannot be reproduced, and the note says why).
+//! Comparison of each number that the paper prints with the computed number. The printed numbers are in `printed.tsv`. A row
+//! without words is a number; one with words is a range from `least` to `most`. The column `within` has the tolerance, or `none`
+//! if the paper's number cannot be reproduced, for a reason that the note states.
 
 mod computed;
 mod displacement;
@@ -13,7 +13,7 @@ use computed::Computed;
 
 const PRINTED: &str = include_str!("rows/printed.tsv");
 
-/// What the paper says.
+/// Value printed in the paper.
 #[derive(Debug, Clone, Copy, Serialize)]
 #[serde(untagged)]
 pub enum Printed {
@@ -23,28 +23,28 @@ pub enum Printed {
     Words(&'static str),
 }
 
-/// One number.
+/// Comparison of one number.
 #[derive(Debug, Clone, Serialize)]
 pub struct Row {
-    /// How the row is called.
+    /// Identifier of the row.
     pub id: &'static str,
-    /// What is compared, with its unit.
+    /// Name of the quantity, with its unit.
     pub quantity: &'static str,
     /// The paper's number.
     pub paper: Printed,
     /// The number computed.
     pub ours: f64,
-    /// Relative to the paper's number; to the nearest end of its range; absolute where it is zero.
+    /// Deviation relative to the paper's number or to the nearest end of its range; absolute if that is zero.
     pub deviation: f64,
-    /// None where the paper's number cannot be reproduced.
+    /// `None` if the paper's number cannot be reproduced.
     pub pass: Option<bool>,
-    /// What the paper leaves open, where it does.
+    /// Explanation of what the paper leaves open; may be empty.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub note: &'static str,
 }
 
 impl Row {
-    /// A line of the table beside what was computed; none where it is no such line.
+    /// Compares a line of the table with the computed value. Returns `None` if the line is malformed.
     fn new(line: &'static str, ours: f64) -> Option<Self> {
         let [id, quantity, paper, least, most, within, note] = cells(line)?;
         let (printed, low, high) = match paper.parse() {
@@ -79,7 +79,7 @@ impl Row {
     }
 }
 
-/// The cells of a line of the table.
+/// Splits a line of the table into its cells.
 fn cells(line: &'static str) -> Option<[&'static str; 7]> {
     let cells: Vec<_> = line.split('\t').collect();
     cells.try_into().ok()

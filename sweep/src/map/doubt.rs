@@ -1,5 +1,5 @@
-//! Designs that their neighbours cast doubt on: a wider bound never makes the best gait worse, and what is best changes without
-//! jumps. What is listed is a place to look at, not yet a mistake: a gait of one class, or of one name, may end.
+//! Doubtful designs, found by comparison with their neighbours: the optimum never worsens with a wider bound, and it is continuous
+//! in the parameters. A listed design deserves inspection but need not be wrong, since a branch of gaits may end.
 
 use std::ops::Range;
 use std::path::Path;
@@ -8,43 +8,43 @@ use serde::Serialize;
 
 use crate::{Axis, Design, Plan, SweepError, part};
 
-/// What is odd about a design.
+/// Reason to doubt a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DoubtKind {
-    /// A neighbour within tighter bounds does better.
+    /// A neighbour with tighter bounds is better.
     Beaten,
-    /// There is no gait, but both neighbours along an axis have one.
+    /// The design has no gait, but both neighbours along an axis have one.
     Lost,
-    /// What is maximised jumps between two neighbours: by a hundredth, and ten times as much as on either side of them.
+    /// The objective jumps between two neighbours: by at least one percent, and ten times as much as on either side of them.
     Jump,
 }
 
-/// A design to look at.
+/// Doubtful design.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Doubt {
-    /// What is odd.
+    /// Reason.
     pub kind: DoubtKind,
-    /// The task.
+    /// Key of the task.
     pub key: u64,
-    /// The neighbour that tells.
+    /// Key of the neighbour with which it was compared.
     pub neighbour: u64,
-    /// How much better the neighbour is, over its own value; none for a lost gait.
+    /// Relative difference by which the neighbour is better; `None` for a lost gait.
     pub share: Option<f64>,
 }
 
-/// Grids of more designs are not held at once.
+/// Largest number of designs that are held in memory.
 const MOST: u64 = 20_000_000;
-/// A neighbour that is better by less is as good.
+/// Relative difference below which two designs are equally good.
 const BETTER: f64 = 1e-6;
-/// What a jump is at least, over the larger value, and over the steps beside it.
+/// Least jump relative to the larger value, and ratio of the adjacent steps to it.
 const JUMP: f64 = 1e-2;
 const STEEPER: f64 = 10.0;
 
-/// Looks at all neighbours of a finished grid, by key.
+/// Compares all neighbours of a finished grid and returns the doubtful designs by key.
 ///
 /// # Errors
-/// [`SweepError::NoMap`] where the plan is no grid, or too large to be held.
+/// [`SweepError::NoMap`] if the plan is not a grid or too large for memory.
 pub fn doubts(plan: &Plan, folder: &Path) -> Result<Vec<Doubt>, SweepError> {
     if plan.design() != Design::Grid || plan.tasks() > MOST {
         return Err(SweepError::NoMap(
@@ -67,7 +67,7 @@ pub fn doubts(plan: &Plan, folder: &Path) -> Result<Vec<Doubt>, SweepError> {
     Ok(among(plan, 0..values.len() as u64, &value))
 }
 
-/// Looks at the neighbours among some tasks of a grid, by key; those outside of them have no value.
+/// Compares the neighbours among some tasks of a grid, by key; tasks outside of them have no value.
 pub(crate) fn among(
     plan: &Plan,
     keys: Range<u64>,

@@ -1,8 +1,8 @@
-//! Neighbours of unlike gaits: each is tried from the other's gait, and keeps what is better.
+//! Comparison of neighbours with different arcs: each is solved from the other's gait and keeps the better result.
 //!
-//! Searches miss gaits, and a gait that was followed too far is not the best. Both show where neighbours differ: in their arcs, in
-//! whether there is a gait, in a jump, or where a tighter bound does better. A gait found so may be better than its next neighbour's,
-//! too, so this goes on until nothing changes. It sees the tasks of one block, in the order of their keys.
+//! A search can miss a gait, and a continued gait can cease to be the best. Both appear as differences between neighbours: in
+//! their arcs, in the existence of a gait, as a jump, or as a better value under a tighter bound. An improved gait may also
+//! improve the next neighbour, so the comparison repeats until nothing changes. It covers the tasks of one block in key order.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -10,13 +10,13 @@ use std::ops::Range;
 use super::Visit;
 use crate::map::among;
 
-/// A gait that is better by less is the same.
+/// Relative difference below which two gaits count as equal.
 const BETTER: f64 = 1e-7;
 
 impl Visit<'_> {
     /// Compares all neighbours among these tasks.
     pub(super) fn look_again(&mut self, keys: &Range<u64>) {
-        // Which answer of a task this is, and which answers were tried where.
+        // Version of each task's result, and the versions that were tried for each neighbour.
         let mut version: BTreeMap<u64, u64> = BTreeMap::new();
         let mut tried: BTreeSet<(u64, u64, u64)> = BTreeSet::new();
         loop {
@@ -36,7 +36,7 @@ impl Visit<'_> {
         }
     }
 
-    /// Neighbours whose gaits are of different arcs, of which one has none, or whose values do not go together.
+    /// Neighbours whose gaits have different arcs, of which one has no gait, or whose values are doubtful.
     fn unlike(&self, keys: &Range<u64>) -> BTreeSet<(u64, u64)> {
         let objective = |key: u64| self.answers.get(&key)?.as_ref().ok()?.row.objective;
         let doubts = among(self.plan, keys.clone(), &objective);
@@ -67,7 +67,7 @@ impl Visit<'_> {
         pairs
     }
 
-    /// Tries a task from a neighbour's gait; whether that is better than what it has.
+    /// Solves a task from a neighbour's gait. Returns `true` if that improved its result.
     fn improved(&mut self, from: u64, to: u64) -> bool {
         let Some(Ok(near)) = self.answers.get(&from) else {
             return false;

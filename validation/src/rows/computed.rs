@@ -1,11 +1,11 @@
-//! What a row of the paper is compared with.
+//! Computed values with which the rows of the paper are compared.
 
 use gait_optimizer::{BestAmplitude, Condition, OptimalGait};
 
-/// A quantity's name, and what it came to.
+/// Name of a quantity and its computed value.
 pub(super) type Computed = (&'static str, f64);
 
-/// How many conditions a gait fails when only its samples are known; NaN where it cannot be asked.
+/// Number of conditions that a gait violates when it is certified from its samples; NaN if that is impossible.
 pub(super) fn failed_checks(gait: &OptimalGait) -> f64 {
     gait.certify().map_or(f64::NAN, |certificate| {
         let checks = certificate.checks().iter();
@@ -13,24 +13,24 @@ pub(super) fn failed_checks(gait: &OptimalGait) -> f64 {
     })
 }
 
-/// One number of that certificate.
+/// Value of one condition of that certificate.
 pub(super) fn value_of(gait: &OptimalGait, condition: Condition) -> f64 {
     let certificate = gait.certify().ok();
     let value = certificate.and_then(|certificate| certificate.value(condition));
     value.unwrap_or(f64::NAN)
 }
 
-/// The first best amplitude.
+/// First locally best amplitude.
 pub(super) fn first(best: &[BestAmplitude]) -> &BestAmplitude {
     best.first().unwrap_or(&NONE)
 }
 
-/// The second one.
+/// Second locally best amplitude.
 pub(super) fn second(best: &[BestAmplitude]) -> &BestAmplitude {
     best.get(1).unwrap_or(&NONE)
 }
 
-/// No such amplitude: every comparison with it fails.
+/// Placeholder for a missing amplitude: every comparison with it fails.
 const NONE: BestAmplitude = BestAmplitude {
     amplitude: f64::NAN,
     displacement_over_length: f64::NAN,

@@ -10,7 +10,7 @@ use swimmer_model::{Fourier, Harmonic, Links, Model, Tolerance, swim};
 use super::computed::{Computed, failed_checks, first, second};
 use crate::study::{Simple, Study};
 
-/// Section II.B: what is said of the robot.
+/// Section II.B: data of the robot.
 pub(super) fn robot_data(study: &Study) -> Vec<Computed> {
     const OMEGA: f64 = 0.24;
     const KINEMATIC_VISCOSITY: f64 = 0.06;
@@ -23,7 +23,7 @@ pub(super) fn robot_data(study: &Study) -> Vec<Computed> {
     ]
 }
 
-/// Sections II.B and II.C: circles of the robot.
+/// Sections II.B and II.C: experiments of the robot with circles.
 pub(super) fn experiments(study: &Study) -> Vec<Computed> {
     let amplitude = 70_f64.to_radians();
     let circle = swim(
@@ -134,7 +134,7 @@ fn distance(point: &Vector2<f64>, a: &Vector2<f64>, b: &Vector2<f64>) -> f64 {
     (a + side * along - point).norm()
 }
 
-/// Whether a curve leads from φ₁ = φ₂ > 0 to φ₁ = −φ₂, φ₂ > 0 without crossing another symmetry line between.
+/// Returns `true` if a curve connects φ₁ = φ₂ > 0 to φ₁ = −φ₂, φ₂ > 0 without crossing another symmetry line in between.
 fn joins_both_lines(points: &[Vector2<f64>]) -> bool {
     #[derive(PartialEq)]
     enum Line {
@@ -160,7 +160,7 @@ fn joins_both_lines(points: &[Vector2<f64>]) -> bool {
             None
         }
     });
-    // Round once more, for a closed curve may begin anywhere.
+    // Twice around, since a closed curve may begin anywhere.
     let crossed: Vec<Line> = crossed.collect();
     let closed = points.first() == points.last();
     let next = crossed.iter().cycle().skip(1);
