@@ -1,20 +1,20 @@
-//! Height functions in minimum-perturbation coordinates: where a gait should lie, drawn as a map (paper, section IV.B).
+//! Height functions in minimum-perturbation coordinates, which show the area that a gait should enclose (paper, section IV.B).
 //!
-//! The curvature of the connection, F = dA + \[A₁, A₂\], is what a tiny loop in the plane of joint angles displaces the
-//! swimmer by, over the loop's area, as seen from the middle link. Over a large loop the middle link turns, and such views
-//! do not add up. They nearly do when seen from a frame that turns and sways as little as possible: p′ = p + R(θ) b(Φ),
+//! The curvature of the connection, F = dA + \[A₁, A₂\], is the displacement of an infinitesimal loop in the plane of joint angles
+//! over its area, in the frame of the middle link. Over a large loop the middle link rotates, and these displacements do not add
+//! up. They almost do in a frame that rotates and sways as little as possible: p′ = p + R(θ) b(Φ),
 //! θ′ = θ + b_θ(Φ), where b_θ minimises ∫|A^θ + ∇b_θ|² with b_θ(0) = 0, and b = (b_x, b_y) then minimises
 //! ∫|A^v + ∇b + A^θ ⊗ J b|², J = (0 −1; 1 0), both over the square \[−D, D\]² with natural boundary conditions (Hatton and
 //! Choset's minimum-perturbation coordinates). The height function is the curvature carried into that frame, over L:
 //! (H_x, H_y) = R(−b_θ)(F_v + F_θ J b), H_θ = F_θ.
 //!
-//! **How exact it is.** b is sought among products of Legendre polynomials, of an order raised until it stands still
-//! ([`Convergence`]). Inside the square it converges geometrically. At the square's corners the frame itself is not smooth:
-//! the natural conditions on the two edges that meet there contradict each other unless the curvature vanishes, and b has
-//! a part r² ln r; there it converges like a power of the order only. Both figures are part of the result.
+//! **Accuracy.** b is expanded in products of Legendre polynomials, whose order is raised until b no longer changes
+//! ([`Convergence`]). Convergence is geometric inside the square. At the corners the frame is not smooth: the natural conditions
+//! of the two edges contradict each other unless the curvature vanishes, and b has a term r² ln r. There, convergence is
+//! algebraic. Both figures are part of the result.
 //!
-//! **It depends on D**, and nothing ties D to π: the connection has period 2π in each angle and is smooth beyond π, but
-//! the frame is not periodic, since the fluxes that it balances are those of the square. Large squares only need a higher
+//! **The height function depends on D**, which is not limited to π. The connection has period 2π in each angle and is smooth
+//! beyond π, but the frame is not periodic, since its boundary conditions are those of the square. A large square needs a higher
 //! order.
 
 #![allow(
@@ -47,40 +47,40 @@ use galerkin::Coefficients;
 use legendre::polynomials;
 use space::table;
 
-/// Which component of a displacement a height function is of.
+/// Component of the displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Row {
-    /// Along the frame: per L.
+    /// Along the frame, over L.
     X,
-    /// Across the frame, to the left: per L.
+    /// Across the frame, to the left, over L.
     Y,
     /// Rotation, counter-clockwise. It is the same in every frame.
     Theta,
 }
 
-/// How still the frame stood when the order was raised for the last time.
+/// Change of the frame at the last increase of the order.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Convergence {
-    /// Polynomials in each direction: degrees 0 to `order` − 1.
+    /// Number of polynomials in each direction, of degrees 0 to `order` − 1.
     pub order: usize,
-    /// The order before.
+    /// Previous order.
     pub order_before: usize,
-    /// Largest change of b_x, b_y (over L) and b_θ (rad) from the one to the other where |φᵢ| ≤ 0.8 D.
+    /// Largest change of b_x, b_y (over L) and b_θ (rad) between the two orders for |φᵢ| ≤ 0.8 D.
     pub inner_change: f64,
     /// The same on the whole square, corners included.
     pub change: f64,
 }
 
-/// The frame at one shape.
+/// Frame at one shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
-    /// (b_x, b_y, b_θ): place over L and heading \[rad\] of the frame's origin as seen from the middle link.
+    /// (b_x, b_y, b_θ): position over L and heading \[rad\] of the frame relative to the middle link.
     pub b: Vector3<f64>,
     /// ∂b/∂φ₁ and ∂b/∂φ₂.
     pub slopes: [Vector3<f64>; 2],
 }
 
-/// The three height functions of a swimmer on one square.
+/// Height functions of a swimmer on one square.
 ///
 /// ```
 /// use gait_optimizer::{HeightMap, Row};
@@ -94,7 +94,7 @@ pub struct Frame {
 /// ```
 #[derive(Debug, Clone)]
 pub struct HeightMap {
-    /// With L = 1.
+    /// Model of the swimmer scaled to L = 1.
     model: Model<f64>,
     half_width: f64,
     coefficients: Coefficients,
@@ -110,26 +110,26 @@ pub struct Grid {
     pub heights: DMatrix<f64>,
 }
 
-/// Orders that are tried in turn.
+/// Orders, tried in turn.
 const ORDERS: [usize; 8] = [16, 24, 36, 48, 64, 80, 96, 128];
 const HIGHEST: usize = 128;
-/// The order is high enough once the frame changes by no more than this inside the square.
+/// Change of the frame inside the square at which the order is sufficient.
 const STILL: f64 = 1e-9;
-/// A frame that changes by more than this at the highest order is of no use.
+/// Change of the frame at the highest order above which it is rejected.
 const USELESS: f64 = 1e-4;
-/// Inside the square: this share of D.
+/// Half width of the inner part of the square, over D.
 const INNER: f64 = 0.8;
 
 impl HeightMap {
-    /// Squares up to this half width are computed \[rad\].
+    /// Largest half width of the square \[rad\].
     pub const WIDEST: f64 = 2.0 * std::f64::consts::TAU;
-    /// Squares down to this one \[rad\].
+    /// Smallest half width of the square \[rad\].
     pub const NARROWEST: f64 = 1e-3;
 
     /// Solves for the minimum-perturbation coordinates on \[−D, D\]², D = `half_width` \[rad\]. Side links may differ.
     ///
     /// # Errors
-    /// [`HeightMapError`]: the swimmer or the square is out of range, or the frame does not converge.
+    /// [`HeightMapError`] if the swimmer or the square is out of range, or if the frame does not converge.
     pub fn new(swimmer: &Swimmer<f64>, half_width: f64) -> Result<Self, HeightMapError> {
         swimmer.validate()?;
         let model = Model::new(&swimmer.of_unit_length())?;
@@ -172,7 +172,7 @@ impl HeightMap {
         self.half_width
     }
 
-    /// How well the frame is known.
+    /// Convergence of the frame.
     pub fn convergence(&self) -> Convergence {
         self.convergence
     }
@@ -210,12 +210,12 @@ impl HeightMap {
         carried(&curvature, &self.frame(phi).b)
     }
 
-    /// One height at a shape of the square.
+    /// Height function of one row at a shape of the square.
     pub fn height(&self, row: Row, phi: &Vector2<f64>) -> f64 {
         self.heights(phi)[row.index()]
     }
 
-    /// One height and its exact gradient at a shape of the square.
+    /// Height function of one row and its exact gradient at a shape of the square.
     pub fn height_and_gradient(&self, row: Row, phi: &Vector2<f64>) -> (f64, Vector2<f64>) {
         let second = self.model.second_derivatives(phi);
         let curvature = second.first.curvature();
@@ -223,7 +223,7 @@ impl HeightMap {
         let frame = self.frame(phi);
         let height = carried(&curvature, &frame.b);
         let slope = |k: usize| {
-            // Of R(−b_θ)(F_v + F_θ J b): of the curvature, of b, and of the turning by −b_θ.
+            // Product rule for R(−b_θ)(F_v + F_θ J b): derivatives of the curvature, of b, and of the rotation by −b_θ.
             let of_curvature = carried(&along[k], &frame.b);
             let step = frame.slopes[k];
             let sideways = Vector2::new(-step.y, step.x) * curvature.z;
@@ -247,7 +247,7 @@ impl HeightMap {
         }
     }
 
-    /// Heights at the products of nodes, given over D.
+    /// Heights on the tensor grid of nodes, given over D.
     fn on_nodes(&self, row: Row, first: &[f64], second: &[f64]) -> DMatrix<f64> {
         let order = self.coefficients.order();
         let (p1, _) = table(first, order);
@@ -255,7 +255,7 @@ impl HeightMap {
         let [x, y, theta] = &self.coefficients.rows;
         let b = [&p1 * x * &p2, &p1 * y * &p2, &p1 * theta * &p2];
         let mut heights = DMatrix::zeros(first.len(), second.len());
-        // Column by column, as matrices are stored.
+        // Column-major, as matrices are stored.
         let phi = second.iter().flat_map(|&s2| {
             let shape = move |&s1: &f64| Vector2::new(s1, s2) * self.half_width;
             first.iter().map(shape)
@@ -276,14 +276,14 @@ impl HeightMap {
         )
     }
 
-    /// The swimmer with L = 1.
+    /// Model of the swimmer scaled to L = 1.
     pub(crate) fn model(&self) -> &Model<f64> {
         &self.model
     }
 }
 
 impl Row {
-    /// The place of this component in (x, y, θ).
+    /// Index of this component in (x, y, θ).
     pub fn index(self) -> usize {
         match self {
             Self::X => 0,
@@ -293,8 +293,8 @@ impl Row {
     }
 }
 
-/// The dot products of a column with values and slopes of as many polynomials. Every order is a multiple of the lanes, whose
-/// sums do not wait for one another.
+/// Dot products of a column with the values and the slopes of the polynomials. Every order is a multiple of the number of lanes,
+/// whose sums are independent.
 fn both(column: &[f64], [values, slopes]: [&[f64]; 2]) -> [f64; 2] {
     const LANES: usize = 4;
     let (mut value, mut slope) = ([0.0; LANES], [0.0; LANES]);
@@ -308,7 +308,7 @@ fn both(column: &[f64], [values, slopes]: [&[f64]; 2]) -> [f64; 2] {
     [value, slope].map(|[a, b, c, d]| (a + b) + (c + d))
 }
 
-/// A velocity of the middle link, seen from the frame (b_x, b_y, b_θ) fixed to it.
+/// Transforms a velocity of the middle link to the frame (b_x, b_y, b_θ) fixed to it.
 fn carried(velocity: &Vector3<f64>, b: &Vector3<f64>) -> Vector3<f64> {
     let moved = Vector2::new(velocity.x - velocity.z * b.y, velocity.y + velocity.z * b.x);
     let turned = Rotation2::new(-b.z) * moved;

@@ -1,9 +1,9 @@
-//! The area rule: a gait's displacement read off the map, against the displacement it swims.
+//! Area rule: displacement of a gait estimated by the area integral of the height functions, against its exact displacement.
 //!
-//! The area under a height function inside the gait is the first term of a series (Baker, Campbell, Hausdorff) for the net
-//! displacement; the following ones hold commutators of what happens at different times, and grow with how far the frame
-//! still turns and sways in between. Minimum-perturbation coordinates make them small, not zero: the rule is good for
-//! gaits up to about a radian, and only a guide for larger ones. The row θ is exact, because plane rotations commute.
+//! The area integral is the first term of the Baker–Campbell–Hausdorff series of the net displacement. The following terms are
+//! commutators of motions at different times, and grow with the rotation and sway of the frame. Minimum-perturbation coordinates
+//! make them small but not zero: the rule is accurate for gaits up to about a radian, and a rough estimate for larger ones. The
+//! row θ is exact, because rotations in the plane commute.
 
 use nalgebra::{DMatrix, Rotation2, Vector2, Vector3};
 use swimmer_files::AnyGait;
@@ -13,35 +13,35 @@ use super::legendre::{gauss, polynomials};
 use super::space::{Field, table, weighed};
 use super::{HIGHEST, HeightMap, HeightMapError, Row};
 
-/// What the map says of a gait, and what it swims; (x, y, θ) over L and in rad, along and across the middle link at the
-/// gait's first shape, as every other answer tells a displacement.
+/// Estimated and exact displacement of a gait: (x, y, θ) over L and in rad, along and across the middle link at the gait's first
+/// shape.
 ///
-/// The map's own frame may be turned against the middle link there: what it says is carried over. With equal side links
-/// and a gait that starts at φ₁ = φ₂ and has no net rotation, nothing changes.
+/// The frame of the map may be rotated against the middle link there, so the estimate is transformed. The transformation is the
+/// identity for equal side links and a gait that starts at φ₁ = φ₂ and has no net rotation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AreaRule {
-    /// ∬ H over the area enclosed, each part counted as often as the gait winds round it, counter-clockwise positive; carried
-    /// from the map's frame to the middle link.
+    /// ∬ H over the enclosed area, weighted by the winding number (counter-clockwise positive) and transformed from the map's frame to
+    /// the middle link.
     pub area: Vector3<f64>,
     /// Net displacement of one cycle.
     pub swum: Vector3<f64>,
 }
 
-/// Polynomials for the heights themselves, beyond the frame's order: the curvature is less smooth than the connection.
+/// Number of polynomials for the heights beyond the order of the frame, since the curvature is less smooth than the connection.
 const MORE: usize = 16;
-/// Panels that a cycle is cut into at least.
+/// Least number of panels per cycle.
 const PANELS: f64 = 256.0;
 const POINTS: usize = 6;
 
 impl AreaRule {
-    /// What the rule misses: area − swum.
+    /// Error of the rule: estimated minus exact displacement.
     pub fn deviation(&self) -> Vector3<f64> {
         self.area - self.swum
     }
 }
 
 impl HeightMap {
-    /// Holds the area rule against the swum displacement of a closed gait, which may cross itself.
+    /// Compares the area rule with the exact displacement of a closed gait, which may cross itself.
     ///
     /// # Errors
     /// [`HeightMapError::GaitBeyondMap`].
@@ -49,7 +49,7 @@ impl HeightMap {
         let first = gait.at(0.0).phi;
         let area = self.enclosed(gait)?;
         let stroke = swim(self.model(), gait, &Tolerance::default());
-        // The frame rides along: h a h⁻¹ for the frame h and its net motion a.
+        // Conjugation h a h⁻¹ of the net motion a by the frame h.
         let b = self.frame(&first).b;
         let place = Vector2::new(b.x, b.y);
         let carried = Rotation2::new(b.z) * area.xy() + place - Rotation2::new(area.z) * place;
@@ -110,7 +110,7 @@ impl HeightMap {
     }
 }
 
-/// For each row of H a function G with ∂G/∂s₁ = H, in products of orthonormal Legendre polynomials.
+/// Functions G with ∂G/∂s₁ = H for each row of H, in products of orthonormal Legendre polynomials.
 struct Potentials {
     rows: [Field; 3],
 }

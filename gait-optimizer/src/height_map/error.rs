@@ -1,16 +1,16 @@
-//! Why there is no height map.
+//! Errors of height maps.
 
 use swimmer_model::InvalidSwimmer;
 
 use super::HeightMap;
 
-/// Why there is no height map, or no area rule on it.
+/// Failure to compute a height map or to apply the area rule.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum HeightMapError {
     /// The swimmer's parameters are out of range.
     #[error("cannot map this swimmer: {0}")]
     Swimmer(#[from] InvalidSwimmer),
-    /// The square is too small or too large.
+    /// The half width of the square is out of range.
     #[error(
         "cannot map joint angles up to {value} rad: give a bound between {} and {:.3} rad",
         HeightMap::NARROWEST,
@@ -20,7 +20,7 @@ pub enum HeightMapError {
         /// D \[rad\].
         value: f64,
     },
-    /// The frame still moved at the highest order.
+    /// The frame did not converge at the highest order.
     #[error(
         "the minimum-perturbation coordinates on joint angles up to {half_width} rad do not converge with \
          polynomials of order {order}; map smaller angles"
@@ -28,7 +28,7 @@ pub enum HeightMapError {
     NotConverged {
         /// D \[rad\].
         half_width: f64,
-        /// The highest order tried.
+        /// Highest order.
         order: usize,
     },
     /// A gait leaves the square.

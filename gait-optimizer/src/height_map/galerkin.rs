@@ -1,5 +1,5 @@
-//! The minimum-perturbation frame among polynomials of one order: a Poisson equation for its angle, then a coupled pair
-//! for its place, by conjugate gradients.
+//! Galerkin solution for the minimum-perturbation frame in polynomials of one order: a Poisson equation for its angle, then a
+//! coupled system for its position, by preconditioned conjugate gradients.
 
 use nalgebra::{DMatrix, Vector2};
 use swimmer_model::Model;
@@ -13,14 +13,14 @@ pub(super) struct Coefficients {
     pub(super) rows: [Field; 3],
 }
 
-/// Gauss points beyond the order: the connection is no polynomial.
+/// Number of Gauss points beyond the order, since the connection is not a polynomial.
 const MORE_POINTS: usize = 10;
-/// Conjugate gradients end when the residual has fallen by this much.
+/// Relative residual at which conjugate gradients stop.
 const RESIDUAL: f64 = 1e-15;
-/// They need about twenty rounds; more than this would only stir rounding.
+/// Largest number of iterations; about twenty are needed.
 const ROUNDS: usize = 200;
 
-/// A function for each of b_x and b_y, or for each joint.
+/// One function for each of b_x and b_y, or for each joint.
 type Pair = [Field; 2];
 
 /// Rows x, y, θ of the connection times D at the Gauss points, so that lengths and slopes are those of the square \[−1, 1\]².
@@ -46,7 +46,7 @@ fn rows(model: &Model<f64>, half_width: f64, space: &Space) -> Rows {
     let count = space.nodes.len();
     let zero = || [DMatrix::zeros(count, count), DMatrix::zeros(count, count)];
     let mut rows = [zero(), zero(), zero()];
-    // Column by column, as matrices are stored.
+    // Column-major, as matrices are stored.
     let shape = |number: usize| {
         let (s1, s2) = (space.nodes[number % count], space.nodes[number / count]);
         Vector2::new(s1, s2) * half_width
@@ -62,7 +62,7 @@ fn rows(model: &Model<f64>, half_width: f64, space: &Space) -> Rows {
     rows
 }
 
-/// Solves (−Δ + shift) b = load; without a shift, up to a constant.
+/// Solves (−Δ + shift) b = load. The solution for a zero shift is determined up to a constant.
 fn divided(space: &Space, load: &Field, shift: f64) -> Field {
     let lambda = &space.eigenvalues;
     DMatrix::from_fn(space.order(), space.order(), |i, j| {
@@ -75,7 +75,7 @@ fn divided(space: &Space, load: &Field, shift: f64) -> Field {
     })
 }
 
-/// b_x and b_y: they minimise ∫|a^x + ∇b_x − a^θ b_y|² + |a^y + ∇b_y + a^θ b_x|².
+/// Returns b_x and b_y, which minimise ∫|a^x + ∇b_x − a^θ b_y|² + |a^y + ∇b_y + a^θ b_x|².
 fn place(space: &Space, rows: &Rows) -> Pair {
     let [on_x, on_y, [t1, t2]] = rows;
     let turning = t1.component_mul(t1) + t2.component_mul(t2);
@@ -115,7 +115,7 @@ fn place(space: &Space, rows: &Rows) -> Pair {
     b
 }
 
-/// For each pair of basis functions (ψ, 0) and (0, ψ): ∫ of the given rows against ∇ψ + a^θ ⊗ J ψ.
+/// Inner products of the given rows with ∇ψ + a^θ ⊗ J ψ for each pair of basis functions (ψ, 0) and (0, ψ).
 fn adjoint(space: &Space, rows: &Rows, [x, y]: [&Pair; 2]) -> Pair {
     let [t1, t2] = &rows[2];
     let along = |row: &Pair| t1.component_mul(&row[0]) + t2.component_mul(&row[1]);
@@ -134,7 +134,7 @@ impl Coefficients {
         self.rows[0].nrows()
     }
 
-    /// Largest change from another order, in the inner part of the square and on all of it, seen at 51 × 51 places.
+    /// Largest change from another order at 51 × 51 points, in the inner part of the square and on all of it.
     pub(super) fn change_from(&self, before: &Self) -> (f64, f64) {
         let places: Vec<f64> = (0..=50).map(|k| f64::from(k) / 25.0 - 1.0).collect();
         let (now, _) = table(&places, self.order());
@@ -149,7 +149,7 @@ impl Coefficients {
             let change = &now * row * now.transpose() - &then * old * then.transpose();
             for (k, value) in change.iter().enumerate() {
                 let (i, j) = (k % places.len(), k / places.len());
-                // `max` would pass over NaN.
+                // `max` would ignore NaN.
                 let value = if value.is_nan() {
                     f64::INFINITY
                 } else {
@@ -164,7 +164,7 @@ impl Coefficients {
         (inner, all)
     }
 
-    /// Shifts b_θ so that it is 0 at Φ = 0.
+    /// Shifts b_θ so that it vanishes at Φ = 0.
     fn vanish_at_zero(&mut self) {
         let order = self.rows[2].nrows();
         let (p, _) = table(&[0.0], order);

@@ -1,56 +1,56 @@
-//! A function of the joint angles with its exact gradient, and how one of its zero-level curves is followed: by predictor and
-//! corrector, straight through where another one crosses it.
+//! Predictor–corrector continuation along a zero-level curve of a function of the joint angles with its exact gradient. The
+//! continuation passes straight through points at which another curve crosses.
 
 use nalgebra::{Matrix2, Vector2};
 
 use crate::numerics::locate;
 
-/// A function of the joint angles with its gradient.
+/// Function of the joint angles with its gradient.
 pub(crate) struct Level<F>(pub(crate) F);
 
-/// How finely a curve is followed \[rad\].
+/// Step control along a curve \[rad\].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stride {
-    /// Longest step.
+    /// Largest step.
     pub(crate) longest: f64,
-    /// A step is cut until the curve turns by less than this.
+    /// Largest turn of the curve per step.
     pub(crate) turn: f64,
 }
 
-/// Every vertex is polished to this.
+/// Largest |value| at a vertex.
 const POLISHED: f64 = 1e-12;
-/// And to this where rounding lets it be.
+/// |value| at which the corrector stops.
 const ROUNDING: f64 = 1e-15;
-/// A curve cannot have come round in fewer steps than this.
+/// Least number of steps of a closed curve.
 const FEWEST_ROUND: usize = 10;
-/// Steps shorter than this share of the longest are given up.
+/// Smallest step, as a share of the largest.
 const SHORTEST: f64 = 1e-7;
-/// A curve of more vertices than this is given up: nothing on these squares has a tenth.
+/// Largest number of vertices; curves on these squares have less than a tenth of it.
 const MOST_POINTS: usize = 100_000;
 
-/// A point of a curve with the direction it was reached in.
+/// Point of a curve with the direction of travel.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OnCurve {
     pub(crate) phi: Vector2<f64>,
     pub(crate) tangent: Vector2<f64>,
     pub(crate) value: f64,
-    /// The function's slope to the left of the tangent.
+    /// Slope of the function to the left of the tangent.
     pub(crate) slope_left: f64,
 }
 
-/// How a walk along a curve ended.
+/// End of a continuation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum End {
-    /// Where it began.
+    /// Back at the start.
     Closed,
-    /// A step from its last point would lead to this point, which it shall not pass.
+    /// The next step would reach this point, which must not be passed.
     Met(f64, OnCurve),
-    /// No step is short enough.
+    /// The step became too small.
     Stuck,
 }
 
 impl OnCurve {
-    /// The same point, run the other way.
+    /// Returns the same point with the opposite direction.
     pub(crate) fn back(self) -> Self {
         Self {
             tangent: -self.tangent,
@@ -65,7 +65,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
         self.0(phi)
     }
 
-    /// The zero on a segment whose ends differ in sign.
+    /// Zero on a segment whose ends have opposite signs.
     pub(crate) fn between(&self, a: &Vector2<f64>, b: &Vector2<f64>) -> Option<Vector2<f64>> {
         let along = b - a;
         let falls = if self.at(b).0 > self.at(a).0 {
@@ -85,7 +85,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
         (self.at(&phi).0.abs() <= POLISHED).then_some(phi)
     }
 
-    /// Walks along the curve from the last of the points, adding more, until it is back there or comes to what it may not pass.
+    /// Continues the curve from the last of the points, appending points, until it is closed or must not be continued.
     pub(crate) fn walk(
         &self,
         points: &mut Vec<OnCurve>,
@@ -123,7 +123,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
         End::Stuck
     }
 
-    /// Where a value falls through zero within a step along the curve, and how far on that is.
+    /// Point within a step at which a value falls through zero, with its distance along the step.
     pub(crate) fn cut(
         &self,
         here: &OnCurve,
@@ -134,11 +134,11 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
             let guess = here.phi + here.tangent * length;
             self.corrected(&guess, Some(&here.tangent), step)
         };
-        // The curve bends within the step: the slope is not quite that of the way ahead.
+        // The curve bends within the step, so the slope differs slightly.
         locate([0.5 * step, step], 1e-22, at, value)
     }
 
-    /// One step along the curve; none where it would turn too much or leave the curve.
+    /// Performs one step along the curve. Returns `None` if it would turn too much or leave the curve.
     fn stepped(&self, here: &OnCurve, step: f64, most_turn: f64) -> Option<OnCurve> {
         let guess = here.phi + here.tangent * step;
         let next = self.corrected(&guess, Some(&here.tangent), 0.2 * step)?;
@@ -146,20 +146,20 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
             .tangent
             .perp(&next.tangent)
             .atan2(here.tangent.dot(&next.tangent));
-        // The chord must agree with both tangents, or the step has changed to another branch.
+        // The chord must agree with both tangents; otherwise the step changed to another branch.
         let chord = (next.phi - here.phi).normalize();
         let kink = here
             .tangent
             .perp(&chord)
             .abs()
             .max(chord.perp(&next.tangent).abs());
-        // The slope changes its side at a crossing alone.
+        // The slope changes its sign only at a crossing.
         let goes_on =
             || here.slope_left * next.slope_left >= 0.0 || self.node(here, &next).is_some();
         (turn.abs() <= most_turn && kink <= 0.8 * most_turn && goes_on()).then_some(next)
     }
 
-    /// Where the curve crosses another one between two of its points, set out to the left along that.
+    /// Crossing with another curve between two points, with the direction of the other curve to the left.
     pub(crate) fn node(&self, before: &OnCurve, after: &OnCurve) -> Option<OnCurve> {
         let (a, b) = (before.slope_left.abs(), after.slope_left.abs());
         let guess = before.phi + (after.phi - before.phi) * (a / (a + b));
@@ -175,7 +175,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
         }
         let apart = (after.phi - before.phi).norm();
         let (value, _) = self.at(&phi);
-        // Along the curve there is no second derivative, nor along the one that crosses it.
+        // The second derivative vanishes along the curve and along the one that crosses it.
         let along = (after.phi - before.phi).normalize();
         let across = Vector2::new(-along.y, along.x);
         let [mixed, second] = [along, across].map(|way| across.dot(&(hessian * way)));
@@ -197,7 +197,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
         (raw + raw.transpose()) * 0.5
     }
 
-    /// Newton's method along the gradient, no farther than `reach` from the guess; the tangent goes on along `onward`.
+    /// Newton corrector along the gradient, within `reach` of the guess; the tangent is oriented along `onward`.
     pub(crate) fn corrected(
         &self,
         guess: &Vector2<f64>,

@@ -1,9 +1,8 @@
-//! Zero-level curves of a function on a square, traced by predictor and corrector from its exact gradient.
+//! All zero-level curves of a function on a square, by predictor–corrector continuation with its exact gradient.
 //!
-//! **That none is missed**: a grid marks every place where the sign changes between neighbours; each mark must lie on a
-//! traced curve, and one that does not starts the next curve. Loops too small for the grid hide between nodes of one sign
-//! around a node where the function is smallest; those neighbourhoods are searched on a grid four times finer. So a
-//! component can only be missed where it is narrower than a fifth of a cell.
+//! **Completeness**: every sign change between neighbours of a grid must be on a traced curve; one that is not starts the next
+//! curve. A loop between nodes of equal sign surrounds a local minimum of the magnitude, so the neighbourhood of each such node
+//! is searched on a grid four times finer. A component can only be missed if it is narrower than a fifth of a cell.
 
 use nalgebra::{DMatrix, Vector2};
 
@@ -13,11 +12,11 @@ use crate::certificate::to_side;
 /// One connected zero-level curve, possibly through points where it crosses another.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct LevelCurve {
-    /// Whether it is closed; an open one ends on the square's edge at both ends.
+    /// `true` if the curve is closed; both ends of an open curve are on the edge of the square.
     pub closed: bool,
-    /// The largest |H| at a vertex.
+    /// Largest |H| at a vertex.
     pub residual: f64,
-    /// Vertices Φ \[rad\] in order; where the curve is closed the last is the first again.
+    /// Vertices Φ \[rad\] in order; the last repeats the first if the curve is closed.
     #[serde(rename = "vertices", serialize_with = "pairs")]
     pub points: Vec<Vector2<f64>>,
 }
@@ -26,19 +25,19 @@ fn pairs<S: serde::Serializer>(points: &[Vector2<f64>], serializer: S) -> Result
     serializer.collect_seq(points.iter().map(|phi| [phi.x, phi.y]))
 }
 
-/// Where and how finely to look.
+/// Domain and resolution of a search for level curves.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LevelSearch {
     pub(crate) half_width: f64,
-    /// Cells along φ₁ and φ₂. Coprime and both odd, so that curves of symmetry, φ₁ = ±φ₂, pass between the nodes.
+    /// Number of cells along φ₁ and φ₂. Both are odd and coprime, so that the lines φ₁ = ±φ₂ pass between the nodes.
     cells: [usize; 2],
     stride: Stride,
 }
 
 impl LevelSearch {
-    /// A search on \[−D, D\]² for functions that change over an angle of about a tenth of a radian or more.
+    /// Search on \[−D, D\]² for functions with features of a tenth of a radian or larger.
     pub(crate) fn new(half_width: f64) -> Self {
-        // Odd, about 0.06 rad to a cell; 2 apart, so coprime.
+        // Odd, about 0.06 rad per cell; a difference of 2 makes them coprime.
         let fewest = (half_width / 0.03).clamp(40.0, 400.0);
         let cells = (0..500)
             .map(|k| 2 * k + 1)
@@ -64,7 +63,7 @@ impl LevelSearch {
         2.0 * self.half_width / self.cells[0] as f64
     }
 
-    /// A seed this close to a traced curve lies on it.
+    /// Distance below which a seed is on a traced curve.
     pub(crate) fn close(&self) -> f64 {
         0.05 * self.cell()
     }
@@ -74,7 +73,7 @@ impl LevelSearch {
     }
 }
 
-/// All zero-level curves. `on_nodes` gives the values at the products of places, given over the half width.
+/// Returns all zero-level curves. `on_nodes` evaluates the function on a tensor grid, given over the half width.
 pub(crate) fn level_curves<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     level: &Level<F>,
     search: &LevelSearch,
@@ -92,7 +91,7 @@ pub(crate) fn level_curves<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     curves
 }
 
-/// Points on the zero-level curves, several on each component.
+/// Returns points on the zero-level curves, several on each component.
 pub(crate) fn level_seeds<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     level: &Level<F>,
     search: &LevelSearch,
@@ -122,7 +121,7 @@ pub(crate) fn level_seeds<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)>(
     seeds
 }
 
-/// Whether a node has the smallest |value| among its neighbours, all of its sign.
+/// Returns `true` if a node has the smallest |value| among its neighbours and all have its sign.
 fn is_dip(values: &DMatrix<f64>, i: usize, j: usize) -> bool {
     let here = values[(i, j)];
     let neighbours = (i.saturating_sub(1)..=i + 1)
@@ -135,7 +134,7 @@ fn is_dip(values: &DMatrix<f64>, i: usize, j: usize) -> bool {
 }
 
 impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
-    /// Zeros around a node that has the smallest value of its neighbourhood, where a finer grid shows another sign.
+    /// Zeros near a local minimum of the magnitude, if a finer grid shows a change of sign.
     fn hidden_near(
         &self,
         search: &LevelSearch,
@@ -154,7 +153,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
         None
     }
 
-    /// The whole curve through one of its points.
+    /// Traces the whole curve through one of its points.
     fn curve_through(&self, search: &LevelSearch, seed: &Vector2<f64>) -> Option<LevelCurve> {
         let mut points = vec![self.corrected(seed, None, search.stride.longest)?];
         let closed = self.to_edge(search, &mut points);
@@ -171,12 +170,12 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
         })
     }
 
-    /// Walks on to the edge of the square, or round: whether round.
+    /// Continues to the edge of the square or to the start. Returns `true` if the curve is closed.
     fn to_edge(&self, search: &LevelSearch, points: &mut Vec<OnCurve>) -> bool {
         let half_width = search.half_width;
         let end = self.walk(points, search.stride, |at| search.holds(&at.phi));
         if let (End::Met(step, beyond), Some(here)) = (end, points.last()) {
-            // The edges that are met, and the first of them.
+            // The edges that are crossed, and the first of them.
             let edges = (0..2).filter(|&axis| beyond.phi[axis].abs() > half_width);
             let met = edges.filter_map(|axis| {
                 let side = beyond.phi[axis].signum();
@@ -193,7 +192,7 @@ impl<F: Fn(&Vector2<f64>) -> (f64, Vector2<f64>)> Level<F> {
     }
 }
 
-/// Whether a point lies within `distance` of a polyline.
+/// Returns `true` if a point is within `distance` of a polyline.
 pub(crate) fn passes(points: &[Vector2<f64>], point: &Vector2<f64>, distance: f64) -> bool {
     let mut sides = points.array_windows();
     sides.any(|[a, b]| to_side(point, a, b) <= distance)

@@ -1,9 +1,9 @@
-//! The polynomials that body frames are sought among, in the basis where the Neumann problem is diagonal.
+//! Polynomial space of the frame, in the basis that diagonalises the Neumann problem.
 //!
 //! On \[−1, 1\] the eigenfunctions qᵢ of stiffness against mass, among polynomials of degree below n, are orthonormal and
 //! have orthogonal slopes: ∫qᵢqⱼ = δᵢⱼ, ∫qᵢ′qⱼ′ = λᵢδᵢⱼ. In their products on the square the Laplacian with natural boundary
-//! conditions is the number λᵢ + λⱼ: Poisson's equation is solved by one division, and the coupled problem has a
-//! preconditioner that leaves little to do.
+//! conditions is multiplication by λᵢ + λⱼ: Poisson's equation is solved by one division, and the coupled problem has an effective
+//! preconditioner.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -14,22 +14,22 @@ use super::legendre::{gauss, polynomials};
 pub(super) struct Space {
     /// Gauss points.
     pub(super) nodes: Vec<f64>,
-    /// The λᵢ.
+    /// Eigenvalues λᵢ.
     pub(super) eigenvalues: DVector<f64>,
-    /// Column i: qᵢ in orthonormal Legendre polynomials.
+    /// Coefficients of qᵢ in orthonormal Legendre polynomials, one column per i.
     legendre: DMatrix<f64>,
-    /// qᵢ at the nodes: one row a node.
+    /// Values of qᵢ at the nodes, one row per node.
     values: DMatrix<f64>,
     slopes: DMatrix<f64>,
-    /// The same, transposed and times the weights: one column a node.
+    /// The same values, transposed and times the weights: one column per node.
     weighted_values: DMatrix<f64>,
     weighted_slopes: DMatrix<f64>,
 }
 
-/// A function on the square at the products of the Gauss points, or its coefficients; rows run along φ₁.
+/// Values of a function on the tensor grid of Gauss points, or its coefficients; the row index runs along φ₁.
 pub(super) type Field = DMatrix<f64>;
 
-/// A function and its slopes along both directions, at the Gauss points.
+/// Function and its slopes in both directions at the Gauss points.
 #[derive(Debug, Clone)]
 pub(super) struct Sampled {
     pub(super) value: Field,
@@ -58,7 +58,7 @@ impl Space {
             values,
             slopes,
             nodes,
-            // The constant's eigenvalue is 0 but for rounding.
+            // The eigenvalue of the constant is zero to rounding.
             eigenvalues: eigen
                 .eigenvalues
                 .map(|value| if value < 1e-6 { 0.0 } else { value }),
@@ -70,7 +70,7 @@ impl Space {
         self.eigenvalues.len()
     }
 
-    /// The function with these coefficients, at the Gauss points.
+    /// Evaluates the function with these coefficients at the Gauss points.
     pub(super) fn sample(&self, coefficients: &Field) -> Sampled {
         let across = coefficients * self.values.transpose();
         let steep = coefficients * self.slopes.transpose();
@@ -80,14 +80,14 @@ impl Space {
         }
     }
 
-    /// For each basis function ψ: ∫ (f ψ + g·∇ψ).
+    /// Computes ∫ (f ψ + g·∇ψ) for each basis function ψ.
     pub(super) fn test(&self, f: &Field, g: [&Field; 2]) -> Field {
         let across = &self.weighted_values * f + &self.weighted_slopes * g[0];
         let steep = &self.weighted_values * g[1];
         across * self.weighted_values.transpose() + steep * self.weighted_slopes.transpose()
     }
 
-    /// The mean of f over the square.
+    /// Mean of f over the square.
     pub(super) fn mean(&self, f: &Field) -> f64 {
         let (mut sum, mut area) = (0.0, 0.0);
         let (_, weights) = gauss(self.nodes.len());
@@ -106,7 +106,7 @@ impl Space {
     }
 }
 
-/// Values at the nodes of a rule, one row a node, transposed and times the weights.
+/// Transposes values at the nodes of a rule, one row per node, and multiplies them by the weights.
 pub(super) fn weighed(values: &DMatrix<f64>, weights: &[f64]) -> DMatrix<f64> {
     let mut transposed = values.transpose();
     for (mut column, weight) in transposed.column_iter_mut().zip(weights) {
@@ -115,7 +115,7 @@ pub(super) fn weighed(values: &DMatrix<f64>, weights: &[f64]) -> DMatrix<f64> {
     transposed
 }
 
-/// Orthonormal Legendre polynomials and their slopes at some places: one row a place.
+/// Orthonormal Legendre polynomials and their slopes at given points, one row per point.
 pub(super) fn table(places: &[f64], order: usize) -> (DMatrix<f64>, DMatrix<f64>) {
     let mut values = DMatrix::zeros(places.len(), order);
     let mut slopes = DMatrix::zeros(places.len(), order);

@@ -1,21 +1,21 @@
-//! Where the zero-level curves meet the diagonals φ₁ = ±φ₂.
+//! Intersections of the zero-level curves with the diagonals φ₁ = ±φ₂.
 
 use nalgebra::Vector2;
 
 use super::{HeightMap, Level, Row};
 
-/// A line on which a height vanishes by symmetry shows no more than this.
+/// Largest height on a line on which it vanishes by symmetry.
 const BY_SYMMETRY: f64 = 1e-13;
-/// Samples of half a diagonal between which one zero at most is expected.
+/// Number of samples of half a diagonal, between which at most one zero is expected.
 const SAMPLES: u32 = 400;
 
 impl HeightMap {
-    /// The zeros of a height with φ₁ = φ₂ > 0, in rising order; none where it vanishes all along the diagonal.
+    /// Zeros of a height with φ₁ = φ₂ > 0, in rising order; empty if it vanishes on the whole diagonal.
     pub fn zeros_on_diagonal(&self, row: Row) -> Vec<f64> {
         self.zeros_along(row, &Vector2::new(1.0, 1.0))
     }
 
-    /// The zeros φ₂ > 0 of a height with φ₁ = −φ₂, in rising order; none where it vanishes all along the diagonal.
+    /// Zeros φ₂ > 0 of a height with φ₁ = −φ₂, in rising order; empty if it vanishes on the whole diagonal.
     pub fn zeros_on_antidiagonal(&self, row: Row) -> Vec<f64> {
         self.zeros_along(row, &Vector2::new(-1.0, 1.0))
     }
@@ -27,7 +27,7 @@ impl HeightMap {
             return Vec::new();
         }
         let level = Level(|phi: &Vector2<f64>| self.height_and_gradient(row, phi));
-        // Zero at Φ = 0 itself is symmetry, not a crossing: the first stretch starts beside it.
+        // The zero at Φ = 0 follows from symmetry and is not an intersection, so the first interval starts next to it.
         (0..SAMPLES)
             .zip(heights.iter().zip(heights.iter().skip(1)))
             .filter(|&(k, (before, after))| {

@@ -1,4 +1,4 @@
-//! Curves whose shape is known.
+//! Tests with curves of known shape.
 
 use super::*;
 
