@@ -1,18 +1,18 @@
-//! Extremals of Lighthill's efficiency as curves in the plane of joint angles: flow, arcs, and shooting over arcs.
+//! Extremals of Lighthill's efficiency as curves in the plane of joint angles, by multiple shooting over free arcs and bound arcs.
 //!
-//! | module | what lives there |
+//! | module | contents |
 //! |---|---|
 //! | `equations` | the reduced flow, free of position and heading, with its linearisation |
 //! | `flow` | flow maps with exact Jacobians |
-//! | `wall` | bounds of the joint angles, as curves to run along |
+//! | `wall` | bounds of the joint angles as curves that an arc can follow |
 //! | `shooting` | multiple shooting over arcs: a quarter, or a closed curve without symmetry |
-//! | `guess` | states and momenta from any closed curve |
-//! | `structure` | which arcs a curve is made of, and what a solution says of that |
-//! | `continuation` | a gait followed as its bounds tighten |
+//! | `guess` | initial states and momenta from any closed curve |
+//! | `structure` | active set: the arcs of a curve, detected and updated |
+//! | `continuation` | homotopy in the bounds |
 //! | `sampled` | an extremal as a sampled cycle |
 //! | `gait` | the gait with its certificate |
 //!
-//! [`polish`] is the way in: any closed curve near an optimum, and bounds.
+//! The entry point is [`polish`], which takes bounds and any closed curve near an optimum.
 
 pub(crate) mod continuation;
 mod equations;
@@ -36,22 +36,22 @@ use shooting::{Chain, Class, Unsolved, solve};
 use structure::{next_structure, of_curve};
 pub(crate) use wall::walls;
 
-/// How often a structure may be changed.
+/// Largest number of changes of the active set.
 const MOST_STRUCTURES: usize = 12;
-/// Samples of a cycle that is asked for its ascents.
+/// Number of samples of a cycle for its second variation.
 const ASCENTS_OF: usize = 256;
 
-/// An extremal: arcs that satisfy every first-order condition.
+/// Chain of arcs that satisfies every first-order condition.
 #[derive(Debug, Clone)]
 pub(crate) struct Extremal {
     pub(crate) chain: Chain,
-    /// Largest residual: angles in radians, momenta over |p|, the scale condition over the length.
+    /// Largest residual: angles \[rad\], momenta over |p|, scale condition over the length.
     pub(crate) residual: f64,
-    /// Sign of the Jacobian's determinant; it changes at a fold of the family of solutions.
+    /// Sign of the Jacobian's determinant, which changes at a fold of the branch.
     pub(crate) orientation: f64,
 }
 
-/// Why a curve could not be polished.
+/// Failure to polish a curve.
 #[derive(Debug, Clone, thiserror::Error)]
 pub(crate) enum Unpolished {
     #[error("the curve to polish goes nowhere")]
@@ -64,10 +64,10 @@ pub(crate) enum Unpolished {
     Structure,
 }
 
-/// Polishes a closed curve (or, for a gait with the paper's two symmetries that starts on φ₁ = φ₂, its quarter) to an extremal that
-/// satisfies the maximum principle for Lighthill's efficiency to rounding: the arcs are read off the curve, shot, and changed until
-/// they are right. Curves that turn more than once or cross themselves are gaits too; whether the one found is still the one that was
-/// meant is for the caller to compare. It may be a saddle.
+/// Polishes a closed curve to an extremal that satisfies Pontryagin's principle for Lighthill's efficiency to rounding. For a gait
+/// with the paper's two symmetries that starts on φ₁ = φ₂, only the quarter is solved. The active set is detected on the curve and
+/// updated after each solution until it is consistent. Curves with several turns or self-crossings are accepted. The caller
+/// compares the extremal with the curve, since it may be another gait or a saddle.
 pub(crate) fn polish<G: Gait<f64> + ?Sized>(
     model: &Model<f64>,
     walls: &Region,
@@ -83,7 +83,7 @@ pub(crate) fn polish<G: Gait<f64> + ?Sized>(
     polish_chain(model, walls, of_curve(&swum, walls, quarter))
 }
 
-/// Solves a chain, structure after structure.
+/// Solves a chain and updates its active set until it is consistent.
 pub(crate) fn polish_chain(
     model: &Model<f64>,
     walls: &Region,
@@ -106,14 +106,14 @@ pub(crate) fn polish_chain(
 }
 
 impl Extremal {
-    /// Along how many directions the efficiency grows to second order, of a quarter those that keep its symmetries; none where an arc
-    /// cannot be followed.
+    /// Number of independent directions in which the efficiency grows to second order; for a quarter, those that keep its symmetries.
+    /// Returns `None` if an arc cannot be integrated.
     pub(crate) fn ascents(&self, model: &Model<f64>) -> Option<usize> {
         let cycle = self.cycle(model, ASCENTS_OF)?;
         Some(ascents_of_efficiency(model, &cycle, self.is_quarter()))
     }
 
-    /// Whether it is a quarter of a gait with the paper's two symmetries.
+    /// Returns `true` for a quarter of a gait with the paper's two symmetries.
     pub(crate) fn is_quarter(&self) -> bool {
         self.chain.class == Class::Quarter
     }
@@ -126,7 +126,7 @@ impl Extremal {
         })
     }
 
-    /// The full cycle in about so many samples; none where an arc cannot be followed.
+    /// Samples the full cycle with about `samples` samples. Returns `None` if an arc cannot be integrated.
     pub(crate) fn cycle(&self, model: &Model<f64>, samples: usize) -> Option<Cycle> {
         let parts = usize::from(self.chain.class.parts());
         sampled::sampled(model, &self.chain, samples / parts)
@@ -141,12 +141,12 @@ impl Extremal {
         })
     }
 
-    /// λ₃ = p·x̂ in the frame of the first shape: the sign of X for a quarter.
+    /// λ₃ = p·x̂ in the frame of the first shape; its sign is that of X for a quarter.
     pub(crate) fn heading(&self) -> f64 {
         self.chain.states.first().map_or(f64::NAN, |z| z[3])
     }
 
-    /// The first shape.
+    /// First shape.
     pub(crate) fn start(&self) -> Vector2<f64> {
         let first = self.chain.states.first();
         first.map(shape).unwrap_or_default()

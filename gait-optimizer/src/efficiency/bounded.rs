@@ -1,7 +1,7 @@
-//! Efficiency gaits along bounds: the free gait followed as its bounds tighten.
+//! Bounded efficiency gaits, by homotopy (continuation) from the free gait while the bounds tighten.
 //!
-//! The name of a gait says which free gait it grew out of, so it is followed step by step (`extremal::continuation`), and where
-//! that ends there is no gait of the name, even where other gaits obey the bounds.
+//! The name of a gait identifies the free gait from which its branch starts. The branch is followed step by step
+//! (`extremal::continuation`). Where it ends, no gait of the name exists, even if other gaits satisfy the bounds.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -16,15 +16,15 @@ use crate::extremal::continuation::{Ended, Path, Tightness};
 use crate::optimal_gait::OptimalGait;
 use crate::region::Clearance;
 
-/// Below this share of the free gait's efficiency a gait has faded.
+/// Share of the free gait's efficiency below which a branch counts as ended.
 const FADED: f64 = 1e-4;
 
-/// How tight the bounds were where a branch ended.
+/// Bounds at which a branch ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reached {
     /// Bound on both angles \[rad\].
     pub max_angle: f64,
-    /// While side links count as shortened: φ₁ = φ₂ \[rad\] where their tips meet. Where they really meet comes last.
+    /// φ₁ = φ₂ \[rad\] at which the tips of the shortened and of the full side links meet, while the side links count as shortened.
     pub tips_meet: Option<[f64; 2]>,
 }
 
@@ -42,7 +42,7 @@ impl fmt::Display for Reached {
     }
 }
 
-/// Follows a free gait that breaks the problem's bounds until it obeys them.
+/// Follows a free gait that violates the bounds until it satisfies them.
 pub(super) fn bounded(
     problem: &EfficiencyProblem,
     model: &Model<f64>,
@@ -78,7 +78,7 @@ pub(super) fn bounded(
         }
         Ok(extremal)
     };
-    // The largest angle comes in first; where that leads nowhere, last.
+    // The largest angle is tightened first; if that fails, last.
     let angle_last = || {
         let way = [at(folded, 0.0), at(folded, 1.0), at(tight, 1.0)];
         (bounds.no_overlap && tight < folded)
@@ -97,7 +97,7 @@ pub(super) fn bounded(
     certified(branch, found.gait)
 }
 
-/// What a gait must keep being on its way; what it lost otherwise.
+/// Checks the properties that a gait must keep along the branch. The error names the lost property.
 fn keeps_its_name(
     branch: Branch,
     model: &Model<f64>,
@@ -150,7 +150,7 @@ fn branch_ends(branch: Branch, links: &Links<f64>, ended: &Ended) -> EfficiencyE
     }
 }
 
-/// Links too short to meet.
+/// Angle at which the tips meet, or π if the links are too short to meet.
 fn or_folded(angle: f64) -> f64 {
     if angle.is_finite() { angle } else { PI }
 }

@@ -1,4 +1,4 @@
-//! From no guess to an extremal: circles, Fourier series of rising order, shooting.
+//! Extremals without an initial guess: circles, Fourier series of rising order, then shooting.
 
 use nalgebra::Vector2;
 use swimmer_model::Model;
@@ -10,19 +10,19 @@ use crate::extremal::Extremal;
 use crate::extremal::guess::quarter_of_curve;
 use crate::extremal::shooting::solve;
 
-/// Where an extremal comes from.
+/// Origin of an extremal.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Origin {
-    /// Order of the Fourier series that it grew from.
+    /// Order of the Fourier series that was the initial guess.
     pub(crate) order: usize,
-    /// What led to the guess that was shot from.
+    /// Method that produced the initial guess.
     pub(crate) method: &'static str,
-    /// ξ of the curve that a direct method found by itself.
+    /// ξ of the curve that a direct method found, before shooting.
     pub(crate) direct_efficiency: Option<f64>,
 }
 
 impl Origin {
-    /// Another extremal's arcs.
+    /// Origin of an extremal that started from the arcs of another.
     pub(crate) fn arcs() -> Self {
         Self {
             order: 0,
@@ -32,8 +32,7 @@ impl Origin {
     }
 }
 
-/// Orders of the series, the panels of the quarter, the gain that a climb stops at, and the numbers of pieces that are shot from
-/// there.
+/// Order of the series, number of panels per quarter, gain at which the ascent stops, and numbers of pieces of the shooting.
 const LADDER: [(usize, usize, f64, &[usize]); 10] = [
     (1, 8, 1e-6, &[]),
     (2, 8, 1e-6, &[]),
@@ -46,14 +45,14 @@ const LADDER: [(usize, usize, f64, &[usize]); 10] = [
     (24, 43, 1e-15, &[16, 32]),
     (32, 43, 1e-15, &[16, 32]),
 ];
-/// A series has settled where the next order changes its efficiency by no more than this share; the pieces that it is shot in then.
+/// Relative change of the efficiency at which a series counts as converged in its order.
 const SETTLED: f64 = 1e-8;
 const SETTLED_PIECES: &[usize] = &[8];
-/// The extremal may be better than the gait of the direct method by this factor. It cannot be worse, but for the error of the
-/// direct method's quadrature: else it is another extremal.
+/// Accepted ratio of the extremal's efficiency to that of the direct method. Except for the quadrature error of the direct method
+/// the extremal cannot be worse; outside this range it is another extremal.
 const SAME_GAIT: std::ops::Range<f64> = 1.0 - 1e-5..1.05;
 
-/// Starts for a branch: coefficients of order 1.
+/// Initial guesses for a branch: coefficients of order 1.
 pub(crate) fn starts(model: &Model<f64>, branch: Branch) -> Result<Vec<[f64; 2]>, EfficiencyError> {
     let circles = best_circles(model, branch.sign());
     if !circles.is_empty() {
@@ -66,8 +65,8 @@ pub(crate) fn starts(model: &Model<f64>, branch: Branch) -> Result<Vec<[f64; 2]>
     Ok(ellipses)
 }
 
-/// Fourier to a low order, then shooting; higher orders where that does not converge. By Fourier alone it is shot from the order
-/// where the series has settled.
+/// Solves the Fourier problem to a low order, then shoots; raises the order if shooting does not converge. With the method
+/// `fourier`, shooting starts from the order at which the series has converged.
 pub(crate) fn extremal_from(
     model: &Model<f64>,
     (branch, method): (Branch, Method),
@@ -77,7 +76,7 @@ pub(crate) fn extremal_from(
     let mut saddle = None;
     let alone = method == Method::Fourier;
     for (order, panels, gain, bridges) in LADDER {
-        // Each order is started from the one below.
+        // Each order starts from the previous one.
         let (mut from, before) = match &last {
             Some((_, below)) => (below.coefficients.clone(), below.value.efficiency()),
             None => (start.to_vec(), f64::NAN),
@@ -108,7 +107,7 @@ pub(crate) fn extremal_from(
                 method: if alone { method } else { Method::Shooting }.word(),
                 direct_efficiency: alone.then_some(efficiency),
             };
-            // Newton's method takes saddles as well; what has settled is where the climb led.
+            // Newton's method also converges to saddles; the converged series is a maximum.
             if alone || extremal.ascents(model) == Some(0) {
                 return Ok((extremal, origin));
             }
@@ -119,7 +118,7 @@ pub(crate) fn extremal_from(
         }
         last = Some((order, maximum));
     }
-    // A saddle is told with its certificate, which says so.
+    // A saddle is returned with its certificate, which reports it.
     saddle.ok_or(EfficiencyError::NotConverged {
         branch,
         order: last.as_ref().map_or(0, |(order, _)| *order),
@@ -127,7 +126,7 @@ pub(crate) fn extremal_from(
     })
 }
 
-/// A gait that crosses itself is out of the class: no need to look for an extremal near it.
+/// Refuses a gait that crosses itself, which is outside the class.
 fn simple(branch: Branch, order: usize, maximum: &Maximum) -> Result<(), EfficiencyError> {
     let sides = 256;
     let points: Vec<Vector2<f64>> = (0..=sides)
@@ -145,14 +144,14 @@ fn simple(branch: Branch, order: usize, maximum: &Maximum) -> Result<(), Efficie
     }
 }
 
-/// The extremal that shooting in so many pieces finds near a series.
+/// Extremal that shooting with this number of pieces finds near a series.
 fn shot(model: &Model<f64>, maximum: &Maximum, pieces: usize) -> Option<Extremal> {
     let curve = |s| series(&maximum.coefficients, s);
     let extremal = solve(model, quarter_of_curve(model, &curve, pieces)?).ok()?;
     same_gait(model, extremal, maximum.value.efficiency(), maximum.value.x)
 }
 
-/// Newton's method may end at another extremal than the one it was started near: none then.
+/// Returns the extremal if it is the one near the guess, and `None` if Newton's method converged to another.
 pub(crate) fn same_gait(
     model: &Model<f64>,
     extremal: Extremal,

@@ -1,35 +1,35 @@
-//! Why there is no efficiency gait to return.
+//! Errors of the search for efficiency gaits.
 
 use super::{Branch, Reached};
 use crate::immobile::Immobile;
 use crate::optimal_gait::OptimalGait;
 use crate::problem::InvalidProblem;
 
-/// Why there is no efficiency gait to return.
+/// Failure of the search for an efficiency gait.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EfficiencyError {
-    /// It makes no sense.
+    /// The problem is invalid.
     #[error(transparent)]
     Problem(#[from] InvalidProblem),
-    /// Gaits do not move it.
+    /// No gait moves the swimmer.
     #[error(transparent)]
     Immobile(#[from] Immobile),
-    /// The free gait breaks a bound, and cannot be followed all the way to where it obeys it.
+    /// The free gait violates a bound, and its branch ends before it satisfies the bound.
     #[error("the {branch} gait, followed as the bounds tighten, ends at {reached}: {reason}")]
     BranchEnds {
         /// Which gait.
         branch: Branch,
-        /// How tight the bounds were.
+        /// Bounds at the end of the branch.
         reached: Reached,
-        /// What happens there.
+        /// Reason for the end.
         reason: String,
     },
-    /// The free gait breaks a bound, and could not be set on its way.
+    /// The free gait violates a bound, and the first step of the continuation failed.
     #[error("the free {branch} gait breaks a bound and cannot be followed along it: {reason}")]
     NotFollowed {
         /// Which gait.
         branch: Branch,
-        /// Why.
+        /// Reason for the failure.
         reason: String,
     },
     /// No circle or ellipse is a local optimum.
@@ -39,10 +39,10 @@ pub enum EfficiencyError {
     NoStart {
         /// Which gait.
         branch: Branch,
-        /// The largest |X|/S of the right sign that was seen.
+        /// Largest |X|/S of the required sign among the circles and ellipses.
         best: f64,
     },
-    /// The Fourier gaits run away.
+    /// The amplitude of the Fourier gaits grows without limit.
     #[error(
         "this swimmer has no {branch} gait of most efficiency: gaits get better until a joint turns further than \
          {farthest:.2} rad; `swimmer atlas --objective efficiency --max-angle 2.8` finds those within a bound"
@@ -50,16 +50,16 @@ pub enum EfficiencyError {
     RunsAway {
         /// Which gait.
         branch: Branch,
-        /// Amplitude of the circle that it began with \[rad\].
+        /// Amplitude of the initial circle \[rad\].
         amplitude: f64,
         /// Order of the series that did not converge.
         order: usize,
-        /// Efficiency of the order before.
+        /// Efficiency of the previous order.
         efficiency: f64,
-        /// Angles beyond this are not followed \[rad\].
+        /// Largest joint angle of the search \[rad\].
         farthest: f64,
     },
-    /// The Fourier gaits of this branch cross themselves, and shooting does not converge from them.
+    /// The Fourier gaits of the branch cross themselves, and shooting does not converge from them.
     #[error(
         "this swimmer has no simple {branch} gait of most efficiency: the best one crosses itself; `swimmer atlas --objective \
          efficiency` lists such gaits, too"
@@ -71,10 +71,10 @@ pub enum EfficiencyError {
         order: usize,
         /// Its efficiency.
         efficiency: f64,
-        /// How often it crosses itself.
+        /// Number of self-crossings.
         crossings: usize,
     },
-    /// Shooting does not converge from the best start that there is.
+    /// Shooting does not converge from the best initial guess.
     #[error(
         "the {branch} gait was not found: the search does not converge for this swimmer; it may be met from a swimmer that \
          works, by following its gait with `swimmer atlas --objective efficiency --continue chi=FROM..TO` or \
@@ -88,7 +88,7 @@ pub enum EfficiencyError {
         /// Its efficiency.
         efficiency: f64,
     },
-    /// What shooting converged to is another gait than the one that was asked for.
+    /// Shooting converged to a gait outside the requested branch.
     #[error(
         "there is no {branch} gait here: what was found starts at {start_angle:.3} rad with X/L = {displacement_over_length:.6}, \
          and a {branch} gait is one with {definition}"
@@ -102,7 +102,7 @@ pub enum EfficiencyError {
         displacement_over_length: f64,
         /// φ₁ = φ₂ at its start \[rad\].
         start_angle: f64,
-        /// What was asked for.
+        /// Definition of the requested branch.
         definition: &'static str,
     },
     /// The best gait with the paper's symmetries is a saddle among all closed curves.
@@ -113,10 +113,10 @@ pub enum EfficiencyError {
     Saddle {
         /// Which gait.
         branch: Branch,
-        /// The gait, whose certificate fails in that alone.
+        /// The gait, whose certificate fails only in the second variation.
         gait: Box<OptimalGait>,
     },
-    /// An extremal was found, but it fails its certificate.
+    /// An extremal was found, but its certificate fails.
     #[error(
         "the {branch} gait found does not meet all conditions of an optimum, so it is not returned; try other bounds"
     )]
@@ -125,13 +125,13 @@ pub enum EfficiencyError {
         branch: Branch,
         /// Its efficiency.
         efficiency: f64,
-        /// The checks that it fails, with their values.
+        /// Failed conditions with their values.
         failed: String,
     },
 }
 
 impl EfficiencyError {
-    /// Of two reasons the one that the search came farther to.
+    /// Returns the error of the search that progressed further.
     pub(super) fn or_farther(self, other: Self) -> Self {
         if other.distance() > self.distance() {
             other
@@ -152,7 +152,7 @@ impl EfficiencyError {
         }
     }
 
-    /// What the search saw, for who knows the method; none where the error itself says it all.
+    /// Details of the search for experts. Returns `None` if the error itself is complete.
     pub fn details(&self) -> Option<String> {
         Some(match self {
             Self::NoStart { best, .. } => format!(
@@ -196,7 +196,7 @@ impl EfficiencyError {
         })
     }
 
-    /// Whether the problem itself makes no sense, rather than having no solution.
+    /// Returns `true` if the problem is invalid, and `false` if a valid problem has no solution.
     pub fn is_bad_input(&self) -> bool {
         matches!(self, Self::Problem(_))
     }

@@ -9,15 +9,15 @@ use swimmer_model::Model;
 pub(crate) use ascent::{FARTHEST, Maximum, climb};
 pub(crate) use objective::{Expansion, Objective, Value, series};
 
-/// Panels of the quarter that circles and ellipses are looked at in.
+/// Number of panels per quarter for circles and ellipses.
 const PANELS: usize = 11;
-/// Circles of these amplitudes are tried first \[rad\].
+/// First and last amplitude \[rad\] and number of the circles that are evaluated first.
 const AMPLITUDES: (f64, f64, usize) = (0.3, 4.6, 44);
 
-/// Ellipses are tried with so many lengths of each axis.
+/// Number of lengths of each axis of the ellipses.
 const ELLIPSES: usize = 18;
 
-/// Amplitudes where circles have a local maximum of X/S with this sign of X, in order.
+/// Amplitudes at which circles have a local maximum of X/S with this sign of X, in rising order.
 pub(crate) fn best_circles(model: &Model<f64>, sign: f64) -> Vec<f64> {
     let mut objective = Objective::new(model, 1, PANELS);
     let (low, high, count) = AMPLITUDES;
@@ -31,8 +31,8 @@ pub(crate) fn best_circles(model: &Model<f64>, sign: f64) -> Vec<f64> {
     tops.map(amplitude).collect()
 }
 
-/// Half axes of ellipses where X/S with this sign of X has a local maximum over both, in order of size, and the largest
-/// |X|/S seen: for swimmers whose circles have none.
+/// Half axes at which ellipses have a local maximum of X/S with this sign of X, in order of size, and the largest |X|/S. Used for
+/// swimmers whose circles have no maximum.
 pub(crate) fn best_ellipses(model: &Model<f64>, sign: f64) -> (Vec<[f64; 2]>, f64) {
     let mut objective = Objective::new(model, 1, PANELS);
     let (low, high, _) = AMPLITUDES;
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
     use swimmer_model::Swimmer;
 
-    /// Gradient and Hessian against central differences.
+    /// Gradient and Hessian agree with central differences.
     #[test]
     fn derivatives_are_exact() {
         let model = Model::new(&Swimmer::robot().of_unit_length()).unwrap();

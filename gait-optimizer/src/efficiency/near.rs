@@ -1,4 +1,4 @@
-//! The gait of a design from the gait of a neighbouring one: its arcs shot again, no series and no path of bounds.
+//! Warm start: the efficiency gait of a problem from that of a neighbouring problem, by shooting from its arcs.
 
 use super::chain::Origin;
 use super::{EfficiencyProblem, Found, finished};
@@ -6,8 +6,8 @@ use crate::extremal::continuation::within_walls;
 use crate::extremal::{Extremal, polish, polish_chain, walls};
 use crate::optimal_gait::OptimalGait;
 
-/// An efficiency gait from which the gaits of neighbouring problems are found: another swimmer or other bounds, a little changed.
-/// The first step reads the arcs off its curve, each further one starts from the arcs themselves.
+/// Efficiency gait that is the initial guess for neighbouring problems, with a slightly different swimmer or bounds. The first step
+/// detects the arcs on its curve; each further step starts from the arcs themselves.
 ///
 /// ```
 /// use gait_optimizer::{Branch, EfficiencyProblem, EfficiencySeed, efficiency};
@@ -30,7 +30,7 @@ pub struct EfficiencySeed {
 }
 
 impl EfficiencySeed {
-    /// From a gait with the paper's two symmetries; any other leads nowhere.
+    /// Starts from a gait with the paper's two symmetries; other gaits do not converge.
     pub fn new(gait: OptimalGait) -> Self {
         Self {
             gait,
@@ -43,9 +43,8 @@ impl EfficiencySeed {
         &self.gait
     }
 
-    /// The optimum of a problem that lies near, with its own certificate. It costs a fraction of
-    /// [`efficiency()`](super::efficiency()). None where the arcs lead to no gait of the branch, or to one that fails its
-    /// certificate.
+    /// Returns the optimum of a neighbouring problem with its own certificate, at a fraction of the cost of
+    /// [`efficiency()`](super::efficiency()). Returns `None` if shooting does not find a gait of the branch or its certificate fails.
     pub fn near(&self, problem: &EfficiencyProblem) -> Option<Self> {
         let model = problem.validated().ok()?;
         if !self.gait.symmetric {

@@ -1,9 +1,9 @@
-//! A gait followed as its bounds tighten.
+//! Homotopy in the bounds: follows a gait while its bounds tighten.
 //!
-//! The largest angle comes in from beyond the gait's own. For crossing links the side links count as shortened at first, by
-//! a factor that grows to 1: that moves the forbidden shapes in from |φ| = π. Each step starts from the arcs of the last one;
-//! where the next gait lies too far off for the step, or none is found, the step is halved, so that no other branch is taken
-//! for this one, until the branch is seen to end.
+//! The bound on the angles starts at the gait's own largest angle. For crossing links, the side links are shortened by a factor
+//! that grows to 1, which moves the forbidden shapes in from |φ| = π. Each step starts from the previous arcs. If no gait is found,
+//! or if it is too far away for the step, the step is halved, so that the iteration cannot change to another branch. The
+//! continuation stops when the steps become too small.
 
 use swimmer_files::Bounds;
 use swimmer_model::{Links, Model};
@@ -14,47 +14,47 @@ use super::wall::walls;
 use super::{Extremal, Unpolished, polish_chain};
 use crate::region::Region;
 
-/// How tight the bounds are.
+/// Bounds at one point of the homotopy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Tightness {
-    /// |φᵢ| may be this \[rad\].
+    /// Bound on |φᵢ| \[rad\].
     pub(crate) max_angle: f64,
-    /// Share of the side links that may not cross; 0 where they may.
+    /// Share of the side links that must not cross; 0 if they may.
     pub(crate) share: f64,
 }
 
-/// Why a gait could not be followed all the way.
+/// Premature end of a branch.
 #[derive(Debug, Clone)]
 pub(crate) enum Ended {
-    /// No gait nearby for tighter bounds, however small the step.
+    /// No gait nearby for tighter bounds, even with the smallest step.
     NoneBeyond { at: Tightness, reason: Unpolished },
-    /// A fold: the gait meets another extremal, and neither goes on. The other one, shortly before, is the proof.
+    /// Fold: the gait merges with another extremal. `other` is that extremal shortly before the fold.
     Fold { at: Tightness, other: Box<Extremal> },
-    /// Steps shrank although gaits were found: each was another branch.
+    /// The gaits found by the last steps are on another branch.
     OtherBranch { at: Tightness },
-    /// The gait is no longer what it was called.
+    /// The gait lost a property of its branch.
     Property {
         at: Tightness,
         property: &'static str,
     },
 }
 
-/// The first step, and the smallest.
+/// First step; the next constant is the smallest.
 const FIRST: f64 = 0.05;
 const SMALLEST: f64 = 1e-6;
 const MOST_STEPS: usize = 400;
-/// How many gaits on the way are kept.
+/// Number of previous gaits that are kept.
 const REMEMBERED: usize = 12;
-/// The efficiency may change by this share in one step, and the first shape by this much \[rad\].
+/// Largest relative change of the efficiency in one step; the next constant is that of the first shape \[rad\].
 const MOST_CHANGE: f64 = 0.08;
 const MOST_SHIFT: f64 = 0.12;
 
-/// A path of bounds to follow a gait along.
+/// Path of the homotopy.
 pub(crate) struct Path<'a> {
     pub(crate) model: &'a Model<f64>,
     /// Least distance between the side links over L.
     pub(crate) clearance: f64,
-    /// What the gait must keep being, or which property it lost.
+    /// Check of the properties that the gait must keep; the error names the lost one.
     pub(crate) keeps: &'a dyn Fn(&Extremal) -> Result<(), &'static str>,
 }
 
@@ -89,7 +89,7 @@ impl Path<'_> {
         let way = (to.max_angle - from.max_angle).abs() + (to.share - from.share).abs();
         let (mut here, mut t, mut step) = (start, 0.0_f64, (FIRST / way.max(1e-9)).min(1.0));
         let mut failure;
-        // The last gaits on the way, oldest first.
+        // The last gaits of the branch, oldest first.
         let mut way_here: Vec<Extremal> = Vec::new();
         for _ in 0..MOST_STEPS {
             if t >= 1.0 {
@@ -143,7 +143,7 @@ impl Path<'_> {
     }
 }
 
-/// The same arcs along walls that have moved.
+/// Replaces the bounds of a chain by those of `walls`.
 pub(crate) fn within_walls(walls: &Region, chain: &Chain) -> Chain {
     let mut chain = chain.clone();
     for arc in &mut chain.arcs {
@@ -161,7 +161,7 @@ pub(crate) fn within_walls(walls: &Region, chain: &Chain) -> Chain {
     chain
 }
 
-/// How far two gaits are apart, over what a step may change.
+/// Distance of two gaits relative to the largest change per step.
 fn difference(here: &Extremal, there: &Extremal) -> f64 {
     let scale = |extremal: &Extremal| extremal.heading();
     let change = (scale(there) / scale(here) - 1.0).abs() / MOST_CHANGE;
@@ -169,7 +169,7 @@ fn difference(here: &Extremal, there: &Extremal) -> f64 {
     change.max(shift)
 }
 
-/// Whether two chains are made of the same arcs.
+/// Returns `true` if two chains consist of the same arcs.
 pub(crate) fn alike(a: &Chain, b: &Chain) -> bool {
     a.states.len() == b.states.len()
         && a.arcs.len() == b.arcs.len()
@@ -179,7 +179,7 @@ pub(crate) fn alike(a: &Chain, b: &Chain) -> bool {
             .all(|(a, b)| matches!(a.motion, Motion::Free) == matches!(b.motion, Motion::Free))
 }
 
-/// The chain as far on the other side of `turn` as `here` is on this side, `factor` times; the arcs are those of `here`.
+/// Reflects `here` at `turn`, with its distance multiplied by `factor`; the arcs are those of `here`.
 pub(crate) fn mirrored(here: &Chain, turn: &Chain, factor: f64) -> Chain {
     let beyond = |from: f64, to: f64| to + factor * (to - from);
     let mut chain = here.clone();
@@ -194,8 +194,8 @@ pub(crate) fn mirrored(here: &Chain, turn: &Chain, factor: f64) -> Chain {
     chain
 }
 
-/// The other extremal that a branch meets where it ends, under the bounds of a gait shortly before: the proof of a fold.
-/// The Jacobian has the other orientation there.
+/// Finds the other extremal at a fold, for the bounds of a gait shortly before it. Its Jacobian has the opposite orientation, which
+/// proves the fold.
 pub(crate) fn other_side(
     model: &Model<f64>,
     before: &Extremal,

@@ -1,4 +1,4 @@
-//! The equations of extremals of Lighthill's efficiency, free of position and heading, with their exact linearisation.
+//! Equations of extremals of Lighthill's efficiency, reduced by position and heading, with their exact linearisation.
 //!
 //! Along the power length s (∫√P, so Φ runs at constant power), with e = (cos ψ, sin ψ), n = (−sin ψ, cos ψ), g = eᵀWe:
 //!
@@ -9,29 +9,29 @@
 //! q'  = μ_x ξ_x + μ_y ξ_y
 //! ```
 //!
-//! They are `W ∇_t t = h J t`: the curve is a geodesic of the metric W in a magnetic field, the height h, made by the
-//! curvature F of the connection and the body momentum μ. For a gait with displacement d and length S that extremises
-//! ln |d| − ln S the momentum dual to the displacement is p = d S/|d|², so that ∮q' = p·d = S. The paper's costates are
-//! λ₄ = `μ_θ` and `λ₁,₂ = WΦ' − Aᵀμ`, up to a common factor; nothing here is singular on the symmetry lines.
+//! They are equivalent to `W ∇_t t = h J t`: the curve is a geodesic of the metric W in a magnetic field, the height h, which
+//! follows from the curvature F of the connection and the body momentum μ. For a gait with displacement d and length S that
+//! extremises ln |d| − ln S the momentum dual to the displacement is p = d S/|d|², so that ∮q' = p·d = S. The paper's costates are
+//! λ₄ = `μ_θ` and `λ₁,₂ = WΦ' − Aᵀμ`, up to a common factor. The equations are regular on the symmetry lines.
 
 use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
 use swimmer_model::Model;
 
 use crate::region::Bound;
 
-/// φ₁, φ₂, direction ψ, body momentum `μ_x`, `μ_y`, `μ_θ`.
+/// State: φ₁, φ₂, direction ψ, body momentum `μ_x`, `μ_y`, `μ_θ`.
 pub(crate) type State = [f64; STATE];
 /// Number of entries of a [`State`].
 pub(crate) const STATE: usize = 6;
-/// Rows of a rate: the state and q.
+/// Number of rates: those of the state and of q.
 pub(crate) const RATES: usize = STATE + 1;
 
-/// What an arc runs along.
+/// Kind of an arc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Motion {
-    /// Nothing: a free extremal.
+    /// Free extremal.
     Free,
-    /// A bound of the joint angles; the direction stays tangent to it.
+    /// Arc along a bound of the joint angles; the direction stays tangent to it.
     Along(Bound),
 }
 
@@ -52,7 +52,7 @@ pub(crate) fn momentum(z: &State) -> Vector3<f64> {
     Vector3::new(z[3], z[4], z[5])
 }
 
-/// J v: a quarter turn counter-clockwise.
+/// J v: rotation by 90° counter-clockwise.
 fn turned(v: &Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }
@@ -61,15 +61,15 @@ fn det(w: &Matrix2<f64>) -> f64 {
     w.m11 * w.m22 - w.m12 * w.m12
 }
 
-/// μ × ξ of the coadjoint equation; bilinear.
+/// Bilinear form μ × ξ of the coadjoint equation.
 fn coadjoint(mu: &Vector3<f64>, body: &Vector3<f64>) -> Vector3<f64> {
     Vector3::new(mu.y * body.z, -mu.x * body.z, mu.x * body.y - mu.y * body.x)
 }
 
-/// The turning rate ψ' of a free extremal taken apart: `plain + gain·h`.
+/// Parts of the turning rate ψ' of a free extremal: `plain + gain·h`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Turning {
-    /// ψ' of a geodesic of W, without a field.
+    /// ψ' of a geodesic of W without the field.
     pub(crate) plain: f64,
     /// g/det W.
     pub(crate) gain: f64,
@@ -82,7 +82,7 @@ pub(crate) struct Turning {
 }
 
 impl Turning {
-    /// At a shape and direction.
+    /// Evaluates the parts at a shape and direction.
     pub(crate) fn at(model: &Model<f64>, phi: &Vector2<f64>, psi: f64) -> Self {
         let d = model.first_derivatives(phi);
         let (sin, cos) = psi.sin_cos();
@@ -103,7 +103,7 @@ impl Turning {
     }
 }
 
-/// Rates of state and q.
+/// Returns the rates of state and q.
 pub(crate) fn rate(model: &Model<f64>, motion: &Motion, z: &State) -> [f64; RATES] {
     let (phi, mu) = (shape(z), momentum(z));
     let (sin, cos) = z[2].sin_cos();
@@ -137,7 +137,7 @@ fn assemble(
     [v.x, v.y, turn, push.x, push.y, push.z, gain]
 }
 
-/// Rates with their derivatives: the variational equations.
+/// Returns the rates with their derivatives, for the variational equations.
 pub(crate) fn linear(model: &Model<f64>, motion: &Motion, z: &State) -> Linear {
     let (phi, mu) = (shape(z), momentum(z));
     let (sin, cos) = z[2].sin_cos();
@@ -199,7 +199,7 @@ pub(crate) fn linear(model: &Model<f64>, motion: &Motion, z: &State) -> Linear {
     }
 }
 
-/// ψ' of a free extremal and its derivatives with respect to the state.
+/// Returns ψ' of a free extremal and its derivatives with respect to the state.
 fn free_turning(
     second: &swimmer_model::SecondDerivatives<f64>,
     mu: &Vector3<f64>,

@@ -5,15 +5,15 @@ use swimmer_model::Model;
 use super::equations::{Motion, RATES, STATE, State, linear, rate};
 use crate::runge_kutta::{Point, StepControl, advance};
 
-/// Entries of a state with q and the sensitivities of both.
+/// Number of entries of a state with q and their sensitivities.
 const WIDE: usize = RATES + RATES * STATE;
 
-/// Where a stretch of flow ends.
+/// End of an integrated piece with its sensitivities.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Mapped {
-    /// The state at the end.
+    /// State at the end.
     pub(crate) end: State,
-    /// What q gained.
+    /// Change of q.
     pub(crate) gain: f64,
     /// Rates of state and q at the end: derivatives with respect to the length.
     pub(crate) rate: [f64; RATES],
@@ -21,7 +21,7 @@ pub(crate) struct Mapped {
     pub(crate) by_start: [[f64; STATE]; RATES],
 }
 
-/// Local tolerance of whatever is kept.
+/// Local tolerance of results.
 pub(crate) const FINE: f64 = 1e-13;
 
 /// Rates of the state, of q and of their sensitivities.
@@ -45,8 +45,8 @@ fn state(z: &[f64]) -> State {
     std::array::from_fn(|i| z.get(i).copied().unwrap_or(f64::NAN))
 }
 
-/// Flows over a length, with the Jacobian, to a local `tolerance`; none where the steps become too short. A length below zero
-/// runs backwards.
+/// Integrates over a length with the Jacobian, to a local `tolerance`. Returns `None` if the steps become too small. A negative
+/// length integrates backwards.
 pub(crate) fn mapped(
     model: &Model<f64>,
     motion: &Motion,
@@ -75,7 +75,7 @@ pub(crate) fn mapped(
     })
 }
 
-/// Flows over a length ≥ 0 without the Jacobian: the state and what q gained.
+/// Integrates over a length ≥ 0 without the Jacobian. Returns the state and the change of q.
 pub(crate) fn flowed(
     model: &Model<f64>,
     motion: &Motion,

@@ -1,4 +1,4 @@
-//! From an extremal to a gait with its certificate.
+//! Conversion of an extremal to a gait with its certificate.
 
 use swimmer_files::{AnyGait, Bounds, Objective};
 use swimmer_model::{Gait, Model, Swimmer, Tolerance, swim};
@@ -9,13 +9,13 @@ use crate::certify::{certified, slopes_open};
 use crate::cycle::power;
 use crate::optimal_gait::OptimalGait;
 
-/// Samples of a cycle are not made more beyond this.
+/// Largest number of samples of a cycle.
 const MOST_SAMPLES: usize = 8192;
-/// What the power between samples may vary by, over its mean.
+/// Largest variation of the power between samples, over its mean.
 const CONSTANT_POWER: f64 = 1e-6;
 
-/// An extremal as a gait of a swimmer, whose model has L = 1, with the certificate of its file; whether that passes is for the caller to see.
-/// Where the interpolated samples do not keep the power constant, or leave slopes open that the certificate asks for, there are more of them than were asked for.
+/// Converts an extremal to a gait of a swimmer, whose model has L = 1, with its certificate, which the caller inspects. The number of
+/// samples is raised if their interpolation does not keep the power constant or the slopes are too inaccurate for the certificate.
 pub(crate) fn gait(
     (swimmer, model, bounds): (&Swimmer<f64>, &Model<f64>, &Bounds),
     extremal: &Extremal,
@@ -24,7 +24,7 @@ pub(crate) fn gait(
     let (cycle, curve) = loop {
         let cycle = extremal.cycle(model, samples).ok_or(Unpolished::Trace)?;
         let curve = cycle.gait().map_err(|_| Unpolished::Trace)?;
-        // The power varies by the third power of the samples' distance, slopes are open by the sixth.
+        // The variation of the power is of third order in the spacing of the samples, the error of the slopes of sixth order.
         let off = (power_variation(model, &cycle.u, &curve) / CONSTANT_POWER).cbrt();
         let off = off.max(slopes_open(&cycle).powf(1.0 / 6.0));
         if off <= 1.0 || samples > MOST_SAMPLES {
@@ -35,7 +35,7 @@ pub(crate) fn gait(
     let symmetric = extremal.is_quarter();
     let stroke = swim(model, &curve, &Tolerance::new(1e-12));
     let of = (Objective::Efficiency, swimmer, bounds);
-    // The arcs know these closer than the samples do: d is parallel to p, and p · d is the length.
+    // The arcs are more accurate than the samples: d is parallel to p, and p · d is the length.
     let (d, efficiency) = (extremal.displacement(), extremal.efficiency(model));
     let mut gait = certified(OptimalGait {
         efficiency,
@@ -44,7 +44,7 @@ pub(crate) fn gait(
         displacement: d.x * swimmer.total_length(),
         ..OptimalGait::of_cycle(of, symmetric, cycle, &stroke)
     });
-    // What the arcs say of themselves, against the samples swum.
+    // Values of the arcs against the integrated samples.
     let swum = stroke.displacement;
     gait.certificate = gait.certificate.with(vec![
         Condition::ShootingResidual.check(extremal.residual),
@@ -57,7 +57,7 @@ pub(crate) fn gait(
     Ok(gait)
 }
 
-/// So many samples that they should suffice where they are too far apart by this factor.
+/// Number of samples that reduces the spacing by this factor.
 fn more(samples: usize, off: f64) -> usize {
     let factor = (1.1 * off).clamp(1.1, 2.0);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousands
@@ -65,7 +65,7 @@ fn more(samples: usize, off: f64) -> usize {
     more
 }
 
-/// (max − min)/mean of the power in the middle of the samples' intervals.
+/// (max − min)/mean of the power at the midpoints of the samples.
 fn power_variation(model: &Model<f64>, u: &[f64], gait: &AnyGait) -> f64 {
     let (mut least, mut most, mut sum) = (f64::INFINITY, 0.0_f64, 0.0);
     for [from, to] in u.array_windows() {

@@ -1,4 +1,4 @@
-//! From any closed curve to a guess for the shooting: states along it, with the momenta that fit it best.
+//! Initial guess of the shooting from any closed curve: states along it, with the least-squares momenta.
 
 use nalgebra::{Vector2, Vector3};
 use swimmer_model::{Gait, Model, Tolerance, TrajectoryPoint, trajectory, wrapped_angle};
@@ -9,23 +9,23 @@ use crate::cycle::power;
 use crate::numerics::between;
 use crate::runge_kutta::{Point, StepControl, advance};
 
-/// A closed curve swum once, densely.
+/// Integrated closed curve with dense samples.
 pub(crate) struct Trajectory {
-    /// Power length up to each sample.
+    /// Power length at each sample.
     pub(crate) length: Vec<f64>,
     /// States: shapes, directions (never wrapped), momenta.
     pub(crate) states: Vec<State>,
-    /// What the direction turns by \[rad\], a multiple of a full turn.
+    /// Total turn of the direction \[rad\], a multiple of 2π.
     pub(crate) turn: f64,
 }
 
-/// How many samples a curve is looked at with.
+/// Number of samples of a curve.
 const SAMPLES: usize = 1440;
 
 impl Trajectory {
-    /// Swims a gait and fits the multiplier of rotation, the one that is free, to the parts of the curve that are `free`.
+    /// Integrates a gait and fits the multiplier of rotation to the parts of the curve that are `free`.
     ///
-    /// None where the gait stands still or goes nowhere.
+    /// Returns `None` if the gait is a point or has no net displacement.
     pub(crate) fn new<G: Gait<f64> + ?Sized>(
         model: &Model<f64>,
         gait: &G,
@@ -83,7 +83,7 @@ impl Trajectory {
         Some(swum)
     }
 
-    /// The multiplier of rotation with which the turning of the curve is met best, in the least-squares sense.
+    /// Multiplier of rotation that fits the curvature of the curve best in the least-squares sense.
     fn fitted_rotation(&self, model: &Model<f64>, free: impl Fn(&Vector2<f64>) -> bool) -> f64 {
         let (mut top, mut bottom) = (0.0, 0.0);
         let intervals = self.states.array_windows().zip(self.length.array_windows());
@@ -108,7 +108,7 @@ impl Trajectory {
         if bottom > 0.0 { top / bottom } else { 0.0 }
     }
 
-    /// Every sample: its power length and state.
+    /// Iterates over power length and state of every sample.
     pub(crate) fn rows(
         &self,
     ) -> impl DoubleEndedIterator<Item = (f64, &State)> + ExactSizeIterator {
@@ -120,7 +120,7 @@ impl Trajectory {
         self.length.last().copied().unwrap_or(0.0)
     }
 
-    /// The state at a power length, taken round the cycle as often as it goes.
+    /// State at a power length modulo the cycle.
     pub(crate) fn at(&self, length: f64) -> State {
         let total = self.total();
         let laps = (length / total).floor();
@@ -133,8 +133,8 @@ impl Trajectory {
     }
 }
 
-/// The chain of so many pieces along a `curve` over s ∈ (0, π/2), a free quarter from φ₁ = φ₂ to φ₁ = −φ₂; none where that cannot
-/// be integrated or goes nowhere.
+/// Chain of `pieces` pieces along a `curve` over s ∈ (0, π/2), a free quarter from φ₁ = φ₂ to φ₁ = −φ₂. Returns `None` if it cannot
+/// be integrated or has no displacement.
 pub(crate) fn quarter_of_curve(
     model: &Model<f64>,
     curve: &impl Fn(f64) -> (Vector2<f64>, Vector2<f64>),
@@ -147,7 +147,7 @@ pub(crate) fn quarter_of_curve(
     };
     let whole = Point::new(&length, [0.0; 2]);
     let total = advance(&length, whole, std::f64::consts::FRAC_PI_2, CONTROL)?.z[1];
-    // Over the power length: s, x, y, θ.
+    // State over the power length: s, x, y, θ.
     let rates = |z: &[f64; 4]| {
         let (phi, rate) = curve(z[0]);
         let (a, w) = model.connection_and_power(&phi);
@@ -177,7 +177,7 @@ pub(crate) fn quarter_of_curve(
         let (phi, rate) = curve(s);
         psi += wrapped_angle(rate.y.atan2(rate.x) - psi);
         let (sin, cos) = theta.sin_cos();
-        // No momentum of rotation at the end: the gait is a mirror image of itself there.
+        // The momentum of rotation vanishes at the end by symmetry.
         [phi.x, phi.y, psi, p * cos, -p * sin, p * (y - end_y)]
     });
     Some(Chain {
@@ -192,7 +192,7 @@ pub(crate) fn quarter_of_curve(
     })
 }
 
-/// Directions of motion, each within half a turn of the one before. A rate of zero keeps the direction.
+/// Directions of motion, each within π of the previous one. A rate of zero keeps the direction.
 fn directions(rates: &[Vector2<f64>]) -> Vec<f64> {
     let mut directions = Vec::with_capacity(rates.len());
     let mut last = None;

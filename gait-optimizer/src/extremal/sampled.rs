@@ -1,4 +1,4 @@
-//! An extremal as a sampled cycle.
+//! Sampling of an extremal as a cycle.
 
 use swimmer_files::ArcKind;
 use swimmer_model::Model;
@@ -8,12 +8,12 @@ use super::flow::flowed;
 use super::shooting::{Chain, Class, Entry, Stretch};
 use crate::cycle::{Cycle, Samples};
 
-/// Fewest samples of a piece.
+/// Least number of samples per piece.
 const FEWEST: usize = 4;
 
-/// The full cycle of a chain at so many equal steps of power length, arc by arc. Where an arc begins is a corner: the curvature
-/// jumps there (the direction too at a corner of the forbidden shapes), and no interpolation shall reach across. None where an arc
-/// cannot be followed.
+/// Samples the full cycle of a chain at uniform steps of power length, arc by arc. The start of an arc is marked as a corner, since
+/// the curvature jumps there (at a corner of the forbidden shapes the direction too), so that no interpolation crosses it. Returns
+/// `None` if an arc cannot be integrated.
 pub(crate) fn sampled(model: &Model<f64>, chain: &Chain, samples: usize) -> Option<Cycle> {
     let total = chain.length();
     let bent = |arc: &Stretch| matches!(arc.entry, Entry::Corner(_));

@@ -20,7 +20,7 @@ use crate::numerics::damped;
 pub(crate) use chain::{Chain, Class, Entry, Stretch};
 use conditions::assemble;
 
-/// Why an iteration gave up.
+/// Failure of the Newton iteration.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub(crate) enum Unsolved {
     #[error("an extremal cannot be integrated from the guess")]
@@ -33,18 +33,18 @@ pub(crate) enum Unsolved {
     Malformed,
 }
 
-/// Where the iteration is satisfied.
+/// Residual at which the iteration has converged.
 const TOLERANCE: f64 = 2e-12;
-/// What is still accepted when rounding keeps it from getting better.
+/// Residual that is accepted if rounding prevents a smaller one.
 const ACCEPTED: f64 = 1e-10;
 const MOST_ITERATIONS: usize = 40;
-/// Local tolerance of the flow far from a solution, and the residual at which it gives way to the fine one.
+/// Local tolerance of the integration far from a solution; the next constant is the residual below which the fine tolerance is used.
 const COARSE: f64 = 1e-9;
 const NEAR: f64 = 1e-5;
 /// Largest change of an angle in one step \[rad\].
 const LONGEST_TURN: f64 = 0.4;
 
-/// Solves a chain from a guess.
+/// Solves a chain from an initial guess by a damped Newton iteration with a line search.
 pub(crate) fn solve(model: &Model<f64>, guess: Chain) -> Result<Extremal, Unsolved> {
     if !guess.is_whole() {
         return Err(Unsolved::Malformed);
@@ -102,7 +102,7 @@ pub(crate) fn solve(model: &Model<f64>, guess: Chain) -> Result<Extremal, Unsolv
     }
 }
 
-/// How much of a step keeps angles from turning too far and arcs from losing too much of their length at once.
+/// Largest factor of a step that keeps the changes of angles and of arc lengths within their limits.
 fn longest_factor(chain: &Chain, step: &[f64]) -> f64 {
     let mut factor = 1.0_f64;
     let mut changes = step.iter();

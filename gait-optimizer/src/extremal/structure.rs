@@ -1,8 +1,7 @@
-//! Which arcs an extremal is made of: read off a curve, and read again from every solution.
+//! Active set of an extremal: arcs detected on a curve and updated from every solution.
 //!
-//! A solution's structure is wrong in one of three ways, and each tells the next one to try: an arc whose length has gone
-//! to zero is left out; where a free arc is beyond a bound a new arc along it begins; where a bound would have to pull
-//! instead of push the curve leaves it.
+//! A solution can be inconsistent in three ways, each of which determines the next active set: an arc of length zero is removed; a
+//! free arc that violates a bound receives an arc along it; an arc along a bound with a multiplier of the wrong sign is released.
 
 mod samples;
 mod spans;
@@ -16,16 +15,15 @@ use crate::region::{Bound, Region};
 use samples::Samples;
 use spans::{SHORTEST, Span, contacts, held, joined, rebuilt, runs};
 
-/// How far beyond a bound a free arc may be \[rad\], and how far a multiplier below zero.
+/// Largest violation of a bound by a free arc \[rad\], and largest negative multiplier.
 pub(crate) const OVERSTEP: f64 = 1e-9;
 const PULL: f64 = -1e-8;
-/// How near to a bound \[rad\] a guess is taken to run along it.
+/// Distance from a bound \[rad\] below which an initial guess counts as an arc along it.
 pub(super) const NEAR: f64 = 5e-3;
-/// Arcs shorter than this share of the chain may be left out where the shooting fails.
+/// Share of the chain below which an arc may be removed if the shooting fails.
 const SHORT: f64 = 0.05;
 
-/// What a bound pushes: ψ' of the free extremal less ψ' along the bound, positive where it pushes inwards. (The length S is
-/// the string here: where the field would bulge it beyond the bound, ψ' stays behind.)
+/// Multiplier of a bound (KKT): ψ' of the free extremal minus ψ' along the bound; positive if the bound is active.
 pub(crate) fn multiplier(model: &Model<f64>, wall: &Bound, state: &State) -> f64 {
     let phi = shape(state);
     let (sin, cos) = state[2].sin_cos();
@@ -33,7 +31,7 @@ pub(crate) fn multiplier(model: &Model<f64>, wall: &Bound, state: &State) -> f64
     let free = local.plain + local.gain * momentum(state).dot(&local.curvature);
     let e = nalgebra::Vector2::new(cos, sin);
     let bound = wall.turning(&phi, &e) / local.speed;
-    // On the left of the motion lies the region where the margin grows to the left.
+    // The feasible region is on the left of the motion if the margin grows to the left.
     let left = nalgebra::Vector2::new(-sin, cos);
     let side = if wall.level(&phi).gradient.dot(&left) > 0.0 {
         1.0
@@ -43,7 +41,7 @@ pub(crate) fn multiplier(model: &Model<f64>, wall: &Bound, state: &State) -> f64
     side * (free - bound)
 }
 
-/// The structure that a solution asks for next; none where it is right as it is.
+/// Returns the next active set, or `None` if the present one is consistent.
 pub(crate) fn next_structure(model: &Model<f64>, walls: &Region, chain: &Chain) -> Option<Chain> {
     let (total, class) = (chain.length(), chain.class);
     let samples = Samples::new(model, chain)?;
@@ -60,7 +58,7 @@ pub(crate) fn next_structure(model: &Model<f64>, walls: &Region, chain: &Chain) 
         }
         if arc.length < least {
             changed = true;
-            // The corner stays with the arc that follows.
+            // The corner belongs to the following arc.
             if let Entry::Corner(_) = entry {
                 spans.push(Span::bend(entry, from));
             }
@@ -104,7 +102,7 @@ pub(crate) fn next_structure(model: &Model<f64>, walls: &Region, chain: &Chain) 
                 let edges = [(matches!(entry, Entry::Corner(_)), from), (to_corner, to)];
                 let mut contacts = contacts(walls, class, over, edges, |at| samples.swum.at(at));
                 match contacts.first_mut() {
-                    // A bound that is met right at the corner.
+                    // A bound that begins at the corner.
                     Some(first) if edges[0].0 && first.from - from < least => first.entry = entry,
                     _ if edges[0].0 => contacts.insert(0, Span::bend(entry, from)),
                     _ => {}
@@ -118,8 +116,8 @@ pub(crate) fn next_structure(model: &Model<f64>, walls: &Region, chain: &Chain) 
     changed.then(|| rebuilt(class, &joined(spans, least), total, round))
 }
 
-/// The same chain with its shortest arc left out, where that makes sense: a free arc between two along the same bound, or
-/// an arc along a bound. Near such a change of structure the shooting of the longer chain is singular.
+/// Returns the chain without its shortest arc, if that is a free arc between two arcs along the same bound or an arc along a bound.
+/// Near such a change of the active set the shooting of the longer chain is singular.
 pub(crate) fn simpler(model: &Model<f64>, chain: &Chain) -> Option<Chain> {
     let total = chain.length();
     let samples = Samples::new(model, chain)?;
@@ -164,7 +162,7 @@ pub(crate) fn simpler(model: &Model<f64>, chain: &Chain) -> Option<Chain> {
     Some(rebuilt(chain.class, &spans, total, round))
 }
 
-/// The structure of a sampled curve: it runs along a bound where it comes near it.
+/// Detects the arcs of a sampled curve: parts near a bound become arcs along it.
 pub(crate) fn of_curve(swum: &Trajectory, walls: &Region, quarter: bool) -> Chain {
     let near = |state: &State| {
         let nearest = walls.nearest(&shape(state));
@@ -179,7 +177,7 @@ pub(crate) fn of_curve(swum: &Trajectory, walls: &Region, quarter: bool) -> Chai
         let spans = held(walls, Class::Quarter, &runs, total, |at| swum.at(at));
         return rebuilt(Class::Quarter, &spans, total, |length| swum.at(length));
     }
-    // From the shape that lies farthest inside, so that no contact is cut in two.
+    // Start at the shape farthest inside, so that no contact is split.
     let depth = |state: &State| walls.nearest(&shape(state)).map_or(0.0, |(_, depth)| depth);
     let begin = swum
         .rows()

@@ -1,4 +1,4 @@
-//! Known optima, each reached as a quarter and as a closed curve.
+//! Tests with known optima, each solved as a quarter and as a closed curve.
 
 use super::equations::Motion;
 use super::*;
@@ -8,7 +8,7 @@ use crate::{Branch, EfficiencyError, EfficiencyProblem, OptimalGait, efficiency}
 use swimmer_files::Bounds;
 use swimmer_model::{Links, Swimmer, SymmetricFourier};
 
-/// A curve to start from, cut to a few digits, and the efficiency of the optimum nearby (none where it is not published).
+/// Initial curve with a few digits, and the efficiency of the optimum nearby (`None` if it is not published).
 struct Case {
     swimmer: Swimmer<f64>,
     coefficients: [[f64; 2]; 3],
@@ -108,7 +108,7 @@ fn a_bound_is_followed_where_it_pushes_and_a_loose_one_changes_nothing() {
     }
 }
 
-/// An extremal of Purcell's swimmer that meets all first-order conditions and is no maximum.
+/// An extremal of Purcell's swimmer that satisfies all first-order conditions but is not a maximum.
 #[test]
 fn a_saddle_has_ways_up() {
     let model = Model::new(&Swimmer::purcell().of_unit_length()).unwrap();
@@ -128,7 +128,7 @@ fn a_saddle_has_ways_up() {
     assert_eq!(from_ellipse([1.2, 1.2]).ascents(&model), Some(0));
 }
 
-/// A quarter's cycle has as many ascents as the closed curve that is shot whole.
+/// The cycle of a quarter has as many ascent directions as the closed curve that is solved without symmetry.
 #[test]
 fn a_quarter_knows_the_ascents_without_its_symmetry() {
     let without_symmetry = |quarter: &Extremal, model: &Model<f64>| {
@@ -168,8 +168,8 @@ fn a_quarter_knows_the_ascents_without_its_symmetry() {
     assert_eq!(closed.ascents(&model), Some(1));
 }
 
-/// Continuation in the bound to just before the fold of the robot's large gait, and the other extremal that it meets there:
-/// the gait is a local optimum, the other one is not.
+/// Continuation in the bound to just before the fold of the robot's large gait: the gait is a local optimum, and the other
+/// extremal at the fold is not.
 #[test]
 fn an_optimum_has_no_ascent_and_the_saddle_beyond_a_fold_has_one() {
     let case = &cases()[3];
@@ -197,7 +197,7 @@ fn an_optimum_has_no_ascent_and_the_saddle_beyond_a_fold_has_one() {
     assert_eq!(ascents(&other), 1);
 }
 
-/// The gait that a curve is polished to.
+/// Polishes a curve to a gait.
 fn polished(
     swimmer: &Swimmer<f64>,
     bounds: &Bounds,
@@ -210,7 +210,7 @@ fn polished(
     gait::gait((swimmer, model, bounds), &extremal, 1024).unwrap()
 }
 
-/// Free and bounded closed curves, found without using their symmetries, certified.
+/// Free and bounded closed curves, solved without their symmetries, pass their certificates.
 #[test]
 fn closed_gaits_are_certified() {
     for (case, max_angle) in [(0, None), (0, Some(1.2)), (2, Some(1.6)), (3, None)] {
@@ -231,7 +231,7 @@ fn closed_gaits_are_certified() {
     }
 }
 
-/// Round both corners where the tips meet, as a closed curve: the gait of the quarter, from its own samples.
+/// A closed curve around both corners at which the tips meet is the gait of the quarter, from its own samples.
 #[test]
 fn a_closed_gait_bends_round_the_forbidden_shapes() {
     let (swimmer, bounds) = (Swimmer::purcell(), Bounds::default().apart(0.0));
@@ -249,14 +249,14 @@ fn a_closed_gait_bends_round_the_forbidden_shapes() {
     assert!((closed.efficiency / quarter.efficiency - 1.0).abs() < 1e-11);
 }
 
-/// φ₁, φ₂, x, y, θ, λ₁, λ₂ of the paper (section V), with λ₅ = −½.
+/// State φ₁, φ₂, x, y, θ, λ₁, λ₂ of the paper (section V), with λ₅ = −½.
 struct PapersCostates<'a> {
     model: &'a Model<f64>,
     momentum: Momentum,
 }
 
 impl PapersCostates<'_> {
-    /// From `H_u = 0`.
+    /// Control that satisfies `H_u = 0`.
     fn control(&self, s: &[f64; 7]) -> Vector2<f64> {
         let (a, w) = self.model.connection_and_power(&Vector2::new(s[0], s[1]));
         let force =
@@ -279,8 +279,8 @@ impl System<7> for PapersCostates<'_> {
     }
 }
 
-/// An extremal of the reduced flow is one of the paper's costate equations: canonical momenta, pose carried along, no curvature, no
-/// magnetic field.
+/// An extremal of the reduced flow satisfies the paper's costate equations, which use canonical momenta and the pose instead of
+/// curvature and magnetic field.
 #[test]
 fn the_flow_is_the_papers_costate_system() {
     for (swimmer, z) in [

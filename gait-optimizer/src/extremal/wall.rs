@@ -1,4 +1,4 @@
-//! Bounds as an extremal runs along them, and all bounds of a full cycle.
+//! Bounds as curves that an extremal follows, and the set of bounds of a full cycle.
 
 use nalgebra::Vector2;
 use swimmer_files::Bounds;
@@ -7,7 +7,7 @@ use swimmer_model::Links;
 use crate::region::{Bound, Level, Piece, Region};
 
 impl Bound {
-    /// dψ over the arc length of a curve that keeps tangent to the bound.
+    /// Curvature of the bound: dψ per arc length of a curve tangent to it.
     pub(crate) fn turning(&self, phi: &Vector2<f64>, e: &Vector2<f64>) -> f64 {
         match self {
             Self::Straight(_) => 0.0,
@@ -20,8 +20,7 @@ impl Bound {
 
     /// [`Bound::turning`] and its derivatives with respect to φ₁, φ₂, ψ.
     ///
-    /// Those of the Hessian are central differences: they steer Newton's iteration, and what it converges to does not
-    /// depend on them.
+    /// Derivatives of the Hessian are central differences. They affect only the convergence of Newton's method, not its limit.
     pub(crate) fn turning_and_slopes(
         &self,
         phi: &Vector2<f64>,
@@ -52,7 +51,7 @@ impl Bound {
         )
     }
 
-    /// The tangent's direction nearest to ψ.
+    /// Direction of the tangent nearest to ψ.
     pub(crate) fn direction_near(&self, phi: &Vector2<f64>, psi: f64) -> f64 {
         let gradient = self.gradient(phi);
         let along = gradient.y.atan2(gradient.x) + std::f64::consts::FRAC_PI_2;
@@ -61,12 +60,11 @@ impl Bound {
     }
 }
 
-/// Links that may touch are kept this share of the side links apart, so that samples along the bound do not cross by
-/// rounding.
+/// Distance of links that may touch, as a share of the side links, so that samples along the bound do not cross by rounding.
 const HAIR: f64 = 1e-8;
 
-/// The bounds of a full cycle for a swimmer with these links \[m\]. Those that only make sense for quarters (a lower bound, the
-/// sector) are not among them.
+/// Bounds of a full cycle for a swimmer with these links \[m\]. Bounds that are defined for quarters only (lower bound, sector) are
+/// omitted.
 pub(crate) fn walls(bounds: &Bounds, links: &Links<f64>) -> Region {
     let wider = |length: f64| length * (1.0 + if bounds.clearance > 0.0 { 0.0 } else { HAIR });
     let of_cycles = Bounds {
@@ -83,16 +81,16 @@ pub(crate) fn walls(bounds: &Bounds, links: &Links<f64>) -> Region {
 }
 
 impl Region {
-    /// The bound that a shape is farthest beyond, or nearest to, with how far; none without bounds.
+    /// Bound with the smallest margin at a shape, and its margin. Returns `None` without bounds.
     pub(crate) fn nearest(&self, phi: &Vector2<f64>) -> Option<(Bound, f64)> {
-        // A tip over the other side link's joint is bounded by its angle alone, which is a straight bound.
+        // The bound for a tip at the other side link's joint depends on one angle only and is straight.
         let at_joint = |bound: &Bound| matches!(bound.piece(phi), Some(Piece::TipToJoint(_)));
         let bounds = self.bounds().filter(|bound| !at_joint(bound));
         let depths = bounds.map(|bound| (bound.held_at(phi), -bound.margin(phi)));
         depths.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// This region's bound that is another's, perhaps at another place.
+    /// Bound of this region that corresponds to a bound of another region.
     pub(crate) fn like(&self, other: &Bound) -> Option<Bound> {
         self.bounds().find_map(|own| match (own, other) {
             (Bound::Straight(a), Bound::Straight(b)) => (a.normal == b.normal).then_some(own),

@@ -1,10 +1,10 @@
-//! Newton's method uphill, kept uphill: a Levenberg term where the Hessian is not negative definite or a step would be long.
+//! Newton's method for a maximum, with a Levenberg term if the Hessian is not negative definite or the step is too long.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::objective::{Expansion, Value, series};
 
-/// A local maximum over the coefficients.
+/// Local maximum over the coefficients.
 #[derive(Debug, Clone)]
 pub(crate) struct Maximum {
     pub(crate) coefficients: Vec<f64>,
@@ -15,11 +15,11 @@ const MOST_STEPS: usize = 80;
 /// Longest step of one coefficient \[rad\].
 const LONGEST: f64 = 0.35;
 
-/// A curve with joint angles beyond this has run away \[rad\].
+/// Largest joint angle of a curve \[rad\]; beyond it the ascent is stopped.
 pub(crate) const FARTHEST: f64 = 9.0;
 
-/// Climbs from these coefficients on what `look` sees there, to where a step promises to gain less than `least_gain`; X keeps its
-/// sign. None where the curve runs away or the climb does not end.
+/// Maximises the objective `look` from these coefficients until the predicted gain of a step is below `least_gain`; X keeps its
+/// sign. Returns `None` if the curve grows too large or the iteration does not converge.
 pub(crate) fn climb(
     mut look: impl FnMut(&[f64]) -> Expansion,
     start: &[f64],
@@ -67,7 +67,7 @@ pub(crate) fn climb(
                 next = Some((trial, reached));
                 break;
             }
-            // What is left is below the rounding of the objective, not of its slope.
+            // The remaining gain is below the rounding of the objective, not of its gradient.
             if promise < 1e-13 {
                 return finished(trial, reached.value);
             }
@@ -78,7 +78,7 @@ pub(crate) fn climb(
     None
 }
 
-/// The step that a damped Newton's method proposes with the gain that it promises; none where it would not lead uphill.
+/// Damped Newton step with its predicted gain. Returns `None` if it is not an ascent direction.
 fn step(bend: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64) -> Option<(DVector<f64>, f64)> {
     let mut damped = bend.clone();
     for i in 0..damped.nrows() {

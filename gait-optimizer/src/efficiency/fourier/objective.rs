@@ -1,18 +1,18 @@
-//! X/√E of a symmetric Fourier gait with its exact gradient and Hessian in the coefficients: a quarter of the closed curve,
-//! restricted to the series with the paper's two symmetries.
+//! X/√E of a symmetric Fourier gait (paper, Appendix C) with exact gradient and Hessian with respect to the coefficients,
+//! evaluated on a quarter of the closed curve.
 //!
-//! What is made largest is ln |x| − ½ ln E over the quarter, E at least S² (Cauchy–Schwarz) and equal to it where the power is
-//! constant: in the limit of high orders the best curve is that of X/S, run as it should be.
+//! The objective is ln |x| − ½ ln E over the quarter. By Cauchy–Schwarz E ≥ S², with equality at constant power. In the limit of
+//! high orders the maximum is therefore that of X/S at constant power.
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use swimmer_model::Model;
 
 use crate::closed_curve::{Basis, Functional, Weights, Workspace};
 
-/// A gait's worth.
+/// Value of the objective.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Value {
-    /// What is made largest.
+    /// ln |x| − ½ ln E, to be maximised.
     pub(crate) objective: f64,
     /// x of the quarter over L.
     pub(crate) x: f64,
@@ -32,7 +32,7 @@ impl Value {
     }
 }
 
-/// Value with derivatives.
+/// Objective with gradient and Hessian.
 #[derive(Debug, Clone)]
 pub(crate) struct Expansion {
     pub(crate) value: Value,
@@ -40,17 +40,17 @@ pub(crate) struct Expansion {
     pub(crate) hessian: DMatrix<f64>,
 }
 
-/// The objective of one swimmer over series of one order.
+/// Objective of one swimmer for series of one order.
 #[derive(Debug)]
 pub(crate) struct Objective<'a> {
     model: &'a Model<f64>,
     basis: Basis,
     work: Workspace,
-    /// From the coefficients to those of the curve: each cosine's along φ₁ = φ₂, each sine's across it.
+    /// Maps the coefficients to those of the curve: cosines along φ₁ = φ₂, sines across it.
     embedding: DMatrix<f64>,
 }
 
-/// Φ and Φ′ of the series with coefficients (A₁, B₁, A₂, B₂, …) at s.
+/// Evaluates Φ and Φ′ of the series with coefficients (A₁, B₁, A₂, B₂, …) at s.
 pub(crate) fn series(coefficients: &[f64], s: f64) -> (Vector2<f64>, Vector2<f64>) {
     let (mut at, mut rate) = (Vector2::zeros(), Vector2::zeros());
     let (first, twice) = (s.sin_cos(), (2.0 * s).sin_cos());
@@ -66,13 +66,13 @@ pub(crate) fn series(coefficients: &[f64], s: f64) -> (Vector2<f64>, Vector2<f64
     (from_diagonals(&at), from_diagonals(&rate))
 }
 
-/// From coordinates along φ₁ = φ₂ and across it.
+/// Converts coordinates along and across φ₁ = φ₂ to joint angles.
 fn from_diagonals(v: &Vector2<f64>) -> Vector2<f64> {
     Vector2::new(v.x - v.y, v.x + v.y) * std::f64::consts::FRAC_1_SQRT_2
 }
 
 impl<'a> Objective<'a> {
-    /// For series of this order, looked at in this many panels of the quarter.
+    /// Creates the objective for series of this order with this number of panels per quarter.
     pub(crate) fn new(model: &'a Model<f64>, order: usize, panels: usize) -> Self {
         let basis = Basis::quarter(order, panels);
         let work = Functional::new(model, &basis).workspace();
@@ -96,7 +96,7 @@ impl<'a> Objective<'a> {
         curve.reshape_generic(nalgebra::Dyn(2), nalgebra::Dyn(self.basis.functions()))
     }
 
-    /// The objective alone, with x and S of the quarter.
+    /// Evaluates the objective with x and S of the quarter.
     pub(crate) fn value(&mut self, coefficients: &[f64]) -> Value {
         let curve = self.curve(coefficients);
         let values = Functional::new(self.model, &self.basis).values(&curve, &mut self.work);
@@ -112,7 +112,7 @@ impl<'a> Objective<'a> {
         }
     }
 
-    /// Value, gradient and Hessian.
+    /// Evaluates the objective with gradient and Hessian.
     pub(crate) fn expansion(&mut self, coefficients: &[f64]) -> Expansion {
         let curve = self.curve(coefficients);
         let functional = Functional::new(self.model, &self.basis);

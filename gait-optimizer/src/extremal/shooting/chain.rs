@@ -1,30 +1,30 @@
-//! What is shot: arcs in order, with the state at the start of every piece.
+//! Unknowns of the shooting: arcs in order, with the state at the start of every piece.
 
 use nalgebra::Vector2;
 
 use crate::extremal::equations::{Motion, State};
 
-/// How an arc begins.
+/// Start of an arc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Entry {
-    /// Smoothly; onto a bound, tangent to it.
+    /// Smooth; tangent to a bound.
     Smooth,
-    /// At this corner of the forbidden shapes, which the curve is bent round with a kink.
+    /// Kink at this corner of the forbidden shapes.
     Corner(Vector2<f64>),
 }
 
-/// One arc of a chain.
+/// Arc of a chain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stretch {
     pub(crate) motion: Motion,
     pub(crate) entry: Entry,
-    /// How many pieces it is shot in.
+    /// Number of pieces.
     pub(crate) pieces: usize,
     /// Power length.
     pub(crate) length: f64,
 }
 
-/// A chain of arcs with the state at the start of every piece.
+/// Chain of arcs with the state at the start of every piece.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Chain {
     pub(crate) class: Class,
@@ -32,21 +32,21 @@ pub(crate) struct Chain {
     pub(crate) states: Vec<State>,
 }
 
-/// What is asked of both ends of a chain.
+/// Boundary conditions of a chain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Class {
-    /// A quarter of a doubly symmetric gait: square to φ₁ = φ₂ with θ = 0, square to φ₁ = −φ₂ with λ₄ = 0.
+    /// Quarter of a doubly symmetric gait: perpendicular to φ₁ = φ₂ with θ = 0, perpendicular to φ₁ = −φ₂ with λ₄ = 0.
     Quarter,
-    /// A closed curve whose direction turns by `turn` \[rad\].
+    /// Closed curve whose direction turns by `turn` \[rad\].
     Closed {
         turn: f64,
-        /// A line that the first shape is held on: a point and the direction across it; for curves without a bound arc.
+        /// Line on which the first shape is held, as a point and its normal; for curves without a bound arc.
         line: Option<(Vector2<f64>, Vector2<f64>)>,
     },
 }
 
 impl Class {
-    /// How many of such chains, one after the other, make a cycle.
+    /// Number of such chains per cycle.
     pub(crate) fn parts(self) -> u8 {
         match self {
             Self::Quarter => 4,
@@ -61,7 +61,7 @@ impl Chain {
         self.arcs.iter().map(|arc| arc.length).sum()
     }
 
-    /// The arc, the length and the start of every piece.
+    /// Iterates over all pieces: index of the arc, arc, and state at the start.
     pub(crate) fn pieces(&self) -> impl Iterator<Item = (usize, &Stretch, &State)> {
         self.arcs
             .iter()

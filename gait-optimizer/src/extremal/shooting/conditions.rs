@@ -1,4 +1,4 @@
-//! What is asked of a chain: one row of residual and Jacobian for every condition on its pieces, joints and ends.
+//! Conditions of the shooting: one row of residual and Jacobian per condition on pieces, joints and ends.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -15,20 +15,20 @@ use crate::numerics::worse;
 pub(super) struct Equations {
     pub(super) residual: Vec<f64>,
     pub(super) jacobian: DMatrix<f64>,
-    /// Of momenta.
+    /// Scale of the momenta.
     scale: f64,
 }
 
-/// The end of a piece with everything that its derivatives take.
+/// End of a piece with its derivatives.
 struct Ending<'a> {
     map: &'a Mapped,
     /// First column of the piece's start.
     column: usize,
-    /// Column of the arc's length, and the share of it that is the piece's.
+    /// Column of the arc's length, and the share of the piece in it.
     length: (usize, f64),
 }
 
-/// The start of an arc.
+/// Start of an arc.
 struct Start<'a> {
     arc: &'a Stretch,
     state: &'a State,
@@ -37,7 +37,7 @@ struct Start<'a> {
 }
 
 impl Ending<'_> {
-    /// Derivatives of row `row` of the end (`STATE` for the gain), times a factor.
+    /// Derivatives of row `row` of the end (`STATE` for the change of q), times a factor.
     fn slopes(&self, row: usize, factor: f64) -> impl Iterator<Item = (usize, f64)> {
         let column = self.column;
         self.map.by_start[row]
@@ -48,7 +48,8 @@ impl Ending<'_> {
     }
 }
 
-/// All equations of a chain with their Jacobian, its pieces integrated to a local `tolerance`; none where a piece cannot be integrated.
+/// Assembles all equations of a chain with their Jacobian; pieces are integrated to a local `tolerance`. Returns `None` if a piece
+/// cannot be integrated.
 pub(super) fn assemble(
     model: &Model<f64>,
     chain: &Chain,
@@ -121,7 +122,7 @@ impl Equations {
         squares.sum::<f64>().sqrt()
     }
 
-    /// NaN where any residual is.
+    /// Largest residual; NaN if any residual is NaN.
     pub(super) fn largest(&self) -> f64 {
         self.residual.iter().map(|one| one.abs()).fold(0.0, worse)
     }
@@ -136,7 +137,7 @@ impl Equations {
         }
     }
 
-    /// These rows of the state go on from one piece to the next.
+    /// Continuity of these rows of the state from one piece to the next.
     fn continued(&mut self, ending: &Ending<'_>, next: &State, column: usize, rows: Range<usize>) {
         for row in rows {
             let weight = if row < 3 { 1.0 } else { 1.0 / self.scale };
@@ -146,8 +147,8 @@ impl Equations {
         }
     }
 
-    /// From one arc to the next, smoothly, the direction turned by so much, or in a corner. An arc along a bound that ends at a corner
-    /// is on its line already.
+    /// Continuity from one arc to the next: smooth, with the direction turned by `turn`, or with a kink at a corner. An arc along a bound
+    /// that ends at a corner is on its line already.
     fn meets(&mut self, ending: &Ending<'_>, leaves: &Stretch, start: &Start<'_>, turn: f64) {
         let end = &ending.map.end;
         match (start.arc.entry, leaves.motion) {
@@ -179,7 +180,7 @@ impl Equations {
         }
     }
 
-    /// An arc along a bound starts on it, and tangent to it.
+    /// An arc along a bound starts on it and tangent to it.
     fn along_its_bound(&mut self, start: &Start<'_>) {
         if matches!(start.arc.entry, Entry::Smooth) {
             self.on_wall(start);
@@ -215,11 +216,11 @@ impl Equations {
         }
     }
 
-    /// ∮q' = S: the momentum is the one of an optimum of |d|/S.
+    /// ∮q' = S: normalisation of the momentum for the objective |d|/S.
     fn scale_condition(&mut self, chain: &Chain, endings: &[Ending<'_>], lengths_from: usize) {
         let length = chain.length();
         let gain: f64 = endings.iter().map(|ending| ending.map.gain).sum();
-        // Over the length as it is now; the factor's own change does not matter where the equation holds.
+        // Relative to the present length; the derivative of the factor vanishes at a solution.
         let weight = 1.0 / length;
         let gains = endings
             .iter()
@@ -234,7 +235,7 @@ impl Equations {
             Entry::Smooth => {
                 self.add(first[0] - first[1], [(0, 1.0), (1, -1.0)]);
                 self.add(first[2] - 0.75 * PI, [(2, 1.0)]);
-                // A bound that is square to φ₁ = φ₂ is met tangentially of itself.
+                // A bound perpendicular to φ₁ = φ₂ implies tangency.
                 self.on_wall(start);
             }
             Entry::Corner(corner) => {
@@ -249,7 +250,7 @@ impl Equations {
         self.add(end[5] / scale, last.slopes(5, 1.0 / scale));
     }
 
-    /// The momentum closes in its direction, then its length does by itself, and in its last row.
+    /// Closure of the momentum in its direction and in its last row; its length is conserved by the flow.
     fn momentum_closes(&mut self, last: &Ending<'_>, first: &State) {
         let end = &last.map.end;
         let weight = 1.0 / (self.scale * self.scale);

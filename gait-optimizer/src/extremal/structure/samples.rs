@@ -1,4 +1,4 @@
-//! A solved chain, looked at closely.
+//! Dense samples of a solved chain.
 
 use swimmer_model::Model;
 
@@ -7,12 +7,12 @@ use crate::extremal::flow::flowed;
 use crate::extremal::guess::Trajectory;
 use crate::extremal::shooting::{Chain, Class};
 
-/// Samples of a piece when it is examined.
+/// Number of samples per piece.
 const LOOKS: usize = 24;
 
-/// States all along a chain.
+/// States along a chain.
 pub(super) struct Samples {
-    /// Number of the arc that each belongs to.
+    /// Index of the arc of each sample.
     arcs: Vec<usize>,
     pub(super) swum: Trajectory,
 }
@@ -46,15 +46,15 @@ impl Samples {
         Some(Self { arcs, swum })
     }
 
-    /// The samples of an arc: power length from the chain's start, and state.
+    /// Samples of an arc: power length from the start of the chain, and state.
     pub(super) fn of_arc(&self, index: usize) -> impl DoubleEndedIterator<Item = (f64, &State)> {
         let first = self.arcs.partition_point(|arc| *arc < index);
         let last = self.arcs.partition_point(|arc| *arc <= index);
         self.swum.rows().take(last).skip(first)
     }
 
-    /// Whether a curve bends round the corner where an arc begins, and not away from it. The forbidden shapes lie beyond
-    /// the corner, so the bend is to that side; a quarter is bent against its mirror image.
+    /// Returns `true` if the curve bends around the corner at the start of an arc. The forbidden shapes are beyond the corner, so the
+    /// bend must be to that side; a quarter bends against its mirror image.
     pub(super) fn bends_round(&self, chain: &Chain, index: usize) -> bool {
         let last = |number: usize| Some(self.of_arc(number).next_back()?.1[2]);
         let Some((_, start)) = self.of_arc(index).next() else {
@@ -71,7 +71,7 @@ impl Samples {
             return false;
         };
         let mean = 0.5 * (before + start[2]);
-        // Positive where the corner points to the left of the motion, away from the origin.
+        // Positive if the corner points to the left of the motion, away from the origin.
         let left = -start[0] * mean.sin() + start[1] * mean.cos();
         (start[2] - before) * left >= 0.0
     }

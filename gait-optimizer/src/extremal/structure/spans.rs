@@ -1,10 +1,10 @@
-//! Where a curve runs along bounds, and the chain of arcs that this makes.
+//! Contacts of a curve with bounds, and the chain of arcs that follows from them.
 
 use crate::extremal::equations::{Motion, State, shape};
 use crate::extremal::shooting::{Chain, Class, Entry, Stretch};
 use crate::region::{Bound, Piece, Region};
 
-/// A free one is named only where it begins at a corner.
+/// Contact with a bound. A free span is listed only if it begins at a corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
     pub(crate) motion: Motion,
@@ -13,15 +13,15 @@ pub(crate) struct Span {
     pub(crate) to: f64,
 }
 
-/// How many pieces a full cycle is shot in at least.
+/// Least number of pieces of a full cycle.
 const PIECES: f64 = 24.0;
-/// A stretch near the tips' bound that is shorter than this share of a curve only bends round the corner.
+/// Share of a curve below which a contact with the tips' bound is only a bend around the corner.
 const HELD: f64 = 0.005;
-/// Arcs shorter than this share of the chain are none.
+/// Share of the chain below which an arc is discarded.
 pub(super) const SHORTEST: f64 = 1e-7;
 
-/// What runs of overstepping become: arcs along the bound, narrower than the overstepping, or (past both sides of the tips'
-/// corner) a bend round it. `edges` are the ends of the arc that oversteps, marked where they are corners already.
+/// Converts violations of bounds to arcs along the bound, narrower than the violation, or (on both sides of the tips' corner) to a
+/// bend around it. `edges` are the ends of the violating arc, with a mark if they are corners already.
 pub(super) fn contacts(
     walls: &Region,
     class: Class,
@@ -62,8 +62,8 @@ pub(super) fn contacts(
     spans
 }
 
-/// What runs of a sampled curve near bounds become: arcs along them, with a bend between two round the tips' corner. Short
-/// ones there are nothing but the bend.
+/// Converts parts of a sampled curve near bounds to arcs along them, with a bend between two arcs at the tips' corner. Short parts
+/// near the corner become the bend alone.
 pub(super) fn held(
     walls: &Region,
     class: Class,
@@ -83,7 +83,7 @@ pub(super) fn held(
             from: run.from,
             to: run.to,
         };
-        // Tip to tip comes between the two sides, and is nothing but the corner where there is one.
+        // The bound tip to tip is between the two sides; if there is a corner, it is the corner itself.
         let corner = walls
             .corner(&shape(&at(last.from)))
             .filter(|_| group.len() > 1 || starts_quarter(class, first) || is_tips(first));
@@ -101,7 +101,7 @@ pub(super) fn held(
             spans.push(along(first, Entry::Smooth));
         }
         if !is_tips(last) && lasts(last) {
-            // Without a gap to what comes before.
+            // No gap to the previous contact.
             let from = if comes_along { first.to } else { last.from };
             spans.push(Span {
                 from,
@@ -119,18 +119,18 @@ fn round_tip(run: &Run) -> bool {
     matches!(run.wall, Bound::Clearance(_))
 }
 
-/// Along the bound on the distance from tip to tip.
+/// Returns `true` for the bound on the distance from tip to tip.
 fn is_tips(run: &Run) -> bool {
     matches!(&run.wall, Bound::Clearance(clearance) if clearance.held == Some(Piece::Tips))
 }
 
-/// A quarter that begins beyond the bound of the tips is bent there against its mirror image.
+/// Returns `true` if a quarter begins beyond the bound of the tips, where it bends against its mirror image.
 fn starts_quarter(class: Class, run: &Run) -> bool {
     class == Class::Quarter && run.from <= 0.0 && round_tip(run)
 }
 
 impl Span {
-    /// A free arc begins with a bend round a corner.
+    /// Free arc that begins with a bend around a corner.
     pub(super) fn bend(entry: Entry, place: f64) -> Self {
         Self {
             motion: Motion::Free,
@@ -141,7 +141,7 @@ impl Span {
     }
 }
 
-/// Spans along the same bound with nothing between them made one.
+/// Merges adjacent spans along the same bound.
 pub(super) fn joined(spans: Vec<Span>, least: f64) -> Vec<Span> {
     let mut joined: Vec<Span> = Vec::with_capacity(spans.len());
     for span in spans {
@@ -160,7 +160,7 @@ pub(super) fn joined(spans: Vec<Span>, least: f64) -> Vec<Span> {
     joined
 }
 
-/// A stretch of samples that are all beyond, or on, one bound.
+/// Run of samples that are on or beyond one bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Run {
     pub(super) wall: Bound,
@@ -168,7 +168,7 @@ pub(super) struct Run {
     pub(super) to: f64,
 }
 
-/// Runs of equal marks along a curve. A run ends halfway to the next sample.
+/// Splits a curve into runs of equal marks. A run ends halfway to the next sample.
 pub(super) fn runs(rows: impl Iterator<Item = (f64, Option<Bound>)>) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     let mut before: Option<(f64, Option<Bound>)> = None;
@@ -192,7 +192,7 @@ pub(super) fn runs(rows: impl Iterator<Item = (f64, Option<Bound>)>) -> Vec<Run>
     runs
 }
 
-/// A chain from the spans along bounds, with free arcs between them; states come from `at`.
+/// Builds a chain from the spans along bounds, with free arcs between them; `at` returns the states.
 pub(crate) fn rebuilt(
     class: Class,
     bound_spans: &[Span],
@@ -266,7 +266,7 @@ fn free_arc(
     for piece in 0..pieces {
         let mut state = at(from + (to - from) * piece as f64 / pieces as f64);
         if let (0, Entry::Corner(corner)) = (piece, entry) {
-            // Past the kink.
+            // Just after the kink.
             state = at(from + 1e-3 * (to - from));
             state[0] = corner.x;
             state[1] = corner.y;
