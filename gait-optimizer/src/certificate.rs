@@ -1,4 +1,4 @@
-//! The proof that a gait carries: necessary conditions of an optimum, each with its number and tolerance.
+//! Certificate of a gait: necessary conditions of an optimum, each with its value and tolerance.
 
 mod closed_curve;
 mod condition;
@@ -11,44 +11,44 @@ pub(crate) use closed_curve::{
     crossings, double_area, simple_and_turning_once, to_side, turning_number,
 };
 
-/// One condition, asked.
+/// Result of one condition.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Check {
-    /// Which condition.
+    /// Condition.
     #[serde(rename = "name")]
     pub condition: Condition,
-    /// What was found.
+    /// Computed value.
     pub value: f64,
-    /// What it is held against: from above, or from below for the conditions whose name ends in `_least`.
+    /// Limit of the value: an upper limit, or a lower limit if the name of the condition ends in `_least`.
     pub tolerance: f64,
-    /// Whether it holds.
+    /// `true` if the condition holds.
     pub pass: bool,
-    /// How much of a failed condition's value the samples leave open; 0 where it holds or was found by a solver.
+    /// Uncertainty of a failed condition's value due to the samples; 0 if it holds or a solver computed it.
     #[serde(skip)]
     pub uncertainty: f64,
     #[serde(skip)]
     pub(crate) seen_by: SeenBy,
 }
 
-/// What a condition is seen by, which tells what samples may leave open in it.
+/// Data on which a condition depends, which determines the uncertainty due to the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SeenBy {
-    /// The curve through the samples: their spacing matters, and their rounding.
+    /// The curve through the samples: both their spacing and their rounding matter.
     Curve,
-    /// Each sample, however far it is from the next: only rounding matters.
+    /// The individual samples: only rounding matters.
     Samples,
-    /// How close the samples are: it says nothing against the gait.
+    /// The spacing of the samples: it is no evidence against the gait.
     Spacing,
 }
 
-/// What a certificate says.
+/// Verdict of a certificate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// Every condition holds.
     Pass,
-    /// Some condition does not hold, whatever the samples leave open.
+    /// Some condition is violated by more than its uncertainty.
     Fail,
-    /// Some conditions do not hold, and these samples, too few or rounded, may be the reason.
+    /// Some conditions are violated, which coarse or rounded samples may explain.
     Undecided,
 }
 
@@ -64,12 +64,12 @@ impl Verdict {
 }
 
 impl Check {
-    /// The same number, seen by something else than the curve.
+    /// Sets the data on which the condition depends.
     pub(crate) fn seen_by(self, seen_by: SeenBy) -> Self {
         Self { seen_by, ..self }
     }
 
-    /// Whether it fails whatever the samples leave open.
+    /// Returns `true` if the condition is violated by more than its uncertainty.
     fn fails_for_certain(&self) -> bool {
         !self.pass && {
             let by = (self.value - self.tolerance).abs();
@@ -78,13 +78,13 @@ impl Check {
     }
 }
 
-/// All conditions that a gait was held against.
+/// All conditions that were evaluated for a gait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     checks: Vec<Check>,
 }
 
-/// As every answer tells it: whether all holds, the verdict's word, the conditions.
+/// JSON form of all outputs: pass, verdict, conditions.
 impl Serialize for Certificate {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut told = serializer.serialize_struct("Certificate", 3)?;
@@ -100,45 +100,45 @@ impl Certificate {
         Self { checks }
     }
 
-    /// The same with further conditions.
+    /// Adds conditions.
     pub(crate) fn with(mut self, checks: Vec<Check>) -> Self {
         self.checks.extend(checks);
         self
     }
 
-    /// The conditions, one by one.
+    /// Conditions in order.
     pub fn checks(&self) -> &[Check] {
         &self.checks
     }
 
-    /// The number of a condition; `None` where it was not asked.
+    /// Value of a condition. Returns `None` if it was not evaluated.
     pub fn value(&self, condition: Condition) -> Option<f64> {
         let mut checks = self.checks.iter();
         checks.find_map(|check| (check.condition == condition).then_some(check.value))
     }
 
-    /// Whether all hold.
+    /// Returns `true` if all conditions hold.
     pub fn pass(&self) -> bool {
         self.checks.iter().all(|check| check.pass)
     }
 
-    /// Whether all holds among gaits with the paper's symmetries; among all closed curves it may be a saddle.
+    /// Returns `true` if all conditions hold among gaits with the paper's symmetries; among all closed curves the gait may be a saddle.
     pub(crate) fn holds_among_symmetric(&self) -> bool {
         self.holds_but(&[Condition::NoAscentWithoutSymmetry])
     }
 
-    /// Whether all hold, these excepted.
+    /// Returns `true` if all conditions hold except for these.
     pub(crate) fn holds_but(&self, excepted: &[Condition]) -> bool {
         let mut checks = self.checks.iter();
         checks.all(|check| check.pass || excepted.contains(&check.condition))
     }
 
-    /// What it says: where all hold, pass; else fail, unless the samples may be the reason of all that fails.
+    /// Verdict: pass if all conditions hold; undecided if the samples may explain every violation; fail otherwise.
     pub fn verdict(&self) -> Verdict {
         self.verdict_but(&[])
     }
 
-    /// The same, these excepted.
+    /// Verdict without these conditions.
     pub(crate) fn verdict_but(&self, excepted: &[Condition]) -> Verdict {
         let mut asked = self
             .checks
@@ -153,13 +153,13 @@ impl Certificate {
         }
     }
 
-    /// Whether the samples are further apart than the conditions ask for.
+    /// Returns `true` if the spacing of the samples is too coarse for the conditions.
     pub(crate) fn is_too_coarse(&self) -> bool {
         let mut checks = self.checks.iter();
         checks.any(|check| check.seen_by == SeenBy::Spacing && !check.pass)
     }
 
-    /// The same with what the samples leave open in each condition that fails.
+    /// Sets the uncertainty of each violated condition.
     pub(crate) fn with_uncertainty(mut self, of: impl Fn(&Check) -> f64) -> Self {
         for check in self.checks.iter_mut().filter(|check| !check.pass) {
             check.uncertainty = check.uncertainty.max(of(check));
@@ -167,7 +167,7 @@ impl Certificate {
         self
     }
 
-    /// The failed conditions with their values, for an error message.
+    /// Violated conditions with their values, for an error message.
     pub fn failures(&self) -> String {
         let failed = self.checks.iter().filter(|check| !check.pass);
         let words: Vec<_> = failed
@@ -184,12 +184,12 @@ impl Certificate {
     }
 }
 
-/// What two ways of swimming a gait may differ by, over L.
+/// Largest difference between two integrations of a gait, over L.
 pub(crate) const SWUM_AGAIN: f64 = 1e-8;
-/// The same over the displacement itself: a gait that moves by rounding only proves nothing.
+/// Largest difference over the displacement itself, since a gait that moves only by rounding proves nothing.
 pub(crate) const SHARE: f64 = 1e-3;
 
-/// What two ways of swimming a gait that moves so far over L may differ by, over L.
+/// Largest difference between two integrations of a gait with this displacement, over L.
 pub(crate) fn again_within(over_length: f64) -> f64 {
     SWUM_AGAIN.min(SHARE * over_length.abs())
 }

@@ -1,9 +1,9 @@
-//! Any closed curve of joint angles, symmetric or not: what it brings, what it costs, and how both change with the curve.
+//! Displacement and effort of any closed curve of joint angles, with their derivatives by the coefficients of the curve.
 //!
-//! A curve is a sum of [`Basis`] functions, so that closed curves and the quarters of symmetric ones are one code.
-//! The cycle is cut into panels with a three-stage Gauss rule each: the heading inside a panel is that of the collocation
-//! method on the same nodes, whose end values are of order 6. [`Functional`] gives displacement, rotation, energy and
-//! power length with the exact derivatives of these discrete sums.
+//! A curve is a sum of [`Basis`] functions, so closed curves and quarters of symmetric curves share the code. The cycle is divided
+//! into panels with a three-stage Gauss rule each. The heading inside a panel is that of Gauss–Legendre collocation on the same
+//! nodes, whose end values are of order 6. [`Functional`] returns displacement, rotation, energy and power length with the exact
+//! derivatives of these discrete sums.
 
 mod basis;
 mod functional;

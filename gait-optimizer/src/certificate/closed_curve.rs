@@ -1,11 +1,11 @@
-//! Is a closed polygon simple, and does it turn once?
+//! Self-crossings and turning number of closed polygons.
 
 use nalgebra::Vector2;
 
 use super::{Check, Condition};
 
-/// A curve that turns once, and of which no two sides cross: `whole` is the closed curve, `simple` the part of it that must not
-/// cross itself (all of it, but for gaits that meet their own images).
+/// Checks that a curve turns once and that no two of its sides cross. `whole` is the closed curve, `simple` the part that must not
+/// cross itself (the whole curve, except for gaits that meet their own images).
 pub(crate) fn simple_and_turning_once(
     whole: &[Vector2<f64>],
     simple: &[Vector2<f64>],
@@ -17,7 +17,7 @@ pub(crate) fn simple_and_turning_once(
     ]
 }
 
-/// Twice the area that a closed polygon encloses, counter-clockwise positive.
+/// Twice the enclosed area of a closed polygon, counter-clockwise positive.
 pub(crate) fn double_area(points: &[Vector2<f64>]) -> f64 {
     points.array_windows().map(|[a, b]| a.perp(b)).sum()
 }
@@ -33,7 +33,7 @@ pub(crate) fn to_side(point: &Vector2<f64>, a: &Vector2<f64>, b: &Vector2<f64>) 
     }
 }
 
-/// How often a closed polygon (last point = first) turns round, counter-clockwise positive.
+/// Turning number of a closed polygon (last point = first), counter-clockwise positive.
 pub(crate) fn turning_number(points: &[Vector2<f64>]) -> f64 {
     let sides = points.array_windows().map(|[a, b]| b - a);
     let sides: Vec<Vector2<f64>> = sides.filter(|side| side.norm() > 0.0).collect();
@@ -44,10 +44,10 @@ pub(crate) fn turning_number(points: &[Vector2<f64>]) -> f64 {
     turns.sum::<f64>() / std::f64::consts::TAU
 }
 
-/// How many pairs of sides of a polygon cross; where it is closed its last point is the first.
+/// Number of pairs of sides of a polygon that cross. The last point of a closed polygon repeats the first.
 pub(crate) fn crossings(points: &[Vector2<f64>]) -> usize {
     let sides: Vec<[Vector2<f64>; 2]> = points.array_windows().copied().collect();
-    // Sorted by their left ends, a side can only cross those that start before it ends.
+    // In the order of the left ends, a side can only cross sides that start before it ends.
     let mut order: Vec<(f64, f64, usize)> = sides
         .iter()
         .enumerate()
@@ -72,7 +72,7 @@ pub(crate) fn crossings(points: &[Vector2<f64>]) -> usize {
     count
 }
 
-/// Whether two segments cross properly.
+/// Returns `true` if two segments cross properly.
 fn cross([a, b]: &[Vector2<f64>; 2], [c, d]: &[Vector2<f64>; 2]) -> bool {
     let side = |p: &Vector2<f64>, q: &Vector2<f64>, r: &Vector2<f64>| (q - p).perp(&(r - p));
     let (c_side, d_side) = (side(a, b, c), side(a, b, d));

@@ -1,4 +1,4 @@
-//! From a saddle of the displacement up to curves that carry farther.
+//! Ascent from a saddle of the displacement to curves with a greater displacement.
 
 use nalgebra::Vector2;
 use swimmer_model::Model;
@@ -9,15 +9,15 @@ use super::variation::Gain;
 use crate::certificate::turning_number;
 use crate::optimal_gait::OptimalGait;
 
-/// Shapes along a closed curve, each with its u from 0 to 1.
+/// Closed curve as shapes with their u from 0 to 1.
 pub(crate) type Curve = Vec<(f64, Vector2<f64>)>;
 
-/// How far the farthest shape is pushed \[rad\].
+/// Largest displacements of a shape \[rad\].
 const PUSHES: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
 
-/// A gait of most displacement that is a saddle, run counter-clockwise and pushed either way along the steepest ascent among
-/// closed curves of any symmetry, farther and farther; `model` is of its swimmer with L = 1. Empty where no way leads up. Pushed
-/// curves need not obey the bounds, nor be without net rotation.
+/// Perturbs a displacement gait that is a saddle, run counter-clockwise, in both directions of the steepest ascent among closed
+/// curves of any symmetry, by increasing amounts. `model` is that of the swimmer with L = 1. Returns an empty list if there is no
+/// ascent. The perturbed curves may violate the bounds and may have a net rotation.
 pub(crate) fn ways_up(model: &Model<f64>, gait: &OptimalGait) -> Vec<Curve> {
     let mut file = gait.gait_file("");
     if turning_number(&file.phi) < 0.0 {

@@ -1,4 +1,4 @@
-//! Where a gait's nodes lie among the bounds: which one an arc runs along, on which side, and whether a kink is the bound's.
+//! Active bounds at the nodes of a gait: the bound of each arc, its side, and kinks at corners of the bounds.
 
 use nalgebra::Vector2;
 
@@ -6,21 +6,21 @@ use super::Subject;
 use super::limits::Limit;
 use crate::certificate::Condition;
 
-/// How far beside the curve the sides of a bound are told apart \[rad\].
+/// Distance from the curve at which the two sides of a bound are distinguished \[rad\].
 const ASIDE: f64 = 1e-6;
 
 impl Subject<'_> {
-    /// Every bound at a node.
+    /// All bounds at a node.
     pub(super) fn limits_at(&self, node: usize) -> Vec<Limit> {
         self.limits(&self.shapes.get(node).copied().unwrap_or_default(), node)
     }
 
-    /// Every bound at a shape near a node.
+    /// All bounds at a shape near a node.
     fn limits(&self, shape: &Vector2<f64>, node: usize) -> Vec<Limit> {
         Limit::all(&self.region, shape, self.quarter(node))
     }
 
-    /// Which quarter of the cycle a node belongs to; where two meet, the one of its piece.
+    /// Quarter of the cycle that contains a node; where two meet, that of the node's piece.
     pub(super) fn quarter(&self, node: usize) -> usize {
         let u = |node: usize| self.grid.nodes.get(node).map_or(0.0, |node| node.u);
         let beside = if self.grid.before(node).is_some() {
@@ -34,10 +34,10 @@ impl Subject<'_> {
             .unwrap_or(3)
     }
 
-    /// The bound that a node of a bound arc runs along, near and in the direction of the motion, with its place among the bounds.
+    /// Active bound at a node of a bound arc: near, and tangent to the motion, with its index among the bounds.
     pub(super) fn bound_followed(&self, node: usize) -> Option<(usize, Limit)> {
         let rate = self.path.places.get(node)?.rate;
-        // At a corner between two bounds the normal may be the other's; a bound farther away is still not followed.
+        // At a corner between two bounds the normal may be that of the other one; a more distant bound is still not active.
         let askew = |limit: &Limit| {
             let far = if limit.margin.abs() > Condition::OnClearance.tolerance() + self.written {
                 1.0 + limit.margin.abs()
@@ -50,8 +50,8 @@ impl Subject<'_> {
         limits.min_by(|(_, a), (_, b)| askew(a).total_cmp(&askew(b)))
     }
 
-    /// On which side of the motion the bound lies that a bound arc runs along: 1 for the right, −1 for the left. Where an arc
-    /// ends the bound may have a corner, so the node beside is asked there.
+    /// Side of the motion on which the active bound of an arc is: 1 for the right, −1 for the left. At the end of an arc the bound may
+    /// have a corner, so the neighbouring node is evaluated.
     pub(super) fn bound_side(&self, node: usize) -> Option<f64> {
         let inside = if self.grid.before(node).is_none() {
             node + 1
@@ -60,7 +60,7 @@ impl Subject<'_> {
         } else {
             node
         };
-        // Right on the links' clearance its slope may point either way by rounding, so both sides are asked.
+        // Exactly on the clearance bound the direction of its slope depends on rounding, so both sides are evaluated.
         let place = self.path.places.get(inside)?;
         let right = place.right() * ASIDE;
         let (bound, _) = self.bound_followed(inside)?;
@@ -72,8 +72,8 @@ impl Subject<'_> {
         Some(if on_right < on_left { 1.0 } else { -1.0 })
     }
 
-    /// Whether the curve is bent round a corner of the forbidden shapes between these nodes, the end of a piece and the
-    /// beginning of the next: like a string round an edge it may have a kink there, towards the corner.
+    /// Returns `true` if the curve bends around a corner of the forbidden shapes between these nodes, the end of a piece and the start
+    /// of the next. Like a string around an edge it may have a kink there, towards the corner.
     pub(super) fn bent_round_a_corner(&self, end: usize, start: usize) -> bool {
         const BESIDE: f64 = 1e-5;
         let (Some(before), Some(after)) = (self.path.places.get(end), self.path.places.get(start))

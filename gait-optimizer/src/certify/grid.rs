@@ -1,5 +1,4 @@
-//! The samples of a gait cut into pieces within which the curve is smooth, with the rules that differentiate and integrate
-//! along them.
+//! Samples of a gait, split into smooth pieces, with rules for differentiation and integration along them.
 
 use std::ops::RangeInclusive;
 
@@ -8,44 +7,44 @@ use swimmer_files::{ArcKind, GaitFile};
 
 use super::stencil::{self, Weights};
 
-/// What a piece of the curve runs along.
+/// Kind of a piece of the curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Along {
-    /// Nothing: the gait chose its way.
+    /// Free arc.
     Free,
-    /// A bound.
+    /// Arc along a bound.
     Bound,
 }
 
-/// A smooth piece: its nodes, and what it runs along.
+/// Smooth piece: its nodes and its kind.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
     pub(super) nodes: RangeInclusive<usize>,
     pub(super) along: Along,
 }
 
-/// A sample as the end of the pieces it belongs to: where two pieces meet there is one node for each.
+/// Sample within a piece; where two pieces meet there is one node for each.
 #[derive(Debug, Clone)]
 pub(super) struct Node {
     /// Fraction of the period.
     pub(super) u: f64,
     pub(super) along: Along,
-    /// Slope and bend by each [`Degree`].
+    /// Rules for the first and second derivative by each [`Degree`].
     slope_and_bend: [[Rule; 2]; 2],
-    /// The integral from the node before by each degree; none for the first of a piece.
+    /// Rules for the integral from the previous node by each degree; `None` for the first node of a piece.
     integral: Option<[Rule; 2]>,
 }
 
-/// What a polynomial through neighbouring nodes makes of values there.
+/// Linear rule from a polynomial through neighbouring nodes.
 #[derive(Debug, Clone, Copy)]
 struct Rule {
-    /// The node of the first weight.
+    /// Node of the first weight.
     low: usize,
     weights: Weights,
 }
 
 impl Rule {
-    /// What it makes of the values at the nodes, added to a sum.
+    /// Applies the rule to the values at the nodes and adds the result to a sum.
     fn added<T>(&self, sum: T, values: &[T]) -> T
     where
         T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
@@ -63,18 +62,18 @@ pub(super) struct Grid {
     pub(super) pieces: Vec<Piece>,
 }
 
-/// Which of the two polynomials; the place of its rules.
+/// Polynomial degree, as an index of the rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Degree {
     Fine,
     Coarse,
 }
 
-/// Knots this close in u are the same.
+/// Distance in u below which two knots are equal.
 const SAME: f64 = 1e-12;
 
 impl Grid {
-    /// The grid of a gait file, and the shapes at its nodes. `along` tells of each interval between knots what it runs along.
+    /// Returns the grid of a gait file and the shapes at its nodes. `along` has the kind of each interval between knots.
     pub(super) fn new(file: &GaitFile, along: &[Along]) -> (Self, Vec<Vector2<f64>>) {
         let last = file.u.len().saturating_sub(1);
         let mut cut: Vec<usize> = vec![0, last];
@@ -109,7 +108,7 @@ impl Grid {
         };
         let places = |low: usize, width: usize| u.get(low..low + width).unwrap_or_default();
         let even = even_before(u);
-        // Where the samples are even all round, rules are those of the node before, one further.
+        // For uniform samples the rules are those of the previous node, shifted by one.
         let goes_on = |i: usize| {
             let [before, here] = [i - 1, i].map(|i| (windows(i, i), windows(i - 1, i)));
             let moved = |(low, width): (usize, usize)| (low + 1, width);
@@ -158,12 +157,12 @@ impl Grid {
         });
     }
 
-    /// Slope dΦ/du at every node.
+    /// First derivative dΦ/du at every node.
     pub(super) fn slopes(&self, shapes: &[Vector2<f64>], degree: Degree) -> Vec<Vector2<f64>> {
         self.derived(shapes, degree, 0)
     }
 
-    /// Bend d²Φ/du² at every node.
+    /// Second derivative d²Φ/du² at every node.
     pub(super) fn bends(&self, shapes: &[Vector2<f64>], degree: Degree) -> Vec<Vector2<f64>> {
         self.derived(shapes, degree, 1)
     }
@@ -178,7 +177,7 @@ impl Grid {
             .collect()
     }
 
-    /// Integral from u = 0 to every node of what has these values at the nodes.
+    /// Integral from u = 0 to every node of a function with these values at the nodes.
     pub(super) fn integrals<T>(&self, values: &[T], zero: T, degree: Degree) -> Vec<T>
     where
         T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
@@ -194,13 +193,13 @@ impl Grid {
         sums
     }
 
-    /// The node before this one, where it belongs to the same piece.
+    /// Previous node. Returns `None` at the start of a piece.
     pub(super) fn before(&self, node: usize) -> Option<usize> {
         self.nodes.get(node)?.integral.as_ref()?;
         node.checked_sub(1)
     }
 
-    /// First and last node of the stencil for the stretch that ends at this node.
+    /// First and last node of the stencil for the interval that ends at this node.
     pub(super) fn stencil(&self, node: usize) -> Option<RangeInclusive<usize>> {
         let [Rule { low, .. }, _] = *self.nodes.get(node)?.integral.as_ref()?;
         let piece = self
@@ -217,11 +216,11 @@ impl Grid {
         nodes.iter().map(|node| node.u).collect()
     }
 
-    /// What has these values at the nodes, at u.
+    /// Interpolates a function with these values at the nodes at u.
     pub(super) fn interpolated(&self, values: &[f64], u: f64) -> f64 {
         let node = self.nodes.partition_point(|node| node.u < u).max(1);
         let Some(stencil) = self.stencil(node) else {
-            // Two pieces meet here.
+            // Boundary of two pieces.
             return values.get(node).copied().unwrap_or(f64::NAN);
         };
         let [weights] = stencil::derivatives(&self.places(&stencil), u);
@@ -230,7 +229,7 @@ impl Grid {
     }
 }
 
-/// How many intervals before each place are as long as the last of them.
+/// Number of equal intervals before each point.
 fn even_before(u: &[f64]) -> Vec<usize> {
     let mut even = vec![0; u.len()];
     for i in 1..u.len() {
@@ -244,13 +243,13 @@ fn even_before(u: &[f64]) -> Vec<usize> {
     even
 }
 
-/// The knot at u.
+/// Index of the knot at u.
 pub(super) fn knot(file: &GaitFile, u: f64) -> Option<usize> {
     let after = file.u.partition_point(|&knot| knot < u - SAME);
     (file.u.get(after)? - u).abs().le(&SAME).then_some(after)
 }
 
-/// What each interval between knots runs along, as the file's arcs tell.
+/// Kind of each interval between knots, from the arcs of the file.
 pub(super) fn told_by_arcs(file: &GaitFile) -> Vec<Along> {
     let intervals = file.u.array_windows();
     let middles = intervals.map(|&[from, to]| f64::midpoint(from, to));

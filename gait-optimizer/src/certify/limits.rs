@@ -1,6 +1,6 @@
-//! The bounds that a gait was made under, asked at one shape after another.
+//! Margins and normals of the bounds at a shape.
 //!
-//! Upper bounds and the clearance of the links hold everywhere. A lower bound and the sector are told of the first quarter,
+//! Upper bounds and the clearance of the links hold everywhere. A lower bound and the sector are defined for the first quarter,
 //! between φ₁ = φ₂ > 0 and φ₁ = −φ₂, φ₂ > 0; the other quarters are its images.
 
 use nalgebra::Vector2;
@@ -8,14 +8,14 @@ use swimmer_files::ArcKind;
 
 use crate::region::{Bound, Region};
 
-/// One bound at one shape.
+/// Bound at a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Limit {
-    /// How far inside the shape is \[rad\]; negative outside.
+    /// Distance of the shape from the bound \[rad\]; negative outside.
     pub(super) margin: f64,
-    /// Unit vector that points out.
+    /// Outward unit normal.
     pub(super) normal: Vector2<f64>,
-    /// Whether it is the links' clearance.
+    /// `true` for the clearance of the links.
     pub(super) curved: bool,
 }
 
@@ -29,7 +29,7 @@ impl Limit {
             let shape = image(*phi, quarter);
             let gradient = bound.gradient(&shape);
             let slope = gradient.norm();
-            // Right where tip meets tip the distance has no slope: the shape lies on the bound, and out is away from straight.
+            // Where tip meets tip the distance has no gradient: the shape is on the bound, and outward is away from the straight shape.
             let (margin, out) = if slope > f64::EPSILON {
                 (bound.margin(&shape) / slope, -gradient / slope)
             } else {
@@ -45,7 +45,7 @@ impl Limit {
     }
 }
 
-/// A vector of the first quarter in another quarter, and back: the paper's reflections.
+/// Reflects a vector of the first quarter to another quarter, or back, by the paper's symmetries.
 pub(super) fn image(v: Vector2<f64>, quarter: usize) -> Vector2<f64> {
     match quarter {
         1 => Vector2::new(-v.y, -v.x),
@@ -61,7 +61,7 @@ mod tests {
     use swimmer_files::Bounds;
     use swimmer_model::Links;
 
-    /// Gaits may start in the corner of the forbidden shapes, where the distance of the tips is zero, and so is its slope.
+    /// Gaits may start at the corner of the forbidden shapes, where the distance of the tips and its gradient are zero.
     #[test]
     fn the_shape_with_tip_on_tip_lies_on_the_bound() {
         let bounds = Bounds::default().apart(0.0);

@@ -1,4 +1,4 @@
-//! A sampled cycle swum along its own samples: poses, connection and power at every node.
+//! Integration of a sampled cycle along its samples: poses, connection and power at every node.
 
 use nalgebra::{SVector, Vector2, Vector3};
 use swimmer_model::{FirstDerivatives, Model};
@@ -8,7 +8,7 @@ use super::stencil;
 use crate::momentum::Momentum;
 use crate::runge_kutta::{Point, exact_step};
 
-/// One node of the curve, swum.
+/// Values at a node of the curve.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub(super) phi: Vector2<f64>,
@@ -21,12 +21,12 @@ pub(super) struct Place {
     pub(super) pose: [f64; 3],
     /// sin θ and cos θ.
     pub(super) heading: (f64, f64),
-    /// The root of the power `P = Φ'ᵀWΦ'`.
+    /// Square root of the power `P = Φ'ᵀWΦ'`.
     pub(super) root_power: f64,
 }
 
 impl Place {
-    /// How the pose changes.
+    /// Derivative of the pose by u.
     fn velocity(&self) -> Vector3<f64> {
         let body = self.first.connection * self.rate;
         let (sin, cos) = self.heading;
@@ -42,7 +42,7 @@ impl Place {
         Vector2::new(self.rate.y, -self.rate.x).normalize()
     }
 
-    /// Shape, its rate and the pose; and how they change.
+    /// Shape, rate and pose, with their derivatives.
     fn state(&self) -> [SVector<f64, 7>; 2] {
         let Self {
             phi, rate, bend, ..
@@ -54,13 +54,13 @@ impl Place {
         ]
     }
 
-    /// The height of one choice of the multipliers here.
+    /// Height for given multipliers.
     pub(super) fn height(&self, momentum: &Momentum) -> f64 {
         momentum.at(&self.pose).dot(&self.first.curvature())
     }
 }
 
-/// The curve between its nodes.
+/// Values between nodes.
 pub(super) struct Here {
     pub(super) phi: Vector2<f64>,
     /// dΦ/du.
@@ -180,7 +180,7 @@ impl Path {
         self.places.last().map_or([0.0; 3], |place| place.pose)
     }
 
-    /// The largest distance between the poses of two paths over the same nodes.
+    /// Largest distance between the poses of two paths over the same nodes.
     pub(super) fn pose_distance(&self, other: &Self) -> f64 {
         let distance = |(a, b): (&Place, &Place)| {
             a.pose
@@ -197,11 +197,11 @@ impl Path {
     }
 }
 
-/// Steps of a cycle that is closely sampled, about, and the most intervals between samples that one takes.
+/// Approximate number of steps of a densely sampled cycle; the next constant is the largest number of sample intervals per step.
 const STEPS: usize = 256;
 const LONGEST_STEP: usize = 4;
 
-/// The net pose once more: (ẋ, ẏ, θ̇) = G(Φ, θ) Φ̇ stepped by the Runge–Kutta method of order eight along the samples.
+/// Net pose by a second method: (ẋ, ẏ, θ̇) = G(Φ, θ) Φ̇, integrated by the Runge–Kutta method of order eight along the samples.
 pub(super) fn stepped(model: &Model<f64>, grid: &Grid, shapes: &[Vector2<f64>]) -> [f64; 3] {
     let stride = (grid.nodes.len() / STEPS).clamp(1, LONGEST_STEP);
     let u = |node: usize| grid.nodes.get(node).map_or(0.0, |node| node.u);

@@ -1,9 +1,9 @@
-//! The conditions of a gait of most efficiency (paper, section V).
+//! Necessary conditions of a gait of greatest efficiency (paper, section V).
 //!
 //! At constant power a gait extremises ln |d| − ln S, S = ∮√P. With |p| = S/|d| the costates are
 //! λ = −Aᵀμ + W t (up to one common factor, t = Φ̇/√P): that is `H_u = 0`. Their equations then read
-//! `(W t)˙ = ½ ∂(t·W t) − h (t₂, −t₁)` on free arcs, and what is left over on a bound is its multiplier. The equations are held
-//! in their integrated form, which asks for slopes only.
+//! `(W t)˙ = ½ ∂(t·W t) − h (t₂, −t₁)` on free arcs, and the residual on a bound is its multiplier. The equations are evaluated in
+//! their integrated form, which needs first derivatives only.
 
 use nalgebra::Vector2;
 
@@ -16,7 +16,7 @@ use crate::momentum::Momentum;
 use crate::numerics::{lesser, worse};
 
 impl Subject<'_> {
-    /// All checks of an optimum of efficiency.
+    /// All conditions of an efficiency optimum.
     pub(super) fn of_efficiency(&self, open: Openness) -> Vec<Check> {
         let path = &self.path;
         let d = path.displacement();
@@ -38,7 +38,7 @@ impl Subject<'_> {
         }
         let momentum = self.effort_momentum();
         let fine = Balance::new(self, path, &momentum);
-        // The coarser slopes tell how far the left-over can be trusted.
+        // The coarser derivatives give the accuracy of the residual.
         let coarse = Balance::new(self, &self.coarse, &momentum);
         let unsure = fine.distance(&coarse);
         checks.extend(fine.checks(self, unsure));
@@ -52,7 +52,7 @@ impl Subject<'_> {
         checks
     }
 
-    /// p = S d/|d|², and c from the free arcs.
+    /// Multipliers: p = S d/|d|², and c from the free arcs.
     pub(super) fn effort_momentum(&self) -> Momentum {
         let d = self.path.displacement();
         let p = d * (self.path.total_power_length() / d.norm_squared());
@@ -78,7 +78,7 @@ impl Subject<'_> {
         }
     }
 
-    /// The largest jump of the direction where pieces meet, but for corners of the forbidden shapes.
+    /// Largest jump of the direction between pieces, except at corners of the forbidden shapes.
     fn sharpest_corner(&self) -> f64 {
         let rate = |node: usize| self.path.places.get(node).map(|place| place.rate);
         let pieces = &self.grid.pieces;
@@ -95,7 +95,7 @@ impl Subject<'_> {
             .fold(0.0, f64::max)
     }
 
-    /// How far from a right angle the curve crosses the symmetry lines.
+    /// Deviation from a right angle at the symmetry lines.
     fn ends_off_square(&self) -> f64 {
         let component = |pick: fn(&Vector2<f64>) -> f64| -> Vec<f64> {
             self.path
@@ -120,7 +120,7 @@ impl Subject<'_> {
         off_start.max((end.x - end.y).abs())
     }
 
-    /// The multiplier of the bound on each bound arc: what pushes out, over the size of W t.
+    /// Multipliers of the active bounds (KKT), over |W t|; positive if the curve pushes outwards.
     fn effort_multipliers(&self, momentum: &Momentum) -> Option<Check> {
         let multipliers = |path: &Path| -> Vec<f64> {
             let scale = largest_costate(path);
@@ -156,10 +156,10 @@ impl Subject<'_> {
     }
 }
 
-/// The costate equations along the curve: what they leave over at every node, each piece about its own mean.
+/// Residual of the costate equations at every node, each piece about its own mean.
 struct Balance {
     left_over: Vec<Vector2<f64>>,
-    /// The largest |W t|.
+    /// Largest |W t|.
     scale: f64,
 }
 
@@ -197,7 +197,7 @@ impl Balance {
         }
     }
 
-    /// The largest difference on free arcs, relative.
+    /// Largest relative difference on free arcs.
     fn distance(&self, other: &Self) -> f64 {
         self.left_over
             .iter()
@@ -206,7 +206,7 @@ impl Balance {
             .fold(0.0, f64::max)
     }
 
-    /// `H_u` and H with costates from their own equations.
+    /// Conditions on `H_u` and H, with costates integrated from their own equations.
     fn checks(&self, subject: &Subject<'_>, unsure: f64) -> Vec<Check> {
         let free = || {
             self.left_over

@@ -1,8 +1,7 @@
-//! What its samples leave open in each number of a certificate: they are rounded, and there are only so many of them.
+//! Uncertainty of the conditions of a certificate due to rounding and spacing of the samples.
 //!
-//! A condition that does not hold is decided only where neither may be the reason. What rounding may do is tried: the samples
-//! are moved by as much as their last digit leaves open, and each number changes by so much. What the spacing may do is told by
-//! every second sample: a number that the curve has, not its samples, hardly changes.
+//! A violation is decided only if neither can explain it. The effect of rounding is measured by perturbing the samples within their
+//! last digit. The effect of the spacing is measured with every second sample: a property of the curve hardly changes.
 
 use nalgebra::Vector2;
 use rand::{RngExt, SeedableRng};
@@ -13,32 +12,32 @@ use swimmer_model::Gait as _;
 use super::grid::knot;
 use crate::certificate::{Certificate, Check, Condition, SeenBy};
 
-/// Numbers with more digits than these were not rounded by a writer.
+/// Number of digits above which a number counts as not rounded.
 const MOST_DIGITS: i32 = 13;
-/// Times that the samples are moved.
+/// Number of perturbations of the samples.
 const TRIALS: u64 = 4;
-/// What is rounded already is about as far off as what is moved once more, so that differences tell only part of it.
+/// Factor on the measured differences, since the samples are already rounded before they are perturbed.
 const MARGIN: f64 = 4.0;
 
-/// A curve that may be further off between its samples is not told to be so \[rad\].
+/// Largest interpolation error for which a violation is decided \[rad\].
 pub(super) const MOST_MISSED: f64 = 1e-3;
-/// Slopes that are known no better than this, as a share, decide nothing.
+/// Relative error of derivatives above which nothing is decided.
 const UNKNOWN: f64 = 0.05;
-/// Fewer samples may zigzag by where they stand.
+/// Number of samples below which zigzags may be an effect of their placement.
 const ENOUGH: usize = 400;
-/// How far the written numbers may be from those that were meant.
+/// Rounding errors of the numbers in a gait file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rounding {
-    /// Of joint angles \[rad\]; 0 for numbers in full.
+    /// Rounding error of joint angles \[rad\]; 0 for full precision.
     pub(super) phi: f64,
     u: f64,
 }
 
 impl Rounding {
-    /// By the digits that the file's numbers have.
+    /// Determines the rounding errors from the number of digits in the file.
     pub(super) fn of(gait: &GaitFile) -> Self {
         let phi = half_a_digit(gait.phi.iter().flat_map(|phi| [phi.x, phi.y]));
-        // Evenly spaced u often have few digits, and are none the less exact: only beside rounded angles are they doubted.
+        // Uniform values of u often have few digits but are exact, so they count as rounded only if the angles are rounded too.
         let u = if phi > 0.0 {
             half_a_digit(gait.u.iter().copied())
         } else {
@@ -47,7 +46,7 @@ impl Rounding {
         Self { phi, u }
     }
 
-    /// The gait with its numbers moved within what is open.
+    /// Perturbs the numbers of a gait within their rounding errors.
     fn moved(self, gait: &GaitFile, seed: u64) -> GaitFile {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut by = |most: f64| {
@@ -87,7 +86,7 @@ impl Rounding {
     }
 }
 
-/// Half of the last digit of the largest number; 0 where some number is written in full.
+/// Half a unit of the last digit of the largest number; 0 if any number has full precision.
 fn half_a_digit(numbers: impl Iterator<Item = f64>) -> f64 {
     let (mut digits, mut largest) = (0, 0.0_f64);
     for number in numbers {
@@ -95,7 +94,7 @@ fn half_a_digit(numbers: impl Iterator<Item = f64>) -> f64 {
         let mantissa = shortest.split('e').next().unwrap_or_default();
         let count = mantissa.chars().filter(char::is_ascii_digit).count();
         digits = digits.max(i32::try_from(count).unwrap_or(i32::MAX));
-        // Of a gait in full this is one of the first samples.
+        // For a gait in full precision this returns at one of the first samples.
         if digits > MOST_DIGITS {
             return 0.0;
         }
@@ -109,8 +108,8 @@ fn half_a_digit(numbers: impl Iterator<Item = f64>) -> f64 {
     0.5 * 10.0_f64.powi(exponent + 1 - digits)
 }
 
-/// How far the curve between its samples may be from the gait that was meant \[rad\]: what every second sample misses of the
-/// others, an eighth of it, for cubic pieces miss a sixteenth at half the spacing.
+/// Estimate of the interpolation error between samples \[rad\]: one eighth of the error with every second sample, since the error of
+/// cubic pieces falls to a sixteenth at half the spacing.
 pub(super) fn missed_between(gait: &GaitFile) -> f64 {
     let fewer = every_second(gait, 0);
     let Ok(curve) = AnyGait::from_file(&fewer) else {
@@ -121,7 +120,7 @@ pub(super) fn missed_between(gait: &GaitFile) -> f64 {
     (0.125 * missed.fold(0.0, f64::max)).min(MOST_MISSED)
 }
 
-/// Every second sample between the ends of arcs and corners, counted from the first or from the second.
+/// Keeps every second sample between the ends of arcs and corners, starting with the first or the second.
 fn every_second(gait: &GaitFile, from: usize) -> GaitFile {
     let fixed = |u: f64| {
         let ends = gait.arcs.iter().flat_map(|arc| [arc.from, arc.to]);
@@ -144,7 +143,7 @@ fn every_second(gait: &GaitFile, from: usize) -> GaitFile {
     }
 }
 
-/// Whether the samples zigzag, half of them at least: a gait that does so at full precision is no smooth one seen coarsely.
+/// Returns `true` if at least half of the samples zigzag, which a coarsely sampled smooth gait does not.
 fn zigzags(gait: &GaitFile) -> bool {
     let bends = gait.phi.windows(3).map(|three| {
         let (into, out) = (three[1] - three[0], three[2] - three[1]);
@@ -157,8 +156,8 @@ fn zigzags(gait: &GaitFile) -> bool {
     changes.len() > ENOUGH && 2 * turns.count() > changes.len()
 }
 
-/// The certificate, each failed condition with what the samples leave open in its number; `asked` works out the certificate of
-/// other samples of the same gait.
+/// Adds the uncertainty due to the samples to each violated condition. `asked` computes the certificate for other samples of the
+/// same gait.
 pub(super) fn with_uncertainty(
     certificate: Certificate,
     gait: &GaitFile,
@@ -181,7 +180,7 @@ pub(super) fn with_uncertainty(
         let value = other
             .as_ref()
             .and_then(|other| other.value(check.condition));
-        // A condition that other samples do not even pose is open.
+        // A condition that other samples do not have is undecided.
         value.map_or(f64::INFINITY, |value| (value - check.value).abs())
     };
     let value = |condition| certificate.value(condition).unwrap_or(0.0);

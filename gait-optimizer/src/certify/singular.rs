@@ -1,8 +1,8 @@
-//! The conditions of gaits whose objective does not ask for effort: displacement, turning, sideways (paper, section IV).
+//! Necessary conditions for objectives without effort: displacement, turning, sideways (paper, section IV).
 //!
-//! Free arcs lie on the zero of the height h = μ · F, with the gain on their left (generalised Legendre–Clebsch); on a bound
-//! the height pushes against it. H is linear in the control, so with λ₁, λ₂ from `H_u = 0` at one place the costate equations
-//! leave `H_u = ∫ h (Φ̇₂, −Φ̇₁) dt` along a free arc.
+//! Free arcs are singular arcs: they lie on the zero of the height h = μ · F, with the gain on their left (generalised
+//! Legendre–Clebsch condition). On an active bound the height pushes against it (sign of the KKT multiplier). H is linear in the
+//! control, so with λ₁, λ₂ from `H_u = 0` at one point the costate equations give `H_u = ∫ h (Φ̇₂, −Φ̇₁) dt` along a singular arc.
 
 use nalgebra::Vector2;
 use swimmer_files::Objective;
@@ -16,8 +16,8 @@ use crate::momentum::{Height, Momentum};
 use crate::numerics::{lesser, worse};
 
 impl Subject<'_> {
-    /// All checks of a weak optimum. A sideways gait is stationary with its start, or it is a loop of most displacement
-    /// whatever its start; in both cases no other start may be better.
+    /// All conditions of a weak optimum. A sideways gait is stationary in its start, or it is a loop of greatest displacement for any
+    /// start; in both cases no other start may be better.
     pub(super) fn of_weak_optimum(&self, objective: Objective, open: Openness) -> Vec<Check> {
         let first = match objective {
             Objective::Turning => Gain::Turning,
@@ -41,10 +41,10 @@ impl Subject<'_> {
         checks
     }
 
-    /// All checks of what one gain asks for.
+    /// All conditions for one gain.
     fn of_gain(&self, gain: Gain, open: Openness) -> Vec<Check> {
         let Some(momentum) = self.weak_momentum(gain) else {
-            // Nothing is gained, so nothing is optimal.
+            // Without a gain the gait is not optimal.
             return vec![Condition::Gains.check(self.gained(gain))];
         };
         let places = self.path.places.iter();
@@ -56,7 +56,7 @@ impl Subject<'_> {
         checks
     }
 
-    /// What a gain is for this gait.
+    /// Value of a gain for this gait.
     fn gained(&self, gain: Gain) -> f64 {
         match gain {
             Gain::Turning => self.path.rotation().abs(),
@@ -65,7 +65,7 @@ impl Subject<'_> {
         }
     }
 
-    /// How much more of the displacement another start would have across its heading, over L.
+    /// Greatest increase of the displacement across the heading by another start, over L.
     fn better_start(&self) -> f64 {
         let d = self.path.displacement();
         let across = |theta: f64| {
@@ -88,10 +88,10 @@ impl Subject<'_> {
             let values = free().map(|(_, (height, place))| value(height, place));
             values.fold(0.0, worse)
         };
-        // Zero-level curves may cross where a gait has a corner: there the slope vanishes, and no distance goes by it.
+        // Zero-level curves may cross at a corner of the gait. The slope vanishes there, and the distance is undefined.
         let steepest = largest(&|height, _| height.gradient.norm());
         let slope_at = |height: &Height| height.gradient.norm().max(1e-3 * steepest);
-        // How far a wrong pose can move the zero, per unit of pose.
+        // Shift of the zero per unit of pose error.
         let leverage = |height: &Height, place: &Place| {
             2.0 * place.first.curvature().norm() / slope_at(height)
         };
@@ -109,7 +109,7 @@ impl Subject<'_> {
             .filter_map(|node| heights.get(node).map(off_zero))
             .reduce(worse);
         checks.extend(exits.map(|off| Condition::LeavesAtZero.open(off, open)));
-        // Not where a piece ends: there two zero-level curves may cross.
+        // Not at the end of a piece, where two zero-level curves may cross.
         let inner =
             |node: usize| self.grid.before(node).is_some() && self.grid.before(node + 1).is_some();
         let least = free()
@@ -142,7 +142,7 @@ impl Subject<'_> {
         least.map(|least| Condition::HeightOnBound.open(least, 4.0 * open.pose))
     }
 
-    /// Whether another, free piece begins or ends where this node of a bound arc lies.
+    /// Returns `true` if a free piece begins or ends at this node of a bound arc.
     fn meets_free(&self, node: usize) -> bool {
         let Some(shape) = self.shapes.get(node) else {
             return false;
@@ -159,7 +159,7 @@ impl Subject<'_> {
             })
     }
 
-    /// The largest `|H_u|`, and H, that the costate equations leave along a free piece when `H_u = 0` where it begins.
+    /// Largest `|H_u|` and largest |H| along a free piece, from the costate equations with `H_u = 0` at its start.
     fn drift_of_h_u(&self, heights: &[Height]) -> (f64, f64) {
         let forces: Vec<Vector2<f64>> = heights
             .iter()
@@ -225,7 +225,7 @@ impl Subject<'_> {
         let c = if square > 0.0 {
             -across / square
         } else {
-            // Bounds all round: any c that every multiplier admits; the middle one.
+            // A gait on bounds only: the midpoint of the values of c for which every multiplier has the right sign.
             let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
             for (node, height, turning) in pairs(Along::Bound) {
                 let Some(side) = self.bound_side(node) else {

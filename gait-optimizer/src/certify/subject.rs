@@ -1,5 +1,5 @@
-//! A gait made ready to be asked: swum along its own samples, between the bounds that it was made under; and what is asked of it
-//! whatever it is optimal for.
+//! Gait prepared for certification: integrated along its samples, with its bounds. Includes the conditions that do not depend on the
+//! objective.
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, Bounds, GaitFile};
@@ -14,7 +14,7 @@ use crate::certificate::{Check, Condition, SeenBy, simple_and_turning_once};
 use crate::numerics::worse;
 use crate::region::Region;
 
-/// A gait made ready to be asked.
+/// Gait prepared for certification.
 pub(super) struct Subject<'a> {
     pub(super) model: &'a Model<f64>,
     pub(super) bounds: &'a Bounds,
@@ -22,14 +22,14 @@ pub(super) struct Subject<'a> {
     pub(super) grid: Grid,
     pub(super) shapes: Vec<Vector2<f64>>,
     pub(super) path: Path,
-    /// The same by the coarser polynomials.
+    /// Path by the coarser polynomials.
     pub(super) coarse: Path,
     pub(super) symmetric: bool,
-    /// How far from a bound a sample on it may be written \[rad\].
+    /// Largest distance of a sample from a bound on which it is, due to rounding \[rad\].
     pub(super) written: f64,
 }
 
-/// What the sampling leaves open.
+/// Errors due to the sampling.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Openness {
     /// Relative error of slopes.
@@ -39,7 +39,7 @@ pub(super) struct Openness {
 }
 
 impl<'a> Subject<'a> {
-    /// The links are those of the swimmer \[m\].
+    /// Prepares a gait; `links` are those of the swimmer \[m\].
     pub(super) fn new(
         model: &'a Model<f64>,
         gait: &GaitFile,
@@ -77,7 +77,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// Closure and bounds: what does not depend on the objective. Samples that are too coarse show no symmetry.
+    /// Conditions of closure and bounds. Samples that are too coarse do not prove symmetry.
     pub(super) fn of_the_curve(
         &self,
         gait: &GaitFile,
@@ -122,9 +122,9 @@ impl<'a> Subject<'a> {
         checks
     }
 
-    /// Whether the curve is simple and turns once.
+    /// Conditions that the curve is simple and turns once.
     pub(super) fn of_its_loop(&self, gait: &GaitFile) -> [Check; 2] {
-        // A gait that may run along the diagonals meets its own images there: then the quarter must be simple.
+        // A gait that may follow the diagonals meets its own images there; then only the quarter must be simple.
         let quarter = gait.u.partition_point(|&u| u <= 0.25 + 1e-12);
         let simple = if self.region.has_diagonals() {
             gait.phi.get(..quarter).unwrap_or_default()
@@ -148,7 +148,7 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// Which intervals between knots lie on a bound, for a gait that does not tell.
+/// Detects the intervals between knots that are on a bound, for a gait without arcs.
 fn touching(region: &Region, gait: &GaitFile) -> Vec<Along> {
     let written = 2.0 * Rounding::of(gait).phi;
     let on_bound = |[a, b]: &[Vector2<f64>; 2], u: f64| {

@@ -1,4 +1,4 @@
-//! Whether a sampled cycle has the paper's two symmetries, wherever its samples begin.
+//! Detection of the paper's two symmetries in a sampled cycle with any starting point.
 
 use nalgebra::Vector2;
 use swimmer_files::{AnyGait, GaitFile};
@@ -7,12 +7,12 @@ use swimmer_model::Gait as _;
 use super::limits::image;
 use super::resolution::{MOST_MISSED, Rounding, missed_between};
 
-/// Images of exact samples are this near to the curve \[rad\].
+/// Largest distance of the image of an exact sample from the curve \[rad\].
 const CLOSE: f64 = 1e-7;
-/// So many places on the diagonal are tried as the beginning.
+/// Largest number of points on the diagonal that are tried as the start.
 const MOST_STARTS: usize = 16;
 
-/// Whether the cycle has the paper's two symmetries, in time too, as far as its samples tell.
+/// Returns `true` if the cycle has the paper's two symmetries, in time too, within the accuracy of its samples.
 pub(super) fn is_symmetric(gait: &GaitFile) -> bool {
     let Ok(curve) = AnyGait::from_file(gait) else {
         return false;
@@ -23,20 +23,20 @@ pub(super) fn is_symmetric(gait: &GaitFile) -> bool {
                 && (curve.at(u + 0.5).phi + shape).norm() < close
         })
     };
-    // What the samples leave open is looked at only where it matters.
+    // The rounding is evaluated only if it matters.
     let written = || CLOSE + 4.0 * Rounding::of(gait).phi;
     within(CLOSE) || within(written() + MOST_MISSED) && within(written() + missed_between(gait))
 }
 
-/// The same cycle begun where its links are first alike, if it has the paper's symmetries from there and not from its first
-/// sample: what it is does not depend on that.
+/// Rotates the cycle to start at φ₁ = φ₂ if it has the paper's symmetries from there but not from its first sample. Returns `None`
+/// otherwise.
 pub(super) fn begun_on_the_diagonal(gait: &GaitFile) -> Option<GaitFile> {
     if is_symmetric(gait) {
         return None;
     }
     let near = 1e-9 + 4.0 * Rounding::of(gait).phi;
     let alike = |phi: &Vector2<f64>| (phi.x - phi.y).abs() < near && phi.x > -near;
-    // Of a stretch along the diagonal only where it begins or ends, or an arc does.
+    // On an interval along the diagonal only its ends and the ends of arcs are tried.
     let is_end = |u: f64| gait.arcs.iter().any(|arc| (arc.from - u).abs() <= 1e-12);
     let last = gait.u.len().saturating_sub(1);
     let on = |at: usize| gait.phi.get(at).is_some_and(alike);
@@ -48,7 +48,8 @@ pub(super) fn begun_on_the_diagonal(gait: &GaitFile) -> Option<GaitFile> {
         .find(|gait| is_symmetric(gait) && ends_upwards(gait))
 }
 
-/// Whether the first quarter ends where φ₂ > 0: a cycle may pass the straight shape twice, and its quarters begin at one of them.
+/// Returns `true` if the first quarter ends at φ₂ > 0. A cycle crosses the diagonal twice, and its quarters begin at one of the
+/// crossings.
 fn ends_upwards(gait: &GaitFile) -> bool {
     let end = gait.u.partition_point(|&u| u < 0.25 - 1e-12);
     gait.phi.get(end).is_some_and(|phi| phi.y > 0.0)

@@ -1,21 +1,23 @@
-//! The second variation of a gain: how it changes, to second order, as a curve is pushed.
+//! Second variation of a gain under perturbations of the curve.
 //!
-//! What p · d + c Δθ gains is h · dA, the height times the area that is swept. So its second variation is what the height gains: at the
-//! place itself by its slope, and further on by the pose, which what is swept before turns by ∫ a dA and shifts across p by −∫ C dA:
+//! The first variation of p · d + c Δθ is h · dA, the height times the swept area. The second variation therefore follows from the
+//! change of the height: locally by its slope, and further along the curve by the pose, which the area swept before rotates by
+//! ∫ a dA and shifts across p by −∫ C dA:
 //!
 //! ```text
 //! δ² = ∫ δh dA + ∫∫_{σ<s} (a(σ) C(s) − C(σ) a(s)) dA(σ) dA(s),   a = F_θ,   C = μ_y F_x − μ_x F_y + (p · r) a
 //! ```
 //!
-//! in a frame that goes with the first shape. There |d| lacks (p × δd)²/(|p| |d|), the gain from turning d aside, and p × δd = −∫ C dA
-//! where nothing turns. Efficiency has −∫√P besides, to second order in the shapes and their slopes.
+//! in a frame attached to the first shape. The second variation of |d| has the additional term (p × δd)²/(|p| |d|), from the rotation
+//! of d, with p × δd = −∫ C dA if there is no net rotation. Efficiency has the additional term −∫√P, to second order in the shapes
+//! and their slopes.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use swimmer_model::SecondDerivatives;
 
 use crate::momentum::{Height, Momentum};
 
-/// What is maximised, as far as the Hessian is concerned.
+/// Maximised quantity, which determines the Hessian.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Gain {
     /// |d|, without net rotation.
@@ -29,13 +31,13 @@ pub(super) enum Gain {
 }
 
 impl Gain {
-    /// Whether effort counts.
+    /// Returns `true` if the gain includes effort.
     pub(super) fn is_priced(self) -> bool {
         self == Self::Efficiency
     }
 }
 
-/// What a unit push of one knot does at an element: to the shape, and to its slope.
+/// Effect of a unit perturbation of one knot on an element: on the shape and on its slope.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Push {
     pub(super) knot: usize,
@@ -43,33 +45,33 @@ pub(super) struct Push {
     pub(super) slope: Vector2<f64>,
 }
 
-/// A short stretch of the curve, by one place in it.
+/// Short interval of the curve, evaluated at one point.
 #[derive(Debug, Clone)]
 pub(super) struct Element {
     pub(super) second: SecondDerivatives<f64>,
-    /// dΦ along the curve's parameter, which is ∫√P where effort counts.
+    /// Derivative of Φ by the parameter of the curve, which is ∫√P if the gain includes effort.
     pub(super) rate: Vector2<f64>,
     /// x, y over L and θ.
     pub(super) pose: [f64; 3],
-    /// Of that parameter.
+    /// Length in that parameter.
     pub(super) length: f64,
     pub(super) pushes: Vec<Push>,
 }
 
-/// A quadratic form on the pushes of the knots.
+/// Quadratic form on the perturbations of the knots.
 pub(super) struct Form {
-    /// Half the second derivatives of the gain.
+    /// Half of the Hessian of the gain.
     pub(super) half: DMatrix<f64>,
     /// First variation of Δθ.
     pub(super) turned: DVector<f64>,
-    /// The same with every element's part taken as positive.
+    /// First variation of Δθ with the absolute value of every element's contribution.
     pub(super) reach: DVector<f64>,
     /// −∫ C dA.
     aside: DVector<f64>,
 }
 
 impl Form {
-    /// Of elements one after the other from where the pose is the origin.
+    /// Assembles the form from consecutive elements, starting at the origin.
     pub(super) fn new(elements: &[Element], knots: usize, gain: Gain, momentum: &Momentum) -> Self {
         let nothing = DVector::zeros(knots);
         let mut form = Self {
@@ -120,8 +122,8 @@ impl Form {
         }
     }
 
-    /// Of a quarter that goes so far along p: its images turn back what it turns, so that nothing is held. What it is turned by at its end
-    /// counts for nothing, and c is what that asks for: −p × r there, which moves.
+    /// Form of a quarter with this displacement along p. Its images reverse its rotation, so rotation is not constrained. The rotation
+    /// at its end has no effect, which determines c = −p × r there; c therefore changes with the perturbation.
     pub(super) fn of_quarter(mut self, along: f64) -> Self {
         let moved = &self.aside + &self.turned * along;
         self.half.ger(-0.25, &moved, &self.turned, 1.0);
@@ -129,7 +131,8 @@ impl Form {
         self
     }
 
-    /// With d free to turn aside, or told against the heading at the start, which the pushes of the first shape turn by `started`.
+    /// Form of a whole cycle, with d free to rotate, or measured against the heading at the start, which perturbations of the first
+    /// shape rotate by `started`.
     pub(super) fn of_whole_cycle(
         mut self,
         gain: Gain,
@@ -152,7 +155,7 @@ impl Form {
     }
 }
 
-/// What the height, where the pushes move it, gains by what they sweep there; symmetric.
+/// Local term: change of the height by one perturbation times the area swept by the other, symmetrised.
 fn higher(height: &Height, rate: &Vector2<f64>, one: &Push, other: &Push) -> f64 {
     let moved = |one: &Push, other: &Push| {
         height.gradient.dot(&one.by) * other.by.perp(rate)
@@ -161,7 +164,7 @@ fn higher(height: &Height, rate: &Vector2<f64>, one: &Push, other: &Push) -> f64
     0.5 * (moved(one, other) + moved(other, one))
 }
 
-/// Half the second variation of √P, where P is 1.
+/// Half of the second variation of √P at P = 1.
 fn dearer(second: &SecondDerivatives<f64>, rate: &Vector2<f64>, one: &Push, other: &Push) -> f64 {
     let ([d1, d2], [w11, w12, w22]) = (&second.first.d_power, &second.d2_power);
     let heavier = |push: &Push| -> Matrix2<f64> { d1 * push.by.x + d2 * push.by.y };
@@ -185,7 +188,7 @@ mod tests {
 
     type Round = SymmetricFourier<[[f64; 2]; 2]>;
 
-    /// Pushes of both joints; with 0 they leave the first shape where it is.
+    /// Perturbations of both joints; 0 keeps the first shape fixed.
     fn pushes(from_the_start: f64) -> [Fourier<f64, Vec<Harmonic<f64>>>; 3] {
         let push = |mean: [f64; 2], harmonics: [[[f64; 2]; 2]; 2]| Fourier {
             mean: Vector2::from(mean) * from_the_start,
@@ -231,14 +234,14 @@ mod tests {
         }
     }
 
-    /// Against mixed differences of the value itself, swum by the model's own integration, whose variations are written nowhere: of two
-    /// pushes that turn nothing, each made of one and of as much of a third.
+    /// The form agrees with mixed finite differences of the value, integrated by the model, for two perturbations without net rotation,
+    /// each combined with a third.
     #[test]
     fn the_second_variation_is_that_of_the_value() {
         const COUNT: usize = 4000;
         const H: f64 = 1e-3;
         let model = Model::new(&Swimmer::robot().of_unit_length()).unwrap();
-        // With the paper's symmetries, so that it turns nothing.
+        // With the paper's symmetries it has no net rotation.
         let round: Round = SymmetricFourier {
             coefficients: [[1.3, 1.1], [0.1, -0.05]],
         };
@@ -253,7 +256,7 @@ mod tests {
             let momentum = Momentum { p, c: 0.3 };
             let value = |stroke: &Stroke<f64>| {
                 let d = stroke.displacement;
-                // Its c is what the rotation at the end counts for, and p along d has no share in that.
+                // c is the weight of the rotation at the end; p along d does not contribute.
                 (momentum.c + p.perp(&d)) * stroke.rotation
                     + match gain {
                         Gain::Displacement => d.norm(),
@@ -269,7 +272,7 @@ mod tests {
                 let second = model.second_derivatives(&point.phi);
                 let power = point.rate.dot(&(second.first.power * point.rate));
                 let scale = if gain.is_priced() { power.sqrt() } else { 1.0 };
-                // Half an element to its middle, where it is told, and half on.
+                // Half an element to its midpoint, where it is evaluated, and half beyond.
                 let body = second.first.connection * point.rate * length;
                 let middle = pose[2] + 0.5 * body.z;
                 let (sin, cos) = middle.sin_cos();

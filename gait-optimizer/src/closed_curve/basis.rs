@@ -1,10 +1,10 @@
-//! The functions that a closed curve is a sum of, tabulated at the Gauss nodes of its panels.
+//! Basis functions of closed curves, tabulated at the Gauss nodes of the panels.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::{DMatrix, Vector2};
 
-/// Gauss nodes in a panel.
+/// Number of Gauss nodes per panel.
 pub(crate) const STAGES: usize = 3;
 
 /// sqrt(15)
@@ -23,26 +23,26 @@ pub(crate) const PARTIAL: [[f64; STAGES]; STAGES] = [
 /// Basis functions and their slopes at every Gauss node.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Basis {
-    /// Whether the first function is 1.
+    /// `true` if the first function is the constant 1.
     has_constant: bool,
-    /// Of cosine and sine, pair by pair: what u is multiplied by.
+    /// Angular frequency of each pair of cosine and sine.
     rates: Vec<f64>,
     panels: usize,
-    /// One column a node: the value of each function.
+    /// Value of each function, one column per node.
     pub(crate) values: DMatrix<f64>,
-    /// The same for the derivative by u times the panel's width.
+    /// Derivative by u times the width of the panel, one column per node.
     pub(crate) slopes: DMatrix<f64>,
 }
 
 impl Basis {
-    /// A Fourier series to this order (the paper's Appendix C, without its symmetries): 1, cos 2πu, sin 2πu, cos 4πu, …
+    /// Fourier series to this order (the paper's Appendix C, without its symmetries): 1, cos 2πu, sin 2πu, cos 4πu, …
     pub(crate) fn fourier(order: usize, panels: usize) -> Self {
         let rates = (1..=order).map(|k| TAU * k as f64);
         Self::tabulated(true, rates.collect(), panels)
     }
 
-    /// The odd part of a series over a quarter of the cycle, which u then runs over: what the paper's two symmetries leave, and what
-    /// they tie together besides (φ₁ = φ₂ in the cosines, φ₁ = −φ₂ in the sines): cos s, sin s, cos 3s, sin 3s, …, s = 0 … π/2.
+    /// Odd part of a series over a quarter of the cycle, on which u is defined: the terms that the paper's two symmetries keep, with
+    /// φ₁ = φ₂ in the cosines and φ₁ = −φ₂ in the sines: cos s, sin s, cos 3s, sin 3s, …, s = 0 … π/2.
     pub(crate) fn quarter(order: usize, panels: usize) -> Self {
         let rates = (0..order).map(|n| FRAC_PI_2 * (2 * n + 1) as f64);
         Self::tabulated(false, rates.collect(), panels)
@@ -82,21 +82,20 @@ impl Basis {
         self.values.ncols()
     }
 
-    /// Where a node is, as a fraction of the cycle.
+    /// Fraction of the cycle at a node.
     pub(crate) fn u(&self, node: usize) -> f64 {
         let inside = NODES.get(node % STAGES).copied().unwrap_or(0.5);
         ((node / STAGES) as f64 + inside) / self.panels as f64
     }
 
-    /// ∮(b′)² du of a function, that of the slowest for a constant: how much it lengthens a curve. Steps are damped in
-    /// proportion.
+    /// ∮(b′)² du of a function, or that of the lowest frequency for the constant. Steps are damped in proportion.
     pub(crate) fn roughness(&self, function: usize) -> f64 {
         let pair = function.saturating_sub(usize::from(self.has_constant)) / 2;
         let rate = self.rates.get(pair).copied().unwrap_or_default();
         0.5 * rate * rate
     }
 
-    /// Turns a closed curve round: the same points, run backwards from the same start.
+    /// Reverses a closed curve with the same start.
     pub(crate) fn reverse(&self, coefficients: &mut DMatrix<f64>) {
         for k in (usize::from(self.has_constant) + 1..self.functions()).step_by(2) {
             let mut sine = coefficients.column_mut(k);
@@ -104,7 +103,7 @@ impl Basis {
         }
     }
 
-    /// The curve with these coefficients at a fraction of the cycle.
+    /// Evaluates the curve with these coefficients at a fraction of the cycle.
     pub(crate) fn shape(&self, coefficients: &DMatrix<f64>, u: f64) -> Vector2<f64> {
         let mut here = vec![(0.0, 0.0); self.functions()];
         self.at(u, &mut here);
@@ -114,7 +113,7 @@ impl Basis {
             .sum()
     }
 
-    /// Value and slope over a panel of every function at a node.
+    /// Value and slope per panel of every function at a node.
     pub(super) fn at_node(&self, node: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
         let own = node * self.functions()..(node + 1) * self.functions();
         let [values, slopes] = [&self.values, &self.slopes].map(|all| &all.as_slice()[own.clone()]);

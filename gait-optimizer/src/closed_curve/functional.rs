@@ -1,4 +1,4 @@
-//! Displacement, rotation, energy and power length of a curve, and their gradients by its coefficients.
+//! Displacement, rotation, energy and power length of a curve, and their gradients by the coefficients.
 //!
 //! With `v` the slope of the curve over a panel and `b` the weight of a node, the heading turns by `ω = b A_θ v` and the body
 //! moves by `a = b A_xy v` at each node; ϑ at the nodes is the panel's first heading plus [`PARTIAL`] times the ω; then
@@ -11,7 +11,7 @@ use super::Basis;
 use super::basis::{PARTIAL, STAGES, WEIGHTS};
 use crate::batch::{self, Batch, Second};
 
-/// What one cycle brings and costs. Lengths in the model's unit, energies over μ for a period of 1.
+/// Results of one cycle. Lengths are in the model's unit, energies over μ for a period of 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Values {
     /// (X, Y) in the frame of the curve's first point, u = 0.
@@ -24,14 +24,14 @@ pub(crate) struct Values {
     pub(crate) power_length: f64,
 }
 
-/// A swimmer with a family of curves.
+/// Swimmer with a family of curves.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Functional<'a> {
     pub(crate) model: &'a Model<f64>,
     pub(crate) basis: &'a Basis,
 }
 
-/// Everything that is filled again at each curve.
+/// Reusable workspace.
 #[derive(Debug, Clone)]
 pub(crate) struct Workspace {
     /// Joint angles and slope over a panel at each node.
@@ -43,16 +43,16 @@ pub(crate) struct Workspace {
     pub(crate) derivatives: Vec<SecondDerivatives<f64>>,
     /// ∂d/∂ω at each node.
     pub(crate) lever: Vec<Vector2<f64>>,
-    /// Gradients of X, Y, Δθ, energy by the coefficients: four columns.
+    /// Gradients of X, Y, Δθ and energy by the coefficients, in four columns.
     pub(crate) gradients: DMatrix<f64>,
     pub(crate) hessian: DMatrix<f64>,
-    /// What earlier turns make of later motions, one half of it.
+    /// Half of the coupling of earlier rotations with later motions.
     pub(crate) coupling: DMatrix<f64>,
-    /// ∇ω and ∇ϑ of each node, one column each, and the transposed other factor.
+    /// ∇ω and ∇ϑ of each node, one column each; the next field is the transposed other factor.
     pub(crate) turn: DMatrix<f64>,
     pub(crate) heading_gradient: DMatrix<f64>,
     pub(crate) partner: DMatrix<f64>,
-    /// ∇ϑ where the panel begins.
+    /// ∇ϑ at the start of the panel.
     pub(crate) running: DVector<f64>,
 }
 
@@ -61,12 +61,12 @@ impl<'a> Functional<'a> {
         Self { model, basis }
     }
 
-    /// Numbers that a curve has: two for each basis function.
+    /// Number of coefficients of a curve: two per basis function.
     pub(crate) fn unknowns(&self) -> usize {
         2 * self.basis.functions()
     }
 
-    /// Room for everything, allocated once.
+    /// Allocates a workspace.
     pub(crate) fn workspace(&self) -> Workspace {
         let (nodes, unknowns) = (self.basis.nodes(), self.unknowns());
         let still = self.model.second_derivatives(&Vector2::zeros());
@@ -87,7 +87,7 @@ impl<'a> Functional<'a> {
         }
     }
 
-    /// Values of the curve with these coefficients, (φ₁, φ₂) of the first function, of the second, …
+    /// Evaluates the curve with these coefficients: (φ₁, φ₂) of the first function, of the second, …
     pub(crate) fn values(&self, coefficients: &DMatrix<f64>, work: &mut Workspace) -> Values {
         self.place(coefficients, work);
         let mut costs = (0.0, 0.0);
@@ -101,7 +101,7 @@ impl<'a> Functional<'a> {
         self.summed(work, costs)
     }
 
-    /// Values and gradients ([`Workspace::gradients`]); what [`Functional::hessian`] needs is kept.
+    /// Evaluates values and gradients ([`Workspace::gradients`]), and stores what [`Functional::hessian`] needs.
     pub(crate) fn gradients(&self, coefficients: &DMatrix<f64>, work: &mut Workspace) -> Values {
         self.place(coefficients, work);
         let mut costs = (0.0, 0.0);
@@ -127,7 +127,7 @@ impl<'a> Functional<'a> {
         work.slope.gemm(1.0, coefficients, &self.basis.slopes, 0.0);
     }
 
-    /// Headings from the turns, and all sums.
+    /// Computes the headings from the rotations, and all sums.
     fn summed(&self, work: &mut Workspace, (energy, power_length): (f64, f64)) -> Values {
         let mut theta = 0.0;
         let mut displacement = Vector2::zeros();
@@ -151,7 +151,7 @@ impl<'a> Functional<'a> {
         }
     }
 
-    /// ∂d/∂ω of each node: a quarter turn of all that is swum after it.
+    /// ∂d/∂ω of each node: the displacement after it, rotated by 90°.
     fn levers(&self, work: &mut Workspace) {
         let mut after = Vector2::zeros();
         for panel in (0..self.basis.panels()).rev() {
@@ -176,7 +176,7 @@ impl<'a> Functional<'a> {
         let first = &work.derivatives[node].first;
         let (sin, cos) = work.heading[node].sin_cos();
         let lever = work.lever[node];
-        // Rows: X, Y, Δθ; what one unit of (a_x, a_y, ω) at this node adds to them.
+        // Rows: derivatives of X, Y, Δθ by (a_x, a_y, ω) at this node.
         let reach = nalgebra::Matrix3::new(
             cos, -sin, lever.x, //
             sin, cos, lever.y, //

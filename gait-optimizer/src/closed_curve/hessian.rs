@@ -1,7 +1,7 @@
-//! Second derivatives of a weighted sum of a curve's values by its coefficients, in closed form.
+//! Hessian of a weighted sum of a curve's values by its coefficients, in closed form.
 //!
-//! One part is local: second derivatives of a, ω and the power at each node. The other couples nodes: everything swum
-//! later is turned by an earlier turn, which is a product of two matrices with one column a node.
+//! One part is local: second derivatives of a, ω and the power at each node. The other couples nodes, since an earlier rotation
+//! rotates all later motion; it is a product of two matrices with one column per node.
 
 use nalgebra::{Matrix2, Rotation2, Vector2};
 
@@ -17,9 +17,9 @@ pub(crate) struct Weights {
 }
 
 impl Functional<'_> {
-    /// The Hessian of the weighted sum, into [`Workspace::hessian`]; `local` are second derivatives by the joint angles of something
-    /// more that depends on a node's shape alone: a barrier at a bound. [`Functional::gradients`] must have been asked of the
-    /// same curve before.
+    /// Computes the Hessian of the weighted sum in [`Workspace::hessian`]. `local` has second derivatives by the joint angles of an
+    /// additional term that depends on the shape of a node only, such as a barrier at a bound. [`Functional::gradients`] must have
+    /// been evaluated for the same curve.
     pub(crate) fn hessian(&self, weights: &Weights, local: &[Matrix2<f64>], work: &mut Workspace) {
         work.hessian.fill(0.0);
         work.running.fill(0.0);
@@ -71,7 +71,7 @@ impl Functional<'_> {
         }
     }
 
-    /// The row of Σ that belongs to a node: ∇_a of p · J R a, less half of p · R a times ∇ϑ.
+    /// Row of Σ of a node: ∇_a of p · J R a, minus half of p · R a times ∇ϑ.
     fn partner(&self, weights: &Weights, work: &mut Workspace, node: usize) {
         let weight = WEIGHTS[node % STAGES];
         let slope = column(&work.slope, node);
@@ -107,7 +107,7 @@ impl Functional<'_> {
         let slope = column(&work.slope, node);
         let second = &work.derivatives[node];
         let body = Rotation2::new(-work.heading[node]) * weights.momentum;
-        // What one unit of (a_x, a_y, ω) at this node adds to the sum.
+        // Derivatives of the sum by (a_x, a_y, ω) at this node.
         let rows = [
             body.x * weight,
             body.y * weight,
@@ -148,7 +148,7 @@ impl Functional<'_> {
     }
 }
 
-/// ∇ϑ of a panel's nodes from the ∇ω, and the running sum to where the next panel begins.
+/// ∇ϑ of a panel's nodes from ∇ω, and the running sum up to the start of the next panel.
 fn heading_gradients(work: &mut Workspace, panel: usize) {
     let first = panel * STAGES;
     for (q, row) in PARTIAL.iter().enumerate() {

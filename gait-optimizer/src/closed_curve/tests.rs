@@ -3,7 +3,7 @@ use swimmer_model::{Fourier, Harmonic, Model, Swimmer, Tolerance, swim};
 
 use super::{Basis, Functional, Values, Weights};
 
-/// A lopsided curve without any symmetry, of order 3.
+/// Curve of order 3 without any symmetry.
 fn lopsided() -> (DMatrix<f64>, Fourier<f64, [Harmonic<f64>; 3]>) {
     let mean = Vector2::new(0.2, -0.1);
     let harmonic = |a, b, c, d| Harmonic {
@@ -50,7 +50,7 @@ fn values_are_those_of_the_swum_cycle() {
             ];
             worst.push(off.into_iter().fold(0.0, f64::max));
         }
-        // Beyond order 6 once the curve's own waves are resolved.
+        // Faster than order 6 once the harmonics of the curve are resolved.
         assert!(worst[1] < 1e-4 && worst[3] < 1e-8, "{worst:?}");
         assert!(worst[2] / worst[3] > 40.0, "{worst:?}");
     }

@@ -1,31 +1,31 @@
-//! Knots along a curve, between which pushes are hats.
+//! Mesh of the second variation: knots along the curve that carry piecewise linear perturbations (hat functions).
 
 use super::{Gain, Neighbours, SAME};
 use crate::certify::grid::Along;
 use crate::certify::path::Place;
 use crate::certify::{SMOOTH, Subject};
 
-/// Parts between knots, of the cycle or of its first quarter, and the fewest of a piece.
+/// Number of intervals of the cycle or of its first quarter; the next constant is the least number per piece.
 const PARTS: f64 = 96.0;
 const FEWEST: usize = 4;
-/// Slopes below this share of the steepest call for no closer knots.
+/// Share of the steepest slope below which knots are not refined further.
 const LOOSEST: f64 = 1e-3;
 
-/// A knot of the hats; without a number where the curve is held.
+/// Knot; without an index where the curve is held.
 pub(super) struct Knot {
     pub(super) u: f64,
     pub(super) number: Option<usize>,
 }
 
-/// Knots along the curve, and how many are free.
+/// Knots along the curve, and the number of free ones.
 pub(super) struct Mesh {
     pub(super) knots: Vec<Knot>,
     pub(super) count: usize,
 }
 
 impl Neighbours<'_> {
-    /// What knots are spread evenly over, from u = 0 to every node: half ∫ du and, where effort does not count, half ∫ ds/L, each over its
-    /// whole. L is the slope of the height: where it is small, little holds the curve, and pushes are narrow.
+    /// Knot density, integrated from u = 0 to every node: half ∫ du and, for objectives without effort, half ∫ ds/L, each normalised. L
+    /// is the slope of the height. Where it is small, the curve is weakly determined and needs narrow perturbations.
     fn passed(&self) -> Vec<f64> {
         let Subject {
             grid, path, model, ..
@@ -55,7 +55,7 @@ impl Neighbours<'_> {
             .collect()
     }
 
-    /// The knots from u = 0 on, over the cycle or its first quarter, each piece cut evenly by what is [`passed`](Self::passed).
+    /// Knots from u = 0 over the cycle or its first quarter, uniform in [`passed`](Self::passed) within each piece.
     pub(super) fn mesh(&self) -> Mesh {
         let grid = &self.subject.grid;
         let end = if self.symmetric { 0.25 } else { 1.0 };
@@ -63,14 +63,14 @@ impl Neighbours<'_> {
         let passed = self.passed();
         let passed_until = |u: f64| interpolated(&us, &passed, u);
         let u = |node: usize| us.get(node).copied().unwrap_or(0.0);
-        // Where neither effort nor the first shape counts nothing asks pushes to be continuous: they are free up to the ends of arcs.
+        // If neither effort nor the first shape matters, perturbations may be discontinuous at the ends of arcs.
         let jumps = matches!(self.gain, Gain::Displacement | Gain::Turning);
         let (mut knots, mut count) = (Vec::new(), 0);
         let mut free_knot = || {
             count += 1;
             Some(count - 1)
         };
-        // Where the cycle closes smoothly, and on symmetry lines, ends are free.
+        // Ends are free where the cycle closes smoothly and on symmetry lines.
         let closes = self.smooth_after(grid.pieces.len().saturating_sub(1));
         let mut number = if closes { free_knot() } else { None };
         for (index, piece) in grid.pieces.iter().enumerate() {
@@ -105,7 +105,7 @@ impl Neighbours<'_> {
         Mesh { knots, count }
     }
 
-    /// Whether the curve is free and smooth where a piece ends.
+    /// Returns `true` if the curve is free and smooth at the end of a piece.
     fn smooth_after(&self, piece: usize) -> bool {
         let Subject { grid, path, .. } = self.subject;
         let (Some(this), Some(next)) = (
@@ -124,7 +124,7 @@ impl Neighbours<'_> {
     }
 }
 
-/// A function that grows, told at places one after the other, between them.
+/// Piecewise linear interpolation of an increasing function.
 fn interpolated(places: &[f64], values: &[f64], at: f64) -> f64 {
     let after = places.partition_point(|&place| place < at);
     let after = after.clamp(1, places.len().saturating_sub(1).max(1));
